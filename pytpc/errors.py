@@ -1,0 +1,49 @@
+"""The errors that a user of TPC can cause or meet: one small family, one line each."""
+
+from __future__ import annotations
+
+from os import PathLike, fspath
+
+
+class TpcError(Exception):
+    """Something that the user can mend.
+
+    The command line prints ``str(error)`` as one line and ends with status 1.
+
+    Args:
+        message: what is wrong, and where possible what to do, without a final full stop.
+        path: the file or folder that it is about.
+        line: the line in it, counted from 1.
+    """
+
+    def __init__(
+        self, message: str, path: str | PathLike[str] | None = None, line: int | None = None
+    ) -> None:
+        super().__init__(message)
+        self.message = message
+        self.path = None if path is None else fspath(path)
+        self.line = line
+
+    def __str__(self) -> str:
+        """``path:line: message``, on one line whatever the message holds."""
+        place = "" if self.path is None else f"{self.path}:"
+        if place and self.line is not None:
+            place += f"{self.line}:"
+        text = " ".join(self.message.split())
+        return f"{place} {text}" if place else text
+
+
+class InputError(TpcError):
+    """A file that cannot be read as what it should be."""
+
+
+class WorkspaceError(TpcError):
+    """A workspace that cannot be patched, built or collected from."""
+
+
+class MissingToolError(TpcError):
+    """Something that TPC needs is not on this machine."""
+
+
+class RunError(TpcError):
+    """A program that TPC started did not do what it should."""
