@@ -1,0 +1,298 @@
+//===- BackwardPropagate.cpp ----------------------------------------------===//
+#include "BackwardPropagate.h"
+
+#include "ClassObjectAccess.h"
+#include "ExternCallFinder.h"
+#include "IfStatements.h"
+#include "Options.h"
+#include "Print.h"
+#include "SimpleCallGraph.h"
+
+#include "llvm/ADT/SmallPtrSet.h"
+#include "llvm/IR/InstIterator.h"
+#include "llvm/IR/IntrinsicInst.h"
+#include "llvm/IR/Module.h"
+
+using namespace llvm;
+
+namespace tpc {
+
+AnalysisKey BackwardPropagate::Key;
+
+std::optional<SliceEntry>
+SliceResult::lookup(const Instruction *Predicate) const {
+  auto It = Predicates.find(Predicate);
+  if (It == Predicates.end())
+    return std::nullopt;
+  return It->second;
+}
+
+/// Builds the slice of a module.
+class Slicer {
+public:
+  Slicer(Module &M, ModuleAnalysisManager &AM)
+      : Calls(AM.getResult<SimpleCallGraph>(M)),
+        Access(AM.getResult<ClassObjectAccess>(M)),
+        Ifs(AM.getResult<IfStatements>(M)),
+        Exposing(AM.getResult<ExternCallFinder>(M)),
+        Rules(AM.getResult<RuleAnalysis>(M)),
+        Opts(Options::fromCommandLine()), Sources(Opts) {}
+
+  SliceResult run();
+
+private:
+  /// Why an instruction is in the slice; bits.
+  enum Reason : unsigned char {
+    Runs = 1,    ///< that it runs matters
+    Gives = 2,   ///< the value that it gives or writes matters
+    Touches = 4, ///< a call that is handed an object which matters
+    Exposes = 8, ///< an exposing statement
+  };
+  struct Item {
+    Instruction *I;
+    unsigned char Reasons;
+    unsigned Exposing;
+  };
+
+  void enter(Instruction *I, unsigned char Reasons);
+  void decides(Instruction *Predicate);
+  void process(const Item &It);
+  void control(const BasicBlock *BB);
+  void value(Instruction &I);
+  void define(const Value *V);
+  void definePointer(const Value *V);
+  void defineMemory(const Value *Pointer);
+  void phi(const PHINode &Phi);
+  void callResult(CallBase &Call);
+  void touchingCall(CallBase &Call);
+  void derivedPointer(const Value *Pointer);
+  void reachable(CallBase &Call);
+
+  const CallGraphResult &Calls;
+  const AccessResult &Access;
+  const IfStatementsResult &Ifs;
+  const ExternCallFinder::Result &Exposing;
+  const RuleMatches &Rules;
+  const Options Opts;
+  UserSources Sources;
+
+  SliceResult Result;
+  DenseMap<const Instruction *, unsigned char> Seen;
+  SmallPtrSet<const Value *, 16> SeenArguments;
+  SmallPtrSet<const Value *, 16> SeenPointers;
+  SmallVector<Item, 0> Next; ///< what the next round holds
+  unsigned Round = 1;
+  unsigned Current = 0; ///< exposing statement of the item at hand
+};
+
+void Slicer::enter(Instruction *I, unsigned char Reasons) {
+  unsigned char &Have = Seen[I];
+  unsigned char New = (Reasons | Runs) & ~Have;
+  if (!New)
+    return;
+  Have |= New;
+  Next.push_back({I, New, Current});
+}
+
+/// \p Predicate controls what is at hand: this round is its distance.
+void Slicer::decides(Instruction *Predicate) {
+  Result.Predicates.try_emplace(Predicate, SliceEntry{Round, Current});
+  enter(Predicate, Gives);
+}
+
+void Slicer::control(const BasicBlock *BB) {
+  for (Instruction *Predicate : Ifs.controllers(BB))
+    decides(Predicate);
+  if (Ifs.isControlledByEntry(BB))
+    for (CallBase *Call : Calls.callers(BB->getParent()))
+      enter(Call, Runs);
+}
+
+/// The value of \p V matters: what gives it enters the next round.
+void Slicer::define(const Value *V) {
+  if (V->getType()->isPointerTy())
+    return definePointer(V);
+  if (const auto *I = dyn_cast<Instruction>(V))
+    return enter(const_cast<Instruction *>(I), Gives);
+  const auto *Arg = dyn_cast<Argument>(V);
+  if (!Arg || !SeenArguments.insert(Arg).second)
+    return;
+  for (const CallBase *Call : Calls.callers(Arg->getParent()))
+    if (Arg->getArgNo() < Call->arg_size())
+      define(Call->getArgOperand(Arg->getArgNo()));
+}
+
+/// Which object a pointer leads to matters where the program chooses it: by
+/// an index, a condition, a call or a pointer in memory.
+void Slicer::definePointer(const Value *V) {
+  if (const auto *GEP = dyn_cast<GetElementPtrInst>(V)) {
+    for (const Use &Index : GEP->indices())
+      if (!isa<Constant>(Index))
+        define(Index);
+    return definePointer(GEP->getPointerOperand());
+  }
+  if (isa<PHINode>(V) || isa<SelectInst>(V) || isa<LoadInst>(V) ||
+      isa<CallBase>(V))
+    enter(const_cast<Instruction *>(cast<Instruction>(V)), Gives);
+}
+
+/// What is in memory at \p Pointer, a scalar, matters.
+void Slicer::defineMemory(const Value *Pointer) {
+  for (const Location &L : Access.resolve(Pointer, true))
+    for (Instruction *Write : Access.writesOf(L))
+      enter(Write, Gives);
+}
+
+/// A value that control flow merges: the predicates that choose between the
+/// ways matter as if they controlled this instruction.
+void Slicer::phi(const PHINode &Phi) {
+  for (unsigned N = 0; N < Phi.getNumIncomingValues(); ++N) {
+    define(Phi.getIncomingValue(N));
+    const BasicBlock *From = Phi.getIncomingBlock(N);
+    if (isPredicate(*From->getTerminator()))
+      decides(const_cast<Instruction *>(From->getTerminator()));
+    for (Instruction *Predicate : Ifs.controllers(From))
+      decides(Predicate);
+  }
+}
+
+void Slicer::callResult(CallBase &Call) {
+  SmallVector<Function *, 1> Callees = Calls.callees(Call);
+  if (!Callees.empty() && !Rules.match(Call)) {
+    for (Function *Callee : Callees)
+      for (BasicBlock &BB : *Callee)
+        if (isa<ReturnInst>(BB.getTerminator()))
+          enter(BB.getTerminator(), Gives);
+    return;
+  }
+  for (const Use &Arg : Call.args()) {
+    define(Arg);
+    if (Arg->getType()->isPointerTy())
+      defineMemory(Arg);
+  }
+}
+
+/// \p Call is handed an object that matters: it may put its other arguments
+/// into it, and what is written through a pointer that it returns is in it.
+void Slicer::touchingCall(CallBase &Call) {
+  for (const Use &Arg : Call.args()) {
+    define(Arg);
+    if (Arg->getType()->isPointerTy())
+      defineMemory(Arg);
+  }
+  if (Call.getType()->isPointerTy())
+    derivedPointer(&Call);
+}
+
+void Slicer::derivedPointer(const Value *Pointer) {
+  if (!SeenPointers.insert(Pointer).second)
+    return;
+  for (const User *U : Pointer->users()) {
+    auto *I = const_cast<Instruction *>(dyn_cast<Instruction>(U));
+    if (!I)
+      continue;
+    if (isa<GetElementPtrInst>(I))
+      derivedPointer(I);
+    else if (auto *Store = dyn_cast<StoreInst>(I);
+             Store && Store->getPointerOperand() == Pointer)
+      enter(I, Gives);
+    else if (isa<MemTransferInst>(I))
+      enter(I, Gives);
+    else if (isa<CallBase>(I) && !isa<IntrinsicInst>(I))
+      enter(I, Touches);
+  }
+}
+
+/// All that an exposing statement shows: what is in its arguments.
+void Slicer::reachable(CallBase &Call) {
+  const Rule *Row = Rules.match(Call);
+  const Value *Object = Row ? objectOf(Call, *Row) : nullptr;
+  for (const Use &Arg : Call.args()) {
+    if (Arg.get() == Object)
+      continue;
+    define(Arg);
+    if (!Arg->getType()->isPointerTy())
+      continue;
+    for (const Location &L : Access.resolve(Arg, false))
+      for (Instruction *Write : Access.writesInto(L))
+        enter(Write, isa<CallBase>(Write) && !isa<IntrinsicInst>(Write)
+                         ? Touches
+                         : Gives);
+    derivedPointer(Arg);
+  }
+}
+
+void Slicer::value(Instruction &I) {
+  if (auto *Phi = dyn_cast<PHINode>(&I))
+    return phi(*Phi);
+  if (auto *Load = dyn_cast<LoadInst>(&I)) {
+    for (Instruction *Write : Access.definitionsOf(*Load)) {
+      // What a library sets to a constant, it sets in its constructors.
+      const auto *Store = dyn_cast<StoreInst>(Write);
+      if (!Store || !isa<Constant>(Store->getValueOperand()) ||
+          Sources.has(*Write->getFunction()))
+        enter(Write, Gives);
+    }
+    return definePointer(Load->getPointerOperand());
+  }
+  if (auto *Copy = dyn_cast<MemTransferInst>(&I))
+    return defineMemory(Copy->getSource());
+  if (auto *Call = dyn_cast<CallBase>(&I); Call && !isa<IntrinsicInst>(&I))
+    return callResult(*Call);
+  if (auto *Store = dyn_cast<StoreInst>(&I)) {
+    define(Store->getValueOperand());
+    return definePointer(Store->getPointerOperand());
+  }
+  if (isa<SelectInst>(I))
+    decides(&I);
+  for (const Use &Operand : I.operands())
+    if (!isa<BasicBlock>(Operand))
+      define(Operand);
+}
+
+void Slicer::process(const Item &It) {
+  Current = It.Exposing;
+  if (It.Reasons & Runs)
+    control(It.I->getParent());
+  if (It.Reasons & Gives)
+    value(*It.I);
+  if (It.Reasons & Touches)
+    touchingCall(*cast<CallBase>(It.I));
+  if (It.Reasons & Exposes)
+    reachable(*cast<CallBase>(It.I));
+}
+
+SliceResult Slicer::run() {
+  for (const auto &[N, E] : enumerate(Exposing)) {
+    Current = N;
+    enter(E.Call, Exposes);
+  }
+  for (; !Next.empty(); ++Round) {
+    SmallVector<Item, 0> Items = std::move(Next);
+    Next.clear();
+    for (const Item &It : Items)
+      process(It);
+  }
+  return std::move(Result);
+}
+
+SliceResult BackwardPropagate::run(Module &M, ModuleAnalysisManager &AM) {
+  return Slicer(M, AM).run();
+}
+
+PreservedAnalyses BackwardPropagatePrinter::run(Module &M,
+                                                ModuleAnalysisManager &AM) {
+  const SliceResult &R = AM.getResult<BackwardPropagate>(M);
+  const auto &Exposing = AM.getResult<ExternCallFinder>(M);
+  OS << "slice of " << M.getName() << ": " << R.numPredicates()
+     << " predicates\n";
+  for (const Instruction *P : AM.getResult<IfStatements>(M).predicates())
+    if (std::optional<SliceEntry> E = R.lookup(P))
+      OS << "  distance " << E->Distance << " in "
+         << P->getFunction()->getName() << place(*P) << " before "
+         << Exposing[E->Exposing].Row->Function
+         << place(*Exposing[E->Exposing].Call) << '\n';
+  return PreservedAnalyses::all();
+}
+
+} // namespace tpc

@@ -1,0 +1,71 @@
+//===- BackwardPropagate.h - What the exposing statements depend on -------===//
+//
+// Thesis A.10 and its algorithm 3: the slice, from all exposing statements
+// backwards over control and data dependence, by rounds. The round in which a
+// predicate first controls an instruction of the slice is its distance.
+//
+// Control: the predicates that control an instruction's block, and the calls
+// of its function where it runs whenever the function does.
+// Data: operands; loads to the writes of the variable; arguments to the calls;
+// results to the callee's returns; a value that control flow merges to the
+// predicates that choose it; for an exposing statement all that is reachable
+// from its arguments. A call that is in the slice only because of what it
+// calls, not because of its result, brings in no operands.
+//
+// The way in and out of a function is not matched: calls are told apart by
+// their callee alone, as in the thesis.
+//
+//===----------------------------------------------------------------------===//
+#ifndef TPC_BACKWARDPROPAGATE_H
+#define TPC_BACKWARDPROPAGATE_H
+
+#include "llvm/ADT/DenseMap.h"
+#include "llvm/IR/Instruction.h"
+#include "llvm/IR/PassManager.h"
+
+#include <optional>
+
+namespace tpc {
+
+/// How a predicate got into the slice.
+struct SliceEntry {
+  unsigned Distance;
+  unsigned Exposing; ///< number of the nearest exposing statement
+};
+
+class SliceResult {
+public:
+  /// None where no exposing statement depends on \p Predicate.
+  std::optional<SliceEntry> lookup(const llvm::Instruction *Predicate) const;
+  unsigned numPredicates() const { return Predicates.size(); }
+
+private:
+  friend class Slicer;
+  llvm::DenseMap<const llvm::Instruction *, SliceEntry> Predicates;
+};
+
+class BackwardPropagate : public llvm::AnalysisInfoMixin<BackwardPropagate> {
+public:
+  using Result = SliceResult;
+  Result run(llvm::Module &M, llvm::ModuleAnalysisManager &AM);
+
+private:
+  friend llvm::AnalysisInfoMixin<BackwardPropagate>;
+  static llvm::AnalysisKey Key;
+};
+
+/// `print<tpc-backward-propagate>`
+class BackwardPropagatePrinter
+    : public llvm::PassInfoMixin<BackwardPropagatePrinter> {
+public:
+  explicit BackwardPropagatePrinter(llvm::raw_ostream &OS) : OS(OS) {}
+  llvm::PreservedAnalyses run(llvm::Module &M, llvm::ModuleAnalysisManager &AM);
+  static bool isRequired() { return true; }
+
+private:
+  llvm::raw_ostream &OS;
+};
+
+} // namespace tpc
+
+#endif // TPC_BACKWARDPROPAGATE_H

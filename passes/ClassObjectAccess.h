@@ -1,0 +1,184 @@
+//===- ClassObjectAccess.h - Which code reads and writes a variable -------===//
+//
+// Thesis A.6: field -> its loads and stores. Here a variable is a Location: a
+// field of any object of its class, or a global or local variable or a part of
+// one. Pointers are resolved to locations by following them back through
+// getelementptr, phis, arguments to the calls, results to the returns, and
+// loads of pointers to the stores of them: inclusion-based points-to analysis
+// as Andersen's ("Program analysis and specialization for the C programming
+// language", 1994), with fields, without contexts but for results that are one
+// of the call's own arguments.
+//
+// Fields are told apart by class and position, not by object: two objects of
+// one class share their fields. Elements of an array are one location.
+//
+//===----------------------------------------------------------------------===//
+#ifndef TPC_CLASSOBJECTACCESS_H
+#define TPC_CLASSOBJECTACCESS_H
+
+#include "SimpleCallGraph.h"
+
+#include "llvm/ADT/DenseMap.h"
+#include "llvm/ADT/SetVector.h"
+#include "llvm/ADT/SmallVector.h"
+#include "llvm/ADT/StringMap.h"
+#include "llvm/IR/DerivedTypes.h"
+#include "llvm/IR/Instructions.h"
+#include "llvm/IR/PassManager.h"
+
+#include <optional>
+
+namespace tpc {
+
+/// One step into a class: its number (see TypeNumbers) and the field's index.
+struct Step {
+  unsigned Type;
+  unsigned Index;
+  bool operator==(const Step &O) const {
+    return Type == O.Type && Index == O.Index;
+  }
+};
+
+/// A variable. With a Root (a global, a local, an allocation) the path is from
+/// its beginning; without one it is a field of whatever object a pointer
+/// leads to, and the path may be the end of a longer one.
+struct Location {
+  const llvm::Value *Root = nullptr;
+  llvm::SmallVector<Step, 4> Path;
+
+  bool isKnown() const { return Root || !Path.empty(); }
+  bool operator==(const Location &O) const {
+    return Root == O.Root && Path == O.Path;
+  }
+  /// True where the two can be the same variable.
+  bool mayBe(const Location &O) const;
+};
+
+using Locations = llvm::SmallVector<Location, 1>;
+
+/// Numbers the classes of a module. The same class read from two files can be
+/// `class.A` and `class.A.7`: they get one number where they also look alike.
+class TypeNumbers {
+public:
+  unsigned numberOf(llvm::StructType *T);
+  llvm::StructType *typeOf(unsigned Number) const { return Types[Number]; }
+
+private:
+  llvm::DenseMap<llvm::StructType *, unsigned> Numbers;
+  llvm::StringMap<llvm::SmallVector<unsigned, 1>> ByName;
+  llvm::SmallVector<llvm::StructType *, 0> Types;
+};
+
+/// A load, a store, a copy of a whole object, or a call that gets a pointer to
+/// it and whose body is not known.
+struct Access {
+  llvm::Instruction *I;
+  Location Where;
+};
+
+class AccessResult {
+public:
+  /// The locations that \p Pointer can point to. With \p Scalar a class is
+  /// entered down to the scalar at its beginning: what a load or store of a
+  /// scalar touches. Empty where nothing is known.
+  Locations resolve(const llvm::Value *Pointer, bool Scalar) const;
+
+  /// The writes that can give \p Load its value: stores, and calls without a
+  /// body that are handed the variable. Copies of whole objects are followed.
+  /// Of the writes of a local variable, those that another store surely
+  /// replaces on every way to the load are left out.
+  llvm::SmallVector<llvm::Instruction *, 8>
+  definitionsOf(const llvm::LoadInst &Load) const;
+
+  /// The loads to which \p Write, a store or call that writes the scalar at
+  /// \p Pointer, can give the value.
+  llvm::SmallVector<llvm::LoadInst *, 8>
+  usesOf(const llvm::Instruction &Write, const llvm::Value *Pointer) const;
+
+  /// The writes of the scalar at \p L, wherever they are.
+  llvm::SmallVector<llvm::Instruction *, 8> writesOf(const Location &L) const;
+
+  /// Stores into the object at \p L, and calls that are handed it or a part
+  /// of it.
+  llvm::SmallVector<llvm::Instruction *, 8> writesInto(const Location &L) const;
+
+  const TypeNumbers &types() const { return Numbers; }
+  llvm::ArrayRef<Access> loads() const { return Loads; }
+  llvm::ArrayRef<Access> stores() const { return Stores; }
+
+private:
+  friend class ClassObjectAccess;
+  struct Copy {
+    llvm::Instruction *I;
+    Locations To, From;
+  };
+  /// A place that an access with this location is filed under.
+  using Slot = std::pair<const void *, unsigned>;
+  using Index = llvm::DenseMap<Slot, llvm::SmallVector<unsigned, 4>>;
+
+  struct Builder;
+  /// Copies by where they write and by where they read: by slot, and by the
+  /// classes that are in the copied object.
+  struct CopyIndex {
+    Index BySlot;
+    llvm::DenseMap<unsigned, llvm::SmallVector<unsigned, 4>> ByClass;
+  };
+
+  void addPointees(const llvm::Value *Pointer, Locations &Out) const;
+  void addTo(Locations &Out, Location L) const;
+  void enterScalar(Location &L) const;
+  llvm::Type *typeAt(const Location &L) const;
+  bool contains(llvm::Type *Outer, unsigned Inner) const;
+  std::optional<llvm::SmallVector<Step, 4>> partOf(const Location &Object,
+                                                   const Location &L) const;
+  void collectWrites(const Location &L,
+                     llvm::SmallSetVector<llvm::Instruction *, 8> &Out) const;
+  void collectLoads(const Location &L,
+                    llvm::SmallSetVector<llvm::LoadInst *, 8> &Out) const;
+  Locations throughCopies(const Location &L, bool Backward) const;
+  void reachingWrites(const llvm::LoadInst &Load, const Location &L,
+                      llvm::SmallSetVector<llvm::Instruction *, 8> &W) const;
+  static Slot slot(const Location &L);
+  template <typename Fn>
+  static void eachObject(const Location &L, const Index &In, Fn F);
+  void fileCopy(CopyIndex &In, unsigned N, const Location &Object) const;
+  void file(llvm::SmallVectorImpl<Access> &List, Index &In,
+            llvm::Instruction &I, const Location &L);
+
+  mutable TypeNumbers Numbers;
+  /// What the pointers that are not computed on the spot can lead to:
+  /// arguments, results, merges, and pointers that were in memory.
+  llvm::DenseMap<const llvm::Value *, Locations> Targets;
+  llvm::SmallVector<Access, 0> Loads, Stores;
+  /// Calls that are handed an object: those without a known body, and others.
+  llvm::SmallVector<Access, 0> Handed, Passed;
+  llvm::SmallVector<Copy, 0> Copies;
+  Index LoadIndex, StoreIndex, HandedIndex, PassedIndex;
+  CopyIndex CopiesTo, CopiesFrom;
+};
+
+class ClassObjectAccess : public llvm::AnalysisInfoMixin<ClassObjectAccess> {
+public:
+  using Result = AccessResult;
+  Result run(llvm::Module &M, llvm::ModuleAnalysisManager &AM);
+
+private:
+  friend llvm::AnalysisInfoMixin<ClassObjectAccess>;
+  static llvm::AnalysisKey Key;
+};
+
+/// `print<tpc-class-object-access>`
+class ClassObjectAccessPrinter
+    : public llvm::PassInfoMixin<ClassObjectAccessPrinter> {
+public:
+  explicit ClassObjectAccessPrinter(llvm::raw_ostream &OS) : OS(OS) {}
+  llvm::PreservedAnalyses run(llvm::Module &M, llvm::ModuleAnalysisManager &AM);
+  static bool isRequired() { return true; }
+
+private:
+  llvm::raw_ostream &OS;
+};
+
+} // namespace tpc
+
+#endif // TPC_CLASSOBJECTACCESS_H

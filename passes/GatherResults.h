@@ -1,0 +1,67 @@
+//===- GatherResults.h - The threshold predicate comparisons --------------===//
+//
+// Thesis A.12: what ParamUsageFinder and BackwardPropagate agree on. The one
+// place to add another kind of threshold.
+//
+//===----------------------------------------------------------------------===//
+#ifndef TPC_GATHERRESULTS_H
+#define TPC_GATHERRESULTS_H
+
+#include "BackwardPropagate.h"
+#include "ParamUsageFinder.h"
+
+namespace tpc {
+
+struct Comparison {
+  enum TypeTy { Parameter, Flag, Derived };
+  TypeTy Type;
+  llvm::CmpInst *Compare;       ///< null for a flag
+  unsigned Threshold = 0;       ///< operand of Compare that is the threshold
+  llvm::Value *FlagValue;       ///< null for a comparison
+  llvm::Instruction *Predicate; ///< the nearest one that it decides
+  bool Direct;                  ///< see Decision
+  Transform How;
+  llvm::SmallVector<unsigned, 1> Reads; ///< all of one parameter name
+  SliceEntry Slice;
+  unsigned OtherThresholds = 0;
+
+  /// Where it stands in the source.
+  const llvm::Instruction &place() const {
+    return Compare ? *llvm::cast<llvm::Instruction>(Compare) : *Predicate;
+  }
+  llvm::StringRef typeName() const;
+  /// The operator with the threshold on the right-hand side, or `flag`.
+  llvm::StringRef relation() const;
+};
+
+struct GatheredResults {
+  /// In the order of the reads and then of the way forward.
+  std::vector<Comparison> Comparisons;
+  unsigned OutsideSources = 0;   ///< comparisons in code that is not the user's
+  unsigned WithoutDebugInfo = 0; ///< comparisons whose place is not known
+};
+
+class GatherResults : public llvm::AnalysisInfoMixin<GatherResults> {
+public:
+  using Result = GatheredResults;
+  Result run(llvm::Module &M, llvm::ModuleAnalysisManager &AM);
+
+private:
+  friend llvm::AnalysisInfoMixin<GatherResults>;
+  static llvm::AnalysisKey Key;
+};
+
+/// `print<tpc-gather-results>`
+class GatherResultsPrinter : public llvm::PassInfoMixin<GatherResultsPrinter> {
+public:
+  explicit GatherResultsPrinter(llvm::raw_ostream &OS) : OS(OS) {}
+  llvm::PreservedAnalyses run(llvm::Module &M, llvm::ModuleAnalysisManager &AM);
+  static bool isRequired() { return true; }
+
+private:
+  llvm::raw_ostream &OS;
+};
+
+} // namespace tpc
+
+#endif // TPC_GATHERRESULTS_H

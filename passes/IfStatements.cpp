@@ -1,0 +1,116 @@
+//===- IfStatements.cpp ---------------------------------------------------===//
+#include "IfStatements.h"
+
+#include "ControlDependence.h"
+#include "Print.h"
+
+#include "llvm/IR/CFG.h"
+#include "llvm/IR/InstIterator.h"
+#include "llvm/IR/Module.h"
+
+using namespace llvm;
+
+namespace tpc {
+
+AnalysisKey IfStatements::Key;
+
+bool isPredicate(const Instruction &I) {
+  if (const auto *Br = dyn_cast<BranchInst>(&I))
+    return Br->isConditional();
+  if (const auto *Select = dyn_cast<SelectInst>(&I))
+    return !Select->getCondition()->getType()->isVectorTy();
+  return isa<SwitchInst>(&I);
+}
+
+Value *conditionOf(const Instruction &Predicate) {
+  // A select's condition is its first operand, a branch's its last, and a
+  // switch's its first again; only the branch has to be asked.
+  if (const auto *Br = dyn_cast<BranchInst>(&Predicate))
+    return Br->getCondition();
+  assert(isPredicate(Predicate) && "decides nothing");
+  return Predicate.getOperand(0);
+}
+
+ArrayRef<Instruction *>
+IfStatementsResult::controllers(const BasicBlock *BB) const {
+  auto It = Controllers.find(BB);
+  return It == Controllers.end() ? ArrayRef<Instruction *>()
+                                 : ArrayRef(It->second);
+}
+
+/// The flow graph of \p F without the edges that exceptions take, and with
+/// the two nodes of Ferrante et al. behind the blocks: the entry, from which
+/// the function is either entered or not, and the end of not entering it.
+static FlowGraph flowGraphOf(const Function &F,
+                             const DenseMap<const BasicBlock *, unsigned> &Id) {
+  FlowGraph Graph(F.size() + 2);
+  Graph[F.size()] = {Id.lookup(&F.getEntryBlock()),
+                     static_cast<unsigned>(F.size()) + 1};
+  for (const BasicBlock &BB : F) {
+    std::vector<unsigned> &Succs = Graph[Id.lookup(&BB)];
+    if (const auto *Invoke = dyn_cast<InvokeInst>(BB.getTerminator())) {
+      Succs.push_back(Id.lookup(Invoke->getNormalDest()));
+      continue;
+    }
+    for (const BasicBlock *Succ : successors(&BB))
+      Succs.push_back(Id.lookup(Succ));
+  }
+  return Graph;
+}
+
+IfStatementsResult IfStatements::run(Module &M, ModuleAnalysisManager &) {
+  IfStatementsResult R;
+  for (Function &F : M) {
+    if (F.isDeclaration())
+      continue;
+    for (Instruction &I : instructions(F))
+      if (isPredicate(I))
+        R.Predicates.push_back(&I);
+    DenseMap<const BasicBlock *, unsigned> Id;
+    SmallVector<BasicBlock *, 32> Blocks;
+    for (BasicBlock &BB : F) {
+      Id[&BB] = Blocks.size();
+      Blocks.push_back(&BB);
+    }
+    auto Depends = controlDependence(flowGraphOf(F, Id));
+    for (unsigned N = 0; N < Blocks.size(); ++N) {
+      SmallVector<Instruction *, 2> Controllers;
+      bool ByEntry = Depends[N].empty();
+      for (unsigned Branch : Depends[N])
+        if (Branch >= Blocks.size())
+          ByEntry = true;
+        else if (Instruction *T = Blocks[Branch]->getTerminator();
+                 isPredicate(*T))
+          Controllers.push_back(T);
+      if (!Controllers.empty())
+        R.Controllers[Blocks[N]] = std::move(Controllers);
+      if (ByEntry)
+        R.ByEntry.insert(Blocks[N]);
+    }
+  }
+  return R;
+}
+
+PreservedAnalyses IfStatementsPrinter::run(Module &M,
+                                           ModuleAnalysisManager &AM) {
+  const IfStatementsResult &R = AM.getResult<IfStatements>(M);
+  OS << "predicates of " << M.getName() << ": " << R.predicates().size()
+     << '\n';
+  for (const Function &F : M)
+    for (const BasicBlock &BB : F) {
+      OS << "  " << F.getName() << ' ';
+      BB.printAsOperand(OS, false);
+      OS << " controlled by";
+      if (R.isControlledByEntry(&BB))
+        OS << " entry";
+      for (const Instruction *P : R.controllers(&BB)) {
+        OS << ' ';
+        P->getParent()->printAsOperand(OS, false);
+        OS << place(*P);
+      }
+      OS << '\n';
+    }
+  return PreservedAnalyses::all();
+}
+
+} // namespace tpc

@@ -1,0 +1,53 @@
+//===- InstrumentBranches.h - Puts the reports into the program -----------===//
+//
+// Thesis A.13: before each predicate of a threshold predicate comparison a
+// call of log_one with the key, the outcomes and both values. The only code of
+// TPC that changes what a program does.
+//
+//===----------------------------------------------------------------------===//
+#ifndef TPC_INSTRUMENTBRANCHES_H
+#define TPC_INSTRUMENTBRANCHES_H
+
+#include "GatherResults.h"
+#include "Prepare.h"
+
+#include <optional>
+
+namespace tpc {
+
+/// A report to insert, in terms of the program that is instrumented.
+struct Report {
+  std::string Key;
+  /// Before this instruction.
+  llvm::Instruction *Before;
+  llvm::Value *Result;    ///< the predicate's outcome (any integer)
+  llvm::Value *Compared;  ///< what is compared with the threshold
+  llvm::Value *Threshold;
+  llvm::Value *Outcome;   ///< the comparison's outcome
+  bool Signed;            ///< how integers are to be read
+};
+
+/// The report for \p C, or none where a value of the analysed program has no
+/// counterpart in the original.
+std::optional<Report> planReport(const Comparison &C, std::string Key,
+                                 const AnalysedModule &Analysed);
+
+/// Inserts \p Reports. Where the module does not verify afterwards, takes them
+/// out again and returns why; else returns nothing.
+std::string insertReports(llvm::Module &M, llvm::ArrayRef<Report> Reports);
+
+/// `print<tpc-instrument-branches>`: where reports would be put.
+class InstrumentBranchesPrinter
+    : public llvm::PassInfoMixin<InstrumentBranchesPrinter> {
+public:
+  explicit InstrumentBranchesPrinter(llvm::raw_ostream &OS) : OS(OS) {}
+  llvm::PreservedAnalyses run(llvm::Module &M, llvm::ModuleAnalysisManager &AM);
+  static bool isRequired() { return true; }
+
+private:
+  llvm::raw_ostream &OS;
+};
+
+} // namespace tpc
+
+#endif // TPC_INSTRUMENTBRANCHES_H

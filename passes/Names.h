@@ -1,0 +1,30 @@
+//===- Names.h - Names of functions, variables and constant strings -------===//
+#ifndef TPC_NAMES_H
+#define TPC_NAMES_H
+
+#include "llvm/ADT/StringRef.h"
+#include "llvm/IR/DerivedTypes.h"
+#include "llvm/IR/Value.h"
+
+#include <optional>
+#include <string>
+
+namespace tpc {
+
+/// The demangled name of \p Mangled with its scopes, without parameters and
+/// without template arguments: `ros::NodeHandle::param`. A name that is not
+/// mangled comes back as it is.
+std::string qualifiedName(llvm::StringRef Mangled);
+
+/// The text that \p Object, a pointer to a `std::string` or to characters,
+/// is known to hold: it is constant, or it was constructed from one constant
+/// and from nothing else. None where that cannot be told.
+std::optional<std::string> constantText(const llvm::Value *Object);
+
+/// `ns::Node` for the type `class.ns::Node.7`: without the kind, and without
+/// what only tells two copies of one class apart.
+llvm::StringRef plainClassName(const llvm::StructType &T);
+
+} // namespace tpc
+
+#endif // TPC_NAMES_H

@@ -1,0 +1,138 @@
+//===- Options.cpp --------------------------------------------------------===//
+#include "Options.h"
+
+#include "llvm/ADT/SmallString.h"
+#include "llvm/ADT/StringExtras.h"
+#include "llvm/IR/Function.h"
+#include "llvm/Support/CommandLine.h"
+#include "llvm/Support/MemoryBuffer.h"
+#include "llvm/Support/Path.h"
+
+using namespace llvm;
+
+namespace tpc {
+
+static cl::OptionCategory Category("Threshold predicate comparisons");
+
+static cl::opt<std::string>
+    LinkUnitOpt("tpc-link-unit", cl::cat(Category),
+                cl::desc("Name of the link unit (default: the output's)"));
+static cl::opt<std::string> PackageOpt("tpc-package", cl::cat(Category),
+                                       cl::desc("Name of the package"));
+static cl::opt<std::string>
+    SourceRootOpt("tpc-source-root", cl::cat(Category),
+                  cl::desc("Folder that reported files are relative to"));
+static cl::opt<std::string>
+    StaticInfoOpt("tpc-static-info", cl::cat(Category),
+                  cl::desc("File for the static information (JSON)"));
+static cl::opt<std::string>
+    ProfileOpt("tpc-profile", cl::cat(Category), cl::init("default"),
+               cl::desc("Profile of the rules: thesis or default"));
+static cl::list<std::string>
+    RulesOpt("tpc-rules", cl::cat(Category),
+             cl::desc("A further file of rules (JSON); may be repeated"));
+static cl::list<std::string>
+    ExcludeOpt("tpc-exclude", cl::cat(Category),
+               cl::desc("A folder whose code is reported on nowhere; may be "
+                        "repeated; /usr and /opt/ros always are"));
+static cl::opt<bool>
+    InstrumentOpt("tpc-instrument", cl::cat(Category), cl::init(true),
+                  cl::desc("Insert the reports (default: yes)"));
+static cl::opt<bool>
+    PrelinkOpt("tpc-prelink", cl::cat(Category), cl::init(true),
+               cl::desc("Run the optimisation that the compiler was told to "
+                        "leave out (default: yes)"));
+static cl::opt<bool>
+    InjectFailureOpt("tpc-inject-failure", cl::cat(Category), cl::Hidden,
+                     cl::desc("Crash inside the analysis (for tests)"));
+
+/// The linker's `-o`, from the command line of this process: the module of a
+/// link is always called ld-temp.o, and a plugin is told no more.
+static std::string outputOfThisProcess() {
+  auto Buffer = MemoryBuffer::getFileAsStream("/proc/self/cmdline");
+  if (!Buffer)
+    return "";
+  SmallVector<StringRef, 64> Words;
+  (*Buffer)->getBuffer().split(Words, '\0');
+  for (size_t I = 0; I + 1 < Words.size(); ++I)
+    if (Words[I] == "-o")
+      return Words[I + 1].str();
+  return "";
+}
+
+Options Options::fromCommandLine() {
+  Options O;
+  O.LinkUnit = LinkUnitOpt;
+  if (O.LinkUnit.empty())
+    O.LinkUnit = sys::path::filename(outputOfThisProcess()).str();
+  if (O.LinkUnit.empty())
+    O.LinkUnit = "unnamed";
+  O.Package = PackageOpt;
+  O.SourceRoot = SourceRootOpt;
+  O.StaticInfo = StaticInfoOpt;
+  O.Profile = ProfileOpt;
+  O.RuleFiles.assign(RulesOpt.begin(), RulesOpt.end());
+  O.Excluded = {"/usr", "/opt/ros"};
+  for (const std::string &Folder : ExcludeOpt)
+    O.Excluded.push_back(Folder);
+  O.Instrument = InstrumentOpt;
+  O.Prelink = PrelinkOpt;
+  O.InjectFailure = InjectFailureOpt;
+  return O;
+}
+
+/// True where \p Path is \p Folder or below it.
+static bool isBelow(StringRef Path, StringRef Folder) {
+  Folder = Folder.rtrim('/');
+  return Path.starts_with(Folder) &&
+         (Path.size() == Folder.size() || Path[Folder.size()] == '/');
+}
+
+bool Options::isUserSource(StringRef Path) const {
+  if (Path.empty())
+    return false;
+  return none_of(Excluded,
+                 [&](const std::string &F) { return isBelow(Path, F); });
+}
+
+std::string Options::relative(StringRef Path) const {
+  if (SourceRoot.empty() || !isBelow(Path, SourceRoot))
+    return Path.str();
+  return Path.drop_front(StringRef(SourceRoot).rtrim('/').size())
+      .ltrim('/')
+      .str();
+}
+
+bool UserSources::has(const DIFile *File) {
+  auto [It, New] = Known.try_emplace(File, false);
+  if (New)
+    It->second = Opts.isUserSource(pathOf(File));
+  return It->second;
+}
+
+bool UserSources::has(const Function &F) {
+  const DISubprogram *SP = F.getSubprogram();
+  return SP && has(SP->getFile());
+}
+
+bool UserSources::has(const DILocation *Loc) {
+  return Loc && has(Loc->getFile());
+}
+
+std::string pathOf(const DIFile *File) {
+  if (!File)
+    return "";
+  SmallString<256> Path(File->getFilename());
+  if (!sys::path::is_absolute(Path)) {
+    Path = File->getDirectory();
+    sys::path::append(Path, File->getFilename());
+  }
+  sys::path::remove_dots(Path, /*remove_dot_dot=*/true);
+  return std::string(Path);
+}
+
+std::string pathOf(const DILocation *Loc) {
+  return Loc ? pathOf(Loc->getFile()) : "";
+}
+
+} // namespace tpc

@@ -1,0 +1,60 @@
+//===- Options.h - What a build tells the plugin --------------------------===//
+#ifndef TPC_OPTIONS_H
+#define TPC_OPTIONS_H
+
+#include "llvm/ADT/DenseMap.h"
+#include "llvm/ADT/StringRef.h"
+#include "llvm/IR/DebugInfoMetadata.h"
+
+#include <string>
+#include <vector>
+
+namespace tpc {
+
+/// The options of one link, read once from the command line (`-mllvm -tpc-*`)
+/// and, for the link unit's name, from the linker's own `-o`.
+struct Options {
+  std::string LinkUnit;    ///< target's name; else the file name of `-o`
+  std::string Package;     ///< name of the CMake project
+  std::string SourceRoot;  ///< folder that reported files are relative to
+  std::string StaticInfo;  ///< where the JSON goes; empty: nowhere
+  std::string Profile;     ///< profile of the rules
+  std::vector<std::string> RuleFiles; ///< the user's own tables
+  std::vector<std::string> Excluded;  ///< folders that are not the user's
+  bool Instrument = true;
+  bool Prelink = true;
+  bool InjectFailure = false;
+
+  /// The options of this process.
+  static Options fromCommandLine();
+
+  /// True where \p Path (absolute) is one of the user's own sources: it is
+  /// below none of the excluded folders.
+  bool isUserSource(llvm::StringRef Path) const;
+
+  /// \p Path relative to SourceRoot where it is below it, else unchanged.
+  std::string relative(llvm::StringRef Path) const;
+};
+
+/// Whose code something is, by the file that its debug information names.
+class UserSources {
+public:
+  explicit UserSources(const Options &Opts) : Opts(Opts) {}
+  /// True where \p F is the user's own; false without debug information.
+  bool has(const llvm::Function &F);
+  bool has(const llvm::DILocation *Loc);
+
+private:
+  bool has(const llvm::DIFile *File);
+  const Options &Opts;
+  llvm::DenseMap<const llvm::DIFile *, bool> Known;
+};
+
+/// The absolute path of the file of \p Loc, without `.` and `..`; empty
+/// where there is no location.
+std::string pathOf(const llvm::DILocation *Loc);
+std::string pathOf(const llvm::DIFile *File);
+
+} // namespace tpc
+
+#endif // TPC_OPTIONS_H

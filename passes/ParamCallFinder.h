@@ -1,0 +1,55 @@
+//===- ParamCallFinder.h - The parameter reads ----------------------------===//
+//
+// Thesis A.9: which calls put a parameter's value into a variable, by the
+// rules; with the parameter's name and default where they are constant.
+//
+//===----------------------------------------------------------------------===//
+#ifndef TPC_PARAMCALLFINDER_H
+#define TPC_PARAMCALLFINDER_H
+
+#include "Rules.h"
+
+#include "llvm/ADT/SmallVector.h"
+#include "llvm/Support/JSON.h"
+
+namespace tpc {
+
+/// What stands for a name that no constant gives.
+inline constexpr char DynamicName[] = "<dynamic>";
+
+struct ParameterRead {
+  llvm::CallBase *Call;
+  const Rule *Row;
+  std::string Name;          ///< or DynamicName
+  std::string Type;          ///< C++ type of the value, as demangled
+  llvm::json::Value Default; ///< number, bool, string or null
+  /// Where the value is written; null where it is the call's result.
+  llvm::Value *Target;
+};
+
+class ParamCallFinder : public llvm::AnalysisInfoMixin<ParamCallFinder> {
+public:
+  /// In the order of the module.
+  using Result = std::vector<ParameterRead>;
+  Result run(llvm::Module &M, llvm::ModuleAnalysisManager &AM);
+
+private:
+  friend llvm::AnalysisInfoMixin<ParamCallFinder>;
+  static llvm::AnalysisKey Key;
+};
+
+/// `print<tpc-param-calls>`
+class ParamCallFinderPrinter
+    : public llvm::PassInfoMixin<ParamCallFinderPrinter> {
+public:
+  explicit ParamCallFinderPrinter(llvm::raw_ostream &OS) : OS(OS) {}
+  llvm::PreservedAnalyses run(llvm::Module &M, llvm::ModuleAnalysisManager &AM);
+  static bool isRequired() { return true; }
+
+private:
+  llvm::raw_ostream &OS;
+};
+
+} // namespace tpc
+
+#endif // TPC_PARAMCALLFINDER_H

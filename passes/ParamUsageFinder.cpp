@@ -1,0 +1,416 @@
+//===- ParamUsageFinder.cpp -----------------------------------------------===//
+#include "ParamUsageFinder.h"
+
+#include "ClassObjectAccess.h"
+#include "IfStatements.h"
+#include "ParamCallFinder.h"
+#include "Print.h"
+#include "SimpleCallGraph.h"
+
+#include "llvm/ADT/DenseSet.h"
+#include "llvm/ADT/SmallString.h"
+#include "llvm/IR/InstIterator.h"
+#include "llvm/IR/IntrinsicInst.h"
+#include "llvm/IR/Module.h"
+
+#include <charconv>
+
+using namespace llvm;
+
+namespace tpc {
+
+AnalysisKey ParamUsageFinder::Key;
+
+/// The shortest text that reads back as \p X.
+static std::string shortest(double X) {
+  char Buffer[32];
+  auto End = std::to_chars(Buffer, Buffer + sizeof(Buffer), X).ptr;
+  return std::string(Buffer, End);
+}
+
+//===----------------------------------------------------------------------===//
+// Transform
+//===----------------------------------------------------------------------===//
+
+void Transform::multiply(double Factor) {
+  if (Kind == Expression)
+    return wrap("(", ") * " + shortest(Factor));
+  Kind = Affine;
+  Scale *= Factor;
+  Offset *= Factor;
+}
+
+void Transform::add(double Term) {
+  if (Kind == Expression)
+    return wrap("", " + " + shortest(Term));
+  Kind = Affine;
+  Offset += Term;
+}
+
+void Transform::wrap(const std::string &Before, const std::string &After) {
+  Text = Before + text() + After;
+  Kind = Expression;
+}
+
+std::string Transform::text() const {
+  if (Kind == None || Kind == Expression)
+    return Text;
+  std::string T = Scale == 1 ? "x" : shortest(Scale) + " * x";
+  if (Offset != 0)
+    T += (Offset < 0 ? " - " : " + ") + shortest(Offset < 0 ? -Offset : Offset);
+  return T;
+}
+
+/// The value of \p V where it is a constant number.
+static std::optional<double> constantNumber(const Value *V) {
+  if (const auto *Int = dyn_cast<ConstantInt>(V))
+    return Int->getBitWidth() <= 64
+               ? std::optional<double>(
+                     static_cast<double>(Int->getSExtValue()))
+               : std::nullopt;
+  const auto *Float = dyn_cast<ConstantFP>(V);
+  if (!Float)
+    return std::nullopt;
+  APFloat Value = Float->getValueAPF();
+  bool Loses;
+  Value.convert(APFloat::IEEEdouble(), APFloat::rmNearestTiesToEven, &Loses);
+  return Value.convertToDouble();
+}
+
+/// Applies `V op C` (or `C op V` where \p Left) to \p T; false where that is
+/// no arithmetic that is kept.
+static bool applyConstant(Transform &T, unsigned Opcode, double C, bool Left) {
+  switch (Opcode) {
+  case Instruction::Add:
+  case Instruction::FAdd:
+    T.add(C);
+    return true;
+  case Instruction::Sub:
+  case Instruction::FSub:
+    if (Left)
+      T.multiply(-1);
+    T.add(Left ? C : -C);
+    return true;
+  case Instruction::Mul:
+  case Instruction::FMul:
+    T.multiply(C);
+    return true;
+  case Instruction::FDiv:
+    if (Left)
+      T.wrap(shortest(C) + " / (", ")");
+    else
+      T.multiply(1 / C);
+    return C != 0;
+  case Instruction::SDiv:
+  case Instruction::UDiv:
+    if (Left)
+      T.wrap(shortest(C) + " div (", ")");
+    else
+      T.wrap("(", ") div " + shortest(C));
+    return C != 0;
+  default:
+    return false;
+  }
+}
+
+/// \p T after \p I, an operation on \p V; none where \p I is no arithmetic
+/// with constants alone.
+static std::optional<Transform> apply(Transform T, const Instruction &I,
+                                      const Value *V) {
+  if (I.getOpcode() == Instruction::FNeg) {
+    T.multiply(-1);
+    return T;
+  }
+  if (const auto *Fma = dyn_cast<IntrinsicInst>(&I);
+      Fma && Fma->getIntrinsicID() == Intrinsic::fmuladd) {
+    const Value *Other = Fma->getArgOperand(Fma->getArgOperand(0) == V ? 1 : 0);
+    auto Factor = constantNumber(Other);
+    auto Term = constantNumber(Fma->getArgOperand(2));
+    if (!Factor || !Term)
+      return std::nullopt;
+    T.multiply(*Factor);
+    T.add(*Term);
+    return T;
+  }
+  if (!isa<BinaryOperator>(I))
+    return std::nullopt;
+  const Value *L = I.getOperand(0), *R = I.getOperand(1);
+  if (L == V && R == V) {
+    if (I.getOpcode() != Instruction::FMul && I.getOpcode() != Instruction::Mul)
+      return std::nullopt;
+    T.wrap("(", ")^2");
+    return T;
+  }
+  auto C = constantNumber(L == V ? R : L);
+  if (!C || !applyConstant(T, I.getOpcode(), *C, R == V))
+    return std::nullopt;
+  return T;
+}
+
+//===----------------------------------------------------------------------===//
+// The way forward
+//===----------------------------------------------------------------------===//
+
+/// The calls that a value went into, the last one first.
+struct CallPath {
+  const CallBase *Call;
+  const CallPath *Outer;
+  unsigned Depth;
+};
+
+/// Follows values forward. Two kinds: a parameter's value, up to the
+/// comparisons, and a comparison's outcome, up to the predicates.
+class Follower {
+public:
+  Follower(Module &M, ModuleAnalysisManager &AM)
+      : Calls(AM.getResult<SimpleCallGraph>(M)),
+        Access(AM.getResult<ClassObjectAccess>(M)),
+        Reads(AM.getResult<ParamCallFinder>(M)),
+        Rules(AM.getResult<RuleAnalysis>(M)) {}
+
+  ParameterUsage run();
+
+private:
+  struct State {
+    Value *V;
+    Transform How;
+    const CallPath *Path;
+    bool Direct; ///< of an outcome: see Decision
+  };
+  using Worklist = SmallVector<State, 16>;
+
+  void followRead(unsigned N);
+  void useOfValue(const State &S, Use &U, unsigned Read);
+  void compared(const State &S, CmpInst &Compare, unsigned Operand,
+                unsigned Read);
+  void flag(Value *V, Decision D, unsigned Read);
+  SmallVector<Decision, 2> followOutcome(Value *Outcome);
+  bool carry(const State &S, Use &U);
+  void push(State S);
+  const CallPath *into(const CallBase *Call, const CallPath *Outer);
+
+  const CallGraphResult &Calls;
+  const AccessResult &Access;
+  const ParamCallFinder::Result &Reads;
+  const RuleMatches &Rules;
+
+  ParameterUsage Usage;
+  Worklist Work;
+  DenseSet<std::pair<const Value *, const CallBase *>> Seen;
+  SmallVector<std::unique_ptr<CallPath>, 16> Paths;
+};
+
+/// Calls inside calls that are told apart; deeper ones come out anywhere.
+static constexpr unsigned MaxCallDepth = 8;
+
+const CallPath *Follower::into(const CallBase *Call, const CallPath *Outer) {
+  if (Outer && Outer->Depth == MaxCallDepth)
+    Outer = nullptr;
+  Paths.push_back(std::make_unique<CallPath>(
+      CallPath{Call, Outer, Outer ? Outer->Depth + 1 : 1}));
+  return Paths.back().get();
+}
+
+void Follower::push(State S) {
+  if (Seen.insert({S.V, S.Path ? S.Path->Call : nullptr}).second)
+    Work.push_back(std::move(S));
+}
+
+/// Carries what is at \p U on to where it is the same value still: casts,
+/// merges, variables, arguments, results. False where \p U does something
+/// else with it.
+bool Follower::carry(const State &S, Use &U) {
+  auto *I = cast<Instruction>(U.getUser());
+  if (isa<CastInst>(I) || isa<FreezeInst>(I)) {
+    push({I, S.How, S.Path, S.Direct});
+    return true;
+  }
+  if (isa<PHINode>(I) || (isa<SelectInst>(I) && U.getOperandNo() != 0)) {
+    push({I, S.How, S.Path, false});
+    return true;
+  }
+  if (auto *Store = dyn_cast<StoreInst>(I)) {
+    if (U.getOperandNo() == 0)
+      for (LoadInst *Load : Access.usesOf(*Store, Store->getPointerOperand()))
+        push({Load, S.How, nullptr, false});
+    return true;
+  }
+  if (auto *Call = dyn_cast<CallBase>(I); Call && !isa<IntrinsicInst>(Call)) {
+    SmallVector<Function *, 1> Callees = Calls.callees(*Call);
+    if (Callees.empty() || Rules.match(*Call) || !Call->isArgOperand(&U))
+      return false;
+    for (Function *Callee : Callees)
+      if (Call->getArgOperandNo(&U) < Callee->arg_size())
+        push({Callee->getArg(Call->getArgOperandNo(&U)), S.How,
+              into(Call, S.Path), false});
+    return true;
+  }
+  if (isa<ReturnInst>(I)) {
+    if (S.Path)
+      push({const_cast<CallBase *>(S.Path->Call), S.How, S.Path->Outer, false});
+    else
+      for (CallBase *Call : Calls.callers(I->getFunction()))
+        push({Call, S.How, nullptr, false});
+    return true;
+  }
+  return false;
+}
+
+/// True for the operations that make one truth value of two.
+static bool isLogical(const Instruction &I) {
+  return I.getOpcode() == Instruction::And || I.getOpcode() == Instruction::Or ||
+         I.getOpcode() == Instruction::Xor;
+}
+
+/// True where \p I decides by \p U.
+static bool decidesBy(const Instruction &I, const Use &U) {
+  return isPredicate(I) && U.get() == conditionOf(I) &&
+         !(isa<SelectInst>(I) && U.getOperandNo() != 0);
+}
+
+/// The predicates that \p Outcome, a truth value, decides.
+SmallVector<Decision, 2> Follower::followOutcome(Value *Outcome) {
+  Worklist OuterWork = std::move(Work);
+  auto OuterSeen = std::move(Seen);
+  Work.clear();
+  Seen.clear();
+  SmallVector<Decision, 2> Found;
+  push({Outcome, {}, nullptr, true});
+  while (!Work.empty()) {
+    State S = Work.pop_back_val();
+    for (Use &U : S.V->uses()) {
+      auto *I = dyn_cast<Instruction>(U.getUser());
+      if (!I)
+        continue;
+      if (decidesBy(*I, U))
+        Found.push_back({I, S.Direct});
+      else if (isLogical(*I) || isa<ICmpInst>(I))
+        push({I, {}, S.Path, S.Direct});
+      else
+        carry(S, U);
+    }
+  }
+  Work = std::move(OuterWork);
+  Seen = std::move(OuterSeen);
+  return Found;
+}
+
+void Follower::flag(Value *V, Decision D, unsigned Read) {
+  ParameterComparison C;
+  C.Read = Read;
+  C.Flag = V;
+  C.Decisions.push_back(D);
+  Usage.Comparisons.push_back(std::move(C));
+}
+
+/// True where \p Compare only asks whether an operand is not zero, as C++ does
+/// where a number stands as a condition.
+static bool asksForNonZero(const CmpInst &Compare, unsigned Operand) {
+  const auto *Zero = dyn_cast<Constant>(Compare.getOperand(1 - Operand));
+  return Zero && Zero->isZeroValue() &&
+         (Compare.getPredicate() == CmpInst::ICMP_NE ||
+          Compare.getPredicate() == CmpInst::FCMP_UNE);
+}
+
+void Follower::compared(const State &S, CmpInst &Compare, unsigned Operand,
+                        unsigned Read) {
+  if (Compare.getOperand(0) == Compare.getOperand(1) ||
+      Compare.getOperand(0)->getType()->isPtrOrPtrVectorTy())
+    return;
+  if (S.How.Kind == Transform::None && asksForNonZero(Compare, Operand)) {
+    for (const Decision &D : followOutcome(&Compare))
+      flag(&Compare, D, Read);
+    return;
+  }
+  ParameterComparison C;
+  C.Read = Read;
+  C.Compare = &Compare;
+  C.Operand = Operand;
+  C.How = S.How;
+  C.Decisions = followOutcome(&Compare);
+  Usage.Comparisons.push_back(std::move(C));
+}
+
+void Follower::useOfValue(const State &S, Use &U, unsigned Read) {
+  auto *I = dyn_cast<Instruction>(U.getUser());
+  if (!I)
+    return;
+  if (auto *Compare = dyn_cast<CmpInst>(I))
+    return compared(S, *Compare, U.getOperandNo(), Read);
+  if (decidesBy(*I, U)) {
+    if (S.How.Kind == Transform::None)
+      flag(S.V, {I, true}, Read);
+    return;
+  }
+  if (isLogical(*I) && S.V->getType()->isIntegerTy(1)) {
+    for (Decision D : followOutcome(I))
+      flag(S.V, D, Read);
+    return;
+  }
+  if (carry(S, U))
+    return;
+  if (std::optional<Transform> T = apply(S.How, *I, S.V))
+    push({I, std::move(*T), S.Path, S.Direct});
+  else if (!isa<IntrinsicInst>(I) || !I->getType()->isVoidTy())
+    ++Usage.Lost;
+}
+
+/// True for the types whose values are compared as numbers.
+static bool isNumber(StringRef Type) {
+  static constexpr StringRef Numbers[] = {
+      "bool",  "char",          "signed char",  "unsigned char",
+      "short", "unsigned short", "int",         "unsigned int",
+      "long",  "unsigned long", "long long",    "unsigned long long",
+      "float", "double",        "long double"};
+  return is_contained(Numbers, Type);
+}
+
+void Follower::followRead(unsigned N) {
+  const ParameterRead &Read = Reads[N];
+  if (!isNumber(Read.Type)) {
+    ++Usage.Lost;
+    return;
+  }
+  Seen.clear();
+  if (!Read.Target)
+    push({Read.Call, {}, nullptr, true});
+  else
+    for (LoadInst *Load : Access.usesOf(*Read.Call, Read.Target))
+      push({Load, {}, nullptr, true});
+  while (!Work.empty()) {
+    State S = Work.pop_back_val();
+    for (Use &U : S.V->uses())
+      useOfValue(S, U, N);
+  }
+}
+
+ParameterUsage Follower::run() {
+  for (unsigned N = 0; N < Reads.size(); ++N)
+    followRead(N);
+  return std::move(Usage);
+}
+
+ParameterUsage ParamUsageFinder::run(Module &M, ModuleAnalysisManager &AM) {
+  return Follower(M, AM).run();
+}
+
+PreservedAnalyses ParamUsageFinderPrinter::run(Module &M,
+                                               ModuleAnalysisManager &AM) {
+  const ParameterUsage &R = AM.getResult<ParamUsageFinder>(M);
+  const auto &Reads = AM.getResult<ParamCallFinder>(M);
+  OS << "parameter usage of " << M.getName() << ": " << R.Comparisons.size()
+     << " comparisons, " << R.Lost << " lost\n";
+  for (const ParameterComparison &C : R.Comparisons) {
+    OS << "  '" << Reads[C.Read].Name << "' as " << C.How.text() << ' ';
+    const auto *Where = C.Compare ? cast<Instruction>(C.Compare)
+                                  : C.Decisions.front().Predicate;
+    OS << (C.Compare ? "compared" : "flag") << " in "
+       << Where->getFunction()->getName() << place(*Where);
+    for (const Decision &D : C.Decisions)
+      OS << (D.Direct ? " decides" : " later decides") << place(*D.Predicate);
+    OS << '\n';
+  }
+  return PreservedAnalyses::all();
+}
+
+} // namespace tpc

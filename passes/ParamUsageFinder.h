@@ -1,0 +1,85 @@
+//===- ParamUsageFinder.h - Where a parameter's value is compared ---------===//
+//
+// Thesis A.11: forward from each parameter read, through copies, casts,
+// variables, arguments and results, to the comparisons, and from those to the
+// predicates. A value that went through arithmetic with constants is kept, with
+// the arithmetic; one that meets another variable is lost, and counted.
+//
+// Calls are matched on the way forward: a value that went into a function by
+// one call comes out by that call.
+//
+//===----------------------------------------------------------------------===//
+#ifndef TPC_PARAMUSAGEFINDER_H
+#define TPC_PARAMUSAGEFINDER_H
+
+#include "llvm/ADT/SmallVector.h"
+#include "llvm/IR/InstrTypes.h"
+#include "llvm/IR/PassManager.h"
+
+#include <string>
+
+namespace tpc {
+
+/// What was done to a parameter's value before it was compared.
+struct Transform {
+  enum KindTy { None, Affine, Expression };
+  KindTy Kind = None;
+  double Scale = 1, Offset = 0; ///< of an affine one: Scale * x + Offset
+  std::string Text = "x";       ///< of an expression, in terms of x
+
+  void multiply(double Factor);
+  void add(double Term);
+  /// `\p Before` text `\p After` around what stands so far.
+  void wrap(const std::string &Before, const std::string &After);
+  std::string text() const;
+};
+
+/// A predicate that an outcome decides, and whether the outcome comes to it
+/// inside its function by SSA values that control flow does not merge.
+struct Decision {
+  llvm::Instruction *Predicate;
+  bool Direct;
+};
+
+/// One comparison with one parameter read's value.
+struct ParameterComparison {
+  unsigned Read; ///< number of the read
+  /// The comparison; null for a flag.
+  llvm::CmpInst *Compare = nullptr;
+  unsigned Operand = 0; ///< which operand is the parameter's value
+  /// For a flag the value that decides.
+  llvm::Value *Flag = nullptr;
+  Transform How;
+  llvm::SmallVector<Decision, 2> Decisions;
+};
+
+struct ParameterUsage {
+  std::vector<ParameterComparison> Comparisons;
+  unsigned Lost = 0; ///< places where a value was mixed with another variable
+};
+
+class ParamUsageFinder : public llvm::AnalysisInfoMixin<ParamUsageFinder> {
+public:
+  using Result = ParameterUsage;
+  Result run(llvm::Module &M, llvm::ModuleAnalysisManager &AM);
+
+private:
+  friend llvm::AnalysisInfoMixin<ParamUsageFinder>;
+  static llvm::AnalysisKey Key;
+};
+
+/// `print<tpc-param-usage>`
+class ParamUsageFinderPrinter
+    : public llvm::PassInfoMixin<ParamUsageFinderPrinter> {
+public:
+  explicit ParamUsageFinderPrinter(llvm::raw_ostream &OS) : OS(OS) {}
+  llvm::PreservedAnalyses run(llvm::Module &M, llvm::ModuleAnalysisManager &AM);
+  static bool isRequired() { return true; }
+
+private:
+  llvm::raw_ostream &OS;
+};
+
+} // namespace tpc
+
+#endif // TPC_PARAMUSAGEFINDER_H

@@ -1,0 +1,64 @@
+//===- Plugin.cpp - Registration ------------------------------------------===//
+//
+// Makes the passes known to lld (full link-time optimisation, at its first
+// point of extension) and to opt (`-passes=...`). Nothing else.
+//
+//===----------------------------------------------------------------------===//
+#include "BackwardPropagate.h"
+#include "ClassObjectAccess.h"
+#include "Compat.h"
+#include "ExternCallFinder.h"
+#include "GatherResults.h"
+#include "IfStatements.h"
+#include "InstrumentBranches.h"
+#include "LinkUnit.h"
+#include "ParamCallFinder.h"
+#include "ParamUsageFinder.h"
+#include "Prepare.h"
+#include "Rules.h"
+#include "SimpleCallGraph.h"
+
+using namespace llvm;
+using namespace tpc;
+
+static bool addPass(StringRef Name, ModulePassManager &MPM,
+                    ArrayRef<PassBuilder::PipelineElement>) {
+#define PRINTER(NAME, CLASS)                                                   \
+  if (Name == "print<" NAME ">") {                                             \
+    MPM.addPass(CLASS(outs()));                                                \
+    return true;                                                               \
+  }
+  PRINTER("tpc-callgraph", SimpleCallGraphPrinter)
+  PRINTER("tpc-class-object-access", ClassObjectAccessPrinter)
+  PRINTER("tpc-if-statements", IfStatementsPrinter)
+  PRINTER("tpc-extern-calls", ExternCallFinderPrinter)
+  PRINTER("tpc-param-calls", ParamCallFinderPrinter)
+  PRINTER("tpc-backward-propagate", BackwardPropagatePrinter)
+  PRINTER("tpc-param-usage", ParamUsageFinderPrinter)
+  PRINTER("tpc-gather-results", GatherResultsPrinter)
+  PRINTER("tpc-instrument-branches", InstrumentBranchesPrinter)
+#undef PRINTER
+  if (Name == "tpc-prepare") {
+    MPM.addPass(PreparePass());
+    return true;
+  }
+  if (Name == "tpc") {
+    MPM.addPass(LinkUnitPass());
+    return true;
+  }
+  return false;
+}
+
+static void registerPasses(PassBuilder &PB) {
+  PB.registerAnalysisRegistrationCallback(registerAnalyses);
+  PB.registerPipelineParsingCallback(addPass);
+  PB.registerFullLinkTimeOptimizationEarlyEPCallback(
+      [&PB](ModulePassManager &MPM, OptimizationLevel) {
+        MPM.addPass(LinkUnitPass());
+        MPM.addPass(PrelinkPass(PB));
+      });
+}
+
+extern "C" LLVM_ATTRIBUTE_WEAK PassPluginLibraryInfo llvmGetPassPluginInfo() {
+  return {LLVM_PLUGIN_API_VERSION, "tpc", TPC_VERSION, registerPasses};
+}

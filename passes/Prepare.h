@@ -1,0 +1,47 @@
+//===- Prepare.h - The program as it is analysed --------------------------===//
+//
+// The analysis wants local variables as SSA values. Code that was compiled to
+// be optimised gets that anyway, so it is done in place. Code that was
+// compiled with -O0 must stay as it is: there a copy is analysed, and what is
+// found is carried back. Either way the same instructions are seen, and the
+// findings are the same at every level.
+//
+//===----------------------------------------------------------------------===//
+#ifndef TPC_PREPARE_H
+#define TPC_PREPARE_H
+
+#include "llvm/ADT/DenseMap.h"
+#include "llvm/IR/Instruction.h"
+#include "llvm/IR/Module.h"
+#include "llvm/IR/PassManager.h"
+
+#include <memory>
+
+namespace tpc {
+
+/// The module to analyse for a module to instrument.
+class AnalysedModule {
+public:
+  explicit AnalysedModule(llvm::Module &M);
+
+  llvm::Module &module() { return Copy ? *Copy : Original; }
+  /// What \p V of the analysed module is in the original; null where it is
+  /// nothing there (a value that promotion made).
+  llvm::Value *original(llvm::Value *V) const;
+
+private:
+  llvm::Module &Original;
+  std::unique_ptr<llvm::Module> Copy;
+  llvm::DenseMap<const llvm::Value *, llvm::Value *> Back;
+};
+
+/// `tpc-prepare`: promotes the local variables of a module, for the printers.
+class PreparePass : public llvm::PassInfoMixin<PreparePass> {
+public:
+  llvm::PreservedAnalyses run(llvm::Module &M, llvm::ModuleAnalysisManager &);
+  static bool isRequired() { return true; }
+};
+
+} // namespace tpc
+
+#endif // TPC_PREPARE_H

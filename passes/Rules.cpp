@@ -1,0 +1,138 @@
+//===- Rules.cpp ----------------------------------------------------------===//
+#include "Rules.h"
+
+#include "BuiltinRules.h"
+#include "Names.h"
+#include "Options.h"
+
+#include "llvm/IR/Module.h"
+#include "llvm/Support/JSON.h"
+#include "llvm/Support/MemoryBuffer.h"
+
+using namespace llvm;
+
+namespace tpc {
+
+AnalysisKey RuleAnalysis::Key;
+
+/// The number of IR operands before the first written argument.
+static unsigned leading(const CallBase &Call, const Rule &R) {
+  return (Call.hasStructRetAttr() ? 1 : 0) + (R.Method ? 1 : 0);
+}
+
+Value *argument(const CallBase &Call, const Rule &R,
+                std::optional<unsigned> Number) {
+  if (!Number)
+    return nullptr;
+  unsigned Index = leading(Call, R) + *Number;
+  return Index < Call.arg_size() ? Call.getArgOperand(Index) : nullptr;
+}
+
+Value *objectOf(const CallBase &Call, const Rule &R) {
+  if (!R.Method)
+    return nullptr;
+  unsigned Index = Call.hasStructRetAttr() ? 1 : 0;
+  return Index < Call.arg_size() ? Call.getArgOperand(Index) : nullptr;
+}
+
+static std::optional<unsigned> number(const json::Object &Row, StringRef Key) {
+  if (auto N = Row.getInteger(Key); N && *N >= 0)
+    return static_cast<unsigned>(*N);
+  return std::nullopt;
+}
+
+/// True where the row belongs to \p Profile; a row without profiles to all.
+static bool belongs(const json::Object &Row, StringRef Profile) {
+  const json::Array *Profiles = Row.getArray("profiles");
+  if (!Profiles)
+    return true;
+  return any_of(*Profiles, [&](const json::Value &V) {
+    return V.getAsString() == Profile;
+  });
+}
+
+Error Rules::add(StringRef Text, StringRef Origin, StringRef Profile) {
+  Expected<json::Value> Parsed = json::parse(Text);
+  if (!Parsed)
+    return createStringError(Origin + ": " + toString(Parsed.takeError()));
+  const json::Object *Top = Parsed->getAsObject();
+  if (!Top)
+    return createStringError(Origin + ": rules are not a JSON object");
+  const std::pair<StringRef, Rule::KindTy> Sections[] = {
+      {"reads", Rule::Read},
+      {"exposing", Rule::Exposing},
+      {"topics", Rule::Topic}};
+  for (auto [Section, Kind] : Sections) {
+    const json::Array *Rows = Top->getArray(Section);
+    if (!Rows)
+      continue;
+    for (const json::Value &V : *Rows) {
+      const json::Object *Row = V.getAsObject();
+      std::optional<StringRef> Function =
+          Row ? Row->getString("function") : std::nullopt;
+      if (!Function)
+        return createStringError(Origin + ": a row of \"" + Section +
+                                 "\" has no \"function\"");
+      if (!belongs(*Row, Profile))
+        continue;
+      Rule R;
+      R.Kind = Kind;
+      R.Function = Function->str();
+      R.Method = Row->getBoolean("method").value_or(false);
+      R.Arity = number(*Row, "arity");
+      R.Name = number(*Row, Kind == Rule::Exposing ? "topic" : "name");
+      R.Value = number(*Row, "value");
+      R.Default = number(*Row, "default");
+      ByName[R.Function].push_back(std::move(R));
+    }
+  }
+  return Error::success();
+}
+
+Expected<Rules> Rules::load(const Options &Opts) {
+  Rules R;
+  if (Error E = R.add(BuiltinRules, "built-in rules", Opts.Profile))
+    return std::move(E);
+  for (const std::string &File : Opts.RuleFiles) {
+    auto Buffer = MemoryBuffer::getFile(File);
+    if (!Buffer)
+      return createStringError(File + ": " + Buffer.getError().message());
+    if (Error E = R.add((*Buffer)->getBuffer(), File, Opts.Profile))
+      return std::move(E);
+  }
+  return R;
+}
+
+const Rule *Rules::match(const Function &F) const {
+  std::string Name = qualifiedName(F.getName());
+  auto It = ByName.find(Name);
+  if (It == ByName.end())
+    return nullptr;
+  for (const Rule &R : It->second) {
+    unsigned Leading = (F.hasStructRetAttr() ? 1 : 0) + (R.Method ? 1 : 0);
+    if (!R.Arity || F.arg_size() == Leading + *R.Arity)
+      return &R;
+  }
+  return nullptr;
+}
+
+const Rule *RuleMatches::match(const CallBase &Call) const {
+  const Function *Callee = Call.getCalledFunction();
+  return Callee ? Rows.lookup(Callee) : nullptr;
+}
+
+RuleMatches RuleAnalysis::run(Module &M, ModuleAnalysisManager &) {
+  RuleMatches Result;
+  Expected<Rules> Loaded = Rules::load(Options::fromCommandLine());
+  if (!Loaded) {
+    Result.Error = toString(Loaded.takeError());
+    return Result;
+  }
+  Result.Tables = std::make_shared<const Rules>(std::move(*Loaded));
+  for (const Function &F : M)
+    if (const Rule *R = Result.Tables->match(F))
+      Result.Rows[&F] = R;
+  return Result;
+}
+
+} // namespace tpc

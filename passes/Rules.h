@@ -1,0 +1,90 @@
+//===- Rules.h - The tables that drive the analysis -----------------------===//
+//
+// SPEC 2: which calls read a parameter, which expose a node's state, which
+// give a publisher its topic. Data, read from JSON; the tables that come with
+// TPC are built in (rules/*.json), the user's are added to them.
+//
+//===----------------------------------------------------------------------===//
+#ifndef TPC_RULES_H
+#define TPC_RULES_H
+
+#include "llvm/ADT/DenseMap.h"
+#include "llvm/ADT/StringMap.h"
+#include "llvm/IR/InstrTypes.h"
+#include "llvm/IR/PassManager.h"
+#include "llvm/Support/Error.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tpc {
+
+struct Options;
+
+/// One row. Argument numbers count the parameters as written in the source.
+struct Rule {
+  enum KindTy { Read, Exposing, Topic };
+  KindTy Kind;
+  std::string Function;         ///< qualified name without template arguments
+  bool Method = false;          ///< has a `this`
+  std::optional<unsigned> Arity; ///< none: every overload
+  std::optional<unsigned> Name;  ///< argument with the parameter's or topic's name
+  std::optional<unsigned> Value; ///< argument that the value is written to;
+                                 ///< none: it is the result
+  std::optional<unsigned> Default;
+};
+
+/// The IR operand of \p Call for the source-level argument \p Number of a
+/// function that \p R describes; null where there is none.
+llvm::Value *argument(const llvm::CallBase &Call, const Rule &R,
+                      std::optional<unsigned> Number);
+
+/// The `this` operand of \p Call; null for a function that is no method.
+llvm::Value *objectOf(const llvm::CallBase &Call, const Rule &R);
+
+class Rules {
+public:
+  /// The built-in tables and \p Opts' files, restricted to its profile.
+  static llvm::Expected<Rules> load(const Options &Opts);
+
+  /// The row for \p F, or null.
+  const Rule *match(const llvm::Function &F) const;
+
+private:
+  llvm::Error add(llvm::StringRef Json, llvm::StringRef Origin,
+                  llvm::StringRef Profile);
+  llvm::StringMap<std::vector<Rule>> ByName;
+};
+
+/// The rules applied to the functions of a module.
+class RuleMatches {
+public:
+  /// The row that the callee of \p Call matches, or null.
+  const Rule *match(const llvm::CallBase &Call) const;
+  /// True where a row describes \p F: what is inside it is ROS's own
+  /// business, and the row stands for it.
+  bool isDescribed(const llvm::Function &F) const {
+    return Rows.contains(&F);
+  }
+  std::string Error; ///< why the tables could not be read; else empty
+
+private:
+  friend class RuleAnalysis;
+  std::shared_ptr<const Rules> Tables;
+  llvm::DenseMap<const llvm::Function *, const Rule *> Rows;
+};
+
+class RuleAnalysis : public llvm::AnalysisInfoMixin<RuleAnalysis> {
+public:
+  using Result = RuleMatches;
+  Result run(llvm::Module &M, llvm::ModuleAnalysisManager &);
+
+private:
+  friend llvm::AnalysisInfoMixin<RuleAnalysis>;
+  static llvm::AnalysisKey Key;
+};
+
+} // namespace tpc
+
+#endif // TPC_RULES_H

@@ -1,0 +1,341 @@
+//===- StaticInfo.cpp -----------------------------------------------------===//
+#include "StaticInfo.h"
+
+#include "ClassObjectAccess.h"
+#include "ExternCallFinder.h"
+#include "IfStatements.h"
+#include "ParamCallFinder.h"
+#include "SimpleCallGraph.h"
+#include "Variables.h"
+
+#include "llvm/ADT/StringExtras.h"
+#include "llvm/Config/llvm-config.h"
+#include "llvm/Demangle/Demangle.h"
+#include "llvm/IR/Module.h"
+#include "llvm/Support/FileSystem.h"
+#include "llvm/Support/MemoryBuffer.h"
+#include "llvm/Support/Path.h"
+#include "llvm/Support/SHA1.h"
+
+using namespace llvm;
+
+namespace tpc {
+
+static constexpr int SchemaVersion = 1;
+
+/// `void f(int)` of a definition, for people; the linkage name's demangling.
+static std::string functionName(const Function &F) {
+  return demangle(F.getName());
+}
+
+static std::string textOr(StringRef Text, StringRef Else) {
+  return json::fixUTF8(Text.empty() ? Else : Text);
+}
+
+static json::Value textOrNull(StringRef Text) {
+  if (Text.empty())
+    return nullptr;
+  return json::fixUTF8(Text);
+}
+
+std::string keyOf(const Options &Opts, const Comparison &C,
+                  StringRef Parameter) {
+  // A namespace of our own: version 4, made once for TPC.
+  static constexpr uint8_t Namespace[16] = {0x6b, 0x0f, 0x7a, 0x52, 0x2c, 0x9e,
+                                            0x4d, 0x61, 0x9a, 0x37, 0x8f, 0x15,
+                                            0xc3, 0x40, 0x5e, 0xd8};
+  const DILocation *Loc = C.place().getDebugLoc();
+  std::string Name =
+      join(std::initializer_list<std::string>{
+               Opts.Package, Opts.LinkUnit, Opts.relative(pathOf(Loc)),
+               functionName(*C.place().getFunction()),
+               std::to_string(Loc->getLine()), std::to_string(Loc->getColumn()),
+               Parameter.str()},
+           "\n");
+  SHA1 Hash;
+  Hash.update(ArrayRef(Namespace));
+  Hash.update(Name);
+  std::array<uint8_t, 20> Digest = Hash.final();
+  Digest[6] = (Digest[6] & 0x0f) | 0x50;
+  Digest[8] = (Digest[8] & 0x3f) | 0x80;
+  std::string Hex = toHex(ArrayRef(Digest).take_front(16), /*LowerCase=*/true);
+  return Hex.substr(0, 8) + "-" + Hex.substr(8, 4) + "-" + Hex.substr(12, 4) +
+         "-" + Hex.substr(16, 4) + "-" + Hex.substr(20);
+}
+
+namespace {
+
+/// Source files, for the text of a line.
+class SourceLines {
+public:
+  /// Line \p Number of \p Path, stripped; null where it cannot be read.
+  json::Value line(StringRef Path, unsigned Number) {
+    auto [It, New] = Files.try_emplace(Path);
+    if (New)
+      if (auto Buffer = MemoryBuffer::getFile(Path)) {
+        It->second.Text = std::move(*Buffer);
+        It->second.Text->getBuffer().split(It->second.Lines, '\n');
+      }
+    if (Number == 0 || Number > It->second.Lines.size())
+      return nullptr;
+    return json::fixUTF8(It->second.Lines[Number - 1].trim());
+  }
+
+private:
+  struct File {
+    std::unique_ptr<MemoryBuffer> Text;
+    SmallVector<StringRef, 0> Lines;
+  };
+  StringMap<File> Files;
+};
+
+/// Writes down what the analyses of a module found.
+class Describer {
+public:
+  Describer(Module &M, ModuleAnalysisManager &AM, const Options &Opts)
+      : M(M), Opts(Opts), Access(AM.getResult<ClassObjectAccess>(M)),
+        Ifs(AM.getResult<IfStatements>(M)),
+        Exposing(AM.getResult<ExternCallFinder>(M)),
+        Reads(AM.getResult<ParamCallFinder>(M)),
+        Calls(AM.getResult<SimpleCallGraph>(M)),
+        Usage(AM.getResult<ParamUsageFinder>(M)),
+        Slice(AM.getResult<BackwardPropagate>(M)),
+        Gathered(AM.getResult<GatherResults>(M)),
+        Names(M, Access.types()) {}
+
+  json::Array parameters() const;
+  json::Array exposing() const;
+  json::Array comparisons();
+  json::Object counts(size_t NumComparisons) const;
+
+private:
+  json::Object placed(const Instruction &I) const;
+  json::Value where(const Instruction &I) const;
+  json::Object comparison(const Comparison &C);
+  std::string variable(const Comparison &C) const;
+
+  Module &M;
+  const Options &Opts;
+  const AccessResult &Access;
+  const IfStatementsResult &Ifs;
+  const ExternCallFinder::Result &Exposing;
+  const ParamCallFinder::Result &Reads;
+  const CallGraphResult &Calls;
+  const ParameterUsage &Usage;
+  const SliceResult &Slice;
+  const GatheredResults &Gathered;
+  VariableNames Names;
+  SourceLines Lines;
+};
+
+} // namespace
+
+/// `file`, `lineno`, `column` and `function` of \p I.
+json::Object Describer::placed(const Instruction &I) const {
+  const DILocation *Loc = I.getDebugLoc();
+  return json::Object{
+      {"file", json::fixUTF8(Opts.relative(pathOf(Loc)))},
+      {"lineno", Loc ? Loc->getLine() : 0},
+      {"column", Loc ? Loc->getColumn() : 0},
+      {"function", json::fixUTF8(functionName(*I.getFunction()))}};
+}
+
+json::Value Describer::where(const Instruction &I) const {
+  const DILocation *Loc = I.getDebugLoc();
+  return json::Object{{"file", json::fixUTF8(Opts.relative(pathOf(Loc)))},
+                      {"lineno", Loc ? Loc->getLine() : 0}};
+}
+
+json::Array Describer::parameters() const {
+  json::Array List;
+  for (const ParameterRead &R : Reads) {
+    json::Object O = placed(*R.Call);
+    O["name"] = json::fixUTF8(R.Name);
+    O["api"] = R.Row->Function;
+    O["type"] = R.Type;
+    O["default"] = R.Default;
+    List.push_back(std::move(O));
+  }
+  return List;
+}
+
+json::Array Describer::exposing() const {
+  json::Array List;
+  for (const ExposingStatement &E : Exposing) {
+    json::Object O = placed(*E.Call);
+    O["api"] = E.Row->Function;
+    O["topic"] = textOrNull(E.Topic);
+    List.push_back(std::move(O));
+  }
+  return List;
+}
+
+/// The variable that holds the threshold where it is compared; else the one
+/// that the parameter was read into.
+std::string Describer::variable(const Comparison &C) const {
+  const Value *V = C.Compare ? C.Compare->getOperand(C.Threshold) : C.FlagValue;
+  while (true) {
+    if (const auto *Cast = dyn_cast<CastInst>(V))
+      V = Cast->getOperand(0);
+    else if (const auto *NotZero = dyn_cast<CmpInst>(V))
+      V = NotZero->getOperand(isa<Constant>(NotZero->getOperand(0)) ? 1 : 0);
+    else
+      break;
+  }
+  const Value *Target = Reads[C.Reads.front()].Target;
+  const auto *Load = dyn_cast<LoadInst>(V);
+  for (const Value *Pointer :
+       {Load ? Load->getPointerOperand() : nullptr, Target})
+    if (Pointer)
+      for (const Location &L : Access.resolve(Pointer, true))
+        if (std::string Name = Names.nameOf(L); !Name.empty())
+          return Name;
+  return "";
+}
+
+static json::Value describeTransform(const Transform &T) {
+  switch (T.Kind) {
+  case Transform::None:
+    return nullptr;
+  case Transform::Affine:
+    return json::Object{{"kind", "affine"},
+                        {"scale", T.Scale},
+                        {"offset", T.Offset},
+                        {"text", T.text()}};
+  case Transform::Expression:
+    return json::Object{{"kind", "expression"}, {"text", T.text()}};
+  }
+  llvm_unreachable("no such kind");
+}
+
+json::Object Describer::comparison(const Comparison &C) {
+  const ParameterRead &Read = Reads[C.Reads.front()];
+  const ExposingStatement &Nearest = Exposing[C.Slice.Exposing];
+  const DILocation *Loc = C.place().getDebugLoc();
+  json::Array ReadPlaces;
+  for (unsigned N : C.Reads)
+    ReadPlaces.push_back(where(*Reads[N].Call));
+  json::Object O = placed(C.place());
+  O["key"] = keyOf(Opts, C, Read.Name);
+  O["type"] = C.typeName();
+  O["name"] = textOrNull(variable(C));
+  O["source"] = json::fixUTF8(Read.Name);
+  O["distance"] = C.Slice.Distance;
+  O["relation"] = C.relation();
+  O["topic"] = textOrNull(Nearest.Topic);
+  O["source_code"] = Lines.line(pathOf(Loc), Loc->getLine());
+  O["other_thresholds"] = C.OtherThresholds;
+  O["param_reads"] = std::move(ReadPlaces);
+  O["publishes"] = json::Array{where(*Nearest.Call)};
+  O["transform"] = describeTransform(C.How);
+  O["default"] = Read.Default;
+  O["read_at"] = where(*Read.Call);
+  O["exposed_at"] = where(*Nearest.Call);
+  return O;
+}
+
+/// The comparisons in the order of the source; one a key: several instances of
+/// a template are one place.
+json::Array Describer::comparisons() {
+  std::vector<json::Object> All;
+  StringMap<size_t> Known;
+  for (const Comparison &C : Gathered.Comparisons) {
+    json::Object O = comparison(C);
+    auto [It, New] =
+        Known.try_emplace(*O.getString("key"), All.size());
+    if (New)
+      All.push_back(std::move(O));
+    else if (O.getInteger("distance") <
+             All[It->second].getInteger("distance"))
+      All[It->second] = std::move(O);
+  }
+  auto Order = [](const json::Object &O) {
+    return std::make_tuple(*O.getString("file"), *O.getInteger("lineno"),
+                           *O.getInteger("column"), *O.getString("source"),
+                           *O.getString("key"));
+  };
+  sort(All, [&](const json::Object &A, const json::Object &B) {
+    return Order(A) < Order(B);
+  });
+  json::Array List;
+  for (json::Object &O : All)
+    List.push_back(std::move(O));
+  return List;
+}
+
+json::Object Describer::counts(size_t NumComparisons) const {
+  return json::Object{
+      {"functions", count_if(M, [](const Function &F) {
+         return !F.isDeclaration();
+       })},
+      {"predicates", static_cast<int64_t>(Ifs.predicates().size())},
+      {"predicates_in_slice", Slice.numPredicates()},
+      {"parameter_reads", static_cast<int64_t>(Reads.size())},
+      {"exposing_statements", static_cast<int64_t>(Exposing.size())},
+      {"comparisons", static_cast<int64_t>(NumComparisons)},
+      {"dynamic_names", count_if(Reads, [](const ParameterRead &R) {
+         return R.Name == DynamicName;
+       })},
+      {"indirect_calls", Calls.IndirectCalls},
+      {"without_debug_info", Gathered.WithoutDebugInfo},
+      {"outside_sources", Gathered.OutsideSources},
+      {"lost_values", Usage.Lost},
+      {"not_instrumented", 0}};
+}
+
+/// What every file says, analysis or not.
+static json::Object header(const Options &Opts) {
+  return json::Object{
+      {"schema", SchemaVersion},
+      {"link_unit", json::fixUTF8(Opts.LinkUnit)},
+      {"package", textOr(Opts.Package, "unnamed")},
+      {"source_root", json::fixUTF8(Opts.SourceRoot)},
+      {"tool", json::Object{{"name", "tpc"},
+                            {"version", TPC_VERSION},
+                            {"llvm", LLVM_VERSION_STRING},
+                            {"profile", Opts.Profile}}}};
+}
+
+json::Object describe(Module &M, ModuleAnalysisManager &AM,
+                      const Options &Opts) {
+  Describer D(M, AM, Opts);
+  json::Object Unit = header(Opts);
+  json::Array Comparisons = D.comparisons();
+  Unit["status"] = "ok";
+  Unit["failure"] = nullptr;
+  Unit["counts"] = D.counts(Comparisons.size());
+  Unit["parameters"] = D.parameters();
+  Unit["exposing"] = D.exposing();
+  Unit["comparisons"] = std::move(Comparisons);
+  return Unit;
+}
+
+json::Object describeFailure(const Options &Opts, StringRef Why) {
+  json::Object Unit = header(Opts);
+  Unit["status"] = "failed";
+  Unit["failure"] = json::fixUTF8(Why);
+  json::Object Counts;
+  for (StringRef Name :
+       {"functions", "predicates", "predicates_in_slice", "parameter_reads",
+        "exposing_statements", "comparisons", "dynamic_names",
+        "indirect_calls", "without_debug_info", "outside_sources",
+        "lost_values", "not_instrumented"})
+    Counts[Name] = 0;
+  Unit["counts"] = std::move(Counts);
+  for (StringRef Name : {"parameters", "exposing", "comparisons"})
+    Unit[Name] = json::Array();
+  return Unit;
+}
+
+Error writeJson(json::Object Unit, StringRef Path) {
+  if (std::error_code EC =
+          sys::fs::create_directories(sys::path::parent_path(Path)))
+    return createFileError(Path, EC);
+  return writeToOutput(Path, [&](raw_ostream &OS) {
+    json::OStream(OS, /*IndentSize=*/1).value(std::move(Unit));
+    OS << '\n';
+    return Error::success();
+  });
+}
+
+} // namespace tpc

@@ -1,0 +1,34 @@
+//===- StaticInfo.h - The static information of a link unit ---------------===//
+//
+// SPEC 4 and docs/formats.md: one JSON file per link unit.
+//
+//===----------------------------------------------------------------------===//
+#ifndef TPC_STATICINFO_H
+#define TPC_STATICINFO_H
+
+#include "GatherResults.h"
+#include "Options.h"
+
+#include "llvm/Support/Error.h"
+#include "llvm/Support/JSON.h"
+
+namespace tpc {
+
+/// The key of a comparison: a UUID of version 5 (RFC 4122) of what says where
+/// it stands.
+std::string keyOf(const Options &Opts, const Comparison &C,
+                  llvm::StringRef Parameter);
+
+/// What a unit's file says of the analysis of \p M.
+llvm::json::Object describe(llvm::Module &M, llvm::ModuleAnalysisManager &AM,
+                            const Options &Opts);
+
+/// What a unit's file says where there was no analysis, because of \p Why.
+llvm::json::Object describeFailure(const Options &Opts, llvm::StringRef Why);
+
+/// Writes \p Unit to \p Path, beside and then renamed.
+llvm::Error writeJson(llvm::json::Object Unit, llvm::StringRef Path);
+
+} // namespace tpc
+
+#endif // TPC_STATICINFO_H
