@@ -35,8 +35,8 @@ public:
         Access(AM.getResult<ClassObjectAccess>(M)),
         Ifs(AM.getResult<IfStatements>(M)),
         Exposing(AM.getResult<ExternCallFinder>(M)),
-        Rules(AM.getResult<RuleAnalysis>(M)),
-        Opts(Options::fromCommandLine()), Sources(Opts) {}
+        Rules(AM.getResult<RuleAnalysis>(M)), Opts(Options::fromCommandLine()),
+        Sources(Opts) {}
 
   SliceResult run();
 
@@ -236,7 +236,7 @@ void Slicer::value(Instruction &I) {
     return definePointer(Load->getPointerOperand());
   }
   if (auto *Copy = dyn_cast<MemTransferInst>(&I))
-    return defineMemory(Copy->getSource());
+    return defineMemory(Copy->getRawSource());
   if (auto *Call = dyn_cast<CallBase>(&I); Call && !isa<IntrinsicInst>(&I))
     return callResult(*Call);
   if (auto *Store = dyn_cast<StoreInst>(&I)) {

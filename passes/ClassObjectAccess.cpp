@@ -1,12 +1,13 @@
 //===- ClassObjectAccess.cpp ----------------------------------------------===//
 #include "ClassObjectAccess.h"
 
+#include "Functions.h"
 #include "Names.h"
 #include "Print.h"
 #include "Rules.h"
 
-#include "llvm/Analysis/ValueTracking.h"
 #include "llvm/ADT/SmallPtrSet.h"
+#include "llvm/Analysis/ValueTracking.h"
 #include "llvm/IR/InstIterator.h"
 #include "llvm/IR/IntrinsicInst.h"
 #include "llvm/IR/Module.h"
@@ -48,8 +49,7 @@ unsigned TypeNumbers::numberOf(StructType *T) {
 
 /// True where \p Tail is the end of \p Path.
 static bool endsWith(ArrayRef<Step> Path, ArrayRef<Step> Tail) {
-  return Tail.size() <= Path.size() &&
-         equal(Tail, Path.take_back(Tail.size()));
+  return Tail.size() <= Path.size() && equal(Tail, Path.take_back(Tail.size()));
 }
 
 bool Location::mayBe(const Location &O) const {
@@ -387,8 +387,8 @@ SmallVector<Instruction *, 8> AccessResult::writesOf(const Location &L) const {
   return Out.takeVector();
 }
 
-SmallVector<LoadInst *, 8>
-AccessResult::usesOf(const Instruction &Write, const Value *Pointer) const {
+SmallVector<LoadInst *, 8> AccessResult::usesOf(const Instruction &Write,
+                                                const Value *Pointer) const {
   SmallSetVector<LoadInst *, 8> All;
   for (const Location &L : resolve(Pointer, true))
     collectLoads(L, All);
@@ -463,7 +463,7 @@ void AccessResult::Builder::returned(const CallBase &Call, Node &N) const {
 }
 
 void AccessResult::Builder::makeNodes() {
-  for (Function &F : M) {
+  for (Function &F : definedFunctions(M)) {
     for (const Argument &Arg : F.args()) {
       if (!Arg.getType()->isPointerTy())
         continue;
@@ -503,8 +503,8 @@ bool AccessResult::Builder::propagate() {
         if (auto It = R.StoreIndex.find(slot(L)); It != R.StoreIndex.end())
           for (unsigned S : It->second)
             if (R.Stores[S].Where.mayBe(L))
-              R.addPointees(
-                  cast<StoreInst>(R.Stores[S].I)->getValueOperand(), Found);
+              R.addPointees(cast<StoreInst>(R.Stores[S].I)->getValueOperand(),
+                            Found);
     if (Found.size() == Before)
       continue;
     Changed = true;
@@ -516,7 +516,7 @@ bool AccessResult::Builder::propagate() {
 void AccessResult::Builder::fileStores() {
   R.Stores.clear();
   R.StoreIndex.clear();
-  for (Function &F : M) {
+  for (Function &F : definedFunctions(M)) {
     if (Rules.isDescribed(F))
       continue;
     for (Instruction &I : instructions(F))
@@ -527,7 +527,7 @@ void AccessResult::Builder::fileStores() {
 }
 
 void AccessResult::Builder::fileRest() {
-  for (Function &F : M) {
+  for (Function &F : definedFunctions(M)) {
     if (Rules.isDescribed(F))
       continue;
     for (Instruction &I : instructions(F)) {
@@ -535,8 +535,8 @@ void AccessResult::Builder::fileRest() {
         for (const Location &L : R.resolve(Load->getPointerOperand(), true))
           R.file(R.Loads, R.LoadIndex, I, L);
       } else if (auto *Copy = dyn_cast<MemTransferInst>(&I)) {
-        Locations To = R.resolve(Copy->getDest(), false);
-        Locations From = R.resolve(Copy->getSource(), false);
+        Locations To = R.resolve(Copy->getRawDest(), false);
+        Locations From = R.resolve(Copy->getRawSource(), false);
         for (const Location &L : To)
           R.fileCopy(R.CopiesTo, R.Copies.size(), L);
         for (const Location &L : From)
@@ -557,8 +557,11 @@ void AccessResult::Builder::fileRest() {
 
 AccessResult ClassObjectAccess::run(Module &M, ModuleAnalysisManager &AM) {
   AccessResult R;
-  AccessResult::Builder B{R, AM.getResult<SimpleCallGraph>(M),
-                          AM.getResult<RuleAnalysis>(M), M, {}};
+  AccessResult::Builder B{R,
+                          AM.getResult<SimpleCallGraph>(M),
+                          AM.getResult<RuleAnalysis>(M),
+                          M,
+                          {}};
   B.makeNodes();
   bool Changed = true;
   for (unsigned Round = 0; Round < MaxRounds && Changed; ++Round) {
@@ -580,8 +583,8 @@ PreservedAnalyses ClassObjectAccessPrinter::run(Module &M,
         A.Where.Root->printAsOperand(OS, false);
       for (const Step &S : A.Where.Path) {
         const StructType *T = R.types().typeOf(S.Type);
-        OS << '[' << (T->hasName() ? T->getName() : "literal") << '.'
-           << S.Index << ']';
+        OS << '[' << (T->hasName() ? T->getName() : "literal") << '.' << S.Index
+           << ']';
       }
       OS << " in " << A.I->getFunction()->getName() << place(*A.I) << '\n';
     }

@@ -2,6 +2,7 @@
 #include "ExternCallFinder.h"
 
 #include "ClassObjectAccess.h"
+#include "Functions.h"
 #include "Names.h"
 #include "Print.h"
 
@@ -23,11 +24,10 @@ struct NamedObject {
 /// The publishers and clients of \p M. `advertise` gives its result to a
 /// temporary or variable; from a temporary, a call that is handed both it and
 /// another object (the assignment) passes the name on.
-static SmallVector<NamedObject, 0> namedObjects(Module &M,
-                                                const RuleMatches &Rules,
-                                                const AccessResult &Access) {
+static SmallVector<NamedObject, 0>
+namedObjects(Module &M, const RuleMatches &Rules, const AccessResult &Access) {
   SmallVector<NamedObject, 0> Found;
-  for (Function &F : M)
+  for (Function &F : definedFunctions(M))
     for (Instruction &I : instructions(F)) {
       auto *Call = dyn_cast<CallBase>(&I);
       const Rule *Row = Call ? Rules.match(*Call) : nullptr;
@@ -47,7 +47,8 @@ static SmallVector<NamedObject, 0> namedObjects(Module &M,
         if (!Assign || Assign->arg_size() != 2 ||
             Assign->getArgOperand(1) != Made)
           continue;
-        for (const Location &L : Access.resolve(Assign->getArgOperand(0), false))
+        for (const Location &L :
+             Access.resolve(Assign->getArgOperand(0), false))
           Found.push_back({L, *Topic});
       }
     }
@@ -55,8 +56,7 @@ static SmallVector<NamedObject, 0> namedObjects(Module &M,
 }
 
 /// The one topic of \p Object; empty where there is none or more than one.
-static std::string topicOf(const Value *Object,
-                           ArrayRef<NamedObject> Named,
+static std::string topicOf(const Value *Object, ArrayRef<NamedObject> Named,
                            const AccessResult &Access) {
   std::string Topic;
   if (!Object)
@@ -77,7 +77,7 @@ ExternCallFinder::Result ExternCallFinder::run(Module &M,
   const AccessResult &Access = AM.getResult<ClassObjectAccess>(M);
   SmallVector<NamedObject, 0> Named = namedObjects(M, Rules, Access);
   Result R;
-  for (Function &F : M) {
+  for (Function &F : definedFunctions(M)) {
     if (Rules.isDescribed(F))
       continue;
     for (Instruction &I : instructions(F)) {

@@ -32,8 +32,8 @@ StringRef Comparison::typeName() const {
 StringRef Comparison::relation() const {
   if (!Compare)
     return "flag";
-  CmpInst::Predicate P = Threshold == 1 ? Compare->getPredicate()
-                                        : Compare->getSwappedPredicate();
+  CmpInst::Predicate P =
+      Threshold == 1 ? Compare->getPredicate() : Compare->getSwappedPredicate();
   switch (P) {
   case CmpInst::ICMP_EQ:
   case CmpInst::FCMP_OEQ:
@@ -158,9 +158,9 @@ GatheredResults GatherResults::run(Module &M, ModuleAnalysisManager &AM) {
     C.Threshold = P.Operand;
     C.FlagValue = P.Flag;
     C.How = P.How;
-    C.Type = P.Flag                             ? Comparison::Flag
+    C.Type = P.Flag                          ? Comparison::Flag
              : P.How.Kind == Transform::None ? Comparison::Parameter
-                                                : Comparison::Derived;
+                                             : Comparison::Derived;
     C.Reads.push_back(P.Read);
     const DILocation *Loc = C.place().getDebugLoc();
     if (!Loc) {

@@ -2,6 +2,7 @@
 #include "IfStatements.h"
 
 #include "ControlDependence.h"
+#include "Functions.h"
 #include "Print.h"
 
 #include "llvm/IR/CFG.h"
@@ -60,9 +61,7 @@ static FlowGraph flowGraphOf(const Function &F,
 
 IfStatementsResult IfStatements::run(Module &M, ModuleAnalysisManager &) {
   IfStatementsResult R;
-  for (Function &F : M) {
-    if (F.isDeclaration())
-      continue;
+  for (Function &F : definedFunctions(M)) {
     for (Instruction &I : instructions(F))
       if (isPredicate(I))
         R.Predicates.push_back(&I);

@@ -17,8 +17,7 @@ std::optional<Report> planReport(const Comparison &C, std::string Key,
                                  const AnalysedModule &Analysed) {
   Report R;
   R.Key = std::move(Key);
-  auto *Predicate =
-      cast_or_null<Instruction>(Analysed.original(C.Predicate));
+  auto *Predicate = cast_or_null<Instruction>(Analysed.original(C.Predicate));
   if (!Predicate)
     return std::nullopt;
   if (!C.Compare) {
@@ -35,8 +34,8 @@ std::optional<Report> planReport(const Comparison &C, std::string Key,
       Flag = NotZero->getOperand(isa<Constant>(NotZero->getOperand(0)) ? 1 : 0);
     R.Compared = R.Threshold = Flag;
     R.Outcome = R.Result;
-    R.Signed = !Flag->getType()->isIntegerTy(1) &&
-               !Flag->getType()->isIntegerTy(8);
+    R.Signed =
+        !Flag->getType()->isIntegerTy(1) && !Flag->getType()->isIntegerTy(8);
     return R;
   }
   auto *Compare = cast_or_null<CmpInst>(Analysed.original(C.Compare));

@@ -20,11 +20,11 @@ struct Report {
   std::string Key;
   /// Before this instruction.
   llvm::Instruction *Before;
-  llvm::Value *Result;    ///< the predicate's outcome (any integer)
-  llvm::Value *Compared;  ///< what is compared with the threshold
+  llvm::Value *Result;   ///< the predicate's outcome (any integer)
+  llvm::Value *Compared; ///< what is compared with the threshold
   llvm::Value *Threshold;
-  llvm::Value *Outcome;   ///< the comparison's outcome
-  bool Signed;            ///< how integers are to be read
+  llvm::Value *Outcome; ///< the comparison's outcome
+  bool Signed;          ///< how integers are to be read
 };
 
 /// The report for \p C, or none where a value of the analysed program has no

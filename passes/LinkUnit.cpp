@@ -113,8 +113,8 @@ PreservedAnalyses LinkUnitPass::run(Module &M, ModuleAnalysisManager &) {
 static OptimizationLevel levelOf(const Module &M) {
   OptimizationLevel Level = OptimizationLevel::O0;
   for (const DICompileUnit *Unit : M.debug_compile_units()) {
-    OptimizationLevel Own = Unit->isOptimized() ? OptimizationLevel::O2
-                                                : OptimizationLevel::O0;
+    OptimizationLevel Own =
+        Unit->isOptimized() ? OptimizationLevel::O2 : OptimizationLevel::O0;
     SmallVector<StringRef, 64> Words;
     Unit->getFlags().split(Words, ' ');
     for (StringRef Word : Words)

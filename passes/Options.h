@@ -14,11 +14,11 @@ namespace tpc {
 /// The options of one link, read once from the command line (`-mllvm -tpc-*`)
 /// and, for the link unit's name, from the linker's own `-o`.
 struct Options {
-  std::string LinkUnit;    ///< target's name; else the file name of `-o`
-  std::string Package;     ///< name of the CMake project
-  std::string SourceRoot;  ///< folder that reported files are relative to
-  std::string StaticInfo;  ///< where the JSON goes; empty: nowhere
-  std::string Profile;     ///< profile of the rules
+  std::string LinkUnit;   ///< target's name; else the file name of `-o`
+  std::string Package;    ///< name of the CMake project
+  std::string SourceRoot; ///< folder that reported files are relative to
+  std::string StaticInfo; ///< where the JSON goes; empty: nowhere
+  std::string Profile;    ///< profile of the rules
   std::vector<std::string> RuleFiles; ///< the user's own tables
   std::vector<std::string> Excluded;  ///< folders that are not the user's
   bool Instrument = true;

@@ -1,6 +1,7 @@
 //===- ParamCallFinder.cpp ------------------------------------------------===//
 #include "ParamCallFinder.h"
 
+#include "Functions.h"
 #include "Names.h"
 #include "Print.h"
 
@@ -30,8 +31,9 @@ static SmallVector<std::string, 4> parameterTypes(const Function &F) {
   std::free(Text);
   SmallVector<std::string, 4> Types(1);
   int Depth = 0;
-  for (char C : StringRef(All).drop_front(All.empty() ? 0 : 1).drop_back(
-           All.empty() ? 0 : 1)) {
+  for (char C : StringRef(All)
+                    .drop_front(All.empty() ? 0 : 1)
+                    .drop_back(All.empty() ? 0 : 1)) {
     Depth += C == '<' || C == '(' ? 1 : C == '>' || C == ')' ? -1 : 0;
     if (C == ',' && Depth == 0)
       Types.emplace_back();
@@ -112,7 +114,7 @@ ParamCallFinder::Result ParamCallFinder::run(Module &M,
                                              ModuleAnalysisManager &AM) {
   const RuleMatches &Rules = AM.getResult<RuleAnalysis>(M);
   Result R;
-  for (Function &F : M) {
+  for (Function &F : definedFunctions(M)) {
     if (Rules.isDescribed(F))
       continue;
     for (Instruction &I : instructions(F)) {
@@ -122,11 +124,11 @@ ParamCallFinder::Result ParamCallFinder::run(Module &M,
         continue;
       std::string Type = valueType(*Call->getCalledFunction(), *Row);
       json::Value Default = defaultOf(*Call, *Row, Type);
-      R.push_back({Call, Row,
-                   constantText(argument(*Call, *Row, Row->Name))
-                       .value_or(DynamicName),
-                   std::move(Type), std::move(Default),
-                   argument(*Call, *Row, Row->Value)});
+      R.push_back(
+          {Call, Row,
+           constantText(argument(*Call, *Row, Row->Name)).value_or(DynamicName),
+           std::move(Type), std::move(Default),
+           argument(*Call, *Row, Row->Value)});
     }
   }
   return R;
@@ -137,8 +139,8 @@ PreservedAnalyses ParamCallFinderPrinter::run(Module &M,
   const auto &R = AM.getResult<ParamCallFinder>(M);
   OS << "parameter reads of " << M.getName() << ": " << R.size() << '\n';
   for (const ParameterRead &Read : R)
-    OS << "  " << Read.Row->Function << " '" << Read.Name << "' "
-       << Read.Type << " default " << formatv("{0}", Read.Default) << " in "
+    OS << "  " << Read.Row->Function << " '" << Read.Name << "' " << Read.Type
+       << " default " << formatv("{0}", Read.Default) << " in "
        << Read.Call->getFunction()->getName() << place(*Read.Call) << '\n';
   return PreservedAnalyses::all();
 }

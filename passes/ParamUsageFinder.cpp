@@ -65,8 +65,7 @@ std::string Transform::text() const {
 static std::optional<double> constantNumber(const Value *V) {
   if (const auto *Int = dyn_cast<ConstantInt>(V))
     return Int->getBitWidth() <= 64
-               ? std::optional<double>(
-                     static_cast<double>(Int->getSExtValue()))
+               ? std::optional<double>(static_cast<double>(Int->getSExtValue()))
                : std::nullopt;
   const auto *Float = dyn_cast<ConstantFP>(V);
   if (!Float)
@@ -114,9 +113,9 @@ static bool applyConstant(Transform &T, unsigned Opcode, double C, bool Left) {
 }
 
 /// \p T after \p I, an operation on \p V; none where \p I is no arithmetic
-/// with constants alone.
+/// with constants alone, nor the square (\p Square).
 static std::optional<Transform> apply(Transform T, const Instruction &I,
-                                      const Value *V) {
+                                      const Value *V, bool Square) {
   if (I.getOpcode() == Instruction::FNeg) {
     T.multiply(-1);
     return T;
@@ -135,9 +134,7 @@ static std::optional<Transform> apply(Transform T, const Instruction &I,
   if (!isa<BinaryOperator>(I))
     return std::nullopt;
   const Value *L = I.getOperand(0), *R = I.getOperand(1);
-  if (L == V && R == V) {
-    if (I.getOpcode() != Instruction::FMul && I.getOpcode() != Instruction::Mul)
-      return std::nullopt;
+  if (Square) {
     T.wrap("(", ")^2");
     return T;
   }
@@ -185,6 +182,7 @@ private:
                 unsigned Read);
   void flag(Value *V, Decision D, unsigned Read);
   SmallVector<Decision, 2> followOutcome(Value *Outcome);
+  bool isSquare(const Instruction &I) const;
   bool carry(const State &S, Use &U);
   void push(State S);
   const CallPath *into(const CallBase *Call, const CallPath *Outer);
@@ -258,8 +256,8 @@ bool Follower::carry(const State &S, Use &U) {
 
 /// True for the operations that make one truth value of two.
 static bool isLogical(const Instruction &I) {
-  return I.getOpcode() == Instruction::And || I.getOpcode() == Instruction::Or ||
-         I.getOpcode() == Instruction::Xor;
+  return I.getOpcode() == Instruction::And ||
+         I.getOpcode() == Instruction::Or || I.getOpcode() == Instruction::Xor;
 }
 
 /// True where \p I decides by \p U.
@@ -331,6 +329,20 @@ void Follower::compared(const State &S, CmpInst &Compare, unsigned Operand,
   Usage.Comparisons.push_back(std::move(C));
 }
 
+/// True where \p I multiplies a value with itself, be it that the variable is
+/// read twice.
+bool Follower::isSquare(const Instruction &I) const {
+  if (I.getOpcode() != Instruction::FMul && I.getOpcode() != Instruction::Mul)
+    return false;
+  const Value *L = I.getOperand(0), *R = I.getOperand(1);
+  const auto *First = dyn_cast<LoadInst>(L), *Second = dyn_cast<LoadInst>(R);
+  if (L == R || !First || !Second)
+    return L == R;
+  Locations A = Access.resolve(First->getPointerOperand(), true);
+  return A.size() == 1 && First->getParent() == Second->getParent() &&
+         A == Access.resolve(Second->getPointerOperand(), true);
+}
+
 void Follower::useOfValue(const State &S, Use &U, unsigned Read) {
   auto *I = dyn_cast<Instruction>(U.getUser());
   if (!I)
@@ -349,7 +361,7 @@ void Follower::useOfValue(const State &S, Use &U, unsigned Read) {
   }
   if (carry(S, U))
     return;
-  if (std::optional<Transform> T = apply(S.How, *I, S.V))
+  if (std::optional<Transform> T = apply(S.How, *I, S.V, isSquare(*I)))
     push({I, std::move(*T), S.Path, S.Direct});
   else if (!isa<IntrinsicInst>(I) || !I->getType()->isVoidTy())
     ++Usage.Lost;
@@ -358,10 +370,10 @@ void Follower::useOfValue(const State &S, Use &U, unsigned Read) {
 /// True for the types whose values are compared as numbers.
 static bool isNumber(StringRef Type) {
   static constexpr StringRef Numbers[] = {
-      "bool",  "char",          "signed char",  "unsigned char",
+      "bool",  "char",           "signed char", "unsigned char",
       "short", "unsigned short", "int",         "unsigned int",
-      "long",  "unsigned long", "long long",    "unsigned long long",
-      "float", "double",        "long double"};
+      "long",  "unsigned long",  "long long",   "unsigned long long",
+      "float", "double",         "long double"};
   return is_contained(Numbers, Type);
 }
 

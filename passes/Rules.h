@@ -26,10 +26,11 @@ struct Options;
 struct Rule {
   enum KindTy { Read, Exposing, Topic };
   KindTy Kind;
-  std::string Function;         ///< qualified name without template arguments
-  bool Method = false;          ///< has a `this`
+  std::string Function;          ///< qualified name without template arguments
+  bool Method = false;           ///< has a `this`
   std::optional<unsigned> Arity; ///< none: every overload
-  std::optional<unsigned> Name;  ///< argument with the parameter's or topic's name
+  std::optional<unsigned>
+      Name; ///< argument with the parameter's or topic's name
   std::optional<unsigned> Value; ///< argument that the value is written to;
                                  ///< none: it is the result
   std::optional<unsigned> Default;
@@ -64,9 +65,7 @@ public:
   const Rule *match(const llvm::CallBase &Call) const;
   /// True where a row describes \p F: what is inside it is ROS's own
   /// business, and the row stands for it.
-  bool isDescribed(const llvm::Function &F) const {
-    return Rows.contains(&F);
-  }
+  bool isDescribed(const llvm::Function &F) const { return Rows.contains(&F); }
   std::string Error; ///< why the tables could not be read; else empty
 
 private:

@@ -1,6 +1,7 @@
 //===- SimpleCallGraph.cpp ------------------------------------------------===//
 #include "SimpleCallGraph.h"
 
+#include "Functions.h"
 #include "Print.h"
 
 #include "llvm/IR/InstIterator.h"
@@ -21,7 +22,7 @@ ArrayRef<CallBase *> CallGraphResult::callers(const Function *F) const {
 SmallVector<Function *, 1>
 CallGraphResult::callees(const CallBase &Call) const {
   Function *F = Call.getCalledFunction();
-  if (!F || F->isDeclaration())
+  if (!F || F->isDeclarationForLinker())
     return {};
   return {F};
 }
@@ -30,7 +31,7 @@ CallGraphResult SimpleCallGraph::run(Module &M, ModuleAnalysisManager &) {
   CallGraphResult R;
   for (Function &F : M)
     R.Callers[&F];
-  for (Function &F : M)
+  for (Function &F : definedFunctions(M))
     for (Instruction &I : instructions(F)) {
       auto *Call = dyn_cast<CallBase>(&I);
       if (!Call || Call->isInlineAsm() || isa<IntrinsicInst>(Call))

@@ -24,7 +24,8 @@ public:
   callees(const llvm::CallBase &Call) const;
 
   unsigned IndirectCalls = 0; ///< calls whose callee is not known
-  llvm::MapVector<const llvm::Function *, llvm::SmallVector<llvm::CallBase *, 4>>
+  llvm::MapVector<const llvm::Function *,
+                  llvm::SmallVector<llvm::CallBase *, 4>>
       Callers;
 };
 

@@ -3,6 +3,7 @@
 
 #include "ClassObjectAccess.h"
 #include "ExternCallFinder.h"
+#include "Functions.h"
 #include "IfStatements.h"
 #include "ParamCallFinder.h"
 #include "SimpleCallGraph.h"
@@ -45,13 +46,13 @@ std::string keyOf(const Options &Opts, const Comparison &C,
                                             0x4d, 0x61, 0x9a, 0x37, 0x8f, 0x15,
                                             0xc3, 0x40, 0x5e, 0xd8};
   const DILocation *Loc = C.place().getDebugLoc();
-  std::string Name =
-      join(std::initializer_list<std::string>{
-               Opts.Package, Opts.LinkUnit, Opts.relative(pathOf(Loc)),
-               functionName(*C.place().getFunction()),
-               std::to_string(Loc->getLine()), std::to_string(Loc->getColumn()),
-               Parameter.str()},
-           "\n");
+  std::string Name = join(
+      std::initializer_list<std::string>{
+          Opts.Package, Opts.LinkUnit, Opts.relative(pathOf(Loc)),
+          functionName(*C.place().getFunction()),
+          std::to_string(Loc->getLine()), std::to_string(Loc->getColumn()),
+          Parameter.str()},
+      "\n");
   SHA1 Hash;
   Hash.update(ArrayRef(Namespace));
   Hash.update(Name);
@@ -100,8 +101,7 @@ public:
         Calls(AM.getResult<SimpleCallGraph>(M)),
         Usage(AM.getResult<ParamUsageFinder>(M)),
         Slice(AM.getResult<BackwardPropagate>(M)),
-        Gathered(AM.getResult<GatherResults>(M)),
-        Names(M, Access.types()) {}
+        Gathered(AM.getResult<GatherResults>(M)), Names(M, Access.types()) {}
 
   json::Array parameters() const;
   json::Array exposing() const;
@@ -241,12 +241,10 @@ json::Array Describer::comparisons() {
   StringMap<size_t> Known;
   for (const Comparison &C : Gathered.Comparisons) {
     json::Object O = comparison(C);
-    auto [It, New] =
-        Known.try_emplace(*O.getString("key"), All.size());
+    auto [It, New] = Known.try_emplace(*O.getString("key"), All.size());
     if (New)
       All.push_back(std::move(O));
-    else if (O.getInteger("distance") <
-             All[It->second].getInteger("distance"))
+    else if (O.getInteger("distance") < All[It->second].getInteger("distance"))
       All[It->second] = std::move(O);
   }
   auto Order = [](const json::Object &O) {
@@ -265,17 +263,15 @@ json::Array Describer::comparisons() {
 
 json::Object Describer::counts(size_t NumComparisons) const {
   return json::Object{
-      {"functions", count_if(M, [](const Function &F) {
-         return !F.isDeclaration();
-       })},
+      {"functions", range_size(definedFunctions(M))},
       {"predicates", static_cast<int64_t>(Ifs.predicates().size())},
       {"predicates_in_slice", Slice.numPredicates()},
       {"parameter_reads", static_cast<int64_t>(Reads.size())},
       {"exposing_statements", static_cast<int64_t>(Exposing.size())},
       {"comparisons", static_cast<int64_t>(NumComparisons)},
-      {"dynamic_names", count_if(Reads, [](const ParameterRead &R) {
-         return R.Name == DynamicName;
-       })},
+      {"dynamic_names",
+       count_if(Reads,
+                [](const ParameterRead &R) { return R.Name == DynamicName; })},
       {"indirect_calls", Calls.IndirectCalls},
       {"without_debug_info", Gathered.WithoutDebugInfo},
       {"outside_sources", Gathered.OutsideSources},
@@ -285,15 +281,14 @@ json::Object Describer::counts(size_t NumComparisons) const {
 
 /// What every file says, analysis or not.
 static json::Object header(const Options &Opts) {
-  return json::Object{
-      {"schema", SchemaVersion},
-      {"link_unit", json::fixUTF8(Opts.LinkUnit)},
-      {"package", textOr(Opts.Package, "unnamed")},
-      {"source_root", json::fixUTF8(Opts.SourceRoot)},
-      {"tool", json::Object{{"name", "tpc"},
-                            {"version", TPC_VERSION},
-                            {"llvm", LLVM_VERSION_STRING},
-                            {"profile", Opts.Profile}}}};
+  return json::Object{{"schema", SchemaVersion},
+                      {"link_unit", json::fixUTF8(Opts.LinkUnit)},
+                      {"package", textOr(Opts.Package, "unnamed")},
+                      {"source_root", json::fixUTF8(Opts.SourceRoot)},
+                      {"tool", json::Object{{"name", "tpc"},
+                                            {"version", TPC_VERSION},
+                                            {"llvm", LLVM_VERSION_STRING},
+                                            {"profile", Opts.Profile}}}};
 }
 
 json::Object describe(Module &M, ModuleAnalysisManager &AM,
@@ -317,9 +312,9 @@ json::Object describeFailure(const Options &Opts, StringRef Why) {
   json::Object Counts;
   for (StringRef Name :
        {"functions", "predicates", "predicates_in_slice", "parameter_reads",
-        "exposing_statements", "comparisons", "dynamic_names",
-        "indirect_calls", "without_debug_info", "outside_sources",
-        "lost_values", "not_instrumented"})
+        "exposing_statements", "comparisons", "dynamic_names", "indirect_calls",
+        "without_debug_info", "outside_sources", "lost_values",
+        "not_instrumented"})
     Counts[Name] = 0;
   Unit["counts"] = std::move(Counts);
   for (StringRef Name : {"parameters", "exposing", "comparisons"})

@@ -51,8 +51,7 @@ std::string VariableNames::nameOf(const Location &L) const {
     auto It = Classes.find(plainClassName(*T));
     if (It == Classes.end() || T->isOpaque())
       continue;
-    uint64_t Bits =
-        Layout.getStructLayout(T)->getElementOffsetInBits(S.Index);
+    uint64_t Bits = Layout.getStructLayout(T)->getElementOffsetInBits(S.Index);
     for (const DICompositeType *Class : It->second)
       if (std::string Name = memberAt(*Class, Bits); !Name.empty())
         return Name;

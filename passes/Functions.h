@@ -1,0 +1,20 @@
+//===- Functions.h - The functions that are analysed ----------------------===//
+#ifndef TPC_FUNCTIONS_H
+#define TPC_FUNCTIONS_H
+
+#include "llvm/ADT/STLExtras.h"
+#include "llvm/IR/Module.h"
+
+namespace tpc {
+
+/// The functions that \p M defines. What is only there to be inlined, and is
+/// so only above -O0 (`available_externally`), is another module's: without it
+/// the findings are the same at every level.
+inline auto definedFunctions(llvm::Module &M) {
+  return llvm::make_filter_range(
+      M, [](const llvm::Function &F) { return !F.isDeclarationForLinker(); });
+}
+
+} // namespace tpc
+
+#endif // TPC_FUNCTIONS_H

@@ -1,0 +1,19 @@
+// RUN: %compile -O2 %s -o %t.o
+// RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
+//
+// A value that goes through a shared function comes out by the call that it
+// went in by: the other caller does not compare a parameter.
+#include <ros/ros.h>
+
+static double same(double X) { return X; }
+
+void step(ros::NodeHandle &Handle, ros::Publisher &Out, double Value) {
+  double Limit;
+  Handle.param("limit", Limit, 0.5);
+  // CHECK: comparisons of {{.*}}: 1
+  // CHECK: parameter 'limit' {{.*}} at [[#@LINE+1]]:13
+  if (Value > same(Limit))
+    Out.publish(std_msgs::Number());
+  if (Value > same(7))
+    Out.publish(std_msgs::Number());
+}

@@ -1,0 +1,43 @@
+"""How the tests of the passes are run: one behaviour a file, by lit and FileCheck."""
+
+import os
+
+import lit.formats
+
+config.name = "tpc"
+config.test_format = lit.formats.ShTest(execute_external=False)
+config.suffixes = [".cpp", ".ll", ".test"]
+config.excludes = ["Inputs"]
+config.test_source_root = os.path.dirname(__file__)
+config.test_exec_root = config.tpc_obj_root
+
+inputs = os.path.join(config.test_source_root, "Inputs")
+plugin = config.tpc_plugin
+clangxx = os.path.join(config.tpc_tools, "clang++")
+opt = os.path.join(config.tpc_tools, "opt")
+lld = os.path.join(config.tpc_tools, "ld.lld")
+load = f"-load={plugin} -load-pass-plugin={plugin}"
+
+# Longer names come first: a substitution is made wherever its name begins.
+config.substitutions += [
+    # The compiler as tpc.cmake sets it; the level is the test's own word.
+    (
+        "%compile",
+        f"{clangxx} -std=c++17 -g -flto=full -Xclang -disable-llvm-passes"
+        f" -grecord-command-line -isystem {inputs}/include -c",
+    ),
+    ("%native", f"{clangxx} -std=c++17 -O1 -isystem {inputs}/include"),
+    # The linker with the plugin; further options as `-mllvm -tpc-...`.
+    (
+        "%link",
+        f"{clangxx} -flto=full --ld-path={lld} -Wl,--load-pass-plugin={plugin}"
+        f" -Wl,-mllvm,-load={plugin} -Wl,-mllvm,-tpc-exclude={inputs}",
+    ),
+    ("%opt", f"{opt} {load} -tpc-exclude={inputs}"),
+    ("%inputs", inputs),
+    ("%python", config.tpc_python),
+    ("%log-library", config.tpc_log),
+]
+config.environment["PATH"] = os.pathsep.join(
+    [config.tpc_tools, "/usr/bin", "/bin"]
+)

@@ -1,0 +1,26 @@
+// RUN: %compile -O2 %s -o %t.o
+// RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-param-usage>' %t.o | FileCheck %s
+//
+// ParamUsageFinder: where a value is compared, what was done to it before,
+// and which predicates the outcome decides, with whether it comes to them
+// unmerged.
+#include <ros/ros.h>
+
+double Other;
+
+bool step(ros::NodeHandle &Handle, double V) {
+  double Limit;
+  Handle.param("limit", Limit, 0.5);
+  // CHECK: 2 comparisons, 1 lost
+  // CHECK-DAG: 'limit' as 2 * x compared in {{.*}} at [[#@LINE+1]]:14 decides at [[#@LINE+2]]:7
+  bool B = V > 2 * Limit;
+  if (B)
+    return true;
+  if (V > Limit + Other)
+    return false;
+  // CHECK-DAG: 'limit' as x compared in {{.*}} at [[#@LINE+1]]:{{.*}} later decides at [[#@LINE+2]]:7
+  bool C = Other > 3 && V < Limit;
+  if (C)
+    return false;
+  return true;
+}
