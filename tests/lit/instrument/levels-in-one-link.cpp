@@ -1,0 +1,24 @@
+// RUN: %native -c %inputs/ros.cpp -o %t.ros.o
+// RUN: %compile -O3 %s -o %t.3.o
+// RUN: %compile -O0 -DOTHER %s -o %t.0.o
+// RUN: %link %t.3.o %t.0.o %t.ros.o -o %t
+// RUN: llvm-objdump -d --no-show-raw-insn --disassemble-symbols=main,_Z5otheri %t | FileCheck %s
+//
+// Where a link has files of several levels, the ones of -O0 stay as they are
+// and the others are optimised.
+#include <ros/ros.h>
+
+// CHECK-LABEL: <main>:
+// CHECK-NOT: {{call.*sameM}}
+// CHECK: _Z5otheri
+// CHECK-NOT: {{call.*sameM}}
+// CHECK-LABEL: <_Z5otheri>:
+// CHECK: {{call.*sameO}}
+#ifdef OTHER
+static int sameO(int X) { return X + 1; }
+int other(int X) { return sameO(X); }
+#else
+int other(int X);
+static int sameM(int X) { return X + 2; }
+int main(int Argc, char **) { return other(sameM(Argc)); }
+#endif

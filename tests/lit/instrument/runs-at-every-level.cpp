@@ -1,0 +1,71 @@
+// RUN: %native -c %inputs/ros.cpp -o %t.ros.o
+// RUN: %compile -O0 %s -o %t.0.o
+// RUN: %link -O0 -Wl,-mllvm,-tpc-link-unit=node %t.0.o %t.ros.o -o %t.0
+// RUN: %t.0 | FileCheck %s
+// RUN: %compile -O1 %s -o %t.1.o
+// RUN: %link -O1 -Wl,-mllvm,-tpc-link-unit=node %t.1.o %t.ros.o -o %t.1
+// RUN: %t.1 | FileCheck %s
+// RUN: %compile -O2 %s -o %t.2.o
+// RUN: %link -O2 -Wl,-mllvm,-tpc-link-unit=node %t.2.o %t.ros.o -o %t.2
+// RUN: %t.2 | FileCheck %s
+// RUN: %compile -O3 %s -o %t.3.o
+// RUN: %link -O3 -Wl,-mllvm,-tpc-link-unit=node %t.3.o %t.ros.o -o %t.3
+// RUN: %t.3 | FileCheck %s
+//
+// The instrumented program reports before each predicate and publishes what
+// it published before, at every level.
+// Values 0 to 6 against a limit of 2.5, of which the first three above it (3,
+// 4 and 5) are published. What is not reached by && is not reported.
+// CHECK: report 0 cmp 0 thresh 0 res 0
+// CHECK-NEXT: report 0 cmp 0 thresh 2.5 res 0
+// CHECK-NEXT: report 0 cmp 0 thresh 0 res 0
+// CHECK-NEXT: report 0 cmp 1 thresh 2.5 res 0
+// CHECK-NEXT: report 0 cmp 0 thresh 0 res 0
+// CHECK-NEXT: report 0 cmp 2 thresh 2.5 res 0
+// CHECK-NEXT: report 0 cmp 0 thresh 0 res 0
+// CHECK-NEXT: report 1 cmp 3 thresh 2.5 res 1
+// CHECK-NEXT: report 1 cmp 0 thresh 3 res 1
+// CHECK-NEXT: published out 3
+// CHECK: published out 4
+// CHECK: published out 5
+// CHECK-NEXT: report 0 cmp 0 thresh 0 res 0
+// CHECK-NEXT: report 1 cmp 6 thresh 2.5 res 1
+// CHECK-NEXT: report 0 cmp 3 thresh 3 res 0
+// CHECK-NOT: {{.}}
+#include <ros/ros.h>
+
+#include <cstdlib>
+
+class Node {
+public:
+  explicit Node(ros::NodeHandle &Handle) {
+    Handle.param("limit", Limit, 2.5);
+    Handle.param("most", Most, 3);
+    Handle.param("quiet", Quiet, false);
+    Out = Handle.advertise<std_msgs::Number>("out", 1);
+  }
+  void step(double Value) {
+    std_msgs::Number Message;
+    Message.data = Value;
+    bool Enough = Value > Limit;
+    if (Quiet)
+      return;
+    if (Enough && Count < Most) {
+      ++Count;
+      Out.publish(Message);
+    }
+  }
+
+private:
+  ros::Publisher Out;
+  double Limit;
+  int Most, Count = 0;
+  bool Quiet;
+};
+
+int main() {
+  ros::NodeHandle Handle;
+  Node N(Handle);
+  for (int I = 0; I < 7; ++I)
+    N.step(I);
+}

@@ -1,0 +1,21 @@
+// RUN: %compile -O2 %s -o %t.o
+// RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' -tpc-rules=%inputs/own-rules.json %t.o | FileCheck %s
+// RUN: %opt -disable-output -passes=tpc -tpc-link-unit=node -tpc-rules=%inputs/broken-rules.json %t.o 2>&1 | FileCheck %s --check-prefix=BROKEN
+//
+// The user's own rules: a function that reads a parameter, and one that
+// exposes. A file that is no JSON is a failure with its name, and the program
+// is linked all the same.
+// CHECK: comparisons of {{.*}}: 1
+// BROKEN: warning: node: {{.*}}broken-rules.json: {{.*}}; this link unit is left as it was
+namespace own {
+template <typename T> struct Box {
+  T setting(const char *Name);
+};
+void tell(double Value);
+} // namespace own
+
+void step(own::Box<double> &B, double V) {
+  // CHECK: parameter 'limit' relation > {{.*}} at [[#@LINE+1]]:9
+  if (V > B.setting("limit"))
+    own::tell(V);
+}
