@@ -104,7 +104,25 @@ macro(_tpc_instrument)
     string(APPEND CMAKE_${_tpc_language}_STANDARD_LIBRARIES
       " -Wl,--push-state,--as-needed \"${_tpc_log}\" -Wl,--pop-state")
   endforeach()
+  cmake_language(DEFER DIRECTORY "${CMAKE_SOURCE_DIR}"
+    CALL _tpc_relink_with_passes "${CMAKE_SOURCE_DIR}" "${_tpc_plugin}" "${_tpc_log}")
 endmacro()
+
+# Links again what is in the folder and those below when the passes or the log
+# library have changed. Called at the end of the package's CMakeLists.txt.
+function(_tpc_relink_with_passes folder)
+  get_property(targets DIRECTORY "${folder}" PROPERTY BUILDSYSTEM_TARGETS)
+  foreach(target IN LISTS targets)
+    get_target_property(type "${target}" TYPE)
+    if(type MATCHES "^(EXECUTABLE|SHARED_LIBRARY|MODULE_LIBRARY)$")
+      set_property(TARGET "${target}" APPEND PROPERTY LINK_DEPENDS ${ARGN})
+    endif()
+  endforeach()
+  get_property(folders DIRECTORY "${folder}" PROPERTY SUBDIRECTORIES)
+  foreach(below IN LISTS folders)
+    _tpc_relink_with_passes("${below}" ${ARGN})
+  endforeach()
+endfunction()
 
 get_property(_tpc_probe GLOBAL PROPERTY IN_TRY_COMPILE)
 if(TPC_DISABLE OR _tpc_probe)

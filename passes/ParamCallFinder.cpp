@@ -45,12 +45,33 @@ static SmallVector<std::string, 4> parameterTypes(const Function &F) {
   return Types;
 }
 
+/// The name of a result's type, which only templates have in their names.
+static std::string resultType(const Function &F) {
+  ItaniumPartialDemangler Demangler;
+  std::string Name = F.getName().str();
+  std::string Text;
+  if (!Demangler.partialDemangle(Name.c_str()) && Demangler.isFunction()) {
+    char *Type = Demangler.getFunctionReturnType(nullptr, nullptr);
+    Text = Type ? Type : "";
+    std::free(Type);
+  }
+  const Type *T = F.getReturnType();
+  if (Text.empty())
+    Text = T->isDoubleTy()      ? "double"
+           : T->isFloatTy()     ? "float"
+           : T->isIntegerTy(1)  ? "bool"
+           : T->isIntegerTy(32) ? "int"
+           : T->isIntegerTy()   ? "long"
+                                : "";
+  return Text;
+}
+
 /// `double` from `double&` or `double const&`.
 static std::string valueType(const Function &F, const Rule &R) {
   SmallVector<std::string, 4> Types = parameterTypes(F);
   unsigned Number = R.Value.value_or(R.Default.value_or(~0U));
   if (Number >= Types.size())
-    return "";
+    return R.Value ? "" : resultType(F);
   StringRef T = Types[Number];
   T.consume_back("&");
   T.consume_back(" const");

@@ -22,7 +22,7 @@ Publisher::~Publisher() = default;
 ServiceClient::ServiceClient(const ServiceClient &Other) = default;
 ServiceClient &ServiceClient::operator=(const ServiceClient &Other) = default;
 ServiceClient::~ServiceClient() = default;
-NodeHandle::NodeHandle(const std::string &) {}
+NodeHandle::NodeHandle(const std::string &, const Names &) {}
 NodeHandle::~NodeHandle() = default;
 
 static const char *text(const std::string &Name) {

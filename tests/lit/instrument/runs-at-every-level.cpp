@@ -30,7 +30,7 @@
 // CHECK: published out 5
 // CHECK-NEXT: report 0 cmp 0 thresh 0 res 0
 // CHECK-NEXT: report 1 cmp 6 thresh 2.5 res 1
-// CHECK-NEXT: report 0 cmp 3 thresh 3 res 0
+// CHECK-NEXT: report 0 cmp 3 thresh 3 res 0 key {{....}}
 // CHECK-NOT: {{.}}
 #include <ros/ros.h>
 

@@ -6,6 +6,7 @@
 #define TPC_TEST_ROS_H
 
 #include <cstdint>
+#include <map>
 #include <string>
 
 namespace test {
@@ -48,7 +49,8 @@ public:
 
 class NodeHandle {
 public:
-  explicit NodeHandle(const std::string &Namespace = "");
+  using Names = std::map<std::string, std::string>;
+  NodeHandle(const std::string &Namespace = "", const Names &Remapped = {});
   ~NodeHandle();
   template <typename M>
   Publisher advertise(const std::string &Topic, uint32_t, bool = false) {
