@@ -158,7 +158,7 @@ void Slicer::phi(const PHINode &Phi) {
 
 void Slicer::callResult(CallBase &Call) {
   SmallVector<Function *, 1> Callees = Calls.callees(Call);
-  if (!Callees.empty() && !Rules.match(Call)) {
+  if (!Callees.empty()) {
     for (Function *Callee : Callees)
       for (BasicBlock &BB : *Callee)
         if (isa<ReturnInst>(BB.getTerminator()))

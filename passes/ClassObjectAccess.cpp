@@ -89,6 +89,27 @@ void AccessResult::enterScalar(Location &L) const {
   }
 }
 
+void AccessResult::addScalarsOf(const Location &L, Locations &Out) const {
+  auto *T = dyn_cast_or_null<StructType>(elementOf(typeAt(L)));
+  if (!T || T->isOpaque() || T->getNumElements() == 0)
+    return addTo(Out, L);
+  for (unsigned Field = 0; Field < T->getNumElements(); ++Field) {
+    Location Inner = L;
+    Inner.Path.push_back({Numbers.numberOf(T), Field});
+    addScalarsOf(Inner, Out);
+  }
+}
+
+Locations AccessResult::touched(const Instruction &I) const {
+  const Value *Pointer = getLoadStorePointerOperand(&I);
+  if (!getLoadStoreType(const_cast<Instruction *>(&I))->isAggregateType())
+    return resolve(Pointer, true);
+  Locations All;
+  for (const Location &L : resolve(Pointer, false))
+    addScalarsOf(L, All);
+  return All;
+}
+
 bool AccessResult::contains(Type *Outer, unsigned Inner) const {
   auto *T = dyn_cast_or_null<StructType>(elementOf(Outer));
   if (!T || T->isOpaque())
@@ -144,39 +165,97 @@ static SmallVector<Step, 4> stepsOf(const GEPOperator &GEP,
   return Steps;
 }
 
+/// Adds what is \p Offset bytes into \p Object; false where nothing begins
+/// there.
+bool AccessResult::addByOffset(const Location &Object, int64_t Offset,
+                               Locations &Out) const {
+  Location L = Object;
+  Type *T = elementOf(typeAt(L));
+  while (T && Offset >= 0) {
+    auto *Class = dyn_cast<StructType>(T);
+    if (!Class || Class->isOpaque() || Class->getNumElements() == 0)
+      break;
+    const StructLayout *Fields = Layout->getStructLayout(Class);
+    if (static_cast<uint64_t>(Offset) >= Fields->getSizeInBytes())
+      return false;
+    unsigned Field = Fields->getElementContainingOffset(Offset);
+    L.Path.push_back({Numbers.numberOf(Class), Field});
+    Offset -= Fields->getElementOffset(Field);
+    T = Class->getElementType(Field);
+    if (T->isArrayTy()) {
+      T = elementOf(T);
+      Offset %= Layout->getTypeAllocSize(T).getFixedValue();
+    }
+  }
+  if (Offset != 0)
+    return false;
+  addTo(Out, std::move(L));
+  return true;
+}
+
+/// What a chain of getelementptrs does to a pointer.
+struct PointerChain {
+  const Value *Base;
+  SmallVector<Step, 4> Path;
+  /// The way in bytes; none where it has a variable index.
+  std::optional<int64_t> Offset = 0;
+  /// The path is not the classes' own: it goes by bytes, or by the shape that
+  /// the calling convention gives an object in registers.
+  bool ByOffset = false;
+};
+
+static PointerChain chainOf(const Value *Pointer, TypeNumbers &Numbers,
+                            const DataLayout &Layout) {
+  PointerChain C{Pointer, {}, 0, false};
+  while (true) {
+    if (const auto *GEP = dyn_cast<GEPOperator>(C.Base)) {
+      Type *T = GEP->getSourceElementType();
+      const auto *Struct = dyn_cast<StructType>(T);
+      C.ByOffset |= (T->isIntegerTy(8) && !GEP->hasAllZeroIndices()) ||
+                    (Struct && Struct->isLiteral());
+      APInt Bytes(Layout.getIndexTypeSizeInBits(GEP->getType()), 0);
+      if (C.Offset && GEP->accumulateConstantOffset(Layout, Bytes))
+        *C.Offset += Bytes.getSExtValue();
+      else
+        C.Offset = std::nullopt;
+      SmallVector<Step, 4> Steps = stepsOf(*GEP, Numbers);
+      C.Path.insert(C.Path.begin(), Steps.begin(), Steps.end());
+      C.Base = GEP->getPointerOperand();
+    } else if (const auto *Cast = dyn_cast<CastInst>(C.Base);
+               Cast && Cast->getOperand(0)->getType()->isPointerTy()) {
+      C.Base = Cast->getOperand(0);
+    } else if (const auto *Freeze = dyn_cast<FreezeInst>(C.Base)) {
+      C.Base = Freeze->getOperand(0);
+    } else {
+      return C;
+    }
+  }
+}
+
 /// Adds the locations that \p Pointer can lead to, as far as it is known by
 /// now what the pointers that it is computed from lead to.
 void AccessResult::addPointees(const Value *Pointer, Locations &Out) const {
-  SmallVector<Step, 4> Path;
-  bool Moved = false;
-  while (true) {
-    if (const auto *GEP = dyn_cast<GEPOperator>(Pointer)) {
-      bool Bytes = GEP->getSourceElementType()->isIntegerTy(8) &&
-                   !GEP->hasAllZeroIndices();
-      // A base class inside an object: its fields are known by the class
-      // alone. A scalar some bytes on is nothing that can be named.
-      Moved |= Bytes && !Path.empty();
-      if (Bytes && Path.empty() && GEP->hasAllConstantIndices())
-        return;
-      SmallVector<Step, 4> Steps = stepsOf(*GEP, Numbers);
-      Path.insert(Path.begin(), Steps.begin(), Steps.end());
-      Pointer = GEP->getPointerOperand();
-    } else if (const auto *Cast = dyn_cast<CastInst>(Pointer);
-               Cast && Cast->getOperand(0)->getType()->isPointerTy()) {
-      Pointer = Cast->getOperand(0);
-    } else if (const auto *Freeze = dyn_cast<FreezeInst>(Pointer)) {
-      Pointer = Freeze->getOperand(0);
-    } else {
-      break;
+  PointerChain C = chainOf(Pointer, Numbers, *Layout);
+  Locations Objects;
+  if (isa<GlobalVariable>(C.Base) || isa<AllocaInst>(C.Base))
+    Objects.push_back({C.Base, {}});
+  else if (C.ByOffset || C.Path.empty())
+    if (auto It = Targets.find(C.Base); It != Targets.end())
+      Objects = It->second;
+  bool Rooted = !Objects.empty() && Objects.front().Root == C.Base;
+  for (const Location &Object : Objects) {
+    if (!C.ByOffset) {
+      Location L = Object;
+      L.Path.append(C.Path);
+      addTo(Out, std::move(L));
+    } else if (C.Offset) {
+      Rooted &= addByOffset(Object, *C.Offset, Out);
     }
   }
-  if (!Moved && (isa<GlobalVariable>(Pointer) || isa<AllocaInst>(Pointer)))
-    return addTo(Out, {Pointer, Path});
-  if (!Path.empty())
-    return addTo(Out, {nullptr, Path});
-  if (auto It = Targets.find(Pointer); It != Targets.end())
-    for (const Location &L : It->second)
-      addTo(Out, L);
+  // A base class inside an object: its fields are known by the class alone.
+  if (!Rooted && !C.Path.empty() &&
+      !Numbers.typeOf(C.Path.front().Type)->isLiteral())
+    addTo(Out, {nullptr, C.Path});
 }
 
 Locations AccessResult::resolve(const Value *Pointer, bool Scalar) const {
@@ -370,7 +449,7 @@ void AccessResult::reachingWrites(const LoadInst &Load, const Location &L,
 SmallVector<Instruction *, 8>
 AccessResult::definitionsOf(const LoadInst &Load) const {
   SmallSetVector<Instruction *, 8> All;
-  for (const Location &L : resolve(Load.getPointerOperand(), true)) {
+  for (const Location &L : touched(Load)) {
     SmallSetVector<Instruction *, 8> Writes;
     collectWrites(L, Writes);
     if (const auto *Local = dyn_cast_or_null<AllocaInst>(L.Root);
@@ -517,22 +596,22 @@ void AccessResult::Builder::fileStores() {
   R.Stores.clear();
   R.StoreIndex.clear();
   for (Function &F : definedFunctions(M)) {
-    if (Rules.isDescribed(F))
+    if (Rules.isOpaque(F))
       continue;
     for (Instruction &I : instructions(F))
       if (auto *Store = dyn_cast<StoreInst>(&I))
-        for (const Location &L : R.resolve(Store->getPointerOperand(), true))
+        for (const Location &L : R.touched(*Store))
           R.file(R.Stores, R.StoreIndex, I, L);
   }
 }
 
 void AccessResult::Builder::fileRest() {
   for (Function &F : definedFunctions(M)) {
-    if (Rules.isDescribed(F))
+    if (Rules.isOpaque(F))
       continue;
     for (Instruction &I : instructions(F)) {
       if (auto *Load = dyn_cast<LoadInst>(&I)) {
-        for (const Location &L : R.resolve(Load->getPointerOperand(), true))
+        for (const Location &L : R.touched(*Load))
           R.file(R.Loads, R.LoadIndex, I, L);
       } else if (auto *Copy = dyn_cast<MemTransferInst>(&I)) {
         Locations To = R.resolve(Copy->getRawDest(), false);
@@ -544,7 +623,7 @@ void AccessResult::Builder::fileRest() {
         R.Copies.push_back({&I, std::move(To), std::move(From)});
       } else if (auto *Call = dyn_cast<CallBase>(&I);
                  Call && !isa<IntrinsicInst>(Call)) {
-        bool Opaque = Calls.callees(*Call).empty() || Rules.match(*Call);
+        bool Opaque = Calls.callees(*Call).empty();
         for (const auto &[N, Arg] : enumerate(Call->args()))
           if (Arg->getType()->isPointerTy() && !Call->onlyReadsMemory(N))
             for (const Location &L : R.resolve(Arg, false))
@@ -557,6 +636,7 @@ void AccessResult::Builder::fileRest() {
 
 AccessResult ClassObjectAccess::run(Module &M, ModuleAnalysisManager &AM) {
   AccessResult R;
+  R.Layout = &M.getDataLayout();
   AccessResult::Builder B{R,
                           AM.getResult<SimpleCallGraph>(M),
                           AM.getResult<RuleAnalysis>(M),

@@ -83,6 +83,10 @@ public:
   /// scalar touches. Empty where nothing is known.
   Locations resolve(const llvm::Value *Pointer, bool Scalar) const;
 
+  /// What \p I, a load or store, touches: a scalar, or all scalars of an
+  /// object that is loaded or stored as one value.
+  Locations touched(const llvm::Instruction &I) const;
+
   /// The writes that can give \p Load its value: stores, and calls without a
   /// body that are handed the variable. Copies of whole objects are followed.
   /// Of the writes of a local variable, those that another store surely
@@ -127,7 +131,10 @@ private:
   void addPointees(const llvm::Value *Pointer, Locations &Out) const;
   void addTo(Locations &Out, Location L) const;
   void enterScalar(Location &L) const;
+  void addScalarsOf(const Location &L, Locations &Out) const;
   llvm::Type *typeAt(const Location &L) const;
+  bool addByOffset(const Location &Object, int64_t Offset,
+                   Locations &Out) const;
   bool contains(llvm::Type *Outer, unsigned Inner) const;
   std::optional<llvm::SmallVector<Step, 4>> partOf(const Location &Object,
                                                    const Location &L) const;
@@ -145,6 +152,7 @@ private:
   void file(llvm::SmallVectorImpl<Access> &List, Index &In,
             llvm::Instruction &I, const Location &L);
 
+  const llvm::DataLayout *Layout = nullptr;
   mutable TypeNumbers Numbers;
   /// What the pointers that are not computed on the spot can lead to:
   /// arguments, results, merges, and pointers that were in memory.

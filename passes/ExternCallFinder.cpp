@@ -78,7 +78,7 @@ ExternCallFinder::Result ExternCallFinder::run(Module &M,
   SmallVector<NamedObject, 0> Named = namedObjects(M, Rules, Access);
   Result R;
   for (Function &F : definedFunctions(M)) {
-    if (Rules.isDescribed(F))
+    if (Rules.isOpaque(F))
       continue;
     for (Instruction &I : instructions(F)) {
       auto *Call = dyn_cast<CallBase>(&I);

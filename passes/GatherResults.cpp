@@ -157,6 +157,7 @@ GatheredResults GatherResults::run(Module &M, ModuleAnalysisManager &AM) {
     C.Compare = P.Compare;
     C.Threshold = P.Operand;
     C.FlagValue = P.Flag;
+    C.IsOperand = P.IsOperand;
     C.How = P.How;
     C.Type = P.Flag                          ? Comparison::Flag
              : P.How.Kind == Transform::None ? Comparison::Parameter

@@ -20,6 +20,7 @@ struct Comparison {
   llvm::Value *FlagValue;       ///< null for a comparison
   llvm::Instruction *Predicate; ///< the nearest one that it decides
   bool Direct;                  ///< see Decision
+  bool IsOperand;               ///< see ParameterComparison
   Transform How;
   llvm::SmallVector<unsigned, 1> Reads; ///< all of one parameter name
   SliceEntry Slice;
@@ -27,7 +28,9 @@ struct Comparison {
 
   /// Where it stands in the source.
   const llvm::Instruction &place() const {
-    return Compare ? *llvm::cast<llvm::Instruction>(Compare) : *Predicate;
+    if (Compare)
+      return *llvm::cast<llvm::Instruction>(Compare);
+    return IsOperand ? *llvm::cast<llvm::Instruction>(FlagValue) : *Predicate;
   }
   llvm::StringRef typeName() const;
   /// The operator with the threshold on the right-hand side, or `flag`.

@@ -21,13 +21,17 @@ std::optional<Report> planReport(const Comparison &C, std::string Key,
   if (!Predicate)
     return std::nullopt;
   if (!C.Compare) {
+    Value *Flag = C.FlagValue == conditionOf(*C.Predicate)
+                      ? conditionOf(*Predicate)
+                      : Analysed.original(C.FlagValue);
+    if (!Flag || (!C.Direct && !C.IsOperand))
+      return std::nullopt;
     R.Before = Predicate;
     R.Result = conditionOf(*Predicate);
-    Value *Flag = C.FlagValue == conditionOf(*C.Predicate)
-                      ? R.Result
-                      : Analysed.original(C.FlagValue);
-    if (!Flag || !C.Direct)
-      return std::nullopt;
+    if (C.IsOperand) {
+      R.Before = cast<Instruction>(Flag)->getNextNode();
+      R.Result = Flag;
+    }
     // An integer that stands as a condition is compared with zero: the value
     // itself says more than the outcome.
     if (auto *NotZero = dyn_cast<CmpInst>(Flag))
@@ -133,7 +137,7 @@ PreservedAnalyses InstrumentBranchesPrinter::run(Module &M,
   OS << "reports of " << M.getName() << '\n';
   for (const Comparison &C : R.Comparisons)
     OS << "  " << (C.Direct ? "before the predicate" : "where it is evaluated")
-       << tpc::place(C.Direct ? *C.Predicate : *C.Compare) << " of the "
+       << tpc::place(C.Direct ? *C.Predicate : C.place()) << " of the "
        << C.typeName() << tpc::place(C.place()) << '\n';
   return PreservedAnalyses::all();
 }

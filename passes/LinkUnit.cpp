@@ -74,7 +74,7 @@ static Findings analyseSafely(Module &M, const Options &Opts) {
   CrashRecoveryContext::Enable();
   CrashRecoveryContext Guard;
   bool Survived = Guard.RunSafely([&] {
-    AnalysedModule Analysed(M);
+    AnalysedModule Analysed(M, Opts);
     analyse(Analysed, Opts, Out);
   });
   if (!Survived) {

@@ -136,7 +136,7 @@ ParamCallFinder::Result ParamCallFinder::run(Module &M,
   const RuleMatches &Rules = AM.getResult<RuleAnalysis>(M);
   Result R;
   for (Function &F : definedFunctions(M)) {
-    if (Rules.isDescribed(F))
+    if (Rules.isOpaque(F))
       continue;
     for (Instruction &I : instructions(F)) {
       auto *Call = dyn_cast<CallBase>(&I);

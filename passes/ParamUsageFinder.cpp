@@ -162,8 +162,7 @@ public:
   Follower(Module &M, ModuleAnalysisManager &AM)
       : Calls(AM.getResult<SimpleCallGraph>(M)),
         Access(AM.getResult<ClassObjectAccess>(M)),
-        Reads(AM.getResult<ParamCallFinder>(M)),
-        Rules(AM.getResult<RuleAnalysis>(M)) {}
+        Reads(AM.getResult<ParamCallFinder>(M)) {}
 
   ParameterUsage run();
 
@@ -173,6 +172,8 @@ private:
     Transform How;
     const CallPath *Path;
     bool Direct; ///< of an outcome: see Decision
+    /// Where V is an object that is one value: the field that it stands in.
+    std::optional<unsigned> Field = std::nullopt;
   };
   using Worklist = SmallVector<State, 16>;
 
@@ -180,7 +181,7 @@ private:
   void useOfValue(const State &S, Use &U, unsigned Read);
   void compared(const State &S, CmpInst &Compare, unsigned Operand,
                 unsigned Read);
-  void flag(Value *V, Decision D, unsigned Read);
+  void flag(Value *V, Decision D, unsigned Read, bool IsOperand = false);
   SmallVector<Decision, 2> followOutcome(Value *Outcome);
   bool isSquare(const Instruction &I) const;
   bool carry(const State &S, Use &U);
@@ -190,7 +191,6 @@ private:
   const CallGraphResult &Calls;
   const AccessResult &Access;
   const ParamCallFinder::Result &Reads;
-  const RuleMatches &Rules;
 
   ParameterUsage Usage;
   Worklist Work;
@@ -224,9 +224,27 @@ bool Follower::carry(const State &S, Use &U) {
     return true;
   }
   if (isa<PHINode>(I) || (isa<SelectInst>(I) && U.getOperandNo() != 0)) {
-    push({I, S.How, S.Path, false});
+    push({I, S.How, S.Path, false, S.Field});
     return true;
   }
+  if (auto *Insert = dyn_cast<InsertValueInst>(I)) {
+    if (Insert->getNumIndices() != 1)
+      return false;
+    unsigned Field = Insert->getIndices()[0];
+    if (!S.Field && U.getOperandNo() == 1)
+      push({I, S.How, S.Path, false, Field});
+    else if (S.Field && S.Field != Field && U.getOperandNo() == 0)
+      push({I, S.How, S.Path, false, S.Field});
+    return true;
+  }
+  if (auto *Extract = dyn_cast<ExtractValueInst>(I)) {
+    if (S.Field && Extract->getNumIndices() == 1 &&
+        Extract->getIndices()[0] == *S.Field)
+      push({I, S.How, S.Path, false});
+    return true;
+  }
+  if (S.Field && !isa<ReturnInst>(I))
+    return false;
   if (auto *Store = dyn_cast<StoreInst>(I)) {
     if (U.getOperandNo() == 0)
       for (LoadInst *Load : Access.usesOf(*Store, Store->getPointerOperand()))
@@ -235,7 +253,7 @@ bool Follower::carry(const State &S, Use &U) {
   }
   if (auto *Call = dyn_cast<CallBase>(I); Call && !isa<IntrinsicInst>(Call)) {
     SmallVector<Function *, 1> Callees = Calls.callees(*Call);
-    if (Callees.empty() || Rules.match(*Call) || !Call->isArgOperand(&U))
+    if (Callees.empty() || !Call->isArgOperand(&U))
       return false;
     for (Function *Callee : Callees)
       if (Call->getArgOperandNo(&U) < Callee->arg_size())
@@ -245,10 +263,11 @@ bool Follower::carry(const State &S, Use &U) {
   }
   if (isa<ReturnInst>(I)) {
     if (S.Path)
-      push({const_cast<CallBase *>(S.Path->Call), S.How, S.Path->Outer, false});
+      push({const_cast<CallBase *>(S.Path->Call), S.How, S.Path->Outer, false,
+            S.Field});
     else
       for (CallBase *Call : Calls.callers(I->getFunction()))
-        push({Call, S.How, nullptr, false});
+        push({Call, S.How, nullptr, false, S.Field});
     return true;
   }
   return false;
@@ -293,12 +312,23 @@ SmallVector<Decision, 2> Follower::followOutcome(Value *Outcome) {
   return Found;
 }
 
-void Follower::flag(Value *V, Decision D, unsigned Read) {
+void Follower::flag(Value *V, Decision D, unsigned Read, bool IsOperand) {
   ParameterComparison C;
+  C.IsOperand = IsOperand;
   C.Read = Read;
   C.Flag = V;
   C.Decisions.push_back(D);
   Usage.Comparisons.push_back(std::move(C));
+}
+
+/// True where \p I is what `&&` or `||` makes of its last operand \p U: all
+/// other ways to it are decided already.
+static bool isShortCircuit(const Instruction &I, const Use &U) {
+  const auto *Phi = dyn_cast<PHINode>(&I);
+  return Phi && Phi->getType()->isIntegerTy(1) &&
+         Phi->getNumIncomingValues() > 1 &&
+         all_of(Phi->incoming_values(),
+                [&](const Use &In) { return &In == &U || isa<Constant>(In); });
 }
 
 /// True where \p Compare only asks whether an operand is not zero, as C++ does
@@ -357,6 +387,12 @@ void Follower::useOfValue(const State &S, Use &U, unsigned Read) {
   if (isLogical(*I) && S.V->getType()->isIntegerTy(1)) {
     for (Decision D : followOutcome(I))
       flag(S.V, D, Read);
+    return;
+  }
+  if (isShortCircuit(*I, U) && S.How.Kind == Transform::None &&
+      isa<Instruction>(S.V)) {
+    for (Decision D : followOutcome(I))
+      flag(S.V, {D.Predicate, false}, Read, /*IsOperand=*/true);
     return;
   }
   if (carry(S, U))

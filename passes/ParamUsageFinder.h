@@ -47,8 +47,10 @@ struct ParameterComparison {
   /// The comparison; null for a flag.
   llvm::CmpInst *Compare = nullptr;
   unsigned Operand = 0; ///< which operand is the parameter's value
-  /// For a flag the value that decides.
+  /// For a flag the value that decides, and whether it does so where it is
+  /// read, as an operand of `&&` or `||` whose outcome goes on.
   llvm::Value *Flag = nullptr;
+  bool IsOperand = false;
   Transform How;
   llvm::SmallVector<Decision, 2> Decisions;
 };

@@ -1,10 +1,15 @@
 //===- Prepare.cpp --------------------------------------------------------===//
 #include "Prepare.h"
 
+#include "Functions.h"
+#include "Options.h"
+#include "Rules.h"
+
 #include "llvm/IR/InstIterator.h"
 #include "llvm/IR/Instructions.h"
 #include "llvm/IR/Operator.h"
 #include "llvm/Passes/PassBuilder.h"
+#include "llvm/Transforms/IPO/AlwaysInliner.h"
 #include "llvm/Transforms/Scalar/SROA.h"
 #include "llvm/Transforms/Utils/Cloning.h"
 
@@ -12,8 +17,39 @@ using namespace llvm;
 
 namespace tpc {
 
-/// Turns the local variables of \p M into values. The flow graph stays.
-static void promote(Module &M) {
+/// Functions of libraries with at most this many instructions are inlined.
+static constexpr unsigned MaxInlined = 100;
+
+/// Marks the small functions of libraries in \p M to be inlined; returns those
+/// that were not marked before. What the rules speak of stays a call.
+static SmallVector<Function *, 0>
+markSmallLibraryFunctions(Module &M, const Options &Opts) {
+  SmallVector<Function *, 0> Marked;
+  Expected<Rules> Tables = Rules::load(Opts);
+  if (!Tables) {
+    // The analysis will meet the same error, and report it.
+    consumeError(Tables.takeError());
+    return Marked;
+  }
+  UserSources Sources(Opts);
+  for (Function &F : definedFunctions(M)) {
+    if (!F.getSubprogram() || Sources.has(F) ||
+        F.hasFnAttribute(Attribute::AlwaysInline) ||
+        F.hasFnAttribute(Attribute::NoInline) ||
+        F.getInstructionCount() > MaxInlined || Tables->match(F) ||
+        Tables->isOpaque(F))
+      continue;
+    F.addFnAttr(Attribute::AlwaysInline);
+    Marked.push_back(&F);
+  }
+  return Marked;
+}
+
+/// Makes \p M fit for the analysis.
+static void prepare(Module &M, const Options &Opts) {
+  SmallVector<WeakVH, 0> Marked;
+  for (Function *F : markSmallLibraryFunctions(M, Opts))
+    Marked.push_back(F);
   PassBuilder PB;
   LoopAnalysisManager LAM;
   FunctionAnalysisManager FAM;
@@ -25,9 +61,13 @@ static void promote(Module &M) {
   PB.registerLoopAnalyses(LAM);
   PB.crossRegisterProxies(LAM, FAM, CGAM, MAM);
   ModulePassManager MPM;
+  MPM.addPass(AlwaysInlinerPass(/*InsertLifetime=*/false));
   MPM.addPass(
       createModuleToFunctionPassAdaptor(SROAPass(SROAOptions::PreserveCFG)));
   MPM.run(M, MAM);
+  for (const WeakVH &F : Marked)
+    if (F)
+      cast<Function>(F)->removeFnAttr(Attribute::AlwaysInline);
 }
 
 /// True where \p I only keeps a local variable in memory: promotion takes it
@@ -41,19 +81,27 @@ static bool isLocalMemory(const Instruction &I) {
   return isa<AllocaInst>(Pointer);
 }
 
-AnalysedModule::AnalysedModule(Module &M) : Original(M) {
+/// Takes away the marks of -O0.
+static void allowOptimisation(Module &M) {
+  for (Function &F : M)
+    if (F.hasFnAttribute(Attribute::OptimizeNone)) {
+      F.removeFnAttr(Attribute::OptimizeNone);
+      F.removeFnAttr(Attribute::NoInline);
+    }
+}
+
+AnalysedModule::AnalysedModule(Module &M, const Options &Opts) : Original(M) {
   bool Unoptimised = any_of(M, [](const Function &F) {
     return F.hasFnAttribute(Attribute::OptimizeNone);
   });
   if (!Unoptimised) {
-    promote(M);
+    prepare(M, Opts);
     return;
   }
   ValueToValueMapTy Map;
   Copy = CloneModule(M, Map);
-  for (Function &F : *Copy)
-    F.removeFnAttr(Attribute::OptimizeNone);
-  promote(*Copy);
+  allowOptimisation(*Copy);
+  prepare(*Copy, Opts);
   // The map follows what promotion replaces; in the order of the program the
   // instruction itself comes before those that it stands in for.
   for (Function &F : M)
@@ -71,9 +119,8 @@ Value *AnalysedModule::original(Value *V) const {
 }
 
 PreservedAnalyses PreparePass::run(Module &M, ModuleAnalysisManager &) {
-  for (Function &F : M)
-    F.removeFnAttr(Attribute::OptimizeNone);
-  promote(M);
+  allowOptimisation(M);
+  prepare(M, Options::fromCommandLine());
   return PreservedAnalyses::none();
 }
 

@@ -1,9 +1,11 @@
 //===- Prepare.h - The program as it is analysed --------------------------===//
 //
-// The analysis wants local variables as SSA values. Code that was compiled to
-// be optimised gets that anyway, so it is done in place. Code that was
-// compiled with -O0 must stay as it is: there a copy is analysed, and what is
-// found is carried back. Either way the same instructions are seen, and the
+// The analysis wants local variables as SSA values, and small functions of
+// libraries (a message's accessors, std::max, a smart pointer's arrow) inside
+// their callers, so that each use of them stands for itself. Code that was
+// compiled to be optimised gets that anyway, so it is done in place. Code that
+// was compiled with -O0 must stay as it is: there a copy is analysed, and what
+// is found is carried back. Either way the same instructions are seen, and the
 // findings are the same at every level.
 //
 //===----------------------------------------------------------------------===//
@@ -19,10 +21,12 @@
 
 namespace tpc {
 
+struct Options;
+
 /// The module to analyse for a module to instrument.
 class AnalysedModule {
 public:
-  explicit AnalysedModule(llvm::Module &M);
+  AnalysedModule(llvm::Module &M, const Options &Opts);
 
   llvm::Module &module() { return Copy ? *Copy : Original; }
   /// What \p V of the analysed module is in the original; null where it is
@@ -35,7 +39,7 @@ private:
   llvm::DenseMap<const llvm::Value *, llvm::Value *> Back;
 };
 
-/// `tpc-prepare`: promotes the local variables of a module, for the printers.
+/// `tpc-prepare`: the same to a whole module, for the printers.
 class PreparePass : public llvm::PassInfoMixin<PreparePass> {
 public:
   llvm::PreservedAnalyses run(llvm::Module &M, llvm::ModuleAnalysisManager &);

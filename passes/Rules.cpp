@@ -86,7 +86,18 @@ Error Rules::add(StringRef Text, StringRef Origin, StringRef Profile) {
       ByName[R.Function].push_back(std::move(R));
     }
   }
+  if (const json::Array *Names = Top->getArray("opaque"))
+    for (const json::Value &V : *Names)
+      if (std::optional<StringRef> Name = V.getAsString())
+        OpaquePrefixes.push_back(Name->str());
   return Error::success();
+}
+
+bool Rules::isOpaque(const Function &F) const {
+  std::string Name = qualifiedName(F.getName());
+  return any_of(OpaquePrefixes, [&](const std::string &Prefix) {
+    return StringRef(Name).starts_with(Prefix);
+  });
 }
 
 Expected<Rules> Rules::load(const Options &Opts) {
@@ -132,6 +143,8 @@ RuleMatches RuleAnalysis::run(Module &M, ModuleAnalysisManager &) {
   for (const Function &F : M)
     if (const Rule *R = Result.Tables->match(F))
       Result.Rows[&F] = R;
+    else if (Result.Tables->isOpaque(F))
+      Result.Opaque.insert(&F);
   return Result;
 }
 

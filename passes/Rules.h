@@ -9,6 +9,7 @@
 #define TPC_RULES_H
 
 #include "llvm/ADT/DenseMap.h"
+#include "llvm/ADT/DenseSet.h"
 #include "llvm/ADT/StringMap.h"
 #include "llvm/IR/InstrTypes.h"
 #include "llvm/IR/PassManager.h"
@@ -51,11 +52,14 @@ public:
 
   /// The row for \p F, or null.
   const Rule *match(const llvm::Function &F) const;
+  /// True where \p F is in one of the opaque namespaces.
+  bool isOpaque(const llvm::Function &F) const;
 
 private:
   llvm::Error add(llvm::StringRef Json, llvm::StringRef Origin,
                   llvm::StringRef Profile);
   llvm::StringMap<std::vector<Rule>> ByName;
+  std::vector<std::string> OpaquePrefixes;
 };
 
 /// The rules applied to the functions of a module.
@@ -63,15 +67,18 @@ class RuleMatches {
 public:
   /// The row that the callee of \p Call matches, or null.
   const Rule *match(const llvm::CallBase &Call) const;
-  /// True where a row describes \p F: what is inside it is ROS's own
-  /// business, and the row stands for it.
-  bool isDescribed(const llvm::Function &F) const { return Rows.contains(&F); }
+  /// True where \p F is not looked into: a row stands for it, or its name
+  /// begins with one that the tables call opaque.
+  bool isOpaque(const llvm::Function &F) const {
+    return Rows.contains(&F) || Opaque.contains(&F);
+  }
   std::string Error; ///< why the tables could not be read; else empty
 
 private:
   friend class RuleAnalysis;
   std::shared_ptr<const Rules> Tables;
   llvm::DenseMap<const llvm::Function *, const Rule *> Rows;
+  llvm::DenseSet<const llvm::Function *> Opaque;
 };
 
 class RuleAnalysis : public llvm::AnalysisInfoMixin<RuleAnalysis> {

@@ -3,6 +3,7 @@
 
 #include "Functions.h"
 #include "Print.h"
+#include "Rules.h"
 
 #include "llvm/IR/InstIterator.h"
 #include "llvm/IR/IntrinsicInst.h"
@@ -22,13 +23,14 @@ ArrayRef<CallBase *> CallGraphResult::callers(const Function *F) const {
 SmallVector<Function *, 1>
 CallGraphResult::callees(const CallBase &Call) const {
   Function *F = Call.getCalledFunction();
-  if (!F || F->isDeclarationForLinker())
+  if (!F || F->isDeclarationForLinker() || Rules->isOpaque(*F))
     return {};
   return {F};
 }
 
-CallGraphResult SimpleCallGraph::run(Module &M, ModuleAnalysisManager &) {
+CallGraphResult SimpleCallGraph::run(Module &M, ModuleAnalysisManager &AM) {
   CallGraphResult R;
+  R.Rules = &AM.getResult<RuleAnalysis>(M);
   for (Function &F : M)
     R.Callers[&F];
   for (Function &F : definedFunctions(M))

@@ -15,15 +15,23 @@
 
 namespace tpc {
 
+class RuleMatches;
+
 class CallGraphResult {
 public:
   /// The calls of \p F, in the order of the module.
   llvm::ArrayRef<llvm::CallBase *> callers(const llvm::Function *F) const;
-  /// The functions with a body that \p Call may enter.
+  /// The functions that \p Call may enter and that are looked into: they have
+  /// a body, and the rules do not stand for it.
   llvm::SmallVector<llvm::Function *, 1>
   callees(const llvm::CallBase &Call) const;
 
   unsigned IndirectCalls = 0; ///< calls whose callee is not known
+
+private:
+  friend class SimpleCallGraph;
+  friend class SimpleCallGraphPrinter;
+  const RuleMatches *Rules = nullptr;
   llvm::MapVector<const llvm::Function *,
                   llvm::SmallVector<llvm::CallBase *, 4>>
       Callers;
@@ -32,7 +40,7 @@ public:
 class SimpleCallGraph : public llvm::AnalysisInfoMixin<SimpleCallGraph> {
 public:
   using Result = CallGraphResult;
-  Result run(llvm::Module &M, llvm::ModuleAnalysisManager &);
+  Result run(llvm::Module &M, llvm::ModuleAnalysisManager &AM);
 
 private:
   friend llvm::AnalysisInfoMixin<SimpleCallGraph>;

@@ -1,0 +1,1 @@
+"""TPC: finds the parameter that makes a robot misbehave."""

@@ -19,6 +19,7 @@ class TpcError(Exception):
     def __init__(
         self, message: str, path: str | PathLike[str] | None = None, line: int | None = None
     ) -> None:
+        """Keep the parts, so that a caller can show them in another form."""
         super().__init__(message)
         self.message = message
         self.path = None if path is None else fspath(path)

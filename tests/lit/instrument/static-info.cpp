@@ -9,14 +9,14 @@
 // CHECK-NEXT: "default": 4.5,
 // CHECK-NEXT: "distance": 1,
 // CHECK: "file": "static-info.cpp",
-// CHECK: "function": "step(ros::NodeHandle&, ros::Publisher&, double)",
+// CHECK: "function": "step(ros::NodeHandle&, double)",
 // CHECK-NEXT: "key": "{{[0-9a-f]+-[0-9a-f]+-5[0-9a-f]+-[89ab][0-9a-f]+-[0-9a-f]+}}",
-// CHECK-NEXT: "lineno": [[#@LINE+26]],
+// CHECK-NEXT: "lineno": [[#@LINE+24]],
 // CHECK-NEXT: "name": "Limit",
 // CHECK-NEXT: "other_thresholds": 0,
 // CHECK: "read_at": {
 // CHECK-NEXT: "file": "static-info.cpp",
-// CHECK-NEXT: "lineno": [[#@LINE+19]]
+// CHECK-NEXT: "lineno": [[#@LINE+17]]
 // CHECK: "relation": ">",
 // CHECK-NEXT: "source": "limit",
 // CHECK-NEXT: "source_code": "if (V > Limit) // \u201cenough\u201d",
@@ -30,9 +30,9 @@
 // CHECK: "status": "ok",
 #include <ros/ros.h>
 
-void step(ros::NodeHandle &Handle, ros::Publisher &Out, double V) {
+void step(ros::NodeHandle &Handle, double V) {
   double Limit;
-  Out = Handle.advertise<std_msgs::Number>("out", 1);
+  ros::Publisher Out = Handle.advertise<std_msgs::Number>("out", 1);
   Handle.param("limit", Limit, 4.5);
 
   if (V > Limit) // “enough”

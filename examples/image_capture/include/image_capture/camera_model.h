@@ -1,0 +1,61 @@
+// What the simulated camera sees: the person, and what only looks like one.
+#ifndef IMAGE_CAPTURE_CAMERA_MODEL_H
+#define IMAGE_CAPTURE_CAMERA_MODEL_H
+
+#include <cstdint>
+
+#include <image_capture/Observation.h>
+#include <ros/ros.h>
+
+#include "image_capture/noise.h"
+#include "image_capture/uav_dynamics.h"
+
+namespace image_capture {
+
+/// Where the simulated person's head is, m.
+struct Person {
+  double x = 0.0;
+  double y = 0.0;
+};
+
+class CameraModel {
+public:
+  CameraModel(ros::NodeHandle &private_nh, std::uint32_t seed);
+
+  Observation observe(const UavState &uav, double time);
+  Person person(double time) const;
+
+private:
+  /// Sunlight in leaves: for about a second a patch has the features of a face.
+  struct Phantom {
+    double bearing = 0.0;
+    double coverage = 0.0;
+    double aspect = 1.0;
+    double begin = 0.0;
+    double end = 0.0;
+  };
+
+  void addPerson(const UavState &uav, double time, Observation &image);
+  void addPhantom(const UavState &uav, double time, Observation &image);
+  void addClutter(Observation &image);
+  void addBlob(double offset_x, double width, double height, double contrast,
+               double response, Observation &image);
+  void schedulePhantom(double after);
+
+  Noise noise_;
+  Phantom phantom_;
+  bool phantom_placed_ = false;
+  std::uint32_t images_ = 0;
+  double half_angle_;
+  double person_x_;
+  double person_y_;
+  double person_sway_;
+  double camera_range_;
+  double camera_rate_;
+  double phantom_pause_;
+  double clutter_per_image_;
+};
+
+} // namespace image_capture
+
+#endif // IMAGE_CAPTURE_CAMERA_MODEL_H

@@ -1,0 +1,66 @@
+// Owns the simulated time: moves the UAV, publishes /clock, the sensors, the
+// camera's observations and the truth that an observer sees.
+#ifndef IMAGE_CAPTURE_SIMULATOR_NODE_H
+#define IMAGE_CAPTURE_SIMULATOR_NODE_H
+
+#include <cstdint>
+
+#include <image_capture/AttitudeCommand.h>
+#include <image_capture/CapturePicture.h>
+#include <image_capture/Picture.h>
+#include <ros/ros.h>
+
+#include "image_capture/camera_model.h"
+#include "image_capture/uav_dynamics.h"
+
+namespace image_capture {
+
+class SimulatorNode {
+public:
+  SimulatorNode(ros::NodeHandle &nh, ros::NodeHandle &private_nh,
+                std::uint32_t seed);
+
+  /// Until ROS shuts down, or `max_duration` (s, simulated) is over.
+  void run(ros::NodeHandle &private_nh);
+
+private:
+  void onCommand(const AttitudeCommand &command);
+  bool onCapture(CapturePicture::Request &request,
+                 CapturePicture::Response &response);
+  void tick();
+  void waitForController();
+  double commandLag() const;
+  void publishClock();
+  void publishTruth();
+  Picture makePicture(std::size_t bytes);
+  double now() const { return static_cast<double>(ticks_) * Step; }
+  ros::Time stamp() const;
+  bool every(double seconds) const;
+
+  static constexpr double Step = 0.01; ///< of simulated time, s
+
+  UavDynamics dynamics_;
+  CameraModel camera_;
+  Noise pixels_;
+  ros::Publisher clock_pub_, sensors_pub_, observation_pub_;
+  ros::Publisher picture_pub_, preview_pub_;
+  ros::Publisher uav_truth_pub_, person_truth_pub_;
+  ros::Subscriber command_sub_;
+  ros::ServiceServer capture_server_;
+
+  AttitudeCommand command_;
+  std::int64_t ticks_ = 0;
+  std::int64_t sensor_ticks_ = 0;
+  std::int64_t command_ticks_ = -1;
+  double rate_;
+  double sensor_period_;
+  double image_period_;
+  double max_command_lag_;
+  double shutter_interval_;
+  double last_shutter_ = -1.0e3;
+  std::uint32_t pictures_ = 0;
+};
+
+} // namespace image_capture
+
+#endif // IMAGE_CAPTURE_SIMULATOR_NODE_H

@@ -1,0 +1,108 @@
+#include "image_capture/controller_node.h"
+
+#include <image_capture/AttitudeCommand.h>
+
+namespace image_capture {
+
+ControllerNode::ControllerNode(ros::NodeHandle &nh, ros::NodeHandle &private_nh)
+    : estimator_(private_nh), position_controller_(private_nh),
+      height_controller_(private_nh), yaw_controller_(private_nh),
+      safety_(nh, private_nh), heartbeat_(nh, private_nh) {
+  private_nh.param("waypose_idle_timeout", waypose_idle_timeout_, 1.5);
+  command_pub_ = nh.advertise<AttitudeCommand>("/uav/command", 10);
+  state_pub_ = nh.advertise<FlightState>("/controller/state", 10);
+  waypose_sub_ =
+      nh.subscribe("/mission/waypose", 10, &ControllerNode::onWayPose, this);
+  sensors_sub_ = nh.subscribe("/uav/sensors", 10, &ControllerNode::onSensors,
+                              this, ros::TransportHints().tcpNoDelay());
+  housekeeping_timer_ =
+      nh.createTimer(ros::Duration(0.5), &ControllerNode::onHousekeeping, this);
+}
+
+void ControllerNode::onWayPose(const WayPose &waypose) {
+  if (waypose.motors_on && !motors_on_)
+    height_controller_.reset();
+  motors_on_ = waypose.motors_on;
+  target_.x = waypose.position.x;
+  target_.y = waypose.position.y;
+  target_.z = waypose.position.z;
+  target_.yaw = waypose.yaw;
+  target_.yaw_rate = waypose.yaw_rate;
+  target_.turn = waypose.turn;
+  last_waypose_ = ros::Time::now();
+  waypose_fresh_ = true;
+}
+
+void ControllerNode::onHousekeeping(const ros::TimerEvent &event) {
+  const double age = (event.current_real - last_waypose_).toSec();
+  waypose_fresh_ = age < waypose_idle_timeout_;
+  checkSafety(event.current_real);
+  updateMode();
+  ROS_DEBUG("%u late fixes, %u low battery warnings", estimator_.lateFixes(),
+            safety_.lowBatteryWarnings());
+}
+
+void ControllerNode::onSensors(const UavSensors &sensors) {
+  estimator_.update(sensors);
+  battery_voltage_ = sensors.battery_voltage;
+  // A silent mission must not leave the UAV turning.
+  if (!waypose_fresh_ && target_.turn) {
+    target_.turn = false;
+    target_.yaw = estimator_.estimate().yaw;
+  }
+  publishCommand(sensors.header.stamp);
+  publishState(sensors.header.stamp);
+}
+
+void ControllerNode::checkSafety(const ros::Time &now) {
+  const Estimate &estimate = estimator_.estimate();
+  SafetySample sample;
+  sample.x = estimate.x;
+  sample.y = estimate.y;
+  sample.height = estimate.z;
+  sample.battery_voltage = battery_voltage_;
+  if (!safety_.check(sample, now))
+    aborting_ = true;
+}
+
+void ControllerNode::updateMode() {
+  mode_ = FlightState::MODE_ATTITUDE;
+  if (position_controller_.lateralControl() && yaw_controller_.enabled())
+    mode_ = FlightState::MODE_POSITION;
+}
+
+void ControllerNode::publishCommand(const ros::Time &stamp) {
+  AttitudeCommand command;
+  command.header.stamp = stamp;
+  command.motors_on = motors_on_;
+  if (motors_on_) {
+    const Estimate &estimate = estimator_.estimate();
+    const Tilt tilt = position_controller_.update(estimate, target_);
+    command.roll = tilt.roll;
+    command.pitch = tilt.pitch;
+    command.yaw_rate = yaw_controller_.update(estimate, target_);
+    command.thrust = height_controller_.update(estimate, target_);
+  }
+  command_pub_.publish(command);
+}
+
+void ControllerNode::publishState(const ros::Time &stamp) {
+  const Estimate &estimate = estimator_.estimate();
+  FlightState state;
+  state.header.stamp = stamp;
+  state.position.x = estimate.x;
+  state.position.y = estimate.y;
+  state.position.z = estimate.z;
+  state.velocity.x = estimate.vx;
+  state.velocity.y = estimate.vy;
+  state.velocity.z = estimate.vz;
+  state.yaw = estimate.yaw;
+  state.battery_voltage = battery_voltage_;
+  state.motors_on = motors_on_;
+  state.idle = !waypose_fresh_;
+  state.mode = mode_;
+  state.aborting = aborting_;
+  state_pub_.publish(state);
+}
+
+} // namespace image_capture

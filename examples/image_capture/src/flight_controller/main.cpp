@@ -1,0 +1,12 @@
+#include <ros/ros.h>
+
+#include "image_capture/controller_node.h"
+
+int main(int argc, char **argv) {
+  ros::init(argc, argv, "flight_controller");
+  ros::NodeHandle nh;
+  ros::NodeHandle private_nh("~");
+  image_capture::ControllerNode node(nh, private_nh);
+  ros::spin();
+  return 0;
+}

@@ -1,0 +1,57 @@
+"""Writing a file so that a reader sees the old one or the new one, and never a half."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import secrets
+from pathlib import Path
+
+from pytpc.errors import TpcError
+
+
+def stage_beside(target: Path, data: bytes, mode: int = 0o644) -> Path:
+    """Write ``data`` to a new hidden file in the folder of ``target``, and onto the disk.
+
+    Args:
+        target: the file that is to be replaced later; it need not exist.
+        data: the whole content.
+        mode: permission bits; the umask takes its share.
+
+    Returns:
+        The path of the new file. The caller renames or deletes it.
+
+    Raises:
+        OSError: the folder cannot be written or the disk is full; then nothing is left behind.
+    """
+    staged = target.with_name(f".{target.name}.tpc-{secrets.token_hex(4)}")
+    descriptor = os.open(staged, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, mode)
+    try:
+        with os.fdopen(descriptor, "wb") as stream:
+            stream.write(data)
+            stream.flush()
+            os.fsync(stream.fileno())
+    except BaseException:
+        with contextlib.suppress(OSError):
+            staged.unlink()
+        raise
+    return staged
+
+
+def write_atomic(target: Path, data: bytes) -> None:
+    """Put ``data`` in the place of ``target``, making its folder where it is missing.
+
+    Raises:
+        TpcError: the file cannot be written; what stood there before is untouched.
+    """
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        staged = stage_beside(target, data)
+        try:
+            staged.replace(target)
+        except BaseException:
+            with contextlib.suppress(OSError):
+                staged.unlink()
+            raise
+    except OSError as error:
+        raise TpcError(f"cannot be written: {error.strerror or error}", target) from error

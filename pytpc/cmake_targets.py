@@ -1,0 +1,86 @@
+"""The link units that CMake knows of, asked through its file API (cmake-file-api(7), codemodel v2).
+
+With ThinLTO or native objects a link succeeds and the plugin never runs; only a comparison of what
+was linked with what was analysed shows it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pytpc.errors import InputError
+from pytpc.static_json import parse_json
+
+_API = Path(".cmake/api/v1")
+_LINKED = frozenset({"EXECUTABLE", "SHARED_LIBRARY", "MODULE_LIBRARY"})
+_ANALYSED = frozenset({"CXX", "C"})
+
+
+@dataclass(frozen=True, slots=True)
+class LinkTarget:
+    """A target that is linked from C or C++ sources; ``built`` says whether its file is there."""
+
+    name: str
+    package: str
+    built: bool
+
+
+def ask_for_targets(build_folder: Path) -> None:
+    """Leave a query that CMake answers when it next configures this build folder.
+
+    Raises:
+        OSError: the folder cannot be written.
+    """
+    query = build_folder / _API / "query" / "codemodel-v2"
+    query.parent.mkdir(parents=True, exist_ok=True)
+    query.touch()
+
+
+def link_targets(build_folder: Path) -> list[LinkTarget] | None:
+    """The targets of a configured build folder that are linked, sorted by name.
+
+    Returns:
+        None where CMake left no answer: it is older than 3.14, or never configured the folder.
+
+    Raises:
+        InputError: an answer that is not what the manual page describes.
+    """
+    reply = build_folder / _API / "reply"
+    indexes = sorted(reply.glob("index-*.json"))
+    if not indexes:
+        return None
+    try:
+        objects: Any = parse_json(indexes[-1])
+        model = next(
+            (found["jsonFile"] for found in objects["objects"] if found["kind"] == "codemodel"),
+            None,
+        )
+        if model is None:
+            return None
+        codemodel: Any = parse_json(reply / model)
+        configuration = codemodel["configurations"][0]
+        described: list[Any] = [
+            parse_json(reply / target["jsonFile"]) for target in configuration["targets"]
+        ]
+        targets = [
+            _link_target(target, configuration["projects"], entry["projectIndex"], build_folder)
+            for target, entry in zip(described, configuration["targets"], strict=True)
+            if target["type"] in _LINKED and _languages(target) & _ANALYSED
+        ]
+    except (KeyError, IndexError, TypeError) as error:
+        raise InputError(f"not an answer of CMake's file API: {error!r}", indexes[-1]) from error
+    return sorted(targets, key=lambda target: target.name)
+
+
+def _languages(target: dict[str, Any]) -> frozenset[str]:
+    return frozenset(group["language"] for group in target.get("compileGroups", []))
+
+
+def _link_target(
+    target: dict[str, Any], projects: list[Any], project: int, build_folder: Path
+) -> LinkTarget:
+    artifacts = [build_folder / artifact["path"] for artifact in target.get("artifacts", [])]
+    built = bool(artifacts) and artifacts[0].is_file()
+    return LinkTarget(target["name"], projects[project]["name"], built)

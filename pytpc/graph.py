@@ -1,0 +1,283 @@
+"""A real ROS 1 graph of its own: a master on a free port, rosout, and what is started in it.
+
+Everything that a graph starts is ended with it, the children of its children too: roslaunch puts
+each node into a session of its own, so a graph knows its processes by a word in their environment.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+import secrets
+import signal
+import socket
+import subprocess
+import threading
+import time
+import xmlrpc.client
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from http.client import HTTPException
+from pathlib import Path
+from types import FrameType, TracebackType
+from typing import Self
+
+from pytpc.errors import MissingToolError, RunError
+
+GRAPH_WORD = "TPC_GRAPH"
+_CALLER = "/tpc_graph"
+_START_TRIES = 3
+_MASTER_PATIENCE_S = 15.0
+_TAIL_BYTES = 16384
+_COLOUR = re.compile(r"\x1b\[[0-9;]*m")
+_TELLING = re.compile(r"has died|FATAL|Exception|[Ee]rror|ERROR|not found|cannot", re.ASCII)
+_ROSOUT = "/usr/lib/rosout/rosout"
+
+
+@dataclass(frozen=True, slots=True)
+class GraphProcess:
+    """One process that a graph started. ``log`` has both of its output streams."""
+
+    name: str
+    popen: subprocess.Popen[bytes]
+    log: Path
+    patience_s: float
+
+    def tail(self, lines: int = 3) -> list[str]:
+        """The last lines of its output, without colours; those that tell of an error first."""
+        try:
+            with self.log.open("rb") as stream:
+                stream.seek(0, os.SEEK_END)
+                stream.seek(max(0, stream.tell() - _TAIL_BYTES))
+                text = stream.read().decode("utf-8", "replace")
+        except OSError:
+            return []
+        said = [line.strip() for line in _COLOUR.sub("", text).splitlines() if line.strip("= \t")]
+        telling = [line for line in said if _TELLING.search(line)]
+        return (telling or said)[-lines:]
+
+
+class RosGraph:
+    """A context manager: the graph stands from ``with`` to its end.
+
+    Args:
+        env: the environment of an installed workspace (``pytpc.build.workspace_env``).
+        folder: for ROS's home, its logs and the output of all processes; made where missing.
+        use_sim_time: set ``/use_sim_time`` before any node starts.
+
+    Raises:
+        RunError: on entering, when the master does not come up.
+        MissingToolError: on entering, when rosmaster is not installed.
+    """
+
+    def __init__(self, env: Mapping[str, str], folder: Path, *, use_sim_time: bool = False) -> None:
+        """See the class; nothing runs yet."""
+        self.folder = folder.absolute()
+        self.uri = ""
+        self._word = secrets.token_hex(8)
+        self._base_env = dict(env)
+        self._use_sim_time = use_sim_time
+        self._processes: list[GraphProcess] = []
+        self._exits = contextlib.ExitStack()
+
+    @property
+    def env(self) -> dict[str, str]:
+        """The environment in which processes of this graph run."""
+        return {
+            **self._base_env,
+            "ROS_MASTER_URI": self.uri,
+            "ROS_IP": "127.0.0.1",
+            "ROS_HOME": str(self.folder / "home"),
+            "ROS_LOG_DIR": str(self.folder / "log"),
+            "PYTHONUNBUFFERED": "1",
+            GRAPH_WORD: self._word,
+        }
+
+    def __enter__(self) -> Self:
+        """Start master and rosout."""
+        for name in ("home", "log", "out"):
+            (self.folder / name).mkdir(parents=True, exist_ok=True)
+        with contextlib.ExitStack() as exits:
+            exits.enter_context(_terminate_raises())
+            exits.callback(self._end)
+            self._start_master()
+            if self._use_sim_time:
+                self.call("setParam", "/use_sim_time", True)
+            self.start("rosout", [_ROSOUT])
+            self._exits = exits.pop_all()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        """End all that was started."""
+        self._exits.close()
+
+    def start(
+        self,
+        name: str,
+        argv: Sequence[str],
+        *,
+        env: Mapping[str, str] | None = None,
+        patience_s: float = 5.0,
+    ) -> GraphProcess:
+        """Start a process in the graph.
+
+        Args:
+            name: for messages and for the file of its output.
+            argv: program and arguments.
+            env: added to the graph's environment.
+            patience_s: how long it may take to end after SIGINT.
+
+        Raises:
+            MissingToolError: there is no such program.
+        """
+        log = self.folder / "out" / f"{name}.log"
+        environment = {**self.env, **(env or {})}
+        with log.open("wb") as stream:
+            try:
+                popen = subprocess.Popen(
+                    list(argv),
+                    env=environment,
+                    cwd=self.folder,
+                    stdin=subprocess.DEVNULL,
+                    stdout=stream,
+                    stderr=subprocess.STDOUT,
+                    start_new_session=True,
+                )
+            except FileNotFoundError as error:
+                raise MissingToolError(f"{argv[0]} not found: is ROS 1 installed?") from error
+            except OSError as error:
+                raise RunError(f"{argv[0]} cannot be started: {error.strerror}") from error
+        process = GraphProcess(name, popen, log, patience_s)
+        self._processes.append(process)
+        return process
+
+    def check(self) -> None:
+        """See that all processes still run.
+
+        Raises:
+            RunError: one has ended; the message has its status and what it said last.
+        """
+        for process in self._processes:
+            status = process.popen.poll()
+            if status is not None:
+                said = "; ".join(process.tail()) or "it says nothing"
+                raise RunError(f"{process.name} ended with status {status}: {said}", process.log)
+
+    def stop(self, process: GraphProcess) -> int:
+        """End one process: SIGINT, after its patience SIGTERM, then SIGKILL.
+
+        Returns:
+            Its exit status.
+        """
+        if process in self._processes:
+            self._processes.remove(process)
+        for number, patience in (
+            (signal.SIGINT, process.patience_s),
+            (signal.SIGTERM, 3.0),
+            (signal.SIGKILL, None),
+        ):
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(process.popen.pid, number)
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                return process.popen.wait(patience)
+        return process.popen.wait()
+
+    def call(self, method: str, *arguments: object) -> object:
+        """Call a method of ROS's master API, which gives code, message and value.
+
+        Raises:
+            RunError: the master does not answer, or says no.
+        """
+        proxy = xmlrpc.client.ServerProxy(self.uri)
+        try:
+            answer = getattr(proxy, method)(_CALLER, *arguments)
+        except (OSError, HTTPException, xmlrpc.client.Error) as error:
+            raise RunError(f"the ROS master at {self.uri} does not answer: {error}") from error
+        finally:
+            proxy("close")()
+        if not isinstance(answer, list) or len(answer) != 3 or answer[0] != 1:
+            raise RunError(f"the ROS master refuses {method}: {answer}")
+        return answer[2]
+
+    def _start_master(self) -> None:
+        for attempt in range(_START_TRIES):
+            port = _free_port()
+            self.uri = f"http://127.0.0.1:{port}"
+            master = self.start("rosmaster", ["rosmaster", "--core", "-p", str(port)])
+            try:
+                self._wait_for_master()
+                return
+            except RunError:
+                # Another program may have taken the port in between.
+                self.stop(master)
+                if attempt == _START_TRIES - 1:
+                    raise
+
+    def _wait_for_master(self) -> None:
+        until = time.monotonic() + _MASTER_PATIENCE_S
+        while True:
+            self.check()
+            try:
+                self.call("getPid")
+                return
+            except RunError:
+                if time.monotonic() > until:
+                    raise
+            time.sleep(0.05)
+
+    def _end(self) -> None:
+        for process in reversed(list(self._processes)):
+            self.stop(process)
+        for number, patience in ((signal.SIGTERM, 2.0), (signal.SIGKILL, 2.0)):
+            left = _processes_with_word(self._word)
+            for pid in left:
+                with contextlib.suppress(ProcessLookupError, PermissionError):
+                    os.kill(pid, number)
+            until = time.monotonic() + patience
+            while left and time.monotonic() < until:
+                time.sleep(0.05)
+                left = _processes_with_word(self._word)
+
+
+def _processes_with_word(word: str) -> list[int]:
+    """Processes, zombies left out, that have this graph's word in their environment."""
+    wanted = f"{GRAPH_WORD}={word}".encode()
+    found = []
+    for entry in Path("/proc").iterdir():
+        if not entry.name.isdigit() or int(entry.name) == os.getpid():
+            continue
+        with contextlib.suppress(OSError):
+            if wanted in (entry / "environ").read_bytes().split(b"\0"):
+                found.append(int(entry.name))
+    return found
+
+
+def _free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port: int = probe.getsockname()[1]
+        return port
+
+
+@contextlib.contextmanager
+def _terminate_raises() -> Iterator[None]:
+    """Within it SIGTERM and SIGHUP raise SystemExit, so that what was started is ended."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def leave(number: int, _frame: FrameType | None) -> None:
+        raise SystemExit(128 + number)
+
+    before = {number: signal.signal(number, leave) for number in (signal.SIGTERM, signal.SIGHUP)}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

@@ -1,0 +1,271 @@
+"""Runs one mission on a real ROS graph and records it.
+
+``run_mission`` leaves in the folder that it is given: ``mission.bag``, ``params.yaml`` (what stood
+on the parameter server), ``run.json`` (how it went) and ``ros/`` (the output of all processes).
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from pytpc import recorder
+from pytpc.atomic import write_atomic
+from pytpc.errors import RunError
+from pytpc.graph import GraphProcess, RosGraph
+from pytpc.paths import project_root
+
+BAG_FILE = "mission.bag"
+PARAMS_FILE = "params.yaml"
+RUN_FILE = "run.json"
+MARK_TOPICS = ("/mark_action", "/mark_no_action")
+DEFAULT_TOPICS = ("/rosout", "/threshold_information", *MARK_TOPICS)
+
+_POLL_S = 0.1
+_RECORDER_PATIENCE_S = 20.0
+_CLOCK_PATIENCE_S = 30.0
+_LAUNCH_PATIENCE_S = 20.0
+_DUMP_PATIENCE_S = 20.0
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """How far a mission is: seconds of the graph's clock and of the wall, reports and marks."""
+
+    sim_s: float
+    wall_s: float
+    reports: int
+    marks: int
+
+
+@dataclass(frozen=True, slots=True)
+class MissionRun:
+    """A mission that was recorded.
+
+    ``ended`` is ``done`` or ``timeout``. ``sim_s`` is how long it took on the graph's clock,
+    ``wall_s`` on the wall's. ``lost`` has for each node the messages on /rosout that
+    did not reach the bag, ``missed_before`` those from before the recorder was connected to it.
+    """
+
+    bag: Path
+    params: Path
+    ended: str
+    sim_s: float
+    wall_s: float
+    reports: int
+    messages: dict[str, int]
+    lost: dict[str, int]
+    missed_before: dict[str, int]
+
+    @property
+    def marks(self) -> int:
+        """Marks on the two topics without a namespace."""
+        return sum(self.messages.get(topic, 0) for topic in MARK_TOPICS)
+
+
+def launch_command(launch: Path, args: Mapping[str, str]) -> list[str]:
+    """The roslaunch command for a launch file and its arguments.
+
+    Raises:
+        RunError: the launch file is not there.
+    """
+    if not launch.is_file():
+        raise RunError("no such launch file", launch)
+    given = [f"{name}:={value}" for name, value in sorted(args.items())]
+    timeouts = ["--sigint-timeout=4", "--sigterm-timeout=2"]
+    return ["roslaunch", *timeouts, str(launch.absolute()), *given]
+
+
+def run_mission(
+    install_env: Mapping[str, str],
+    launch: Path,
+    args: Mapping[str, str],
+    out_dir: Path,
+    timeout_s: float,
+    *,
+    until: str | None = "/mission/done",
+    topics: Sequence[str] = (),
+    settle_s: float = 6.0,
+    use_sim_time: bool = True,
+    on_progress: Callable[[Progress], None] | None = None,
+) -> MissionRun:
+    """Run a launch file on a graph of its own and record it.
+
+    Args:
+        install_env: environment of the installed workspace (``pytpc.build.workspace_env``).
+        launch: the launch file.
+        args: its arguments.
+        out_dir: where the results are put; results of an earlier run there are replaced.
+        timeout_s: wall time after which the mission is ended.
+        until: a topic of type std_msgs/Bool; when it says true the mission has ended. None: the
+            mission runs for ``timeout_s``.
+        topics: recorded besides ``DEFAULT_TOPICS`` and ``until``.
+        settle_s: seconds of the graph's clock for which recording goes on after the end, because
+            people press keys late.
+        use_sim_time: the graph's clock is the topic /clock.
+        on_progress: called about ten times a second.
+
+    Raises:
+        RunError: the launch file is not there or not right, a node died, the recorder failed, or
+            there was no /clock for 30 s; one line, with the output's file.
+        MissingToolError: roslaunch or the master is not installed.
+    """
+    command = launch_command(launch, args)
+    out_dir.mkdir(parents=True, exist_ok=True)
+    for name in (BAG_FILE, PARAMS_FILE, RUN_FILE):
+        (out_dir / name).unlink(missing_ok=True)
+    began = time.monotonic()
+    with RosGraph(install_env, out_dir / "ros", use_sim_time=use_sim_time) as graph:
+        recording = _start_recorder(graph, out_dir, (*DEFAULT_TOPICS, *topics), until)
+        started = graph.start("roslaunch", command, patience_s=_LAUNCH_PATIENCE_S)
+        watch = _Watch(graph, out_dir, began, on_progress)
+        if use_sim_time:
+            watch.wait_for_clock()
+        ended = watch.wait_for_end(timeout_s, settle_s if use_sim_time else 0.0)
+        _dump_params(graph, out_dir / PARAMS_FILE)
+        graph.stop(started)
+        graph.stop(recording)
+    status = read_status(_status_file(out_dir))
+    if status is None or not status.closed:
+        said = "; ".join(recording.tail()) or "it says nothing"
+        raise RunError(f"the recorder did not finish: {said}", recording.log)
+    run = MissionRun(
+        bag=out_dir / BAG_FILE,
+        params=out_dir / PARAMS_FILE,
+        ended=ended,
+        sim_s=(status.now_ns - status.began_ns) / 1e9,
+        wall_s=time.monotonic() - began,
+        reports=status.reports,
+        messages=status.messages,
+        lost=status.lost,
+        missed_before=status.missed_before,
+    )
+    save_run(run, launch, args, out_dir / RUN_FILE)
+    return run
+
+
+def save_run(run: MissionRun, launch: Path, args: Mapping[str, str], path: Path) -> None:
+    """Write run.json: the fields of ``run``, the launch file and its arguments.
+
+    Raises:
+        TpcError: the file cannot be written.
+    """
+    document = {
+        "schema": 1,
+        "launch": str(launch.absolute()),
+        "args": dict(sorted(args.items())),
+        **asdict(run),
+        "bag": run.bag.name,
+        "params": run.params.name,
+    }
+    write_atomic(path, json.dumps(document, indent=1).encode() + b"\n")
+
+
+def read_status(path: Path) -> recorder.Status | None:
+    """What the recorder last said of itself; None where it has not said anything."""
+    try:
+        return recorder.Status(**json.loads(path.read_text(encoding="utf-8")))
+    except FileNotFoundError:
+        return None
+
+
+def _status_file(out_dir: Path) -> Path:
+    return out_dir / "ros" / "recorder.json"
+
+
+def _start_recorder(
+    graph: RosGraph, out_dir: Path, topics: Sequence[str], until: str | None
+) -> GraphProcess:
+    status = _status_file(out_dir).absolute()
+    status.unlink(missing_ok=True)
+    bag = (out_dir / BAG_FILE).absolute()
+    command = [sys.executable, recorder.__file__, "--bag", str(bag), "--status", str(status)]
+    if until is not None:
+        command += ["--until", until]
+    path = [str(project_root()), graph.env.get("PYTHONPATH", "")]
+    process = graph.start(
+        "recorder",
+        [*command, *dict.fromkeys(topics)],
+        env={"PYTHONPATH": ":".join(part for part in path if part)},
+        patience_s=_RECORDER_PATIENCE_S,
+    )
+    # The first messages of a node are lost unless the recorder waits for it already.
+    limit = time.monotonic() + _RECORDER_PATIENCE_S
+    while (said := read_status(status)) is None or not said.ready:
+        graph.check()
+        if time.monotonic() > limit:
+            raise RunError(f"the recorder is not ready after {_RECORDER_PATIENCE_S:.0f} s")
+        time.sleep(_POLL_S)
+    return process
+
+
+class _Watch:
+    """Looks at a running mission from the side."""
+
+    def __init__(
+        self,
+        graph: RosGraph,
+        out_dir: Path,
+        began: float,
+        on_progress: Callable[[Progress], None] | None,
+    ) -> None:
+        self._graph = graph
+        self._status_path = _status_file(out_dir)
+        self._began = began
+        self._on_progress = on_progress
+
+    def look(self) -> recorder.Status:
+        self._graph.check()
+        status = read_status(self._status_path) or recorder.Status()
+        if self._on_progress is not None:
+            marks = sum(status.messages.get(topic, 0) for topic in MARK_TOPICS)
+            wall_s = time.monotonic() - self._began
+            sim_s = (status.now_ns - status.began_ns) / 1e9
+            self._on_progress(Progress(sim_s, wall_s, status.reports, marks))
+        return status
+
+    def wait_for_clock(self) -> None:
+        limit = time.monotonic() + _CLOCK_PATIENCE_S
+        while self.look().now_ns == 0:
+            if time.monotonic() > limit:
+                raise RunError(
+                    f"no /clock for {_CLOCK_PATIENCE_S:.0f} s: does the launch file start a"
+                    " simulator?"
+                )
+            time.sleep(_POLL_S)
+
+    def wait_for_end(self, timeout_s: float, settle_s: float) -> str:
+        limit = time.monotonic() + timeout_s
+        while not (status := self.look()).done:
+            if time.monotonic() > limit:
+                return "timeout"
+            time.sleep(_POLL_S)
+        enough = status.now_ns + round(settle_s * 1e9)
+        while self.look().now_ns < enough and time.monotonic() < limit:
+            time.sleep(_POLL_S)
+        return "done"
+
+
+def _dump_params(graph: RosGraph, path: Path) -> None:
+    beside = path.absolute().with_name(f".{path.name}.new")
+    try:
+        subprocess.run(
+            ["rosparam", "dump", str(beside)],
+            env=graph.env,
+            check=True,
+            capture_output=True,
+            timeout=_DUMP_PATIENCE_S,
+        )
+    except FileNotFoundError as error:
+        raise RunError("rosparam not found; mend it with: apt-get install ros-core") from error
+    except subprocess.TimeoutExpired as error:
+        raise RunError("rosparam dump does not end") from error
+    except subprocess.CalledProcessError as error:
+        said = error.stderr.decode("utf-8", "replace").strip().splitlines()[-1:]
+        raise RunError(f"rosparam dump failed: {' '.join(said)}") from error
+    beside.replace(path)

@@ -1,0 +1,156 @@
+"""Where things are: the installed C++ half of TPC, and the tools that a build needs."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+
+from pytpc.errors import MissingToolError
+
+SYSTEM_PATH = "/usr/bin:/bin"
+
+# What TPC writes in a workspace is below this folder, which colcon and catkin skip.
+OWN_FOLDER = ".tpc"
+MERGED_FILE = "static.json"
+
+# Debian's package for each program, so that a message can say what to install.
+BUILD_TOOLS: Mapping[str, str] = {
+    "clang-19": "clang-19",
+    "clang++-19": "clang-19",
+    "ld.lld-19": "lld-19",
+    "llvm-ar-19": "llvm-19",
+    "llvm-ranlib-19": "llvm-19",
+    "cmake": "cmake",
+    "make": "make",
+    "colcon": "colcon python3-colcon-ros python3-colcon-cmake python3-colcon-bash",
+}
+ROS_PACKAGES = "ros-core-dev libroscpp-dev"
+ROS_PREFIXES = [*sorted(Path("/opt/ros").glob("*")), Path("/usr")]
+_ROS_PLACES = {
+    "catkin": "share/catkin/cmake/catkinConfig.cmake",
+    "roscpp": "include/ros/ros.h",
+}
+
+
+def project_root() -> Path:
+    """The folder of the project: the one that holds the package ``pytpc``."""
+    return Path(__file__).resolve().parent.parent
+
+
+def prefix() -> Path:
+    """Where the C++ half is installed: ``$TPC_PREFIX``, else ``build/install`` of the project.
+
+    The folder need not exist.
+    """
+    chosen = os.environ.get("TPC_PREFIX")
+    return Path(chosen).absolute() if chosen else project_root() / "build" / "install"
+
+
+def cmake_file() -> Path:
+    """The installed tpc.cmake.
+
+    Raises:
+        MissingToolError: it is not there; the message says how to install it.
+    """
+    return _installed("share/tpc/cmake/tpc.cmake")
+
+
+def plugin() -> Path:
+    """The installed LLVM plugin.
+
+    Raises:
+        MissingToolError: it is not there; the message says how to install it.
+    """
+    return _installed("lib/tpc/TpcPasses.so")
+
+
+def log_library() -> Path:
+    """The installed library that instrumented nodes report through.
+
+    Raises:
+        MissingToolError: it is not there; the message says how to install it.
+    """
+    return _installed("lib/libtpc_log.so")
+
+
+def search_path() -> str:
+    """Folders in which programs are looked for: the system's before those of the caller.
+
+    A Python from somewhere else that comes first on PATH breaks catkin's generators.
+    """
+    caller = [
+        folder
+        for folder in os.environ.get("PATH", "").split(os.pathsep)
+        if folder and folder not in SYSTEM_PATH.split(os.pathsep)
+    ]
+    return os.pathsep.join([SYSTEM_PATH, *caller])
+
+
+def require_tools(names: Iterable[str] = BUILD_TOOLS) -> dict[str, Path]:
+    """Find programs.
+
+    Args:
+        names: keys of ``BUILD_TOOLS``.
+
+    Returns:
+        The path of each program by its name.
+
+    Raises:
+        MissingToolError: one line with all that are absent and the command that installs them.
+    """
+    found: dict[str, Path] = {}
+    absent: list[str] = []
+    for name in names:
+        path = shutil.which(name, path=search_path())
+        if path is None:
+            absent.append(name)
+        else:
+            found[name] = Path(path)
+    if absent:
+        packages = " ".join(dict.fromkeys(BUILD_TOOLS[name] for name in absent))
+        raise MissingToolError(
+            f"{_listed(absent)} not found on this machine; mend it with: apt-get install {packages}"
+        )
+    return found
+
+
+def require_ros() -> None:
+    """See that ROS 1 (catkin and roscpp) is installed.
+
+    Looked for in ``$CMAKE_PREFIX_PATH``, in ``/opt/ros/*`` and in ``/usr``; the two need not have
+    the same prefix.
+
+    Raises:
+        MissingToolError: it is not; the message has the command that installs it.
+    """
+    listed = os.environ.get("CMAKE_PREFIX_PATH", "").split(os.pathsep)
+    prefixes = [Path(folder) for folder in listed if folder]
+    prefixes += ROS_PREFIXES
+    absent = [
+        name
+        for name, place in _ROS_PLACES.items()
+        if not any((candidate / place).is_file() for candidate in prefixes)
+    ]
+    if absent:
+        raise MissingToolError(
+            f"{_listed(absent)} of ROS 1 not found on this machine; mend it with:"
+            f" apt-get install {ROS_PACKAGES}"
+        )
+
+
+def _installed(place: str) -> Path:
+    path = prefix() / place
+    if path.is_file():
+        return path
+    command = f"run `make setup` in {project_root()}"
+    if os.environ.get("TPC_PREFIX"):
+        raise MissingToolError(
+            f"missing, and TPC_PREFIX points here; unset TPC_PREFIX, or {command}", path
+        )
+    raise MissingToolError(f"not built yet; {command}", path)
+
+
+def _listed(names: list[str]) -> str:
+    return names[0] if len(names) == 1 else ", ".join(names[:-1]) + " and " + names[-1]

@@ -1,0 +1,370 @@
+"""The figures of the report page, as SVG that takes its colours and font from the page.
+
+matplotlib writes literal colours into the SVG. Each of ours is replaced by a CSS variable of the
+page, so that one figure serves a light page, a dark one and paper. Nothing is told by colour alone:
+true and false differ in height and filling, the threshold is dashed, the two types of marks differ
+in line and label.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from html import escape
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+import numpy.typing as npt
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_svg import FigureCanvasSVG
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+from pytpc.events import Floats
+from pytpc.marks import MarkType
+from pytpc.report.series import BINS, BOTH, FALSE, TRUE, Evidence, runs
+
+# Stand-ins, none of which matplotlib would write of itself.
+_COLOURS = {
+    "#010101": "ink",
+    "#020202": "faint",
+    "#030303": "grid",
+    "#040404": "value",
+    "#050505": "limit",
+    "#060606": "culprit",
+    "#070707": "paper",
+    "#080808": "span",
+}
+_OF = {name: colour for colour, name in _COLOURS.items()}
+_STYLE: dict[Any, Any] = {
+    "svg.fonttype": "none",
+    "svg.hashsalt": "tpc",
+    "text.parse_math": False,
+    "axes.unicode_minus": False,
+    "figure.facecolor": "none",
+    "axes.facecolor": "none",
+    "axes.edgecolor": _OF["faint"],
+    "axes.labelcolor": _OF["ink"],
+    "axes.linewidth": 0.8,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.formatter.useoffset": False,
+    "text.color": _OF["ink"],
+    "xtick.color": _OF["faint"],
+    "ytick.color": _OF["faint"],
+    "xtick.labelcolor": _OF["ink"],
+    "ytick.labelcolor": _OF["ink"],
+    "hatch.linewidth": 0.6,
+    "lines.solid_capstyle": "butt",
+}
+_DOTS = 70
+_HEADROOM = 0.16
+_LARGEST = 1e150
+_OUTLIER = 50.0
+_HEIGHTS = {TRUE: 0.62, BOTH: 0.34, FALSE: 0.08}
+_LINES = {"I": "-", "II": (0, (5, 2)), None: (0, (1, 1.5))}
+
+
+@dataclass(frozen=True, slots=True)
+class EvidenceStyle:
+    """What an evidence plot shows besides the evaluations; times in seconds."""
+
+    mark: float
+    mark_type: MarkType | None
+    window: float | None
+    suggested: float | None
+    value_name: str
+    limit_name: str
+    culprit: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Lane:
+    """One parameter of the timeline: int8[BINS] states of ``pytpc.report.series``."""
+
+    label: str
+    states: npt.NDArray[np.int8]
+    culprit: bool
+
+
+def evidence_svg(data: Evidence, style: EvidenceStyle, ident: str, label: str) -> str:
+    """Compared value and threshold over time, the mark, and the result below.
+
+    Args:
+        data: the evaluations.
+        style: the rest.
+        ident: prefix of all ids, unlike that of any other figure of the page.
+        label: what the figure shows, for those who do not see it.
+
+    Returns:
+        An ``<svg>`` element.
+    """
+    with _style(10.5):
+        figure = Figure(figsize=(6.4, 2.9))
+        upper, lower = figure.subplots(
+            2, 1, sharex=True, gridspec_kw={"height_ratios": [5, 1], "hspace": 0.12}
+        )
+        figure.subplots_adjust(left=0.115, right=0.985, top=0.9, bottom=0.165)
+        _values(upper, data, style)
+        _outcomes(lower, data)
+        for axes in (upper, lower):
+            axes.axvline(
+                style.mark, color=_OF["ink"], linewidth=1.3, linestyle=_LINES[style.mark_type]
+            )
+            if style.window is not None:
+                axes.axvspan(
+                    max(style.window, data.begin), style.mark, color=_OF["span"], linewidth=0
+                )
+        _name_mark(upper, data, style)
+        lower.set_xlabel("seconds since the recording began")
+        margin = 0.01 * max(data.end - data.begin, 1e-3)
+        lower.set_xlim(data.begin - margin, data.end + margin)
+        return _svg(figure, ident, label)
+
+
+def timeline_svg(
+    lanes: Sequence[Lane],
+    marks: Sequence[tuple[float, MarkType | None]],
+    seconds: float,
+    ident: str,
+    label: str,
+) -> str:
+    """Every suspect's results over the whole mission, and the marks, numbered from 1.
+
+    Args:
+        lanes: from top to bottom.
+        marks: time in seconds since the recording began, and type, in the order of time.
+        seconds: length of the recording.
+        ident: prefix of all ids, unlike that of any other figure of the page.
+        label: what the figure shows, for those who do not see it.
+
+    Returns:
+        An ``<svg>`` element.
+    """
+    seconds = max(seconds, 1e-3)
+    with _style(8.8):
+        figure = Figure(figsize=(10.0, 0.75 + 0.25 * max(1, len(lanes))))
+        height = figure.get_figheight()
+        axes = figure.subplots()
+        figure.subplots_adjust(left=0.22, right=0.985, top=1 - 0.22 / height, bottom=0.42 / height)
+        for row, one in enumerate(lanes):
+            _lane(axes, row, one, seconds)
+        for number, (time, kind) in enumerate(marks, start=1):
+            axes.axvline(time, color=_OF["ink"], linewidth=1.1, linestyle=_LINES[kind])
+            if number in _labelled([time for time, _ in marks], seconds):
+                axes.annotate(
+                    f"{number}",
+                    (time, 1.0),
+                    xycoords=("data", "axes fraction"),
+                    xytext=(0, 2),
+                    textcoords="offset points",
+                    ha="center",
+                    annotation_clip=False,
+                )
+        axes.set_ylim(max(1, len(lanes)) - 0.4, -0.6)
+        axes.set_yticks(range(len(lanes)), [_short(one.label, 30) for one in lanes])
+        for tick, one in zip(axes.get_yticklabels(), lanes, strict=True):
+            if one.culprit:
+                tick.set_color(_OF["culprit"])
+                tick.set_fontweight("bold")
+        axes.tick_params(axis="y", length=0)
+        axes.set_xlim(-0.005 * seconds, 1.005 * seconds)
+        axes.set_xlabel("seconds since the recording began")
+        return _svg(figure, ident, label)
+
+
+def _values(axes: Axes, data: Evidence, style: EvidenceStyle) -> None:
+    colour = _OF["culprit" if style.culprit else "value"]
+    finite, limit = _drawable(data.cmp), _drawable(data.thresh)
+    axes.plot(data.time, finite, color=colour, linewidth=1.4, label=_short(style.value_name, 20))
+    # A parameter keeps its value while nothing compares with it.
+    known = np.flatnonzero(np.isfinite(data.time))
+    around = [*known[:1], *known, *known[-1:]]
+    axes.step(
+        [data.begin, *data.time[known], data.end] if known.size else [],
+        limit[around],
+        where="post",
+        color=_OF["limit"],
+        linewidth=1.6,
+        linestyle=(0, (6, 2.5)),
+        label=_short(style.limit_name, 27),
+    )
+    if data.evaluations <= _DOTS:
+        _dots(axes, data, finite, colour)
+    suggested = np.nan if style.suggested is None else style.suggested
+    if np.isfinite(suggested):
+        axes.axhline(
+            suggested,
+            color=_OF["limit"],
+            linewidth=1.3,
+            linestyle=(0, (1, 1.6)),
+            label="suggested",
+        )
+    low, high, beyond = _span(finite, np.append(limit, suggested))
+    margin = 0.08 * (high - low)
+    axes.set_ylim(low - margin, high + margin + _HEADROOM * (high - low))
+    if beyond:
+        axes.annotate(
+            "some values are beyond this plot",
+            (0.01, 0.03),
+            xycoords="axes fraction",
+            color=_OF["faint"],
+        )
+    axes.grid(axis="y", color=_OF["grid"], linewidth=0.7)
+    axes.set_axisbelow(True)
+    axes.yaxis.set_major_locator(MaxNLocator(5))
+    axes.tick_params(axis="x", length=0, labelbottom=False)
+    axes.legend(
+        loc="lower left",
+        bbox_to_anchor=(0, 1.0),
+        ncols=3,
+        frameon=False,
+        borderaxespad=0.1,
+        borderpad=0.2,
+        handlelength=2.2,
+        handletextpad=0.5,
+        columnspacing=1.2,
+        fontsize=9.5,
+    )
+
+
+def _dots(axes: Axes, data: Evidence, values: Floats, colour: str) -> None:
+    """Single evaluations: filled where the result was true, hollow where it was false."""
+    after = np.searchsorted(data.steps, data.time, side="right") - 1
+    drawn = np.isfinite(data.time)
+    true = drawn & data.outcome[np.clip(after, 0, None)]
+    for chosen, face in ((true, colour), (drawn & ~true, _OF["paper"])):
+        axes.plot(
+            data.time[chosen],
+            values[chosen],
+            linestyle="none",
+            marker="o",
+            markersize=4,
+            markeredgecolor=colour,
+            markerfacecolor=face,
+        )
+
+
+def _drawable(values: Floats) -> Floats:
+    """NaN where there is no point to draw; matplotlib cannot subtract the largest doubles."""
+    return np.clip(np.where(np.isfinite(values), values, np.nan), -_LARGEST, _LARGEST)
+
+
+def _span(values: Floats, limits: Floats) -> tuple[float, float, bool]:
+    """Lowest and highest of the axis, and whether values lie beyond them.
+
+    A single outlier (a distance that starts as the largest double) must not flatten all others:
+    where the middle 96 % and the threshold fill less than a fiftieth, they are shown.
+    """
+    everything = np.concatenate([values, limits])
+    everything = everything[np.isfinite(everything)]
+    if not everything.size:
+        return 0.0, 1.0, False
+    low, high = float(everything.min()), float(everything.max())
+    known = values[np.isfinite(values)]
+    if known.size:
+        core = np.append(np.quantile(known, [0.02, 0.98]), limits[np.isfinite(limits)])
+        inner = float(core.min()), float(core.max())
+        if inner[0] < inner[1] and (high - low) > _OUTLIER * (inner[1] - inner[0]):
+            return *inner, True
+    if high - low <= 1e-12 * max(abs(low), abs(high)):
+        around = 0.5 * abs(low) or 0.5
+        return low - around, high + around, False
+    return low, high, False
+
+
+def _name_mark(axes: Axes, data: Evidence, style: EvidenceStyle) -> None:
+    """Beside the line of the mark, on the side that has room."""
+    right = style.mark - data.begin < 0.85 * (data.end - data.begin)
+    axes.annotate(
+        f"mark, type {style.mark_type}" if style.mark_type else "mark",
+        (style.mark, 1.0),
+        xycoords=("data", "axes fraction"),
+        xytext=(4 if right else -4, -3),
+        textcoords="offset points",
+        ha="left" if right else "right",
+        va="top",
+        bbox={"facecolor": _OF["paper"], "edgecolor": "none", "pad": 1.0, "alpha": 0.8},
+    )
+
+
+def _outcomes(axes: Axes, data: Evidence) -> None:
+    if data.steps.size:
+        time = np.append(data.steps, data.ends)
+        level = np.append(data.outcome, data.outcome[-1]).astype(np.float64)
+        axes.fill_between(time, 0, level, step="post", color=_OF["value"], alpha=0.3, linewidth=0)
+        axes.step(time, level, where="post", color=_OF["value"], linewidth=1.2)
+        # What came out last still stands, but was not evaluated again.
+        axes.plot(
+            [data.ends, data.end], level[-2:], color=_OF["value"], linewidth=1.2, linestyle=":"
+        )
+    axes.set_ylim(-0.25, 1.3)
+    axes.set_yticks([0, 1], ["false", "true"])
+    axes.tick_params(axis="y", length=0)
+
+
+def _lane(axes: Axes, row: int, one: Lane, seconds: float) -> None:
+    width = seconds / BINS
+    colour = _OF["culprit" if one.culprit else "value"]
+    for state, first, length in runs(one.states):
+        height = _HEIGHTS[state]
+        axes.broken_barh(
+            [(first * width, length * width)],
+            (row - height / 2, height),
+            facecolors=colour,
+            linewidth=0,
+            hatch="////" if state == BOTH else None,
+            edgecolor=_OF["paper"],
+        )
+
+
+def _labelled(times: Sequence[float], seconds: float) -> set[int]:
+    """Numbers of the marks that have room for their number: those far enough from the last one."""
+    chosen: set[int] = set()
+    last = -seconds
+    for number, time in enumerate(times, start=1):
+        if time - last >= 0.018 * seconds:
+            chosen.add(number)
+            last = time
+    return chosen
+
+
+def _short(text: str, most: int) -> str:
+    return text if len(text) <= most else f"{text[: most - 1]}…"
+
+
+@contextmanager
+def _style(size: float) -> Iterator[None]:
+    """Our settings, with text of ``size`` points: the wider figure is shown less enlarged."""
+    with mpl.rc_context({**_STYLE, "font.size": size}), warnings.catch_warnings():
+        # The page's own font draws the text, so that it does not matter what matplotlib's lacks.
+        warnings.filterwarnings("ignore", message="Glyph")
+        yield
+
+
+def _svg(figure: Figure, ident: str, label: str) -> str:
+    """The figure as an element of a page: own ids, the page's colours and font, no fixed size."""
+    stream = io.StringIO()
+    FigureCanvasSVG(figure)
+    figure.savefig(stream, format="svg", metadata={"Date": None})
+    text = stream.getvalue()
+    text = text[text.index("<svg") :].rstrip()
+    text = re.sub(r"<(metadata|style)\b.*?</\1>\s*", "", text, flags=re.DOTALL)
+    text = re.sub(r'\bid="', f'id="{ident}-', text)
+    text = re.sub(r'(href="#|url\(#)', rf"\g<1>{ident}-", text)
+    for colour, name in _COLOURS.items():
+        text = text.replace(colour, f"var(--{name})")
+    text = re.sub(r"font: ((?:bold |[0-9]+ )?[0-9.]+px) [^;\"]*", r"font: \1 var(--sans)", text)
+    text = re.sub(r"\n\s*", "\n", text)
+    head, _, body = text.partition(">")
+    view = re.search(r'viewBox="([^"]*)"', head)
+    assert view is not None, "matplotlib writes a viewBox"
+    return (
+        f'<svg role="img" aria-label="{escape(label)}" viewBox="{view[1]}"'
+        f' xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink">{body}'
+    )

@@ -1,0 +1,139 @@
+"""What the plots show, taken from the events: thinned to what a plot can hold, extremes kept."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from pytpc.events import Bools, Events, Floats, Int64s
+
+POINTS = 1200
+"""The most points of a line; a plot is about 600 pixels wide."""
+
+BINS = 600
+"""The number of columns of a lane of the timeline."""
+
+NOTHING, FALSE, TRUE, BOTH = range(4)
+"""What was evaluated in a column of a lane."""
+
+_AROUND_S = (20.0, 6.0)
+_FLOP_MARGIN_S = 4.0
+_GAP_S = 2.0
+_GAP_FACTOR = 10.0
+_HOLD_PERIODS = 3.0
+
+
+@dataclass(frozen=True, slots=True)
+class Evidence:
+    """The evaluations of one TPC around a mark; times are seconds since the recording began.
+
+    ``time``, ``cmp`` and ``thresh`` are float64[n], n at most ``POINTS`` and the gaps: where the
+    TPC was not evaluated for a while stands a NaN. ``steps`` float64[k] and ``outcome`` bool[k]
+    are the times at which the result began to be what it is, ``evaluations`` the number of
+    evaluations that they stand for, and ``ends`` when those end.
+    """
+
+    time: Floats
+    cmp: Floats
+    thresh: Floats
+    steps: Floats
+    outcome: Bools
+    ends: float
+    flops: Floats
+    evaluations: int
+    begin: float
+    end: float
+
+
+def evidence(events: Events, key: str, mark_ns: int, start_ns: int, end_ns: int) -> Evidence:
+    """The evaluations from 20 s before a mark, or from the last flop if that is earlier, to 6 s
+    after it, within the recording."""
+    rows = events.by_key.rows(events.keys.index(key))
+    times = events.time_ns[rows]
+    begin = mark_ns - round(_AROUND_S[0] * 1e9)
+    flops = times[events.flop[rows]]
+    before = flops[flops <= mark_ns]
+    if before.size:
+        begin = min(begin, int(before[-1]) - round(_FLOP_MARGIN_S * 1e9))
+    begin = max(begin, min(start_ns, mark_ns))
+    end = max(min(mark_ns + round(_AROUND_S[1] * 1e9), end_ns), mark_ns)
+    inside = rows[(times >= begin) & (times <= end)]
+    seconds = (events.time_ns[inside] - start_ns) / 1e9
+    kept = thin(seconds, events.cmp[inside], POINTS)
+    lines = with_gaps(seconds[kept], events.cmp[inside][kept], events.thresh[inside][kept])
+    result = events.result[inside]
+    change = np.flatnonzero(np.concatenate([[True], result[1:] != result[:-1]])[: result.size])
+    kept_changes = change[thin(seconds[change], result[change].astype(np.float64), POINTS)]
+    shown = flops[(flops >= begin) & (flops <= end)]
+    return Evidence(
+        time=lines[0],
+        cmp=lines[1],
+        thresh=lines[2],
+        steps=seconds[kept_changes],
+        outcome=result[kept_changes],
+        ends=float(seconds[-1]) if seconds.size else 0.0,
+        flops=(shown - start_ns) / 1e9,
+        evaluations=int(inside.size),
+        begin=(begin - start_ns) / 1e9,
+        end=(end - start_ns) / 1e9,
+    )
+
+
+def thin(time: Floats, values: Floats, most: int) -> Int64s:
+    """Which of n points to draw: all where n <= ``most``, else the first, last, lowest and highest
+    of each of ``most``/4 equal spans of time; ascending row numbers, at most ``most``."""
+    n = time.size
+    if n <= most:
+        return np.arange(n, dtype=np.int64)
+    spans = max(1, most // 4)
+    width = float(time[-1] - time[0]) or 1.0
+    span = np.minimum(((time - time[0]) / width * spans).astype(np.int64), spans - 1)
+    first = np.flatnonzero(np.concatenate([[True], span[1:] != span[:-1]]))
+    last = np.append(first[1:], n) - 1
+    # NaN is neither lowest nor highest, so that it does not hide the extremes of its span.
+    low = np.lexsort((np.nan_to_num(values, nan=np.inf), span))[first]
+    high = np.lexsort((np.nan_to_num(values, nan=-np.inf), span))[last]
+    return np.unique(np.concatenate([first, last, low, high])).astype(np.int64)
+
+
+def with_gaps(time: Floats, *columns: Floats) -> list[Floats]:
+    """The columns with a NaN put in wherever the next point is long after the one before."""
+    steps = np.diff(time)
+    if not steps.size:
+        return [time, *columns]
+    gap = np.flatnonzero(steps > max(_GAP_S, _GAP_FACTOR * float(np.median(steps)))) + 1
+    return [np.insert(column, gap, np.nan) for column in (time, *columns)]
+
+
+def lane(events: Events, key: str, start_ns: int, end_ns: int) -> npt.NDArray[np.int8]:
+    """int8[BINS]: what the TPC ``key`` gave in each of equal spans of the mission.
+
+    A result holds until the next one, if that comes within 2 s and three usual periods of the TPC:
+    a slow one is not a row of dots, and a pause stays a pause.
+    """
+    states = np.zeros(BINS, dtype=np.int8)
+    rows = events.by_key.rows(events.keys.index(key))
+    times, result = events.time_ns[rows], events.result[rows]
+    place = (times - start_ns) * BINS // max(1, end_ns - start_ns)
+    place = np.clip(place, 0, BINS - 1)
+    states[place[result]] |= TRUE
+    states[place[~result]] |= FALSE
+    steps = np.diff(times)
+    if steps.size:
+        usual = min(_GAP_S * 1e9, _HOLD_PERIODS * float(np.median(steps)))
+        for row in np.flatnonzero((np.diff(place) > 1) & (steps <= usual)):
+            states[place[row] + 1 : place[row + 1]] = TRUE if result[row] else FALSE
+    return states
+
+
+def runs(states: npt.NDArray[np.int8]) -> list[tuple[int, int, int]]:
+    """Runs of equal columns as (state, first column, number of columns), without the empty ones."""
+    first = np.flatnonzero(np.concatenate([[True], states[1:] != states[:-1]]))
+    lengths = np.diff(np.append(first, states.size))
+    return [
+        (int(states[begin]), int(begin), int(length))
+        for begin, length in zip(first, lengths, strict=True)
+        if states[begin] != NOTHING
+    ]

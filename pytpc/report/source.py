@@ -1,0 +1,59 @@
+"""The source text around a comparison."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from pytpc.static_info import Comparison, StaticInfo
+
+LONGEST_LINE = 160
+"""Longer lines are cut."""
+
+_CONTEXT = 3
+_LARGEST_SOURCE = 4 << 20
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line of source text; ``here`` marks the comparison's own."""
+
+    number: int
+    text: str
+    here: bool
+
+
+def source_lines(static_info: StaticInfo, found: Comparison) -> tuple[list[Line], str]:
+    """The line of a comparison with three lines before and after it.
+
+    Returns:
+        The lines, and a note where only the line that the analysis kept can be shown: the file is
+        gone, or its line is no longer what was compiled.
+    """
+    own = [Line(found.lineno, found.source_code or "", True)]
+    path = static_info.source_path(found.key)
+    lines = _read_lines(path)
+    if lines is None:
+        return (own if found.source_code else []), "the source file is not on this machine"
+    if not 1 <= found.lineno <= len(lines) or (
+        found.source_code is not None
+        and lines[found.lineno - 1].strip() != found.source_code.strip()
+    ):
+        return (own if found.source_code else []), "the source file has changed since the build"
+    first = max(1, found.lineno - _CONTEXT)
+    shown = lines[first - 1 : found.lineno + _CONTEXT]
+    indent = min((len(s) - len(s.lstrip()) for s in shown if s.strip()), default=0)
+    return [
+        Line(number, text[indent:][:LONGEST_LINE], number == found.lineno)
+        for number, text in enumerate(shown, start=first)
+    ], ""
+
+
+def _read_lines(path: Path) -> list[str] | None:
+    try:
+        if path.stat().st_size > _LARGEST_SOURCE:
+            return None
+        text = path.read_bytes().decode("utf-8", "replace")
+    except OSError:
+        return None
+    return [line.rstrip().expandtabs(4) for line in text.split("\n")]

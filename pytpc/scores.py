@@ -1,0 +1,326 @@
+"""Scores and ranks of SPEC 7, for all TPCs at many times at once.
+
+``type1`` and ``type2`` give a table float64[marks, keys] of scores: lower is more suspicious,
+``NONE`` where there is none. ``ranks`` turns it into ranks in [0, 1], ``by_parameter`` joins the
+TPCs of a parameter, ``combined`` orders both tables where the observer gave no type.
+
+What the formulas leave open is settled thus. An evaluation at exactly m is "up to m", and the
+window [m - w, m] holds both its ends. A flop happens at the later of its two evaluations, which are
+of the same key and node. An evaluation whose cmp or thresh is NaN or infinite counts for flops, but
+neither for D and n_i nor for max_i and min_i. max_i and min_i are those up to m, so that a score
+after the mission is the score that an observer would have got during it. Where m is the time of the
+last flop, S1 is 0.
+
+The cost is O(log n) for a key at a time, whatever the length of the window.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from pytpc.events import Bools, Events, Floats, Int64s
+
+NONE = 9999.9
+"""The score of a TPC that has none."""
+
+WINDOW_S = 12.0
+"""The window of type II, in seconds."""
+
+_EQUAL = 1e-4
+_LARGE = 2.0**960
+_SCALE = 2.0**-64
+
+
+def type1(
+    events: Events,
+    marks_ns: npt.ArrayLike,
+    distance: npt.ArrayLike,
+    *,
+    alpha: float = 1.0,
+    beta: float = 1.0,
+    gamma: float = 0.0,
+) -> Floats:
+    """Type I, recent flop: (m - t_last_flop)^alpha * (1 + flops up to m)^beta * d_i^gamma.
+
+    Args:
+        events: the evaluations.
+        marks_ns: int64[marks], the times m in nanoseconds, in any order.
+        distance: float64[keys], d_i of ``events.keys``.
+        alpha: exponent of the seconds since the last flop, at least 0.
+        beta: exponent of the number of flops.
+        gamma: exponent of the distance.
+
+    Returns:
+        float64[marks, keys]; ``NONE`` where the key has not flopped up to m.
+
+    Raises:
+        ValueError: ``distance`` is not one number for each key, or ``alpha`` is negative.
+    """
+    marks, distances = _inputs(events, marks_ns, distance)
+    _not_negative(alpha=alpha)
+    scores = np.full((marks.size, len(events.keys)), NONE)
+    for code in range(len(events.keys)):
+        rows = events.by_key.rows(code)
+        flops = events.time_ns[rows[events.flop[rows]]]
+        count = np.searchsorted(flops, marks, side="right")
+        some = count > 0
+        seconds = (marks[some] - flops[count[some] - 1]) / 1e9
+        value = seconds**alpha * (1.0 + count[some]) ** beta * distances[code] ** gamma
+        scores[some, code] = _beside_none(value)
+    return scores
+
+
+def type2(
+    events: Events,
+    marks_ns: npt.ArrayLike,
+    distance: npt.ArrayLike,
+    *,
+    window_s: float = WINDOW_S,
+    alpha: float = 1.0,
+    beta: float = 1.0,
+    gamma: float = 0.0,
+    delta: float = 0.0,
+) -> Floats:
+    """Type II, about to flop: D^alpha * max(1, flops)^beta * n_i^gamma * (d_i/d_max)^delta.
+
+    D is the mean of |cmp - thresh| / (max_i - min_i), and flops and n_i (evaluations with
+    |cmp - thresh| > 1e-4) are counted, over the window [m - w, m].
+
+    Args:
+        events: the evaluations.
+        marks_ns: int64[marks], the times m in nanoseconds, in any order.
+        distance: float64[keys], d_i of ``events.keys``; d_max is the largest of them.
+        window_s: the length w of the window in seconds, at least 0.
+        alpha: exponent of D, at least 0.
+        beta: exponent of the number of flops in the window.
+        gamma: exponent of n_i, at least 0.
+        delta: exponent of the distance.
+
+    Returns:
+        float64[marks, keys]; ``NONE`` where the key has no evaluation with finite values in the
+        window, or only one value up to m (max_i = min_i).
+
+    Raises:
+        ValueError: ``distance`` is not one number for each key, or an argument is negative.
+    """
+    marks, distances = _inputs(events, marks_ns, distance)
+    _not_negative(window_s=window_s, alpha=alpha, gamma=gamma)
+    begins = marks - round(window_s * 1e9)
+    scores = np.full((marks.size, len(events.keys)), NONE)
+    nearness = distances / distances.max(initial=1.0)
+    for code in range(len(events.keys)):
+        rows = events.by_key.rows(code)
+        flops = events.time_ns[rows[events.flop[rows]]]
+        flop_count = _count(flops, begins, marks)
+        window = _Differences(events, rows).over(begins, marks)
+        some = window.usable
+        value = (
+            window.mean[some] ** alpha
+            * np.maximum(1.0, flop_count[some]) ** beta
+            * window.unequal[some] ** gamma
+            * nearness[code] ** delta
+        )
+        scores[some, code] = _beside_none(value)
+    return scores
+
+
+def ranks(
+    scores: Floats, distance: npt.ArrayLike | None = None, keys: Sequence[str] | None = None
+) -> Floats:
+    """Ranks of float64[marks, n] scores: 1 - index/n in ascending order, 0 where there is no score.
+
+    Equal scores are ordered by ``distance``, then by ``keys``, then by column; 1 is the most
+    suspicious.
+    """
+    n = scores.shape[1]
+    order = ordering(scores, distance, keys)
+    result = np.empty_like(scores)
+    np.put_along_axis(result, order, 1.0 - np.arange(n)[np.newaxis, :] / max(1, n), axis=1)
+    result[scores == NONE] = 0.0
+    return result
+
+
+def ordering(
+    scores: Floats, distance: npt.ArrayLike | None = None, keys: Sequence[str] | None = None
+) -> Int64s:
+    """int64[marks, n]: the columns by ascending score, then those without; ties as ``ranks``."""
+    n = scores.shape[1]
+    ties = _tie_order(n, distance, keys)
+    values = np.where(scores == NONE, np.inf, scores)[:, ties]
+    return ties[np.argsort(values, axis=1, kind="stable")]
+
+
+class ParameterScores(NamedTuple):
+    """Scores by parameter: ``names`` sorted; ``scores`` float64[marks, parameters]; ``best``
+    int64[marks, parameters], the column of the TPC that has that score."""
+
+    names: tuple[str, ...]
+    scores: Floats
+    best: Int64s
+
+
+def by_parameter(
+    scores: Floats,
+    parameters: Sequence[str],
+    distance: npt.ArrayLike | None = None,
+    keys: Sequence[str] | None = None,
+) -> ParameterScores:
+    """A parameter's score is the best of its TPCs'; ``parameters`` names that of each column.
+
+    Raises:
+        ValueError: ``parameters`` does not have a name for each column.
+    """
+    if len(parameters) != scores.shape[1]:
+        raise ValueError("one parameter for each column is needed")
+    names = sorted(set(parameters))
+    place = np.empty_like(scores, dtype=np.int64)
+    count = np.arange(scores.shape[1])[np.newaxis, :]
+    np.put_along_axis(place, ordering(scores, distance, keys), count, axis=1)
+    best = np.empty((scores.shape[0], len(names)), dtype=np.int64)
+    for number, name in enumerate(names):
+        columns = np.array([i for i, of in enumerate(parameters) if of == name], dtype=np.int64)
+        best[:, number] = columns[np.argmin(place[:, columns], axis=1)]
+    return ParameterScores(tuple(names), np.take_along_axis(scores, best, axis=1), best)
+
+
+def combined(
+    first: Floats,
+    second: Floats,
+    distance: npt.ArrayLike | None = None,
+    keys: Sequence[str] | None = None,
+) -> tuple[Floats, Int64s]:
+    """Ranking for marks without a type, from the ranks of both types, float64[marks, n] each.
+
+    Returns:
+        The better of the two ranks, float64[marks, n], and the columns in the order of that, most
+        suspicious first, int64[marks, n]: ties by the mean of both ranks, then as in ``ranks``.
+    """
+    better = np.maximum(first, second)
+    mean = (first + second) / 2
+    ties = _tie_order(first.shape[1], distance, keys)
+    order = np.lexsort((-mean[:, ties], -better[:, ties]), axis=-1)
+    return better, ties[order]
+
+
+class _Window(NamedTuple):
+    """What the window before each mark holds; ``mean`` is D."""
+
+    usable: Bools
+    mean: Floats
+    unequal: Floats
+
+
+class _Differences:
+    """|cmp - thresh| of one key, ready for sums over spans of time."""
+
+    def __init__(self, events: Events, rows: Int64s) -> None:
+        finite = np.isfinite(events.cmp[rows]) & np.isfinite(events.thresh[rows])
+        rows = rows[finite]
+        cmp, thresh = events.cmp[rows], events.thresh[rows]
+        self.times = events.time_ns[rows]
+        with np.errstate(over="ignore"):
+            self.unequal = np.concatenate([[0], np.cumsum(np.abs(cmp - thresh) > _EQUAL)])
+        self.ratios = [_Ratio(cmp, thresh)]
+        if np.abs([cmp, thresh]).max(initial=0.0) > _LARGE:
+            # Differences and sums of the largest doubles overflow; a power of two changes no ratio.
+            self.ratios.append(_Ratio(cmp * _SCALE, thresh * _SCALE))
+
+    def over(self, begins: Int64s, ends: Int64s) -> _Window:
+        """D and n_i over the closed spans."""
+        low = np.searchsorted(self.times, begins, side="left")
+        high = np.searchsorted(self.times, ends, side="right")
+        usable = high > low
+        usable[usable] = self.ratios[0].spread(high[usable] - 1) > 0
+        mean = np.zeros(begins.size)
+        mean[usable] = self.ratios[0].mean(low[usable], high[usable])
+        for smaller in self.ratios[1:]:
+            again = usable & ~np.isfinite(mean)
+            mean[again] = smaller.mean(low[again], high[again])
+        return _Window(usable, mean, (self.unequal[high] - self.unequal[low]).astype(np.float64))
+
+
+class _Ratio:
+    """Means of |cmp - thresh| / (max - min), max and min over all up to the last of the span."""
+
+    def __init__(self, cmp: Floats, thresh: Floats) -> None:
+        with np.errstate(over="ignore"):
+            self.sums = _RangeSums(np.abs(cmp - thresh))
+        self.highest = np.maximum.accumulate(np.maximum(cmp, thresh))
+        self.lowest = np.minimum.accumulate(np.minimum(cmp, thresh))
+
+    def spread(self, last: Int64s) -> Floats:
+        with np.errstate(over="ignore"):
+            return self.highest[last] - self.lowest[last]
+
+    def mean(self, low: Int64s, high: Int64s) -> Floats:
+        """NaN or infinite where a difference, a sum or the spread is beyond a double."""
+        with np.errstate(over="ignore", invalid="ignore"):
+            spread = self.spread(high - 1)
+            mean = self.sums.over(low, high) / (high - low) / spread
+            return np.where(np.isfinite(spread), mean, np.nan)
+
+
+class _RangeSums:
+    """Sums of any span of non-negative numbers, each from at most 2 log2(n) sums of blocks.
+
+    A difference of two prefix sums would cost the same, but loses all digits of a window of small
+    numbers after large ones. Here only non-negative numbers are added, so that the relative error
+    stays below log2(n) roundings.
+    """
+
+    def __init__(self, values: Floats) -> None:
+        self.levels = [values]
+        while self.levels[-1].size > 1:
+            below = self.levels[-1]
+            even = below[: below.size // 2 * 2]
+            self.levels.append(even[0::2] + even[1::2])
+
+    def over(self, low: Int64s, high: Int64s) -> Floats:
+        """float64[spans]: the sums over ``[low, high)``."""
+        low, high = low.copy(), high.copy()
+        total = np.zeros(low.size)
+        for level in self.levels:
+            odd = np.flatnonzero((low < high) & (low & 1 == 1))
+            total[odd] += level[low[odd]]
+            low[odd] += 1
+            odd = np.flatnonzero((low < high) & (high & 1 == 1))
+            high[odd] -= 1
+            total[odd] += level[high[odd]]
+            low >>= 1
+            high >>= 1
+        return total
+
+
+def _inputs(
+    events: Events, marks_ns: npt.ArrayLike, distance: npt.ArrayLike
+) -> tuple[Int64s, Floats]:
+    distances = np.asarray(distance, dtype=np.float64)
+    if distances.shape != (len(events.keys),):
+        raise ValueError("one distance for each key is needed")
+    return np.atleast_1d(np.asarray(marks_ns, dtype=np.int64)), distances
+
+
+def _not_negative(**arguments: float) -> None:
+    for name, value in arguments.items():
+        if not value >= 0:
+            raise ValueError(f"{name} is negative")
+
+
+def _count(times: Int64s, begins: Int64s, ends: Int64s) -> Int64s:
+    return np.searchsorted(times, ends, side="right") - np.searchsorted(times, begins, side="left")
+
+
+def _beside_none(values: Floats) -> Floats:
+    """A score that happens to be 9999.9 must not read as none."""
+    return np.where(values == NONE, np.nextafter(NONE, np.inf), values)
+
+
+def _tie_order(n: int, distance: npt.ArrayLike | None, keys: Sequence[str] | None) -> Int64s:
+    """The columns by distance, then key, then place."""
+    distances = np.zeros(n) if distance is None else np.asarray(distance, dtype=np.float64)
+    names = np.arange(n) if keys is None else np.asarray(list(keys))
+    return np.lexsort((names, distances)).astype(np.int64)

@@ -1,0 +1,95 @@
+"""Static information as JSON: bytes to a checked object and back, with the place of each fault."""
+
+from __future__ import annotations
+
+import json
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+from typing import Any, NoReturn
+
+from jsonschema import Draft202012Validator, ValidationError
+from jsonschema.exceptions import best_match
+
+from pytpc.errors import InputError
+
+SCHEMA_VERSION = 1
+_LONGEST_MESSAGE = 160
+
+
+def parse_json(path: Path) -> object:
+    """The JSON value in ``path``.
+
+    Raises:
+        InputError: the file cannot be read, is not UTF-8 or not JSON (with the line of the fault).
+    """
+    try:
+        raw = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"cannot be read: {error.strerror or error}", path) from error
+    try:
+        return json.loads(raw.decode("utf-8"), parse_constant=_refuse_constant)
+    except UnicodeDecodeError as error:
+        line = raw.count(b"\n", 0, error.start) + 1
+        raise InputError(f"not JSON: byte {error.start} is not UTF-8", path, line) from error
+    except json.JSONDecodeError as error:
+        what = "the file is empty" if not raw.strip() else f"{error.msg}, column {error.colno}"
+        raise InputError(f"not JSON: {what}", path, error.lineno) from error
+    except (RecursionError, ValueError) as error:
+        raise InputError(f"not JSON that can be read: {error}", path) from error
+
+
+def dump_json(data: object) -> bytes:
+    """``data`` as indented UTF-8 JSON with a final newline; the same data gives the same bytes."""
+    return (json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode()
+
+
+def check_unit(data: object, path: Path, pointer: str = "") -> dict[str, Any]:
+    """``data`` itself, when it is a link unit as the schema says.
+
+    Args:
+        data: a parsed JSON value.
+        path: the file it came from, for the message.
+        pointer: JSON pointer of ``data`` in that file.
+
+    Raises:
+        InputError: with the JSON pointer of what breaks the schema.
+    """
+    version = data.get("schema") if isinstance(data, dict) else SCHEMA_VERSION
+    if isinstance(version, int) and version > SCHEMA_VERSION:
+        raise InputError(
+            f"{pointer}/schema: version {version} is newer than this pytpc, which reads"
+            f" {SCHEMA_VERSION}",
+            path,
+        )
+    fault = best_match(_validator().iter_errors(data))
+    if fault is not None:
+        raise InputError(f"{pointer + _pointer(fault) or '/'}: {_shortened(fault.message)}", path)
+    if not isinstance(data, dict):
+        raise TypeError("the schema let something else than an object pass")
+    return data
+
+
+@cache
+def _validator() -> Draft202012Validator:
+    text = files("pytpc").joinpath("schema", "static_info.schema.json").read_text("utf-8")
+    schema = json.loads(text)
+    Draft202012Validator.check_schema(schema)
+    return Draft202012Validator(schema)
+
+
+def _pointer(fault: ValidationError) -> str:
+    """JSON pointer (RFC 6901) of the value that is wrong; empty for the whole document."""
+    steps = [str(step).replace("~", "~0").replace("/", "~1") for step in fault.absolute_path]
+    return "".join(f"/{step}" for step in steps)
+
+
+def _shortened(message: str) -> str:
+    """The end of a message says what is wrong and its beginning may be the whole document."""
+    if len(message) <= _LONGEST_MESSAGE:
+        return message
+    return message[:40] + " ... " + message[-(_LONGEST_MESSAGE - 45) :]
+
+
+def _refuse_constant(name: str) -> NoReturn:
+    raise ValueError(f"{name} is no JSON number")

@@ -1,0 +1,102 @@
+"""Treatments: what was done to a robot before a mission, as in the thesis's studies.
+
+A treatment is a folder with ``params.yaml``, loaded over the robot's own parameters, and
+``treatment.json``, which says what it changes and what comes of it.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal, get_args
+
+from pytpc.errors import InputError
+from pytpc.marks import MarkType
+
+TREATMENT_FILE = "treatment.json"
+OVERLAY_FILE = "params.yaml"
+
+TreatmentType = Literal["clean", "type1", "type2", "fault"]
+_MARK_TYPES: Mapping[str, MarkType] = {"type1": "I", "type2": "II"}
+_FIELDS = ("name", "type", "parameter", "node", "old", "new", "launch", "effect")
+
+
+@dataclass(frozen=True, slots=True)
+class Treatment:
+    """One treatment.
+
+    ``parameter`` is the changed one, by the name that the source reads it by, ``node`` whose it is,
+    ``old`` and ``new`` its values; all None where no parameter is changed. ``launch`` are arguments
+    for the launch file, ``overlay`` is the file with the parameters, ``effect`` a sentence.
+    """
+
+    name: str
+    type: TreatmentType
+    parameter: str | None
+    node: str | None
+    old: float | None
+    new: float | None
+    launch: dict[str, str]
+    effect: str
+    overlay: Path
+
+    @property
+    def mark_type(self) -> MarkType | None:
+        """The type of the marks that an observer who sees rightly sets; None for no error."""
+        return _MARK_TYPES.get(self.type)
+
+    @property
+    def change(self) -> str:
+        """``min_coverage_limit 0.035 -> 0.062``, or a dash."""
+        if self.parameter is None:
+            return "-"
+        return f"{self.parameter} {self.old:g} -> {self.new:g}"
+
+
+def load_treatment(folder: Path) -> Treatment:
+    """Read a treatment's folder.
+
+    Raises:
+        InputError: a file is missing, is no JSON, or a field is missing or wrong.
+    """
+    path = folder / TREATMENT_FILE
+    try:
+        document = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise InputError(f"cannot be read: {error.strerror}", path) from error
+    except UnicodeDecodeError as error:
+        raise InputError(f"not JSON: byte {error.start} is not UTF-8", path) from error
+    except json.JSONDecodeError as error:
+        raise InputError(f"not JSON: {error.msg}", path, error.lineno) from error
+    overlay = folder / OVERLAY_FILE
+    if not overlay.is_file():
+        raise InputError("no such file; every treatment has one", overlay)
+    try:
+        return _treatment(document, overlay)
+    except ValueError as error:
+        raise InputError(f"not a treatment: {error}", path) from error
+
+
+def _treatment(document: object, overlay: Path) -> Treatment:
+    if not isinstance(document, dict) or sorted(document) != sorted(_FIELDS):
+        raise ValueError(f"it has to have exactly the fields {', '.join(_FIELDS)}")
+    kind = document["type"]
+    if kind not in get_args(TreatmentType):
+        raise ValueError(f"type is {kind!r}, not one of {', '.join(get_args(TreatmentType))}")
+    texts = ("name", "effect", *(() if document["parameter"] is None else ("parameter", "node")))
+    for field in texts:
+        if not isinstance(document[field], str):
+            raise ValueError(f"{field} is not a text")
+    changed = document["parameter"] is not None
+    if changed != (kind in _MARK_TYPES):
+        raise ValueError(f"type {kind} has {'no ' if changed else 'a '}changed parameter")
+    for field in ("old", "new"):
+        number = isinstance(document[field], int | float) and not isinstance(document[field], bool)
+        if number != changed:
+            raise ValueError(f"{field} is not {'a number' if changed else 'null'}")
+    launch = document["launch"]
+    if not isinstance(launch, dict) or not all(isinstance(v, str) for v in launch.values()):
+        raise ValueError("launch is not an object of texts")
+    return Treatment(**{**document, "overlay": overlay})

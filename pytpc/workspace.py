@@ -1,0 +1,141 @@
+"""The packages of a workspace: found as colcon finds them, read with catkin_pkg."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from difflib import get_close_matches
+from pathlib import Path
+from xml.parsers import expat
+
+from pytpc.cmake_syntax import find_fault
+from pytpc.errors import InputError, MissingToolError, WorkspaceError
+
+MANIFEST = "package.xml"
+IGNORE_MARKERS = frozenset({"COLCON_IGNORE", "CATKIN_IGNORE", "AMENT_IGNORE"})
+PRODUCTS = frozenset({"build", "install", "log", "devel"})
+
+
+@dataclass(frozen=True, slots=True)
+class Package:
+    """A package: its name, its folder, and the build type of its manifest (``catkin``, ...)."""
+
+    name: str
+    path: Path
+    build_type: str
+
+    @property
+    def cmakelists(self) -> Path:
+        """The package's CMakeLists.txt; a package in Python alone has none."""
+        return self.path / "CMakeLists.txt"
+
+
+def find_packages(workspace: Path) -> list[Package]:
+    """All packages below a folder, sorted by path.
+
+    Symbolic links are followed, each folder once. Folders with a file ``COLCON_IGNORE``,
+    ``CATKIN_IGNORE`` or ``AMENT_IGNORE`` and hidden folders are skipped, and so are folders called
+    build, install, log or devel, unless such a folder is a package itself. Packages do not nest.
+
+    Raises:
+        WorkspaceError: no such folder, no package in it, or two packages with one name.
+        InputError: a package.xml that cannot be read as one, with its line where there is one.
+        MissingToolError: catkin_pkg is not installed.
+    """
+    if not workspace.is_dir():
+        raise WorkspaceError("no such folder", workspace)
+    packages = [_read_package(folder) for folder in _package_folders(workspace)]
+    if not packages:
+        raise WorkspaceError(f"no packages here: no {MANIFEST} in this folder or below", workspace)
+    by_name: dict[str, Package] = {}
+    for package in packages:
+        other = by_name.setdefault(package.name, package)
+        if other is not package:
+            raise WorkspaceError(
+                f"package {package.name} occurs twice: {other.path} and {package.path}", workspace
+            )
+    return packages
+
+
+def select_packages(packages: Sequence[Package], names: Iterable[str]) -> list[Package]:
+    """The packages with these names, in the order of ``packages``; all where no name is given.
+
+    Raises:
+        WorkspaceError: no package has one of the names; the message says which comes close.
+    """
+    wanted = set(names)
+    known = [package.name for package in packages]
+    for name in sorted(wanted.difference(known)):
+        close = get_close_matches(name, known, n=1)
+        hint = f"; did you mean {close[0]}?" if close else f"; there are: {', '.join(known)}"
+        raise WorkspaceError(f"no package {name} in this workspace{hint}")
+    return [package for package in packages if not wanted or package.name in wanted]
+
+
+def read_cmakelists(package: Package) -> bytes | None:
+    """The bytes of a package's CMakeLists.txt, or None where it has none.
+
+    Raises:
+        InputError: CMake cannot parse the file, with the line; or it cannot be read.
+    """
+    path = package.cmakelists
+    try:
+        data = path.read_bytes()
+    except FileNotFoundError:
+        if path.is_symlink():
+            raise InputError("a symbolic link that leads nowhere", path) from None
+        return None
+    except OSError as error:
+        raise InputError(f"cannot be read: {error.strerror}", path) from error
+    fault = find_fault(data)
+    if fault is not None:
+        raise InputError(f"CMake cannot parse this file: {fault.message}", path, fault.line)
+    return data
+
+
+def _package_folders(workspace: Path) -> Iterator[Path]:
+    seen: set[str] = set()
+    for folder, below, files in os.walk(workspace, followlinks=True):
+        real = os.path.realpath(folder)
+        if real in seen or not IGNORE_MARKERS.isdisjoint([*files, *below]):
+            below.clear()
+            continue
+        seen.add(real)
+        if MANIFEST in files:
+            below.clear()
+            yield Path(folder)
+            continue
+        below[:] = sorted(name for name in below if _is_searched(Path(folder, name)))
+
+
+def _is_searched(folder: Path) -> bool:
+    if folder.name.startswith("."):
+        return False
+    return folder.name not in PRODUCTS or (folder / MANIFEST).is_file()
+
+
+def _read_package(folder: Path) -> Package:
+    try:
+        from catkin_pkg.package import InvalidPackage, parse_package_string  # noqa: PLC0415
+    except ImportError as error:
+        raise MissingToolError(
+            "catkin_pkg not found; mend it with: apt-get install python3-catkin-pkg"
+        ) from error
+    path = folder / MANIFEST
+    try:
+        raw = path.read_bytes()
+        expat.ParserCreate().Parse(raw, True)
+        manifest = parse_package_string(raw, filename=str(path), warnings=[])
+        manifest.evaluate_conditions({"ROS_VERSION": "1", **os.environ})
+        return Package(manifest.name, folder, manifest.get_build_type())
+    except OSError as error:
+        raise InputError(f"cannot be read: {error.strerror}", path) from error
+    except expat.ExpatError as error:
+        what = expat.ErrorString(error.code)
+        raise InputError(
+            f"not XML: {what}, column {error.offset + 1}", path, error.lineno
+        ) from error
+    except (InvalidPackage, ValueError, AssertionError, LookupError) as error:
+        what = getattr(error, "msg", None) or str(error)
+        raise InputError(f"not a package manifest: {what}", path) from error

@@ -1,0 +1,373 @@
+"""Building: the command for colcon, what is made of its logs, and the environment of the nodes.
+
+Here colcon is a script of ours; tests/ros builds with the real one.
+"""
+
+import json
+import os
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from file_api import reply, target
+from packages import add_package, install_prefix
+from static_units import comparison, failed_unit, unit
+
+from pytpc import build
+from pytpc.build import (
+    Bases,
+    BuildError,
+    build_environment,
+    build_workspace,
+    colcon_command,
+    failed_jobs,
+    workspace_env,
+)
+from pytpc.cmake_targets import LinkTarget
+from pytpc.errors import InputError, MissingToolError, RunError, TpcError, WorkspaceError
+from pytpc.workspace import Package
+
+TOOLCHAIN = Path("/opt/tpc/share/tpc/cmake/tpc.cmake")
+BASES = Bases(Path("/ws/.tpc"))
+PACKAGES = [
+    Package("arm", Path("/ws/src/[arm]"), "catkin"),
+    Package("f", Path("/ws/f*"), "cmake"),
+]
+
+
+def values(command: list[str], option: str) -> list[str]:
+    """What follows the last ``option``, up to the next word with two dashes."""
+    start = len(command) - command[::-1].index(option)
+    end = start
+    while end < len(command) and not command[end].startswith("--"):
+        end += 1
+    return command[start:end]
+
+
+def test_the_whole_command() -> None:
+    assert colcon_command(BASES, PACKAGES, TOOLCHAIN) == [
+        "colcon",
+        "--log-base",
+        "/ws/.tpc/log",
+        "build",
+        "--cmake-args",
+        "-DCMAKE_TOOLCHAIN_FILE=/opt/tpc/share/tpc/cmake/tpc.cmake",
+        "-DCMAKE_BUILD_TYPE=RelWithDebInfo",
+        "-DPYTHON_EXECUTABLE=/usr/bin/python3",
+        "--build-base",
+        "/ws/.tpc/build",
+        "--install-base",
+        "/ws/.tpc/install",
+        "--event-handlers",
+        "console_direct+",
+        "console_cohesion-",
+        "console_stderr-",
+        "summary-",
+        "--paths",
+        "/ws/src/[arm]",
+        "/ws/f[*]",
+    ]
+
+
+def test_chosen_packages_are_built_with_what_they_need() -> None:
+    command = colcon_command(BASES, PACKAGES, TOOLCHAIN, only=["arm"], build_type="Debug")
+    assert values(command, "--packages-up-to") == ["arm"]
+    assert "-DCMAKE_BUILD_TYPE=Debug" in values(command, "--cmake-args")
+
+
+def test_the_users_cmake_arguments_add_to_ours() -> None:
+    command = colcon_command(
+        BASES,
+        PACKAGES,
+        TOOLCHAIN,
+        cmake_args=["-DFAULT=ON"],
+        colcon_args=[
+            "--merge-install",
+            "--cmake-args",
+            "-DX=1",
+            "-Wno-dev",
+            "--parallel-workers",
+            "1",
+        ],
+    )
+    assert values(command, "--cmake-args") == [
+        f"-DCMAKE_TOOLCHAIN_FILE={TOOLCHAIN}",
+        "-DCMAKE_BUILD_TYPE=RelWithDebInfo",
+        "-DPYTHON_EXECUTABLE=/usr/bin/python3",
+        "-DFAULT=ON",
+        "-DX=1",
+        "-Wno-dev",
+    ]
+    assert command.count("--cmake-args") == 1
+    assert values(command, "--parallel-workers") == ["1"]
+    assert command.index("--merge-install") > command.index("build")
+
+
+@pytest.mark.parametrize("option", ["--build-base", "--install-base=x", "--log-base", "--paths"])
+def test_the_bases_are_not_the_users_to_choose(option: str) -> None:
+    with pytest.raises(WorkspaceError, match="cannot be given: TPC sets it"):
+        colcon_command(BASES, PACKAGES, TOOLCHAIN, colcon_args=[option, "y"])
+
+
+def test_the_environment_is_free_of_the_callers_python_and_make(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv("VIRTUAL_ENV", "/venv")
+    monkeypatch.setenv("PYTHONHOME", "/venv")
+    monkeypatch.setenv("MAKEFLAGS", " -j2 --jobserver-auth=3,4")
+    monkeypatch.setenv("PATH", "/venv/bin:/usr/bin")
+    monkeypatch.setenv("CMAKE_PREFIX_PATH", "/opt/ros/noetic")
+    environment = build_environment()
+    assert environment["PATH"] == "/usr/bin:/bin:/venv/bin"
+    assert environment["CMAKE_PREFIX_PATH"] == "/opt/ros/noetic"
+    assert environment.keys().isdisjoint({"VIRTUAL_ENV", "PYTHONHOME", "MAKEFLAGS"})
+    monkeypatch.setenv("MAKEFLAGS", "-j1")
+    assert build_environment()["MAKEFLAGS"] == "-j1"
+
+
+EVENTS = r"""[0.1] (arm) JobQueued: {'identifier': 'arm', 'dependencies': OrderedDict()}
+[0.2] (arm) StdoutLine: {'line': b"[9.9] (x) JobEnded: {'identifier': 'x', 'rc': 1}\n"}
+[1.0] (arm) JobEnded: {'identifier': 'arm', 'rc': 0}
+[1.1] (leg) JobEnded: {'identifier': 'leg', 'rc': 'SIGINT'}
+[1.2] (face) JobEnded: {'identifier': 'face', 'rc': 2}
+[1.3] (-) EventReactorShutdown: {}
+"""
+
+
+def test_only_the_package_that_failed_by_itself_is_named() -> None:
+    assert failed_jobs(EVENTS) == [("face", "2")]
+    assert failed_jobs("") == []
+
+
+@pytest.fixture
+def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A workspace with the packages arm and face, and an installed C++ half to look at."""
+    install_prefix(tmp_path / "prefix")
+    monkeypatch.setenv("TPC_PREFIX", str(tmp_path / "prefix"))
+    monkeypatch.setattr(build, "require_tools", dict)
+    monkeypatch.setattr(build, "require_ros", lambda: None)
+    for name in ("arm", "face"):
+        add_package(tmp_path / "ws/src" / name, cmakelists=f"project({name})\n".encode())
+    return tmp_path / "ws"
+
+
+class FakeColcon:
+    """Stands in for colcon: runs Python lines in a process of its own, in the workspace."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.lines: list[str] = []
+        monkeypatch.setattr(build, "colcon_command", self._command)
+
+    def _command(self, bases: Bases, *_: object, **__: object) -> list[str]:
+        head = [
+            "import os, sys, time",
+            "from pathlib import Path",
+            f"base = Path({str(bases.root)!r})",
+        ]
+        return [sys.executable, "-c", "\n".join([*head, *self.lines])]
+
+    def writes(self, place: str, text: str) -> None:
+        self.lines += [
+            f"path = base / {place!r}",
+            "path.parent.mkdir(parents=True, exist_ok=True)",
+            f"path.write_text({text!r})",
+        ]
+
+    def logs(self, events: str) -> None:
+        self.writes("log/build_1/events.log", events)
+        self.lines.append("(base / 'log/latest_build').symlink_to('build_1')")
+
+
+@pytest.fixture
+def colcon(monkeypatch: pytest.MonkeyPatch) -> FakeColcon:
+    return FakeColcon(monkeypatch)
+
+
+OK_EVENTS = "[1.0] (face) JobEnded: {'identifier': 'face', 'rc': 0}\n"
+
+
+def test_a_build_gives_units_and_what_was_missed(workspace: Path, colcon: FakeColcon) -> None:
+    face = workspace / ".tpc/build/face"
+    reply(
+        face,
+        [target("detector", "EXECUTABLE"), target("thin", "EXECUTABLE"), target("t", "EXECUTABLE")],
+    )
+    (face / "devel").mkdir()
+    (face / "devel/detector").touch()
+    (face / "devel/thin").touch()
+    stale = face / "tpc/renamed.json"
+    stale.parent.mkdir()
+    stale.write_text("this target is no more, so its file is not read", encoding="utf-8")
+    removed = workspace / ".tpc/build/gone/tpc/gone.json"
+    removed.parent.mkdir(parents=True)
+    removed.write_text("nor is that of a package that is no more", encoding="utf-8")
+    colcon.lines.append("print('Starting >>> face'); print('Finished <<< face [1s]')")
+    colcon.writes("build/face/tpc/detector.json", json.dumps(unit()))
+    colcon.writes("build/arm/tpc/broken.json", json.dumps(failed_unit(package="arm")))
+    colcon.logs(OK_EVENTS)
+    said: list[str] = []
+    result = build_workspace(workspace, on_output=said.append)
+    assert said == ["Starting >>> face", "Finished <<< face [1s]"]
+    assert [found.link_unit for found in result.units] == ["broken", "detector"]
+    assert result.missing == (LinkTarget("thin", "face", built=True),)
+    assert [package.name for package in result.packages] == ["arm", "face"]
+    assert not stale.exists()
+    assert result.bases.install == workspace / ".tpc/install"
+    saved = json.loads(result.bases.static_info.read_text(encoding="utf-8"))
+    assert [found["link_unit"] for found in saved["units"]] == ["broken", "detector"]
+    assert (workspace / ".tpc/.gitignore").read_text(encoding="utf-8") == "*\n"
+    assert (workspace / ".tpc/build/arm/.cmake/api/v1/query/codemodel-v2").is_file()
+
+
+def test_the_sources_are_not_touched(workspace: Path, colcon: FakeColcon, tmp_path: Path) -> None:
+    def sources() -> dict[Path, tuple[bytes, int]]:
+        files = (path for path in (workspace / "src").rglob("*") if path.is_file())
+        return {path: (path.read_bytes(), path.stat().st_mtime_ns) for path in files}
+
+    before = sources()
+    colcon.logs(OK_EVENTS)
+    result = build_workspace(workspace, bases=Bases(tmp_path / "own"))
+    assert sources() == before
+    assert sorted(path.name for path in workspace.iterdir()) == ["src"]
+    assert result.bases.static_info == tmp_path / "own/static.json"
+
+
+def test_a_package_that_fails_is_named_with_the_end_of_its_errors(
+    workspace: Path, colcon: FakeColcon
+) -> None:
+    colcon.logs("[1.0] (face) JobEnded: {'identifier': 'face', 'rc': 2}\n")
+    colcon.writes("log/build_1/face/stderr.log", "".join(f"error {n}\n" for n in range(100)))
+    colcon.lines.append("sys.exit(1)")
+    with pytest.raises(BuildError) as caught:
+        build_workspace(workspace)
+    assert caught.value.package == "face"
+    assert caught.value.tail == tuple(f"error {n}" for n in range(75, 100))
+    log = workspace / ".tpc/log/build_1/face/stdout_stderr.log"
+    assert str(caught.value).startswith(f"{log}: package face does not build (status 2)")
+    assert not (workspace / ".tpc/static.json").exists()
+
+
+def test_a_failure_of_colcon_itself_is_not_blamed_on_an_old_log(
+    workspace: Path, colcon: FakeColcon
+) -> None:
+    old = workspace / ".tpc/log/build_0"
+    old.mkdir(parents=True)
+    (old / "events.log").write_text("[1.0] (a) JobEnded: {'identifier': 'a', 'rc': 2}\n")
+    (workspace / ".tpc/log/latest_build").symlink_to("build_0")
+    colcon.lines.append("sys.exit('colcon: error: unrecognized arguments: --bogus\\n')")
+    with pytest.raises(RunError) as caught:
+        build_workspace(workspace)
+    assert str(caught.value) == (
+        "colcon ends with status 1: colcon: error: unrecognized arguments: --bogus"
+    )
+
+
+def test_broken_static_information_is_named(workspace: Path, colcon: FakeColcon) -> None:
+    bad = json.dumps(unit(comparisons=[comparison(distance=0)]))
+    colcon.writes("build/face/tpc/detector.json", bad)
+    colcon.logs(OK_EVENTS)
+    with pytest.raises(InputError) as caught:
+        build_workspace(workspace)
+    path = workspace / ".tpc/build/face/tpc/detector.json"
+    assert str(caught.value).startswith(f"{path}: /comparisons/0/distance: ")
+
+
+def test_an_interrupt_ends_everything_below(workspace: Path, colcon: FakeColcon) -> None:
+    colcon.lines += [
+        "import subprocess",
+        "child = subprocess.Popen(['/bin/sleep', '60'])",
+        "print(child.pid, flush=True)",
+        "child.wait()",
+    ]
+    started: list[int] = []
+
+    def interrupt(line: str) -> None:
+        started.append(int(line))
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        build_workspace(workspace, on_output=interrupt)
+    deadline = time.monotonic() + 5
+    while Path(f"/proc/{started[0]}").exists() and time.monotonic() < deadline:
+        time.sleep(0.01)
+    assert not Path(f"/proc/{started[0]}").exists()
+
+
+def refuse(message: str) -> None:
+    raise MissingToolError(message)
+
+
+@pytest.mark.parametrize(
+    ("damage", "message"),
+    [
+        ("src/face/CMakeLists.txt", "CMake cannot parse this file"),
+        ("src/face/package.xml", "not XML"),
+        ("../prefix/lib/libtpc_log.so", "make setup"),
+        ("../prefix/lib/tpc/TpcPasses.so", "make setup"),
+        ("require_tools", "no clang"),
+        ("require_ros", "no ROS"),
+    ],
+)
+def test_what_cannot_work_is_said_before_anything_is_written(
+    workspace: Path, monkeypatch: pytest.MonkeyPatch, damage: str, message: str
+) -> None:
+    if damage.startswith("require"):
+        monkeypatch.setattr(build, damage, lambda: refuse(message))
+    elif damage.startswith("src"):
+        (workspace / damage).write_text("<package(", encoding="utf-8")
+    else:
+        (workspace / damage).unlink()
+    with pytest.raises(TpcError, match=message):
+        build_workspace(workspace)
+    assert sorted(path.name for path in workspace.iterdir()) == ["src"]
+
+
+def test_ros_is_not_needed_for_plain_cmake(
+    workspace: Path, colcon: FakeColcon, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("arm", "face"):
+        cmake = "<export><build_type>cmake</build_type></export>"
+        add_package(workspace / "src" / name, more=cmake)
+    monkeypatch.setattr(build, "require_ros", lambda: pytest.fail("looked for ROS"))
+    colcon.logs(OK_EVENTS)
+    assert build_workspace(workspace).units == ()
+
+
+def test_a_file_where_the_base_should_be_is_one_line(workspace: Path, colcon: FakeColcon) -> None:
+    (workspace / ".tpc").write_text("", encoding="utf-8")
+    with pytest.raises(WorkspaceError) as caught:
+        build_workspace(workspace)
+    assert str(caught.value) == f"{workspace}/.tpc: cannot be written: Not a directory"
+
+
+def test_the_nodes_environment_is_that_of_a_fresh_login(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("ROS_PACKAGE_PATH", "/the/callers/own")
+    monkeypatch.setenv("PYTHONPATH", "/the/callers/own")
+    monkeypatch.setenv("HOME", "/home/me")
+    (tmp_path / "setup.bash").write_text(
+        "echo chatter\nexport ROS_PACKAGE_PATH=/here/share:$ROS_PACKAGE_PATH\n"
+        "export TWO_LINES=$'a=b\\nc'\nnot_exported=1\n",
+        encoding="utf-8",
+    )
+    assert workspace_env(tmp_path) == {
+        "HOME": "/home/me",
+        "PATH": "/usr/bin:/bin",
+        "ROS_PACKAGE_PATH": "/here/share:",
+        "TWO_LINES": "a=b\nc",
+        **{name: os.environ[name] for name in KEPT if name in os.environ},
+    }
+
+
+KEPT = ("USER", "LOGNAME", "LANG", "LC_ALL", "TERM", "TZ", "TMPDIR")
+
+
+def test_an_install_base_that_is_none_or_fails_is_one_line(tmp_path: Path) -> None:
+    with pytest.raises(WorkspaceError, match=r"no setup.bash here: build the workspace first"):
+        workspace_env(tmp_path)
+    (tmp_path / "setup.bash").write_text("echo broken >&2\nreturn 3\n", encoding="utf-8")
+    with pytest.raises(RunError) as caught:
+        workspace_env(tmp_path)
+    assert str(caught.value) == f"{tmp_path}/setup.bash: fails with status 3: broken"

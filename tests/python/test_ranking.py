@@ -1,0 +1,114 @@
+from __future__ import annotations
+
+from mission_samples import comparison, events, key, ns, static_info
+
+from pytpc.events import Events
+from pytpc.ingest import Recording
+from pytpc.marks import Mark
+from pytpc.ranking import parameter_name, rank_marks, unknown_keys
+from pytpc.static_info import Place
+
+# Comparisons 0 and 1 are of coverage, 2 of faces, 3 of idle, 4 is a constant, 5 of never (which is
+# never evaluated), 6 of faces too.
+STATIC = static_info(
+    comparison(0, "coverage", distance=3),
+    comparison(1, "coverage", distance=2),
+    comparison(2, "faces", ">=", distance=1),
+    comparison(3, "idle", "<", distance=1),
+    comparison(4, "", ">", type="constant"),
+    comparison(5, "never"),
+    comparison(6, "faces"),
+)
+
+
+def recording(rows, marks):
+    return Recording("mission", events(rows), tuple(marks), 0, ns(100))
+
+
+# Flops up to 50 s: comparison 0 at 40 s only, (50-40) * 2 = 20; comparison 1 at 30 and 45 s,
+# (50-45) * 3 = 15, so coverage has 15 by comparison 1; comparison 2 at 49 s, 1 * 2 = 2. Comparison
+# 3 never flops, 4 is a constant, 5 has no event. Four parameters: faces 1 - 0/4, coverage 1 - 1/4.
+ROWS = [
+    (10, 0, 0, 0, 4),
+    (40, 0, 1, 5, 4),
+    (20, 1, 0, 0.1, 0.5),
+    (30, 1, 1, 0.6, 0.5),
+    (45, 1, 0, 0.2, 0.5),
+    (48, 2, 0, 0, 1),
+    (49, 2, 1, 1, 1),
+    (10, 3, 1, 5, 10),
+    (46, 3, 1, 9, 10),
+    (49.5, 4, 0, 1, 2),
+    (49.6, 4, 1, 3, 2),
+]
+
+
+def test_type1_by_hand():
+    (found,) = rank_marks(recording(ROWS, [Mark(ns(50), "I")]), STATIC)
+    assert [(s.position, s.parameter, s.key, s.score, s.rank) for s in found.suspects] == [
+        (1, "faces", key(2), 2.0, 1.0),
+        (2, "coverage", key(1), 15.0, 0.75),
+    ]
+    assert found.parameters == 4
+    assert found.suspects[1].keys == (key(0), key(1))
+    assert found.suspects[0].keys == (key(2),)
+    last = found.suspects[1].last
+    assert (last.time_ns, last.cmp, last.thresh, last.result) == (ns(45), 0.2, 0.5, False)
+    assert (last.node, found.suspects[0].comparison.lineno) == ("/node", 12)
+    assert (found.position_of("coverage"), found.position_of("idle")) == (2, None)
+
+
+# Window [38, 50]. Comparison 0: only 40 s, |5-4| / (5-0) = 0.2, one flop: 0.2.
+# Comparison 1: only 45 s, 0.3 / 0.5 = 0.6. So coverage has 0.2 by comparison 0.
+# Comparison 2: (1 + 0) / 2 / (1 - 0) = 0.5, one flop. Comparison 3: 1 / (10 - 5) = 0.2.
+# coverage and idle both have 0.2; idle is nearer (1 < 3). Ranks 1, 0.75, 0.5.
+def test_type2_by_hand():
+    (found,) = rank_marks(recording(ROWS, [Mark(ns(50), "II")]), STATIC)
+    assert [(s.parameter, s.key, s.score, s.rank) for s in found.suspects] == [
+        ("idle", key(3), 0.2, 1.0),
+        ("coverage", key(0), 0.2, 0.75),
+        ("faces", key(2), 0.5, 0.5),
+    ]
+
+
+# Type I ranks: faces 1, coverage 0.75, idle 0. Type II: idle 1, coverage 0.75, faces 0.5.
+# Better rank and mean: faces 1 and 0.75, idle 1 and 0.5, coverage 0.75 and 0.75.
+def test_a_mark_without_a_type():
+    (found,) = rank_marks(recording(ROWS, [Mark(ns(50), None)]), STATIC)
+    assert [(s.position, s.parameter, s.type, s.rank) for s in found.suspects] == [
+        (1, "faces", "I", 1.0),
+        (2, "idle", "II", 1.0),
+        (3, "coverage", "I", 0.75),
+    ]
+    # The same where the types are not to be believed.
+    (again,) = rank_marks(recording(ROWS, [Mark(ns(50), "I")]), STATIC, untyped=True)
+    assert again.suspects == found.suspects
+
+
+def test_every_mark_has_its_ranking_in_order():
+    marks = [Mark(ns(41), "I", "b"), Mark(ns(5), "I"), Mark(ns(60), "II", "a")]
+    found = rank_marks(recording(ROWS, marks), STATIC)
+    assert [ranking.mark for ranking in found] == marks
+    assert found[1].suspects == ()
+    # At 41 s only comparison 0 (40 s: (41-40) * 2 = 2) and 1 (30 s: 22) have flopped.
+    assert [(s.parameter, s.score) for s in found[0].suspects] == [("coverage", 2.0)]
+    assert rank_marks(recording(ROWS, []), STATIC) == []
+
+
+def test_keys_that_nobody_knows_are_counted_and_left_out():
+    rows = [*ROWS, (49.9, 77, 0, 1, 2), (49.95, 77, 1, 3, 2)]
+    mission = recording(rows, [Mark(ns(50), "I")])
+    assert unknown_keys(mission.events, STATIC) == {key(77): 2}
+    assert rank_marks(mission, STATIC) == rank_marks(recording(ROWS, mission.marks), STATIC)
+
+
+def test_names_of_parameters():
+    assert parameter_name(comparison(1, "rate")) == "rate"
+    dynamic = comparison(1, "<dynamic>", read_at=Place("src/a.cpp", 8))
+    assert parameter_name(dynamic) == "<dynamic> at src/a.cpp:8"
+
+
+def test_nothing_to_rank():
+    mission = Recording("m", Events.empty(), (Mark(5, "I"), Mark(6, None)), 0, 10)
+    assert [r.suspects for r in rank_marks(mission, STATIC)] == [(), ()]
+    assert [r.suspects for r in rank_marks(mission, static_info())] == [(), ()]

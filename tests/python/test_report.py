@@ -1,0 +1,373 @@
+from __future__ import annotations
+
+import math
+import re
+from collections import Counter
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from mission_samples import comparison, events, key, ns, static_info
+
+from pytpc.errors import TpcError
+from pytpc.ingest import MalformedRecord, Recording
+from pytpc.marks import Mark
+from pytpc.ranking import rank_marks
+from pytpc.report import MissionReport, write_report
+from pytpc.report.series import (
+    BINS,
+    BOTH,
+    FALSE,
+    NOTHING,
+    TRUE,
+    evidence,
+    lane,
+    runs,
+    thin,
+    with_gaps,
+)
+
+NAN = math.nan
+NASTY = '<script>alert("1")</script>&$x_{1}$'
+
+
+# Spans of 10 points each (times 0 to 39, most = 16: 4 spans). Lowest and highest of span 0 are at 3
+# and 7; the others are flat, so that only their ends (and a first lowest and last highest) stay.
+def test_thin_keeps_ends_and_extremes():
+    time = np.arange(40.0)
+    values = np.zeros(40)
+    values[3], values[7], values[5] = -5.0, 9.0, NAN
+    kept = thin(time, values, 16).tolist()
+    assert {0, 3, 7, 9, 10, 19, 20, 29, 30, 39} <= set(kept)
+    assert 5 not in kept
+    assert len(kept) <= 16
+    assert thin(time, values, 40).tolist() == list(range(40))
+
+
+@given(
+    st.lists(st.tuples(st.floats(0, 1e6), st.floats()), max_size=300),
+    st.integers(4, 50),
+)
+def test_thin_holds_its_promise(points, most):
+    points = sorted(points, key=lambda point: point[0])
+    time = np.array([point[0] for point in points])
+    values = np.array([point[1] for point in points])
+    kept = thin(time, values, most)
+    assert len(kept) <= max(most, 4)
+    assert sorted(set(kept.tolist())) == kept.tolist()
+    known = values[~np.isnan(values)]
+    if known.size:
+        assert np.nanmin(values[kept]) == known.min()
+        assert np.nanmax(values[kept]) == known.max()
+
+
+# Steps of 1 s, then one of 15 s (over 10 medians), then of 1 s.
+def test_gaps_are_not_bridged():
+    time = np.array([0.0, 1.0, 2.0, 17.0, 18.0])
+    parts = with_gaps(time, np.arange(5.0))
+    assert np.isnan(parts[0]).tolist() == [False] * 3 + [True] + [False] * 2
+    assert np.isnan(parts[1]).tolist() == [False] * 3 + [True] + [False] * 2
+
+
+# 600 columns over 60 s, 0.1 s each: key 0 is True at 0 s, False at 0.15 s and both in column 59 at
+# 5.9 s; key 1 is nobody's business. The last moment belongs to the last column.
+def test_lane_and_runs():
+    table = events(
+        [
+            (0, 0, 1, 1, 0),
+            (0.15, 0, 0, 0, 0),
+            (5.9, 0, 1, 1, 0),
+            (5.95, 0, 0, 0, 0),
+            (0.17, 1, 1, 1, 0),
+            (60, 0, 1, 1, 0),
+        ]
+    )
+    states = lane(table, key(0), 0, ns(60))
+    assert (states[0], states[1], states[59], states[BINS - 1]) == (TRUE, FALSE, BOTH, TRUE)
+    assert states[2] == NOTHING
+    assert lane(table, key(1), 0, ns(60))[1] == TRUE
+    assert runs(states) == [(TRUE, 0, 1), (FALSE, 1, 1), (BOTH, 59, 1), (TRUE, BINS - 1, 1)]
+
+
+# Every second over 60 s, 10 columns each: F at 0 s holds up to the T at 1 s; after 10 s a pause.
+def test_a_result_holds_until_the_next_one():
+    table = events([(t, 0, t % 2, t % 2, 0) for t in (*range(11), *range(50, 60))])
+    states = lane(table, key(0), 0, ns(60))
+    assert states[:20].tolist() == [FALSE] * 10 + [TRUE] * 10
+    assert states[100:102].tolist() == [FALSE, NOTHING]
+    assert set(states[101:500].tolist()) == {NOTHING}
+
+
+# A mark at 50 s of a mission from 10 to 52 s. Without flops: from 30 to 52 s. With the last flop up
+# to the mark at 25 s: from 21 s. The later flop at 51 s is shown, but moves nothing.
+def test_evidence_reaches_back_to_the_last_flop():
+    rows = [(t, 0, 1, 5, 3) for t in range(10, 53)]
+    calm = evidence(events(rows), key(0), ns(50), ns(10), ns(52))
+    assert (calm.begin, calm.end, calm.evaluations) == (20, 42, 23)
+    assert (calm.steps.tolist(), calm.outcome.tolist()) == ([20], [True])
+    rows[:15] = [(t, 0, 0, 1, 3) for t in range(10, 25)]
+    rows[-2:] = [(t, 0, 0, 1, 3) for t in (51, 52)]
+    changed = evidence(events(rows), key(0), ns(50), ns(10), ns(52))
+    assert (changed.begin, changed.flops.tolist()) == (11, [15, 41])
+    assert changed.steps.tolist() == [11, 15, 41]
+    assert changed.outcome.tolist() == [False, True, False]
+
+
+def mission(tmp_path, **changes):
+    """40 s at 10 Hz: coverage rises to 0.5 below its limit of 0.6; faces flop at 30 s."""
+    source = tmp_path / "src"
+    source.mkdir(exist_ok=True)
+    lines = [f"int line{n};" for n in range(1, 31)]
+    lines[10] = "    if (coverage > coverage_) { // <b>"
+    (source / "node.cpp").write_text("\n".join(lines))
+    static = static_info(
+        comparison(0, "faces", ">=", lineno=5, source_code="not what is there now", default=3),
+        comparison(1, "coverage", lineno=11, source_code="if (coverage > coverage_) { // <b>"),
+        comparison(2, NASTY, "<", file="gone.cpp", topic=NASTY, function=NASTY, name=NASTY),
+        comparison(3, "never"),
+        source_root=str(tmp_path),
+    )
+    rows = []
+    for step in range(400):
+        t = step / 10
+        coverage = min(0.5, t / 60)
+        rows += [
+            (t, 0, t >= 30, 4 if t >= 30 else 1, 3),
+            (t, 1, False, coverage, 0.6),
+            (t, 2, step % 50 < 25, step % 50, 25),
+        ]
+    recording = Recording(
+        "night <flight>",
+        events(rows, node=f"/node{NASTY}"),
+        (Mark(ns(31), "I", "o<b>"), Mark(ns(35), "II"), Mark(ns(36), None)),
+        0,
+        ns(40),
+    )
+    report = MissionReport(
+        name=recording.name,
+        recording=recording,
+        static_info=static,
+        rankings=rank_marks(recording, static),
+        treatment="limit 0.4 <raised>",
+        changed_parameter="coverage",
+    )
+    return replace(report, **changes)
+
+
+class Page(HTMLParser):
+    """Collects what the tests ask of a page, and checks that its elements close."""
+
+    VOID = frozenset({"meta", "br", "path", "use", "rect", "line", "stop", "link", "img"})
+
+    def __init__(self, text):
+        super().__init__()
+        self.ids, self.references, self.tags, self.text = Counter(), set(), Counter(), []
+        self.addresses = set()
+        self.open = []
+        self.feed(text)
+        self.close()
+        assert self.open == []
+
+    def handle_starttag(self, tag, attrs):
+        self.tags[tag] += 1
+        if tag not in self.VOID:
+            self.open.append(tag)
+        self._attributes(attrs)
+
+    def handle_startendtag(self, tag, attrs):
+        self.tags[tag] += 1
+        self._attributes(attrs)
+
+    def handle_endtag(self, tag):
+        if tag not in self.VOID:
+            assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.text.append(data)
+
+    def _attributes(self, attrs):
+        for name, text in attrs:
+            value = text or ""
+            assert not name.startswith("on")
+            if name == "id":
+                self.ids[value] += 1
+            if name == "aria-labelledby":
+                self.references.add(f"#{value}")
+            if name in {"href", "xlink:href", "src", "action"}:
+                (self.references if value.startswith("#") else self.addresses).add(value)
+            self.references.update(f"#{found}" for found in re.findall(r"url\(#([^)]*)\)", value))
+            self.addresses.update(re.findall(r"url\(([^#)][^)]*)\)", value))
+
+
+def written(tmp_path, *missions, **options):
+    path = tmp_path / "report.html"
+    write_report(path, missions, **options)
+    return path.read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def page_text(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("page")
+    return written(folder, mission(folder), title="<i>title</i>")
+
+
+def test_the_page_asks_the_network_for_nothing(page_text):
+    text = page_text
+    page = Page(text)
+    assert page.addresses == set()
+    assert page.tags["script"] == page.tags["link"] == page.tags["img"] == 0
+    # Namespaces are names, and nothing is fetched from them.
+    outside = set(re.findall(r"https?://[^\"' <]*", text))
+    assert outside == {"http://www.w3.org/2000/svg", "http://www.w3.org/1999/xlink"}
+    assert "@import" not in text
+
+
+def test_ids_are_unique_and_every_reference_meets_one(tmp_path):
+    page = Page(written(tmp_path, mission(tmp_path), mission(tmp_path)))
+    assert page.tags["svg"] > 10
+    assert [name for name, count in page.ids.items() if count > 1] == []
+    assert {name.removeprefix("#") for name in page.references} <= set(page.ids)
+
+
+def test_what_the_robot_says_is_escaped(page_text):
+    page = Page(page_text)
+    assert "<script>alert" not in page_text
+    assert page.tags["i"] == page.tags["b"] == 0
+    shown = "".join(page.text)
+    assert NASTY in shown
+    assert "night <flight>" in shown
+    assert "by o<b>" in shown
+
+
+# The first mark (type I): faces flopped a second before, at 30 s: 1 * 2 = 2; NASTY flops every
+# 2.5 s, 12 times up to 31 s, the last at 30 s: 1 * 13 = 13. coverage has no flop: not ranked.
+def test_what_it_says(page_text):
+    text = " ".join("".join(Page(page_text).text).split())
+    assert "Mark at 31.0 s type I: it did something that it should not have, by o<b>" in text
+    assert "The changed parameter's position: not ranked." in text
+    # faces >= 3 became true with 4 faces: above 4 it would not have.
+    assert "▲ Raise from 3 to 5 (above 4)" in text
+    # The nearest evaluation in the window has coverage 0.5 of 0.6: true below 0.5.
+    assert "▼ Lower from 0.6 to 0.499 (below 0.5)" in text
+    assert "4 >= 3 was true, 0.00 s before the mark" in text
+    assert "Ranked among 4 parameters." in text
+    assert re.search("Comparisons seen *3 of 4 found in the source", text)
+    assert "coverage changed" in text
+    assert "seconds since the recording began" in text
+
+
+def test_source_text(page_text):
+    text = page_text
+    here = re.search(r'<span class="line here"><span class="lineno">11</span>([^\n]*)', text)
+    assert here is not None
+    assert here[1] == "    if (coverage &gt; coverage_) { // &lt;b&gt;"
+    for number in (8, 14):
+        assert f'<span class="lineno">{number}</span>int line{number};' in text
+    assert '<span class="lineno">7</span>' not in text
+    # The line in the file is another one by now, or the file is gone: what the analysis kept.
+    assert "the source file has changed since the build" in text
+    assert '<span class="lineno">5</span>not what is there now' in text
+    assert "the source file is not on this machine" in text
+
+
+def test_only_the_first_mark_is_unfolded(page_text):
+    assert page_text.count('<details class="mark" open>') == 1
+    assert page_text.count('<details class="mark">') == 2
+
+
+def test_the_same_missions_make_the_same_page(tmp_path):
+    assert written(tmp_path, mission(tmp_path)) == written(tmp_path, mission(tmp_path))
+
+
+def test_complaints_are_on_the_page(tmp_path):
+    plain = mission(tmp_path)
+    broken = MalformedRecord("/rosout", ns(1.5), "a key (a UUID) is expected, column 23", "x<y")
+    recording = replace(
+        plain.recording,
+        malformed=1234,
+        malformed_first=(broken,),
+        lost={"/a": 2, "/b": 5},
+        notes=("a note",),
+    )
+    text = "".join(Page(written(tmp_path, replace(plain, recording=recording))).text)
+    assert "1,234 broken reports left out, the first on /rosout at 1.500 s" in text
+    assert "7 log messages lost on the way to the recorder, most of /b (5)" in text
+    assert "a note" in text
+
+
+def test_missions_without_marks_or_reports(tmp_path):
+    plain = mission(tmp_path)
+    silent = replace(plain, recording=replace(plain.recording, marks=()), rankings=[])
+    nothing = Recording("empty", events([]), (Mark(5, "II"),), 0, 10)
+    empty = MissionReport(
+        "empty", nothing, plain.static_info, rank_marks(nothing, silent.static_info)
+    )
+    text = "".join(Page(written(tmp_path, silent, empty)).text)
+    assert "The observer marked nothing." in text
+    assert "No parameter has a score at this mark" in text
+    assert "No missions." in "".join(Page(written(tmp_path)).text)
+
+
+def test_progress_counts_every_figure(tmp_path):
+    seen = []
+    written(tmp_path, mission(tmp_path), on_progress=lambda *step: seen.append(step))
+    # One timeline; marks of type I, II and none with 2, 3 and 3 suspects.
+    assert seen == [(n, 9) for n in range(1, 10)]
+
+
+def test_a_page_that_cannot_be_written_leaves_the_old_one(tmp_path, monkeypatch):
+    path = tmp_path / "report.html"
+    path.write_text("old")
+
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("os.fsync", full)
+    with pytest.raises(TpcError, match=r"report\.html: cannot be written: No space left"):
+        write_report(path, [])
+    assert path.read_text() == "old"
+    assert [p.name for p in tmp_path.iterdir()] == ["report.html"]
+
+
+def values_that_break_plots():
+    return [
+        [(t, 0, t % 2, value, limit) for t in range(10)]
+        for value, limit in [
+            (NAN, NAN),
+            (math.inf, 1),
+            (1e308, -1e308),
+            (5e-324, 0),
+            (1, 1),
+            (1e6 + 0.1, 1e6),
+        ]
+    ]
+
+
+# DBL_MAX is what a node often starts with ("no distance yet"). 98 values of 1 to 2 against a
+# threshold of 3 must stay readable beside it: the axis does not reach 1e308.
+def test_an_outlier_does_not_flatten_the_plot(tmp_path):
+    rows = [(t / 10, 0, t % 2, 1 + t % 2, 3) for t in range(98)] + [(9.9, 0, 1, 1.7e308, 3)]
+    recording = Recording("far", events(rows), (Mark(ns(10), "I"),), 0, ns(10))
+    static = static_info(comparison(0, "x"))
+    report = MissionReport("far", recording, static, rank_marks(recording, static))
+    labels = re.findall("<text[^>]*>([^<]*)</text>", written(tmp_path, report))
+    assert "some values are beyond this plot" in labels
+    assert {"1.2", "1.8", "2.4", "3.0"} <= set(labels)
+    assert not any("e+" in label for label in labels)
+
+
+@pytest.mark.parametrize("rows", values_that_break_plots())
+def test_odd_values_are_drawn_without_a_word(tmp_path, rows):
+    recording = Recording("odd", events(rows), (Mark(ns(9), "I"),), 0, ns(9))
+    static = static_info(comparison(0, "x" * 60))
+    report = MissionReport("odd", recording, static, rank_marks(recording, static))
+    assert Page(written(tmp_path, report)).tags["svg"] == 2
+
+
+def test_the_package_brings_its_templates():
+    folder = Path(__file__).parents[2] / "pytpc" / "report" / "templates"
+    assert {p.name for p in folder.iterdir()} == {"report.html.j2", "report.css"}
