@@ -1,0 +1,14 @@
+.PHONY: demo test setup bench lint
+PYTHON = .venv/bin/python
+
+demo: setup   ## a robot with a wrong parameter, and its name
+	$(PYTHON) examples/image_capture/demo.py --out out/demo
+
+test: setup   ## all tests: passes, Python, a real ROS graph
+	tools/test
+
+setup:        ## packages, .venv, passes; quick when done before
+	@tools/setup
+
+lint:         ## what CI asks of the sources
+	tools/lint
