@@ -12,3 +12,6 @@ setup:        ## packages, .venv, passes; quick when done before
 
 lint:         ## what CI asks of the sources
 	tools/lint
+
+bench: setup  ## figures of cost and speed, one line each
+	tools/bench

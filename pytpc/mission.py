@@ -184,7 +184,8 @@ def _start_recorder(
     status = _status_file(out_dir).absolute()
     status.unlink(missing_ok=True)
     bag = (out_dir / BAG_FILE).absolute()
-    command = [sys.executable, recorder.__file__, "--bag", str(bag), "--status", str(status)]
+    command = [sys.executable, "-m", recorder.__name__, "--bag", str(bag)]
+    command += ["--status", str(status)]
     if until is not None:
         command += ["--until", until]
     path = [str(project_root()), graph.env.get("PYTHONPATH", "")]

@@ -1,9 +1,8 @@
 """Records topics of a ROS 1 graph into a bag without losing any message; a program of its own.
 
-rosbag's recorder keeps at most 100 waiting messages of a topic and drops the rest, and all reports
-of all nodes go through one topic: at 2,400 messages a second on a busy machine it lost one in a
-thousand. Here nothing is dropped: what is not yet read waits in the publishers, whose queues for
-/rosout have no end. Each node numbers its messages on /rosout, so a loss would be seen and counted.
+All reports of all nodes go through one topic, thousands in a second. Nothing is dropped here: what
+is not yet read waits in the publishers, whose queues for /rosout have no end. Each node numbers
+its messages on /rosout, so a loss would be seen and is counted.
 
 It runs below ``pytpc.mission``, which reads the status file that it keeps.
 """
@@ -12,26 +11,34 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import signal
 import struct
 import threading
+import time
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
-from io import BytesIO
 from pathlib import Path
-from typing import Protocol
 
 from rosbags.interfaces import Connection
 from rosbags.rosbag1 import Writer
 
+from pytpc.errors import RunError
+from pytpc.tcpros import RawSubscriber, Source
+
 REPORT = b"threshold_information:"
+NODE_NAME = "/tpc_recorder"
 STATUS_PERIOD_S = 0.2
+DRAIN_S = 2.0
+_CLOCK = "/clock"
+_ROSOUT = "/rosout"
 _LOG_HEAD = struct.Struct("<IIII")
 _LENGTH = struct.Struct("<I")
+_TIME = struct.Struct("<II")
 
 
-@dataclass
+@dataclass(frozen=True)
 class Status:
     """What the recorder says of itself; times in ns on the graph's clock, at the start and now.
 
@@ -74,8 +81,8 @@ class LossCounter:
             raise ValueError(f"no rosgraph_msgs/Log: {error}") from error
         node = name.decode("utf-8", "replace")
         last = self._last.get(node)
-        # roscpp counts from 1. A node that was restarted counts from the start again.
         if last is None:
+            # roscpp counts from 0 and rospy from 1, so that 1 may be the first one.
             if sequence > 1:
                 self.missed_before[node] = sequence - 1
         elif sequence > last + 1:
@@ -93,7 +100,7 @@ def _text(data: bytes, at: int) -> tuple[bytes, int]:
 
 
 class BagFile:
-    """A bag that gets its name only when it is complete; ``write`` may be called by any thread."""
+    """A bag that gets its name only when it is complete."""
 
     def __init__(self, path: Path) -> None:
         """Open ``<path>.active``; what an earlier run left there is deleted."""
@@ -102,36 +109,85 @@ class BagFile:
         self._active.unlink(missing_ok=True)
         self._writer = Writer(self._active)
         self._writer.open()
-        self._lock = threading.Lock()
-        self._connections: dict[str, Connection] = {}
-        self._open = True
+        self._connections: dict[tuple[str, str], Connection] = {}
         self.messages: Counter[str] = Counter()
 
-    def write(self, topic: str, header: dict[str, str], time_ns: int, data: bytes) -> None:
-        """Add one message; ``header`` is that of the connection it came on."""
-        with self._lock:
-            if not self._open:
-                return
-            connection = self._connections.get(topic)
-            if connection is None:
-                # rosbags names types in the way of ROS 2 and writes them in that of ROS 1.
-                package, _, name = header["type"].partition("/")
-                connection = self._writer.add_connection(
-                    topic,
-                    f"{package}/msg/{name}",
-                    msgdef=header["message_definition"],
-                    md5sum=header["md5sum"],
-                )
-                self._connections[topic] = connection
-            self._writer.write(connection, time_ns, data)
-            self.messages[topic] += 1
+    def write(self, source: Source, time_ns: int, data: bytes) -> None:
+        """Add one message."""
+        key = (source.topic, source.md5sum)
+        connection = self._connections.get(key)
+        if connection is None:
+            # rosbags names types in the way of ROS 2 and writes them in that of ROS 1.
+            package, _, name = source.type.partition("/")
+            connection = self._writer.add_connection(
+                source.topic,
+                f"{package}/msg/{name}",
+                msgdef=source.definition,
+                md5sum=source.md5sum,
+            )
+            self._connections[key] = connection
+        self._writer.write(connection, time_ns, data)
+        self.messages[source.topic] += 1
 
     def close(self) -> None:
         """Write the index and give the file its name."""
-        with self._lock:
-            self._open = False
-            self._writer.close()
-            self._active.replace(self._path)
+        self._writer.close()
+        self._active.replace(self._path)
+
+
+class Recorder:
+    """Takes in messages and keeps the account of them.
+
+    ``sim_time`` says that /clock is the graph's clock, else it is the wall's.
+    """
+
+    def __init__(
+        self, bag: BagFile, topics: Sequence[str], until: str | None, sim_time: bool
+    ) -> None:
+        """See the class."""
+        self._bag = bag
+        self._topics = frozenset(topics)
+        self._until = until
+        self._sim_time = sim_time
+        self._clock_ns = 0
+        self._counter = LossCounter()
+        self._reports = 0
+        self._done = False
+        self._began_ns = self.now_ns()
+
+    def now_ns(self) -> int:
+        """The graph's time; 0 until the first /clock."""
+        return self._clock_ns if self._sim_time else time.time_ns()
+
+    def take(self, source: Source, data: bytes) -> None:
+        """Put one message into the bag.
+
+        Raises:
+            ValueError: a message that is not of the type of its topic.
+        """
+        if source.topic == _CLOCK and self._sim_time:
+            seconds, nanoseconds = _TIME.unpack_from(data)
+            self._clock_ns = seconds * 1_000_000_000 + nanoseconds
+        elif source.topic == _ROSOUT:
+            self._reports += self._counter.see(data).startswith(REPORT)
+        elif source.topic == self._until and any(data):
+            self._done = True
+        if source.topic in self._topics:
+            self._bag.write(source, self.now_ns(), data)
+
+    def status(self, *, closed: bool = False) -> Status:
+        """The account until now."""
+        return Status(
+            ready=True,
+            done=self._done,
+            closed=closed,
+            began_ns=self._began_ns,
+            now_ns=self.now_ns(),
+            reports=self._reports,
+            messages=dict(sorted(self._bag.messages.items())),
+            lost=dict(sorted(self._counter.lost.items())),
+            missed_before=dict(sorted(self._counter.missed_before.items())),
+        )
 
 
 def save_status(status: Status, path: Path) -> None:
@@ -141,93 +197,50 @@ def save_status(status: Status, path: Path) -> None:
     beside.replace(path)
 
 
-class Message(Protocol):
-    """What rospy hands over: not decoded, but for a topic to which rospy itself listens."""
-
-    _connection_header: dict[str, str]
-
-    def serialize(self, buff: BytesIO) -> None:
-        """Write the bytes that came over the wire."""
-
-
-class Recorder:
-    """Takes in messages of all topics, from any thread, and keeps the account of them."""
-
-    def __init__(
-        self,
-        bag: BagFile,
-        until: str | None,
-        now_ns: Callable[[], int],
-        on_failure: Callable[[], None],
-    ) -> None:
-        """``now_ns`` is the graph's clock; ``on_failure`` is called when recording must end."""
-        self.failure: Exception | None = None
-        self._on_failure = on_failure
-        self._bag = bag
-        self._until = until
-        self._now_ns = now_ns
-        self._began_ns = now_ns()
-        self._counter = LossCounter()
-        self._lock = threading.Lock()
-        self._reports = 0
-        self._done = False
-
-    def on_message(self, message: Message, topic: str) -> None:
-        """Put one message into the bag; a failure is kept, since rospy would only print it."""
-        try:
-            self._take(message, topic)
-        except Exception as error:
-            self.failure = self.failure or error
-            self._on_failure()
-
-    def _take(self, message: Message, topic: str) -> None:
-        buffer = BytesIO()
-        message.serialize(buffer)
-        data = buffer.getvalue()
-        self._bag.write(topic, message._connection_header, self._now_ns(), data)
-        if topic == "/rosout":
-            with self._lock:
-                self._reports += self._counter.see(data).startswith(REPORT)
-        elif topic == self._until and any(data):
-            self._done = True
-
-    def status(self, *, closed: bool = False) -> Status:
-        """The account until now."""
-        with self._lock:
-            return Status(
-                ready=True,
-                done=self._done,
-                closed=closed,
-                began_ns=self._began_ns,
-                now_ns=self._now_ns(),
-                reports=self._reports,
-                messages=dict(sorted(self._bag.messages.items())),
-                lost=dict(sorted(self._counter.lost.items())),
-                missed_before=dict(sorted(self._counter.missed_before.items())),
-            )
-
-
 def record(bag_path: Path, status_path: Path, topics: Sequence[str], until: str | None) -> None:
-    """Record until SIGINT or SIGTERM; needs a master at ROS_MASTER_URI."""
-    # Imported here, so that what stands above can be tested without ROS.
-    import rospy  # noqa: PLC0415
+    """Record until SIGINT or SIGTERM; needs a master at ROS_MASTER_URI.
 
+    Raises:
+        RunError: the master does not answer.
+        ValueError: a message that is not of the type of its topic.
+    """
     stop = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: stop.set())
+    recorded = list(dict.fromkeys([*topics, *([until] if until is not None else [])]))
+    subscriber = RawSubscriber(
+        os.environ["ROS_MASTER_URI"],
+        NODE_NAME,
+        os.environ.get("ROS_IP", "127.0.0.1"),
+        list(dict.fromkeys([*recorded, _CLOCK])),
+    )
+    sim_time = subscriber.call_master("hasParam", "/use_sim_time") is True and (
+        subscriber.call_master("getParam", "/use_sim_time") is True
+    )
     bag = BagFile(bag_path)
-    rospy.init_node("tpc_recorder", disable_signals=True, disable_rosout=True)
-    recorder = Recorder(bag, until, lambda: int(rospy.get_rostime().to_nsec()), stop.set)
-    for topic in dict.fromkeys([*topics, *([until] if until is not None else [])]):
-        rospy.Subscriber(topic, rospy.AnyMsg, recorder.on_message, topic, tcp_nodelay=True)
-    save_status(recorder.status(), status_path)
-    while not stop.wait(STATUS_PERIOD_S):
-        save_status(recorder.status(), status_path)
-    rospy.signal_shutdown("recorded")
-    if recorder.failure is not None:
-        raise SystemExit(f"{type(recorder.failure).__name__}: {recorder.failure}")
+    recorder = Recorder(bag, recorded, until, sim_time)
+    told = 0.0
+    while not stop.is_set():
+        if time.monotonic() - told > STATUS_PERIOD_S:
+            told = time.monotonic()
+            save_status(recorder.status(), status_path)
+        for source, data in subscriber.poll(0.05):
+            recorder.take(source, data)
+    _drain(subscriber, recorder)
+    subscriber.close()
     bag.close()
     save_status(recorder.status(closed=True), status_path)
+
+
+def _drain(subscriber: RawSubscriber, recorder: Recorder) -> None:
+    """Take what is still on the way."""
+    limit = time.monotonic() + DRAIN_S
+    while time.monotonic() < limit:
+        waiting = list(subscriber.poll(0.1))
+        if not waiting:
+            return
+        for source, data in waiting:
+            recorder.take(source, data)
 
 
 def main() -> None:
@@ -238,7 +251,10 @@ def main() -> None:
     parser.add_argument("--until")
     parser.add_argument("topics", nargs="+")
     arguments = parser.parse_args()
-    record(arguments.bag, arguments.status, arguments.topics, arguments.until)
+    try:
+        record(arguments.bag, arguments.status, arguments.topics, arguments.until)
+    except (RunError, ValueError, OSError) as error:
+        raise SystemExit(f"error: {error}") from error
 
 
 if __name__ == "__main__":
