@@ -31,7 +31,11 @@ static constexpr unsigned MaxCopied = 16;
 unsigned TypeNumbers::numberOf(StructType *T) {
   if (auto It = Numbers.find(T); It != Numbers.end())
     return It->second;
-  SmallVector<unsigned, 1> &Alike = ByName[plainClassName(*T)];
+  // Lambdas and classes of unnamed namespaces have their names to themselves.
+  StringRef Name = plainClassName(*T);
+  if (Name == "anon" || Name.contains("(anonymous"))
+    Name = T->getName();
+  SmallVector<unsigned, 1> &Alike = ByName[Name];
   for (unsigned N : Alike) {
     ArrayRef<Type *> Mine = T->elements(), Theirs = Types[N]->elements();
     if (Mine.size() == Theirs.size() &&
@@ -64,6 +68,16 @@ bool Location::mayBe(const Location &O) const {
   return endsWith(Path, O.Path) || endsWith(O.Path, Path);
 }
 
+/// Location::mayBe, with what is known of local variables: one that no other
+/// function can reach is not what a pointer of theirs leads to.
+bool AccessResult::mayBe(const Location &A, const Location &B) const {
+  for (const auto &[Local, Other] : {std::pair(&A, &B), std::pair(&B, &A)})
+    if (Local->Root && !Other->Root && isa<AllocaInst>(Local->Root) &&
+        !Escaped.contains(Local->Root))
+      return false;
+  return A.mayBe(B);
+}
+
 Type *AccessResult::typeAt(const Location &L) const {
   if (!L.Path.empty())
     return Numbers.typeOf(L.Path.back().Type)
@@ -81,11 +95,26 @@ static Type *elementOf(Type *T) {
   return T;
 }
 
+/// The source's type of what is at \p L; null where it is not known.
+const DIType *AccessResult::debugTypeAt(const Location &L) const {
+  if (L.Path.empty())
+    return L.Root ? Debug->pointee(L.Root) : nullptr;
+  const Step &Last = L.Path.back();
+  return Debug->field(Debug->classOf(Last.Class), Numbers.typeOf(Last.Type),
+                      Last.Index);
+}
+
+void AccessResult::enterField(Location &L, StructType *T,
+                              unsigned Field) const {
+  unsigned Class = Debug->numberOf(Debug->asStruct(debugTypeAt(L), T));
+  L.Path.push_back({Numbers.numberOf(T), Field, Class});
+}
+
 void AccessResult::enterScalar(Location &L) const {
   while (auto *T = dyn_cast_or_null<StructType>(elementOf(typeAt(L)))) {
     if (T->isOpaque() || T->getNumElements() == 0)
       return;
-    L.Path.push_back({Numbers.numberOf(T), 0});
+    enterField(L, T, 0);
   }
 }
 
@@ -95,7 +124,7 @@ void AccessResult::addScalarsOf(const Location &L, Locations &Out) const {
     return addTo(Out, L);
   for (unsigned Field = 0; Field < T->getNumElements(); ++Field) {
     Location Inner = L;
-    Inner.Path.push_back({Numbers.numberOf(T), Field});
+    enterField(Inner, T, Field);
     addScalarsOf(Inner, Out);
   }
 }
@@ -131,10 +160,13 @@ AccessResult::partOf(const Location &Object, const Location &L) const {
   }
   for (size_t K = 1; K <= Path.size(); ++K) {
     Location Front{L.Root, SmallVector<Step, 4>(Path.take_front(K))};
-    if (Front.mayBe(Object))
+    if (mayBe(Front, Object))
       return SmallVector<Step, 4>(Path.drop_front(K));
   }
-  if (!L.Root && !Path.empty() && contains(typeAt(Object), Path[0].Type))
+  bool Reachable = !Object.Root || !isa<AllocaInst>(Object.Root) ||
+                   Escaped.contains(Object.Root);
+  if (Reachable && !L.Root && !Path.empty() &&
+      contains(typeAt(Object), Path[0].Type))
     return SmallVector<Step, 4>(Path);
   return std::nullopt;
 }
@@ -150,13 +182,16 @@ void AccessResult::addTo(Locations &Out, Location L) const {
 
 /// The steps of \p GEP's constant indices into classes.
 static SmallVector<Step, 4> stepsOf(const GEPOperator &GEP,
-                                    TypeNumbers &Numbers) {
+                                    TypeNumbers &Numbers, DebugTypes &Debug) {
   SmallVector<Step, 4> Steps;
   Type *T = GEP.getSourceElementType();
+  const DIType *Source = Debug.pointee(GEP.getPointerOperand());
   for (const Use &U : drop_begin(GEP.indices())) {
     if (auto *Struct = dyn_cast<StructType>(T)) {
       unsigned Field = cast<ConstantInt>(U.get())->getZExtValue();
-      Steps.push_back({Numbers.numberOf(Struct), Field});
+      const DICompositeType *Class = Debug.asStruct(Source, Struct);
+      Steps.push_back({Numbers.numberOf(Struct), Field, Debug.numberOf(Class)});
+      Source = Debug.field(Class, Struct, Field);
       T = Struct->getElementType(Field);
     } else {
       T = GetElementPtrInst::getTypeAtIndex(T, U.get());
@@ -165,21 +200,23 @@ static SmallVector<Step, 4> stepsOf(const GEPOperator &GEP,
   return Steps;
 }
 
-/// Adds what is \p Offset bytes into \p Object; false where nothing begins
-/// there.
-bool AccessResult::addByOffset(const Location &Object, int64_t Offset,
-                               Locations &Out) const {
-  Location L = Object;
+/// Goes \p Offset bytes into \p L, and with \p Until no further than to an
+/// object of that type; takes the way off \p Offset. False where nothing
+/// begins there.
+bool AccessResult::descend(Location &L, int64_t &Offset,
+                           StructType *Until) const {
   Type *T = elementOf(typeAt(L));
   while (T && Offset >= 0) {
     auto *Class = dyn_cast<StructType>(T);
+    if (Class && Class == Until && Offset == 0)
+      return true;
     if (!Class || Class->isOpaque() || Class->getNumElements() == 0)
       break;
     const StructLayout *Fields = Layout->getStructLayout(Class);
     if (static_cast<uint64_t>(Offset) >= Fields->getSizeInBytes())
       return false;
     unsigned Field = Fields->getElementContainingOffset(Offset);
-    L.Path.push_back({Numbers.numberOf(Class), Field});
+    enterField(L, Class, Field);
     Offset -= Fields->getElementOffset(Field);
     T = Class->getElementType(Field);
     if (T->isArrayTy()) {
@@ -187,75 +224,73 @@ bool AccessResult::addByOffset(const Location &Object, int64_t Offset,
       Offset %= Layout->getTypeAllocSize(T).getFixedValue();
     }
   }
-  if (Offset != 0)
-    return false;
-  addTo(Out, std::move(L));
-  return true;
+  return T && Offset == 0 && !Until;
 }
 
-/// What a chain of getelementptrs does to a pointer.
-struct PointerChain {
-  const Value *Base;
-  SmallVector<Step, 4> Path;
-  /// The way in bytes; none where it has a variable index.
-  std::optional<int64_t> Offset = 0;
-  /// The path is not the classes' own: it goes by bytes, or by the shape that
-  /// the calling convention gives an object in registers.
-  bool ByOffset = false;
-};
-
-static PointerChain chainOf(const Value *Pointer, TypeNumbers &Numbers,
-                            const DataLayout &Layout) {
-  PointerChain C{Pointer, {}, 0, false};
+/// What is between a pointer and the pointer that it is computed from.
+static const Value *throughCasts(const Value *V) {
   while (true) {
-    if (const auto *GEP = dyn_cast<GEPOperator>(C.Base)) {
-      Type *T = GEP->getSourceElementType();
-      const auto *Struct = dyn_cast<StructType>(T);
-      C.ByOffset |= (T->isIntegerTy(8) && !GEP->hasAllZeroIndices()) ||
-                    (Struct && Struct->isLiteral());
-      APInt Bytes(Layout.getIndexTypeSizeInBits(GEP->getType()), 0);
-      if (C.Offset && GEP->accumulateConstantOffset(Layout, Bytes))
-        *C.Offset += Bytes.getSExtValue();
-      else
-        C.Offset = std::nullopt;
-      SmallVector<Step, 4> Steps = stepsOf(*GEP, Numbers);
-      C.Path.insert(C.Path.begin(), Steps.begin(), Steps.end());
-      C.Base = GEP->getPointerOperand();
-    } else if (const auto *Cast = dyn_cast<CastInst>(C.Base);
-               Cast && Cast->getOperand(0)->getType()->isPointerTy()) {
-      C.Base = Cast->getOperand(0);
-    } else if (const auto *Freeze = dyn_cast<FreezeInst>(C.Base)) {
-      C.Base = Freeze->getOperand(0);
-    } else {
-      return C;
-    }
+    if (const auto *Cast = dyn_cast<CastInst>(V);
+        Cast && Cast->getOperand(0)->getType()->isPointerTy())
+      V = Cast->getOperand(0);
+    else if (const auto *Freeze = dyn_cast<FreezeInst>(V))
+      V = Freeze->getOperand(0);
+    else
+      return V;
   }
 }
 
 /// Adds the locations that \p Pointer can lead to, as far as it is known by
 /// now what the pointers that it is computed from lead to.
 void AccessResult::addPointees(const Value *Pointer, Locations &Out) const {
-  PointerChain C = chainOf(Pointer, Numbers, *Layout);
-  Locations Objects;
-  if (isa<GlobalVariable>(C.Base) || isa<AllocaInst>(C.Base))
-    Objects.push_back({C.Base, {}});
-  else if (C.ByOffset || C.Path.empty())
-    if (auto It = Targets.find(C.Base); It != Targets.end())
-      Objects = It->second;
-  bool Rooted = !Objects.empty() && Objects.front().Root == C.Base;
-  for (const Location &Object : Objects) {
-    if (!C.ByOffset) {
-      Location L = Object;
-      L.Path.append(C.Path);
-      addTo(Out, std::move(L));
-    } else if (C.Offset) {
-      Rooted &= addByOffset(Object, *C.Offset, Out);
-    }
+  SmallVector<const GEPOperator *, 4> Chain;
+  const Value *Base = throughCasts(Pointer);
+  while (const auto *GEP = dyn_cast<GEPOperator>(Base)) {
+    if (!GEP->hasAllZeroIndices() || GEP->getNumIndices() > 1)
+      Chain.push_back(GEP);
+    Base = throughCasts(GEP->getPointerOperand());
   }
-  // A base class inside an object: its fields are known by the class alone.
-  if (!Rooted && !C.Path.empty() &&
-      !Numbers.typeOf(C.Path.front().Type)->isLiteral())
-    addTo(Out, {nullptr, C.Path});
+  Locations Objects;
+  bool Rooted = isa<GlobalVariable>(Base) || isa<AllocaInst>(Base);
+  if (Rooted)
+    Objects.push_back({Base, {}});
+  else if (auto It = Targets.find(Base); It != Targets.end())
+    Objects = It->second;
+  // Besides the objects that are known there are those that are not: of them
+  // the path alone is known, from its first class on.
+  if (!Rooted)
+    Objects.insert(Objects.begin(), Location());
+  for (Location L : Objects) {
+    bool Unknown = !L.isKnown();
+    int64_t Bytes = 0;
+    bool Valid = true;
+    for (const GEPOperator *GEP : reverse(Chain)) {
+      auto *Struct = dyn_cast<StructType>(GEP->getSourceElementType());
+      // By bytes, or by the shape that the calling convention gives an object
+      // in registers: the way has to be found in the object itself.
+      if ((Struct && Struct->isLiteral()) ||
+          GEP->getSourceElementType()->isIntegerTy(8)) {
+        APInt Offset(Layout->getIndexTypeSizeInBits(GEP->getType()), 0);
+        Valid &= GEP->accumulateConstantOffset(*Layout, Offset);
+        Bytes += Offset.getSExtValue();
+        continue;
+      }
+      if (!Struct)
+        continue;
+      // A base class, or what a pointer of another type was made of.
+      if (L.isKnown() && (Bytes != 0 || elementOf(typeAt(L)) != Struct)) {
+        Location Inner = L;
+        L = descend(Inner, Bytes, Struct) ? Inner : Location();
+      }
+      Bytes = 0;
+      Valid = true;
+      L.Path.append(stepsOf(*GEP, Numbers, *Debug));
+    }
+    if (!Valid || !L.isKnown() || (Unknown && Chain.empty()))
+      continue;
+    if (Bytes == 0 || descend(L, Bytes, nullptr))
+      addTo(Out, std::move(L));
+  }
 }
 
 Locations AccessResult::resolve(const Value *Pointer, bool Scalar) const {
@@ -355,7 +390,7 @@ void AccessResult::collectWrites(const Location &L,
     auto It = StoreIndex.find(slot(Here));
     if (It != StoreIndex.end())
       for (unsigned N : It->second)
-        if (Stores[N].Where.mayBe(Here))
+        if (mayBe(Stores[N].Where, Here))
           Out.insert(Stores[N].I);
     eachObject(Here, HandedIndex, [&](unsigned N) {
       if (partOf(Handed[N].Where, Here))
@@ -370,7 +405,7 @@ void AccessResult::collectLoads(const Location &L,
     auto It = LoadIndex.find(slot(Here));
     if (It != LoadIndex.end())
       for (unsigned N : It->second)
-        if (Loads[N].Where.mayBe(Here))
+        if (mayBe(Loads[N].Where, Here))
           Out.insert(cast<LoadInst>(Loads[N].I));
   }
 }
@@ -506,6 +541,7 @@ struct AccessResult::Builder {
   };
   SmallVector<Node, 0> Nodes;
 
+  void findEscaped();
   void makeNodes();
   void returned(const CallBase &Call, Node &N) const;
   bool propagate();
@@ -537,6 +573,34 @@ void AccessResult::Builder::returned(const CallBase &Call, Node &N) const {
           N.Sources.push_back(Call.getArgOperand(Arg->getArgNo()));
         else
           N.Sources.push_back(V);
+      }
+    }
+}
+
+/// A local escapes where its address is stored or returned, or goes into a
+/// function that is looked into.
+void AccessResult::Builder::findEscaped() {
+  for (Function &F : definedFunctions(M))
+    for (Instruction &I : instructions(F)) {
+      if (!isa<AllocaInst>(&I))
+        continue;
+      SmallVector<const Value *, 8> Work{&I};
+      SmallPtrSet<const Value *, 8> Seen;
+      while (!Work.empty()) {
+        const Value *V = Work.pop_back_val();
+        if (!Seen.insert(V).second)
+          continue;
+        for (const Use &U : V->uses()) {
+          const auto *User = cast<Instruction>(U.getUser());
+          const auto *Call = dyn_cast<CallBase>(User);
+          if (isa<GEPOperator>(User) || isa<CastInst>(User))
+            Work.push_back(User);
+          else if (isa<PHINode>(User) || isa<SelectInst>(User) ||
+                   isa<ReturnInst>(User) ||
+                   (isa<StoreInst>(User) && U.getOperandNo() == 0) ||
+                   (Call && !Calls.callees(*Call).empty()))
+            R.Escaped.insert(&I);
+        }
       }
     }
 }
@@ -581,7 +645,7 @@ bool AccessResult::Builder::propagate() {
       for (const Location &L : R.resolve(Load->getPointerOperand(), true))
         if (auto It = R.StoreIndex.find(slot(L)); It != R.StoreIndex.end())
           for (unsigned S : It->second)
-            if (R.Stores[S].Where.mayBe(L))
+            if (R.mayBe(R.Stores[S].Where, L))
               R.addPointees(cast<StoreInst>(R.Stores[S].I)->getValueOperand(),
                             Found);
     if (Found.size() == Before)
@@ -637,11 +701,13 @@ void AccessResult::Builder::fileRest() {
 AccessResult ClassObjectAccess::run(Module &M, ModuleAnalysisManager &AM) {
   AccessResult R;
   R.Layout = &M.getDataLayout();
+  R.Debug = std::make_unique<DebugTypes>(*R.Layout);
   AccessResult::Builder B{R,
                           AM.getResult<SimpleCallGraph>(M),
                           AM.getResult<RuleAnalysis>(M),
                           M,
                           {}};
+  B.findEscaped();
   B.makeNodes();
   bool Changed = true;
   for (unsigned Round = 0; Round < MaxRounds && Changed; ++Round) {

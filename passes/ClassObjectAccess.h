@@ -16,9 +16,11 @@
 #ifndef TPC_CLASSOBJECTACCESS_H
 #define TPC_CLASSOBJECTACCESS_H
 
+#include "DebugTypes.h"
 #include "SimpleCallGraph.h"
 
 #include "llvm/ADT/DenseMap.h"
+#include "llvm/ADT/DenseSet.h"
 #include "llvm/ADT/SetVector.h"
 #include "llvm/ADT/SmallVector.h"
 #include "llvm/ADT/StringMap.h"
@@ -26,16 +28,21 @@
 #include "llvm/IR/Instructions.h"
 #include "llvm/IR/PassManager.h"
 
+#include <memory>
 #include <optional>
 
 namespace tpc {
 
-/// One step into a class: its number (see TypeNumbers) and the field's index.
+/// One step into a class: the number of its layout (see TypeNumbers), the
+/// field's index, and which class of the source it is (see DebugTypes), 0 where
+/// that is not known.
 struct Step {
   unsigned Type;
   unsigned Index;
+  unsigned Class = 0;
   bool operator==(const Step &O) const {
-    return Type == O.Type && Index == O.Index;
+    return Type == O.Type && Index == O.Index &&
+           (Class == O.Class || !Class || !O.Class);
   }
 };
 
@@ -107,6 +114,7 @@ public:
   llvm::SmallVector<llvm::Instruction *, 8> writesInto(const Location &L) const;
 
   const TypeNumbers &types() const { return Numbers; }
+  DebugTypes &debugTypes() const { return *Debug; }
   llvm::ArrayRef<Access> loads() const { return Loads; }
   llvm::ArrayRef<Access> stores() const { return Stores; }
 
@@ -133,8 +141,10 @@ private:
   void enterScalar(Location &L) const;
   void addScalarsOf(const Location &L, Locations &Out) const;
   llvm::Type *typeAt(const Location &L) const;
-  bool addByOffset(const Location &Object, int64_t Offset,
-                   Locations &Out) const;
+  const llvm::DIType *debugTypeAt(const Location &L) const;
+  bool descend(Location &L, int64_t &Offset, llvm::StructType *Until) const;
+  void enterField(Location &L, llvm::StructType *T, unsigned Field) const;
+  bool mayBe(const Location &A, const Location &B) const;
   bool contains(llvm::Type *Outer, unsigned Inner) const;
   std::optional<llvm::SmallVector<Step, 4>> partOf(const Location &Object,
                                                    const Location &L) const;
@@ -153,6 +163,9 @@ private:
             llvm::Instruction &I, const Location &L);
 
   const llvm::DataLayout *Layout = nullptr;
+  std::unique_ptr<DebugTypes> Debug;
+  /// The locals that code elsewhere can reach without naming them.
+  llvm::DenseSet<const llvm::Value *> Escaped;
   mutable TypeNumbers Numbers;
   /// What the pointers that are not computed on the spot can lead to:
   /// arguments, results, merges, and pointers that were in memory.

@@ -101,7 +101,8 @@ public:
         Calls(AM.getResult<SimpleCallGraph>(M)),
         Usage(AM.getResult<ParamUsageFinder>(M)),
         Slice(AM.getResult<BackwardPropagate>(M)),
-        Gathered(AM.getResult<GatherResults>(M)), Names(M, Access.types()) {}
+        Gathered(AM.getResult<GatherResults>(M)),
+        Names(Access.types(), Access.debugTypes()) {}
 
   json::Array parameters() const;
   json::Array exposing() const;

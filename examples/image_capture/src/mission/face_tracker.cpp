@@ -5,7 +5,7 @@
 namespace image_capture {
 
 FaceTracker::FaceTracker(ros::NodeHandle &private_nh) {
-  private_nh.param("face_detection_threshold", face_detection_threshold_, 20);
+  private_nh.param("face_detection_threshold", face_detection_threshold_, 25);
   private_nh.param("association_gate", association_gate_, 0.35);
   private_nh.param("lost_face_timeout", lost_face_timeout_, 0.8);
   private_nh.param("min_track_coverage", min_track_coverage_, 0.006);

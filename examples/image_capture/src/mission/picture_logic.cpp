@@ -7,7 +7,7 @@ namespace image_capture {
 PictureLogic::PictureLogic(ros::NodeHandle &private_nh) {
   private_nh.param("min_coverage_limit", min_coverage_limit_, 0.035);
   private_nh.param("max_coverage_limit", max_coverage_limit_, 0.2);
-  private_nh.param("center_tolerance", center_tolerance_, 0.2);
+  private_nh.param("center_tolerance", center_tolerance_, 0.25);
   private_nh.param("capture_cooldown", capture_cooldown_, 2.0);
   private_nh.param("standoff_distance", standoff_distance_, 2.2);
   private_nh.param("max_selfie_count", max_selfie_count_, 1);

@@ -74,7 +74,7 @@ void CameraModel::addPerson(const UavState &uav, double time,
 void CameraModel::schedulePhantom(double after) {
   // A second passes at least: the leaves have to swing back.
   phantom_.begin = after + 1.0 + noise_.waitingTime(phantom_pause_);
-  phantom_.end = phantom_.begin + noise_.uniform(0.8, 1.6);
+  phantom_.end = phantom_.begin + noise_.uniform(1.0, 1.8);
   phantom_placed_ = false;
 }
 
@@ -85,9 +85,9 @@ void CameraModel::addPhantom(const UavState &uav, double time,
   if (time < phantom_.begin)
     return;
   if (!phantom_placed_) {
-    const double angle = noise_.uniform(-0.9, 0.9) * half_angle_;
+    const double angle = noise_.uniform(-0.8, 0.8) * half_angle_;
     phantom_.bearing = uav.yaw + angle;
-    phantom_.coverage = noise_.uniform(0.02, 0.16);
+    phantom_.coverage = noise_.uniform(0.03, 0.16);
     phantom_.aspect = noise_.uniform(1.0, 1.5);
     phantom_placed_ = true;
   }

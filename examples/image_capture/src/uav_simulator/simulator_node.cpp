@@ -96,7 +96,7 @@ void SimulatorNode::tick() {
 }
 
 void SimulatorNode::waitForController() {
-  if (command_ticks_ < 0)
+  if (command_ticks_ < 0 || sensor_ticks_ != ticks_)
     return;
   // On a busy machine the time waits for the controller, so that the flight
   // does not depend on the load.

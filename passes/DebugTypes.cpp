@@ -1,0 +1,213 @@
+//===- DebugTypes.cpp -----------------------------------------------------===//
+#include "DebugTypes.h"
+
+#include "llvm/BinaryFormat/Dwarf.h"
+#include "llvm/IR/DebugInfo.h"
+#include "llvm/IR/InstrTypes.h"
+#include "llvm/IR/Instructions.h"
+#include "llvm/IR/Module.h"
+
+using namespace llvm;
+
+namespace tpc {
+
+/// \p T without typedefs and qualifiers.
+static const DIType *plain(const DIType *T) {
+  while (const auto *Derived = dyn_cast_or_null<DIDerivedType>(T)) {
+    switch (Derived->getTag()) {
+    case dwarf::DW_TAG_typedef:
+    case dwarf::DW_TAG_const_type:
+    case dwarf::DW_TAG_volatile_type:
+      T = Derived->getBaseType();
+      continue;
+    default:
+      return T;
+    }
+  }
+  return T;
+}
+
+/// What a pointer or reference of type \p T leads to; null for other types.
+static const DIType *dereferenced(const DIType *T) {
+  const auto *Derived = dyn_cast_or_null<DIDerivedType>(plain(T));
+  if (!Derived)
+    return nullptr;
+  switch (Derived->getTag()) {
+  case dwarf::DW_TAG_pointer_type:
+  case dwarf::DW_TAG_reference_type:
+  case dwarf::DW_TAG_rvalue_reference_type:
+    return plain(Derived->getBaseType());
+  default:
+    return nullptr;
+  }
+}
+
+/// The element of an array, of whatever dimension; else \p T.
+static const DIType *element(const DIType *T) {
+  const auto *Array = dyn_cast_or_null<DICompositeType>(plain(T));
+  return Array && Array->getTag() == dwarf::DW_TAG_array_type
+             ? plain(Array->getBaseType())
+             : plain(T);
+}
+
+const DIDerivedType *DebugTypes::memberAt(const DICompositeType *Class,
+                                          uint64_t Bits) const {
+  for (const DINode *N : Class->getElements()) {
+    const auto *Member = dyn_cast_or_null<DIDerivedType>(N);
+    if (!Member || Member->isStaticMember() ||
+        Member->getOffsetInBits() != Bits)
+      continue;
+    // An empty base class shares its place with what follows it.
+    const auto *Base = dyn_cast_or_null<DICompositeType>(
+        Member->getTag() == dwarf::DW_TAG_inheritance
+            ? plain(Member->getBaseType())
+            : nullptr);
+    if (Member->getTag() == dwarf::DW_TAG_member ||
+        (Base && Base->getSizeInBits() > 8))
+      return Member;
+  }
+  return nullptr;
+}
+
+const DICompositeType *DebugTypes::asStruct(const DIType *T,
+                                            StructType *Struct) const {
+  uint64_t Bits = Struct->isSized()
+                      ? Layout.getTypeAllocSize(Struct).getFixedValue() * 8
+                      : 0;
+  const auto *Class = dyn_cast_or_null<DICompositeType>(element(T));
+  while (Class && Class->getSizeInBits() != Bits) {
+    // `class.A.base` is A without the padding at its end.
+    if (Struct->hasName() && Struct->getName().contains(".base") &&
+        Class->getSizeInBits() >= Bits && Class->getSizeInBits() < Bits + 64)
+      return Class;
+    const DIDerivedType *First = memberAt(Class, 0);
+    Class =
+        First ? dyn_cast_or_null<DICompositeType>(element(First->getBaseType()))
+              : nullptr;
+  }
+  return Class;
+}
+
+const DIType *DebugTypes::field(const DICompositeType *Class,
+                                StructType *Struct, unsigned Index) const {
+  if (!Class || !Struct->isSized())
+    return nullptr;
+  const DIDerivedType *Member = memberAt(
+      Class, Layout.getStructLayout(Struct)->getElementOffsetInBits(Index));
+  return Member ? plain(Member->getBaseType()) : nullptr;
+}
+
+StringRef DebugTypes::fieldName(const DICompositeType *Class,
+                                StructType *Struct, unsigned Index) const {
+  const DIDerivedType *Member = memberAt(
+      Class, Layout.getStructLayout(Struct)->getElementOffsetInBits(Index));
+  return Member && Member->getTag() == dwarf::DW_TAG_member ? Member->getName()
+                                                            : "";
+}
+
+unsigned DebugTypes::numberOf(const DICompositeType *Class) {
+  if (!Class)
+    return 0;
+  unsigned &Number = Numbers[Class];
+  if (Number)
+    return Number;
+  // Classes with a name across files carry it as their identifier.
+  if (StringRef Name = Class->getIdentifier(); !Name.empty()) {
+    unsigned &Same = ByIdentifier[Name];
+    if (Same)
+      return Number = Same;
+    Same = Classes.size() + 1;
+  }
+  Classes.push_back(Class);
+  return Number = Classes.size();
+}
+
+const DIType *DebugTypes::ofArgument(const Argument &Arg) const {
+  const Function *F = Arg.getParent();
+  const DISubprogram *SP = F->getSubprogram();
+  if (!SP || !SP->getType())
+    return nullptr;
+  DITypeRefArray Types = SP->getType()->getTypeArray();
+  if (Arg.hasStructRetAttr())
+    return Types.size() ? plain(Types[0]) : nullptr;
+  unsigned Hidden = F->hasStructRetAttr() ? 1 : 0;
+  // Objects that go in registers take several arguments: then nothing fits.
+  if (Types.size() == 0 || F->arg_size() - Hidden != Types.size() - 1)
+    return nullptr;
+  const DIType *T = Types[Arg.getArgNo() - Hidden + 1];
+  return Arg.hasByValAttr() ? plain(T) : dereferenced(T);
+}
+
+const DIType *DebugTypes::ofElement(const GEPOperator &GEP) {
+  const DIType *T = pointee(GEP.getPointerOperand());
+  Type *Source = GEP.getSourceElementType();
+  auto *Struct = dyn_cast<StructType>(Source);
+  if (!T || (Struct && Struct->isLiteral()))
+    return nullptr;
+  if (Source->isIntegerTy(8)) {
+    APInt Bytes(Layout.getIndexTypeSizeInBits(GEP.getType()), 0);
+    const auto *Class = dyn_cast<DICompositeType>(T);
+    if (!Class || !GEP.accumulateConstantOffset(Layout, Bytes))
+      return nullptr;
+    const DIDerivedType *Member = memberAt(Class, Bytes.getZExtValue() * 8);
+    return Member ? plain(Member->getBaseType()) : nullptr;
+  }
+  for (const Use &U : drop_begin(GEP.indices())) {
+    if (auto *S = dyn_cast<StructType>(Source)) {
+      unsigned Index = cast<ConstantInt>(U.get())->getZExtValue();
+      T = field(asStruct(T, S), S, Index);
+    } else {
+      T = element(T);
+    }
+    Source = GetElementPtrInst::getTypeAtIndex(Source, U.get());
+  }
+  return T;
+}
+
+const DIType *DebugTypes::find(const Value *Pointer) {
+  if (const auto *Arg = dyn_cast<Argument>(Pointer))
+    return ofArgument(*Arg);
+  if (const auto *GEP = dyn_cast<GEPOperator>(Pointer))
+    return ofElement(*GEP);
+  if (const auto *Local = dyn_cast<AllocaInst>(Pointer)) {
+    for (DbgVariableRecord *R :
+         findDVRDeclares(const_cast<AllocaInst *>(Local)))
+      return plain(R->getVariable()->getType());
+    return nullptr;
+  }
+  if (const auto *Global = dyn_cast<GlobalVariable>(Pointer)) {
+    SmallVector<DIGlobalVariableExpression *, 1> Infos;
+    Global->getDebugInfo(Infos);
+    return Infos.empty() ? nullptr
+                         : plain(Infos.front()->getVariable()->getType());
+  }
+  if (const auto *Load = dyn_cast<LoadInst>(Pointer))
+    return dereferenced(pointee(Load->getPointerOperand()));
+  if (const auto *Call = dyn_cast<CallBase>(Pointer)) {
+    const Function *Callee = Call->getCalledFunction();
+    const DISubprogram *SP = Callee ? Callee->getSubprogram() : nullptr;
+    if (!SP || !SP->getType() || SP->getType()->getTypeArray().size() == 0)
+      return nullptr;
+    return dereferenced(SP->getType()->getTypeArray()[0]);
+  }
+  if (const auto *Phi = dyn_cast<PHINode>(Pointer)) {
+    for (const Value *V : Phi->incoming_values())
+      if (const DIType *T = pointee(V))
+        return T;
+    return nullptr;
+  }
+  if (const auto *Select = dyn_cast<SelectInst>(Pointer))
+    return pointee(Select->getTrueValue());
+  return nullptr;
+}
+
+const DIType *DebugTypes::pointee(const Value *Pointer) {
+  // A way round a loop finds null here, and goes on without.
+  auto [It, New] = Known.try_emplace(Pointer, nullptr);
+  if (!New)
+    return It->second;
+  const DIType *T = find(Pointer);
+  return Known[Pointer] = T;
+}
+
+} // namespace tpc

@@ -1,0 +1,60 @@
+//===- DebugTypes.h - The source's classes, from debug information --------===//
+//
+// When files are linked, LLVM makes one type of all classes that look alike:
+// a pair of doubles is a pair of doubles. The classes of the source survive in
+// the debug information. This finds the one that a pointer leads to.
+//
+//===----------------------------------------------------------------------===//
+#ifndef TPC_DEBUGTYPES_H
+#define TPC_DEBUGTYPES_H
+
+#include "llvm/ADT/DenseMap.h"
+#include "llvm/ADT/StringMap.h"
+#include "llvm/IR/DebugInfoMetadata.h"
+#include "llvm/IR/DerivedTypes.h"
+#include "llvm/IR/Operator.h"
+
+namespace tpc {
+
+class DebugTypes {
+public:
+  explicit DebugTypes(const llvm::DataLayout &Layout) : Layout(Layout) {}
+
+  /// The type of what \p Pointer points to; null where that is not known.
+  const llvm::DIType *pointee(const llvm::Value *Pointer);
+
+  /// \p T, or the base class at its beginning, that LLVM lays out as \p Struct;
+  /// null where neither is.
+  const llvm::DICompositeType *asStruct(const llvm::DIType *T,
+                                        llvm::StructType *Struct) const;
+
+  /// The type of field \p Index of \p Class, laid out as \p Struct.
+  const llvm::DIType *field(const llvm::DICompositeType *Class,
+                            llvm::StructType *Struct, unsigned Index) const;
+  /// Its name; empty for a base class.
+  llvm::StringRef fieldName(const llvm::DICompositeType *Class,
+                            llvm::StructType *Struct, unsigned Index) const;
+
+  /// A number for \p Class, the same in all files; 0 for null.
+  unsigned numberOf(const llvm::DICompositeType *Class);
+  const llvm::DICompositeType *classOf(unsigned Number) const {
+    return Number ? Classes[Number - 1] : nullptr;
+  }
+
+private:
+  const llvm::DIType *find(const llvm::Value *Pointer);
+  const llvm::DIType *ofArgument(const llvm::Argument &Arg) const;
+  const llvm::DIType *ofElement(const llvm::GEPOperator &GEP);
+  const llvm::DIDerivedType *memberAt(const llvm::DICompositeType *Class,
+                                      uint64_t Bits) const;
+
+  const llvm::DataLayout &Layout;
+  llvm::DenseMap<const llvm::Value *, const llvm::DIType *> Known;
+  llvm::DenseMap<const llvm::DICompositeType *, unsigned> Numbers;
+  llvm::StringMap<unsigned> ByIdentifier;
+  llvm::SmallVector<const llvm::DICompositeType *, 0> Classes;
+};
+
+} // namespace tpc
+
+#endif // TPC_DEBUGTYPES_H
