@@ -38,6 +38,13 @@ unsigned TypeNumbers::numberOf(StructType *T) {
   SmallVector<unsigned, 1> &Alike = ByName[Name];
   for (unsigned N : Alike) {
     ArrayRef<Type *> Mine = T->elements(), Theirs = Types[N]->elements();
+    // As a base class, a class is there without the padding at its end.
+    if (T->hasName() && T->getName().contains(".base") !=
+                            Types[N]->getName().contains(".base")) {
+      size_t Common = std::min(Mine.size(), Theirs.size());
+      Mine = Mine.take_front(Common);
+      Theirs = Theirs.take_front(Common);
+    }
     if (Mine.size() == Theirs.size() &&
         all_of(zip(Mine, Theirs), [](auto Pair) {
           auto [A, B] = Pair;
@@ -208,7 +215,8 @@ bool AccessResult::descend(Location &L, int64_t &Offset,
   Type *T = elementOf(typeAt(L));
   while (T && Offset >= 0) {
     auto *Class = dyn_cast<StructType>(T);
-    if (Class && Class == Until && Offset == 0)
+    if (Class && Until && Offset == 0 &&
+        Numbers.numberOf(Class) == Numbers.numberOf(Until))
       return true;
     if (!Class || Class->isOpaque() || Class->getNumElements() == 0)
       break;

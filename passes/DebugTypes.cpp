@@ -1,6 +1,8 @@
 //===- DebugTypes.cpp -----------------------------------------------------===//
 #include "DebugTypes.h"
 
+#include "Names.h"
+
 #include "llvm/BinaryFormat/Dwarf.h"
 #include "llvm/IR/DebugInfo.h"
 #include "llvm/IR/InstrTypes.h"
@@ -74,18 +76,29 @@ const DICompositeType *DebugTypes::asStruct(const DIType *T,
   uint64_t Bits = Struct->isSized()
                       ? Layout.getTypeAllocSize(Struct).getFixedValue() * 8
                       : 0;
+  // `class.A.base` is A without the padding at its end.
+  bool Unpadded = Struct->hasName() && Struct->getName().contains(".base");
+  StringRef Name = plainClassName(*Struct).rsplit(':').second;
+  if (Name.empty())
+    Name = plainClassName(*Struct);
+  const DICompositeType *Fits = nullptr;
   const auto *Class = dyn_cast_or_null<DICompositeType>(element(T));
-  while (Class && Class->getSizeInBits() != Bits) {
-    // `class.A.base` is A without the padding at its end.
-    if (Struct->hasName() && Struct->getName().contains(".base") &&
-        Class->getSizeInBits() >= Bits && Class->getSizeInBits() < Bits + 64)
-      return Class;
+  while (Class) {
+    uint64_t Size = Class->getSizeInBits();
+    if (Size == Bits || (Unpadded && Size >= Bits && Size < Bits + 64)) {
+      // The name decides where it can; the linker may have taken that of
+      // another class that looks alike.
+      if (Class->getName().split('<').first == Name)
+        return Class;
+      if (!Fits)
+        Fits = Class;
+    }
     const DIDerivedType *First = memberAt(Class, 0);
     Class =
         First ? dyn_cast_or_null<DICompositeType>(element(First->getBaseType()))
               : nullptr;
   }
-  return Class;
+  return Fits;
 }
 
 const DIType *DebugTypes::field(const DICompositeType *Class,

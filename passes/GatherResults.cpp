@@ -2,14 +2,18 @@
 #include "GatherResults.h"
 
 #include "IfStatements.h"
+#include "Names.h"
 #include "Options.h"
 #include "ParamCallFinder.h"
 #include "Print.h"
 
 #include "llvm/ADT/EquivalenceClasses.h"
+#include "llvm/ADT/SetVector.h"
+#include "llvm/ADT/StringExtras.h"
 #include "llvm/IR/CFG.h"
 #include "llvm/IR/Instructions.h"
 #include "llvm/IR/Module.h"
+#include "llvm/Support/SHA1.h"
 
 using namespace llvm;
 
@@ -97,50 +101,112 @@ static const BranchInst *nextBranch(const BasicBlock *BB) {
   return nullptr;
 }
 
-/// True where \p A and \p B are operands of one `&&` or `||`, A before B: they
-/// share a way out, and belong to one statement. Clang gives a statement's
-/// condition a scope of its own, in which all operands stand but the last; that
-/// one has the statement's place.
-static bool sameCondition(const BranchInst &A, const BranchInst &B) {
+/// True where \p A and \p B can belong to one condition, A before B. Clang
+/// gives a statement's condition a scope of its own, in which all operands
+/// stand but the last; that one has the statement's place.
+static bool sameStatement(const BranchInst &A, const BranchInst &B) {
   const DILocation *LocA = A.getDebugLoc(), *LocB = B.getDebugLoc();
   if (!LocA || !LocB)
     return false;
   const auto *Scope = dyn_cast<DILexicalBlock>(LocA->getScope());
-  bool LastOperand = Scope && Scope->getScope() == LocB->getScope() &&
-                     Scope->getLine() == LocB->getLine() &&
-                     Scope->getColumn() == LocB->getColumn();
-  if (LocA->getScope() != LocB->getScope() && !LastOperand)
-    return false;
-  return any_of(successors(&A), [&](const BasicBlock *S) {
-    return is_contained(successors(&B), S);
-  });
+  return LocA->getScope() == LocB->getScope() ||
+         (Scope && Scope->getScope() == LocB->getScope() &&
+          Scope->getLine() == LocB->getLine() &&
+          Scope->getColumn() == LocB->getColumn());
+}
+
+/// The ways out of \p Br, past blocks that only end a condition.
+static SmallVector<const BasicBlock *, 2> waysOut(const BranchInst &Br) {
+  SmallVector<const BasicBlock *, 2> Ways;
+  for (const BasicBlock *S : successors(&Br)) {
+    const BasicBlock *On = decidedWay(Br.getParent(), S);
+    Ways.push_back(On ? On : S);
+  }
+  return Ways;
+}
+
+/// The branches that are operands of one `&&` or `||` with \p First and come
+/// after it: of its statement, and with a way out that is also its own.
+static SmallVector<const BranchInst *, 4>
+sameCondition(const BranchInst &First) {
+  SmallVector<const BranchInst *, 4> Found;
+  SmallSetVector<const BranchInst *, 8> Chain;
+  Chain.insert(&First);
+  for (unsigned N = 0; N < Chain.size() && N < 16; ++N)
+    for (const BasicBlock *S : successors(Chain[N])) {
+      const BranchInst *Next = nextBranch(S);
+      if (Next && sameStatement(First, *Next))
+        Chain.insert(Next);
+    }
+  SmallVector<const BasicBlock *, 2> Own = waysOut(First);
+  for (const BranchInst *Br : drop_begin(Chain))
+    if (any_of(waysOut(*Br),
+               [&](const BasicBlock *W) { return is_contained(Own, W); }))
+      Found.push_back(Br);
+  return Found;
 }
 
 /// Counts for each comparison the others of its condition.
 static void countOthers(std::vector<Comparison> &All) {
   EquivalenceClasses<const Instruction *> Conditions;
+  SmallSetVector<const BranchInst *, 8> Work;
   for (const Comparison &C : All) {
-    SmallVector<const Instruction *, 8> Work{C.Predicate};
     Conditions.insert(C.Predicate);
-    while (!Work.empty()) {
-      const auto *Br = dyn_cast<BranchInst>(Work.pop_back_val());
-      if (!Br)
-        continue;
-      for (const BasicBlock *S : successors(Br)) {
-        const BranchInst *Next = nextBranch(S);
-        if (!Next || Next == Br || !sameCondition(*Br, *Next))
-          continue;
-        if (Conditions.findValue(Next) == Conditions.end())
-          Work.push_back(Next);
-        Conditions.unionSets(Br, Next);
-      }
-    }
+    if (const auto *Br = dyn_cast<BranchInst>(C.Predicate))
+      Work.insert(Br);
   }
+  for (unsigned N = 0; N < Work.size(); ++N)
+    for (const BranchInst *Br : sameCondition(*Work[N])) {
+      Conditions.unionSets(Work[N], Br);
+      Work.insert(Br);
+    }
   for (Comparison &C : All)
     C.OtherThresholds = count_if(All, [&](const Comparison &O) {
       return &O != &C && Conditions.isEquivalent(C.Predicate, O.Predicate) &&
              (O.Compare != C.Compare || !C.Compare);
     });
+}
+
+/// A UUID of version 5 (RFC 4122) of \p Name, in a namespace of our own.
+static std::string uuidOf(StringRef Name) {
+  static constexpr uint8_t Namespace[16] = {0x6b, 0x0f, 0x7a, 0x52, 0x2c, 0x9e,
+                                            0x4d, 0x61, 0x9a, 0x37, 0x8f, 0x15,
+                                            0xc3, 0x40, 0x5e, 0xd8};
+  SHA1 Hash;
+  Hash.update(ArrayRef(Namespace));
+  Hash.update(Name);
+  std::array<uint8_t, 20> Digest = Hash.final();
+  Digest[6] = (Digest[6] & 0x0f) | 0x50;
+  Digest[8] = (Digest[8] & 0x3f) | 0x80;
+  std::string Hex = toHex(ArrayRef(Digest).take_front(16), /*LowerCase=*/true);
+  return Hex.substr(0, 8) + "-" + Hex.substr(8, 4) + "-" + Hex.substr(12, 4) +
+         "-" + Hex.substr(16, 4) + "-" + Hex.substr(20);
+}
+
+/// Gives the comparisons their keys. What a macro writes several times has one
+/// place; there the order in the function tells it apart. Instances of one
+/// function have the same keys.
+static void nameAll(std::vector<Comparison> &All, const Options &Opts,
+                    const ParamCallFinder::Result &Reads) {
+  StringMap<MapVector<const Function *, SmallVector<const Instruction *, 1>>>
+      Places;
+  for (Comparison &C : All) {
+    const DILocation *Loc = C.place().getDebugLoc();
+    std::string Name = join(
+        std::initializer_list<std::string>{
+            Opts.Package, Opts.LinkUnit, Opts.relative(pathOf(Loc)),
+            functionName(*C.place().getFunction()),
+            std::to_string(Loc->getLine()), std::to_string(Loc->getColumn()),
+            Reads[C.Reads.front()].Name},
+        "\n");
+    auto &Here = Places[Name][C.place().getFunction()];
+    auto *Known = find(Here, &C.place());
+    if (size_t Ordinal = Known - Here.begin())
+      Name += "\n" + std::to_string(Ordinal);
+    if (Known == Here.end())
+      Here.push_back(&C.place());
+    C.Key = uuidOf(Name);
+  }
 }
 
 GatheredResults GatherResults::run(Module &M, ModuleAnalysisManager &AM) {
@@ -172,6 +238,8 @@ GatheredResults GatherResults::run(Module &M, ModuleAnalysisManager &AM) {
       ++R.OutsideSources;
       continue;
     }
+    if (P.ByArgument && P.Compare)
+      R.Shared.insert(P.Compare->getFunction());
     // A second read of the same parameter is the same comparison.
     auto Same = find_if(R.Comparisons, [&](const Comparison &O) {
       return O.Compare == C.Compare && O.Predicate == C.Predicate &&
@@ -184,6 +252,7 @@ GatheredResults GatherResults::run(Module &M, ModuleAnalysisManager &AM) {
       Same->Reads.push_back(P.Read);
   }
   countOthers(R.Comparisons);
+  nameAll(R.Comparisons, Opts, Reads);
   return R;
 }
 

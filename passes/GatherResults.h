@@ -10,6 +10,8 @@
 #include "BackwardPropagate.h"
 #include "ParamUsageFinder.h"
 
+#include "llvm/ADT/SetVector.h"
+
 namespace tpc {
 
 struct Comparison {
@@ -25,6 +27,7 @@ struct Comparison {
   llvm::SmallVector<unsigned, 1> Reads; ///< all of one parameter name
   SliceEntry Slice;
   unsigned OtherThresholds = 0;
+  std::string Key; ///< survives a rebuild
 
   /// Where it stands in the source.
   const llvm::Instruction &place() const {
@@ -40,7 +43,10 @@ struct Comparison {
 struct GatheredResults {
   /// In the order of the reads and then of the way forward.
   std::vector<Comparison> Comparisons;
-  unsigned OutsideSources = 0;   ///< comparisons in code that is not the user's
+  unsigned OutsideSources = 0; ///< comparisons in code that is not the user's
+  /// Functions that compare a parameter which one of several calls handed
+  /// them: their other calls compare something else.
+  llvm::SmallSetVector<llvm::Function *, 4> Shared;
   unsigned WithoutDebugInfo = 0; ///< comparisons whose place is not known
 };
 

@@ -39,11 +39,52 @@ IfStatementsResult::controllers(const BasicBlock *BB) const {
                                  : ArrayRef(It->second);
 }
 
+/// True where \p BB does more than to choose the way.
+static bool doesSomething(const BasicBlock &BB) {
+  return any_of(BB, [](const Instruction &I) {
+    return I.mayHaveSideEffects() && !I.isLifetimeStartOrEnd();
+  });
+}
+
+const BasicBlock *decidedWay(const BasicBlock *From, const BasicBlock *BB) {
+  const Instruction *T = BB->getTerminator();
+  if (!isPredicate(*T))
+    return nullptr;
+  const Value *Condition = conditionOf(*T);
+  bool Negated = false;
+  while (const auto *I = dyn_cast<Instruction>(Condition)) {
+    if (I->getOpcode() == Instruction::Xor && I->getType()->isIntegerTy(1) &&
+        isa<ConstantInt>(I->getOperand(1)))
+      Negated ^= cast<ConstantInt>(I->getOperand(1))->isOne();
+    else if (!isa<CastInst>(I))
+      break;
+    Condition = I->getOperand(0);
+  }
+  const auto *Phi = dyn_cast<PHINode>(Condition);
+  if (!Phi || Phi->getParent() != BB)
+    return nullptr;
+  const auto *C = dyn_cast<ConstantInt>(Phi->getIncomingValueForBlock(From));
+  if (!C)
+    return nullptr;
+  if (const auto *Br = dyn_cast<BranchInst>(T))
+    return Br->getSuccessor(C->isZero() == Negated ? 0 : 1);
+  const auto *Switch = cast<SwitchInst>(T);
+  for (auto Case : Switch->cases())
+    if (Case.getCaseValue()->getValue() ==
+        C->getValue().zextOrTrunc(Case.getCaseValue()->getBitWidth()))
+      return Case.getCaseSuccessor();
+  return Switch->getDefaultDest();
+}
+
 /// The flow graph of \p F without the edges that exceptions take, and with
 /// the two nodes of Ferrante et al. behind the blocks: the entry, from which
 /// the function is either entered or not, and the end of not entering it.
+///
+/// With \p Threaded, an edge into a block that is decided by the edge goes on
+/// to where the block then leads.
 static FlowGraph flowGraphOf(const Function &F,
-                             const DenseMap<const BasicBlock *, unsigned> &Id) {
+                             const DenseMap<const BasicBlock *, unsigned> &Id,
+                             bool Threaded) {
   FlowGraph Graph(F.size() + 2);
   Graph[F.size()] = {Id.lookup(&F.getEntryBlock()),
                      static_cast<unsigned>(F.size()) + 1};
@@ -53,8 +94,10 @@ static FlowGraph flowGraphOf(const Function &F,
       Succs.push_back(Id.lookup(Invoke->getNormalDest()));
       continue;
     }
-    for (const BasicBlock *Succ : successors(&BB))
-      Succs.push_back(Id.lookup(Succ));
+    for (const BasicBlock *Succ : successors(&BB)) {
+      const BasicBlock *On = Threaded ? decidedWay(&BB, Succ) : nullptr;
+      Succs.push_back(Id.lookup(On ? On : Succ));
+    }
   }
   return Graph;
 }
@@ -71,7 +114,20 @@ IfStatementsResult IfStatements::run(Module &M, ModuleAnalysisManager &) {
       Id[&BB] = Blocks.size();
       Blocks.push_back(&BB);
     }
-    auto Depends = controlDependence(flowGraphOf(F, Id));
+    FlowGraph Plain = flowGraphOf(F, Id, /*Threaded=*/false);
+    FlowGraph Threaded = flowGraphOf(F, Id, /*Threaded=*/true);
+    auto Depends = controlDependence(Threaded);
+    if (Plain != Threaded) {
+      // What a block does that edges were led past is done on all of them;
+      // one that does nothing is only the end of a condition.
+      auto Before = controlDependence(Plain);
+      for (unsigned N = 0; N < Blocks.size(); ++N)
+        if (doesSomething(*Blocks[N]) &&
+            any_of(predecessors(Blocks[N]), [&](const BasicBlock *P) {
+              return decidedWay(P, Blocks[N]);
+            }))
+          Depends[N] = Before[N];
+    }
     for (unsigned N = 0; N < Blocks.size(); ++N) {
       SmallVector<Instruction *, 2> Controllers;
       bool ByEntry = Depends[N].empty();

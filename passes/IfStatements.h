@@ -22,6 +22,13 @@ bool isPredicate(const llvm::Instruction &I);
 /// What \p Predicate decides by.
 llvm::Value *conditionOf(const llvm::Instruction &Predicate);
 
+/// Where \p BB is entered from \p From, the way that its terminator then goes
+/// for sure, because it decides by a value that is constant on this edge:
+/// clang ends the conditions of loops and variables, and scopes with something
+/// to clean up, in such a block. Null where both ways stay open.
+const llvm::BasicBlock *decidedWay(const llvm::BasicBlock *From,
+                                   const llvm::BasicBlock *BB);
+
 class IfStatementsResult {
 public:
   /// The terminators that \p BB is directly controlled by.

@@ -13,10 +13,10 @@ using namespace llvm;
 
 namespace tpc {
 
-std::optional<Report> planReport(const Comparison &C, std::string Key,
+std::optional<Report> planReport(const Comparison &C, bool IsUnsigned,
                                  const AnalysedModule &Analysed) {
   Report R;
-  R.Key = std::move(Key);
+  R.Key = C.Key;
   auto *Predicate = cast_or_null<Instruction>(Analysed.original(C.Predicate));
   if (!Predicate)
     return std::nullopt;
@@ -48,7 +48,13 @@ std::optional<Report> planReport(const Comparison &C, std::string Key,
   R.Threshold = Compare->getOperand(C.Threshold);
   R.Compared = Compare->getOperand(1 - C.Threshold);
   R.Outcome = Compare;
-  R.Signed = !Compare->isUnsigned();
+  // Equality does not say how its operands are to be read; what was widened
+  // with zeros was not negative.
+  R.Signed = !Compare->isUnsigned() &&
+             !(Compare->isEquality() &&
+               (IsUnsigned || any_of(Compare->operands(), [](const Use &U) {
+                  return isa<ZExtInst>(U);
+                })));
   R.Before = C.Direct ? Predicate : Compare->getNextNode();
   R.Result = C.Direct ? conditionOf(*Predicate) : Compare;
   return R;

@@ -28,8 +28,8 @@ struct Report {
 };
 
 /// The report for \p C, or none where a value of the analysed program has no
-/// counterpart in the original.
-std::optional<Report> planReport(const Comparison &C, std::string Key,
+/// counterpart in the original. \p IsUnsigned says so of the parameter's type.
+std::optional<Report> planReport(const Comparison &C, bool IsUnsigned,
                                  const AnalysedModule &Analysed);
 
 /// Inserts \p Reports. Where the module does not verify afterwards, takes them

@@ -42,8 +42,10 @@ struct Findings {
   std::string Failure;
 };
 
-static void analyse(AnalysedModule &Analysed, const Options &Opts,
-                    Findings &Out) {
+/// Analyses \p Analysed; returns the functions whose calls are to be told apart
+/// before that says all.
+static std::vector<std::string> analyse(AnalysedModule &Analysed,
+                                        const Options &Opts, Findings &Out) {
   if (Opts.InjectFailure)
     LLVM_BUILTIN_TRAP;
   // Managers of its own: what is analysed may be a copy that goes away again.
@@ -54,19 +56,27 @@ static void analyse(AnalysedModule &Analysed, const Options &Opts,
   if (const std::string &Error = AM.getResult<RuleAnalysis>(Seen).Error;
       !Error.empty()) {
     Out.Failure = Error;
-    return;
+    return {};
   }
   const GatheredResults &R = AM.getResult<GatherResults>(Seen);
   const ParamCallFinder::Result &Reads = AM.getResult<ParamCallFinder>(Seen);
   for (const Comparison &C : R.Comparisons) {
-    std::string Key = keyOf(Opts, C, Reads[C.Reads.front()].Name);
-    if (std::optional<Report> Plan = planReport(C, Key, Analysed))
+    StringRef Type = Reads[C.Reads.front()].Type;
+    bool IsUnsigned = Type.starts_with("unsigned") || Type == "bool";
+    if (std::optional<Report> Plan = planReport(C, IsUnsigned, Analysed))
       Out.Reports.push_back(std::move(*Plan));
     else
       ++Out.NotInstrumented;
   }
   Out.Unit = describe(Seen, AM, Opts);
+  std::vector<std::string> Shared;
+  for (const Function *F : R.Shared)
+    Shared.push_back(F->getName().str());
+  return Shared;
 }
+
+/// Functions in functions whose calls are told apart.
+static constexpr unsigned MaxSeparated = 3;
 
 /// Runs the analysis so that a crash in it is only a failure of it.
 static Findings analyseSafely(Module &M, const Options &Opts) {
@@ -74,11 +84,16 @@ static Findings analyseSafely(Module &M, const Options &Opts) {
   CrashRecoveryContext::Enable();
   CrashRecoveryContext Guard;
   bool Survived = Guard.RunSafely([&] {
-    AnalysedModule Analysed(M, Opts);
-    analyse(Analysed, Opts, Out);
+    for (unsigned Round = 0; Round <= MaxSeparated; ++Round) {
+      Out = Findings();
+      AnalysedModule Analysed(M, Opts);
+      std::vector<std::string> Shared = analyse(Analysed, Opts, Out);
+      if (Round == MaxSeparated || !separateCalls(M, Shared))
+        break;
+    }
   });
   if (!Survived) {
-    Out.Reports.clear();
+    Out = Findings();
     Out.Failure = "the analysis crashed";
   }
   return Out;
@@ -120,9 +135,8 @@ static OptimizationLevel levelOf(const Module &M) {
     for (StringRef Word : Words)
       Own = StringSwitch<OptimizationLevel>(Word)
                 .Case("-O0", OptimizationLevel::O0)
-                .Cases("-O1", "-Og", OptimizationLevel::O1)
-                .Cases("-O", "-O2", OptimizationLevel::O2)
-                .Cases("-Os", "-Oz", OptimizationLevel::O2)
+                .Cases("-O", "-O1", "-Og", OptimizationLevel::O1)
+                .Cases("-O2", "-Os", "-Oz", OptimizationLevel::O2)
                 .Cases("-O3", "-O4", "-Ofast", OptimizationLevel::O3)
                 .Default(Own);
     if (Own.getSpeedupLevel() > Level.getSpeedupLevel())

@@ -4,8 +4,10 @@
 #include "llvm/ADT/StringExtras.h"
 #include "llvm/Analysis/ValueTracking.h"
 #include "llvm/Demangle/Demangle.h"
+#include "llvm/IR/DebugInfoMetadata.h"
 #include "llvm/IR/InstrTypes.h"
 #include "llvm/IR/Instructions.h"
+#include "llvm/IR/IntrinsicInst.h"
 
 #include <cstdlib>
 
@@ -50,21 +52,51 @@ std::string qualifiedName(StringRef Mangled) {
   return withoutTemplateArguments(Scope.empty() ? Base : Scope + "::" + Base);
 }
 
-/// The constant that \p Call, a constructor of a string, gives its object.
-static std::optional<std::string> constructedText(const CallBase &Call,
-                                                  const Value *Object) {
-  const Function *Callee = Call.getCalledFunction();
-  if (!Callee || Call.arg_size() < 2 || Call.getArgOperand(0) != Object)
-    return std::nullopt;
-  StringRef Text;
-  if (getConstantStringInfo(Call.getArgOperand(1), Text))
-    return Text.str();
-  return std::nullopt;
+std::string functionName(const Function &F) {
+  // The debug information keeps the name of what was cloned.
+  const DISubprogram *SP = F.getSubprogram();
+  StringRef Linkage = SP ? SP->getLinkageName() : "";
+  return demangle(Linkage.empty() ? F.getName() : Linkage);
 }
 
-/// True where \p Name is a constructor of std::string.
-static bool isStringConstructor(StringRef Name) {
-  return Name.ends_with("basic_string::basic_string");
+SmallVector<std::string, 4> parameterTypes(const Function &F) {
+  ItaniumPartialDemangler Demangler;
+  std::string Name = F.getName().str();
+  if (Demangler.partialDemangle(Name.c_str()) || !Demangler.isFunction())
+    return {};
+  char *Text = Demangler.getFunctionParameters(nullptr, nullptr);
+  std::string All = Text ? Text : "";
+  std::free(Text);
+  SmallVector<std::string, 4> Types(1);
+  int Depth = 0;
+  for (char C : StringRef(All)
+                    .drop_front(All.empty() ? 0 : 1)
+                    .drop_back(All.empty() ? 0 : 1)) {
+    Depth += C == '<' || C == '(' ? 1 : C == '>' || C == ')' ? -1 : 0;
+    if (C == ',' && Depth == 0)
+      Types.emplace_back();
+    else
+      Types.back() += C;
+  }
+  for (std::string &T : Types)
+    T = StringRef(T).trim().str();
+  return Types;
+}
+
+/// True where \p Call surely does not change the object that it gets as
+/// argument \p N: it is a constant reference, or `this` of a constant method.
+static bool leavesAlone(const CallBase &Call, unsigned N) {
+  const Function *Callee = Call.getCalledFunction();
+  if (Call.onlyReadsMemory(N))
+    return true;
+  if (!Callee)
+    return false;
+  SmallVector<std::string, 4> Types = parameterTypes(*Callee);
+  size_t Hidden =
+      Callee->arg_size() - std::min(Callee->arg_size(), Types.size());
+  if (N >= Hidden)
+    return StringRef(Types[N - Hidden]).ends_with(" const&");
+  return StringRef(demangle(Callee->getName())).ends_with(") const");
 }
 
 std::optional<std::string> constantText(const Value *Object) {
@@ -76,17 +108,26 @@ std::optional<std::string> constantText(const Value *Object) {
   if (!isa<AllocaInst>(Object))
     return std::nullopt;
   std::optional<std::string> Found;
-  for (const User *U : Object->users()) {
-    const auto *Call = dyn_cast<CallBase>(U);
-    if (!Call || !Call->getCalledFunction() ||
-        !isStringConstructor(
-            qualifiedName(Call->getCalledFunction()->getName())) ||
-        Call->getArgOperand(0) != Object)
+  for (const Use &U : Object->uses()) {
+    const auto *Call = dyn_cast<CallBase>(U.getUser());
+    if (Call && isa<IntrinsicInst>(Call))
       continue;
-    std::optional<std::string> Text = constructedText(*Call, Object);
-    if (!Text || (Found && *Found != *Text))
+    const Function *Callee = Call ? Call->getCalledFunction() : nullptr;
+    if (!Callee || !Call->isArgOperand(&U))
       return std::nullopt;
-    Found = Text;
+    std::string Name = qualifiedName(Callee->getName());
+    unsigned N = Call->getArgOperandNo(&U);
+    if (N == 0 && Name.find("basic_string::~") != std::string::npos)
+      continue;
+    if (N == 0 && StringRef(Name).ends_with("basic_string::basic_string")) {
+      StringRef Text;
+      if (Found || Call->arg_size() < 2 ||
+          !getConstantStringInfo(Call->getArgOperand(1), Text))
+        return std::nullopt;
+      Found = Text.str();
+    } else if (!leavesAlone(*Call, N)) {
+      return std::nullopt;
+    }
   }
   return Found;
 }

@@ -4,6 +4,7 @@
 
 #include "llvm/ADT/StringRef.h"
 #include "llvm/IR/DerivedTypes.h"
+#include "llvm/IR/Function.h"
 #include "llvm/IR/Value.h"
 
 #include <optional>
@@ -16,9 +17,15 @@ namespace tpc {
 /// mangled comes back as it is.
 std::string qualifiedName(llvm::StringRef Mangled);
 
+/// `void f(int)` of \p F, for people and for keys.
+std::string functionName(const llvm::Function &F);
+
+/// The written parameters of \p F, from its demangled name.
+llvm::SmallVector<std::string, 4> parameterTypes(const llvm::Function &F);
+
 /// The text that \p Object, a pointer to a `std::string` or to characters,
 /// is known to hold: it is constant, or it was constructed from one constant
-/// and from nothing else. None where that cannot be told.
+/// and nothing can have changed it since. None where that cannot be told.
 std::optional<std::string> constantText(const llvm::Value *Object);
 
 /// `ns::Node` for the type `class.ns::Node.7`: without the kind, and without

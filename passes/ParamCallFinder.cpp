@@ -20,31 +20,6 @@ namespace tpc {
 
 AnalysisKey ParamCallFinder::Key;
 
-/// The written parameters of \p F's demangled name, split at the top level.
-static SmallVector<std::string, 4> parameterTypes(const Function &F) {
-  ItaniumPartialDemangler Demangler;
-  std::string Name = F.getName().str();
-  if (Demangler.partialDemangle(Name.c_str()) || !Demangler.isFunction())
-    return {};
-  char *Text = Demangler.getFunctionParameters(nullptr, nullptr);
-  std::string All = Text ? Text : "";
-  std::free(Text);
-  SmallVector<std::string, 4> Types(1);
-  int Depth = 0;
-  for (char C : StringRef(All)
-                    .drop_front(All.empty() ? 0 : 1)
-                    .drop_back(All.empty() ? 0 : 1)) {
-    Depth += C == '<' || C == '(' ? 1 : C == '>' || C == ')' ? -1 : 0;
-    if (C == ',' && Depth == 0)
-      Types.emplace_back();
-    else
-      Types.back() += C;
-  }
-  for (std::string &T : Types)
-    T = StringRef(T).trim().str();
-  return Types;
-}
-
 /// The name of a result's type, which only templates have in their names.
 static std::string resultType(const Function &F) {
   ItaniumPartialDemangler Demangler;

@@ -174,6 +174,9 @@ private:
     bool Direct; ///< of an outcome: see Decision
     /// Where V is an object that is one value: the field that it stands in.
     std::optional<unsigned> Field = std::nullopt;
+    /// Where control flow has merged V with other values: the last value
+    /// before that.
+    Value *Origin = nullptr;
   };
   using Worklist = SmallVector<State, 16>;
 
@@ -182,7 +185,7 @@ private:
   void compared(const State &S, CmpInst &Compare, unsigned Operand,
                 unsigned Read);
   void flag(Value *V, Decision D, unsigned Read, bool IsOperand = false);
-  SmallVector<Decision, 2> followOutcome(Value *Outcome);
+  SmallVector<Decision, 2> followOutcome(Value *Outcome, const CallPath *Path);
   bool isSquare(const Instruction &I) const;
   bool carry(const State &S, Use &U);
   void push(State S);
@@ -214,17 +217,33 @@ void Follower::push(State S) {
     Work.push_back(std::move(S));
 }
 
+/// True for the intrinsics that give back their first operand.
+static bool isCopy(const Instruction &I, const Use &U) {
+  const auto *Call = dyn_cast<IntrinsicInst>(&I);
+  if (!Call || U.getOperandNo() != 0)
+    return false;
+  switch (Call->getIntrinsicID()) {
+  case Intrinsic::expect:
+  case Intrinsic::expect_with_probability:
+  case Intrinsic::annotation:
+  case Intrinsic::ssa_copy:
+    return true;
+  default:
+    return false;
+  }
+}
+
 /// Carries what is at \p U on to where it is the same value still: casts,
 /// merges, variables, arguments, results. False where \p U does something
 /// else with it.
 bool Follower::carry(const State &S, Use &U) {
   auto *I = cast<Instruction>(U.getUser());
-  if (isa<CastInst>(I) || isa<FreezeInst>(I)) {
-    push({I, S.How, S.Path, S.Direct});
+  if (isa<CastInst>(I) || isa<FreezeInst>(I) || isCopy(*I, U)) {
+    push({I, S.How, S.Path, S.Direct, S.Field, S.Origin});
     return true;
   }
   if (isa<PHINode>(I) || (isa<SelectInst>(I) && U.getOperandNo() != 0)) {
-    push({I, S.How, S.Path, false, S.Field});
+    push({I, S.How, S.Path, false, S.Field, S.Origin ? S.Origin : S.V});
     return true;
   }
   if (auto *Insert = dyn_cast<InsertValueInst>(I)) {
@@ -286,13 +305,14 @@ static bool decidesBy(const Instruction &I, const Use &U) {
 }
 
 /// The predicates that \p Outcome, a truth value, decides.
-SmallVector<Decision, 2> Follower::followOutcome(Value *Outcome) {
+SmallVector<Decision, 2> Follower::followOutcome(Value *Outcome,
+                                                 const CallPath *Path) {
   Worklist OuterWork = std::move(Work);
   auto OuterSeen = std::move(Seen);
   Work.clear();
   Seen.clear();
   SmallVector<Decision, 2> Found;
-  push({Outcome, {}, nullptr, true});
+  push({Outcome, {}, Path, true});
   while (!Work.empty()) {
     State S = Work.pop_back_val();
     for (Use &U : S.V->uses()) {
@@ -346,8 +366,8 @@ void Follower::compared(const State &S, CmpInst &Compare, unsigned Operand,
       Compare.getOperand(0)->getType()->isPtrOrPtrVectorTy())
     return;
   if (S.How.Kind == Transform::None && asksForNonZero(Compare, Operand)) {
-    for (const Decision &D : followOutcome(&Compare))
-      flag(&Compare, D, Read);
+    for (const Decision &D : followOutcome(&Compare, S.Path))
+      flag(&Compare, D, Read, /*IsOperand=*/!D.Direct);
     return;
   }
   ParameterComparison C;
@@ -355,7 +375,8 @@ void Follower::compared(const State &S, CmpInst &Compare, unsigned Operand,
   C.Compare = &Compare;
   C.Operand = Operand;
   C.How = S.How;
-  C.Decisions = followOutcome(&Compare);
+  C.ByArgument = S.Path && Calls.callers(Compare.getFunction()).size() > 1;
+  C.Decisions = followOutcome(&Compare, S.Path);
   Usage.Comparisons.push_back(std::move(C));
 }
 
@@ -381,17 +402,18 @@ void Follower::useOfValue(const State &S, Use &U, unsigned Read) {
     return compared(S, *Compare, U.getOperandNo(), Read);
   if (decidesBy(*I, U)) {
     if (S.How.Kind == Transform::None)
-      flag(S.V, {I, true}, Read);
+      flag(S.Origin ? S.Origin : S.V, {I, !S.Origin}, Read,
+           /*IsOperand=*/S.Origin != nullptr);
     return;
   }
   if (isLogical(*I) && S.V->getType()->isIntegerTy(1)) {
-    for (Decision D : followOutcome(I))
-      flag(S.V, D, Read);
+    for (Decision D : followOutcome(I, S.Path))
+      flag(S.V, D, Read, /*IsOperand=*/!D.Direct);
     return;
   }
   if (isShortCircuit(*I, U) && S.How.Kind == Transform::None &&
       isa<Instruction>(S.V)) {
-    for (Decision D : followOutcome(I))
+    for (Decision D : followOutcome(I, S.Path))
       flag(S.V, {D.Predicate, false}, Read, /*IsOperand=*/true);
     return;
   }

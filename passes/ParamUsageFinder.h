@@ -51,6 +51,8 @@ struct ParameterComparison {
   /// read, as an operand of `&&` or `||` whose outcome goes on.
   llvm::Value *Flag = nullptr;
   bool IsOperand = false;
+  /// The value came by an argument, and the function has other calls.
+  bool ByArgument = false;
   Transform How;
   llvm::SmallVector<Decision, 2> Decisions;
 };

@@ -118,6 +118,46 @@ Value *AnalysedModule::original(Value *V) const {
   return Back.lookup(V);
 }
 
+/// A function with more calls, or more instructions, is not copied.
+static constexpr unsigned MaxCopies = 16, MaxCopied = 500;
+
+bool separateCalls(Module &M, ArrayRef<std::string> Names) {
+  bool Changed = false;
+  for (const std::string &Name : Names) {
+    Function *F = M.getFunction(Name);
+    if (!F || F->isDeclaration() || F->getInstructionCount() > MaxCopied)
+      continue;
+    SmallVector<CallBase *, 8> Calls;
+    for (User *U : F->users())
+      if (auto *Call = dyn_cast<CallBase>(U);
+          Call && Call->getCalledFunction() == F && Call->getFunction() != F)
+        Calls.push_back(Call);
+    if (Calls.size() < 2 || Calls.size() > MaxCopies)
+      continue;
+    // The users of a value are in no order that means anything; copies of
+    // copies keep the place of their call in their name.
+    sort(Calls, [](const CallBase *A, const CallBase *B) {
+      auto Place = [](const CallBase *C) {
+        const DebugLoc &Loc = C->getDebugLoc();
+        return std::make_tuple(C->getFunction()->getName(),
+                               Loc ? Loc.getLine() : 0, Loc ? Loc.getCol() : 0);
+      };
+      return Place(A) < Place(B);
+    });
+    for (CallBase *Call : drop_begin(Calls)) {
+      ValueToValueMapTy Map;
+      Function *Copy = CloneFunction(F, Map);
+      Copy->setName(F->getName() + ".tpc");
+      Copy->setLinkage(GlobalValue::InternalLinkage);
+      Copy->setVisibility(GlobalValue::DefaultVisibility);
+      Copy->setComdat(nullptr);
+      Call->setCalledFunction(Copy);
+      Changed = true;
+    }
+  }
+  return Changed;
+}
+
 PreservedAnalyses PreparePass::run(Module &M, ModuleAnalysisManager &) {
   allowOptimisation(M);
   prepare(M, Options::fromCommandLine());

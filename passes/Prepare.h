@@ -39,6 +39,11 @@ private:
   llvm::DenseMap<const llvm::Value *, llvm::Value *> Back;
 };
 
+/// Gives each call of a function of \p Names in \p M a copy of the function, so
+/// that what one call hands it is not taken for what another does. True where
+/// something was copied.
+bool separateCalls(llvm::Module &M, llvm::ArrayRef<std::string> Names);
+
 /// `tpc-prepare`: the same to a whole module, for the printers.
 class PreparePass : public llvm::PassInfoMixin<PreparePass> {
 public:

@@ -5,29 +5,22 @@
 #include "ExternCallFinder.h"
 #include "Functions.h"
 #include "IfStatements.h"
+#include "Names.h"
 #include "ParamCallFinder.h"
 #include "SimpleCallGraph.h"
 #include "Variables.h"
 
-#include "llvm/ADT/StringExtras.h"
 #include "llvm/Config/llvm-config.h"
-#include "llvm/Demangle/Demangle.h"
 #include "llvm/IR/Module.h"
 #include "llvm/Support/FileSystem.h"
 #include "llvm/Support/MemoryBuffer.h"
 #include "llvm/Support/Path.h"
-#include "llvm/Support/SHA1.h"
 
 using namespace llvm;
 
 namespace tpc {
 
 static constexpr int SchemaVersion = 1;
-
-/// `void f(int)` of a definition, for people; the linkage name's demangling.
-static std::string functionName(const Function &F) {
-  return demangle(F.getName());
-}
 
 static std::string textOr(StringRef Text, StringRef Else) {
   return json::fixUTF8(Text.empty() ? Else : Text);
@@ -37,31 +30,6 @@ static json::Value textOrNull(StringRef Text) {
   if (Text.empty())
     return nullptr;
   return json::fixUTF8(Text);
-}
-
-std::string keyOf(const Options &Opts, const Comparison &C,
-                  StringRef Parameter) {
-  // A namespace of our own: version 4, made once for TPC.
-  static constexpr uint8_t Namespace[16] = {0x6b, 0x0f, 0x7a, 0x52, 0x2c, 0x9e,
-                                            0x4d, 0x61, 0x9a, 0x37, 0x8f, 0x15,
-                                            0xc3, 0x40, 0x5e, 0xd8};
-  const DILocation *Loc = C.place().getDebugLoc();
-  std::string Name = join(
-      std::initializer_list<std::string>{
-          Opts.Package, Opts.LinkUnit, Opts.relative(pathOf(Loc)),
-          functionName(*C.place().getFunction()),
-          std::to_string(Loc->getLine()), std::to_string(Loc->getColumn()),
-          Parameter.str()},
-      "\n");
-  SHA1 Hash;
-  Hash.update(ArrayRef(Namespace));
-  Hash.update(Name);
-  std::array<uint8_t, 20> Digest = Hash.final();
-  Digest[6] = (Digest[6] & 0x0f) | 0x50;
-  Digest[8] = (Digest[8] & 0x3f) | 0x80;
-  std::string Hex = toHex(ArrayRef(Digest).take_front(16), /*LowerCase=*/true);
-  return Hex.substr(0, 8) + "-" + Hex.substr(8, 4) + "-" + Hex.substr(12, 4) +
-         "-" + Hex.substr(16, 4) + "-" + Hex.substr(20);
 }
 
 namespace {
@@ -217,7 +185,7 @@ json::Object Describer::comparison(const Comparison &C) {
   for (unsigned N : C.Reads)
     ReadPlaces.push_back(where(*Reads[N].Call));
   json::Object O = placed(C.place());
-  O["key"] = keyOf(Opts, C, Read.Name);
+  O["key"] = C.Key;
   O["type"] = C.typeName();
   O["name"] = textOrNull(variable(C));
   O["source"] = json::fixUTF8(Read.Name);
@@ -324,9 +292,10 @@ json::Object describeFailure(const Options &Opts, StringRef Why) {
 }
 
 Error writeJson(json::Object Unit, StringRef Path) {
-  if (std::error_code EC =
-          sys::fs::create_directories(sys::path::parent_path(Path)))
-    return createFileError(Path, EC);
+  StringRef Folder = sys::path::parent_path(Path);
+  if (!Folder.empty())
+    if (std::error_code EC = sys::fs::create_directories(Folder))
+      return createFileError(Path, EC);
   return writeToOutput(Path, [&](raw_ostream &OS) {
     json::OStream(OS, /*IndentSize=*/1).value(std::move(Unit));
     OS << '\n';

@@ -14,11 +14,6 @@
 
 namespace tpc {
 
-/// The key of a comparison: a UUID of version 5 (RFC 4122) of what says where
-/// it stands.
-std::string keyOf(const Options &Opts, const Comparison &C,
-                  llvm::StringRef Parameter);
-
 /// What a unit's file says of the analysis of \p M.
 llvm::json::Object describe(llvm::Module &M, llvm::ModuleAnalysisManager &AM,
                             const Options &Opts);
