@@ -63,6 +63,9 @@ struct Location {
 
 using Locations = llvm::SmallVector<Location, 1>;
 
+/// The element of an array, of whatever dimension; else \p T.
+llvm::Type *elementOf(llvm::Type *T);
+
 /// Numbers the classes of a module. The same class read from two files can be
 /// `class.A` and `class.A.7`: they get one number where they also look alike.
 class TypeNumbers {

@@ -12,27 +12,13 @@
 #ifndef TPC_PARAMUSAGEFINDER_H
 #define TPC_PARAMUSAGEFINDER_H
 
+#include "Transform.h"
+
 #include "llvm/ADT/SmallVector.h"
 #include "llvm/IR/InstrTypes.h"
 #include "llvm/IR/PassManager.h"
 
-#include <string>
-
 namespace tpc {
-
-/// What was done to a parameter's value before it was compared.
-struct Transform {
-  enum KindTy { None, Affine, Expression };
-  KindTy Kind = None;
-  double Scale = 1, Offset = 0; ///< of an affine one: Scale * x + Offset
-  std::string Text = "x";       ///< of an expression, in terms of x
-
-  void multiply(double Factor);
-  void add(double Term);
-  /// `\p Before` text `\p After` around what stands so far.
-  void wrap(const std::string &Before, const std::string &After);
-  std::string text() const;
-};
 
 /// A predicate that an outcome decides, and whether the outcome comes to it
 /// inside its function by SSA values that control flow does not merge.
