@@ -48,7 +48,9 @@ def main() -> None:
         type2(events, grid, distance)
         seconds.append(time.perf_counter() - begin)
     median = statistics.median(seconds)
-    figure("score-speed", "million_reports_10hz_grid", median, "s", "<1", median < 1)
+    figure(
+        "score-speed", "million_reports_10hz_grid", median, unit="s", target="<1", hit=median < 1
+    )
 
 
 if __name__ == "__main__":

@@ -6,8 +6,8 @@
 #                                          `python -m pytpc.patch` puts it there
 #
 # Before project() it chooses the compilers; after it, it adds the flags to the
-# targets of the package. What it cannot do it says in one warning, and leaves
-# the build as it would have been.
+# rules by which CMake compiles and links. What it cannot do it says in one
+# warning, and leaves the build as it would have been.
 #
 #   TPC_CLANG_VERSION  release of clang, lld and LLVM (19)
 #   TPC_RULES          the user's own file of rules
@@ -23,14 +23,82 @@ set(_tpc_log "${_tpc_prefix}/lib/libtpc_log.so")
 if(NOT TPC_CLANG_VERSION)
   set(TPC_CLANG_VERSION 19)
 endif()
+# The compiler leaves its optimisation to the link, where the analysis comes
+# first and the optimisation follows at the level that was asked for; the level
+# is read from the recorded command line. A warning that only clang or only gcc
+# knows must not end a build that gcc did. To clang -g is no less than -g3.
+string(CONCAT _tpc_compile_flags " -g -flto=full -Xclang -disable-llvm-passes"
+  " -grecord-command-line -Wno-error -Wno-unknown-warning-option")
 
-# Chooses clang and LLVM's archiver, where nobody has chosen another compiler.
+# Sets `found` to the first flag in `text` that has the compiler instrument the
+# code by itself: it would do so in the passes that TPC makes it leave out, so
+# the flag would be lost without a word.
+function(_tpc_find_sanitizer text found)
+  set(pattern "-fsanitize=[^ ]+|--coverage|-ftest-coverage|-fcoverage-mapping|-fprofile-[^ ]+")
+  if(text MATCHES "(^| )(${pattern})")
+    set(${found} "${CMAKE_MATCH_2}" PARENT_SCOPE)
+  else()
+    set(${found} "" PARENT_SCOPE)
+  endif()
+endfunction()
+
+# Sets _tpc_sanitizer to such a flag among those for all targets of the package,
+# _tpc_sanitizer_place to where it is and _tpc_sanitizer_flags to all that is there.
+macro(_tpc_find_sanitizer_of_package)
+  set(_tpc_sanitizer "")
+  set(_tpc_places CMAKE_C_FLAGS CMAKE_CXX_FLAGS)
+  foreach(_tpc_configuration IN LISTS CMAKE_BUILD_TYPE CMAKE_CONFIGURATION_TYPES)
+    string(TOUPPER "${_tpc_configuration}" _tpc_configuration)
+    list(APPEND _tpc_places
+      CMAKE_C_FLAGS_${_tpc_configuration} CMAKE_CXX_FLAGS_${_tpc_configuration})
+  endforeach()
+  foreach(_tpc_place IN LISTS _tpc_places)
+    set(_tpc_flags "${${_tpc_place}}")
+    # Before project() the environment is not yet in the variables.
+    if(_tpc_place STREQUAL "CMAKE_C_FLAGS" AND NOT DEFINED CMAKE_C_FLAGS)
+      set(_tpc_flags "$ENV{CFLAGS}")
+    elseif(_tpc_place STREQUAL "CMAKE_CXX_FLAGS" AND NOT DEFINED CMAKE_CXX_FLAGS)
+      set(_tpc_flags "$ENV{CXXFLAGS}")
+    endif()
+    _tpc_find_sanitizer("${_tpc_flags}" _tpc_flag)
+    if(_tpc_flag AND NOT _tpc_sanitizer)
+      set(_tpc_sanitizer "${_tpc_flag}")
+      set(_tpc_sanitizer_place "${_tpc_place}")
+      set(_tpc_sanitizer_flags "${_tpc_flags}")
+    endif()
+  endforeach()
+endmacro()
+
+# Sets `links` to whether clang links a program with these flags: for a sanitizer
+# it needs libclang-rt-dev, which gcc does not.
+function(_tpc_try_clang flags links)
+  set(folder "${CMAKE_BINARY_DIR}/CMakeFiles/tpc")
+  file(WRITE "${folder}/main.c" "int main(void) { return 0; }\n")
+  separate_arguments(flags UNIX_COMMAND "${flags}")
+  execute_process(COMMAND "${TPC_CLANG}" -w ${flags} main.c -o main WORKING_DIRECTORY "${folder}"
+    RESULT_VARIABLE status OUTPUT_QUIET ERROR_QUIET)
+  if(status EQUAL 0)
+    set(${links} TRUE PARENT_SCOPE)
+  else()
+    set(${links} FALSE PARENT_SCOPE)
+  endif()
+endfunction()
+
+# Chooses clang and LLVM's archiver, where nobody has chosen another compiler. A
+# package with a sanitizer that clang cannot link keeps the compiler it had.
 macro(_tpc_choose_compilers)
   find_program(TPC_CLANG clang-${TPC_CLANG_VERSION})
   find_program(TPC_CLANGXX clang++-${TPC_CLANG_VERSION})
   find_program(TPC_AR llvm-ar-${TPC_CLANG_VERSION})
   find_program(TPC_RANLIB llvm-ranlib-${TPC_CLANG_VERSION})
-  if(TPC_CLANG AND TPC_CLANGXX AND TPC_AR AND TPC_RANLIB)
+  set(_tpc_clang_links TRUE)
+  _tpc_find_sanitizer_of_package()
+  if(TPC_CLANG AND _tpc_sanitizer AND NOT _tpc_probe)
+    _tpc_try_clang("${_tpc_sanitizer_flags}" _tpc_clang_links)
+  endif()
+  if(NOT _tpc_clang_links)
+    # _tpc_find_obstacle says why.
+  elseif(TPC_CLANG AND TPC_CLANGXX AND TPC_AR AND TPC_RANLIB)
     if(NOT CMAKE_C_COMPILER)
       set(CMAKE_C_COMPILER "${TPC_CLANG}")
     endif()
@@ -53,30 +121,69 @@ endmacro()
 # Sets _tpc_obstacle to why the package cannot be instrumented; empty where it can.
 macro(_tpc_find_obstacle)
   set(_tpc_obstacle "")
-  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
-    set(_tpc_obstacle "the compiler is ${CMAKE_CXX_COMPILER_ID}, not clang (a build folder keeps its compiler: remove ${CMAKE_BINARY_DIR})")
-  elseif(NOT CMAKE_CXX_COMPILER_VERSION MATCHES "^${TPC_CLANG_VERSION}\\.")
-    set(_tpc_obstacle "the compiler is clang ${CMAKE_CXX_COMPILER_VERSION}, the passes are for ${TPC_CLANG_VERSION}")
-  elseif(NOT EXISTS "${_tpc_plugin}")
+  if(NOT EXISTS "${_tpc_plugin}")
     set(_tpc_obstacle "${_tpc_plugin} is not there")
   elseif(NOT EXISTS "${_tpc_log}")
     set(_tpc_obstacle "${_tpc_log} is not there")
-  else()
-    find_program(TPC_LLD ld.lld-${TPC_CLANG_VERSION})
-    if(NOT TPC_LLD)
-      set(_tpc_obstacle "ld.lld-${TPC_CLANG_VERSION} is not here (apt-get install lld-${TPC_CLANG_VERSION})")
+  elseif(NOT TPC_LLD)
+    set(_tpc_obstacle "ld.lld-${TPC_CLANG_VERSION} is not here (apt-get install lld-${TPC_CLANG_VERSION})")
+  endif()
+  foreach(_tpc_language IN LISTS _tpc_languages)
+    if(NOT CMAKE_${_tpc_language}_COMPILER_ID STREQUAL "Clang")
+      set(_tpc_obstacle "the compiler is ${CMAKE_${_tpc_language}_COMPILER_ID}, not clang (a build folder keeps its compiler: remove ${CMAKE_BINARY_DIR})")
+    elseif(NOT CMAKE_${_tpc_language}_COMPILER_VERSION MATCHES "^${TPC_CLANG_VERSION}\\.")
+      set(_tpc_obstacle "the compiler is clang ${CMAKE_${_tpc_language}_COMPILER_VERSION}, the passes are for ${TPC_CLANG_VERSION}")
     endif()
+  endforeach()
+  _tpc_find_sanitizer_of_package()
+  if(_tpc_sanitizer)
+    set(_tpc_obstacle "${_tpc_sanitizer} in ${_tpc_sanitizer_place} does not go together with it")
   endif()
 endmacro()
 
-# Adds the flags to every target of this directory and those below. They are
-# options, not libraries, so nothing of them is exported or inherited.
+# Has what is linked from these languages linked by lld, the probes included:
+# a static library of a package below holds bitcode. It stands in the rules
+# because CMAKE_EXE_LINKER_FLAGS is for all languages, and gfortran and nvcc do
+# not know these flags; and because packages overwrite that variable.
+macro(_tpc_link_with_lld)
+  foreach(_tpc_language ${ARGN})
+    foreach(_tpc_rule LINK_EXECUTABLE CREATE_SHARED_LIBRARY CREATE_SHARED_MODULE)
+      string(REPLACE "<LINK_FLAGS>" "<LINK_FLAGS> -flto=full --ld-path=\"${TPC_LLD}\""
+        CMAKE_${_tpc_language}_${_tpc_rule} "${CMAKE_${_tpc_language}_${_tpc_rule}}")
+    endforeach()
+    list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES CMAKE_${_tpc_language}_LINK_EXECUTABLE)
+  endforeach()
+endmacro()
+
+# Gives a language that the package enables later, by enable_language(), the
+# rules of the other one: CMake keeps rules that are there.
+macro(_tpc_prepare_language language other)
+  foreach(_tpc_rule COMPILE_OBJECT LINK_EXECUTABLE CREATE_SHARED_LIBRARY CREATE_SHARED_MODULE)
+    string(REGEX REPLACE "(<[A-Z_]+_)${other}_" "\\1${language}_"
+      CMAKE_${language}_${_tpc_rule} "${CMAKE_${other}_${_tpc_rule}}")
+  endforeach()
+endmacro()
+
+# Adds the flags to the rules of this directory and those below. Nothing of them
+# is in a target, so nothing is exported or inherited.
 macro(_tpc_instrument)
-  # The compiler leaves its optimisation to the link, where the analysis comes
-  # first and the optimisation follows at the level that was asked for; the
-  # level is read from the recorded command line.
-  add_compile_options(
-    "$<$<COMPILE_LANGUAGE:C,CXX>:SHELL:-g -flto=full -Xclang -disable-llvm-passes -grecord-command-line>")
+  if(_tpc_languages STREQUAL "C" AND TPC_CLANGXX AND CMAKE_CXX_COMPILER STREQUAL TPC_CLANGXX)
+    _tpc_prepare_language(CXX C)
+    set(_tpc_languages C CXX)
+  elseif(_tpc_languages STREQUAL "CXX" AND TPC_CLANG AND CMAKE_C_COMPILER STREQUAL TPC_CLANG)
+    _tpc_prepare_language(C CXX)
+    set(_tpc_languages C CXX)
+  endif()
+  _tpc_link_with_lld(${_tpc_languages})
+  foreach(_tpc_language IN LISTS _tpc_languages)
+    # Behind the flags of the target, whose -fno-lto, -flto=thin or -Werror
+    # would break the build or undo ours.
+    string(REPLACE "<FLAGS>" "<FLAGS>${_tpc_compile_flags}"
+      CMAKE_${_tpc_language}_COMPILE_OBJECT "${CMAKE_${_tpc_language}_COMPILE_OBJECT}")
+    # At the end of every link line; left out of what reports nothing.
+    string(APPEND CMAKE_${_tpc_language}_STANDARD_LIBRARIES
+      " -Wl,--push-state,--as-needed \"${_tpc_log}\" -Wl,--pop-state")
+  endforeach()
   set(_tpc_options
     "-tpc-link-unit=$<TARGET_PROPERTY:NAME>"
     "-tpc-package=${PROJECT_NAME}"
@@ -89,67 +196,144 @@ macro(_tpc_instrument)
   if(TPC_RULES)
     list(APPEND _tpc_options "-tpc-rules=${TPC_RULES}")
   endif()
+  string(REPLACE ";" "," _tpc_linked "${_tpc_languages}")
   add_link_options(
-    "$<$<LINK_LANGUAGE:C,CXX>:-flto=full>"
-    "$<$<LINK_LANGUAGE:C,CXX>:--ld-path=${TPC_LLD}>"
-    "$<$<LINK_LANGUAGE:C,CXX>:LINKER:--load-pass-plugin=${_tpc_plugin}>"
+    "$<$<LINK_LANGUAGE:${_tpc_linked}>:LINKER:--load-pass-plugin=${_tpc_plugin}>"
     # Options of a plugin are known only once it is loaded this way as well.
-    "$<$<LINK_LANGUAGE:C,CXX>:LINKER:-mllvm,-load=${_tpc_plugin}>"
-    "$<$<LINK_LANGUAGE:C,CXX>:LINKER:-rpath,${_tpc_prefix}/lib>")
+    "$<$<LINK_LANGUAGE:${_tpc_linked}>:LINKER:-mllvm,-load=${_tpc_plugin}>"
+    "$<$<LINK_LANGUAGE:${_tpc_linked}>:LINKER:-rpath,${_tpc_prefix}/lib>")
   foreach(_tpc_option IN LISTS _tpc_options)
-    add_link_options("$<$<LINK_LANGUAGE:C,CXX>:LINKER:-mllvm,${_tpc_option}>")
+    add_link_options("$<$<LINK_LANGUAGE:${_tpc_linked}>:LINKER:-mllvm,${_tpc_option}>")
   endforeach()
-  # At the end of every link line; left out of what reports nothing.
-  foreach(_tpc_language C CXX)
-    string(APPEND CMAKE_${_tpc_language}_STANDARD_LIBRARIES
-      " -Wl,--push-state,--as-needed \"${_tpc_log}\" -Wl,--pop-state")
-  endforeach()
-  cmake_language(DEFER DIRECTORY "${CMAKE_SOURCE_DIR}"
-    CALL _tpc_relink_with_passes "${CMAKE_SOURCE_DIR}" "${_tpc_plugin}" "${_tpc_log}")
 endmacro()
 
-# Links again what is in the folder and those below when the passes or the log
-# library have changed. Called at the end of the package's CMakeLists.txt.
-function(_tpc_relink_with_passes folder)
+# At the end of the package's CMakeLists.txt: what is linked is linked again when
+# the passes or the log library have changed; and what TPC does not see to after
+# all is said. Flags in generator expressions and in the interface of another
+# target are not known here.
+function(_tpc_finish)
+  _tpc_finish_folder("${CMAKE_SOURCE_DIR}")
+  get_property(lost GLOBAL PROPERTY _tpc_lost)
+  if(lost)
+    string(REPLACE ";" ", " lost "${lost}")
+    message(WARNING "TPC: lost in what is built with TPC: ${lost}; keep it with -DTPC_DISABLE=ON")
+  endif()
+  get_property(plain GLOBAL PROPERTY _tpc_plain)
+  if(plain)
+    string(REPLACE ";" ", " plain "${plain}")
+    message(WARNING "TPC: built without instrumentation, because the language was enabled after "
+      "project() or its compile rule was replaced: ${plain}; name the language in project()")
+  endif()
+endfunction()
+
+function(_tpc_finish_folder folder)
+  get_directory_property(below DIRECTORY "${folder}" SUBDIRECTORIES)
+  foreach(subfolder IN LISTS below)
+    _tpc_finish_folder("${subfolder}")
+  endforeach()
+  get_directory_property(entered DIRECTORY "${folder}" DEFINITION _tpc_entered)
+  if(NOT entered)
+    return()
+  endif()
+  get_property(enabled GLOBAL PROPERTY ENABLED_LANGUAGES)
+  set(patterns "")
+  set(common_flags "")
+  set(suffixes_C "c")
+  set(suffixes_CXX "C|cc|cpp|cxx|c\\+\\+|CPP")
+  foreach(language C CXX)
+    get_directory_property(rule DIRECTORY "${folder}" DEFINITION CMAKE_${language}_COMPILE_OBJECT)
+    get_directory_property(common DIRECTORY "${folder}" DEFINITION CMAKE_${language}_FLAGS)
+    list(APPEND common_flags "${common}")
+    if(language IN_LIST enabled AND NOT rule MATCHES "-disable-llvm-passes")
+      list(APPEND patterns "\\.(${suffixes_${language}})$")
+    endif()
+  endforeach()
+  get_directory_property(plugin DIRECTORY "${folder}" DEFINITION _tpc_plugin)
+  get_directory_property(log DIRECTORY "${folder}" DEFINITION _tpc_log)
   get_property(targets DIRECTORY "${folder}" PROPERTY BUILDSYSTEM_TARGETS)
   foreach(target IN LISTS targets)
     get_target_property(type "${target}" TYPE)
     if(type MATCHES "^(EXECUTABLE|SHARED_LIBRARY|MODULE_LIBRARY)$")
-      set_property(TARGET "${target}" APPEND PROPERTY LINK_DEPENDS ${ARGN})
+      set_property(TARGET "${target}" APPEND PROPERTY LINK_DEPENDS "${plugin}" "${log}")
+    elseif(NOT type MATCHES "^(STATIC|OBJECT)_LIBRARY$")
+      continue()
     endif()
-  endforeach()
-  get_property(folders DIRECTORY "${folder}" PROPERTY SUBDIRECTORIES)
-  foreach(below IN LISTS folders)
-    _tpc_relink_with_passes("${below}" ${ARGN})
+    get_property(flags TARGET "${target}" PROPERTY COMPILE_FLAGS)
+    get_property(options TARGET "${target}" PROPERTY COMPILE_OPTIONS)
+    string(REGEX REPLACE ";(SHELL:)?" " " flags "${common_flags};${flags};${options}")
+    _tpc_find_sanitizer("${flags}" flag)
+    if(flag)
+      set_property(GLOBAL APPEND PROPERTY _tpc_lost "${flag} of ${target}")
+    endif()
+    get_property(sources TARGET "${target}" PROPERTY SOURCES)
+    foreach(pattern IN LISTS patterns)
+      set(matching "${sources}")
+      list(FILTER matching INCLUDE REGEX "${pattern}")
+      if(matching)
+        set_property(GLOBAL APPEND PROPERTY _tpc_plain "${target}")
+        break()
+      endif()
+    endforeach()
   endforeach()
 endfunction()
 
+# After project(): sees to the languages that it has enabled.
+macro(_tpc_enter_project)
+  set(_tpc_languages C CXX)
+  foreach(_tpc_language C CXX)
+    if(NOT CMAKE_${_tpc_language}_COMPILER_ID)
+      list(REMOVE_ITEM _tpc_languages ${_tpc_language})
+    endif()
+  endforeach()
+  find_program(TPC_LLD ld.lld-${TPC_CLANG_VERSION})
+  _tpc_find_obstacle()
+  if(NOT TPC_DISABLE AND NOT _tpc_obstacle)
+    set(_tpc_entered TRUE)
+    if(_tpc_languages)
+      set(_tpc_done TRUE)
+      _tpc_instrument()
+    endif()
+    get_property(_tpc_deferred GLOBAL PROPERTY _tpc_deferred)
+    if(NOT _tpc_deferred)
+      set_property(GLOBAL PROPERTY _tpc_deferred TRUE)
+      cmake_language(DEFER DIRECTORY "${CMAKE_SOURCE_DIR}" CALL _tpc_finish)
+    endif()
+  else()
+    set(_tpc_done TRUE)
+    if(NOT TPC_DISABLE)
+      message(WARNING "TPC: ${PROJECT_NAME} is built without instrumentation: ${_tpc_obstacle}")
+    endif()
+    # It may use the libraries of instrumented packages all the same, if the
+    # compilers are those that we chose.
+    if(TPC_LLD AND CMAKE_C_COMPILER_ID AND CMAKE_C_COMPILER STREQUAL "${TPC_CLANG}")
+      _tpc_link_with_lld(C)
+    endif()
+    if(TPC_LLD AND CMAKE_CXX_COMPILER_ID AND CMAKE_CXX_COMPILER STREQUAL "${TPC_CLANGXX}")
+      _tpc_link_with_lld(CXX)
+    endif()
+  endif()
+endmacro()
+
 get_property(_tpc_probe GLOBAL PROPERTY IN_TRY_COMPILE)
-if(TPC_DISABLE OR _tpc_probe)
+get_property(_tpc_enabled GLOBAL PROPERTY ENABLED_LANGUAGES)
+if(_tpc_probe)
   # Probes of the compiler are nobody's program; they only need the compiler.
-  if(NOT PROJECT_NAME OR NOT CMAKE_CXX_COMPILER_ID)
+  if(NOT _tpc_enabled)
     _tpc_choose_compilers()
   endif()
-elseif(_tpc_done)
-  # A project() inside the package: it has inherited the flags.
-elseif(CMAKE_CXX_COMPILER_ID)
-  set(_tpc_done TRUE)
-  _tpc_find_obstacle()
-  if(_tpc_obstacle)
-    message(WARNING "TPC: ${PROJECT_NAME} is built without instrumentation: ${_tpc_obstacle}")
-  else()
-    _tpc_instrument()
-  endif()
-  if(_tpc_next_include)
-    include("${_tpc_next_include}")
-  endif()
-else()
+elseif(NOT _tpc_enabled)
   _tpc_choose_compilers()
   # One file only can be included after project(): ours, which then includes
   # the one that was asked for.
   if(NOT CMAKE_PROJECT_INCLUDE STREQUAL CMAKE_CURRENT_LIST_FILE)
     set(_tpc_next_include "${CMAKE_PROJECT_INCLUDE}")
     set(CMAKE_PROJECT_INCLUDE "${CMAKE_CURRENT_LIST_FILE}")
+  endif()
+elseif(NOT _tpc_done)
+  # Otherwise a project() inside the package, which has inherited the rules.
+  _tpc_enter_project()
+  if(_tpc_next_include)
+    include("${_tpc_next_include}")
   endif()
 endif()
 

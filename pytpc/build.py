@@ -199,7 +199,8 @@ def build_workspace(
         on_output: called with each line that colcon writes.
 
     Raises:
-        WorkspaceError: no packages, an unknown name, or a folder that cannot be written.
+        WorkspaceError: no packages, an unknown name, a folder that cannot be written, or a build
+            folder that was configured without TPC.
         InputError: a broken package.xml, CMakeLists.txt or static information.
         MissingToolError: TPC's C++ half, a compiler, colcon or ROS is absent.
         BuildError: a package does not build.
@@ -221,6 +222,8 @@ def build_workspace(
         cmake_args=cmake_args,
         colcon_args=colcon_args,
     )
+    if not any("CMAKE_TOOLCHAIN_FILE" in argument for argument in (*cmake_args, *colcon_args)):
+        _require_toolchain(place, chosen, toolchain)
     _prepare(place, found)
     _run_colcon(command, workspace, place, on_output)
     missing = _reconcile(place, found)
@@ -269,6 +272,23 @@ def _require_all(packages: Sequence[Package]) -> Path:
     plugin()
     log_library()
     return cmake_file()
+
+
+def _require_toolchain(bases: Bases, packages: Sequence[Package], toolchain: Path) -> None:
+    """See that no build folder was configured without this toolchain.
+
+    CMake asks for the toolchain once, keeps it in CMakeSystem.cmake and ignores another one, so
+    that the package would be built with the compiler of that time and not be analysed.
+    """
+    for package in packages:
+        folder = bases.build / package.name
+        for path in sorted(folder.glob("CMakeFiles/*/CMakeSystem.cmake")):
+            if f'include("{toolchain}")' not in path.read_text("utf-8", "replace"):
+                raise WorkspaceError(
+                    "was configured without TPC, or with one that was elsewhere, and CMake keeps"
+                    " the compiler of a build folder; remove this folder",
+                    folder,
+                )
 
 
 def _prepare(bases: Bases, packages: Sequence[Package]) -> None:

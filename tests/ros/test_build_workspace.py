@@ -10,7 +10,7 @@ import pytest
 
 from pytpc import patch
 from pytpc.build import BuildError, build_environment, build_workspace, workspace_env
-from pytpc.errors import MissingToolError
+from pytpc.errors import MissingToolError, WorkspaceError
 from pytpc.paths import cmake_file, log_library, plugin
 from pytpc.static_info import collect
 
@@ -131,8 +131,10 @@ def test_a_second_build_finds_the_same_and_removes_what_is_gone(built: Path) -> 
 
 def test_a_unit_without_analysis_is_noticed(tmp_path: Path) -> None:
     package = make_package(tmp_path)
+    # A compile rule of the package's own, which TPC's flags are not in.
     native = (
-        "add_executable(native src/native.c)\ntarget_compile_options(native PRIVATE -fno-lto)\n"
+        'set(CMAKE_C_COMPILE_OBJECT "<CMAKE_C_COMPILER> -o <OBJECT> -c <SOURCE>")\n'
+        "add_executable(native src/native.c)\n"
     )
     (package / "CMakeLists.txt").write_text(CMAKELISTS + native, encoding="utf-8")
     (package / "src/native.c").write_text("int main(void) { return 0; }\n", encoding="utf-8")
@@ -149,6 +151,25 @@ def test_a_fault_in_the_sources_is_shown(tmp_path: Path) -> None:
         build_workspace(tmp_path)
     assert caught.value.package == "tiny"
     assert any("undeclared identifier 'limits_'" in line for line in caught.value.tail)
+
+
+def test_a_build_folder_of_another_compiler_is_noticed(tmp_path: Path) -> None:
+    package = make_package(tmp_path)
+    folder = tmp_path / ".tpc/build/tiny"
+    lists = package / "CMakeLists.txt"
+    lists.write_text("cmake_minimum_required(VERSION 3.16)\nproject(tiny)\n", encoding="utf-8")
+    subprocess.run(
+        ["cmake", "-S", package, "-B", folder, "-DCMAKE_CXX_COMPILER=g++"],
+        env=build_environment(),
+        check=True,
+        capture_output=True,
+    )
+    lists.write_text(CMAKELISTS, encoding="utf-8")
+    with pytest.raises(WorkspaceError, match="remove this folder") as caught:
+        build_workspace(tmp_path)
+    assert caught.value.path == str(folder)
+    shutil.rmtree(folder)
+    assert len(build_workspace(tmp_path).units) == 1
 
 
 def test_a_patched_package_finds_the_same_in_the_users_own_build(tmp_path: Path) -> None:

@@ -1,0 +1,344 @@
+"""tpc.cmake on small CMake projects without ROS: flags and languages of the package."""
+
+import os
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from pytpc.errors import MissingToolError
+from pytpc.paths import SYSTEM_PATH, cmake_file, log_library, plugin
+
+try:
+    for half in (cmake_file, plugin, log_library):
+        half()
+except MissingToolError as error:
+    pytest.skip(f"the C++ half is not installed: {error}", allow_module_level=True)
+
+HEAD = "cmake_minimum_required(VERSION 3.16)\nproject(p LANGUAGES CXX)\n"
+MAIN = (
+    "#include <string>\nint main(int n, char **v) { return std::string(v[0]).size() < 1u + n; }\n"
+)
+OTHER = "#include <string>\nstd::string other(int n) { return std::string(n, 'x'); }\n"
+NOT_KEPT = {"CC", "CXX", "CFLAGS", "CXXFLAGS", "LDFLAGS", "TPC_PREFIX"}
+
+
+@dataclass(frozen=True)
+class Built:
+    """A folder in which a project was built, and what CMake said when it configured it."""
+
+    folder: Path
+    said: str
+
+    def warnings(self) -> list[str]:
+        """TPC's warnings, each on one line."""
+        blocks = self.said.split("CMake Warning")[1:]
+        texts = (" ".join(block.split("Call Stack")[0].split()) for block in blocks)
+        return [text[text.index("TPC: ") :] for text in texts if "TPC: " in text]
+
+    def analysed(self) -> list[str]:
+        """The link units that the passes have seen."""
+        return sorted(path.stem for path in self.folder.glob("tpc/*.json"))
+
+    def runs(self, program: str) -> subprocess.CompletedProcess[str]:
+        return run([self.folder / program])
+
+
+def run(command: list[str | Path], **variables: str) -> subprocess.CompletedProcess[str]:
+    kept = {name: value for name, value in os.environ.items() if name not in NOT_KEPT}
+    return subprocess.run(
+        command,
+        env={**kept, "PATH": SYSTEM_PATH, **variables},
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+
+
+def toolchain() -> str:
+    return f"-DCMAKE_TOOLCHAIN_FILE={cmake_file()}"
+
+
+def build(root: Path, cmakelists: str, *arguments: str, name: str = "p", **variables: str) -> Built:
+    """Configure and build; a failure shows what was said."""
+    source, folder = root / name, root / f"build of {name}"
+    source.mkdir(parents=True, exist_ok=True)
+    (source / "CMakeLists.txt").write_text(cmakelists, encoding="utf-8")
+    for file, text in (
+        ("main.cpp", MAIN),
+        ("other.cpp", OTHER),
+        ("c.c", "int c(int a){return a;}"),
+    ):
+        (source / file).write_text(text, encoding="utf-8")
+    command = ["cmake", "-G", "Ninja", "-S", source, "-B", folder, *(arguments or (toolchain(),))]
+    configured = run(command, **variables)
+    assert configured.returncode == 0, configured.stdout + configured.stderr
+    made = run(["cmake", "--build", folder, "-j2"])
+    assert made.returncode == 0, made.stdout
+    return Built(folder, configured.stderr)
+
+
+# --- flags of the package
+
+
+@pytest.mark.parametrize("flag", ["-fno-lto", "-flto=thin", "-g0"])
+def test_a_targets_own_flag_does_not_undo_the_build(tmp_path: Path, flag: str) -> None:
+    lists = HEAD + "add_executable(x main.cpp other.cpp)\n"
+    result = build(tmp_path, f"{lists}target_compile_options(x PRIVATE {flag})\n")
+    assert (result.analysed(), result.warnings()) == (["x"], [])
+    for path in result.folder.rglob("*.o"):
+        shown = run(["llvm-dis-19", path, "-o", "-"]).stdout
+        assert "!DISubprogram(" in shown
+
+
+def test_a_warning_that_only_gcc_knows_is_no_error(tmp_path: Path) -> None:
+    unused = "add_executable(x main.cpp unused.cpp)\n"
+    (tmp_path / "p").mkdir()
+    # clang alone warns of an unused private field.
+    field = "class K { int k = 0; };\nK it;\n"
+    (tmp_path / "p/unused.cpp").write_text(field, encoding="utf-8")
+    options = "add_compile_options(-Wall -Wextra -Werror -Wno-maybe-uninitialized)\n"
+    assert build(tmp_path, HEAD + options + unused).analysed() == ["x"]
+
+
+def test_the_level_and_the_macros_of_the_package_are_kept(tmp_path: Path) -> None:
+    lists = (
+        HEAD + "add_executable(x main.cpp)\ntarget_compile_options(x PRIVATE -g3 -fdebug-macro)\n"
+    )
+    result = build(tmp_path, lists, toolchain(), "-DCMAKE_BUILD_TYPE=Release")
+    objects = [str(path) for path in result.folder.rglob("main.cpp.o")]
+    shown = run(["llvm-dis-19", *objects, "-o", "-"]).stdout
+    assert "DW_MACINFO_define" in shown
+    # One compile line; what is recorded in it has the level of Release.
+    assert " -O3 " in shown
+
+
+def test_a_launcher_is_kept_and_the_flags_stand_once(tmp_path: Path) -> None:
+    inner = "add_subdirectory(inner)\nadd_executable(x main.cpp)\n"
+    (tmp_path / "p/inner").mkdir(parents=True)
+    (tmp_path / "p/inner/CMakeLists.txt").write_text(
+        "project(inner CXX)\nadd_executable(y ../main.cpp)\n", encoding="utf-8"
+    )
+    launcher = "-DCMAKE_CXX_COMPILER_LAUNCHER=/usr/bin/env"
+    include = f'include("{cmake_file()}")\n'
+    result = build(tmp_path, include + HEAD + inner, toolchain(), launcher)
+    assert result.analysed() == ["x", "y"]
+    lines = run(["ninja", "-C", result.folder, "-t", "commands"]).stdout.splitlines()
+    compiled = [line for line in lines if " -c " in line]
+    assert len(compiled) == 2
+    for line in compiled:
+        assert line.startswith("/usr/bin/env ")
+        assert line.count("-disable-llvm-passes") == 1
+
+
+def test_what_is_installed_finds_the_log_and_is_linked_again_with_new_passes(
+    tmp_path: Path,
+) -> None:
+    lists = HEAD + "add_executable(x main.cpp)\ninstall(TARGETS x)\n"
+    result = build(tmp_path, lists, toolchain(), f"-DCMAKE_INSTALL_PREFIX={tmp_path}/i")
+    inputs = run(["ninja", "-C", result.folder, "-t", "query", "x"]).stdout
+    assert str(plugin()) in inputs
+    assert str(log_library()) in inputs
+    assert run(["cmake", "--install", result.folder]).returncode == 0
+    dynamic = run(["readelf", "-d", tmp_path / "i/bin/x"]).stdout
+    (path,) = [line for line in dynamic.splitlines() if "RUNPATH" in line]
+    assert str(log_library().parent) in path
+
+
+def test_a_precompiled_header_is_compiled_alike(tmp_path: Path) -> None:
+    lists = HEAD + "add_executable(x main.cpp)\ntarget_precompile_headers(x PRIVATE <string>)\n"
+    assert build(tmp_path, lists).analysed() == ["x"]
+
+
+# --- what is linked without the passes
+
+
+LIBRARY = """cmake_minimum_required(VERSION 3.16)
+project(lib LANGUAGES CXX)
+add_library(lib STATIC other.cpp)
+"""
+USER = """cmake_minimum_required(VERSION 3.16)
+project(p LANGUAGES CXX)
+include(CheckCXXSourceCompiles)
+set(CMAKE_EXE_LINKER_FLAGS "-Wl,--no-undefined")
+set(CMAKE_REQUIRED_LIBRARIES "${LIB}")
+check_cxx_source_compiles("#include <string>
+std::string other(int); int main() { return other(1).size() == 2; }" FOUND)
+if(NOT FOUND)
+  message(FATAL_ERROR "the probe cannot link")
+endif()
+add_library(s SHARED user.cpp)
+target_link_libraries(s "${LIB}")
+add_executable(x main.cpp user.cpp)
+target_link_libraries(x "${LIB}")
+"""
+
+
+@pytest.mark.parametrize("disable", [False, True])
+@pytest.mark.parametrize("entrance", ["toolchain", "project_include", "include"])
+def test_a_static_library_with_bitcode_can_be_linked(
+    tmp_path: Path, entrance: str, disable: bool
+) -> None:
+    library = build(
+        tmp_path, LIBRARY, f"{toolchain()}", "-DCMAKE_POSITION_INDEPENDENT_CODE=ON", name="lib"
+    )
+    (tmp_path / "p").mkdir()
+    user = "#include <string>\nstd::string other(int);\nint user() { return other(3).size(); }\n"
+    (tmp_path / "p/user.cpp").write_text(user, encoding="utf-8")
+    arguments = [f"-DLIB={library.folder}/liblib.a", "-DCMAKE_POSITION_INDEPENDENT_CODE=ON"]
+    lists = USER
+    if entrance == "toolchain":
+        arguments.append(toolchain())
+    elif entrance == "include":
+        lists = f'include("{cmake_file()}" OPTIONAL)\n' + USER
+    elif disable:
+        pytest.skip("a compiler that somebody else chose is left as it is")
+    else:
+        arguments += [f"-DCMAKE_PROJECT_INCLUDE={cmake_file()}", "-DCMAKE_CXX_COMPILER=clang++-19"]
+    if disable:
+        arguments.append("-DTPC_DISABLE=ON")
+    result = build(tmp_path, lists, *arguments)
+    assert result.analysed() == ([] if disable else ["s", "x"])
+    assert result.runs("x").returncode == 0
+    # A second configuration comes to the same.
+    assert build(tmp_path, lists, *arguments).analysed() == result.analysed()
+
+
+def test_other_languages_do_not_get_the_flags_of_lld(tmp_path: Path) -> None:
+    lists = HEAD + 'file(WRITE "${CMAKE_BINARY_DIR}/l" "${CMAKE_EXE_LINKER_FLAGS}")\n'
+    result = build(tmp_path, lists)
+    assert "ld-path" not in (result.folder / "l").read_text(encoding="utf-8")
+
+
+# --- sanitizers and profiles
+
+
+OVERRUN = """#include <cstdlib>
+int main(int c, char **) {
+  int *p = (int *)std::malloc(4 * c); p[c] = 1; int r = p[c]; std::free(p); return r;
+}
+"""
+
+
+@pytest.mark.parametrize("place", ["CMAKE_CXX_FLAGS", "CMAKE_CXX_FLAGS_DEBUG", "CXXFLAGS"])
+def test_a_sanitizer_works_in_a_package_that_is_left_alone(tmp_path: Path, place: str) -> None:
+    (tmp_path / "p").mkdir()
+    (tmp_path / "p/overrun.cpp").write_text(OVERRUN, encoding="utf-8")
+    flag = "-fsanitize=address"
+    lists = HEAD + "add_executable(x overrun.cpp)\n"
+    if place == "CXXFLAGS":
+        result = build(tmp_path, lists, CXXFLAGS=f"-Wall {flag}")
+        place = "CMAKE_CXX_FLAGS"
+    else:
+        debug = "-DCMAKE_BUILD_TYPE=Debug"
+        result = build(tmp_path, lists, toolchain(), debug, f"-D{place}=-Wall {flag}")
+    (warning,) = result.warnings()
+    assert warning.startswith(f"TPC: p is built without instrumentation: {flag} in {place}")
+    assert "heap-buffer-overflow" in result.runs("x").stderr
+    assert result.analysed() == []
+
+
+def test_a_profile_is_written(tmp_path: Path) -> None:
+    lists = HEAD + "add_executable(x main.cpp)\n"
+    result = build(tmp_path, lists, toolchain(), "-DCMAKE_CXX_FLAGS=--coverage")
+    (warning,) = result.warnings()
+    assert "--coverage in CMAKE_CXX_FLAGS" in warning
+    assert result.runs("x").returncode in (0, 1)
+    assert [*result.folder.rglob("*.gcda")]
+
+
+def test_a_sanitizer_that_clang_can_link_stays_with_clang(tmp_path: Path) -> None:
+    # It needs no library of clang's: the program is ended by an illegal instruction.
+    trap = "-fsanitize=undefined -fsanitize-trap=undefined"
+    (tmp_path / "p").mkdir()
+    overflow = "int main(int n, char **) { return (0x7fffffff + n) / 2; }\n"
+    (tmp_path / "p/overflow.cpp").write_text(overflow, encoding="utf-8")
+    lists = HEAD + "add_executable(x overflow.cpp)\n"
+    result = build(tmp_path, lists, toolchain(), f"-DCMAKE_CXX_FLAGS={trap}")
+    (warning,) = result.warnings()
+    assert "-fsanitize=undefined in CMAKE_CXX_FLAGS" in warning
+    assert result.runs("x").returncode < 0
+    compilers = [path.read_text("utf-8") for path in result.folder.rglob("CMakeCXXCompiler.cmake")]
+    assert 'set(CMAKE_CXX_COMPILER "/usr/bin/clang++-19")' in compilers[0]
+
+
+def test_a_sanitizer_of_another_configuration_is_no_obstacle(tmp_path: Path) -> None:
+    lists = HEAD + "add_executable(x main.cpp)\n"
+    arguments = ["-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_CXX_FLAGS_DEBUG=-fsanitize=address"]
+    result = build(tmp_path, lists, toolchain(), *arguments)
+    assert (result.analysed(), result.warnings()) == (["x"], [])
+
+
+def test_a_sanitizer_that_comes_after_project_is_said_to_be_lost(tmp_path: Path) -> None:
+    lists = HEAD + (
+        "add_library(x STATIC main.cpp)\ntarget_compile_options(x PRIVATE -fsanitize=address)\n"
+        "add_library(y STATIC main.cpp)\n"
+    )
+    (warning,) = build(tmp_path, lists).warnings()
+    assert warning.startswith("TPC: lost in what is built with TPC: -fsanitize=address of x; ")
+    late = 'set(CMAKE_CXX_FLAGS "${CMAKE_CXX_FLAGS} --coverage")\n'
+    lists = f"{HEAD}{late}add_library(z STATIC main.cpp)\n"
+    (warning,) = build(tmp_path, lists, name="late").warnings()
+    assert "--coverage of z; " in warning
+
+
+# --- languages
+
+
+@pytest.mark.parametrize(
+    ("first", "then", "source"), [("C", "CXX", "main.cpp"), ("CXX", "C", "main.c")]
+)
+def test_a_language_that_is_enabled_later_is_instrumented(
+    tmp_path: Path, first: str, then: str, source: str
+) -> None:
+    (tmp_path / "p").mkdir()
+    (tmp_path / "p/main.c").write_text("int main(void) { return 0; }\n", encoding="utf-8")
+    lists = (
+        f"cmake_minimum_required(VERSION 3.16)\nproject(p LANGUAGES {first})\n"
+        f"enable_language({then})\nadd_executable(x {source})\nadd_library(s SHARED {source})\n"
+    )
+    result = build(tmp_path, lists)
+    assert (result.analysed(), result.warnings()) == (["s", "x"], [])
+
+
+@pytest.mark.parametrize("first", ["C", "NONE"])
+def test_a_later_language_with_a_compiler_of_its_own_is_named(tmp_path: Path, first: str) -> None:
+    lists = (
+        f"cmake_minimum_required(VERSION 3.16)\nproject(p LANGUAGES {first})\n"
+        "enable_language(CXX)\nadd_executable(x main.cpp)\n"
+    )
+    compilers = ["-DCMAKE_CXX_COMPILER=g++"] if first == "C" else []
+    result = build(tmp_path, lists, toolchain(), *compilers)
+    (warning,) = result.warnings()
+    assert "enabled after project() or its compile rule was replaced: x; name" in warning
+    assert result.analysed() == []
+
+
+def test_a_project_below_one_without_languages_is_instrumented(tmp_path: Path) -> None:
+    (tmp_path / "p/inner").mkdir(parents=True)
+    (tmp_path / "p/inner/CMakeLists.txt").write_text(
+        "project(inner CXX)\nadd_executable(y ../main.cpp)\n", encoding="utf-8"
+    )
+    top = "cmake_minimum_required(VERSION 3.16)\nproject(p NONE)\nadd_subdirectory(inner)\n"
+    result = build(tmp_path, top)
+    assert (result.analysed(), result.warnings()) == (["y"], [])
+
+
+def test_the_users_own_file_is_included_after_project(tmp_path: Path) -> None:
+    own = tmp_path / "own.cmake"
+    own.write_text("set(OWN TRUE)\n", encoding="utf-8")
+    lists = HEAD + 'if(NOT OWN)\n  message(FATAL_ERROR "no")\nendif()\nadd_executable(x main.cpp)\n'
+    for name, disable in (("p", "OFF"), ("q", "ON")):
+        arguments = [toolchain(), f"-DCMAKE_PROJECT_INCLUDE={own}", f"-DTPC_DISABLE={disable}"]
+        result = build(tmp_path, lists, *arguments, name=name)
+        assert result.analysed() == (["x"] if disable == "OFF" else [])
+
+
+def test_another_compiler_is_one_warning(tmp_path: Path) -> None:
+    lists = HEAD + "add_executable(x main.cpp)\n"
+    result = build(tmp_path, lists, toolchain(), "-DCMAKE_CXX_COMPILER=g++")
+    (warning,) = result.warnings()
+    assert "the compiler is GNU, not clang" in warning
+    assert result.runs("x").returncode in (0, 1)
