@@ -7,6 +7,7 @@
 
 #include "llvm/IR/InstIterator.h"
 #include "llvm/IR/Instructions.h"
+#include "llvm/IR/IntrinsicInst.h"
 #include "llvm/IR/Operator.h"
 #include "llvm/Passes/PassBuilder.h"
 #include "llvm/Transforms/IPO/AlwaysInliner.h"
@@ -19,6 +20,14 @@ namespace tpc {
 
 /// Functions of libraries with at most this many instructions are inlined.
 static constexpr unsigned MaxInlined = 100;
+
+/// The instructions of \p F without the marks that only some levels have.
+static unsigned sizeOf(const Function &F) {
+  return count_if(instructions(F), [](const Instruction &I) {
+    return !isa<AssumeInst>(I) && !I.isDebugOrPseudoInst() &&
+           !I.isLifetimeStartOrEnd();
+  });
+}
 
 /// Marks the small functions of libraries in \p M to be inlined; returns those
 /// that were not marked before. What the rules speak of stays a call.
@@ -35,9 +44,8 @@ markSmallLibraryFunctions(Module &M, const Options &Opts) {
   for (Function &F : definedFunctions(M)) {
     if (!F.getSubprogram() || Sources.has(F) ||
         F.hasFnAttribute(Attribute::AlwaysInline) ||
-        F.hasFnAttribute(Attribute::NoInline) ||
-        F.getInstructionCount() > MaxInlined || Tables->match(F) ||
-        Tables->isOpaque(F))
+        F.hasFnAttribute(Attribute::NoInline) || sizeOf(F) > MaxInlined ||
+        Tables->match(F) || Tables->isOpaque(F))
       continue;
     F.addFnAttr(Attribute::AlwaysInline);
     Marked.push_back(&F);
@@ -125,7 +133,7 @@ bool separateCalls(Module &M, ArrayRef<std::string> Names) {
   bool Changed = false;
   for (const std::string &Name : Names) {
     Function *F = M.getFunction(Name);
-    if (!F || F->isDeclaration() || F->getInstructionCount() > MaxCopied)
+    if (!F || F->isDeclaration() || sizeOf(*F) > MaxCopied)
       continue;
     SmallVector<CallBase *, 8> Calls;
     for (User *U : F->users())

@@ -21,7 +21,7 @@ TYPE_I = "mark_action"
 TYPE_II = "mark_no_action"
 
 REACTION_MEDIAN_S = 2.5  # thesis, table 6.14: 1 to 4 s where the error was plain to see
-REACTION_SIGMA = 0.5
+REACTION_SIGMA = 0.4
 PATIENCE_S = (7.0, 1.0)  # with the reaction the 7 to 10 s of table 6.14, type II
 REPEAT_S = (4.0, 9.0)
 NOBODY_PATIENCE_S = 6.0
@@ -120,7 +120,8 @@ class Observer:
 
     def _watch_person(self, sight: Sight, flying: bool) -> None:
         in_front = abs(sight.bearing) < IN_FRONT_RAD and sight.distance < IN_FRONT_M
-        if not (in_front and flying and self._has_turned) or self._person_photographed:
+        standing = flying and self._has_turned and not self._moving() and not self._turning()
+        if not (in_front and standing) or self._person_photographed:
             if self._front_since is not None:
                 # It turned away or went on: the hand leaves the key.
                 self._pending = [mark for mark in self._pending if mark.topic != TYPE_II]

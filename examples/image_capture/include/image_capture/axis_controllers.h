@@ -32,13 +32,19 @@ public:
   explicit PositionController(ros::NodeHandle &private_nh);
 
   Tilt update(const Estimate &estimate, const Target &target);
+  /// Starts from where the UAV is.
+  void reset(const Estimate &estimate);
   bool lateralControl() const;
 
 private:
+  void advanceSetpoint(const Target &target, double interval);
   double axis(double error) const;
 
   double position_gain_ = 0.7;
   double velocity_gain_ = 0.22;
+  double setpoint_x_ = 0.0;
+  double setpoint_y_ = 0.0;
+  double cruise_speed_;
   double max_velocity_;
   double max_tilt_;
   double stick_deadband_;

@@ -5,6 +5,7 @@
 #include <image_capture/FaceArray.h>
 #include <image_capture/Observation.h>
 #include <ros/ros.h>
+#include <std_msgs/Bool.h>
 
 #include "image_capture/blob_filter.h"
 #include "image_capture/heartbeat_publisher.h"
@@ -16,6 +17,7 @@ public:
   DetectorNode(ros::NodeHandle &nh, ros::NodeHandle &private_nh);
 
 private:
+  void onEnable(const std_msgs::Bool &enable) { enabled_ = enable.data; }
   void onObservation(const Observation &observation);
   void findFaces(const Observation &observation, FaceArray &result);
   bool sharp(const Observation &observation) const;
@@ -23,7 +25,9 @@ private:
   BlobFilter filter_;
   HeartbeatPublisher heartbeat_;
   ros::Publisher faces_pub_;
+  ros::Subscriber enable_sub_;
   ros::Subscriber observation_sub_;
+  bool enabled_ = true;
   double max_motion_blur_;
   int max_faces_;
   bool detect_when_blurred_;

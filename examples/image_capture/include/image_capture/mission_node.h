@@ -3,6 +3,8 @@
 #ifndef IMAGE_CAPTURE_MISSION_NODE_H
 #define IMAGE_CAPTURE_MISSION_NODE_H
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include <image_capture/FaceArray.h>
@@ -58,6 +60,7 @@ private:
   void descend();
   void sendWayPose(const WayPose &waypose);
   void publishState();
+  void publishAlbum();
 
   SearchPattern search_;
   FaceTracker tracker_;
@@ -66,6 +69,8 @@ private:
 
   ros::Publisher waypose_pub_;
   ros::Publisher state_pub_;
+  ros::Publisher album_pub_;
+  ros::Publisher detector_pub_;
   ros::Publisher done_pub_;
   ros::Subscriber flight_sub_;
   ros::Subscriber faces_sub_;
@@ -73,7 +78,14 @@ private:
   ros::Timer tick_timer_;
   ros::Timer status_timer_;
 
-  double search_x_, search_y_, search_yaw_;
+  /// What it flies along from the start: a gate, then the point of the search.
+  struct Point {
+    double x = 0.0;
+    double y = 0.0;
+  };
+  std::array<Point, 2> route_;
+  std::size_t leg_ = 0;
+  double search_yaw_;
   double landing_x_, landing_y_;
   double takeoff_height_;
   double waypoint_tolerance_;

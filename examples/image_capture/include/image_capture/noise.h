@@ -16,7 +16,9 @@ public:
   double uniform(double low, double high) {
     return low + (high - low) * unit_(generator_);
   }
-  bool chance(double probability) { return unit_(generator_) < probability; }
+  bool chance(double probability) {
+    return std::bernoulli_distribution(probability)(generator_);
+  }
   int poisson(double mean) {
     return std::poisson_distribution<int>(mean)(generator_);
   }

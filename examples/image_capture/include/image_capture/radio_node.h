@@ -38,7 +38,6 @@ private:
   FlightState sent_;
   double min_displacement_;
   double min_z_displacement_;
-  double pose_keepalive_;
   bool enable_preview_;
   bool enable_link_;
 };

@@ -10,11 +10,15 @@ DetectorNode::DetectorNode(ros::NodeHandle &nh, ros::NodeHandle &private_nh)
   private_nh.param("max_faces", max_faces_, 6);
   private_nh.param("detect_when_blurred", detect_when_blurred_, false);
   faces_pub_ = nh.advertise<FaceArray>("/camera/faces", 10);
+  enable_sub_ =
+      nh.subscribe("/camera/detect", 4, &DetectorNode::onEnable, this);
   observation_sub_ = nh.subscribe("/camera/observation", 10,
                                   &DetectorNode::onObservation, this);
 }
 
 void DetectorNode::onObservation(const Observation &observation) {
+  if (!enabled_)
+    return;
   FaceArray result;
   result.header.stamp = observation.header.stamp;
   result.image_id = observation.image_id;

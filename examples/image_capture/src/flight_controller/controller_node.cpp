@@ -20,8 +20,10 @@ ControllerNode::ControllerNode(ros::NodeHandle &nh, ros::NodeHandle &private_nh)
 }
 
 void ControllerNode::onWayPose(const WayPose &waypose) {
-  if (waypose.motors_on && !motors_on_)
+  if (waypose.motors_on && !motors_on_) {
     height_controller_.reset();
+    position_controller_.reset(estimator_.estimate());
+  }
   motors_on_ = waypose.motors_on;
   target_.x = waypose.position.x;
   target_.y = waypose.position.y;

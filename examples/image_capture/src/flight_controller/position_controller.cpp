@@ -5,7 +5,8 @@
 namespace image_capture {
 
 PositionController::PositionController(ros::NodeHandle &private_nh) {
-  private_nh.param("max_velocity", max_velocity_, 1.0);
+  private_nh.param("cruise_speed", cruise_speed_, 1.0);
+  private_nh.param("max_velocity", max_velocity_, 1.5);
   private_nh.param("max_tilt", max_tilt_, 0.35);
   private_nh.param("stick_deadband", stick_deadband_, 0.004);
   private_nh.param("enable_pitch_ctrl", enable_pitch_ctrl_, true);
@@ -15,8 +16,9 @@ PositionController::PositionController(ros::NodeHandle &private_nh) {
 
 Tilt PositionController::update(const Estimate &estimate,
                                 const Target &target) {
-  double vx = position_gain_ * (target.x - estimate.x);
-  double vy = position_gain_ * (target.y - estimate.y);
+  advanceSetpoint(target, estimate.interval);
+  double vx = position_gain_ * (setpoint_x_ - estimate.x);
+  double vy = position_gain_ * (setpoint_y_ - estimate.y);
   const double speed = std::hypot(vx, vy);
   if (speed > max_velocity_) {
     vx *= max_velocity_ / speed;
@@ -33,6 +35,22 @@ Tilt PositionController::update(const Estimate &estimate,
   if (enable_roll_ctrl_)
     tilt.roll = axis(-s * error_x + c * error_y);
   return tilt;
+}
+
+void PositionController::reset(const Estimate &estimate) {
+  setpoint_x_ = estimate.x;
+  setpoint_y_ = estimate.y;
+}
+
+void PositionController::advanceSetpoint(const Target &target,
+                                         double interval) {
+  const double dx = target.x - setpoint_x_;
+  const double dy = target.y - setpoint_y_;
+  const double distance = std::hypot(dx, dy);
+  const double step = cruise_speed_ * interval;
+  const double share = distance > step ? step / distance : 1.0;
+  setpoint_x_ += share * dx;
+  setpoint_y_ += share * dy;
 }
 
 double PositionController::axis(double error) const {

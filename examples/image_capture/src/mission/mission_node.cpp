@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <image_capture/Album.h>
 #include <image_capture/CapturePicture.h>
 #include <std_msgs/Bool.h>
 
@@ -19,6 +20,8 @@ MissionNode::MissionNode(ros::NodeHandle &nh, ros::NodeHandle &private_nh)
   readParameters(private_nh);
   waypose_pub_ = nh.advertise<WayPose>("/mission/waypose", 10);
   state_pub_ = nh.advertise<MissionState>("/mission/state", 10, true);
+  album_pub_ = nh.advertise<Album>("/mission/album", 10, true);
+  detector_pub_ = nh.advertise<std_msgs::Bool>("/camera/detect", 1, true);
   done_pub_ = nh.advertise<std_msgs::Bool>("/mission/done", 1, true);
   capture_client_ = nh.serviceClient<CapturePicture>("/camera/capture");
   flight_sub_ =
@@ -30,10 +33,12 @@ MissionNode::MissionNode(ros::NodeHandle &nh, ros::NodeHandle &private_nh)
 }
 
 void MissionNode::readParameters(ros::NodeHandle &private_nh) {
-  private_nh.param("search_x", search_x_, 4.0);
-  private_nh.param("search_y", search_y_, 1.0);
+  private_nh.param("gate_x", route_[0].x, 2.0);
+  private_nh.param("gate_y", route_[0].y, -0.5);
+  private_nh.param("search_x", route_[1].x, 4.0);
+  private_nh.param("search_y", route_[1].y, 1.0);
   private_nh.param("search_yaw", search_yaw_, -1.8);
-  private_nh.param("landing_x", landing_x_, 1.0);
+  private_nh.param("landing_x", landing_x_, -1.0);
   private_nh.param("landing_y", landing_y_, 0.0);
   private_nh.param("takeoff_height", takeoff_height_, 1.6);
   private_nh.param("waypoint_tolerance", waypoint_tolerance_, 0.25);
@@ -110,6 +115,11 @@ void MissionNode::enter(std::uint8_t state) {
   hold_y_ = flight_.position.y;
   goal_yaw_ = flight_.yaw;
   publishState();
+  publishAlbum();
+  // Faces cost power, and on the way they would only distract.
+  std_msgs::Bool detect;
+  detect.data = state == MissionState::SEARCH || state == MissionState::TRACK;
+  detector_pub_.publish(detect);
   if (state == MissionState::DONE) {
     std_msgs::Bool done;
     done.data = true;
@@ -175,8 +185,14 @@ void MissionNode::publishState() {
   message.centred = centred_;
   message.in_range = in_range_;
   message.selfies = pictures_.selfies();
-  message.album = pictures_.album();
   state_pub_.publish(message);
+}
+
+void MissionNode::publishAlbum() {
+  Album message;
+  message.header.stamp = now_;
+  message.slots = pictures_.album();
+  album_pub_.publish(message);
 }
 
 } // namespace image_capture

@@ -67,15 +67,20 @@ void MissionNode::runTakeoff() {
 }
 
 void MissionNode::runGoto() {
-  flyTo(search_x_, search_y_, takeoff_height_, goal_yaw_);
-  if (arrived(search_x_, search_y_))
-    enter(MissionState::ALIGN);
-  else if (legOverdue())
+  const Point &point = route_[leg_];
+  flyTo(point.x, point.y, takeoff_height_, goal_yaw_);
+  if (legOverdue()) {
     enter(MissionState::ABORT);
+    return;
+  }
+  if (!arrived(point.x, point.y))
+    return;
+  ++leg_;
+  enter(leg_ < route_.size() ? MissionState::GOTO : MissionState::ALIGN);
 }
 
 void MissionNode::runAlign() {
-  flyTo(search_x_, search_y_, takeoff_height_, search_yaw_);
+  flyTo(hold_x_, hold_y_, takeoff_height_, search_yaw_);
   const double error = wrapAngle(search_yaw_ - flight_.yaw);
   if (std::fabs(error) < yaw_tolerance_) {
     enter(MissionState::SEARCH);

@@ -24,9 +24,8 @@ std::vector<std::uint8_t> serialize(const Message &message) {
 
 RadioNode::RadioNode(ros::NodeHandle &nh, ros::NodeHandle &private_nh)
     : packetizer_(private_nh), heartbeat_(nh, private_nh) {
-  private_nh.param("min_displacement", min_displacement_, 0.06);
+  private_nh.param("min_displacement", min_displacement_, 0.05);
   private_nh.param("min_z_displacement", min_z_displacement_, 0.15);
-  private_nh.param("pose_keepalive", pose_keepalive_, 2.0);
   private_nh.param("enable_preview", enable_preview_, true);
   private_nh.param("stale_preview_age", stale_preview_age, 1.0);
   private_nh.param("enable_link", enable_link_, true);
@@ -42,7 +41,7 @@ RadioNode::RadioNode(ros::NodeHandle &nh, ros::NodeHandle &private_nh)
   preview_sub_ =
       nh.subscribe("/camera/preview", 2, &RadioNode::onPreview, this);
   pose_timer_ =
-      nh.createTimer(ros::Duration(0.1), &RadioNode::onPoseTimer, this);
+      nh.createTimer(ros::Duration(0.2), &RadioNode::onPoseTimer, this);
   transmit_timer_ =
       nh.createTimer(ros::Duration(0.02), &RadioNode::onTransmitTimer, this);
 }
@@ -78,8 +77,7 @@ bool RadioNode::hasMoved() const {
 }
 
 void RadioNode::onPoseTimer(const ros::TimerEvent &event) {
-  const double age = (event.current_real - sent_.header.stamp).toSec();
-  if (!hasMoved() && age < pose_keepalive_)
+  if (!hasMoved())
     return;
   sent_ = flight_;
   sent_.header.stamp = event.current_real;

@@ -25,7 +25,7 @@ CameraModel::CameraModel(ros::NodeHandle &private_nh, std::uint32_t seed)
   half_angle_ = 0.5 * degrees * M_PI / 180.0;
   private_nh.param("person_x", person_x_, 2.0);
   private_nh.param("person_y", person_y_, 3.75);
-  private_nh.param("person_sway", person_sway_, 0.02);
+  private_nh.param("person_sway", person_sway_, 0.01);
   private_nh.param("camera_range", camera_range_, 8.0);
   private_nh.param("camera_rate", camera_rate_, 10.0);
   private_nh.param("phantom_pause", phantom_pause_, 1.5);

@@ -9,7 +9,7 @@ namespace image_capture {
 
 namespace {
 constexpr std::size_t PictureBytes = 20000;
-constexpr std::size_t PreviewBytes = 1500;
+constexpr std::size_t PreviewBytes = 400;
 constexpr double PreviewPeriod = 2.0;
 constexpr double TruthPeriod = 0.1;
 /// A controller that is gone must not stop the time for good.

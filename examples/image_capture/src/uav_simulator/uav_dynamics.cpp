@@ -10,7 +10,7 @@ constexpr double HoverThrust = 0.5;
 constexpr double AttitudeLag = 0.12;
 constexpr double YawLag = 0.15;
 constexpr double Drag = 0.3;
-constexpr double GustDeviation = 0.06; // m/s^2
+constexpr double GustDeviation = 0.03; // m/s^2
 constexpr double FullVoltage = 12.4;
 constexpr double EmptyVoltage = 10.2;
 
@@ -23,7 +23,7 @@ UavDynamics::UavDynamics(ros::NodeHandle &private_nh, std::uint32_t seed)
     : noise_(seed) {
   private_nh.param("battery_seconds", battery_seconds_, 600.0);
   private_nh.param("battery_empty_voltage", battery_empty_voltage_, 10.3);
-  private_nh.param("gps_dropout", gps_dropout_, 0.01);
+  private_nh.param("gps_dropout", gps_dropout_, 0.005);
   private_nh.param("enable_wind", enable_wind_, true);
   const double deviation = enable_wind_ ? GustDeviation : 0.0;
   gust_x_.setDeviation(deviation);
@@ -84,11 +84,9 @@ UavSensors UavDynamics::sense(const ros::Time &stamp) {
   battery_empty_ = voltage() < battery_empty_voltage_;
   UavSensors sensors;
   sensors.header.stamp = stamp;
-  sensors.gps_x = state_.x + noise_.gaussian(0.012);
-  sensors.gps_y = state_.y + noise_.gaussian(0.012);
-  sensors.gps_valid = true;
-  if (noise_.uniform(0.0, 1.0) < gps_dropout_)
-    sensors.gps_valid = false;
+  sensors.gps_x = state_.x + noise_.gaussian(0.008);
+  sensors.gps_y = state_.y + noise_.gaussian(0.008);
+  sensors.gps_valid = !noise_.chance(gps_dropout_);
   sensors.flow_x = state_.vx + noise_.gaussian(0.05);
   sensors.flow_y = state_.vy + noise_.gaussian(0.05);
   sensors.baro_z = state_.z + baro_drift_.value() + noise_.gaussian(0.02);
