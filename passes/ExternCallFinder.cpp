@@ -2,11 +2,9 @@
 #include "ExternCallFinder.h"
 
 #include "ClassObjectAccess.h"
-#include "Functions.h"
 #include "Names.h"
 #include "Print.h"
 
-#include "llvm/IR/InstIterator.h"
 #include "llvm/IR/Module.h"
 
 using namespace llvm;
@@ -27,31 +25,25 @@ struct NamedObject {
 static SmallVector<NamedObject, 0>
 namedObjects(Module &M, const RuleMatches &Rules, const AccessResult &Access) {
   SmallVector<NamedObject, 0> Found;
-  for (Function &F : definedFunctions(M))
-    for (Instruction &I : instructions(F)) {
-      auto *Call = dyn_cast<CallBase>(&I);
-      const Rule *Row = Call ? Rules.match(*Call) : nullptr;
-      if (!Row || Row->Kind != Rule::Topic || !Call->hasStructRetAttr())
+  forEachCall(M, Rules, Rule::Topic, [&](CallBase &Call, const Rule &Row) {
+    std::optional<std::string> Topic =
+        constantText(argument(Call, Row, Row.Name));
+    if (!Topic || !Call.hasStructRetAttr())
+      return;
+    Value *Made = Call.getArgOperand(0);
+    for (const Location &L : Access.resolve(Made, false))
+      Found.push_back({L, *Topic});
+    if (!isa<AllocaInst>(Made))
+      return;
+    for (User *U : Made->users()) {
+      auto *Assign = dyn_cast<CallBase>(U);
+      if (!Assign || Assign->arg_size() != 2 ||
+          Assign->getArgOperand(1) != Made)
         continue;
-      std::optional<std::string> Topic =
-          constantText(argument(*Call, *Row, Row->Name));
-      if (!Topic)
-        continue;
-      Value *Made = Call->getArgOperand(0);
-      for (const Location &L : Access.resolve(Made, false))
+      for (const Location &L : Access.resolve(Assign->getArgOperand(0), false))
         Found.push_back({L, *Topic});
-      if (!isa<AllocaInst>(Made))
-        continue;
-      for (User *U : Made->users()) {
-        auto *Assign = dyn_cast<CallBase>(U);
-        if (!Assign || Assign->arg_size() != 2 ||
-            Assign->getArgOperand(1) != Made)
-          continue;
-        for (const Location &L :
-             Access.resolve(Assign->getArgOperand(0), false))
-          Found.push_back({L, *Topic});
-      }
     }
+  });
   return Found;
 }
 
@@ -77,21 +69,12 @@ ExternCallFinder::Result ExternCallFinder::run(Module &M,
   const AccessResult &Access = AM.getResult<ClassObjectAccess>(M);
   SmallVector<NamedObject, 0> Named = namedObjects(M, Rules, Access);
   Result R;
-  for (Function &F : definedFunctions(M)) {
-    if (Rules.isOpaque(F))
-      continue;
-    for (Instruction &I : instructions(F)) {
-      auto *Call = dyn_cast<CallBase>(&I);
-      const Rule *Row = Call ? Rules.match(*Call) : nullptr;
-      if (!Row || Row->Kind != Rule::Exposing)
-        continue;
-      std::string Topic =
-          Row->Name
-              ? constantText(argument(*Call, *Row, Row->Name)).value_or("")
-              : topicOf(objectOf(*Call, *Row), Named, Access);
-      R.push_back({Call, Row, std::move(Topic)});
-    }
-  }
+  forEachCall(M, Rules, Rule::Exposing, [&](CallBase &Call, const Rule &Row) {
+    std::string Topic =
+        Row.Name ? constantText(argument(Call, Row, Row.Name)).value_or("")
+                 : topicOf(objectOf(Call, Row), Named, Access);
+    R.push_back({&Call, &Row, std::move(Topic)});
+  });
   return R;
 }
 

@@ -1,13 +1,11 @@
 //===- ParamCallFinder.cpp ------------------------------------------------===//
 #include "ParamCallFinder.h"
 
-#include "Functions.h"
 #include "Names.h"
 #include "Print.h"
 
 #include "llvm/Demangle/Demangle.h"
 #include "llvm/IR/Constants.h"
-#include "llvm/IR/InstIterator.h"
 #include "llvm/IR/Instructions.h"
 #include "llvm/IR/Module.h"
 #include "llvm/Support/FormatVariadic.h"
@@ -110,23 +108,14 @@ ParamCallFinder::Result ParamCallFinder::run(Module &M,
                                              ModuleAnalysisManager &AM) {
   const RuleMatches &Rules = AM.getResult<RuleAnalysis>(M);
   Result R;
-  for (Function &F : definedFunctions(M)) {
-    if (Rules.isOpaque(F))
-      continue;
-    for (Instruction &I : instructions(F)) {
-      auto *Call = dyn_cast<CallBase>(&I);
-      const Rule *Row = Call ? Rules.match(*Call) : nullptr;
-      if (!Row || Row->Kind != Rule::Read)
-        continue;
-      std::string Type = valueType(*Call->getCalledFunction(), *Row);
-      json::Value Default = defaultOf(*Call, *Row, Type);
-      R.push_back(
-          {Call, Row,
-           constantText(argument(*Call, *Row, Row->Name)).value_or(DynamicName),
-           std::move(Type), std::move(Default),
-           argument(*Call, *Row, Row->Value)});
-    }
-  }
+  forEachCall(M, Rules, Rule::Read, [&](CallBase &Call, const Rule &Row) {
+    std::string Type = valueType(*Call.getCalledFunction(), Row);
+    json::Value Default = defaultOf(Call, Row, Type);
+    R.push_back(
+        {&Call, &Row,
+         constantText(argument(Call, Row, Row.Name)).value_or(DynamicName),
+         std::move(Type), std::move(Default), argument(Call, Row, Row.Value)});
+  });
   return R;
 }
 

@@ -8,9 +8,12 @@
 #ifndef TPC_RULES_H
 #define TPC_RULES_H
 
+#include "Functions.h"
+
 #include "llvm/ADT/DenseMap.h"
 #include "llvm/ADT/DenseSet.h"
 #include "llvm/ADT/StringMap.h"
+#include "llvm/IR/InstIterator.h"
 #include "llvm/IR/InstrTypes.h"
 #include "llvm/IR/PassManager.h"
 #include "llvm/Support/Error.h"
@@ -80,6 +83,24 @@ private:
   llvm::DenseMap<const llvm::Function *, const Rule *> Rows;
   llvm::DenseSet<const llvm::Function *> Opaque;
 };
+
+/// Calls \p F with each call in \p M that a row of \p Kind describes, and with
+/// the row; in the order of the module. What is inside a described function
+/// is ROS's own.
+template <typename Fn>
+void forEachCall(llvm::Module &M, const RuleMatches &Rules, Rule::KindTy Kind,
+                 Fn F) {
+  for (llvm::Function &In : definedFunctions(M)) {
+    if (Rules.isOpaque(In))
+      continue;
+    for (llvm::Instruction &I : llvm::instructions(In)) {
+      auto *Call = llvm::dyn_cast<llvm::CallBase>(&I);
+      const Rule *Row = Call ? Rules.match(*Call) : nullptr;
+      if (Row && Row->Kind == Kind)
+        F(*Call, *Row);
+    }
+  }
+}
 
 class RuleAnalysis : public llvm::AnalysisInfoMixin<RuleAnalysis> {
 public:

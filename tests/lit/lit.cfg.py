@@ -31,9 +31,9 @@ config.substitutions += [
     (
         "%link",
         f"{clangxx} -flto=full --ld-path={lld} -Wl,--load-pass-plugin={plugin}"
-        f" -Wl,-mllvm,-load={plugin} -Wl,-mllvm,-tpc-exclude={inputs}",
+        f" -Wl,-mllvm,-load={plugin} -Wl,-mllvm,-tpc-exclude={inputs}/include",
     ),
-    ("%opt", f"{opt} {load} -tpc-exclude={inputs}"),
+    ("%opt", f"{opt} {load} -tpc-exclude={inputs}/include"),
     ("%inputs", inputs),
     ("%python", config.tpc_python),
     ("%log-library", config.tpc_log),

@@ -1,14 +1,14 @@
 // RUN: %native -c %inputs/ros.cpp -o %t.ros.o
-// RUN: %compile -O0 %s -o %t.0.o
+// RUN: %compile -O0 %inputs/node.cpp -o %t.0.o
 // RUN: %link -O0 -Wl,-mllvm,-tpc-link-unit=node %t.0.o %t.ros.o -o %t.0
 // RUN: %t.0 | FileCheck %s
-// RUN: %compile -O1 %s -o %t.1.o
+// RUN: %compile -O1 %inputs/node.cpp -o %t.1.o
 // RUN: %link -O1 -Wl,-mllvm,-tpc-link-unit=node %t.1.o %t.ros.o -o %t.1
 // RUN: %t.1 | FileCheck %s
-// RUN: %compile -O2 %s -o %t.2.o
+// RUN: %compile -O2 %inputs/node.cpp -o %t.2.o
 // RUN: %link -O2 -Wl,-mllvm,-tpc-link-unit=node %t.2.o %t.ros.o -o %t.2
 // RUN: %t.2 | FileCheck %s
-// RUN: %compile -O3 %s -o %t.3.o
+// RUN: %compile -O3 %inputs/node.cpp -o %t.3.o
 // RUN: %link -O3 -Wl,-mllvm,-tpc-link-unit=node %t.3.o %t.ros.o -o %t.3
 // RUN: %t.3 | FileCheck %s
 //
@@ -32,40 +32,3 @@
 // CHECK-NEXT: report 1 cmp 6 thresh 2.5 res 1
 // CHECK-NEXT: report 0 cmp 3 thresh 3 res 0 key {{....}}
 // CHECK-NOT: {{.}}
-#include <ros/ros.h>
-
-#include <cstdlib>
-
-class Node {
-public:
-  explicit Node(ros::NodeHandle &Handle) {
-    Handle.param("limit", Limit, 2.5);
-    Handle.param("most", Most, 3);
-    Handle.param("quiet", Quiet, false);
-    Out = Handle.advertise<std_msgs::Number>("out", 1);
-  }
-  void step(double Value) {
-    std_msgs::Number Message;
-    Message.data = Value;
-    bool Enough = Value > Limit;
-    if (Quiet)
-      return;
-    if (Enough && Count < Most) {
-      ++Count;
-      Out.publish(Message);
-    }
-  }
-
-private:
-  ros::Publisher Out;
-  double Limit;
-  int Most, Count = 0;
-  bool Quiet;
-};
-
-int main() {
-  ros::NodeHandle Handle;
-  Node N(Handle);
-  for (int I = 0; I < 7; ++I)
-    N.step(I);
-}
