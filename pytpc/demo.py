@@ -16,6 +16,7 @@ from rich.text import Text
 
 from pytpc.errors import RunError
 from pytpc.ingest import Recording, read_bag, save_recording
+from pytpc.ingest.recording import EVENTS_FILE, MARKS_FILE
 from pytpc.marks import Mark
 from pytpc.mission import MissionRun, Progress, run_mission
 from pytpc.ranking import MarkRanking, rank_marks
@@ -86,6 +87,8 @@ def run_treatment(
         RunError: the mission could not be run.
         InputError: the recording cannot be read.
     """
+    for stale in (EVENTS_FILE, MARKS_FILE):
+        (out_dir / stale).unlink(missing_ok=True)
     args = {"seed": str(seed), "treatment": str(treatment.overlay.absolute()), **treatment.launch}
     run = run_mission(
         install_env, launch, args, out_dir, timeout_s, topics=WATCHED, on_progress=on_progress

@@ -53,7 +53,9 @@ class GraphProcess:
                 text = stream.read().decode("utf-8", "replace")
         except OSError:
             return []
-        said = [line.strip() for line in _COLOUR.sub("", text).splitlines() if line.strip("= \t")]
+        # roslaunch underlines with equals signs, some of them on the line itself.
+        said = [line.strip("= \t") for line in _COLOUR.sub("", text).splitlines()]
+        said = [line for line in said if line]
         telling = [line for line in said if _TELLING.search(line)]
         return (telling or said)[-lines:]
 

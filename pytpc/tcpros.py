@@ -140,10 +140,14 @@ class RawSubscriber:
         self._selector.register(self._wake_receive, selectors.EVENT_READ)
         self._server = _slave_server(host, self._on_publishers)
         self._uri = f"http://{host}:{self._server.server_address[1]}/"
-        threading.Thread(target=self._server.serve_forever, daemon=True).start()
-        for topic in self._wanted:
-            publishers = self.call_master("registerSubscriber", topic, "*", self._uri)
-            self._on_publishers(topic, cast(list[str], publishers))
+        threading.Thread(target=self._server.serve_forever, args=(0.05,), daemon=True).start()
+        try:
+            for topic in self._wanted:
+                publishers = self.call_master("registerSubscriber", topic, "*", self._uri)
+                self._on_publishers(topic, cast(list[str], publishers))
+        except BaseException:
+            self.close()
+            raise
 
     def call_master(self, method: str, *arguments: object) -> object:
         """Call a method of the master API.

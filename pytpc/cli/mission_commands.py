@@ -41,11 +41,12 @@ def record_command(
     wall_time: bool,
 ) -> None:
     """Run LAUNCH of a built WORKSPACE on a ROS graph of its own, and record it."""
+    launch_arguments = _launch_arguments(args)
     with mission_progress(launch.stem) as advance:
         run = run_mission(
             workspace_env(Bases.of(workspace).install),
             launch,
-            _launch_arguments(args),
+            launch_arguments,
             output,
             timeout_s,
             until=until,

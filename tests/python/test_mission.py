@@ -1,0 +1,395 @@
+"""Recording, treatments and the judgement of a study; the real graph is in tests/ros."""
+
+from __future__ import annotations
+
+import json
+import struct
+from collections import Counter
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+import yaml
+from click.testing import CliRunner
+from mission_samples import comparison, events, ns, static_info
+from rich.console import Console
+from rosbags.highlevel import AnyReader
+
+from pytpc.cli.mission_commands import record_command
+from pytpc.demo import TreatedMission, failures, result_table
+from pytpc.errors import InputError, RunError
+from pytpc.graph import GraphProcess
+from pytpc.ingest import Recording
+from pytpc.marks import Mark
+from pytpc.mission import MissionRun, launch_command, read_status, run_mission, save_run
+from pytpc.ranking import rank_marks
+from pytpc.recorder import BagFile, LossCounter, Recorder, Status, save_status
+from pytpc.tcpros import Source
+from pytpc.treatment import Treatment, load_treatment
+
+EXAMPLE = Path(__file__).parents[2] / "examples/image_capture"
+TREATMENTS = sorted(path.name for path in (EXAMPLE / "treatments").iterdir())
+
+CLOCK = Source("/clock", "/sim", "rosgraph_msgs/Clock", "a9c97c1d230cfc112e270351a944ee47", "")
+CHAT = Source(
+    "/chat", "/talker", "std_msgs/String", "992ce8a1687cec8c8bd883ec73ca41d1", "string data\n"
+)
+DONE = Source("/done", "/boss", "std_msgs/Bool", "8b94c1b53db61fb6aed406028ad6332a", "bool data\n")
+LOG_DEFINITION = """byte DEBUG=1
+byte INFO=2
+byte WARN=4
+byte ERROR=8
+byte FATAL=16
+Header header
+byte level
+string name
+string msg
+string file
+string function
+uint32 line
+string[] topics
+================================================================================
+MSG: std_msgs/Header
+uint32 seq
+time stamp
+string frame_id
+"""
+ROSOUT = Source(
+    "/rosout", "/a", "rosgraph_msgs/Log", "acffd30cd6b6de30f120938c17c593fb", LOG_DEFINITION
+)
+
+
+def log(node: bytes, number: int, text: bytes = b"hello", frame: bytes = b"") -> bytes:
+    """A rosgraph_msgs/Log as it goes over the wire."""
+    texts = b"".join(struct.pack("<I", len(t)) + t for t in (node, text, b"f.cpp", b"run"))
+    head = struct.pack("<IIII", number, 7, 500, len(frame)) + frame + b"\x02"
+    return head + texts + struct.pack("<II", 12, 0)
+
+
+# --- the recorder
+
+
+def test_loss_counter_counts_the_numbers_that_are_missing():
+    counter = LossCounter()
+    # /a: 0 1 2 | 5: two are missing (3, 4) | 6. /b begins at 4: 1 to 3 were sent before.
+    for node, number in [(b"/a", 0), (b"/a", 1), (b"/b", 4), (b"/a", 2), (b"/a", 5), (b"/b", 5)]:
+        counter.see(log(node, number))
+    counter.see(log(b"/a", 6))
+    assert counter.lost == Counter({"/a": 2})
+    assert counter.missed_before == Counter({"/b": 3})
+
+
+def test_loss_counter_takes_a_restarted_node_for_a_new_beginning():
+    counter = LossCounter()
+    for number in (8, 9, 0, 1):
+        counter.see(log(b"/a", number))
+    assert counter.lost == Counter()
+
+
+def test_loss_counter_gives_the_text_behind_a_frame_name():
+    assert LossCounter().see(log(b"/a", 1, b"threshold_information:x", b"map")) == (
+        b"threshold_information:x"
+    )
+
+
+@pytest.mark.parametrize("length", [0, 15, 17, 24, 30])
+def test_a_message_that_is_no_log_is_an_error(length):
+    with pytest.raises(ValueError, match="no rosgraph_msgs/Log"):
+        LossCounter().see(log(b"/node", 1)[:length])
+
+
+def test_bag_has_its_name_only_when_it_is_complete(tmp_path):
+    path = tmp_path / "a.bag"
+    bag = BagFile(path)
+    bag.write(CHAT, ns(1.5), struct.pack("<I", 2) + b"hi")
+    bag.write(CHAT, ns(2.5), struct.pack("<I", 3) + b"you")
+    assert not path.exists()
+    bag.close()
+    assert [p.name for p in tmp_path.iterdir()] == ["a.bag"]
+    with AnyReader([path]) as reader:
+        found = [
+            (time, reader.deserialize(data, connection.msgtype).data)
+            for connection, time, data in reader.messages()
+        ]
+    assert found == [(1_500_000_000, "hi"), (2_500_000_000, "you")]
+
+
+def test_what_a_killed_recorder_left_is_replaced(tmp_path):
+    (tmp_path / "a.bag.active").write_bytes(b"half a bag")
+    bag = BagFile(tmp_path / "a.bag")
+    bag.write(CHAT, 0, b"\0\0\0\0")
+    bag.close()
+    assert (tmp_path / "a.bag").read_bytes().startswith(b"#ROSBAG V2.0\n")
+
+
+def test_recorder_stamps_with_the_clock_and_keeps_the_account(tmp_path):
+    bag = BagFile(tmp_path / "a.bag")
+    recorder = Recorder(bag, ["/chat", "/rosout", "/done"], "/done", sim_time=True)
+    assert recorder.status().now_ns == 0
+    recorder.take(CLOCK, struct.pack("<II", 3, 250_000_000))
+    recorder.take(CHAT, b"\0\0\0\0")
+    recorder.take(DONE, b"\0")
+    assert not recorder.status().done
+    recorder.take(CLOCK, struct.pack("<II", 4, 0))
+    recorder.take(ROSOUT, log(b"/a", 1, b"threshold_information:k,1,cmp:1,thresh:1,res:1"))
+    recorder.take(ROSOUT, log(b"/a", 4, b"threshold_informant"))
+    recorder.take(DONE, b"\1")
+    bag.close()
+    # /clock was not asked for, so it is not in the bag. Of two log messages one is a report, and
+    # 2 and 3 are missing between them.
+    assert recorder.status(closed=True) == Status(
+        ready=True,
+        done=True,
+        closed=True,
+        began_ns=0,
+        now_ns=4_000_000_000,
+        reports=1,
+        messages={"/chat": 1, "/done": 2, "/rosout": 2},
+        lost={"/a": 2},
+    )
+    with AnyReader([tmp_path / "a.bag"]) as reader:
+        times = [(connection.topic, time) for connection, time, _ in reader.messages()]
+    assert sorted(times) == [
+        ("/chat", 3_250_000_000),
+        ("/done", 3_250_000_000),
+        ("/done", 4_000_000_000),
+        ("/rosout", 4_000_000_000),
+        ("/rosout", 4_000_000_000),
+    ]
+
+
+def test_status_survives_the_way_through_its_file(tmp_path):
+    path = tmp_path / "status.json"
+    assert read_status(path) is None
+    status = Status(ready=True, now_ns=5, messages={"/rosout": 3}, lost={"/a": 1})
+    save_status(status, path)
+    assert read_status(path) == status
+
+
+# --- running
+
+
+def test_launch_command_has_its_arguments_in_order(tmp_path):
+    launch = tmp_path / "a.launch"
+    launch.write_text("<launch/>")
+    command = launch_command(launch, {"seed": "3", "rate": "4.0"})
+    assert command[0] == "roslaunch"
+    assert command[-3:] == [str(launch), "rate:=4.0", "seed:=3"]
+
+
+def test_missing_launch_file_is_said_before_anything_starts(tmp_path):
+    with pytest.raises(RunError, match=r"no\.launch: no such launch file"):
+        run_mission({}, tmp_path / "no.launch", {}, tmp_path / "out", 5.0)
+    assert not (tmp_path / "out").exists()
+
+
+def test_run_json_says_how_it_went(tmp_path):
+    run = mission_run(tmp_path)
+    save_run(run, tmp_path / "a.launch", {"seed": "1"}, tmp_path / "run.json")
+    document = json.loads((tmp_path / "run.json").read_text())
+    assert document["args"] == {"seed": "1"}
+    assert document["bag"] == "mission.bag"
+    assert (document["ended"], document["reports"]) == ("done", 10)
+    assert document["messages"]["/mark_action"] == 2
+
+
+def test_record_command_wants_name_and_value():
+    result = CliRunner().invoke(record_command, ["ws", "a.launch", "seed=1", "-o", "out"])
+    assert result.exit_code == 2
+    assert "'seed=1' is not NAME:=VALUE" in result.output
+
+
+def test_tail_of_a_process_prefers_what_tells_of_an_error(tmp_path):
+    log_file = tmp_path / "x.log"
+    lines = ["started", "\x1b[31mRLException: no such file\x1b[0m", "", "====", "done", "bye"]
+    log_file.write_text("\n".join(lines))
+    process = GraphProcess("x", None, log_file, 1.0)  # type: ignore[arg-type]
+    assert process.tail() == ["RLException: no such file"]
+    log_file.write_text("one\ntwo\nthree\nfour\n")
+    assert process.tail(2) == ["three", "four"]
+    assert GraphProcess("x", None, tmp_path / "none", 1.0).tail() == []  # type: ignore[arg-type]
+
+
+# --- treatments
+
+
+@pytest.mark.parametrize("name", TREATMENTS)
+def test_treatments_of_the_example_change_what_they_say(name):
+    treatment = load_treatment(EXAMPLE / "treatments" / name)
+    own = yaml.safe_load((EXAMPLE / "config/params.yaml").read_text())
+    overlay = yaml.safe_load(treatment.overlay.read_text())
+    changed = {
+        (node, parameter, own[node][parameter], value)
+        for node, parameters in overlay.items()
+        for parameter, value in parameters.items()
+        if own[node][parameter] != value
+    }
+    assert treatment.name == name
+    if treatment.parameter is None:
+        assert changed == set()
+    else:
+        assert treatment.node is not None
+        node = treatment.node.removeprefix("/")
+        assert changed == {(node, treatment.parameter, treatment.old, treatment.new)}
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "params.yaml").write_text("mission: {limit: 3}\n")
+    (tmp_path / "treatment.json").write_text(json.dumps(GOOD))
+    return tmp_path
+
+
+GOOD = {
+    "name": "low",
+    "type": "type1",
+    "parameter": "limit",
+    "node": "/mission",
+    "old": 20,
+    "new": 3,
+    "launch": {},
+    "effect": "It lands.",
+}
+
+
+def test_treatment_is_read(folder):
+    treatment = load_treatment(folder)
+    assert treatment.mark_type == "I"
+    assert treatment.change == "limit 20 -> 3"
+    assert treatment.overlay == folder / "params.yaml"
+
+
+@pytest.mark.parametrize(
+    ("change", "what"),
+    [
+        ({"type": "bad"}, "type is 'bad', not one of clean, type1, type2, fault"),
+        ({"old": None}, "old is not a number"),
+        ({"new": True}, "new is not a number"),
+        ({"node": None}, "node is not a text"),
+        ({"type": "clean"}, "type clean has no changed parameter"),
+        ({"parameter": None, "node": None}, "type type1 has a changed parameter"),
+        ({"launch": {"fault": True}}, "launch is not an object of texts"),
+        ({"extra": 1}, "exactly the fields"),
+    ],
+)
+def test_wrong_treatments_say_what_is_wrong(folder, change, what):
+    (folder / "treatment.json").write_text(json.dumps({**GOOD, **change}))
+    with pytest.raises(InputError, match=what) as caught:
+        load_treatment(folder)
+    assert str(caught.value).startswith(f"{folder}/treatment.json: ")
+
+
+def test_broken_json_says_the_line(folder):
+    (folder / "treatment.json").write_text('{\n  "name": "low",\n  "type"\n}\n')
+    with pytest.raises(InputError, match=r"treatment\.json:4: not JSON"):
+        load_treatment(folder)
+
+
+def test_treatment_without_its_parameters_is_an_error(folder):
+    (folder / "params.yaml").unlink()
+    with pytest.raises(InputError, match=r"params\.yaml: no such file"):
+        load_treatment(folder)
+
+
+# --- the judgement
+
+
+def mission_run(folder: Path, **changes: object) -> MissionRun:
+    plain = MissionRun(
+        bag=folder / "mission.bag",
+        params=folder / "params.yaml",
+        ended="done",
+        sim_s=40.0,
+        wall_s=10.0,
+        reports=10,
+        messages={"/camera/picture": 1, "/mark_action": 2},
+        lost={},
+        missed_before={},
+    )
+    return replace(plain, **changes)  # type: ignore[arg-type]
+
+
+LIMIT = comparison(1, "limit")
+OTHERS = [comparison(number, f"other{number}") for number in range(2, 6)]
+STATIC = static_info(LIMIT, *OTHERS)
+TYPE1 = Treatment("low", "type1", "limit", "/m", 20, 3, {}, "It lands.", Path("params.yaml"))
+CLEAN = Treatment("clean", "clean", None, None, None, None, {}, "It works.", Path("params.yaml"))
+
+
+def flown(treatment: Treatment, run: MissionRun, marks: list[Mark], rows: list) -> TreatedMission:
+    """A mission with the given evaluations: (seconds, number of the key, result, cmp, thresh)."""
+    recording = Recording(treatment.name, events(rows), tuple(marks), 0, ns(40.0))
+    return TreatedMission(treatment, 1, run, recording, rank_marks(recording, STATIC))
+
+
+# Type I scores are (mark - last flop) * (1 + flops). At 10 s: the limit flopped once at 9 s, which
+# makes 1 * 2 = 2. Others: flopped at 9.5 s, 0.5 * 2 = 1, each of them before the limit.
+LIMIT_ROWS = [(8.0, 1, 0, 2.0, 3.0), (9.0, 1, 1, 4.0, 3.0)]
+
+
+def other_rows(number: int) -> list:
+    return [(8.0, number, 0, 2.0, 3.0), (9.5, number, 1, 4.0, 3.0)]
+
+
+def test_culprit_among_the_first_three_is_no_failure(tmp_path):
+    rows = [*LIMIT_ROWS, *other_rows(2), *other_rows(3)]
+    mission = flown(TYPE1, mission_run(tmp_path), [Mark(ns(10.0), "I")], rows)
+    assert mission.rankings[0].position_of("limit") == 3
+    assert failures(mission) == []
+
+
+def test_culprit_at_the_fourth_place_is_a_failure(tmp_path):
+    rows = [*LIMIT_ROWS, *other_rows(2), *other_rows(3), *other_rows(4)]
+    mission = flown(TYPE1, mission_run(tmp_path), [Mark(ns(10.0), "I")], rows)
+    assert failures(mission) == ["low: limit is at position 4 at the mark 10.0 s"]
+
+
+def test_culprit_without_a_score_is_a_failure(tmp_path):
+    mission = flown(TYPE1, mission_run(tmp_path), [Mark(ns(10.0), "I")], other_rows(2))
+    assert failures(mission) == ["low: limit is nowhere at the mark 10.0 s"]
+
+
+def test_marks_of_the_wrong_type_are_not_judged(tmp_path):
+    # At 30 s the limit has no type II score, for it was not evaluated in the 12 s before.
+    marks = [Mark(ns(10.0), "I"), Mark(ns(30.0), "II")]
+    mission = flown(TYPE1, mission_run(tmp_path), marks, LIMIT_ROWS)
+    assert len(mission.judged) == 1
+    assert failures(mission) == []
+
+
+def test_a_mission_that_did_not_go_as_demanded_is_a_failure(tmp_path):
+    assert failures(flown(TYPE1, mission_run(tmp_path), [], LIMIT_ROWS)) == [
+        "low: the observer set no mark of type I"
+    ]
+    late = mission_run(tmp_path, ended="timeout", messages={}, lost={"/a": 2, "/b": 1})
+    assert failures(flown(CLEAN, late, [Mark(ns(9.5), "I")], LIMIT_ROWS)) == [
+        "clean: the mission did not end in 10 s",
+        "clean: the observer set 1 marks",
+        "clean: no picture was taken",
+        "clean: 3 log messages were lost by the recorder",
+    ]
+    type2 = replace(TYPE1, name="high", type="type2")
+    assert failures(flown(type2, mission_run(tmp_path), [Mark(ns(9.5), "II")], LIMIT_ROWS)) == [
+        "high: a picture was taken"
+    ]
+
+
+def test_table_has_a_row_for_each_mark(tmp_path):
+    marks = [Mark(ns(10.0), "I"), Mark(ns(11.0), "II")]
+    missions = [
+        flown(CLEAN, mission_run(tmp_path), [], LIMIT_ROWS),
+        flown(TYPE1, mission_run(tmp_path), marks, LIMIT_ROWS),
+    ]
+    console = Console(width=200, record=True, file=(tmp_path / "out").open("w"))
+    console.print(result_table(missions, STATIC))
+    console.file.close()
+    rows = [line.split("│") for line in console.export_text().splitlines() if "│" in line]
+    cells = [[cell.strip() for cell in row[1:-1]] for row in rows]
+    assert cells[0][:3] == ["clean", "-", "none"]
+    # The suggestion of SPEC 8: with a limit of 4 the last flop, 4 > limit, would not have been.
+    first = ["low", "limit 20 -> 3", "10.0 s", "I", "1 of 5", "1.00"]
+    assert cells[1][:6] == first
+    assert "raise limit from 3 to 4" in cells[1][6]
+    assert cells[1][7] == "yes"
+    assert cells[2][2:4] == ["11.0 s", "II (wrong type)"]
+    assert cells[2][6:] == ["", ""]

@@ -1,0 +1,23 @@
+"""What the tests on a real graph share: the example, built once."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from pytpc.build import BuildResult, build_workspace
+
+PACKAGE = Path(__file__).parents[2] / "examples/image_capture"
+
+
+def build_example(folder: Path, build_type: str = "RelWithDebInfo") -> BuildResult:
+    """The example built in a workspace of its own."""
+    (folder / "src").mkdir(parents=True)
+    (folder / "src" / PACKAGE.name).symlink_to(PACKAGE)
+    return build_workspace(folder, build_type=build_type)
+
+
+@pytest.fixture(scope="session")
+def built(tmp_path_factory: pytest.TempPathFactory) -> BuildResult:
+    return build_example(tmp_path_factory.mktemp("ws"))
