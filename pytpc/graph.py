@@ -101,7 +101,7 @@ class RosGraph:
         for name in ("home", "log", "out"):
             (self.folder / name).mkdir(parents=True, exist_ok=True)
         with contextlib.ExitStack() as exits:
-            exits.enter_context(_terminate_raises())
+            exits.enter_context(_signals())
             exits.callback(self._end)
             self._start_master()
             if self._use_sim_time:
@@ -268,8 +268,12 @@ def _free_port() -> int:
 
 
 @contextlib.contextmanager
-def _terminate_raises() -> Iterator[None]:
-    """Within it SIGTERM and SIGHUP raise SystemExit, so that what was started is ended."""
+def _signals() -> Iterator[None]:
+    """Within it SIGTERM and SIGHUP raise SystemExit, so that what was started is ended.
+
+    Where SIGINT is ignored, as in a job in the background, it stays so for this process, but not
+    for those that it starts: they are to end by it.
+    """
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -277,7 +281,12 @@ def _terminate_raises() -> Iterator[None]:
     def leave(number: int, _frame: FrameType | None) -> None:
         raise SystemExit(128 + number)
 
+    def ignore(_number: int, _frame: FrameType | None) -> None:
+        pass
+
     before = {number: signal.signal(number, leave) for number in (signal.SIGTERM, signal.SIGHUP)}
+    if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
+        before[signal.SIGINT] = signal.signal(signal.SIGINT, ignore)
     try:
         yield
     finally:

@@ -8,6 +8,8 @@ import os
 import re
 import signal
 import subprocess
+import time
+import uuid
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
@@ -17,7 +19,7 @@ import pytest
 from pytpc.build import BuildResult, workspace_env
 from pytpc.demo import FIRST, TreatedMission, failures, run_treatment
 from pytpc.errors import MissingToolError, RunError
-from pytpc.graph import GRAPH_WORD, RosGraph
+from pytpc.graph import RosGraph
 from pytpc.ingest import read_bag
 from pytpc.mission import Progress, run_mission
 from pytpc.paths import cmake_file, log_library, plugin
@@ -35,27 +37,32 @@ except MissingToolError as error:
     pytest.skip(f"the C++ half is not installed: {error}", allow_module_level=True)
 
 
+RUN = f"TPC_TEST_RUN={uuid.uuid4()}"
+"""In the environment of what these tests start."""
+
+
 @pytest.fixture(scope="module")
 def env(built) -> dict[str, str]:
-    return workspace_env(built.bases.install)
+    name, value = RUN.split("=")
+    return {**workspace_env(built.bases.install), name: value}
 
 
-def graph_processes() -> set[int]:
-    """All processes that belong to a graph, whichever."""
-    found = set()
+def graph_processes(folder: Path) -> dict[int, str]:
+    """The command of each process of the graphs below a folder; others may run beside them."""
+    found = {}
     for entry in Path("/proc").iterdir():
-        if entry.name.isdigit():
-            with contextlib.suppress(OSError):
-                if f"{GRAPH_WORD}=".encode() in (entry / "environ").read_bytes():
-                    found.add(int(entry.name))
+        with contextlib.suppress(OSError, ValueError):
+            environment = (entry / "environ").read_bytes().decode(errors="replace")
+            if f"{GRAPH_WORD}=" in environment and f"ROS_HOME={folder}/" in environment:
+                command = (entry / "cmdline").read_bytes().decode(errors="replace")
+                found[int(entry.name)] = command.replace("\0", " ")
     return found
 
 
 @pytest.fixture(autouse=True)
-def leaves_no_process() -> Iterator[None]:
-    before = graph_processes()
+def leaves_no_process(tmp_path) -> Iterator[None]:
     yield
-    assert graph_processes() - before == set()
+    assert graph_processes(tmp_path) == {}
 
 
 def fly(name: str, seed: int, built: BuildResult, env: dict[str, str], out: Path) -> TreatedMission:
@@ -144,15 +151,10 @@ def test_node_that_dies_ends_the_mission_with_one_line(env, tmp_path):
 
     def kill_mission(progress: Progress) -> None:
         if progress.sim_s > 1.0 and not killed:
-            listed = subprocess.run(
-                ["pgrep", "-f", "lib/image_capture/mission __name:=mission"],
-                capture_output=True,
-                text=True,
-                check=True,
-            )
-            for pid in set(map(int, listed.stdout.split())) & graph_processes():
-                os.kill(pid, signal.SIGSEGV)
-                killed.append(pid)
+            for pid, command in graph_processes(tmp_path).items():
+                if "lib/image_capture/mission " in command:
+                    os.kill(pid, signal.SIGSEGV)
+                    killed.append(pid)
 
     with pytest.raises(RunError) as caught:
         run_mission(env, LAUNCH, {"seed": "1"}, tmp_path, 60.0, on_progress=kill_mission)
@@ -184,10 +186,25 @@ def test_graph_is_one_of_its_own_and_ends_what_it_started(env, tmp_path):
         first.start("deaf", ["setsid", "--fork", "bash", "-c", "trap '' INT TERM; sleep 600"])
         first.start("plain", ["sleep", "600"])
         second.check()
+        assert len(graph_processes(tmp_path)) >= 6
         with pytest.raises(RunError, match="deaf ended with status 0"):
             for _ in range(100):
                 first.check()
                 subprocess.run(["sleep", "0.05"], check=True)
+
+
+def test_ends_quickly_where_sigint_is_ignored(env, tmp_path):
+    # As in a job that a script put into the background; SIGTERM would come after 5 s.
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        with RosGraph(env, tmp_path) as graph:
+            sleeper = graph.start("sleeper", ["sleep", "600"])
+            began = time.monotonic()
+            assert graph.stop(sleeper) == -signal.SIGINT
+        assert time.monotonic() - began < 4.0
+        assert signal.getsignal(signal.SIGINT) == signal.SIG_IGN
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def test_program_that_is_not_there_is_one_line(env, tmp_path):
