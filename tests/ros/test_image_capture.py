@@ -9,7 +9,6 @@ import re
 import signal
 import subprocess
 import time
-import uuid
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
@@ -19,7 +18,7 @@ import pytest
 from pytpc.build import BuildResult, workspace_env
 from pytpc.demo import FIRST, TreatedMission, failures, run_treatment
 from pytpc.errors import MissingToolError, RunError
-from pytpc.graph import RosGraph
+from pytpc.graph import GRAPH_WORD, RosGraph
 from pytpc.ingest import read_bag
 from pytpc.mission import Progress, run_mission
 from pytpc.paths import cmake_file, log_library, plugin
@@ -37,14 +36,9 @@ except MissingToolError as error:
     pytest.skip(f"the C++ half is not installed: {error}", allow_module_level=True)
 
 
-RUN = f"TPC_TEST_RUN={uuid.uuid4()}"
-"""In the environment of what these tests start."""
-
-
 @pytest.fixture(scope="module")
 def env(built) -> dict[str, str]:
-    name, value = RUN.split("=")
-    return {**workspace_env(built.bases.install), name: value}
+    return workspace_env(built.bases.install)
 
 
 def graph_processes(folder: Path) -> dict[int, str]:
