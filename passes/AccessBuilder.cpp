@@ -179,9 +179,12 @@ void AccessResult::Builder::fileRest() {
         bool Opaque = Calls.callees(*Call).empty();
         for (const auto &[N, Arg] : enumerate(Call->args()))
           if (Arg->getType()->isPointerTy() && !Call->onlyReadsMemory(N))
-            for (const Location &L : R.resolve(Arg, false))
-              R.file(Opaque ? R.Handed : R.Passed,
-                     Opaque ? R.HandedIndex : R.PassedIndex, I, L);
+            for (const Location &L : R.resolve(Arg, false)) {
+              if (Opaque)
+                R.file(R.Handed, R.HandedIndex, I, L);
+              else
+                R.Passed.push_back({&I, L});
+            }
       }
     }
   }

@@ -9,7 +9,6 @@
 #include "SimpleCallGraph.h"
 
 #include "llvm/ADT/SmallPtrSet.h"
-#include "llvm/IR/InstIterator.h"
 #include "llvm/IR/IntrinsicInst.h"
 #include "llvm/IR/Module.h"
 

@@ -177,7 +177,7 @@ private:
   /// Calls that are handed an object: those without a known body, and others.
   llvm::SmallVector<Access, 0> Handed, Passed;
   llvm::SmallVector<Copy, 0> Copies;
-  Index LoadIndex, StoreIndex, HandedIndex, PassedIndex;
+  Index LoadIndex, StoreIndex, HandedIndex;
   CopyIndex CopiesTo, CopiesFrom;
 };
 

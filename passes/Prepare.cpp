@@ -31,9 +31,9 @@ static unsigned sizeOf(const Function &F) {
 
 /// Marks the small functions of libraries in \p M to be inlined; returns those
 /// that were not marked before. What the rules speak of stays a call.
-static SmallVector<Function *, 0>
-markSmallLibraryFunctions(Module &M, const Options &Opts) {
-  SmallVector<Function *, 0> Marked;
+static SmallVector<WeakVH, 0> markSmallLibraryFunctions(Module &M,
+                                                        const Options &Opts) {
+  SmallVector<WeakVH, 0> Marked;
   Expected<Rules> Tables = Rules::load(Opts);
   if (!Tables) {
     // The analysis will meet the same error, and report it.
@@ -48,16 +48,14 @@ markSmallLibraryFunctions(Module &M, const Options &Opts) {
         Tables->match(F) || Tables->isOpaque(F))
       continue;
     F.addFnAttr(Attribute::AlwaysInline);
-    Marked.push_back(&F);
+    Marked.emplace_back(&F);
   }
   return Marked;
 }
 
 /// Makes \p M fit for the analysis.
 static void prepare(Module &M, const Options &Opts) {
-  SmallVector<WeakVH, 0> Marked;
-  for (Function *F : markSmallLibraryFunctions(M, Opts))
-    Marked.push_back(F);
+  SmallVector<WeakVH, 0> Marked = markSmallLibraryFunctions(M, Opts);
   PassBuilder PB;
   LoopAnalysisManager LAM;
   FunctionAnalysisManager FAM;
