@@ -86,18 +86,28 @@ Error Rules::add(StringRef Text, StringRef Origin, StringRef Profile) {
       ByName[R.Function].push_back(std::move(R));
     }
   }
-  if (const json::Array *Names = Top->getArray("opaque"))
-    for (const json::Value &V : *Names)
-      if (std::optional<StringRef> Name = V.getAsString())
-        OpaquePrefixes.push_back(Name->str());
+  const std::pair<StringRef, std::vector<std::string> *> Prefixes[] = {
+      {"opaque", &OpaquePrefixes}, {"kept", &KeptPrefixes}};
+  for (auto [Section, List] : Prefixes)
+    if (const json::Array *Names = Top->getArray(Section))
+      for (const json::Value &V : *Names)
+        if (std::optional<StringRef> Name = V.getAsString())
+          List->push_back(Name->str());
   return Error::success();
 }
 
-bool Rules::isOpaque(const Function &F) const {
-  std::string Name = qualifiedName(F.getName());
-  return any_of(OpaquePrefixes, [&](const std::string &Prefix) {
-    return StringRef(Name).starts_with(Prefix);
+static bool beginsWithAny(StringRef Name, ArrayRef<std::string> Prefixes) {
+  return any_of(Prefixes, [&](const std::string &Prefix) {
+    return Name.starts_with(Prefix);
   });
+}
+
+bool Rules::isOpaque(const Function &F) const {
+  return beginsWithAny(qualifiedName(F.getName()), OpaquePrefixes);
+}
+
+bool Rules::isKept(const Function &F) const {
+  return beginsWithAny(qualifiedName(F.getName()), KeptPrefixes);
 }
 
 Expected<Rules> Rules::load(const Options &Opts) {

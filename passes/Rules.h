@@ -57,12 +57,14 @@ public:
   const Rule *match(const llvm::Function &F) const;
   /// True where \p F is in one of the opaque namespaces.
   bool isOpaque(const llvm::Function &F) const;
+  /// True where \p F stays a call that is looked into.
+  bool isKept(const llvm::Function &F) const;
 
 private:
   llvm::Error add(llvm::StringRef Json, llvm::StringRef Origin,
                   llvm::StringRef Profile);
   llvm::StringMap<std::vector<Rule>> ByName;
-  std::vector<std::string> OpaquePrefixes;
+  std::vector<std::string> OpaquePrefixes, KeptPrefixes;
 };
 
 /// The rules applied to the functions of a module.
