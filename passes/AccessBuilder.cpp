@@ -270,12 +270,13 @@ AccessResult ClassObjectAccess::run(Module &M, ModuleAnalysisManager &AM) {
   AccessResult R;
   R.Layout = &M.getDataLayout();
   R.Debug = std::make_unique<DebugTypes>(*R.Layout);
-  AccessResult::Builder B{R,
-                          AM.getResult<SimpleCallGraph>(M),
-                          AM.getResult<RuleAnalysis>(M),
-                          M,
-                          {},
-                          DenseMap<const Value *, SmallVector<const Value *, 1>>()};
+  AccessResult::Builder B{
+      R,
+      AM.getResult<SimpleCallGraph>(M),
+      AM.getResult<RuleAnalysis>(M),
+      M,
+      {},
+      DenseMap<const Value *, SmallVector<const Value *, 1>>()};
   B.findEscaped();
   B.makeNodes();
   bool Changed = true;

@@ -40,7 +40,8 @@ FunctionPointers::Cell FunctionPointers::cellOf(const Value *Pointer) {
     Cell Found{nullptr, NoIndex};
     Type *T = GEP->getSourceElementType();
     for (const Use &U : drop_begin(GEP->indices())) {
-      if (auto *Struct = dyn_cast<StructType>(T); Struct && !Struct->isLiteral())
+      if (auto *Struct = dyn_cast<StructType>(T);
+          Struct && !Struct->isLiteral())
         Found = {Struct, static_cast<unsigned>(
                              cast<ConstantInt>(U.get())->getZExtValue())};
       T = GetElementPtrInst::getTypeAtIndex(T, U.get());
@@ -98,7 +99,8 @@ FunctionPointers::FunctionPointers(Module &M) {
         if (canCarry(V->getType()) && !isa<ConstantData>(V))
           Stored[cellOf(Store->getPointerOperand())].push_back(V);
       } else if (auto *Copy = dyn_cast<MemTransferInst>(&I)) {
-        Cell To = cellOf(Copy->getRawDest()), From = cellOf(Copy->getRawSource());
+        Cell To = cellOf(Copy->getRawDest()),
+             From = cellOf(Copy->getRawSource());
         if (To != From)
           CopiedFrom[To].push_back(Copy->getRawSource());
       }
@@ -213,8 +215,8 @@ void FunctionPointers::Search::run(const Value *Callee) {
   }
 }
 
-SmallVector<Function *, 2>
-FunctionPointers::targets(const CallBase &Call, CallersTy Callers) const {
+SmallVector<Function *, 2> FunctionPointers::targets(const CallBase &Call,
+                                                     CallersTy Callers) const {
   Search S{*this, Call, Callers, {}, {}, {}, {}, {}};
   S.run(Call.getCalledOperand());
   SmallVector<Function *, 2> Out(S.Found.begin(), S.Found.end());

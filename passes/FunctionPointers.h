@@ -22,8 +22,8 @@ namespace tpc {
 
 class FunctionPointers {
 public:
-  using CallersTy =
-      llvm::function_ref<llvm::ArrayRef<llvm::CallBase *>(const llvm::Function *)>;
+  using CallersTy = llvm::function_ref<llvm::ArrayRef<llvm::CallBase *>(
+      const llvm::Function *)>;
 
   explicit FunctionPointers(llvm::Module &M);
 

@@ -186,8 +186,8 @@ void AccessResult::addTo(Locations &Out, Location L) const {
     Out.push_back(std::move(L));
 }
 
-/// Goes \p Steps further from \p L. How a container keeps its elements, in nodes
-/// or in pairs with a key, makes no difference: those steps are left out.
+/// Goes \p Steps further from \p L. How a container keeps its elements, in
+/// nodes or in pairs with a key, makes no difference: those steps are left out.
 void AccessResult::extend(Location &L, ArrayRef<Step> Steps) const {
   if (L.isElement())
     Steps = Steps.drop_while(
