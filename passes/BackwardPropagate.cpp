@@ -120,9 +120,12 @@ void Slicer::decides(Instruction *Predicate, Why Because) {
 void Slicer::control(const BasicBlock *BB) {
   for (Instruction *Predicate : Ifs.controllers(BB))
     decides(Predicate, Why::Controls);
-  if (Ifs.isControlledByEntry(BB))
+  if (Ifs.isControlledByEntry(BB)) {
     for (CallBase *Call : Calls.callers(BB->getParent()))
       enter(Call, Runs, Why::Calls);
+    for (Instruction *Mention : Calls.mentions(BB->getParent()))
+      enter(Mention, Runs, Why::Mentions);
+  }
 }
 
 /// The value of \p V matters: what gives it enters the next round.

@@ -35,6 +35,7 @@ struct SliceStep {
     Controls, ///< decides whether the next one runs
     Chooses,  ///< decides which value the next one has
     Calls,    ///< calls the function of the next one
+    Mentions, ///< hands that function on, so that somebody else calls it
     Gives,    ///< the next one computes with its value
     Writes,   ///< writes what the next one reads
     Returns,  ///< returns what the next one, a call, gives

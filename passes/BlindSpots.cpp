@@ -1,7 +1,6 @@
 //===- BlindSpots.cpp -----------------------------------------------------===//
 #include "BlindSpots.h"
 
-#include "llvm/IR/InstIterator.h"
 #include "llvm/IR/IntrinsicInst.h"
 
 using namespace llvm;
@@ -72,29 +71,27 @@ static void addComparisons(const GatheredResults &Gathered,
   }
 }
 
-/// Library code that was inlined calls through pointers of its own all the
-/// time; what the user has it call goes through an `operator()`.
-static bool isUsersCall(const CallBase &Call, const DILocation *Place) {
-  for (const DILocation *Loc = Call.getDebugLoc(); Loc && Loc != Place;
-       Loc = Loc->getInlinedAt())
-    if (Loc->getScope()->getSubprogram()->getName() == "operator()")
-      return true;
-  return Place && Place == Call.getDebugLoc().get();
+/// Library code calls through pointers of its own all the time; what the user
+/// has it call goes through an `operator()`, and is where the user calls that.
+static void addIndirectCalls(const CallGraphResult &Calls, Wording &Words,
+                             std::vector<BlindSpot> &Out) {
+  auto Add = [&](const CallBase *Call) {
+    const DILocation *Place = Words.userPlace(*Call);
+    if (Place && Place == Call->getDebugLoc().get())
+      Out.push_back({BlindSpot::IndirectCall, Call, "",
+                     "calls a function that is not known"});
+  };
+  for (const CallBase *Call : Calls.unresolved()) {
+    const Function *F = Call->getFunction();
+    if (const DISubprogram *SP = F->getSubprogram();
+        SP && SP->getName() == "operator()" && !Words.userPlace(*Call))
+      for_each(Calls.callers(F), Add);
+    else
+      Add(Call);
+  }
 }
 
-static void addIndirectCalls(Module &M, const CallGraphResult &Calls,
-                             Wording &Words, std::vector<BlindSpot> &Out) {
-  for (Function &F : definedFunctions(M))
-    for (Instruction &I : instructions(F))
-      if (const auto *Call = dyn_cast<CallBase>(&I);
-          Call && !Call->getCalledFunction() && !Call->isInlineAsm() &&
-          Calls.callees(*Call).empty() &&
-          isUsersCall(*Call, Words.userPlace(*Call)))
-        Out.push_back({BlindSpot::IndirectCall, Call, "",
-                       "calls a function that is not known"});
-}
-
-std::vector<BlindSpot> findBlindSpots(Module &M, const ParameterUsage &Usage,
+std::vector<BlindSpot> findBlindSpots(const ParameterUsage &Usage,
                                       const ParamCallFinder::Result &Reads,
                                       const GatheredResults &Gathered,
                                       const CallGraphResult &Calls,
@@ -107,7 +104,7 @@ std::vector<BlindSpot> findBlindSpots(Module &M, const ParameterUsage &Usage,
       All.push_back({BlindSpot::DynamicName, R.Call, "",
                      "reads a parameter whose name is put together"});
   addComparisons(Gathered, Reads, All);
-  addIndirectCalls(M, Calls, Words, All);
+  addIndirectCalls(Calls, Words, All);
   return All;
 }
 

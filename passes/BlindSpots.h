@@ -37,9 +37,8 @@ struct BlindSpot {
   llvm::StringRef kindName() const;
 };
 
-/// The blind spots of \p M, in the order of the analyses.
-std::vector<BlindSpot> findBlindSpots(llvm::Module &M,
-                                      const ParameterUsage &Usage,
+/// The blind spots of a module, in the order of the analyses.
+std::vector<BlindSpot> findBlindSpots(const ParameterUsage &Usage,
                                       const ParamCallFinder::Result &Reads,
                                       const GatheredResults &Gathered,
                                       const CallGraphResult &Calls,

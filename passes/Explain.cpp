@@ -154,6 +154,9 @@ void Explainer::dependence(const SliceStep &S, const SliceStep &Next,
   case SliceStep::Calls:
     return Add(PathStep::Call,
                "calls " + Wording::function(*Next.I->getFunction()));
+  case SliceStep::Mentions:
+    return Add(PathStep::Call,
+               "has " + Wording::function(*Next.I->getFunction()) + " called");
   case SliceStep::Passes:
     return Add(PathStep::Pass,
                "handed to " + Wording::function(*Next.I->getFunction()));

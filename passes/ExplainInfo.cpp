@@ -33,7 +33,7 @@ json::Value SourceLines::line(StringRef Path, unsigned Number) {
 
 ExplainInfo::ExplainInfo(Module &M, ModuleAnalysisManager &AM,
                          const Options &Opts)
-    : M(M), Opts(Opts), Usage(AM.getResult<ParamUsageFinder>(M)),
+    : Opts(Opts), Usage(AM.getResult<ParamUsageFinder>(M)),
       Reads(AM.getResult<ParamCallFinder>(M)),
       Gathered(AM.getResult<GatherResults>(M)),
       Calls(AM.getResult<SimpleCallGraph>(M)),
@@ -106,7 +106,7 @@ json::Array ExplainInfo::notExposed(const json::Array &Comparisons) {
 json::Array ExplainInfo::blindSpots() {
   std::map<std::pair<BlindSpot::KindTy, Place>, json::Object> Found;
   for (const BlindSpot &S :
-       findBlindSpots(M, Usage, Reads, Gathered, Calls, Words)) {
+       findBlindSpots(Usage, Reads, Gathered, Calls, Words)) {
     const DILocation *Loc = Words.userPlace(*S.At);
     // What a library does inside is its own business, and is counted.
     if (!Loc && S.At->getDebugLoc())

@@ -48,7 +48,6 @@ public:
 private:
   llvm::json::Object placed(const llvm::DILocation *Loc);
 
-  llvm::Module &M;
   const Options &Opts;
   const ParameterUsage &Usage;
   const ParamCallFinder::Result &Reads;
