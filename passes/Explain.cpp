@@ -7,8 +7,15 @@ using namespace llvm;
 
 namespace tpc {
 
-/// Steps before the predicate, and behind it, that are written down.
-static constexpr size_t MaxSteps = 32;
+/// Steps before the predicate, and behind it, that are written down: so many,
+/// and in units with very many comparisons fewer, that all of them stay below
+/// the second number. Three are the first, the last and the gap.
+static constexpr size_t MaxSteps = 32, MaxStepsOfUnit = 10000, MinSteps = 3;
+
+size_t Explainer::stepsFor(size_t NumComparisons) {
+  size_t Share = MaxStepsOfUnit / (2 * std::max<size_t>(NumComparisons, 1));
+  return std::clamp(Share, MinSteps, MaxSteps);
+}
 
 StringRef PathStep::kindName() const {
   static constexpr StringRef Names[] = {
@@ -200,21 +207,22 @@ Explainer::Steps Explainer::backward(const Comparison &C) {
   return Out;
 }
 
-/// Leaves the first and the last steps of \p Path where there are too many.
-static void shorten(std::vector<PathStep> &Path) {
-  if (Path.size() <= MaxSteps)
+/// Leaves the first and the last steps of \p Path where there are more than
+/// \p Most.
+static void shorten(std::vector<PathStep> &Path, size_t Most) {
+  if (Path.size() <= Most)
     return;
-  size_t Left = Path.size() - MaxSteps + 1;
-  auto From = Path.begin() + MaxSteps / 2;
+  size_t Left = Path.size() - Most + 1;
+  auto From = Path.begin() + Most / 2;
   *From = {PathStep::Omitted, nullptr,
            std::to_string(Left) + " steps left out"};
   Path.erase(From + 1, From + Left);
 }
 
-std::vector<PathStep> Explainer::path(const Comparison &C) {
+std::vector<PathStep> Explainer::path(const Comparison &C, size_t Most) {
   Steps All = forward(C), Rest = backward(C);
-  shorten(All);
-  shorten(Rest);
+  shorten(All, Most);
+  shorten(Rest, Most);
   for (PathStep &S : Rest)
     join(All, std::move(S));
   for (PathStep &S : All)

@@ -49,8 +49,11 @@ public:
       : Usage(Usage), Slice(Slice), Reads(Reads), Exposing(Exposing),
         Calls(Calls), Words(Words) {}
 
-  /// From the first read of \p C to its nearest exposing statement.
-  std::vector<PathStep> path(const Comparison &C);
+  /// From the first read of \p C to its nearest exposing statement, at most
+  /// \p Most steps before the predicate and behind it.
+  std::vector<PathStep> path(const Comparison &C, size_t Most);
+  /// How many these are in a unit with \p NumComparisons.
+  static size_t stepsFor(size_t NumComparisons);
 
 private:
   using Steps = std::vector<PathStep>;

@@ -65,7 +65,8 @@ json::Object ExplainInfo::placed(const DILocation *Loc) {
 
 json::Array ExplainInfo::path(const Comparison &C) {
   json::Array List;
-  for (const PathStep &S : Explain.path(C)) {
+  size_t Most = Explainer::stepsFor(Gathered.Comparisons.size());
+  for (const PathStep &S : Explain.path(C, Most)) {
     json::Object O = placed(S.Loc);
     O["step"] = S.kindName();
     O["what"] = json::fixUTF8(S.What);

@@ -78,6 +78,10 @@ private:
   bool carry(const State &S, Use &U);
   void store(const State &S, StoreInst &Store);
   void end(ValueEnd::KindTy Kind, Instruction *At);
+  /// Nobody asks for the way of a value that is compared nowhere.
+  void forgetHops(size_t From) {
+    Usage.Hops.erase(Usage.Hops.begin() + From, Usage.Hops.end());
+  }
   void push(State S, Instruction *Via = nullptr);
   const CallPath *into(const CallBase *Call, const CallPath *Outer);
 
@@ -234,6 +238,7 @@ SmallVector<Decision, 2> Follower::followOutcome(Value *Outcome,
   Work.clear();
   Seen.clear();
   IsOutcome = true;
+  size_t HopsBefore = Usage.Hops.size();
   SmallVector<Decision, 2> Found;
   push({Outcome, {}, Path, true});
   while (!Work.empty()) {
@@ -255,6 +260,8 @@ SmallVector<Decision, 2> Follower::followOutcome(Value *Outcome,
   Seen = std::move(OuterSeen);
   Here = OuterHere;
   IsOutcome = false;
+  if (Found.empty())
+    forgetHops(HopsBefore);
   return Found;
 }
 
@@ -364,6 +371,7 @@ static bool isNumber(StringRef Type) {
 void Follower::followRead(unsigned N) {
   const ParameterRead &R = Reads[N];
   ReadAtHand = N;
+  size_t HopsBefore = Usage.Hops.size(), Before = Usage.Comparisons.size();
   Here = Hop::None;
   if (!isNumber(R.Type))
     return end(ValueEnd::NoNumber, R.Call);
@@ -385,6 +393,8 @@ void Follower::followRead(unsigned N) {
     for (Use &U : S.V->uses())
       useOfValue(S, U, N);
   }
+  if (Usage.Comparisons.size() == Before)
+    forgetHops(HopsBefore);
 }
 
 ParameterUsage Follower::run() {
