@@ -79,6 +79,7 @@ static bool nearest(const ParameterComparison &C, const SliceResult &Slice,
     Found = true;
     Out.Predicate = D.Predicate;
     Out.Direct = D.Direct;
+    Out.Way = D.Way;
     Out.Slice = *E;
   }
   return Found;
@@ -226,8 +227,10 @@ GatheredResults GatherResults::run(Module &M, ModuleAnalysisManager &AM) {
   GatheredResults R;
   for (const ParameterComparison &P : Usage.Comparisons) {
     Comparison C{};
-    if (!nearest(P, Slice, C))
+    if (!nearest(P, Slice, C)) {
+      R.Others.push_back({&P, NotReported::NotExposed});
       continue;
+    }
     C.Compare = P.Compare;
     C.Threshold = P.Operand;
     C.FlagValue = P.Flag;
@@ -240,10 +243,12 @@ GatheredResults GatherResults::run(Module &M, ModuleAnalysisManager &AM) {
     const DILocation *Loc = C.place().getDebugLoc();
     if (!Loc) {
       ++R.WithoutDebugInfo;
+      R.Others.push_back({&P, NotReported::WithoutDebugInfo});
       continue;
     }
     if (!Sources.has(Loc)) {
       ++R.OutsideSources;
+      R.Others.push_back({&P, NotReported::OutsideSources});
       continue;
     }
     if (P.ByArgument && P.Compare)

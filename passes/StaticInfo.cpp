@@ -2,6 +2,7 @@
 #include "StaticInfo.h"
 
 #include "ClassObjectAccess.h"
+#include "ExplainInfo.h"
 #include "ExternCallFinder.h"
 #include "Functions.h"
 #include "IfStatements.h"
@@ -13,7 +14,6 @@
 #include "llvm/Config/llvm-config.h"
 #include "llvm/IR/Module.h"
 #include "llvm/Support/FileSystem.h"
-#include "llvm/Support/MemoryBuffer.h"
 #include "llvm/Support/Path.h"
 
 using namespace llvm;
@@ -34,30 +34,6 @@ static json::Value textOrNull(StringRef Text) {
 
 namespace {
 
-/// Source files, for the text of a line.
-class SourceLines {
-public:
-  /// Line \p Number of \p Path, stripped; null where it cannot be read.
-  json::Value line(StringRef Path, unsigned Number) {
-    auto [It, New] = Files.try_emplace(Path);
-    if (New)
-      if (auto Buffer = MemoryBuffer::getFile(Path)) {
-        It->second.Text = std::move(*Buffer);
-        It->second.Text->getBuffer().split(It->second.Lines, '\n');
-      }
-    if (Number == 0 || Number > It->second.Lines.size())
-      return nullptr;
-    return json::fixUTF8(It->second.Lines[Number - 1].trim());
-  }
-
-private:
-  struct File {
-    std::unique_ptr<MemoryBuffer> Text;
-    SmallVector<StringRef, 0> Lines;
-  };
-  StringMap<File> Files;
-};
-
 /// Writes down what the analyses of a module found.
 class Describer {
 public:
@@ -70,12 +46,13 @@ public:
         Usage(AM.getResult<ParamUsageFinder>(M)),
         Slice(AM.getResult<BackwardPropagate>(M)),
         Gathered(AM.getResult<GatherResults>(M)),
-        Names(Access.types(), Access.debugTypes()) {}
+        Names(Access.types(), Access.debugTypes()), Explain(M, AM, Opts) {}
 
   json::Array parameters() const;
   json::Array exposing() const;
   json::Array comparisons();
   json::Object counts(size_t NumComparisons) const;
+  ExplainInfo &explain() { return Explain; }
 
 private:
   json::Object placed(const Instruction &I) const;
@@ -94,6 +71,7 @@ private:
   const SliceResult &Slice;
   const GatheredResults &Gathered;
   VariableNames Names;
+  ExplainInfo Explain;
   SourceLines Lines;
 };
 
@@ -200,6 +178,7 @@ json::Object Describer::comparison(const Comparison &C) {
   O["default"] = Read.Default;
   O["read_at"] = where(*Read.Call);
   O["exposed_at"] = where(*Nearest.Call);
+  O["path"] = Explain.path(C);
   return O;
 }
 
@@ -244,7 +223,7 @@ json::Object Describer::counts(size_t NumComparisons) const {
       {"indirect_calls", static_cast<int64_t>(Calls.unresolved().size())},
       {"without_debug_info", Gathered.WithoutDebugInfo},
       {"outside_sources", Gathered.OutsideSources},
-      {"lost_values", Usage.Lost},
+      {"lost_values", Usage.lost()},
       {"not_instrumented", 0}};
 }
 
@@ -267,10 +246,17 @@ json::Object describe(Module &M, ModuleAnalysisManager &AM,
   json::Array Comparisons = D.comparisons();
   Unit["status"] = "ok";
   Unit["failure"] = nullptr;
-  Unit["counts"] = D.counts(Comparisons.size());
+  json::Object Counts = D.counts(Comparisons.size());
+  json::Array NotExposed = D.explain().notExposed(Comparisons);
+  json::Array BlindSpots = D.explain().blindSpots();
+  Counts["not_exposed"] = static_cast<int64_t>(NotExposed.size());
+  Counts["blind_spots"] = static_cast<int64_t>(BlindSpots.size());
+  Unit["counts"] = std::move(Counts);
   Unit["parameters"] = D.parameters();
   Unit["exposing"] = D.exposing();
   Unit["comparisons"] = std::move(Comparisons);
+  Unit["not_exposed"] = shortened(std::move(NotExposed));
+  Unit["blind_spots"] = shortened(std::move(BlindSpots));
   return Unit;
 }
 
@@ -283,10 +269,11 @@ json::Object describeFailure(const Options &Opts, StringRef Why) {
        {"functions", "predicates", "predicates_in_slice", "parameter_reads",
         "exposing_statements", "comparisons", "dynamic_names", "indirect_calls",
         "without_debug_info", "outside_sources", "lost_values",
-        "not_instrumented"})
+        "not_instrumented", "not_exposed", "blind_spots"})
     Counts[Name] = 0;
   Unit["counts"] = std::move(Counts);
-  for (StringRef Name : {"parameters", "exposing", "comparisons"})
+  for (StringRef Name :
+       {"parameters", "exposing", "comparisons", "not_exposed", "blind_spots"})
     Unit[Name] = json::Array();
   return Unit;
 }

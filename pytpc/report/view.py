@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from markupsafe import Markup
 
 from pytpc.complaints import complaints
+from pytpc.explain import where
 from pytpc.ingest.recording import Recording
 from pytpc.marks import Mark, MarkType
 from pytpc.ranking import MarkRanking, Suspect
@@ -56,8 +57,18 @@ class MissionReport:
 
 
 @dataclass(frozen=True)
+class StepView:
+    """A line of the source on the way from the parameter's read to what is exposed."""
+
+    place: str
+    what: str
+    code: str
+    here: bool
+
+
+@dataclass(frozen=True)
 class SuspectView:
-    """A suspect at a mark; ``plot`` and ``source`` only for those shown with their evidence."""
+    """A suspect at a mark; ``plot``, ``source`` and ``way`` only for those with their evidence."""
 
     position: int
     parameter: str
@@ -85,6 +96,7 @@ class SuspectView:
     plot: Markup
     source: list[Line]
     source_note: str
+    way: list[StepView]
 
 
 @dataclass(frozen=True)
@@ -225,7 +237,20 @@ def _suspect_view(
         plot=plot,
         source=lines,
         source_note=note,
+        way=_way(found) if ident else [],
     )
+
+
+def _way(found: Comparison) -> list[StepView]:
+    return [
+        StepView(
+            place=where(step) if step.file else "",
+            what=step.what,
+            code=(step.source_code or "")[:LONGEST_LINE],
+            here=(step.file, step.lineno) == (found.file, found.lineno),
+        )
+        for step in found.path
+    ]
 
 
 def _evidence(
