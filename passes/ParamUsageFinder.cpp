@@ -315,9 +315,11 @@ void Follower::followRead(unsigned N) {
     return;
   }
   Seen.clear();
-  if (!Read.Target)
+  for (Value *V : Read.Values)
+    push({V, {}, nullptr, true});
+  if (!Read.Target && Read.Values.empty())
     push({Read.Call, {}, nullptr, true});
-  else
+  if (Read.Target)
     for (LoadInst *Load : Access.usesOf(*Read.Call, Read.Target))
       push({Load, {}, nullptr, true});
   while (!Work.empty()) {

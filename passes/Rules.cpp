@@ -4,9 +4,9 @@
 #include "BuiltinRules.h"
 #include "Names.h"
 #include "Options.h"
+#include "RuleFile.h"
 
 #include "llvm/IR/Module.h"
-#include "llvm/Support/JSON.h"
 #include "llvm/Support/MemoryBuffer.h"
 
 using namespace llvm;
@@ -35,96 +35,109 @@ Value *objectOf(const CallBase &Call, const Rule &R) {
   return Index < Call.arg_size() ? Call.getArgOperand(Index) : nullptr;
 }
 
-static std::optional<unsigned> number(const json::Object &Row, StringRef Key) {
-  if (auto N = Row.getInteger(Key); N && *N >= 0)
-    return static_cast<unsigned>(*N);
-  return std::nullopt;
-}
-
-/// True where the row belongs to \p Profile; a row without profiles to all.
-static bool belongs(const json::Object &Row, StringRef Profile) {
-  const json::Array *Profiles = Row.getArray("profiles");
-  if (!Profiles)
-    return true;
-  return any_of(*Profiles, [&](const json::Value &V) {
-    return V.getAsString() == Profile;
-  });
-}
-
-Error Rules::add(StringRef Text, StringRef Origin, StringRef Profile) {
-  Expected<json::Value> Parsed = json::parse(Text);
-  if (!Parsed)
-    return createStringError(Origin + ": " + toString(Parsed.takeError()));
-  const json::Object *Top = Parsed->getAsObject();
-  if (!Top)
-    return createStringError(Origin + ": rules are not a JSON object");
-  const std::pair<StringRef, Rule::KindTy> Sections[] = {
-      {"reads", Rule::Read},
-      {"exposing", Rule::Exposing},
-      {"topics", Rule::Topic}};
-  for (auto [Section, Kind] : Sections) {
-    const json::Array *Rows = Top->getArray(Section);
-    if (!Rows)
-      continue;
-    for (const json::Value &V : *Rows) {
-      const json::Object *Row = V.getAsObject();
-      std::optional<StringRef> Function =
-          Row ? Row->getString("function") : std::nullopt;
-      if (!Function)
-        return createStringError(Origin + ": a row of \"" + Section +
-                                 "\" has no \"function\"");
-      if (!belongs(*Row, Profile))
-        continue;
-      Rule R;
-      R.Kind = Kind;
-      R.Function = Function->str();
-      R.Method = Row->getBoolean("method").value_or(false);
-      R.Arity = number(*Row, "arity");
-      R.Name = number(*Row, Kind == Rule::Exposing ? "topic" : "name");
-      R.Value = number(*Row, "value");
-      R.Default = number(*Row, "default");
-      ByName[R.Function].push_back(std::move(R));
-    }
-  }
-  if (const json::Array *Names = Top->getArray("opaque"))
-    for (const json::Value &V : *Names)
-      if (std::optional<StringRef> Name = V.getAsString())
-        OpaquePrefixes.push_back(Name->str());
-  return Error::success();
-}
-
-bool Rules::isOpaque(const Function &F) const {
-  std::string Name = qualifiedName(F.getName());
-  return any_of(OpaquePrefixes, [&](const std::string &Prefix) {
-    return StringRef(Name).starts_with(Prefix);
-  });
-}
-
 Expected<Rules> Rules::load(const Options &Opts) {
   Rules R;
-  if (Error E = R.add(BuiltinRules, "built-in rules", Opts.Profile))
-    return std::move(E);
+  auto Add = [&](StringRef Text, StringRef Origin) -> Error {
+    Expected<RuleFile> File = parseRules(Text, Origin, Opts.Profile);
+    if (!File)
+      return File.takeError();
+    for (Rule &Row : File->Rows)
+      R.ByName[Row.Function].push_back(std::move(Row));
+    append_range(R.OpaquePrefixes, File->Opaque);
+    return Error::success();
+  };
+  for (StringRef Text : BuiltinRules)
+    if (Error E = Add(Text, "built-in rules"))
+      return std::move(E);
   for (const std::string &File : Opts.RuleFiles) {
     auto Buffer = MemoryBuffer::getFile(File);
     if (!Buffer)
       return createStringError(File + ": " + Buffer.getError().message());
-    if (Error E = R.add((*Buffer)->getBuffer(), File, Opts.Profile))
+    if (Error E = Add((*Buffer)->getBuffer(), File))
       return std::move(E);
   }
   return R;
 }
 
-const Rule *Rules::match(const Function &F) const {
-  std::string Name = qualifiedName(F.getName());
+const Rules &Rules::ofThisLink(std::string &Error) {
+  struct Tables {
+    Rules R;
+    std::string Error;
+  };
+  static const Tables Loaded = [] {
+    Tables T;
+    Expected<Rules> R = load(Options::fromCommandLine());
+    if (R)
+      T.R = std::move(*R);
+    else
+      T.Error = toString(R.takeError());
+    return T;
+  }();
+  Error = Loaded.Error;
+  return Loaded.R;
+}
+
+/// True where the written parameters of \p F are those that \p R names.
+static bool hasTypes(const Function &F, const Rule &R) {
+  if (R.Types.empty())
+    return true;
+  SmallVector<std::string, 4> Types = parameterTypes(F);
+  return Types.size() == R.Types.size() &&
+         all_of(zip(Types, R.Types), [](auto P) {
+           auto [Has, Wants] = P;
+           return Wants == "*" || plainType(Has) == Wants;
+         });
+}
+
+const Rule *Rules::rowOf(const Function &F, StringRef Name) const {
   auto It = ByName.find(Name);
   if (It == ByName.end())
     return nullptr;
   for (const Rule &R : It->second) {
     unsigned Leading = (F.hasStructRetAttr() ? 1 : 0) + (R.Method ? 1 : 0);
-    if (!R.Arity || F.arg_size() == Leading + *R.Arity)
+    if ((!R.Arity || F.arg_size() == Leading + *R.Arity) && hasTypes(F, R))
       return &R;
   }
   return nullptr;
+}
+
+const Rules::Match &Rules::match(const Function &F) const {
+  auto [It, New] = Known.try_emplace(F.getName());
+  if (!New)
+    return It->second;
+  Match &M = It->second;
+  M.Name = qualifiedName(F.getName());
+  M.Row = rowOf(F, M.Name);
+  // A function of a family that only its mangled name tells from others.
+  M.Opaque = any_of(OpaquePrefixes, [&](StringRef Prefix) {
+    return StringRef(M.Name).starts_with(Prefix) ||
+           (Prefix.starts_with("_Z") && F.getName().starts_with(Prefix));
+  });
+  return M;
+}
+
+RuleMatches::RuleMatches(const Rules &Tables, Module &M) {
+  std::vector<std::string> Classes; // whose fields are parameters
+  for (const Function &F : M) {
+    const Rules::Match &Found = Tables.match(F);
+    if (Found.Row) {
+      Rows[&F] = Found.Row;
+      if (Found.Row->Kind == Rule::Config)
+        Classes.push_back(classArgument(F));
+    } else if (Found.Opaque) {
+      Opaque.insert(&F);
+    }
+  }
+  // What belongs to such a class was generated with it.
+  if (Classes.empty())
+    return;
+  for (const Function &F : M)
+    if (any_of(Classes, [&](StringRef Class) {
+          StringRef Name = Tables.match(F).Name;
+          return Name.consume_front(Class) && !Class.empty() &&
+                 (Name.starts_with("::") || Name.starts_with("Statics::"));
+        }))
+      Opaque.insert(&F);
 }
 
 const Rule *RuleMatches::match(const CallBase &Call) const {
@@ -133,18 +146,12 @@ const Rule *RuleMatches::match(const CallBase &Call) const {
 }
 
 RuleMatches RuleAnalysis::run(Module &M, ModuleAnalysisManager &) {
+  std::string Error;
+  const Rules &Tables = Rules::ofThisLink(Error);
   RuleMatches Result;
-  Expected<Rules> Loaded = Rules::load(Options::fromCommandLine());
-  if (!Loaded) {
-    Result.Error = toString(Loaded.takeError());
-    return Result;
-  }
-  Result.Tables = std::make_shared<const Rules>(std::move(*Loaded));
-  for (const Function &F : M)
-    if (const Rule *R = Result.Tables->match(F))
-      Result.Rows[&F] = R;
-    else if (Result.Tables->isOpaque(F))
-      Result.Opaque.insert(&F);
+  if (Error.empty())
+    Result = RuleMatches(Tables, M);
+  Result.Error = std::move(Error);
   return Result;
 }
 
