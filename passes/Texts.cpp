@@ -222,7 +222,9 @@ std::optional<Texts::Effect> Texts::effect(const CallBase &Call, unsigned N,
     return Effect{Effect::Sets, returned(Call, K)};
   if (Made)
     return Effect{Effect::Sets, unknown<Known>(K)};
+  // A global is handed over to be destroyed at the end.
   if (K == Kind::Handle || Call.onlyReadsMemory(N) ||
+      F->getName() == "__cxa_atexit" ||
       (Written ? C.Constant[*Written] : C.ConstMethod))
     return Effect{Effect::Keeps};
   return std::nullopt;
