@@ -120,9 +120,12 @@ std::string resultType(const Function &F) {
   if (!Demangler.partialDemangle(Name.c_str()) && Demangler.isFunction()) {
     Text = taken(Demangler.getFunctionReturnType(nullptr, nullptr));
     // What the compiler was to find out is what the template was made for.
-    if (StringRef(Text).contains("auto"))
-      Text = templateArgument(
-          taken(Demangler.getFunctionBaseName(nullptr, nullptr)));
+    if (StringRef(Text).contains("auto")) {
+      std::string Whole = taken(Demangler.getFunctionName(nullptr, nullptr));
+      std::string Scope =
+          taken(Demangler.getFunctionDeclContextName(nullptr, nullptr));
+      Text = templateArgument(StringRef(Whole).drop_front(Scope.size()));
+    }
   }
   const Type *T = F.getReturnType();
   if (Text.empty())

@@ -32,6 +32,27 @@ static std::string valueType(const Function &F, const Rule &R) {
   return T.str();
 }
 
+json::Value jsonOf(const Constant &C, StringRef Type) {
+  if (const auto *Int = dyn_cast<ConstantInt>(&C)) {
+    if (Type == "bool" || Int->getBitWidth() == 1)
+      return !Int->isZero();
+    if (Int->getBitWidth() > 64)
+      return nullptr;
+    if (Type.starts_with("unsigned"))
+      return Int->getZExtValue();
+    return Int->getSExtValue();
+  }
+  if (const auto *Float = dyn_cast<ConstantFP>(&C)) {
+    APFloat Value = Float->getValueAPF();
+    bool Loses;
+    Value.convert(APFloat::IEEEdouble(), APFloat::rmNearestTiesToEven, &Loses);
+    // JSON has no infinity and no NaN.
+    return Value.isFinite() ? json::Value(Value.convertToDouble())
+                            : json::Value(nullptr);
+  }
+  return nullptr;
+}
+
 static json::Value defaultOf(const CallBase &Call, const Rule &R,
                              StringRef Type, Texts &Known) {
   const Value *V = argument(Call, R, R.Default);
@@ -42,24 +63,7 @@ static json::Value defaultOf(const CallBase &Call, const Rule &R,
     return isDynamic(Text) ? json::Value(nullptr) : json::fixUTF8(Text);
   }
   const Constant *C = Known.constantOf(V);
-  if (const auto *Int = dyn_cast_or_null<ConstantInt>(C)) {
-    if (Type == "bool" || Int->getBitWidth() == 1)
-      return !Int->isZero();
-    if (Int->getBitWidth() > 64)
-      return nullptr;
-    if (Type.starts_with("unsigned"))
-      return Int->getZExtValue();
-    return Int->getSExtValue();
-  }
-  if (const auto *Float = dyn_cast_or_null<ConstantFP>(C)) {
-    APFloat Value = Float->getValueAPF();
-    bool Loses;
-    Value.convert(APFloat::IEEEdouble(), APFloat::rmNearestTiesToEven, &Loses);
-    // JSON has no infinity and no NaN.
-    return Value.isFinite() ? json::Value(Value.convertToDouble())
-                            : json::Value(nullptr);
-  }
-  return nullptr;
+  return C ? jsonOf(*C, Type) : nullptr;
 }
 
 ParamCallFinder::Result ParamCallFinder::run(Module &M,

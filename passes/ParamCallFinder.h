@@ -27,6 +27,9 @@ struct ParameterRead {
   llvm::SmallVector<llvm::Value *, 1> Values = {};
 };
 
+/// \p C, a number of the C++ type \p Type, as JSON; null for what is no number.
+llvm::json::Value jsonOf(const llvm::Constant &C, llvm::StringRef Type);
+
 class ParamCallFinder : public llvm::AnalysisInfoMixin<ParamCallFinder> {
 public:
   /// In the order of the module.

@@ -130,7 +130,7 @@ void findAccessors(Module &M, const RuleMatches &Rules,
 //===----------------------------------------------------------------------===//
 
 /// The name of \p Class with its scopes.
-static std::string qualifiedName(const DICompositeType &Class) {
+static std::string nameWithScopes(const DICompositeType &Class) {
   std::string Name = Class.getName().str();
   for (const DIScope *S = Class.getScope(); S; S = S->getScope())
     if (isa<DINamespace>(S) || isa<DICompositeType>(S))
@@ -138,11 +138,43 @@ static std::string qualifiedName(const DICompositeType &Class) {
   return Name;
 }
 
-/// A field of a class: what it is called, its type, and where it is read.
+/// A field of a class: what it is called, its type, its default, and where it
+/// is read.
 struct Field {
   std::string Name, Type;
+  json::Value Default = nullptr;
   SmallVector<Value *, 1> Loads;
 };
+
+/// Gives \p Fields of the class \p Name the defaults that the generated code
+/// sets: constants that go to a field of a variable `__default__`.
+static void findDefaults(Module &M, StringRef Name, const AccessResult &Access,
+                         std::map<unsigned, Field> &Fields) {
+  DebugTypes &Debug = Access.debugTypes();
+  auto FieldName = [&](const Step &S) {
+    const DICompositeType *Class = Debug.classOf(S.Class);
+    return Class
+               ? Debug.fieldName(Class, Access.types().typeOf(S.Type), S.Index)
+               : "";
+  };
+  std::string Statics = (Name + "Statics::").str();
+  for (Function &F : definedFunctions(M)) {
+    if (!StringRef(qualifiedName(F.getName())).starts_with(Statics))
+      continue;
+    for (Instruction &I : instructions(F)) {
+      auto *Store = dyn_cast<StoreInst>(&I);
+      auto *Value =
+          Store ? dyn_cast<Constant>(Store->getValueOperand()) : nullptr;
+      if (!Value)
+        continue;
+      for (const Location &L : Access.resolve(Store->getPointerOperand(), true))
+        if (L.Path.size() > 1 &&
+            FieldName(L.Path[L.Path.size() - 2]) == "__default__")
+          if (auto It = Fields.find(L.Path.back().Index); It != Fields.end())
+            It->second.Default = jsonOf(*Value, It->second.Type);
+    }
+  }
+}
 
 /// The fields of the class \p Name that the user's code reads, by position.
 static std::map<unsigned, Field>
@@ -157,7 +189,7 @@ fieldsOf(StringRef Name, const RuleMatches &Rules, const AccessResult &Access) {
       continue;
     const Step &Last = Where.Path.back();
     const DICompositeType *Class = Debug.classOf(Last.Class);
-    if (!Class || qualifiedName(*Class) != Name)
+    if (!Class || nameWithScopes(*Class) != Name)
       continue;
     StructType *Layout = Access.types().typeOf(Last.Type);
     Field &F = Fields[Last.Index];
@@ -178,9 +210,12 @@ void findConfigs(Module &M, const RuleMatches &Rules,
     std::string Class = classArgument(*Call.getCalledFunction());
     if (Class.empty() || !Done.insert(Class).second)
       return;
-    for (auto &[Index, F] : fieldsOf(Class, Rules, Access))
+    std::map<unsigned, Field> Fields = fieldsOf(Class, Rules, Access);
+    findDefaults(M, Class, Access, Fields);
+    for (auto &[Index, F] : Fields)
       Reads.push_back({&Call, &Row, F.Name.empty() ? DynamicName : F.Name,
-                       F.Type, nullptr, nullptr, std::move(F.Loads)});
+                       F.Type, std::move(F.Default), nullptr,
+                       std::move(F.Loads)});
   });
 }
 

@@ -54,6 +54,7 @@ def test_the_whole_command() -> None:
         "--cmake-args",
         "-DCMAKE_TOOLCHAIN_FILE=/opt/tpc/share/tpc/cmake/tpc.cmake",
         "-DCMAKE_BUILD_TYPE=RelWithDebInfo",
+        "-DTPC_RULES=",
         "-DPYTHON_EXECUTABLE=/usr/bin/python3",
         "--build-base",
         "/ws/.tpc/build",
@@ -94,6 +95,7 @@ def test_the_users_cmake_arguments_add_to_ours() -> None:
     assert values(command, "--cmake-args") == [
         f"-DCMAKE_TOOLCHAIN_FILE={TOOLCHAIN}",
         "-DCMAKE_BUILD_TYPE=RelWithDebInfo",
+        "-DTPC_RULES=",
         "-DPYTHON_EXECUTABLE=/usr/bin/python3",
         "-DFAULT=ON",
         "-DX=1",
