@@ -45,7 +45,7 @@ static SmallVector<WeakVH, 0> markSmallLibraryFunctions(Module &M,
     if (!F.getSubprogram() || Sources.has(F) ||
         F.hasFnAttribute(Attribute::AlwaysInline) ||
         F.hasFnAttribute(Attribute::NoInline) || sizeOf(F) > MaxInlined ||
-        Known.isOpaque(F))
+        Known.staysCall(F))
       continue;
     F.addFnAttr(Attribute::AlwaysInline);
     Marked.emplace_back(&F);

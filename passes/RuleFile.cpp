@@ -32,6 +32,7 @@ private:
   }
   Error row(const json::Value &V, const Section &In, StringRef Place,
             RuleFile &Out);
+  Error containers(const json::Value &V, StringRef Place, RuleFile &Out);
   Error field(StringRef Key, const json::Value &V, StringRef Place, Rule &R);
   Error part(const json::Value &V, StringRef Place, Rule &R);
   Error number(const json::Value &V, StringRef Place,
@@ -62,6 +63,15 @@ static const Section Sections[] = {
     {"accessors", Rule::Accessor, {}, {}},
     {"configs", Rule::Config, {}, {}},
 };
+
+/// In the order of the alphabet: a file's first mistake is always the same.
+static std::vector<StringRef> keysOf(const json::Object &O) {
+  std::vector<StringRef> Keys;
+  for (const auto &[Key, Unused] : O)
+    Keys.push_back(Key);
+  sort(Keys);
+  return Keys;
+}
 
 /// An argument number of a row; no function has more.
 static constexpr int64_t MaxNumber = 255;
@@ -176,12 +186,7 @@ Error Reader::row(const json::Value &V, const Section &In, StringRef Place,
   Rule R;
   R.Kind = In.Kind;
   std::vector<std::string> Profiles;
-  // In the order of the alphabet: a file's first mistake is always the same.
-  std::vector<StringRef> Keys;
-  for (const auto &[Key, Unused] : *Row)
-    Keys.push_back(Key);
-  sort(Keys);
-  for (StringRef Key : Keys) {
+  for (StringRef Key : keysOf(*Row)) {
     std::string At = (Place + "/" + Key).str();
     const json::Value &Field = *Row->get(Key);
     if (Key == "profiles") {
@@ -205,15 +210,27 @@ Error Reader::row(const json::Value &V, const Section &In, StringRef Place,
   return Error::success();
 }
 
+Error Reader::containers(const json::Value &V, StringRef Place, RuleFile &Out) {
+  const json::Object *Names = V.getAsObject();
+  if (!Names)
+    return wrong(Place, "is not an object");
+  for (StringRef Key : keysOf(*Names)) {
+    std::string At = (Place + "/" + Key).str();
+    if (Key != "classes" && Key != "reading")
+      return wrong(At, "is nothing that \"containers\" has");
+    if (Error E =
+            texts(*Names->get(Key), At,
+                  Key == "classes" ? Out.ContainerClasses : Out.ReadingMethods))
+      return E;
+  }
+  return Error::success();
+}
+
 Error Reader::file(const json::Value &Value, RuleFile &Out) {
   const json::Object *Top = Value.getAsObject();
   if (!Top)
     return wrong("/", "is not an object");
-  std::vector<StringRef> Keys;
-  for (const auto &[Key, Unused] : *Top)
-    Keys.push_back(Key);
-  sort(Keys);
-  for (StringRef Key : Keys) {
+  for (StringRef Key : keysOf(*Top)) {
     std::string Place = ("/" + Key).str();
     const json::Value &V = *Top->get(Key);
     if (Key == "$schema" || Key == "comment") {
@@ -225,6 +242,12 @@ Error Reader::file(const json::Value &Value, RuleFile &Out) {
         return wrong(Place, "is not 1");
     } else if (Key == "opaque") {
       if (Error E = texts(V, Place, Out.Opaque))
+        return E;
+    } else if (Key == "kept") {
+      if (Error E = texts(V, Place, Out.Kept))
+        return E;
+    } else if (Key == "containers") {
+      if (Error E = containers(V, Place, Out))
         return E;
     } else if (none_of(Sections,
                        [&](const Section &S) { return S.Name == Key; })) {

@@ -13,7 +13,8 @@ namespace tpc {
 
 struct RuleFile {
   std::vector<Rule> Rows;
-  std::vector<std::string> Opaque; ///< beginnings of names
+  std::vector<std::string> Opaque, Kept; ///< beginnings of names
+  std::vector<std::string> ContainerClasses, ReadingMethods;
 };
 
 /// The rows of \p Text that belong to \p Profile. \p Origin is the file's name,

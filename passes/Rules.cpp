@@ -6,6 +6,7 @@
 #include "Options.h"
 #include "RuleFile.h"
 
+#include "llvm/ADT/SetVector.h"
 #include "llvm/IR/Module.h"
 #include "llvm/Support/MemoryBuffer.h"
 
@@ -44,6 +45,11 @@ Expected<Rules> Rules::load(const Options &Opts) {
     for (Rule &Row : File->Rows)
       R.ByName[Row.Function].push_back(std::move(Row));
     append_range(R.OpaquePrefixes, File->Opaque);
+    append_range(R.KeptPrefixes, File->Kept);
+    R.ContainerClasses.insert(File->ContainerClasses.begin(),
+                              File->ContainerClasses.end());
+    R.ReadingMethods.insert(File->ReadingMethods.begin(),
+                            File->ReadingMethods.end());
     return Error::success();
   };
   for (StringRef Text : BuiltinRules)
@@ -109,10 +115,17 @@ const Rules::Match &Rules::match(const Function &F) const {
   M.Name = qualifiedName(F.getName());
   M.Row = rowOf(F, M.Name);
   // A function of a family that only its mangled name tells from others.
-  M.Opaque = any_of(OpaquePrefixes, [&](StringRef Prefix) {
+  auto Begins = [&](StringRef Prefix) {
     return StringRef(M.Name).starts_with(Prefix) ||
            (Prefix.starts_with("_Z") && F.getName().starts_with(Prefix));
-  });
+  };
+  M.Opaque = any_of(OpaquePrefixes, Begins);
+  M.Kept = any_of(KeptPrefixes, Begins);
+  auto [Class, Method] = StringRef(M.Name).rsplit("::");
+  if (ContainerClasses.contains(Class))
+    M.Container = ContainerMethod{!F.getName().starts_with("_ZNK") &&
+                                  !ReadingMethods.contains(Method) &&
+                                  !Method.starts_with("~")};
   return M;
 }
 
@@ -126,7 +139,11 @@ RuleMatches::RuleMatches(const Rules &Tables, Module &M) {
         Classes.push_back(classArgument(F));
     } else if (Found.Opaque) {
       Opaque.insert(&F);
+    } else if (Found.Container) {
+      Containers.insert({&F, *Found.Container});
     }
+    if (Found.Kept)
+      Kept.insert(&F);
   }
   // What belongs to such a class was generated with it.
   if (Classes.empty())
@@ -145,12 +162,57 @@ const Rule *RuleMatches::match(const CallBase &Call) const {
   return Callee ? Rows.lookup(Callee) : nullptr;
 }
 
+const ContainerMethod *RuleMatches::container(const CallBase &Call) const {
+  const Function *Callee = Call.getCalledFunction();
+  auto It = Callee ? Containers.find(Callee) : Containers.end();
+  return It == Containers.end() ? nullptr : &It->second;
+}
+
+namespace {
+
+/// Which functions of libraries call the user's own: the constructors of the
+/// elements of a container, say.
+class UserCode {
+public:
+  explicit UserCode(const Options &Opts) : Sources(Opts) {}
+
+  bool reachedFrom(const Function &F) {
+    SmallSetVector<const Function *, 16> Work;
+    Work.insert(&F);
+    for (unsigned N = 0; N < Work.size(); ++N)
+      for (const Instruction &I : instructions(*Work[N])) {
+        const auto *Call = dyn_cast<CallBase>(&I);
+        const Function *Callee = Call ? Call->getCalledFunction() : nullptr;
+        if (!Callee || Callee->isDeclaration())
+          continue;
+        if (Sources.has(*Callee))
+          return true;
+        Work.insert(Callee);
+      }
+    return false;
+  }
+
+private:
+  UserSources Sources;
+};
+
+} // namespace
+
+void RuleMatches::closeContainers(const Options &Opts) {
+  UserCode Users(Opts);
+  for (const auto &[F, Method] : Containers)
+    if (!Users.reachedFrom(*F))
+      Opaque.insert(F);
+}
+
 RuleMatches RuleAnalysis::run(Module &M, ModuleAnalysisManager &) {
   std::string Error;
   const Rules &Tables = Rules::ofThisLink(Error);
   RuleMatches Result;
-  if (Error.empty())
+  if (Error.empty()) {
     Result = RuleMatches(Tables, M);
+    Result.closeContainers(Options::fromCommandLine());
+  }
   Result.Error = std::move(Error);
   return Result;
 }

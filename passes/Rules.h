@@ -13,7 +13,9 @@
 
 #include "llvm/ADT/DenseMap.h"
 #include "llvm/ADT/DenseSet.h"
+#include "llvm/ADT/MapVector.h"
 #include "llvm/ADT/StringMap.h"
+#include "llvm/ADT/StringSet.h"
 #include "llvm/IR/InstIterator.h"
 #include "llvm/IR/InstrTypes.h"
 #include "llvm/IR/PassManager.h"
@@ -63,6 +65,11 @@ struct Rule {
   unsigned TargetArgument = 0;
 };
 
+/// A method of a container of values.
+struct ContainerMethod {
+  bool Writes; ///< puts its arguments into the container
+};
+
 /// The IR operand of \p Call for the source-level argument \p Number of a
 /// function that \p R describes; null where there is none.
 llvm::Value *argument(const llvm::CallBase &Call, const Rule &R,
@@ -84,6 +91,9 @@ public:
     std::string Name; ///< qualified, without template arguments
     const Rule *Row = nullptr;
     bool Opaque = false; ///< it is in one of the opaque namespaces
+    bool Kept = false;   ///< it stays a call that is looked into
+    /// What it does to a container; none where it is no method of one.
+    std::optional<ContainerMethod> Container;
   };
   const Match &match(const llvm::Function &F) const;
 
@@ -91,7 +101,8 @@ private:
   const Rule *rowOf(const llvm::Function &F, llvm::StringRef Name) const;
 
   llvm::StringMap<std::vector<Rule>> ByName;
-  std::vector<std::string> OpaquePrefixes;
+  std::vector<std::string> OpaquePrefixes, KeptPrefixes;
+  llvm::StringSet<> ContainerClasses, ReadingMethods;
   /// By mangled name: each is demangled once.
   mutable llvm::StringMap<Match> Known;
 };
@@ -101,6 +112,8 @@ class RuleMatches {
 public:
   RuleMatches() = default;
   RuleMatches(const Rules &Tables, llvm::Module &M);
+  /// Makes opaque the methods of containers that call nothing of the user's.
+  void closeContainers(const Options &Opts);
 
   /// The row that the callee of \p Call matches, or null.
   const Rule *match(const llvm::CallBase &Call) const;
@@ -109,11 +122,18 @@ public:
   bool isOpaque(const llvm::Function &F) const {
     return Rows.contains(&F) || Opaque.contains(&F);
   }
+  /// The container's method that \p Call calls, or null.
+  const ContainerMethod *container(const llvm::CallBase &Call) const;
+  /// True where \p F stays a call, however small it is.
+  bool staysCall(const llvm::Function &F) const {
+    return isOpaque(F) || Kept.contains(&F) || Containers.contains(&F);
+  }
   std::string Error; ///< why the tables could not be read; else empty
 
 private:
   llvm::DenseMap<const llvm::Function *, const Rule *> Rows;
-  llvm::DenseSet<const llvm::Function *> Opaque;
+  llvm::DenseSet<const llvm::Function *> Opaque, Kept;
+  llvm::MapVector<const llvm::Function *, ContainerMethod> Containers;
 };
 
 /// Calls \p F with each call in \p M that a row of \p Kind describes, and with
