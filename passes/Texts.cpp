@@ -497,7 +497,11 @@ const Constant *Texts::constantOf(const Value *V) {
     if (const auto *C = dyn_cast<Constant>(V))
       return C;
     const Value *Next = nullptr;
-    if (const auto *Arg = dyn_cast<Argument>(V)) {
+    // In memory a bool is a byte.
+    if (const auto *Wide = dyn_cast<ZExtInst>(V);
+        Wide && Wide->getSrcTy()->isIntegerTy(1))
+      Next = Wide->getOperand(0);
+    else if (const auto *Arg = dyn_cast<Argument>(V)) {
       // Where several calls differ, nothing is the default.
       for (const CallBase *Call : Calls.callers(Arg->getParent())) {
         if (Call->getCalledFunction() != Arg->getParent() ||

@@ -49,6 +49,7 @@ def patch_command(workspace: Path, restore: bool, dry_run: bool, packages: tuple
 )
 @click.argument("colcon_args", nargs=-1, type=click.UNPROCESSED, metavar="[-- COLCON_ARGS]...")
 def build_command(
+    *,
     workspace: Path,
     packages: tuple[str, ...],
     build_type: str,

@@ -51,3 +51,8 @@ if os.path.exists("/usr/include/dynamic_reconfigure/server.h") and os.path.exist
     "/usr/share/dynamic_reconfigure/templates/ConfigType.h.template"
 ):
     config.available_features.add("dynamic-reconfigure")
+if all(
+    os.path.exists(f"/usr/include/{header}")
+    for header in ("actionlib/TestAction.h", "tf/transform_broadcaster.h", "std_srvs/Empty.h")
+):
+    config.available_features.add("ros1-headers")
