@@ -96,7 +96,20 @@ static void allowOptimisation(Module &M) {
     }
 }
 
+/// Has calls of another name of a function call it by its own: above -O0 the
+/// constructors of a class are one function with two names.
+static void callByOwnName(Module &M) {
+  for (GlobalAlias &Alias : M.aliases())
+    if (auto *F = dyn_cast<Function>(Alias.getAliasee());
+        F && !Alias.isInterposable())
+      Alias.replaceUsesWithIf(F, [](const Use &U) {
+        const auto *Call = dyn_cast<CallBase>(U.getUser());
+        return Call && Call->isCallee(&U);
+      });
+}
+
 AnalysedModule::AnalysedModule(Module &M, const Options &Opts) : Original(M) {
+  callByOwnName(M);
   bool Unoptimised = any_of(M, [](const Function &F) {
     return F.hasFnAttribute(Attribute::OptimizeNone);
   });
@@ -183,6 +196,7 @@ std::vector<std::string> namedByCalls(Module &M, ModuleAnalysisManager &AM) {
 
 PreservedAnalyses PreparePass::run(Module &M, ModuleAnalysisManager &AM) {
   allowOptimisation(M);
+  callByOwnName(M);
   prepare(M, Options::fromCommandLine());
   separateCalls(M, namedByCalls(M, AM));
   return PreservedAnalyses::none();
