@@ -25,6 +25,9 @@ inline bool isDynamic(llvm::StringRef Name) {
   return Name.contains(DynamicName);
 }
 
+/// \p Name in the namespace \p In, as ROS joins them.
+std::string joinNames(llvm::StringRef In, llvm::StringRef Name);
+
 class Texts {
 public:
   /// Without \p Access members are not looked into.
@@ -74,6 +77,9 @@ private:
     bool ConstMethod = false;
   };
 
+  /// What is not known of a text. Of a handle that nobody in the link unit
+  /// makes the namespace is left out: the name is then as in the read.
+  static Known unknown(Kind K) { return {K == Kind::Text ? DynamicName : ""}; }
   Known find(const llvm::Value *Pointer, const llvm::Instruction &At, Kind K);
   Known follow(const llvm::Value *P, const llvm::Instruction &At, Kind K);
   Known above(const llvm::Value *Object, const llvm::Instruction *I,
@@ -101,7 +107,7 @@ private:
   /// Members, globals and arguments that are known by now, or being asked for.
   llvm::SmallVector<std::pair<Location, Known>, 0> Members;
   llvm::DenseMap<const llvm::Argument *, Known> Arguments;
-  unsigned Depth = 0;
+  unsigned Depth = 0, Steps = 0;
 };
 
 } // namespace tpc
