@@ -194,7 +194,8 @@ macro(_tpc_instrument)
     list(APPEND _tpc_options "-tpc-profile=${TPC_PROFILE}")
   endif()
   if(TPC_RULES)
-    list(APPEND _tpc_options "-tpc-rules=${TPC_RULES}")
+    get_filename_component(_tpc_rules "${TPC_RULES}" ABSOLUTE BASE_DIR "${CMAKE_SOURCE_DIR}")
+    list(APPEND _tpc_options "-tpc-rules=${_tpc_rules}")
   endif()
   string(REPLACE ";" "," _tpc_linked "${_tpc_languages}")
   add_link_options(
@@ -208,7 +209,7 @@ macro(_tpc_instrument)
 endmacro()
 
 # At the end of the package's CMakeLists.txt: what is linked is linked again when
-# the passes or the log library have changed; and what TPC does not see to after
+# the passes, the log library or the rules have changed; and what TPC does not see to after
 # all is said. Flags in generator expressions and in the interface of another
 # target are not known here.
 function(_tpc_finish)
@@ -250,11 +251,15 @@ function(_tpc_finish_folder folder)
   endforeach()
   get_directory_property(plugin DIRECTORY "${folder}" DEFINITION _tpc_plugin)
   get_directory_property(log DIRECTORY "${folder}" DEFINITION _tpc_log)
+  get_directory_property(rules DIRECTORY "${folder}" DEFINITION _tpc_rules)
   get_property(targets DIRECTORY "${folder}" PROPERTY BUILDSYSTEM_TARGETS)
   foreach(target IN LISTS targets)
     get_target_property(type "${target}" TYPE)
     if(type MATCHES "^(EXECUTABLE|SHARED_LIBRARY|MODULE_LIBRARY)$")
       set_property(TARGET "${target}" APPEND PROPERTY LINK_DEPENDS "${plugin}" "${log}")
+      if(rules AND EXISTS "${rules}")
+        set_property(TARGET "${target}" APPEND PROPERTY LINK_DEPENDS "${rules}")
+      endif()
     elseif(NOT type MATCHES "^(STATIC|OBJECT)_LIBRARY$")
       continue()
     endif()

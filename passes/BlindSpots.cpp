@@ -1,4 +1,5 @@
 //===- BlindSpots.cpp -----------------------------------------------------===//
+#include "Texts.h"
 #include "BlindSpots.h"
 
 #include "llvm/IR/IntrinsicInst.h"
@@ -100,7 +101,7 @@ std::vector<BlindSpot> findBlindSpots(const ParameterUsage &Usage,
   for (const ValueEnd &E : Usage.Ends)
     All.push_back(spotOf(E, Reads[E.Read], Words));
   for (const ParameterRead &R : Reads)
-    if (R.Name == DynamicName)
+    if (isDynamic(R.Name))
       All.push_back({BlindSpot::DynamicName, R.Call, "",
                      "reads a parameter whose name is put together"});
   addComparisons(Gathered, Reads, All);

@@ -42,16 +42,25 @@ struct Findings {
   std::string Failure;
 };
 
+namespace {
+/// A manager of its own: what is analysed may be a copy that goes away again.
+struct OwnAnalyses {
+  ModuleAnalysisManager AM;
+  OwnAnalyses() {
+    PassBuilder().registerModuleAnalyses(AM);
+    registerAnalyses(AM);
+  }
+};
+} // namespace
+
 /// Analyses \p Analysed; returns the functions whose calls are to be told apart
 /// before that says all.
 static std::vector<std::string> analyse(AnalysedModule &Analysed,
                                         const Options &Opts, Findings &Out) {
   if (Opts.InjectFailure)
     LLVM_BUILTIN_TRAP;
-  // Managers of its own: what is analysed may be a copy that goes away again.
-  ModuleAnalysisManager AM;
-  PassBuilder().registerModuleAnalyses(AM);
-  registerAnalyses(AM);
+  OwnAnalyses Own;
+  ModuleAnalysisManager &AM = Own.AM;
   Module &Seen = Analysed.module();
   if (const std::string &Error = AM.getResult<RuleAnalysis>(Seen).Error;
       !Error.empty()) {
@@ -75,6 +84,11 @@ static std::vector<std::string> analyse(AnalysedModule &Analysed,
   return Shared;
 }
 
+static std::vector<std::string> namedHelpers(Module &M) {
+  OwnAnalyses Own;
+  return namedByCalls(M, Own.AM);
+}
+
 /// Functions in functions whose calls are told apart.
 static constexpr unsigned MaxSeparated = 3;
 
@@ -84,12 +98,15 @@ static Findings analyseSafely(Module &M, const Options &Opts) {
   CrashRecoveryContext::Enable();
   CrashRecoveryContext Guard;
   bool Survived = Guard.RunSafely([&] {
+    std::optional<AnalysedModule> Analysed(std::in_place, M, Opts);
+    if (separateCalls(M, namedHelpers(Analysed->module())))
+      Analysed.emplace(M, Opts);
     for (unsigned Round = 0; Round <= MaxSeparated; ++Round) {
       Out = Findings();
-      AnalysedModule Analysed(M, Opts);
-      std::vector<std::string> Shared = analyse(Analysed, Opts, Out);
+      std::vector<std::string> Shared = analyse(*Analysed, Opts, Out);
       if (Round == MaxSeparated || !separateCalls(M, Shared))
         break;
+      Analysed.emplace(M, Opts);
     }
   });
   if (!Survived) {

@@ -376,9 +376,11 @@ void Follower::followRead(unsigned N) {
   if (!isNumber(R.Type))
     return end(ValueEnd::NoNumber, R.Call);
   Seen.clear();
-  if (!R.Target) {
+  for (Value *V : R.Values)
+    push({V, {}, nullptr, true}, V == R.Call ? nullptr : R.Call);
+  if (!R.Target && R.Values.empty())
     push({R.Call, {}, nullptr, true});
-  } else {
+  if (R.Target) {
     SmallVector<LoadInst *, 8> Loads = Access.usesOf(*R.Call, R.Target);
     if (Loads.empty())
       end(Access.resolve(R.Target, true).empty() ? ValueEnd::UnknownPointer

@@ -9,6 +9,7 @@
 #include "Names.h"
 #include "ParamCallFinder.h"
 #include "SimpleCallGraph.h"
+#include "Texts.h"
 #include "Variables.h"
 
 #include "llvm/Config/llvm-config.h"
@@ -219,7 +220,7 @@ json::Object Describer::counts(size_t NumComparisons) const {
       {"comparisons", static_cast<int64_t>(NumComparisons)},
       {"dynamic_names",
        count_if(Reads,
-                [](const ParameterRead &R) { return R.Name == DynamicName; })},
+                [](const ParameterRead &R) { return isDynamic(R.Name); })},
       {"indirect_calls", static_cast<int64_t>(Calls.unresolved().size())},
       {"without_debug_info", Gathered.WithoutDebugInfo},
       {"outside_sources", Gathered.OutsideSources},

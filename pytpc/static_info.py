@@ -50,7 +50,7 @@ class Transform:
 
 @dataclass(frozen=True, slots=True)
 class ParameterRead:
-    """A call that reads a parameter; ``name`` is ``<dynamic>`` where no constant names it."""
+    """A call that reads a parameter; ``name`` has ``<dynamic>`` for what no constant gives."""
 
     name: str
     api: str

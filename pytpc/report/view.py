@@ -16,6 +16,7 @@ from pytpc.complaints import complaints
 from pytpc.explain import where
 from pytpc.ingest.recording import Recording
 from pytpc.marks import Mark, MarkType
+from pytpc.parameters import same_parameter
 from pytpc.ranking import MarkRanking, Suspect
 from pytpc.report.plots import EvidenceStyle, Lane, evidence_svg, timeline_svg
 from pytpc.report.series import evidence, lane
@@ -54,6 +55,11 @@ class MissionReport:
     rankings: list[MarkRanking]
     treatment: str = ""
     changed_parameter: str | None = None
+
+    def is_changed(self, parameter: str) -> bool:
+        """True where ``parameter``, as in the source, is the one that was changed."""
+        changed = self.changed_parameter
+        return changed is not None and same_parameter(changed, parameter)
 
 
 @dataclass(frozen=True)
@@ -207,7 +213,7 @@ def _suspect_view(
     unit = mission.static_info.unit_of(suspect.key)
     events = mission.recording.events
     advice = suggest(events, found, mark.time_ns, suspect.type, unit=unit)
-    culprit = suspect.parameter == mission.changed_parameter
+    culprit = mission.is_changed(suspect.parameter)
     lines, note = source_lines(mission.static_info, found) if ident else ([], "")
     plot = _evidence(mission, suspect, mark, advice, ident) if ident else Markup("")
     return SuspectView(
@@ -268,7 +274,7 @@ def _evidence(
         suggested=_suggested_threshold(found, advice),
         value_name="compared value" if found.relation != "flag" else "flag",
         limit_name=found.name or suspect.parameter,
-        culprit=suspect.parameter == mission.changed_parameter,
+        culprit=mission.is_changed(suspect.parameter),
     )
     label = (
         f"{suspect.parameter}: compared value and threshold around the mark at {at:.1f} s;"
@@ -296,9 +302,10 @@ def _timeline(mission: MissionReport, ident: str) -> Markup:
             known = best.get(suspect.parameter)
             if known is None or suspect.position < known[0]:
                 best[suspect.parameter] = (suspect.position, suspect.key)
-    order = sorted(best, key=lambda name: (best[name][0], name))[:_LANES]
-    changed = mission.changed_parameter
-    if changed is not None and changed in best and changed not in order:
+    ranked = sorted(best, key=lambda name: (best[name][0], name))
+    order = ranked[:_LANES]
+    changed = next((name for name in ranked if mission.is_changed(name)), None)
+    if changed is not None and changed not in order:
         order[-1] = changed
     lanes = [
         Lane(
