@@ -135,9 +135,15 @@ static OptimizationLevel levelOf(const Module &M) {
     for (StringRef Word : Words)
       Own = StringSwitch<OptimizationLevel>(Word)
                 .Case("-O0", OptimizationLevel::O0)
-                .Cases("-O", "-O1", "-Og", OptimizationLevel::O1)
-                .Cases("-O2", "-Os", "-Oz", OptimizationLevel::O2)
-                .Cases("-O3", "-O4", "-Ofast", OptimizationLevel::O3)
+                .Case("-O", OptimizationLevel::O1)
+                .Case("-O1", OptimizationLevel::O1)
+                .Case("-Og", OptimizationLevel::O1)
+                .Case("-O2", OptimizationLevel::O2)
+                .Case("-Os", OptimizationLevel::O2)
+                .Case("-Oz", OptimizationLevel::O2)
+                .Case("-O3", OptimizationLevel::O3)
+                .Case("-O4", OptimizationLevel::O3)
+                .Case("-Ofast", OptimizationLevel::O3)
                 .Default(Own);
     if (Own.getSpeedupLevel() > Level.getSpeedupLevel())
       Level = Own;
