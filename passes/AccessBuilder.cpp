@@ -1,6 +1,7 @@
 //===- AccessBuilder.cpp - Finds where pointers lead, and the accesses ----===//
 #include "ClassObjectAccess.h"
 
+#include "Budget.h"
 #include "Functions.h"
 #include "Print.h"
 #include "Rules.h"
@@ -73,6 +74,8 @@ void AccessResult::Builder::findEscaped() {
     for (Instruction &I : instructions(F)) {
       if (!isa<AllocaInst>(&I))
         continue;
+      if (Budget::isSpent())
+        return;
       SmallVector<const Value *, 8> Work{&I};
       SmallPtrSet<const Value *, 8> Seen;
       while (!Work.empty()) {
@@ -108,6 +111,8 @@ void AccessResult::Builder::makeNodes() {
     for (Instruction &I : instructions(F)) {
       if (!I.getType()->isPointerTy())
         continue;
+      if (Budget::isSpent())
+        return;
       Node N{&I, {}};
       if (const auto *Phi = dyn_cast<PHINode>(&I))
         append_range(N.Sources, Phi->incoming_values());
@@ -126,6 +131,8 @@ void AccessResult::Builder::makeNodes() {
 bool AccessResult::Builder::propagate() {
   bool Changed = false;
   for (const Node &N : Nodes) {
+    if (Budget::isSpent())
+      return false;
     Locations Found = R.Targets.lookup(N.V);
     size_t Before = Found.size();
     for (const Value *Source : N.Sources)
@@ -152,7 +159,7 @@ void AccessResult::Builder::fileStores() {
     if (Rules.isOpaque(F))
       continue;
     for (Instruction &I : instructions(F))
-      if (auto *Store = dyn_cast<StoreInst>(&I))
+      if (auto *Store = dyn_cast<StoreInst>(&I); Store && !Budget::isSpent())
         for (const Location &L : R.touched(*Store))
           R.file(R.Stores, R.StoreIndex, I, L);
   }
@@ -163,6 +170,8 @@ void AccessResult::Builder::fileRest() {
     if (Rules.isOpaque(F))
       continue;
     for (Instruction &I : instructions(F)) {
+      if (Budget::isSpent())
+        return;
       if (auto *Load = dyn_cast<LoadInst>(&I)) {
         for (const Location &L : R.touched(*Load))
           R.file(R.Loads, R.LoadIndex, I, L);

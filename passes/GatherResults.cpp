@@ -1,6 +1,7 @@
 //===- GatherResults.cpp --------------------------------------------------===//
 #include "GatherResults.h"
 
+#include "Budget.h"
 #include "IfStatements.h"
 #include "Names.h"
 #include "Options.h"
@@ -173,11 +174,14 @@ static void countOthers(std::vector<Comparison> &All) {
       Conditions.unionSets(Work[N], Br);
       Work.insert(Br);
     }
-  for (Comparison &C : All)
+  for (Comparison &C : All) {
+    if (Budget::isSpent())
+      return;
     C.OtherThresholds = count_if(All, [&](const Comparison &O) {
       return &O != &C && Conditions.isEquivalent(C.Predicate, O.Predicate) &&
              (O.Compare != C.Compare || !C.Compare);
     });
+  }
 }
 
 /// A UUID of version 5 (RFC 4122) of \p Name, in a namespace of our own.
@@ -230,6 +234,8 @@ GatheredResults GatherResults::run(Module &M, ModuleAnalysisManager &AM) {
   UserSources Sources(Opts);
   GatheredResults R;
   for (const ParameterComparison &P : Usage.Comparisons) {
+    if (Budget::isSpent())
+      break;
     Comparison C{};
     if (!nearest(P, Slice, C))
       continue;

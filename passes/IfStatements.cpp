@@ -1,6 +1,7 @@
 //===- IfStatements.cpp ---------------------------------------------------===//
 #include "IfStatements.h"
 
+#include "Budget.h"
 #include "ControlDependence.h"
 #include "Functions.h"
 #include "Print.h"
@@ -105,6 +106,8 @@ static FlowGraph flowGraphOf(const Function &F,
 IfStatementsResult IfStatements::run(Module &M, ModuleAnalysisManager &) {
   IfStatementsResult R;
   for (Function &F : definedFunctions(M)) {
+    if (Budget::isSpent())
+      break;
     for (Instruction &I : instructions(F))
       if (isPredicate(I))
         R.Predicates.push_back(&I);

@@ -2,9 +2,11 @@
 #include "LinkUnit.h"
 
 #include "BackwardPropagate.h"
+#include "Budget.h"
 #include "ClassObjectAccess.h"
 #include "ExternCallFinder.h"
 #include "GatherResults.h"
+#include "Guard.h"
 #include "IfStatements.h"
 #include "InstrumentBranches.h"
 #include "Options.h"
@@ -15,7 +17,6 @@
 #include "StaticInfo.h"
 
 #include "llvm/IR/Module.h"
-#include "llvm/Support/CrashRecoveryContext.h"
 #include "llvm/Support/WithColor.h"
 
 using namespace llvm;
@@ -46,8 +47,7 @@ struct Findings {
 /// before that says all.
 static std::vector<std::string> analyse(AnalysedModule &Analysed,
                                         const Options &Opts, Findings &Out) {
-  if (Opts.InjectFailure)
-    LLVM_BUILTIN_TRAP;
+  fail(Opts.InjectFailure);
   // Managers of its own: what is analysed may be a copy that goes away again.
   ModuleAnalysisManager AM;
   PassBuilder().registerModuleAnalyses(AM);
@@ -78,25 +78,30 @@ static std::vector<std::string> analyse(AnalysedModule &Analysed,
 /// Functions in functions whose calls are told apart.
 static constexpr unsigned MaxSeparated = 3;
 
-/// Runs the analysis so that a crash in it is only a failure of it.
+/// Runs the analysis so that a crash in it, and time or memory without end, is
+/// only a failure of it.
 static Findings analyseSafely(Module &M, const Options &Opts) {
-  Findings Out;
-  CrashRecoveryContext::Enable();
-  CrashRecoveryContext Guard;
-  bool Survived = Guard.RunSafely([&] {
+  Budget Limits(Opts.MaxSeconds, Opts.MaxMemory);
+  auto Out = std::make_unique<Findings>();
+  bool Survived = runGuarded([&] {
     for (unsigned Round = 0; Round <= MaxSeparated; ++Round) {
-      Out = Findings();
+      *Out = Findings();
       AnalysedModule Analysed(M, Opts);
-      std::vector<std::string> Shared = analyse(Analysed, Opts, Out);
-      if (Round == MaxSeparated || !separateCalls(M, Shared))
+      std::vector<std::string> Shared = analyse(Analysed, Opts, *Out);
+      if (std::string Why = Limits.why(); !Why.empty())
+        Out->Failure = std::move(Why);
+      if (!Out->Failure.empty() || Round == MaxSeparated ||
+          !separateCalls(M, Shared))
         break;
     }
   });
   if (!Survived) {
-    Out = Findings();
-    Out.Failure = "the analysis crashed";
+    // What a crash left half done cannot be destroyed.
+    (void)Out.release();
+    Out = std::make_unique<Findings>();
+    Out->Failure = "the analysis crashed";
   }
-  return Out;
+  return std::move(*Out);
 }
 
 static void warn(const Options &Opts, const Twine &Text) {
@@ -112,7 +117,7 @@ PreservedAnalyses LinkUnitPass::run(Module &M, ModuleAnalysisManager &) {
                   StringRef(Why).split('\n').first.str();
   if (!F.Failure.empty()) {
     warn(Opts, F.Failure + "; this link unit is left as it was");
-    F.Unit = describeFailure(Opts, F.Failure);
+    F.Unit = describeFailure(Opts, F.Failure, F.Unit.getObject("counts"));
   } else if (json::Object *Counts = F.Unit.getObject("counts")) {
     (*Counts)["not_instrumented"] = F.NotInstrumented;
   }

@@ -1,6 +1,7 @@
 //===- ParamUsageFinder.cpp -----------------------------------------------===//
 #include "ParamUsageFinder.h"
 
+#include "Budget.h"
 #include "ClassObjectAccess.h"
 #include "IfStatements.h"
 #include "ParamCallFinder.h"
@@ -186,7 +187,7 @@ SmallVector<Decision, 2> Follower::followOutcome(Value *Outcome,
   Seen.clear();
   SmallVector<Decision, 2> Found;
   push({Outcome, {}, Path, true});
-  while (!Work.empty()) {
+  while (!Work.empty() && !Budget::isSpent()) {
     State S = Work.pop_back_val();
     for (Use &U : S.V->uses()) {
       auto *I = dyn_cast<Instruction>(U.getUser());
@@ -320,7 +321,7 @@ void Follower::followRead(unsigned N) {
   else
     for (LoadInst *Load : Access.usesOf(*Read.Call, Read.Target))
       push({Load, {}, nullptr, true});
-  while (!Work.empty()) {
+  while (!Work.empty() && !Budget::isSpent()) {
     State S = Work.pop_back_val();
     for (Use &U : S.V->uses())
       useOfValue(S, U, N);
