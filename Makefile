@@ -7,6 +7,9 @@ demo: setup   ## a robot with a wrong parameter, and its name
 test: setup   ## all tests: passes, Python, a real ROS graph
 	tools/test
 
+fuzz: setup   ## a thousand random modules and programs; more: tools/fuzz --help
+	tools/fuzz
+
 test-llvm22:  ## the passes and their tests with LLVM 22, in build-22
 	tools/test-llvm22
 
