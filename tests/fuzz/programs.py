@@ -15,7 +15,8 @@ from pathlib import Path
 from fuzz.tools import BIN, compile_unit, plugin_link_flags, run
 
 HERE = Path(__file__).parent
-SECONDS = 5.0
+SECONDS = 5
+_INCLUDES = ["-I/usr/include/csmith"]
 _GLOBAL = re.compile(
     r"^static (?:volatile )?(u?int(?:8|16|32|64)_t|float) (g_\d+) = ", re.MULTILINE
 )
@@ -61,7 +62,7 @@ def compare(seed: int, folder: Path) -> Compared:
     source, unit, stubs = folder / "program.c", folder / "program.o", folder / "stubs.o"
     source.write_text(with_parameters(made.output.decode()), encoding="utf-8")
     level = f"-O{draw.randint(0, 3)}"
-    compiled = compile_unit(source, unit, [level, "-I/usr/include/csmith"])
+    compiled = compile_unit(source, unit, [level, *_INCLUDES])
     if compiled.status != 0:
         return Compared("", skipped="clang")
     run([BIN / "clang++", "-O1", "-c", HERE / "stubs.cpp", "-o", stubs])
@@ -71,10 +72,18 @@ def compare(seed: int, folder: Path) -> Compared:
     linked = run([*link, folder / "instrumented", *plugin_link_flags(*options)])
     if linked.status != 0 or "warning" in linked.errors:
         return Compared(f"link at {level}: {linked.status} {linked.errors[:500]}")
-    return _run_both(folder, level)
+    return _run_both(source, stubs, folder, level)
 
 
-def _run_both(folder: Path, level: str) -> Compared:
+def _is_defined(source: Path, stubs: Path, program: Path) -> bool:
+    """False where the program does what C leaves open: csmith is not free of mistakes."""
+    checks = ["-fsanitize=undefined", "-fsanitize-trap=undefined"]
+    flags = ["-w", "-O1", *checks, *_INCLUDES, source, stubs, "-lstdc++"]
+    run([BIN / "clang", *flags, "-o", program])
+    return run([program], seconds=20 * SECONDS).status == 0
+
+
+def _run_both(source: Path, stubs: Path, folder: Path, level: str) -> Compared:
     plain = run([folder / "plain"], seconds=SECONDS)
     if plain.status is None:
         return Compared("", skipped="endless")
@@ -83,6 +92,8 @@ def _run_both(folder: Path, level: str) -> Compared:
     env = {"FUZZ_REPORTS": str(counted)}
     other = run([folder / "instrumented"], seconds=20 * SECONDS, env=env)
     reports = int(counted.read_text()) if counted.exists() else 0
+    if other != plain and not _is_defined(source, stubs, folder / "checked"):
+        return Compared("", skipped="undefined")
     if other != plain:
         return Compared(f"at {level}: {plain.output!r} became {other.output!r} ({other.status})")
     return Compared("", reports)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import resource
+import signal
 import subprocess
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -30,13 +31,17 @@ class Ran:
 def run(
     argv: Sequence[str | Path],
     *,
-    seconds: float = SECONDS,
+    seconds: int = SECONDS,
     env: Mapping[str, str] | None = None,
 ) -> Ran:
-    """Run a program with a limit of time and memory."""
+    """Run a program with a limit of processor time and memory.
+
+    Real time is limited too, but loosely, because the machine may be busy.
+    """
 
     def limit() -> None:
         resource.setrlimit(resource.RLIMIT_AS, (MEMORY_BYTES, MEMORY_BYTES))
+        resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 1))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
     try:
@@ -44,12 +49,14 @@ def run(
             [str(word) for word in argv],
             stdin=subprocess.DEVNULL,
             capture_output=True,
-            timeout=seconds,
+            timeout=30 * seconds,
             check=False,
             env={**os.environ, **(env or {})},
             preexec_fn=limit,
         )
     except subprocess.TimeoutExpired:
+        return Ran(None, b"", "")
+    if ran.returncode == -signal.SIGXCPU:
         return Ran(None, b"", "")
     return Ran(ran.returncode, ran.stdout, ran.stderr.decode(errors="replace"))
 
