@@ -113,8 +113,7 @@ PreservedAnalyses LinkUnitPass::run(Module &M, ModuleAnalysisManager &) {
   Findings F = analyseSafely(M, Opts);
   if (F.Failure.empty() && Opts.Instrument)
     if (std::string Why = insertReports(M, F.Reports); !Why.empty())
-      F.Failure = "the instrumented module does not verify: " +
-                  StringRef(Why).split('\n').first.str();
+      F.Failure = std::move(Why);
   if (!F.Failure.empty()) {
     warn(Opts, F.Failure + "; this link unit is left as it was");
     F.Unit = describeFailure(Opts, F.Failure, F.Unit.getObject("counts"));

@@ -31,6 +31,7 @@ START_PATIENCE_S = 90.0
 SETTLED_S = 0.4
 QUIET_S = 0.6
 LATEST_S = 8.0
+LONGEST_S = 120.0
 _FEEDER = Path(__file__).with_name("feeder.py")
 _WORDS = re.compile(r'"([A-Za-z_ ]{1,12})"')
 _REPORT = b"threshold_information:"
@@ -238,19 +239,22 @@ class _Batch:
     def _record(self, subscriber: RawSubscriber, done: Path) -> None:
         """Take messages until all variants said the same and nothing more, or nothing comes."""
         latest = time.monotonic()
+        fed = latest
         while True:
             for source, data in subscriber.poll(0.05):
                 if self._take(source.topic, source.node, data):
                     latest = time.monotonic()
             if not done.exists():
                 self._graph.check()
-                latest = time.monotonic()
+                fed = latest = time.monotonic()
+            if time.monotonic() - fed > LONGEST_S:
+                raise RunError(f"of {', '.join(self._names)} some publish without end")
             quiet = time.monotonic() - latest
             if quiet > LATEST_S or (quiet > QUIET_S and not any(self._different())):
                 return
 
     def _take(self, topic: str, node: str, data: bytes) -> bool:
-        """File a message; False for one of /rosout that is no report."""
+        """File a message; False for one of /rosout: a node may report as long as it runs."""
         _, variant, name, *rest = (node if topic == "/rosout" else topic).split("/", 3)
         if name not in self._results:
             return False
@@ -258,9 +262,7 @@ class _Batch:
         if topic != "/rosout":
             result.topics.setdefault(rest[0], []).append(data)
             return True
-        if LossCounter().see(data).startswith(_REPORT):
-            result.reports += 1
-            return True
+        result.reports += LossCounter().see(data).startswith(_REPORT)
         return False
 
     def _different(self) -> Iterator[str]:

@@ -1,15 +1,13 @@
 """Builds the suite once with the passes, and links the same objects once more without them.
 
-Both programs come from the same compiler, flags, objects and linker with the same optimisation at
-link time; the one is what the author wrote, the other is instrumented.
+Both programs come from the same compiler, flags, objects and linker; the one is what the author
+wrote, with the optimisation of the link alone, the other is analysed, instrumented and optimised.
 """
 
 from __future__ import annotations
 
 import os
-import re
 import shlex
-import shutil
 import subprocess
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -18,7 +16,7 @@ from pathlib import Path
 from pytpc.build import BuildResult, build_environment, build_workspace
 from suite.expectations import PACKAGE
 
-_OWN_LINK_FLAG = re.compile(r"-Wl,(--load-pass-plugin=|-mllvm,-tpc-|-mllvm,-load=)")
+_XLINKER = "-Xlinker"
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +59,20 @@ def instrumented(suite: Suite) -> dict[str, Path]:
     return {node: suite.build / _output(command) for node, command in link_commands(suite).items()}
 
 
+def without_passes(command: list[str]) -> list[str]:
+    """A link command without the plugin and its options."""
+    kept, rest = [], command
+    while rest:
+        if rest[0] == _XLINKER and rest[1].startswith("--load-pass-plugin="):
+            rest = rest[2:]
+        elif rest[:3] == [_XLINKER, "-mllvm", _XLINKER] and rest[3].startswith(("-load=", "-tpc-")):
+            rest = rest[4:]
+        else:
+            kept.append(rest[0])
+            rest = rest[1:]
+    return kept
+
+
 def link_plain(suite: Suite) -> dict[str, Path]:
     """Link the nodes without the passes.
 
@@ -71,7 +83,7 @@ def link_plain(suite: Suite) -> dict[str, Path]:
     into.mkdir()
     commands = {}
     for node, command in link_commands(suite).items():
-        plain = [word for word in command if not _OWN_LINK_FLAG.match(word)]
+        plain = without_passes(command)
         plain[plain.index("-o") + 1] = str(into / node)
         commands[node] = plain
     environment = build_environment()
@@ -86,8 +98,3 @@ def link_plain(suite: Suite) -> dict[str, Path]:
 
 def _output(command: list[str]) -> str:
     return command[command.index("-o") + 1]
-
-
-def remove(suite: Suite) -> None:
-    """Delete what was built: a hundred programs with debug information are large."""
-    shutil.rmtree(suite.folder)
