@@ -1,11 +1,15 @@
 """Runs the nodes of the suite with and without the passes and compares what they publish.
 
 Every variant of a node runs in a namespace of its own on one graph, all are fed the same seeded
-input, and every message that they publish is kept as the bytes that were sent.
+input, and every message that they publish is kept as the bytes that were sent. Only what actionlib
+puts into its messages by the clock cannot be the same: its times and identifiers are taken out, and
+the status that it sends five times a second is left out.
 """
 
 from __future__ import annotations
 
+import functools
+import io
 import json
 import random
 import re
@@ -19,10 +23,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, cast
 
+import genpy
+from genpy.dynamic import generate_dynamic
+
 from pytpc.errors import RunError
 from pytpc.graph import GraphProcess, RosGraph
 from pytpc.recorder import LossCounter
-from pytpc.tcpros import RawSubscriber
+from pytpc.tcpros import RawSubscriber, Source
 from suite.expectations import PACKAGE, load
 
 BATCH = 12
@@ -34,6 +41,7 @@ LATEST_S = 8.0
 LONGEST_S = 120.0
 _FEEDER = Path(__file__).with_name("feeder.py")
 _WORDS = re.compile(r'"([A-Za-z_ ]{1,12})"')
+_BY_THE_CLOCK = re.compile(r"^actionlib_msgs/|Action(Goal|Result|Feedback)$")
 _REPORT = b"threshold_information:"
 _FED = {"input": "std_msgs/Float64", "aux": "std_msgs/Float64", "text": "std_msgs/String"}
 
@@ -209,7 +217,7 @@ class _Batch:
         until = time.monotonic() + START_PATIENCE_S
         while not wanted <= subscriber.connections():
             for source, data in subscriber.poll(0.05):
-                self._take(source.topic, source.node, data)
+                self._take(source, data)
             if time.monotonic() > until:
                 raise RunError(f"no connection to {sorted(wanted - subscriber.connections())}")
         # A publisher answers the handshake a moment before it counts the subscriber.
@@ -242,7 +250,7 @@ class _Batch:
         fed = latest
         while True:
             for source, data in subscriber.poll(0.05):
-                if self._take(source.topic, source.node, data):
+                if self._take(source, data):
                     latest = time.monotonic()
             if not done.exists():
                 self._graph.check()
@@ -253,13 +261,16 @@ class _Batch:
             if quiet > LATEST_S or (quiet > QUIET_S and not any(self._different())):
                 return
 
-    def _take(self, topic: str, node: str, data: bytes) -> bool:
+    def _take(self, source: Source, data: bytes) -> bool:
         """File a message; False for one of /rosout: a node may report as long as it runs."""
-        _, variant, name, *rest = (node if topic == "/rosout" else topic).split("/", 3)
-        if name not in self._results:
+        is_log = source.topic == "/rosout"
+        _, variant, name, *rest = (source.node if is_log else source.topic).split("/", 3)
+        if name not in self._results or source.type == "actionlib_msgs/GoalStatusArray":
             return False
         result = self._results[name][variant]
-        if topic != "/rosout":
+        if not is_log:
+            if _BY_THE_CLOCK.search(source.type):
+                data = timeless(source.type, source.definition, data)
             result.topics.setdefault(rest[0], []).append(data)
             return True
         result.reports += LossCounter().see(data).startswith(_REPORT)
@@ -275,6 +286,31 @@ class _Batch:
             self._results[node][variant].status = self._graph.stop(process)
         if feeder is not None:
             self._graph.stop(feeder)
+
+
+@functools.cache
+def _message_class(kind: str, definition: str) -> type[genpy.Message]:
+    return cast(type[genpy.Message], generate_dynamic(kind, definition)[kind])
+
+
+def timeless(kind: str, definition: str, data: bytes) -> bytes:
+    """A message of actionlib without times, sequence numbers and identifiers of goals."""
+    message = _message_class(kind, definition)().deserialize(data)
+    _take_out_times(message)
+    out = io.BytesIO()
+    message.serialize(out)
+    return out.getvalue()
+
+
+def _take_out_times(message: genpy.Message) -> None:
+    for name, kind in zip(message.__slots__, message._slot_types, strict=True):
+        value = getattr(message, name)
+        if isinstance(value, genpy.Message):
+            _take_out_times(value)
+        elif kind == "time":
+            setattr(message, name, genpy.Time())
+        elif (message._type, name) in (("actionlib_msgs/GoalID", "id"), ("std_msgs/Header", "seq")):
+            setattr(message, name, type(value)())
 
 
 def differences(node: str, results: Mapping[str, Published]) -> Iterator[str]:
