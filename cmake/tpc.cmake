@@ -12,6 +12,8 @@
 #   TPC_CLANG_VERSION  release of clang, lld and LLVM (19)
 #   TPC_RULES          the user's own file of rules
 #   TPC_PROFILE        thesis or default
+#   TPC_MAX_SECONDS    processor time that the analysis of a link unit may take (120)
+#   TPC_MAX_MEMORY     MiB that it may take (4096)
 #   TPC_DISABLE        leave this package alone
 
 cmake_policy(PUSH)
@@ -192,6 +194,12 @@ macro(_tpc_instrument)
     "-tpc-static-info=${CMAKE_BINARY_DIR}/tpc/$<TARGET_PROPERTY:NAME>.json")
   if(TPC_PROFILE)
     list(APPEND _tpc_options "-tpc-profile=${TPC_PROFILE}")
+  endif()
+  if(DEFINED TPC_MAX_SECONDS)
+    list(APPEND _tpc_options "-tpc-max-seconds=${TPC_MAX_SECONDS}")
+  endif()
+  if(DEFINED TPC_MAX_MEMORY)
+    list(APPEND _tpc_options "-tpc-max-memory=${TPC_MAX_MEMORY}")
   endif()
   if(TPC_RULES)
     get_filename_component(_tpc_rules "${TPC_RULES}" ABSOLUTE BASE_DIR "${CMAKE_SOURCE_DIR}")

@@ -1,6 +1,7 @@
 //===- BackwardPropagate.cpp ----------------------------------------------===//
 #include "BackwardPropagate.h"
 
+#include "Budget.h"
 #include "ClassObjectAccess.h"
 #include "ExternCallFinder.h"
 #include "IfStatements.h"
@@ -296,8 +297,11 @@ SliceResult Slicer::run() {
   for (; !Next.empty(); ++Round) {
     SmallVector<Item, 0> Items = std::move(Next);
     Next.clear();
-    for (const Item &It : Items)
+    for (const Item &It : Items) {
+      if (Budget::isSpent())
+        return std::move(Result);
       process(It);
+    }
   }
   return std::move(Result);
 }

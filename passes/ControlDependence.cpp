@@ -1,6 +1,8 @@
 //===- ControlDependence.cpp ----------------------------------------------===//
 #include "ControlDependence.h"
 
+#include "Budget.h"
+
 #include <algorithm>
 
 namespace tpc {
@@ -74,7 +76,7 @@ ReverseGraph::ReverseGraph(const FlowGraph &Graph)
   // reach the exit is the last one of its region in reverse post-order.
   std::vector<bool> Reaching = reachingExit();
   for (unsigned N : postOrderFrom(Graph, Roots))
-    if (!Reaching[N]) {
+    if (!Reaching[N] && !Budget::isSpent()) {
       addExit(N);
       Reaching = reachingExit();
     }
@@ -126,6 +128,8 @@ std::vector<unsigned> ReverseGraph::postDominators() const {
     for (auto It = Order.rbegin(); It != Order.rend(); ++It) {
       if (*It == exit())
         continue;
+      if (Budget::isSpent())
+        return {};
       unsigned New = None;
       for (unsigned S : Succs[*It])
         if (Idom[S] != None)
@@ -146,9 +150,11 @@ std::vector<std::vector<unsigned>> controlDependence(const FlowGraph &Graph) {
   ReverseGraph Reverse(Graph);
   std::vector<unsigned> Idom = Reverse.postDominators();
   std::vector<std::vector<unsigned>> Controllers(Graph.size());
+  if (Idom.empty())
+    return Controllers;
   for (unsigned Branch = 0; Branch < Graph.size(); ++Branch) {
     const std::vector<unsigned> &Succs = Reverse.successors()[Branch];
-    if (Succs.size() < 2)
+    if (Succs.size() < 2 || Budget::isSpent())
       continue;
     for (unsigned S : Succs)
       for (unsigned N = S; N != Idom[Branch] && N != Reverse.exit();

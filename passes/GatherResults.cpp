@@ -1,6 +1,7 @@
 //===- GatherResults.cpp --------------------------------------------------===//
 #include "GatherResults.h"
 
+#include "Budget.h"
 #include "IfStatements.h"
 #include "Names.h"
 #include "Options.h"
@@ -102,13 +103,26 @@ static const BranchInst *nextBranch(const BasicBlock *BB) {
   return nullptr;
 }
 
+/// True where \p B begins a statement in the block in which \p A is part of
+/// another one, as `bool In = A && ...; if (In)`. Clang 19 gives both the scope
+/// of the block; later ones give a statement's condition the scope of its own.
+static bool nextStatement(const DILocation &A, const DILocation &B) {
+  const auto *Own = dyn_cast<DILexicalBlock>(B.getScope());
+  const auto *Around = dyn_cast<DILexicalBlock>(A.getScope());
+  return Own && Own->getScope() == A.getScope() &&
+         Own->getLine() == B.getLine() && Own->getColumn() == B.getColumn() &&
+         !(Around && Around->getLine() == A.getLine());
+}
+
 /// True where \p A and \p B can belong to one condition, A before B. Clang
 /// gives a statement's condition a scope of its own, in which all operands
-/// stand but the last; that one has the statement's place.
+/// stand but (in clang 19) the last; that one has the statement's place.
 static bool sameStatement(const BranchInst &A, const BranchInst &B) {
   const DILocation *LocA = A.getDebugLoc(), *LocB = B.getDebugLoc();
   if (!LocA || !LocB)
     return false;
+  if (nextStatement(*LocA, *LocB))
+    return true;
   const auto *Scope = dyn_cast<DILexicalBlock>(LocA->getScope());
   return LocA->getScope() == LocB->getScope() ||
          (Scope && Scope->getScope() == LocB->getScope() &&
@@ -226,6 +240,8 @@ GatheredResults GatherResults::run(Module &M, ModuleAnalysisManager &AM) {
   UserSources Sources(Opts);
   GatheredResults R;
   for (const ParameterComparison &P : Usage.Comparisons) {
+    if (Budget::isSpent())
+      break;
     Comparison C{};
     if (!nearest(P, Slice, C)) {
       R.Others.push_back({&P, NotReported::NotExposed});

@@ -1,6 +1,7 @@
 //===- IfStatements.cpp ---------------------------------------------------===//
 #include "IfStatements.h"
 
+#include "Budget.h"
 #include "ControlDependence.h"
 #include "Functions.h"
 #include "Options.h"
@@ -133,6 +134,8 @@ IfStatementsResult IfStatements::run(Module &M, ModuleAnalysisManager &) {
   const Options Opts = Options::fromCommandLine();
   UserSources Sources(Opts);
   for (Function &F : definedFunctions(M)) {
+    if (Budget::isSpent())
+      break;
     for (Instruction &I : instructions(F))
       if (isPredicate(I))
         R.Predicates.push_back(&I);

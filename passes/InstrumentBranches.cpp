@@ -1,6 +1,7 @@
 //===- InstrumentBranches.cpp ---------------------------------------------===//
 #include "InstrumentBranches.h"
 
+#include "Guard.h"
 #include "IfStatements.h"
 #include "Print.h"
 
@@ -24,7 +25,7 @@ std::optional<Report> planReport(const Comparison &C, bool IsUnsigned,
     Value *Flag = C.FlagValue == conditionOf(*C.Predicate)
                       ? conditionOf(*Predicate)
                       : Analysed.original(C.FlagValue);
-    if (!Flag || (!C.Direct && !C.IsOperand))
+    if (!Flag || Flag->getType()->isVectorTy() || (!C.Direct && !C.IsOperand))
       return std::nullopt;
     R.Before = Predicate;
     R.Result = conditionOf(*Predicate);
@@ -42,8 +43,9 @@ std::optional<Report> planReport(const Comparison &C, bool IsUnsigned,
         !Flag->getType()->isIntegerTy(1) && !Flag->getType()->isIntegerTy(8);
     return R;
   }
+  // Vectors are compared element by element: that is not one outcome.
   auto *Compare = cast_or_null<CmpInst>(Analysed.original(C.Compare));
-  if (!Compare)
+  if (!Compare || Compare->getType()->isVectorTy())
     return std::nullopt;
   R.Threshold = Compare->getOperand(C.Threshold);
   R.Compared = Compare->getOperand(1 - C.Threshold);
@@ -73,9 +75,11 @@ static Value *toDouble(IRBuilder<> &B, Value *V, bool Signed) {
 }
 
 static Value *toBool(IRBuilder<> &B, Value *V) {
-  return V->getType()->isIntegerTy(1)
-             ? V
-             : B.CreateICmpNE(V, Constant::getNullValue(V->getType()));
+  Type *T = V->getType();
+  if (T->isIntegerTy(1))
+    return V;
+  return T->isFloatingPointTy() ? B.CreateFCmpUNE(V, ConstantFP::get(T, 0))
+                                : B.CreateICmpNE(V, Constant::getNullValue(T));
 }
 
 /// `void log_one(char *key, bool result, double cmp, double thresh, bool res)`
@@ -102,7 +106,14 @@ std::string insertReports(Module &M, ArrayRef<Report> Reports) {
   FunctionCallee Log = logFunction(M);
   SmallVector<Instruction *, 0> Inserted;
   StringMap<GlobalVariable *> Keys;
-  for (const Report &R : Reports) {
+  Instruction *Above = nullptr, *Before = nullptr;
+  auto Collect = [&] {
+    for (Instruction *I = Before ? Before->getPrevNode() : nullptr; I != Above;
+         I = I->getPrevNode())
+      Inserted.push_back(I);
+    Above = Before = nullptr;
+  };
+  auto Insert = [&](const Report &R) {
     GlobalVariable *&Key = Keys[R.Key];
     if (!Key) {
       Constant *Text = ConstantDataArray::getString(M.getContext(), R.Key);
@@ -110,7 +121,8 @@ std::string insertReports(Module &M, ArrayRef<Report> Reports) {
                                GlobalValue::PrivateLinkage, Text, "tpc.key");
       Key->setUnnamedAddr(GlobalValue::UnnamedAddr::Global);
     }
-    Instruction *Above = R.Before->getPrevNode();
+    Above = R.Before->getPrevNode();
+    Before = R.Before;
     IRBuilder<> B(R.Before);
     B.SetCurrentDebugLocation(R.Before->getDebugLoc());
     CallInst *Call = B.CreateCall(
@@ -118,14 +130,19 @@ std::string insertReports(Module &M, ArrayRef<Report> Reports) {
               toDouble(B, R.Threshold, R.Signed), toBool(B, R.Outcome)});
     Call->addParamAttr(1, Attribute::ZExt);
     Call->addParamAttr(4, Attribute::ZExt);
-    for (Instruction *I = R.Before->getPrevNode(); I != Above;
-         I = I->getPrevNode())
-      Inserted.push_back(I);
-  }
+    Collect();
+  };
   std::string Why;
   raw_string_ostream OS(Why);
-  if (!verifyModule(M, &OS))
-    return "";
+  if (runGuarded([&] { for_each(Reports, Insert); })) {
+    if (!verifyModule(M, &OS))
+      return "";
+    Why = "the instrumented module does not verify: " +
+          StringRef(Why).split('\n').first.str();
+  } else {
+    Collect();
+    Why = "the instrumentation crashed";
+  }
   for (Instruction *I : reverse(Inserted))
     I->dropAllReferences();
   for (Instruction *I : Inserted)

@@ -1,6 +1,7 @@
 //===- ParamUsageFinder.cpp -----------------------------------------------===//
 #include "ParamUsageFinder.h"
 
+#include "Budget.h"
 #include "ClassObjectAccess.h"
 #include "IfStatements.h"
 #include "ParamCallFinder.h"
@@ -241,7 +242,7 @@ SmallVector<Decision, 2> Follower::followOutcome(Value *Outcome,
   size_t HopsBefore = Usage.Hops.size();
   SmallVector<Decision, 2> Found;
   push({Outcome, {}, Path, true});
-  while (!Work.empty()) {
+  while (!Work.empty() && !Budget::isSpent()) {
     State S = Work.pop_back_val();
     Here = S.Way;
     for (Use &U : S.V->uses()) {
@@ -267,7 +268,8 @@ SmallVector<Decision, 2> Follower::followOutcome(Value *Outcome,
 
 void Follower::flag(Value *V, Decision D, unsigned Read, bool IsOperand) {
   ParameterComparison C;
-  C.IsOperand = IsOperand;
+  // An argument has no place of its own at which it could be reported.
+  C.IsOperand = IsOperand && isa<Instruction>(V);
   C.Read = Read;
   C.Flag = V;
   C.Decisions.push_back(D);
@@ -389,7 +391,7 @@ void Follower::followRead(unsigned N) {
     for (LoadInst *Load : Loads)
       push({Load, {}, nullptr, true}, R.Call);
   }
-  while (!Work.empty()) {
+  while (!Work.empty() && !Budget::isSpent()) {
     State S = Work.pop_back_val();
     Here = S.Way;
     for (Use &U : S.V->uses())

@@ -261,7 +261,8 @@ json::Object describe(Module &M, ModuleAnalysisManager &AM,
   return Unit;
 }
 
-json::Object describeFailure(const Options &Opts, StringRef Why) {
+json::Object describeFailure(const Options &Opts, StringRef Why,
+                             const json::Object *Known) {
   json::Object Unit = header(Opts);
   Unit["status"] = "failed";
   Unit["failure"] = json::fixUTF8(Why);
@@ -272,6 +273,9 @@ json::Object describeFailure(const Options &Opts, StringRef Why) {
         "without_debug_info", "outside_sources", "lost_values",
         "not_instrumented", "not_exposed", "blind_spots"})
     Counts[Name] = 0;
+  if (Known)
+    Counts = *Known;
+  Counts["comparisons"] = 0;
   Unit["counts"] = std::move(Counts);
   for (StringRef Name :
        {"parameters", "exposing", "comparisons", "not_exposed", "blind_spots"})

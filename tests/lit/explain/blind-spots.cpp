@@ -36,9 +36,9 @@ void step(ros::NodeHandle &Handle, const std::string &Name, double Value,
   // CHECK-NEXT: unknown_pointer hidden [[#@LINE+1]] step: stored through a pointer to nowhere known
   **anywhere() = Hidden;
   Message *Out = new Message;
-  // CHECK-NEXT: unread sent [[#@LINE+1]] step: stored, and nothing here reads it
+  // CHECK-NEXT: unread sent [[#@LINE+1]] step: stored into Message::Limit, and nothing here reads it
   Out->Limit = Sent;
-  // CHECK-NEXT: unread <dynamic> [[#@LINE+2]] step: stored into Own, and nothing here reads it
+  // CHECK-NEXT: unread <dynamic>limit [[#@LINE+2]] step: stored into Own, and nothing here reads it
   // CHECK-NEXT: dynamic_name None [[#@LINE+1]] step: reads a parameter whose name is put together
   Handle.getParam(Name + "limit", Own);
   // CHECK-NEXT: indirect_call None [[#@LINE+1]] step: calls a function that is not known
