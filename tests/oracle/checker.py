@@ -93,10 +93,6 @@ class Checker:
                 what = (place, c.parameter, c.type, c.relation)
                 distance = self.distance[c.predicate]
                 nearest[what] = min(distance, nearest.get(what, distance))
-        # What comes both unchanged and changed is a parameter: a place counts once.
-        unchanged = {(p, name, r) for p, name, type_, r in nearest if type_ == "parameter"}
-        for p, name, r in unchanged:
-            nearest.pop((p, name, "derived", r), None)
         return {
             Finding(p.file, p.line, p.column, parameter, type_, relation, distance)
             for (p, parameter, type_, relation), distance in nearest.items()
@@ -125,7 +121,7 @@ class Checker:
     def choosers_of(self, item: Instruction) -> set[Instruction]:
         """The predicates that control `item`, or that choose its value."""
         control = self.control[item.function]
-        found, _ = control.controllers(item.block)
+        found, _ = control.controllers(item.block, item)
         if item.opcode == "phi":
             for before in item.blocks:
                 found = found | control.choosers(before, item.block)
@@ -136,7 +132,7 @@ class Checker:
     def step(self, item: Instruction, why: str) -> list[tuple[Instruction, str]]:
         """What enters the round after that of `item`."""
         out = [(p, "data") for p in self.choosers_of(item)]
-        _, always = self.control[item.function].controllers(item.block)
+        _, always = self.control[item.function].controllers(item.block, item)
         if always:
             out += [(c, "control") for c in self.program.callers(item.function)]
         if why == "control":
@@ -230,33 +226,42 @@ class Checker:
 
     def follow(self, name: str, begin: Instruction, out: set[Compared]) -> None:
         """From the value `begin` to the comparisons."""
-        todo: list[tuple[Value, bool, Context]] = [(begin, False, ())]
+        todo: list[tuple[Value, bool, Context, Value | None]] = [(begin, False, (), None)]
         seen = set(todo)
         while todo:
-            value, derived, context = todo.pop()
-            new: list[tuple[Value, bool, Context]] = []
+            value, derived, context, origin = todo.pop()
+            new: list[tuple[Value, bool, Context, Value | None]] = []
             for user in self.users[value]:
                 if user.opcode in ("icmp", "fcmp"):
                     self.compared(name, value, derived, user, out, context)
-                elif not derived and operand_of_condition(user, value):
-                    what = Compared(name, "flag", "flag", value, user)
-                    out |= {
-                        Compared(name, what.type, what.relation, value, p)
-                        for p in self.decides(user, context)
-                    }
+                elif is_joined(user, value):
+                    if not derived:
+                        self.flag(name, value, self.decides(user, context), out)
                 elif user.opcode in ARITHMETIC | {"fneg"} and self.is_constant_arithmetic(
                     user, value
                 ):
-                    new.append((user, True, context))
+                    new.append((user, True, context, None))
                 elif decides_by(user, value):
                     if not derived:
-                        out.add(Compared(name, "flag", "flag", user, user))
+                        out.add(Compared(name, "flag", "flag", origin or user, user))
                 else:
-                    new += [(v, derived, c) for v, c in self.carried(user, value, context)]
+                    # What is merged with other values stands where it was its own.
+                    merged = origin or value if user.opcode in ("phi", "select") else None
+                    kept = origin if user.opcode in CASTS | {"freeze"} else merged
+                    new += [
+                        (v, derived, c, kept) for v, c in self.carried(user, value, context)
+                    ]
             for item in new:
                 if item not in seen:
                     seen.add(item)
                     todo.append(item)
+
+    def flag(
+        self, name: str, value: Value, decided: dict[Instruction, bool], out: set[Compared]
+    ) -> None:
+        """A flag stands at the branch; where its outcome goes on to that, where it is read."""
+        for predicate, direct in decided.items():
+            out.add(Compared(name, "flag", "flag", predicate if direct else value, predicate))
 
     def compared(
         self,
@@ -268,19 +273,23 @@ class Checker:
         context: Context,
     ) -> None:
         left, right = by.operands
+        if left is right:
+            return None
         is_flag = by.predicate in ("ne", "une") and is_zero(right) and not derived
         relation = RELATIONS[by.predicate[-2:]]
         relation = SWAPPED[relation] if left is value else relation
         type_ = "derived" if derived else "parameter"
+        if is_flag:
+            return self.flag(name, by, self.decides(by, context), out)
         for predicate in self.decides(by, context):
-            if is_flag:
-                out.add(Compared(name, "flag", "flag", predicate, predicate))
-            else:
-                out.add(Compared(name, type_, relation, by, predicate))
+            out.add(Compared(name, type_, relation, by, predicate))
 
     def is_constant_arithmetic(self, by: Instruction, value: Value) -> bool:
         others = [o for o in by.operands if o is not value]
-        return all(o.kind == "constant" or self.is_same_variable(o, value) for o in others)
+        is_product = by.opcode in ("mul", "fmul")
+        return all(
+            o.kind == "constant" or (is_product and self.is_same_variable(o, value)) for o in others
+        ) and (bool(others) or is_product or by.opcode == "fneg")
 
     def is_same_variable(self, a: Value, b: Value) -> bool:
         """True where both are loads of one variable: `x * x`."""
@@ -291,7 +300,7 @@ class Checker:
         self, user: Instruction, value: Value, context: Context
     ) -> list[tuple[Value, Context]]:
         """The values that `user` makes of `value` without changing it."""
-        if user.opcode in CASTS | {"phi", "freeze"} or is_not(user):
+        if user.opcode in CASTS | {"phi", "freeze"}:
             return [(user, context)]
         if user.opcode == "select" and user.operands[0] is not value:
             return [(user, context)]
@@ -320,20 +329,26 @@ class Checker:
         )
         return context if own and store.function is load.function else ()
 
-    def decides(self, outcome: Instruction, context: Context) -> set[Instruction]:
-        """The predicates that the truth value `outcome` decides."""
-        found: set[Instruction] = set()
-        todo: list[tuple[Value, Context]] = [(outcome, context)]
-        seen = set(todo)
+    def decides(self, outcome: Instruction, context: Context) -> dict[Instruction, bool]:
+        """The predicates that the truth value `outcome` decides; True: without a detour.
+
+        A detour is a merge, a variable or a call.
+        """
+        found: dict[Instruction, bool] = {}
+        begin = (outcome, context, not is_condition_end(outcome))
+        todo, seen = [begin], {begin}
         while todo:
-            value, at = todo.pop()
+            value, at, direct = todo.pop()
             for user in self.users[value]:
                 if decides_by(user, value):
-                    found.add(user)
+                    found[user] = found.get(user, False) or direct
                     continue
-                new = self.carried(user, value, at)
+                new = [
+                    (v, c, direct and user.opcode in CASTS | {"freeze", "xor"})
+                    for v, c in self.carried(user, value, at)
+                ]
                 if user.opcode in ("xor", "and", "or", "icmp"):
-                    new = [(user, at)]
+                    new = [(user, at, direct)]
                 for item in new:
                     if item not in seen:
                         seen.add(item)
@@ -341,23 +356,21 @@ class Checker:
         return found
 
 
-def operand_of_condition(user: Instruction, value: Value) -> bool:
-    """True where `value` is the last operand of && or || whose outcome goes on."""
-    return (
-        user.opcode == "phi"
-        and user.text.split("phi ", 1)[1].startswith("i1 ")
-        and any(o.kind == "constant" for o in user.operands)
-    )
+def is_joined(user: Instruction, value: Value) -> bool:
+    """True where `user` makes a truth value of a flag: negates it, joins it with another one."""
+    logical = user.opcode in ("xor", "and", "or") and user.type == "i1"
+    return logical or (is_condition_end(user) and isinstance(value, Instruction))
+
+
+def is_condition_end(user: Instruction) -> bool:
+    """True where `user` is what && or || makes of the last operand: else the way decides."""
+    constant = [o for o in user.operands if o.kind == "constant"]
+    return user.opcode == "phi" and user.type == "i1" and len(constant) == len(user.operands) - 1
 
 
 def decides_by(user: Instruction, value: Value) -> bool:
     """True where `user` is a predicate and `value` what it decides by."""
     return user.opcode in ("br", "switch", "select") and user.operands[0] is value
-
-
-def is_not(user: Instruction) -> bool:
-    """True where `user` turns a truth value round."""
-    return user.opcode == "xor" and user.operands[1].text == "i1 true"
 
 
 def is_zero(v: Value) -> bool:

@@ -24,7 +24,8 @@ def decided_way(before: Block, block: Block) -> Block | None:
     end = block.terminator
     if end.opcode not in ("br", "switch") or len(end.blocks) < 2:
         return None
-    value = folded(end.operands[0], before, block)
+    condition = end.operands[0]
+    value = None if condition.kind == "constant" else folded(condition, before, block)
     if value is None:
         return None
     if end.opcode == "br":
@@ -73,9 +74,16 @@ def flow_graph(function: Function) -> nx.DiGraph:
             if not following:
                 graph.add_edge(node, EXIT)
 
+    # What only an exception leads to, and (allowed difference DEAD CODE) what nothing leads to,
+    # is entered as the function is.
     follow(function.blocks[0])
+    entered = {
+        s
+        for b in function.blocks
+        for s in (b.terminator.blocks[:1] if b.terminator.opcode == "invoke" else b.terminator.blocks)
+    }
     for block in function.blocks:
-        if any(i.opcode == "landingpad" for i in block.instructions):
+        if block not in entered:
             follow(block)
     end_endless_loops(graph, function)
     return graph
@@ -135,14 +143,20 @@ class ControlDependence:
         found = {n[0].terminator for n in nodes if n != ENTRY and n[0] != AGAIN}
         return {i for i in found if i.opcode in ("br", "switch") and len(set(i.blocks)) > 1}
 
-    def controllers(self, block: Block) -> tuple[set[Instruction], bool]:
-        """The predicates that control `block`, and whether the function's calls do."""
-        nodes = set().union(*[c for n, c in self.of_node.items() if n[0] is block])
+    def controllers(self, block: Block, item: Instruction) -> tuple[set[Instruction], bool]:
+        """The predicates that control `item` in `block`, and whether the function's calls do.
+
+        A branch is one only where the way is still open when it is come to.
+        """
+        ways = {n for n in self.of_node if n[0] is block}
+        if item is block.terminator and (block, None) in ways:
+            ways = {(block, None)}
+        nodes = set().union(*(self.of_node[n] for n in ways))
         return self.predicates(nodes), ENTRY in nodes
 
     def choosers(self, before: Block, block: Block) -> set[Instruction]:
         """The predicates that choose the way from `before` to `block`."""
-        found, _ = self.controllers(before)
+        found, _ = self.controllers(before, before.instructions[0])
         end = before.terminator
         is_choice = end.opcode in ("br", "switch") and len(set(end.blocks)) > 1
         return found | {end} if is_choice else found

@@ -15,6 +15,9 @@ double sensed(double Old);
 bool chance();
 void logged(double What);
 void mayThrow();
+struct First {
+  int Unused = 0;
+};
 """
 TYPES = ("double", "int", "bool")
 STARTS = {"double": "0.5", "int": "3", "bool": "false"}
@@ -421,8 +424,8 @@ class Generator:
         out = []
         range_fields = [(r.choice(TYPES), self.new("R")) for _ in range(r.randint(1, 3))]
         fields = tuple(text(f"{t} {n} = {STARTS[t]};") for t, n in range_fields)
-        out += [text("struct Range"), Statement((fields, ";"))]
-        out += [text("struct"), Statement(((text("ros::Publisher Out;"), text("Range Limits;")), "Global;"))]
+        out += [text("struct Range : First"), Statement((fields, ";"))]
+        out += [text("struct : First"), Statement(((text("ros::Publisher Out;"), text("Range Limits;")), "Global;"))]
         empty: dict[str, list[str]] = {t: [] for t in TYPES}
         s = Scope(empty, {t: [] for t in TYPES}, [], None, None)
         for t, n in range_fields:

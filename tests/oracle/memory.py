@@ -14,7 +14,7 @@ import networkx as nx
 from tests.oracle.ir import Argument, Function, Instruction, Module, Value, number, split_commas
 
 Location = tuple[Value, int]
-SILENT = re.compile(r"llvm\.(dbg|lifetime|assume|experimental|invariant|donothing|stackrestore)")
+SILENT = re.compile(r"llvm\.(dbg|eh|lifetime|assume|experimental|invariant|donothing|stackrestore)")
 
 
 @dataclass(frozen=True)
