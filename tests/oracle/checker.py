@@ -248,9 +248,7 @@ class Checker:
                     # What is merged with other values stands where it was its own.
                     merged = origin or value if user.opcode in ("phi", "select") else None
                     kept = origin if user.opcode in CASTS | {"freeze"} else merged
-                    new += [
-                        (v, derived, c, kept) for v, c in self.carried(user, value, context)
-                    ]
+                    new += [(v, derived, c, kept) for v, c in self.carried(user, value, context)]
             for item in new:
                 if item not in seen:
                     seen.add(item)
@@ -274,13 +272,14 @@ class Checker:
     ) -> None:
         left, right = by.operands
         if left is right:
-            return None
+            return
         is_flag = by.predicate in ("ne", "une") and is_zero(right) and not derived
         relation = RELATIONS[by.predicate[-2:]]
         relation = SWAPPED[relation] if left is value else relation
         type_ = "derived" if derived else "parameter"
         if is_flag:
-            return self.flag(name, by, self.decides(by, context), out)
+            self.flag(name, by, self.decides(by, context), out)
+            return
         for predicate in self.decides(by, context):
             out.add(Compared(name, type_, relation, by, predicate))
 

@@ -80,7 +80,9 @@ def flow_graph(function: Function) -> nx.DiGraph:
     entered = {
         s
         for b in function.blocks
-        for s in (b.terminator.blocks[:1] if b.terminator.opcode == "invoke" else b.terminator.blocks)
+        for s in (
+            b.terminator.blocks[:1] if b.terminator.opcode == "invoke" else b.terminator.blocks
+        )
     }
     for block in function.blocks:
         if block not in entered:

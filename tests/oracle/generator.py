@@ -209,7 +209,8 @@ class Generator:
             conditions = [self.condition(s, depth + 1) for _ in range(3)]
             return "({} ? {} : {})".format(*conditions)
         if kind == "joined":
-            return f"({self.comparison(s, depth)} {self.random.choice('&|')} {self.comparison(s, depth)})"
+            left, operator = self.comparison(s, depth), self.random.choice("&|")
+            return f"({left} {operator} {self.comparison(s, depth)})"
         return self.comparison(s, depth)
 
     def comparison(self, s: Scope, depth: int) -> str:
@@ -271,7 +272,9 @@ class Generator:
         if place is None:
             return None
         if type_ != "bool" and self.chance(0.25):
-            return [text(f"{place} {self.random.choice(['+=', '-=', '*='])} {self.constant(type_)};")]
+            return [
+                text(f"{place} {self.random.choice(['+=', '-=', '*='])} {self.constant(type_)};")
+            ]
         if type_ == "int" and self.chance(0.3):
             return [text(f"++{place};")]
         return [text(f"{place} = {self.expression(s, type_)};")]
@@ -395,7 +398,9 @@ class Generator:
 
     # Declarations -----------------------------------------------------------
 
-    def function(self, s: Scope, prefix: str, size: int, method: bool) -> tuple[Statement, Callable_]:
+    def function(
+        self, s: Scope, prefix: str, size: int, method: bool
+    ) -> tuple[Statement, Callable_]:
         """A function that sees what `s` does, and how it is called."""
         result = self.one((3, "void"), (3, "bool"), (3, "double"), (1, "int"))
         f = Callable_(self.new(prefix), result, [], [])
@@ -425,7 +430,10 @@ class Generator:
         range_fields = [(r.choice(TYPES), self.new("R")) for _ in range(r.randint(1, 3))]
         fields = tuple(text(f"{t} {n} = {STARTS[t]};") for t, n in range_fields)
         out += [text("struct Range : First"), Statement((fields, ";"))]
-        out += [text("struct : First"), Statement(((text("ros::Publisher Out;"), text("Range Limits;")), "Global;"))]
+        out += [
+            text("struct : First"),
+            Statement(((text("ros::Publisher Out;"), text("Range Limits;")), "Global;")),
+        ]
         empty: dict[str, list[str]] = {t: [] for t in TYPES}
         s = Scope(empty, {t: [] for t in TYPES}, [], None, None)
         for t, n in range_fields:

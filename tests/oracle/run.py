@@ -22,7 +22,16 @@ TOP = Path(__file__).resolve().parents[2]
 INPUTS = TOP / "tests/lit/Inputs"
 PLUGIN = TOP / "build/install/lib/tpc/TpcPasses.so"
 BATCH = 20
-COMPILE = ["clang++-19", "-std=c++17", "-g", "-Wno-everything", "-Werror=return-type", "-flto=full", "-Xclang", "-disable-llvm-passes"]
+COMPILE = [
+    "clang++-19",
+    "-std=c++17",
+    "-g",
+    "-Wno-everything",
+    "-Werror=return-type",
+    "-flto=full",
+    "-Xclang",
+    "-disable-llvm-passes",
+]
 LINE = re.compile(
     r"  (?P<type>parameter|flag|derived) '(?P<parameter>[^']*)' relation (?P<relation>\S+) as .*"
     r" distance (?P<distance>\d+) others .* at (?P<line>\d+):(?P<column>\d+)"
@@ -36,7 +45,7 @@ class Broken(Exception):
 
 @dataclass
 class Answers:
-    """What the passes and the checker find: (line, column, parameter, type, relation) -> distance."""
+    """What both find: (line, column, parameter, type, relation) -> distance."""
 
     passes: Found
     checker: Found
@@ -53,11 +62,12 @@ class Answers:
     def difference(self) -> list[str]:
         """A line for each place that the two disagree about."""
         one, other = by_place(self.passes), by_place(self.checker)
-        return [
-            f"{' '.join(map(str, place))}: passes {one.get(place, {})}, checker {other.get(place, {})}"
-            for place in sorted(one.keys() | other.keys())
-            if not agree(one.get(place, {}), other.get(place, {}))
-        ]
+        out = []
+        for place in sorted(one.keys() | other.keys()):
+            passes, checker = one.get(place, {}), other.get(place, {})
+            if not agree(passes, checker):
+                out.append(f"{' '.join(map(str, place))}: passes {passes}, checker {checker}")
+        return out
 
 
 Kinds = dict[tuple[str, str], int]
