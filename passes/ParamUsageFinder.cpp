@@ -207,7 +207,8 @@ SmallVector<Decision, 2> Follower::followOutcome(Value *Outcome,
 
 void Follower::flag(Value *V, Decision D, unsigned Read, bool IsOperand) {
   ParameterComparison C;
-  C.IsOperand = IsOperand;
+  // An argument has no place of its own: there the flag stands at the branch.
+  C.IsOperand = IsOperand && isa<Instruction>(V);
   C.Read = Read;
   C.Flag = V;
   C.Decisions.push_back(D);

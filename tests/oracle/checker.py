@@ -246,7 +246,8 @@ class Checker:
                         out.add(Compared(name, "flag", "flag", origin or user, user))
                 else:
                     # What is merged with other values stands where it was its own.
-                    merged = origin or value if user.opcode in ("phi", "select") else None
+                    begins = origin or (value if isinstance(value, Instruction) else None)
+                    merged = begins if user.opcode in ("phi", "select") else None
                     kept = origin if user.opcode in CASTS | {"freeze"} else merged
                     new += [(v, derived, c, kept) for v, c in self.carried(user, value, context)]
             for item in new:

@@ -166,7 +166,13 @@ def main() -> int:
     for begin in range(0, len(seeds), BATCH):
         batch = seeds[begin : begin + BATCH]
         programs = [program(s, f"p{s}") for s in batch]
-        for seed, p, answers in zip(batch, programs, compare(programs, folder, level), strict=True):
+        try:
+            compared = compare(programs, folder, level)
+        except Broken as e:
+            print(f"seeds {batch.start} to {batch.stop - 1}: {e}", flush=True)
+            differing += [(len(p.text()), s, p) for s, p in zip(batch, programs, strict=True)]
+            continue
+        for seed, p, answers in zip(batch, programs, compared, strict=True):
             findings += len(answers.checker)
             if difference := answers.difference():
                 differing.append((len(p.text()), seed, p))
