@@ -268,7 +268,7 @@ SmallVector<Decision, 2> Follower::followOutcome(Value *Outcome,
 
 void Follower::flag(Value *V, Decision D, unsigned Read, bool IsOperand) {
   ParameterComparison C;
-  // An argument has no place of its own at which it could be reported.
+  // An argument has no place of its own: there the flag stands at the branch.
   C.IsOperand = IsOperand && isa<Instruction>(V);
   C.Read = Read;
   C.Flag = V;
@@ -315,6 +315,19 @@ void Follower::compared(const State &S, CmpInst &Compare, unsigned Operand,
   Usage.Comparisons.push_back(std::move(C));
 }
 
+/// True where \p A and \p B are computed alike from one pointer.
+static bool isSameAddress(const Value *A, const Value *B) {
+  if (A == B)
+    return true;
+  const auto *First = dyn_cast<GetElementPtrInst>(A);
+  const auto *Second = dyn_cast<GetElementPtrInst>(B);
+  return First && Second && First->getNumIndices() == Second->getNumIndices() &&
+         First->getSourceElementType() == Second->getSourceElementType() &&
+         std::equal(First->idx_begin(), First->idx_end(),
+                    Second->idx_begin()) &&
+         isSameAddress(First->getPointerOperand(), Second->getPointerOperand());
+}
+
 /// True where \p I multiplies a value with itself, be it that the variable is
 /// read twice.
 bool Follower::isSquare(const Instruction &I) const {
@@ -324,8 +337,12 @@ bool Follower::isSquare(const Instruction &I) const {
   const auto *First = dyn_cast<LoadInst>(L), *Second = dyn_cast<LoadInst>(R);
   if (L == R || !First || !Second)
     return L == R;
+  if (First->getParent() != Second->getParent())
+    return false;
+  if (isSameAddress(First->getPointerOperand(), Second->getPointerOperand()))
+    return true;
   Locations A = Access.resolve(First->getPointerOperand(), true);
-  return A.size() == 1 && First->getParent() == Second->getParent() &&
+  return A.size() == 1 &&
          A == Access.resolve(Second->getPointerOperand(), true);
 }
 
