@@ -176,6 +176,10 @@ void AccessResult::Builder::fileRest() {
         R.Copies.push_back({&I, std::move(To), std::move(From)});
       } else if (auto *Call = dyn_cast<CallBase>(&I);
                  Call && !isa<IntrinsicInst>(Call)) {
+        // What is only asked about its text is not written.
+        if (const Rule *Row = Rules.match(*Call);
+            Row && Row->Kind == Rule::Text && Row->Relation != "copy")
+          continue;
         bool Opaque = Calls.callees(*Call).empty();
         for (const auto &[N, Arg] : enumerate(Call->args()))
           if (Arg->getType()->isPointerTy() && !Call->onlyReadsMemory(N))

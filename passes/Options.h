@@ -22,6 +22,7 @@ struct Options {
   std::vector<std::string> RuleFiles; ///< the user's own tables
   std::vector<std::string> Excluded;  ///< folders that are not the user's
   bool Instrument = true;
+  bool Constants = false; ///< report comparisons with constants, too
   bool Prelink = true;
   bool InjectFailure = false;
 

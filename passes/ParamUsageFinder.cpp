@@ -3,9 +3,11 @@
 
 #include "ClassObjectAccess.h"
 #include "IfStatements.h"
+#include "MinMax.h"
 #include "ParamCallFinder.h"
 #include "Print.h"
 #include "SimpleCallGraph.h"
+#include "TextUsage.h"
 
 #include "llvm/ADT/DenseSet.h"
 #include "llvm/IR/IntrinsicInst.h"
@@ -35,7 +37,8 @@ public:
   Follower(Module &M, ModuleAnalysisManager &AM)
       : Calls(AM.getResult<SimpleCallGraph>(M)),
         Access(AM.getResult<ClassObjectAccess>(M)),
-        Reads(AM.getResult<ParamCallFinder>(M)) {}
+        Reads(AM.getResult<ParamCallFinder>(M)),
+        Texts(M, Access, AM.getResult<RuleAnalysis>(M)) {}
 
   ParameterUsage run();
 
@@ -57,9 +60,11 @@ private:
   void useOfValue(const State &S, Use &U, unsigned Read);
   void compared(const State &S, CmpInst &Compare, unsigned Operand,
                 unsigned Read);
-  void flag(Value *V, Decision D, unsigned Read, bool IsOperand = false);
+  void flag(const State &S, Value *V, Decision D, unsigned Read,
+            bool IsOperand = false);
+  void followText(unsigned N);
   SmallVector<Decision, 2> followOutcome(Value *Outcome, const CallPath *Path);
-  bool isSquare(const Instruction &I) const;
+  int squareOf(const Instruction &I) const;
   bool carry(const State &S, Use &U);
   void push(State S);
   const CallPath *into(const CallBase *Call, const CallPath *Outer);
@@ -67,6 +72,7 @@ private:
   const CallGraphResult &Calls;
   const AccessResult &Access;
   const ParamCallFinder::Result &Reads;
+  const TextUsage Texts;
 
   ParameterUsage Usage;
   Worklist Work;
@@ -106,6 +112,15 @@ static bool isCopy(const Instruction &I, const Use &U) {
   }
 }
 
+/// \p How, and what \p I, a merge or a load, makes of it where it takes the
+/// value or a constant, whichever is smaller or larger.
+static Transform throughChoice(Transform How, const Instruction &I,
+                               const AccessResult &Access) {
+  if (std::optional<Choice> C = choiceOf(I, Access))
+    How.call(C->Largest ? "max" : "min", C->Constant);
+  return How;
+}
+
 /// Carries what is at \p U on to where it is the same value still: casts,
 /// merges, variables, arguments, results. False where \p U does something
 /// else with it.
@@ -140,7 +155,7 @@ bool Follower::carry(const State &S, Use &U) {
   if (auto *Store = dyn_cast<StoreInst>(I)) {
     if (U.getOperandNo() == 0)
       for (LoadInst *Load : Access.usesOf(*Store, Store->getPointerOperand()))
-        push({Load, S.How, nullptr, false});
+        push({Load, throughChoice(S.How, *Load, Access), nullptr, false});
     return true;
   }
   if (auto *Call = dyn_cast<CallBase>(I); Call && !isa<IntrinsicInst>(Call)) {
@@ -205,9 +220,13 @@ SmallVector<Decision, 2> Follower::followOutcome(Value *Outcome,
   return Found;
 }
 
-void Follower::flag(Value *V, Decision D, unsigned Read, bool IsOperand) {
+/// \p V, made of what \p S follows, decides \p D by itself.
+void Follower::flag(const State &S, Value *V, Decision D, unsigned Read,
+                    bool IsOperand) {
   ParameterComparison C;
   C.IsOperand = IsOperand;
+  C.How = S.How;
+  C.ByArgument = S.Path && Calls.callers(D.Predicate->getFunction()).size() > 1;
   C.Read = Read;
   C.Flag = V;
   C.Decisions.push_back(D);
@@ -238,9 +257,15 @@ void Follower::compared(const State &S, CmpInst &Compare, unsigned Operand,
   if (Compare.getOperand(0) == Compare.getOperand(1) ||
       Compare.getOperand(0)->getType()->isPtrOrPtrVectorTy())
     return;
-  if (S.How.Kind == Transform::None && asksForNonZero(Compare, Operand)) {
+  // Whether it is a number is a question of its own.
+  if (Compare.getPredicate() == CmpInst::FCMP_UNO ||
+      Compare.getPredicate() == CmpInst::FCMP_ORD) {
+    ++Usage.Lost;
+    return;
+  }
+  if (S.How.kind() == Transform::None && asksForNonZero(Compare, Operand)) {
     for (const Decision &D : followOutcome(&Compare, S.Path))
-      flag(&Compare, D, Read, /*IsOperand=*/!D.Direct);
+      flag(S, &Compare, D, Read, /*IsOperand=*/!D.Direct);
     return;
   }
   ParameterComparison C;
@@ -253,18 +278,42 @@ void Follower::compared(const State &S, CmpInst &Compare, unsigned Operand,
   Usage.Comparisons.push_back(std::move(C));
 }
 
-/// True where \p I multiplies a value with itself, be it that the variable is
-/// read twice.
-bool Follower::isSquare(const Instruction &I) const {
-  if (I.getOpcode() != Instruction::FMul && I.getOpcode() != Instruction::Mul)
+/// True where \p A and \p B are computed alike from the same variables, which
+/// nothing changes in between but in programs that are not written.
+static bool isSameValue(const Value *A, const Value *B,
+                        const AccessResult &Access, unsigned Depth = 0) {
+  if (A == B)
+    return true;
+  const auto *I = dyn_cast<Instruction>(A), *J = dyn_cast<Instruction>(B);
+  if (!I || !J || Depth == 4 || I->getParent() != J->getParent() ||
+      !I->isSameOperationAs(J))
     return false;
+  if (const auto *Load = dyn_cast<LoadInst>(I))
+    return isSameVariable(Load->getPointerOperand(),
+                          cast<LoadInst>(J)->getPointerOperand(), Access);
+  return (isa<BinaryOperator>(I) || isa<CastInst>(I)) &&
+         all_of(zip(I->operands(), J->operands()), [&](auto Pair) {
+           return isSameValue(std::get<0>(Pair), std::get<1>(Pair), Access,
+                              Depth + 1);
+         });
+}
+
+/// Whether \p I multiplies a value with itself, be it that it is computed
+/// twice: 1, or -1 where one of the two is negated; else 0.
+int Follower::squareOf(const Instruction &I) const {
+  const auto *Fma = dyn_cast<IntrinsicInst>(&I);
+  if (I.getOpcode() != Instruction::FMul && I.getOpcode() != Instruction::Mul &&
+      !(Fma && Fma->getIntrinsicID() == Intrinsic::fmuladd))
+    return 0;
   const Value *L = I.getOperand(0), *R = I.getOperand(1);
-  const auto *First = dyn_cast<LoadInst>(L), *Second = dyn_cast<LoadInst>(R);
-  if (L == R || !First || !Second)
-    return L == R;
-  Locations A = Access.resolve(First->getPointerOperand(), true);
-  return A.size() == 1 && First->getParent() == Second->getParent() &&
-         A == Access.resolve(Second->getPointerOperand(), true);
+  int Sign = 1;
+  for (const Value **Side : {&L, &R})
+    if (const auto *Negation = dyn_cast<Instruction>(*Side);
+        Negation && Negation->getOpcode() == Instruction::FNeg) {
+      *Side = Negation->getOperand(0);
+      Sign = -Sign;
+    }
+  return isSameValue(L, R, Access) ? Sign : 0;
 }
 
 void Follower::useOfValue(const State &S, Use &U, unsigned Read) {
@@ -274,25 +323,30 @@ void Follower::useOfValue(const State &S, Use &U, unsigned Read) {
   if (auto *Compare = dyn_cast<CmpInst>(I))
     return compared(S, *Compare, U.getOperandNo(), Read);
   if (decidesBy(*I, U)) {
-    if (S.How.Kind == Transform::None)
-      flag(S.Origin ? S.Origin : S.V, {I, !S.Origin}, Read,
+    if (S.How.kind() == Transform::None || isa<SwitchInst>(I))
+      flag(S, S.Origin ? S.Origin : S.V, {I, !S.Origin}, Read,
            /*IsOperand=*/S.Origin != nullptr);
     return;
   }
   if (isLogical(*I) && S.V->getType()->isIntegerTy(1)) {
     for (Decision D : followOutcome(I, S.Path))
-      flag(S.V, D, Read, /*IsOperand=*/!D.Direct);
+      flag(S, S.V, D, Read, /*IsOperand=*/!D.Direct);
     return;
   }
-  if (isShortCircuit(*I, U) && S.How.Kind == Transform::None &&
+  if (isShortCircuit(*I, U) && S.How.kind() == Transform::None &&
       isa<Instruction>(S.V)) {
     for (Decision D : followOutcome(I, S.Path))
-      flag(S.V, {D.Predicate, false}, Read, /*IsOperand=*/true);
+      flag(S, S.V, {D.Predicate, false}, Read, /*IsOperand=*/true);
     return;
   }
+  if (const auto *Cast = dyn_cast<CastInst>(I))
+    return push(
+        {I, applyCast(S.How, *Cast), S.Path, S.Direct, S.Field, S.Origin});
+  if (choiceOf(*I, Access))
+    return push({I, throughChoice(S.How, *I, Access), S.Path, S.Direct});
   if (carry(S, U))
     return;
-  if (std::optional<Transform> T = apply(S.How, *I, S.V, isSquare(*I)))
+  if (std::optional<Transform> T = apply(S.How, *I, S.V, squareOf(*I)))
     push({I, std::move(*T), S.Path, S.Direct});
   else if (!isa<IntrinsicInst>(I) || !I->getType()->isVoidTy())
     ++Usage.Lost;
@@ -308,8 +362,35 @@ static bool isNumber(StringRef Type) {
   return is_contained(Numbers, Type);
 }
 
+/// Text is followed as an object: what is called with it compares or copies it.
+void Follower::followText(unsigned N) {
+  const ParameterRead &Read = Reads[N];
+  const Value *Object = Read.Target;
+  if (!Object && Read.Call->hasStructRetAttr())
+    Object = Read.Call->getArgOperand(0);
+  if (!Object) {
+    ++Usage.Lost;
+    return;
+  }
+  Seen.clear();
+  TextUsage::Found Found = Texts.comparisonsOf(Object);
+  Usage.Lost += Found.Lost;
+  for (const TextComparison &T : Found.Comparisons) {
+    ParameterComparison C;
+    C.Read = N;
+    C.Flag = T.Outcome;
+    C.TextRelation = T.Relation;
+    C.ByArgument =
+        T.ByArgument && Calls.callers(T.Outcome->getFunction()).size() > 1;
+    C.Decisions = followOutcome(T.Outcome, nullptr);
+    Usage.Comparisons.push_back(std::move(C));
+  }
+}
+
 void Follower::followRead(unsigned N) {
   const ParameterRead &Read = Reads[N];
+  if (isText(Read.Type))
+    return followText(N);
   if (!isNumber(Read.Type)) {
     ++Usage.Lost;
     return;
@@ -319,7 +400,7 @@ void Follower::followRead(unsigned N) {
     push({Read.Call, {}, nullptr, true});
   else
     for (LoadInst *Load : Access.usesOf(*Read.Call, Read.Target))
-      push({Load, {}, nullptr, true});
+      push({Load, throughChoice({}, *Load, Access), nullptr, true});
   while (!Work.empty()) {
     State S = Work.pop_back_val();
     for (Use &U : S.V->uses())
@@ -345,9 +426,10 @@ PreservedAnalyses ParamUsageFinderPrinter::run(Module &M,
      << " comparisons, " << R.Lost << " lost\n";
   for (const ParameterComparison &C : R.Comparisons) {
     OS << "  '" << Reads[C.Read].Name << "' as " << C.How.text() << ' ';
-    const auto *Where = C.Compare ? cast<Instruction>(C.Compare)
-                                  : C.Decisions.front().Predicate;
-    OS << (C.Compare ? "compared" : "flag") << " in "
+    const auto *Where = C.Compare                ? cast<Instruction>(C.Compare)
+                        : C.TextRelation.empty() ? C.Decisions.front().Predicate
+                                                 : cast<Instruction>(C.Flag);
+    OS << (C.Compare || !C.TextRelation.empty() ? "compared" : "flag") << " in "
        << Where->getFunction()->getName() << place(*Where);
     for (const Decision &D : C.Decisions)
       OS << (D.Direct ? " decides" : " later decides") << place(*D.Predicate);

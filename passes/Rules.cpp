@@ -61,7 +61,8 @@ Error Rules::add(StringRef Text, StringRef Origin, StringRef Profile) {
   const std::pair<StringRef, Rule::KindTy> Sections[] = {
       {"reads", Rule::Read},
       {"exposing", Rule::Exposing},
-      {"topics", Rule::Topic}};
+      {"topics", Rule::Topic},
+      {"text", Rule::Text}};
   for (auto [Section, Kind] : Sections) {
     const json::Array *Rows = Top->getArray(Section);
     if (!Rows)
@@ -83,6 +84,7 @@ Error Rules::add(StringRef Text, StringRef Origin, StringRef Profile) {
       R.Name = number(*Row, Kind == Rule::Exposing ? "topic" : "name");
       R.Value = number(*Row, "value");
       R.Default = number(*Row, "default");
+      R.Relation = Row->getString("relation").value_or("").str();
       ByName[R.Function].push_back(std::move(R));
     }
   }
@@ -90,6 +92,10 @@ Error Rules::add(StringRef Text, StringRef Origin, StringRef Profile) {
     for (const json::Value &V : *Names)
       if (std::optional<StringRef> Name = V.getAsString())
         OpaquePrefixes.push_back(Name->str());
+  if (const json::Array *Names = Top->getArray("transparent"))
+    for (const json::Value &V : *Names)
+      if (std::optional<StringRef> Name = V.getAsString())
+        Transparent.insert(*Name);
   return Error::success();
 }
 
@@ -114,6 +120,15 @@ Expected<Rules> Rules::load(const Options &Opts) {
   return R;
 }
 
+/// True where one of \p F's operands is a std::string: its own methods, and
+/// the operators, which many classes have under the same name.
+static bool takesText(const Function &F) {
+  return StringRef(qualifiedName(F.getName())).contains("basic_string::") ||
+         any_of(parameterTypes(F), [](const std::string &T) {
+           return StringRef(T).starts_with("std::__cxx11::basic_string<char,");
+         });
+}
+
 const Rule *Rules::match(const Function &F) const {
   std::string Name = qualifiedName(F.getName());
   auto It = ByName.find(Name);
@@ -121,7 +136,8 @@ const Rule *Rules::match(const Function &F) const {
     return nullptr;
   for (const Rule &R : It->second) {
     unsigned Leading = (F.hasStructRetAttr() ? 1 : 0) + (R.Method ? 1 : 0);
-    if (!R.Arity || F.arg_size() == Leading + *R.Arity)
+    if ((!R.Arity || F.arg_size() == Leading + *R.Arity) &&
+        (R.Kind != Rule::Text || takesText(F)))
       return &R;
   }
   return nullptr;

@@ -13,6 +13,7 @@
 #include "llvm/ADT/DenseMap.h"
 #include "llvm/ADT/DenseSet.h"
 #include "llvm/ADT/StringMap.h"
+#include "llvm/ADT/StringSet.h"
 #include "llvm/IR/InstIterator.h"
 #include "llvm/IR/InstrTypes.h"
 #include "llvm/IR/PassManager.h"
@@ -28,7 +29,7 @@ struct Options;
 
 /// One row. Argument numbers count the parameters as written in the source.
 struct Rule {
-  enum KindTy { Read, Exposing, Topic };
+  enum KindTy { Read, Exposing, Topic, Text };
   KindTy Kind;
   std::string Function;          ///< qualified name without template arguments
   bool Method = false;           ///< has a `this`
@@ -38,6 +39,9 @@ struct Rule {
   std::optional<unsigned> Value; ///< argument that the value is written to;
                                  ///< none: it is the result
   std::optional<unsigned> Default;
+  /// Of what is done with text: the operator that the result answers, `compare`
+  /// where it is to be compared with zero, `copy` where nothing is asked.
+  std::string Relation;
 };
 
 /// The IR operand of \p Call for the source-level argument \p Number of a
@@ -57,12 +61,18 @@ public:
   const Rule *match(const llvm::Function &F) const;
   /// True where \p F is in one of the opaque namespaces.
   bool isOpaque(const llvm::Function &F) const;
+  /// True where comparisons in a function of this qualified name are its
+  /// caller's.
+  bool isTransparent(llvm::StringRef Name) const {
+    return Transparent.contains(Name);
+  }
 
 private:
   llvm::Error add(llvm::StringRef Json, llvm::StringRef Origin,
                   llvm::StringRef Profile);
   llvm::StringMap<std::vector<Rule>> ByName;
   std::vector<std::string> OpaquePrefixes;
+  llvm::StringSet<> Transparent;
 };
 
 /// The rules applied to the functions of a module.
@@ -74,6 +84,10 @@ public:
   /// begins with one that the tables call opaque.
   bool isOpaque(const llvm::Function &F) const {
     return Rows.contains(&F) || Opaque.contains(&F);
+  }
+  /// See Rules::isTransparent.
+  bool isTransparent(llvm::StringRef Name) const {
+    return Tables && Tables->isTransparent(Name);
   }
   std::string Error; ///< why the tables could not be read; else empty
 

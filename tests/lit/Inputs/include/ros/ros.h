@@ -63,6 +63,8 @@ public:
   bool getParam(const std::string &Name, double &Value) const;
   bool getParam(const std::string &Name, int &Value) const;
   bool getParam(const std::string &Name, bool &Value) const;
+  bool getParam(const std::string &Name, float &Value) const;
+  bool getParam(const std::string &Name, std::string &Value) const;
   template <typename T>
   bool param(const std::string &Name, T &Value, const T &Default) const {
     if (getParam(Name, Value))
