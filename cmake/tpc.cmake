@@ -12,6 +12,7 @@
 #   TPC_CLANG_VERSION  release of clang, lld and LLVM (19)
 #   TPC_RULES          the user's own file of rules
 #   TPC_PROFILE        thesis or default
+#   TPC_CONSTANTS      report comparisons with constants of the source, too
 #   TPC_DISABLE        leave this package alone
 
 cmake_policy(PUSH)
@@ -22,6 +23,10 @@ set(_tpc_plugin "${_tpc_prefix}/lib/tpc/TpcPasses.so")
 set(_tpc_log "${_tpc_prefix}/lib/libtpc_log.so")
 if(NOT TPC_CLANG_VERSION)
   set(TPC_CLANG_VERSION 19)
+endif()
+set(_tpc_constants "")
+if(TPC_CONSTANTS)
+  set(_tpc_constants "-tpc-constants")
 endif()
 # The compiler leaves its optimisation to the link, where the analysis comes
 # first and the optimisation follows at the level that was asked for; the level
@@ -196,6 +201,7 @@ macro(_tpc_instrument)
   if(TPC_RULES)
     list(APPEND _tpc_options "-tpc-rules=${TPC_RULES}")
   endif()
+  list(APPEND _tpc_options ${_tpc_constants})
   string(REPLACE ";" "," _tpc_linked "${_tpc_languages}")
   add_link_options(
     "$<$<LINK_LANGUAGE:${_tpc_linked}>:LINKER:--load-pass-plugin=${_tpc_plugin}>"

@@ -49,6 +49,7 @@ def counts(**changes: int) -> dict[str, int]:
         "outside_sources": 3,
         "lost_values": 0,
         "not_instrumented": 0,
+        "constants": 0,
         **changes,
     }
 
