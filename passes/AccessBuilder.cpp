@@ -27,9 +27,15 @@ struct AccessResult::Builder {
   struct Node {
     const Value *V;
     SmallVector<const Value *, 2> Sources;
+    const Value *Container = nullptr; ///< leads to its elements
   };
   SmallVector<Node, 0> Nodes;
+  /// Objects that hold pointers to a container's elements: iterators that are
+  /// returned in memory, with the container.
+  DenseMap<const Value *, SmallVector<const Value *, 1>> Iterators;
 
+  void addElements(const Value *Container, Locations &Out) const;
+  void putInto(const CallBase &Call);
   void findEscaped();
   void makeNodes();
   void returned(const CallBase &Call, Node &N) const;
@@ -64,6 +70,40 @@ void AccessResult::Builder::returned(const CallBase &Call, Node &N) const {
           N.Sources.push_back(V);
       }
     }
+}
+
+/// The container that \p Call is a method of.
+static const Value *containerOf(const CallBase &Call) {
+  unsigned N = Call.hasStructRetAttr() ? 1 : 0;
+  return N < Call.arg_size() ? Call.getArgOperand(N) : nullptr;
+}
+
+void AccessResult::Builder::addElements(const Value *Container,
+                                        Locations &Out) const {
+  for (Location L : R.resolve(Container, false)) {
+    L.Path.push_back({Step::Element, 0});
+    R.addTo(Out, std::move(L));
+  }
+}
+
+/// What \p Call, a container's method, is handed goes into the elements: the
+/// objects themselves, and the elements of other containers.
+void AccessResult::Builder::putInto(const CallBase &Call) {
+  const Value *Container = containerOf(Call);
+  Locations To;
+  addElements(Container, To);
+  for (const Use &Arg : Call.args()) {
+    if (Arg.get() == Container || !Arg->getType()->isPointerTy() ||
+        (Call.hasStructRetAttr() && Arg.getOperandNo() == 0))
+      continue;
+    Locations From = R.resolve(Arg, false);
+    addElements(Arg, From);
+    for (const Location &L : To)
+      R.fileCopy(R.CopiesTo, R.Copies.size(), L);
+    for (const Location &L : From)
+      R.fileCopy(R.CopiesFrom, R.Copies.size(), L);
+    R.Copies.push_back({const_cast<CallBase *>(&Call), To, std::move(From)});
+  }
 }
 
 /// A local escapes where its address is stored or returned, or goes into a
@@ -106,6 +146,9 @@ void AccessResult::Builder::makeNodes() {
       Nodes.push_back(std::move(N));
     }
     for (Instruction &I : instructions(F)) {
+      if (auto *Call = dyn_cast<CallBase>(&I);
+          Call && Call->hasStructRetAttr() && Rules.container(*Call))
+        Iterators[Call->getArgOperand(0)].push_back(containerOf(*Call));
       if (!I.getType()->isPointerTy())
         continue;
       Node N{&I, {}};
@@ -113,9 +156,18 @@ void AccessResult::Builder::makeNodes() {
         append_range(N.Sources, Phi->incoming_values());
       else if (const auto *Select = dyn_cast<SelectInst>(&I))
         N.Sources = {Select->getTrueValue(), Select->getFalseValue()};
-      else if (const auto *Call = dyn_cast<CallBase>(&I))
+      else if (const auto *Call = dyn_cast<CallBase>(&I);
+               Call && Rules.container(*Call))
+        N.Container = containerOf(*Call);
+      else if (Call)
         returned(*Call, N);
-      else if (!isa<LoadInst>(&I))
+      else if (const auto *Extract = dyn_cast<ExtractValueInst>(&I)) {
+        // An iterator and whether something was inserted.
+        const auto *Pair = dyn_cast<CallBase>(Extract->getAggregateOperand());
+        if (!Pair || !Rules.container(*Pair))
+          continue;
+        N.Container = containerOf(*Pair);
+      } else if (!isa<LoadInst>(&I))
         continue;
       Nodes.push_back(std::move(N));
     }
@@ -130,13 +182,22 @@ bool AccessResult::Builder::propagate() {
     size_t Before = Found.size();
     for (const Value *Source : N.Sources)
       R.addPointees(Source, Found);
+    if (N.Container)
+      addElements(N.Container, Found);
     if (const auto *Load = dyn_cast<LoadInst>(N.V))
-      for (const Location &L : R.resolve(Load->getPointerOperand(), true))
+      for (const Location &L : R.resolve(Load->getPointerOperand(), true)) {
+        // Elements lead to each other where they are kept in nodes.
+        if (L.isElement())
+          R.addTo(Found, L);
+        if (auto It = Iterators.find(L.Root); L.Root && It != Iterators.end())
+          for (const Value *Container : It->second)
+            addElements(Container, Found);
         if (auto It = R.StoreIndex.find(slot(L)); It != R.StoreIndex.end())
           for (unsigned S : It->second)
             if (R.mayBe(R.Stores[S].Where, L))
               R.addPointees(cast<StoreInst>(R.Stores[S].I)->getValueOperand(),
                             Found);
+      }
     if (Found.size() == Before)
       continue;
     Changed = true;
@@ -156,6 +217,16 @@ void AccessResult::Builder::fileStores() {
         for (const Location &L : R.touched(*Store))
           R.file(R.Stores, R.StoreIndex, I, L);
   }
+}
+
+/// The object that \p Call is a method of, where that leaves the object alone:
+/// it is const, or a container's that puts nothing in.
+static const Value *constantObject(const CallBase &Call,
+                                   const ContainerMethod *Method) {
+  const Function *Callee = Call.getCalledFunction();
+  bool IsConst = Method ? !Method->Writes
+                        : Callee && Callee->getName().starts_with("_ZNK");
+  return IsConst ? containerOf(Call) : nullptr;
 }
 
 void AccessResult::Builder::fileRest() {
@@ -181,8 +252,13 @@ void AccessResult::Builder::fileRest() {
             Row && Row->Kind == Rule::Text && Row->Relation != "copy")
           continue;
         bool Opaque = Calls.callees(*Call).empty();
+        const ContainerMethod *Method = Rules.container(*Call);
+        if (Method && Method->Writes)
+          putInto(*Call);
+        const Value *Constant = constantObject(*Call, Method);
         for (const auto &[N, Arg] : enumerate(Call->args()))
-          if (Arg->getType()->isPointerTy() && !Call->onlyReadsMemory(N))
+          if (Arg->getType()->isPointerTy() && !Call->onlyReadsMemory(N) &&
+              Arg.get() != Constant)
             for (const Location &L : R.resolve(Arg, false)) {
               if (Opaque)
                 R.file(R.Handed, R.HandedIndex, I, L);
@@ -198,11 +274,13 @@ AccessResult ClassObjectAccess::run(Module &M, ModuleAnalysisManager &AM) {
   AccessResult R;
   R.Layout = &M.getDataLayout();
   R.Debug = std::make_unique<DebugTypes>(*R.Layout);
-  AccessResult::Builder B{R,
-                          AM.getResult<SimpleCallGraph>(M),
-                          AM.getResult<RuleAnalysis>(M),
-                          M,
-                          {}};
+  AccessResult::Builder B{
+      R,
+      AM.getResult<SimpleCallGraph>(M),
+      AM.getResult<RuleAnalysis>(M),
+      M,
+      {},
+      DenseMap<const Value *, SmallVector<const Value *, 1>>()};
   B.findEscaped();
   B.makeNodes();
   bool Changed = true;
@@ -224,6 +302,13 @@ PreservedAnalyses ClassObjectAccessPrinter::run(Module &M,
       if (A.Where.Root)
         A.Where.Root->printAsOperand(OS, false);
       for (const Step &S : A.Where.Path) {
+        if (!S.isField()) {
+          OS << (S.Type == Step::Element ? "[element" : "[byte ");
+          if (S.Type == Step::Bytes)
+            OS << S.Index;
+          OS << ']';
+          continue;
+        }
         const StructType *T = R.types().typeOf(S.Type);
         OS << '[' << (T->hasName() ? T->getName() : "literal") << '.' << S.Index
            << ']';

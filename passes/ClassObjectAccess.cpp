@@ -74,7 +74,7 @@ Locations AccessResult::throughCopies(const Location &L, bool Backward) const {
       for (const Location &Object : Backward ? C.To : C.From)
         if (auto Rest = partOf(Object, Here))
           for (Location Other : Backward ? C.From : C.To) {
-            Other.Path.append(Rest->begin(), Rest->end());
+            extend(Other, *Rest);
             if (All.size() < MaxCopied && !is_contained(All, Other))
               All.push_back(std::move(Other));
           }

@@ -10,7 +10,8 @@
 // of the call's own arguments.
 //
 // Fields are told apart by class and position, not by object: two objects of
-// one class share their fields. Elements of an array are one location.
+// one class share their fields. Elements of an array are one location, and so
+// are those of a container, however it keeps them (see the rules' containers).
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_CLASSOBJECTACCESS_H
@@ -37,6 +38,10 @@ namespace tpc {
 /// field's index, and which class of the source it is (see DebugTypes), 0 where
 /// that is not known.
 struct Step {
+  /// Not classes: the step from a container to its elements, and one of so
+  /// many bytes (the index) into an allocation whose type is not known.
+  static constexpr unsigned Element = ~0U, Bytes = ~0U - 1;
+
   unsigned Type;
   unsigned Index;
   unsigned Class = 0;
@@ -44,6 +49,7 @@ struct Step {
     return Type == O.Type && Index == O.Index &&
            (Class == O.Class || !Class || !O.Class);
   }
+  bool isField() const { return Type < Bytes; }
 };
 
 /// A variable. With a Root (a global, a local, an allocation) the path is from
@@ -54,6 +60,10 @@ struct Location {
   llvm::SmallVector<Step, 4> Path;
 
   bool isKnown() const { return Root || !Path.empty(); }
+  /// True for the elements of a container.
+  bool isElement() const {
+    return !Path.empty() && Path.back().Type == Step::Element;
+  }
   bool operator==(const Location &O) const {
     return Root == O.Root && Path == O.Path;
   }
@@ -72,6 +82,8 @@ class TypeNumbers {
 public:
   unsigned numberOf(llvm::StructType *T);
   llvm::StructType *typeOf(unsigned Number) const { return Types[Number]; }
+  /// True for a class of the standard library.
+  bool isStandard(unsigned Number) const;
 
 private:
   llvm::DenseMap<llvm::StructType *, unsigned> Numbers;
@@ -141,6 +153,10 @@ private:
 
   void addPointees(const llvm::Value *Pointer, Locations &Out) const;
   void addTo(Locations &Out, Location L) const;
+  void extend(Location &L, llvm::ArrayRef<Step> Steps) const;
+  void addAllocated(const Location &L,
+                    llvm::ArrayRef<const llvm::GEPOperator *> Chain,
+                    Locations &Out) const;
   void enterScalar(Location &L) const;
   void addScalarsOf(const Location &L, Locations &Out) const;
   llvm::Type *typeAt(const Location &L) const;

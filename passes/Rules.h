@@ -44,6 +44,11 @@ struct Rule {
   std::string Relation;
 };
 
+/// A method of a container of values.
+struct ContainerMethod {
+  bool Writes; ///< puts its arguments into the container
+};
+
 /// The IR operand of \p Call for the source-level argument \p Number of a
 /// function that \p R describes; null where there is none.
 llvm::Value *argument(const llvm::CallBase &Call, const Rule &R,
@@ -66,13 +71,17 @@ public:
   bool isTransparent(llvm::StringRef Name) const {
     return Transparent.contains(Name);
   }
+  /// What \p F does to a container; none where it is no method of one.
+  std::optional<ContainerMethod> container(const llvm::Function &F) const;
+  /// True where \p F stays a call that is looked into.
+  bool isKept(const llvm::Function &F) const;
 
 private:
   llvm::Error add(llvm::StringRef Json, llvm::StringRef Origin,
                   llvm::StringRef Profile);
   llvm::StringMap<std::vector<Rule>> ByName;
-  std::vector<std::string> OpaquePrefixes;
-  llvm::StringSet<> Transparent;
+  std::vector<std::string> OpaquePrefixes, KeptPrefixes;
+  llvm::StringSet<> ContainerClasses, ReadingMethods, Transparent;
 };
 
 /// The rules applied to the functions of a module.
@@ -89,6 +98,8 @@ public:
   bool isTransparent(llvm::StringRef Name) const {
     return Tables && Tables->isTransparent(Name);
   }
+  /// The container's method that \p Call calls, or null.
+  const ContainerMethod *container(const llvm::CallBase &Call) const;
   std::string Error; ///< why the tables could not be read; else empty
 
 private:
@@ -96,6 +107,7 @@ private:
   std::shared_ptr<const Rules> Tables;
   llvm::DenseMap<const llvm::Function *, const Rule *> Rows;
   llvm::DenseSet<const llvm::Function *> Opaque;
+  llvm::DenseMap<const llvm::Function *, ContainerMethod> Containers;
 };
 
 /// Calls \p F with each call in \p M that a row of \p Kind describes, and with
