@@ -10,17 +10,24 @@ using namespace llvm;
 
 namespace tpc {
 
-bool isSameVariable(const Value *A, const Value *B,
-                    const AccessResult &Access) {
+bool isSameVariable(const Value *A, const Value *B) {
+  auto AtBeginning = [](const Value *V) {
+    const auto *GEP = dyn_cast<GEPOperator>(V);
+    for (; GEP && GEP->hasAllZeroIndices(); GEP = dyn_cast<GEPOperator>(V))
+      V = GEP->getPointerOperand();
+    return V;
+  };
+  A = AtBeginning(A);
+  B = AtBeginning(B);
   if (A == B)
     return true;
+  const auto *L = dyn_cast<LoadInst>(A), *M = dyn_cast<LoadInst>(B);
+  if (L && M)
+    return isSameVariable(L->getPointerOperand(), M->getPointerOperand());
   const auto *G = dyn_cast<GEPOperator>(A), *H = dyn_cast<GEPOperator>(B);
-  if (G && H && G->getSourceElementType() == H->getSourceElementType() &&
-      equal(G->indices(), H->indices()) &&
-      isSameVariable(G->getPointerOperand(), H->getPointerOperand(), Access))
-    return true;
-  Locations L = Access.resolve(A, true);
-  return L.size() == 1 && L == Access.resolve(B, true);
+  return G && H && G->getSourceElementType() == H->getSourceElementType() &&
+         equal(G->indices(), H->indices()) &&
+         isSameVariable(G->getPointerOperand(), H->getPointerOperand());
 }
 
 namespace {
@@ -68,19 +75,18 @@ static std::optional<double> constantOf(const Side &S) {
 
 /// True where \p V is the value of \p S, as far as the text goes: nothing that
 /// the idiom has in between changes a variable.
-static bool isSide(const Value *V, const Side &S, const AccessResult &Access) {
+static bool isSide(const Value *V, const Side &S) {
   if (auto C = constantOf(S))
     return constantNumber(V) == C ||
            (S.Pointed && isa<LoadInst>(V) &&
-            isSameVariable(cast<LoadInst>(V)->getPointerOperand(), S.V,
-                           Access));
+            isSameVariable(cast<LoadInst>(V)->getPointerOperand(), S.V));
   const auto *Load = dyn_cast<LoadInst>(V);
   if (S.Pointed)
-    return Load && isSameVariable(Load->getPointerOperand(), S.V, Access);
+    return Load && isSameVariable(Load->getPointerOperand(), S.V);
   const auto *Own = dyn_cast<LoadInst>(S.V);
-  return V == S.V || (Load && Own &&
-                      isSameVariable(Load->getPointerOperand(),
-                                     Own->getPointerOperand(), Access));
+  return V == S.V ||
+         (Load && Own &&
+          isSameVariable(Load->getPointerOperand(), Own->getPointerOperand()));
 }
 
 /// The branch that decides by which edge a phi with two is entered, and the
@@ -134,8 +140,7 @@ static std::optional<Merged> mergedBy(const Instruction &I, bool Pointed) {
                 {Phi->getIncomingValue(1 - True), Pointed}};
 }
 
-std::optional<Choice> choiceOf(const Instruction &Merge,
-                               const AccessResult &Access) {
+std::optional<Choice> choiceOf(const Instruction &Merge) {
   const auto *Load = dyn_cast<LoadInst>(&Merge);
   const auto *Merging =
       Load ? dyn_cast<Instruction>(Load->getPointerOperand()) : &Merge;
@@ -149,9 +154,9 @@ std::optional<Choice> choiceOf(const Instruction &Merge,
     return std::nullopt;
   const Value *L = M->Compare->getOperand(0), *R = M->Compare->getOperand(1);
   CmpInst::Predicate P = M->Compare->getPredicate();
-  if (isSide(L, M->False, Access) && isSide(R, M->True, Access))
+  if (isSide(L, M->False) && isSide(R, M->True))
     P = CmpInst::getSwappedPredicate(P);
-  else if (!isSide(L, M->True, Access) || !isSide(R, M->False, Access))
+  else if (!isSide(L, M->True) || !isSide(R, M->False))
     return std::nullopt;
   // The first one is taken where it is less, or where it is greater.
   switch (P) {

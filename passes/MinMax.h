@@ -8,7 +8,9 @@
 #ifndef TPC_MINMAX_H
 #define TPC_MINMAX_H
 
-#include "ClassObjectAccess.h"
+#include "llvm/IR/Instructions.h"
+
+#include <optional>
 
 namespace tpc {
 
@@ -19,12 +21,12 @@ struct Choice {
 
 /// How \p Merge (a phi, a select, or a load through a pointer that is one)
 /// chooses between a constant and another value; none where it does not.
-std::optional<Choice> choiceOf(const llvm::Instruction &Merge,
-                               const AccessResult &Access);
+std::optional<Choice> choiceOf(const llvm::Instruction &Merge);
 
-/// True where \p A and \p B surely point to the same variable.
-bool isSameVariable(const llvm::Value *A, const llvm::Value *B,
-                    const AccessResult &Access);
+/// True where \p A and \p B are pointers to the same variable of the same
+/// object, by the way that they are computed. A pointer that is read twice is
+/// taken for the same one.
+bool isSameVariable(const llvm::Value *A, const llvm::Value *B);
 
 } // namespace tpc
 

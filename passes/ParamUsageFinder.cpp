@@ -4,6 +4,7 @@
 #include "ClassObjectAccess.h"
 #include "IfStatements.h"
 #include "MinMax.h"
+#include "Overwrites.h"
 #include "ParamCallFinder.h"
 #include "Print.h"
 #include "SimpleCallGraph.h"
@@ -38,7 +39,8 @@ public:
       : Calls(AM.getResult<SimpleCallGraph>(M)),
         Access(AM.getResult<ClassObjectAccess>(M)),
         Reads(AM.getResult<ParamCallFinder>(M)),
-        Texts(M, Access, AM.getResult<RuleAnalysis>(M)) {}
+        Texts(M, Access, AM.getResult<RuleAnalysis>(M)),
+        Replaced(AM.getResult<IfStatements>(M), Calls) {}
 
   ParameterUsage run();
 
@@ -65,6 +67,8 @@ private:
   void followText(unsigned N);
   SmallVector<Decision, 2> followOutcome(Value *Outcome, const CallPath *Path);
   int squareOf(const Instruction &I) const;
+  SmallVector<LoadInst *, 8> usesOf(const Instruction &Write,
+                                    const Value *Pointer);
   bool carry(const State &S, Use &U);
   void push(State S);
   const CallPath *into(const CallBase *Call, const CallPath *Outer);
@@ -73,6 +77,7 @@ private:
   const AccessResult &Access;
   const ParamCallFinder::Result &Reads;
   const TextUsage Texts;
+  Overwrites Replaced;
 
   ParameterUsage Usage;
   Worklist Work;
@@ -96,6 +101,14 @@ void Follower::push(State S) {
     Work.push_back(std::move(S));
 }
 
+/// The loads of what \p Write puts at \p Pointer.
+SmallVector<LoadInst *, 8> Follower::usesOf(const Instruction &Write,
+                                            const Value *Pointer) {
+  SmallVector<LoadInst *, 8> Loads = Access.usesOf(Write, Pointer);
+  Replaced.remove(Write, Pointer, Loads);
+  return Loads;
+}
+
 /// True for the intrinsics that give back their first operand.
 static bool isCopy(const Instruction &I, const Use &U) {
   const auto *Call = dyn_cast<IntrinsicInst>(&I);
@@ -114,9 +127,8 @@ static bool isCopy(const Instruction &I, const Use &U) {
 
 /// \p How, and what \p I, a merge or a load, makes of it where it takes the
 /// value or a constant, whichever is smaller or larger.
-static Transform throughChoice(Transform How, const Instruction &I,
-                               const AccessResult &Access) {
-  if (std::optional<Choice> C = choiceOf(I, Access))
+static Transform throughChoice(Transform How, const Instruction &I) {
+  if (std::optional<Choice> C = choiceOf(I))
     How.call(C->Largest ? "max" : "min", C->Constant);
   return How;
 }
@@ -154,8 +166,8 @@ bool Follower::carry(const State &S, Use &U) {
     return false;
   if (auto *Store = dyn_cast<StoreInst>(I)) {
     if (U.getOperandNo() == 0)
-      for (LoadInst *Load : Access.usesOf(*Store, Store->getPointerOperand()))
-        push({Load, throughChoice(S.How, *Load, Access), nullptr, false});
+      for (LoadInst *Load : usesOf(*Store, Store->getPointerOperand()))
+        push({Load, throughChoice(S.How, *Load), nullptr, false});
     return true;
   }
   if (auto *Call = dyn_cast<CallBase>(I); Call && !isa<IntrinsicInst>(Call)) {
@@ -280,8 +292,7 @@ void Follower::compared(const State &S, CmpInst &Compare, unsigned Operand,
 
 /// True where \p A and \p B are computed alike from the same variables, which
 /// nothing changes in between but in programs that are not written.
-static bool isSameValue(const Value *A, const Value *B,
-                        const AccessResult &Access, unsigned Depth = 0) {
+static bool isSameValue(const Value *A, const Value *B, unsigned Depth = 0) {
   if (A == B)
     return true;
   const auto *I = dyn_cast<Instruction>(A), *J = dyn_cast<Instruction>(B);
@@ -290,11 +301,10 @@ static bool isSameValue(const Value *A, const Value *B,
     return false;
   if (const auto *Load = dyn_cast<LoadInst>(I))
     return isSameVariable(Load->getPointerOperand(),
-                          cast<LoadInst>(J)->getPointerOperand(), Access);
+                          cast<LoadInst>(J)->getPointerOperand());
   return (isa<BinaryOperator>(I) || isa<CastInst>(I)) &&
          all_of(zip(I->operands(), J->operands()), [&](auto Pair) {
-           return isSameValue(std::get<0>(Pair), std::get<1>(Pair), Access,
-                              Depth + 1);
+           return isSameValue(std::get<0>(Pair), std::get<1>(Pair), Depth + 1);
          });
 }
 
@@ -313,7 +323,7 @@ int Follower::squareOf(const Instruction &I) const {
       *Side = Negation->getOperand(0);
       Sign = -Sign;
     }
-  return isSameValue(L, R, Access) ? Sign : 0;
+  return isSameValue(L, R) ? Sign : 0;
 }
 
 void Follower::useOfValue(const State &S, Use &U, unsigned Read) {
@@ -342,8 +352,8 @@ void Follower::useOfValue(const State &S, Use &U, unsigned Read) {
   if (const auto *Cast = dyn_cast<CastInst>(I))
     return push(
         {I, applyCast(S.How, *Cast), S.Path, S.Direct, S.Field, S.Origin});
-  if (choiceOf(*I, Access))
-    return push({I, throughChoice(S.How, *I, Access), S.Path, S.Direct});
+  if (choiceOf(*I))
+    return push({I, throughChoice(S.How, *I), S.Path, S.Direct});
   if (carry(S, U))
     return;
   if (std::optional<Transform> T = apply(S.How, *I, S.V, squareOf(*I)))
@@ -399,8 +409,8 @@ void Follower::followRead(unsigned N) {
   if (!Read.Target)
     push({Read.Call, {}, nullptr, true});
   else
-    for (LoadInst *Load : Access.usesOf(*Read.Call, Read.Target))
-      push({Load, throughChoice({}, *Load, Access), nullptr, true});
+    for (LoadInst *Load : usesOf(*Read.Call, Read.Target))
+      push({Load, throughChoice({}, *Load), nullptr, true});
   while (!Work.empty()) {
     State S = Work.pop_back_val();
     for (Use &U : S.V->uses())
