@@ -270,6 +270,7 @@ GatheredResults GatherResults::run(Module &M, ModuleAnalysisManager &AM) {
   Places Own(Opts, AM.getResult<RuleAnalysis>(M));
   GatheredResults R;
   SmallPtrSet<const CmpInst *, 16> WithParameter;
+  DenseMap<const Value *, SmallVector<unsigned, 1>> Known; ///< by what compares
   for (const ParameterComparison &P : Usage.Comparisons) {
     Comparison C{};
     if (!nearest(P, Slice, C))
@@ -295,15 +296,20 @@ GatheredResults GatherResults::run(Module &M, ModuleAnalysisManager &AM) {
     if (P.ByArgument)
       R.Shared.insert(const_cast<Function *>(C.place().getFunction()));
     // A second read of the same parameter is the same comparison.
-    auto Same = find_if(R.Comparisons, [&](const Comparison &O) {
+    SmallVector<unsigned, 1> &Alike = Known[P.Compare ? P.Compare : P.Flag];
+    auto *Same = find_if(Alike, [&](unsigned N) {
+      const Comparison &O = R.Comparisons[N];
       return O.Compare == C.Compare && O.Predicate == C.Predicate &&
              O.FlagValue == C.FlagValue && O.Threshold == C.Threshold &&
              Reads[O.Reads.front()].Name == Reads[P.Read].Name;
     });
-    if (Same == R.Comparisons.end())
+    if (Same == Alike.end()) {
+      Alike.push_back(R.Comparisons.size());
       R.Comparisons.push_back(std::move(C));
-    else if (!is_contained(Same->Reads, P.Read))
-      Same->Reads.push_back(P.Read);
+    } else if (auto &All = R.Comparisons[*Same].Reads;
+               !is_contained(All, P.Read)) {
+      All.push_back(P.Read);
+    }
   }
   R.Constants = ConstantFinder(AM.getResult<SimpleCallGraph>(M), Slice,
                                [&](const CmpInst &Compare) {
