@@ -39,7 +39,7 @@ public:
       : Calls(AM.getResult<SimpleCallGraph>(M)),
         Access(AM.getResult<ClassObjectAccess>(M)),
         Reads(AM.getResult<ParamCallFinder>(M)),
-        Texts(M, Access, AM.getResult<RuleAnalysis>(M)),
+        Rules(AM.getResult<RuleAnalysis>(M)), Texts(M, Access, Rules),
         Replaced(AM.getResult<IfStatements>(M), Calls) {}
 
   ParameterUsage run();
@@ -76,6 +76,7 @@ private:
   const CallGraphResult &Calls;
   const AccessResult &Access;
   const ParamCallFinder::Result &Reads;
+  const RuleMatches &Rules;
   const TextUsage Texts;
   Overwrites Replaced;
 
@@ -354,6 +355,14 @@ void Follower::useOfValue(const State &S, Use &U, unsigned Read) {
         {I, applyCast(S.How, *Cast), S.Path, S.Direct, S.Field, S.Origin});
   if (choiceOf(*I))
     return push({I, throughChoice(S.How, *I), S.Path, S.Direct});
+  if (auto *Call = dyn_cast<CallBase>(I))
+    if (const Rule *Row = Rules.match(*Call);
+        Row && Row->Kind == Rule::Held && Row->Relation == "into" &&
+        argument(*Call, *Row, Row->Value) == S.V) {
+      for (CallBase *Out : Texts.numbersFrom(*Call, *Row))
+        push({Out, S.How, nullptr, false});
+      return;
+    }
   if (carry(S, U))
     return;
   if (std::optional<Transform> T = apply(S.How, *I, S.V, squareOf(*I)))

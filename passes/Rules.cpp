@@ -63,7 +63,8 @@ Error Rules::add(StringRef Text, StringRef Origin, StringRef Profile) {
       {"reads", Rule::Read},
       {"exposing", Rule::Exposing},
       {"topics", Rule::Topic},
-      {"text", Rule::Text}};
+      {"text", Rule::Text},
+      {"held", Rule::Held}};
   for (auto [Section, Kind] : Sections) {
     const json::Array *Rows = Top->getArray(Section);
     if (!Rows)

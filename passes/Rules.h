@@ -29,7 +29,7 @@ struct Options;
 
 /// One row. Argument numbers count the parameters as written in the source.
 struct Rule {
-  enum KindTy { Read, Exposing, Topic, Text };
+  enum KindTy { Read, Exposing, Topic, Text, Held };
   KindTy Kind;
   std::string Function;          ///< qualified name without template arguments
   bool Method = false;           ///< has a `this`
@@ -40,7 +40,8 @@ struct Rule {
                                  ///< none: it is the result
   std::optional<unsigned> Default;
   /// Of what is done with text: the operator that the result answers, `compare`
-  /// where it is to be compared with zero, `copy` where nothing is asked.
+  /// where it is to be compared with zero, `copy` where nothing is asked. Of an
+  /// object that holds one number: `into` or `outof`.
   std::string Relation;
 };
 

@@ -23,6 +23,22 @@ TextUsage::TextUsage(Module &M, const AccessResult &Access,
                                : Locations());
     Uses.push_back(std::move(U));
   });
+  forEachCall(M, Rules, Rule::Held, [&](CallBase &Call, const Rule &Row) {
+    if (Row.Relation == "outof")
+      Numbers.push_back({&Call, Access.resolve(objectOf(Call, Row), false)});
+  });
+}
+
+SmallVector<CallBase *, 2> TextUsage::numbersFrom(const CallBase &Into,
+                                                  const Rule &Row) const {
+  SmallVector<CallBase *, 2> Found;
+  Locations Objects = Access.resolve(objectOf(Into, Row), false);
+  for (const auto &[Call, From] : Numbers)
+    if (any_of(From, [&](const Location &L) {
+          return any_of(Objects, [&](const Location &O) { return L.mayBe(O); });
+        }))
+      Found.push_back(Call);
+  return Found;
 }
 
 /// The operator of \p Compare, a comparison of what string::compare() gives

@@ -2,7 +2,8 @@
 //
 // A std::string is an object that is never looked into. What is done with one
 // are calls that the tables name (`text` in rules/*.json): comparisons, and
-// copies, which make another object the same text.
+// copies, which make another object the same text. Likewise an object that
+// holds one number, a ros::Duration: `held`.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_TEXTUSAGE_H
@@ -31,6 +32,11 @@ public:
   /// The comparisons of what is in the string at \p Object, or copied from it.
   Found comparisonsOf(const llvm::Value *Object) const;
 
+  /// The calls that take the number out again that \p Into, a call that a row
+  /// of `held` describes, puts into an object.
+  llvm::SmallVector<llvm::CallBase *, 2> numbersFrom(const llvm::CallBase &Into,
+                                                     const Rule &Row) const;
+
 private:
   struct Use {
     llvm::CallBase *Call;
@@ -39,6 +45,7 @@ private:
   };
   const AccessResult &Access;
   std::vector<Use> Uses;
+  std::vector<std::pair<llvm::CallBase *, Locations>> Numbers;
 };
 
 /// True for the type of a parameter that is text.
