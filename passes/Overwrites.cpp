@@ -1,7 +1,7 @@
 //===- Overwrites.cpp -----------------------------------------------------===//
 #include "Overwrites.h"
 
-#include "MinMax.h"
+#include "Idioms.h"
 
 #include "llvm/ADT/SmallPtrSet.h"
 #include "llvm/IR/InstIterator.h"

@@ -2,8 +2,8 @@
 #include "ParamUsageFinder.h"
 
 #include "ClassObjectAccess.h"
+#include "Idioms.h"
 #include "IfStatements.h"
-#include "MinMax.h"
 #include "Overwrites.h"
 #include "ParamCallFinder.h"
 #include "Print.h"
@@ -66,7 +66,6 @@ private:
             bool IsOperand = false);
   void followText(unsigned N);
   SmallVector<Decision, 2> followOutcome(Value *Outcome, const CallPath *Path);
-  int squareOf(const Instruction &I) const;
   SmallVector<LoadInst *, 8> usesOf(const Instruction &Write,
                                     const Value *Pointer);
   bool carry(const State &S, Use &U);
@@ -289,42 +288,6 @@ void Follower::compared(const State &S, CmpInst &Compare, unsigned Operand,
   C.ByArgument = S.Path && Calls.callers(Compare.getFunction()).size() > 1;
   C.Decisions = followOutcome(&Compare, S.Path);
   Usage.Comparisons.push_back(std::move(C));
-}
-
-/// True where \p A and \p B are computed alike from the same variables, which
-/// nothing changes in between but in programs that are not written.
-static bool isSameValue(const Value *A, const Value *B, unsigned Depth = 0) {
-  if (A == B)
-    return true;
-  const auto *I = dyn_cast<Instruction>(A), *J = dyn_cast<Instruction>(B);
-  if (!I || !J || Depth == 4 || I->getParent() != J->getParent() ||
-      !I->isSameOperationAs(J))
-    return false;
-  if (const auto *Load = dyn_cast<LoadInst>(I))
-    return isSameVariable(Load->getPointerOperand(),
-                          cast<LoadInst>(J)->getPointerOperand());
-  return (isa<BinaryOperator>(I) || isa<CastInst>(I)) &&
-         all_of(zip(I->operands(), J->operands()), [&](auto Pair) {
-           return isSameValue(std::get<0>(Pair), std::get<1>(Pair), Depth + 1);
-         });
-}
-
-/// Whether \p I multiplies a value with itself, be it that it is computed
-/// twice: 1, or -1 where one of the two is negated; else 0.
-int Follower::squareOf(const Instruction &I) const {
-  const auto *Fma = dyn_cast<IntrinsicInst>(&I);
-  if (I.getOpcode() != Instruction::FMul && I.getOpcode() != Instruction::Mul &&
-      !(Fma && Fma->getIntrinsicID() == Intrinsic::fmuladd))
-    return 0;
-  const Value *L = I.getOperand(0), *R = I.getOperand(1);
-  int Sign = 1;
-  for (const Value **Side : {&L, &R})
-    if (const auto *Negation = dyn_cast<Instruction>(*Side);
-        Negation && Negation->getOpcode() == Instruction::FNeg) {
-      *Side = Negation->getOperand(0);
-      Sign = -Sign;
-    }
-  return isSameValue(L, R) ? Sign : 0;
 }
 
 void Follower::useOfValue(const State &S, Use &U, unsigned Read) {

@@ -192,81 +192,32 @@ static bool applyConstant(Transform &T, unsigned Opcode, double C, bool Left) {
   }
 }
 
-/// Our name for what \p Call computes from numbers; empty for anything else.
+/// Our name for what \p Call computes from numbers: an intrinsic, or a function
+/// of the C library with the suffix of its type; empty for anything else.
 static StringRef functionOf(const CallBase &Call) {
-  switch (Call.getIntrinsicID()) {
-  case Intrinsic::abs:
-  case Intrinsic::fabs:
-    return "abs";
-  case Intrinsic::sqrt:
-    return "sqrt";
-  case Intrinsic::pow:
-  case Intrinsic::powi:
-    return "pow";
-  case Intrinsic::sin:
-    return "sin";
-  case Intrinsic::cos:
-    return "cos";
-  case Intrinsic::exp:
-    return "exp";
-  case Intrinsic::log:
-    return "log";
-  case Intrinsic::log2:
-    return "log2";
-  case Intrinsic::log10:
-    return "log10";
-  case Intrinsic::floor:
-    return "floor";
-  case Intrinsic::ceil:
-    return "ceil";
-  case Intrinsic::round:
-    return "round";
-  case Intrinsic::trunc:
-    return "trunc";
-  case Intrinsic::minnum:
-  case Intrinsic::smin:
-  case Intrinsic::umin:
-    return "min";
-  case Intrinsic::maxnum:
-  case Intrinsic::smax:
-  case Intrinsic::umax:
-    return "max";
-  case Intrinsic::not_intrinsic:
-    break;
-  default:
-    return "";
-  }
   const Function *F = Call.getCalledFunction();
   if (!F || !F->isDeclaration())
     return "";
-  // The C library's, with the suffixes of float and long double.
   StringRef Name = F->getName();
   Type *T = Call.getType();
-  if (T->isFloatTy())
+  if (F->isIntrinsic()) {
+    Name = Intrinsic::getBaseName(F->getIntrinsicID());
+    Name.consume_front("llvm.");
+  } else if (T->isFloatTy()) {
     Name.consume_back("f");
-  else if (T->isX86_FP80Ty() || T->isFP128Ty())
+  } else if (T->isX86_FP80Ty() || T->isFP128Ty()) {
     Name.consume_back("l");
+  }
   return StringSwitch<StringRef>(Name)
       .Cases("fabs", "abs", "labs", "llabs", "abs")
-      .Case("sqrt", "sqrt")
-      .Case("pow", "pow")
-      .Case("sin", "sin")
-      .Case("cos", "cos")
-      .Case("tan", "tan")
-      .Case("asin", "asin")
-      .Case("acos", "acos")
-      .Case("atan", "atan")
-      .Case("exp", "exp")
-      .Case("log", "log")
-      .Case("log2", "log2")
-      .Case("log10", "log10")
-      .Case("floor", "floor")
-      .Case("ceil", "ceil")
+      .Cases("fmin", "minnum", "smin", "umin", "min")
+      .Cases("fmax", "maxnum", "smax", "umax", "max")
       .Cases("round", "lround", "llround", "round")
-      .Case("trunc", "trunc")
+      .Cases("pow", "powi", "pow")
       .Case("fmod", "rem")
-      .Case("fmin", "min")
-      .Case("fmax", "max")
+      .Cases("sqrt", "exp", "log", "log2", "log10", Name)
+      .Cases("sin", "cos", "tan", "asin", "acos", "atan", Name)
+      .Cases("floor", "ceil", "trunc", Name)
       .Default("");
 }
 

@@ -1,9 +1,10 @@
-//===- MinMax.cpp ---------------------------------------------------------===//
-#include "MinMax.h"
+//===- Idioms.cpp ---------------------------------------------------------===//
+#include "Idioms.h"
 
 #include "Transform.h"
 
 #include "llvm/IR/GlobalVariable.h"
+#include "llvm/IR/IntrinsicInst.h"
 #include "llvm/IR/Operator.h"
 
 using namespace llvm;
@@ -177,6 +178,40 @@ std::optional<Choice> choiceOf(const Instruction &Merge) {
   default:
     return std::nullopt;
   }
+}
+
+/// True where \p A and \p B are computed alike from the same variables, which
+/// nothing changes in between but in programs that are not written.
+static bool isSameValue(const Value *A, const Value *B, unsigned Depth = 0) {
+  if (A == B)
+    return true;
+  const auto *I = dyn_cast<Instruction>(A), *J = dyn_cast<Instruction>(B);
+  if (!I || !J || Depth == 4 || I->getParent() != J->getParent() ||
+      !I->isSameOperationAs(J))
+    return false;
+  if (const auto *Load = dyn_cast<LoadInst>(I))
+    return isSameVariable(Load->getPointerOperand(),
+                          cast<LoadInst>(J)->getPointerOperand());
+  return (isa<BinaryOperator>(I) || isa<CastInst>(I)) &&
+         all_of(zip(I->operands(), J->operands()), [&](auto Pair) {
+           return isSameValue(std::get<0>(Pair), std::get<1>(Pair), Depth + 1);
+         });
+}
+
+int squareOf(const Instruction &I) {
+  const auto *Fma = dyn_cast<IntrinsicInst>(&I);
+  if (I.getOpcode() != Instruction::FMul && I.getOpcode() != Instruction::Mul &&
+      !(Fma && Fma->getIntrinsicID() == Intrinsic::fmuladd))
+    return 0;
+  const Value *L = I.getOperand(0), *R = I.getOperand(1);
+  int Sign = 1;
+  for (const Value **Side : {&L, &R})
+    if (const auto *Negation = dyn_cast<Instruction>(*Side);
+        Negation && Negation->getOpcode() == Instruction::FNeg) {
+      *Side = Negation->getOperand(0);
+      Sign = -Sign;
+    }
+  return isSameValue(L, R) ? Sign : 0;
 }
 
 } // namespace tpc

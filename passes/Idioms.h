@@ -1,12 +1,12 @@
-//===- MinMax.h - The smaller or the larger one of two values -------------===//
+//===- Idioms.h - What takes several instructions to say ------------------===//
 //
 // std::min, std::max and std::clamp, inlined, and what people write instead: a
 // value that control flow merges from two others, as a comparison of the same
-// two decides.
+// two decides. And squares, whose factors are computed twice.
 //
 //===----------------------------------------------------------------------===//
-#ifndef TPC_MINMAX_H
-#define TPC_MINMAX_H
+#ifndef TPC_IDIOMS_H
+#define TPC_IDIOMS_H
 
 #include "llvm/IR/Instructions.h"
 
@@ -28,6 +28,10 @@ std::optional<Choice> choiceOf(const llvm::Instruction &Merge);
 /// taken for the same one.
 bool isSameVariable(const llvm::Value *A, const llvm::Value *B);
 
+/// Whether \p I multiplies a value with itself, be it that it is computed
+/// twice: 1, or -1 where one of the two is negated; else 0.
+int squareOf(const llvm::Instruction &I);
+
 } // namespace tpc
 
-#endif // TPC_MINMAX_H
+#endif // TPC_IDIOMS_H
