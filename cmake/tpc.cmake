@@ -14,6 +14,7 @@
 #   TPC_PROFILE        thesis or default
 #   TPC_MAX_SECONDS    processor time that the analysis of a link unit may take (120)
 #   TPC_MAX_MEMORY     MiB that it may take (4096)
+#   TPC_CONSTANTS      report comparisons with constants of the source, too
 #   TPC_DISABLE        leave this package alone
 
 cmake_policy(PUSH)
@@ -24,6 +25,10 @@ set(_tpc_plugin "${_tpc_prefix}/lib/tpc/TpcPasses.so")
 set(_tpc_log "${_tpc_prefix}/lib/libtpc_log.so")
 if(NOT TPC_CLANG_VERSION)
   set(TPC_CLANG_VERSION 19)
+endif()
+set(_tpc_constants "")
+if(TPC_CONSTANTS)
+  set(_tpc_constants "-tpc-constants")
 endif()
 # The compiler leaves its optimisation to the link, where the analysis comes
 # first and the optimisation follows at the level that was asked for; the level
@@ -205,6 +210,7 @@ macro(_tpc_instrument)
     get_filename_component(_tpc_rules "${TPC_RULES}" ABSOLUTE BASE_DIR "${CMAKE_SOURCE_DIR}")
     list(APPEND _tpc_options "-tpc-rules=${_tpc_rules}")
   endif()
+  list(APPEND _tpc_options ${_tpc_constants})
   string(REPLACE ";" "," _tpc_linked "${_tpc_languages}")
   add_link_options(
     "$<$<LINK_LANGUAGE:${_tpc_linked}>:LINKER:--load-pass-plugin=${_tpc_plugin}>"

@@ -62,7 +62,7 @@ std::string Explainer::compared(const Comparison &C) const {
   std::string Text = "compared: " + (Other.empty() ? "a value" : Other) + " " +
                      C.relation().str() + " ";
   const std::string &Parameter = Reads[C.Reads.front()].Name;
-  if (C.How.Kind == Transform::None)
+  if (C.How.kind() == Transform::None)
     return Text + (Limit.empty() ? Parameter : Limit);
   Text += Limit.empty() ? C.How.text() : Limit + " (" + C.How.text() + ")";
   return Text + ", x being " + Parameter;

@@ -69,14 +69,19 @@ static void conclude(AnalysedModule &Analysed, ModuleAnalysisManager &AM,
   Module &Seen = Analysed.module();
   const GatheredResults &R = AM.getResult<GatherResults>(Seen);
   const ParamCallFinder::Result &Reads = AM.getResult<ParamCallFinder>(Seen);
-  for (const Comparison &C : R.Comparisons) {
-    StringRef Type = Reads[C.Reads.front()].Type;
-    bool IsUnsigned = Type.starts_with("unsigned") || Type == "bool";
+  auto Plan = [&](const Comparison &C, bool IsUnsigned) {
     if (std::optional<Report> Plan = planReport(C, IsUnsigned, Analysed))
       Out.Reports.push_back(std::move(*Plan));
     else
       ++Out.NotInstrumented;
+  };
+  for (const Comparison &C : R.Comparisons) {
+    StringRef Type = Reads[C.Reads.front()].Type;
+    Plan(C, Type.starts_with("unsigned") || Type == "bool");
   }
+  if (Opts.Constants)
+    for (const Comparison &C : R.Constants)
+      Plan(C, /*IsUnsigned=*/false);
   Out.Unit = describe(Seen, AM, Opts);
 }
 

@@ -57,6 +57,12 @@ std::string functionName(const Function &F) {
   return demangle(Linkage.empty() ? F.getName() : Linkage);
 }
 
+std::string functionNameFor(const DILocation &Loc) {
+  const DISubprogram *SP = Loc.getScope()->getSubprogram();
+  StringRef Linkage = SP->getLinkageName();
+  return qualifiedName(Linkage.empty() ? SP->getName() : Linkage);
+}
+
 SmallVector<std::string, 4> parameterTypes(const Function &F) {
   ItaniumPartialDemangler Demangler;
   std::string Name = F.getName().str();

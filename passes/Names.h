@@ -3,6 +3,7 @@
 #define TPC_NAMES_H
 
 #include "llvm/ADT/StringRef.h"
+#include "llvm/IR/DebugInfoMetadata.h"
 #include "llvm/IR/DerivedTypes.h"
 #include "llvm/IR/Function.h"
 
@@ -17,6 +18,10 @@ std::string qualifiedName(llvm::StringRef Mangled);
 
 /// `void f(int)` of \p F, for people and for keys.
 std::string functionName(const llvm::Function &F);
+
+/// `ns::Class::f` of the function that \p Loc is in, the same for all instances
+/// of a template and wherever it was inlined.
+std::string functionNameFor(const llvm::DILocation &Loc);
 
 /// The written parameters of \p F, from its demangled name.
 llvm::SmallVector<std::string, 4> parameterTypes(const llvm::Function &F);

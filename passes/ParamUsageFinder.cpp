@@ -3,10 +3,13 @@
 
 #include "Budget.h"
 #include "ClassObjectAccess.h"
+#include "Idioms.h"
 #include "IfStatements.h"
+#include "Overwrites.h"
 #include "ParamCallFinder.h"
 #include "Print.h"
 #include "SimpleCallGraph.h"
+#include "TextUsage.h"
 
 #include "llvm/ADT/DenseSet.h"
 #include "llvm/IR/IntrinsicInst.h"
@@ -50,7 +53,9 @@ public:
   Follower(Module &M, ModuleAnalysisManager &AM)
       : Calls(AM.getResult<SimpleCallGraph>(M)),
         Access(AM.getResult<ClassObjectAccess>(M)),
-        Reads(AM.getResult<ParamCallFinder>(M)) {}
+        Reads(AM.getResult<ParamCallFinder>(M)),
+        Rules(AM.getResult<RuleAnalysis>(M)), Texts(M, Access, Rules),
+        Replaced(AM.getResult<IfStatements>(M), Calls) {}
 
   ParameterUsage run();
 
@@ -73,9 +78,12 @@ private:
   void useOfValue(const State &S, Use &U, unsigned Read);
   void compared(const State &S, CmpInst &Compare, unsigned Operand,
                 unsigned Read);
-  void flag(Value *V, Decision D, unsigned Read, bool IsOperand = false);
+  void flag(const State &S, Value *V, Decision D, unsigned Read,
+            bool IsOperand = false);
+  void followText(unsigned N);
   SmallVector<Decision, 2> followOutcome(Value *Outcome, const CallPath *Path);
-  bool isSquare(const Instruction &I) const;
+  SmallVector<LoadInst *, 8> usesOf(const Instruction &Write,
+                                    const Value *Pointer);
   bool carry(const State &S, Use &U);
   void store(const State &S, StoreInst &Store);
   void end(ValueEnd::KindTy Kind, Instruction *At);
@@ -89,6 +97,9 @@ private:
   const CallGraphResult &Calls;
   const AccessResult &Access;
   const ParamCallFinder::Result &Reads;
+  const RuleMatches &Rules;
+  const TextUsage Texts;
+  Overwrites Replaced;
 
   ParameterUsage Usage;
   Worklist Work;
@@ -124,6 +135,14 @@ void Follower::end(ValueEnd::KindTy Kind, Instruction *At) {
   Usage.Ends.push_back({Kind, ReadAtHand, At});
 }
 
+/// \p How, and what \p I, a merge or a load, makes of it where it takes the
+/// value or a constant, whichever is smaller or larger.
+static Transform throughChoice(Transform How, const Instruction &I) {
+  if (std::optional<Choice> C = choiceOf(I))
+    How.call(C->Largest ? "max" : "min", C->Constant);
+  return How;
+}
+
 /// More variables that a store may write to are more than anybody meant.
 static constexpr unsigned ManyTargets = 16;
 
@@ -131,7 +150,7 @@ static constexpr unsigned ManyTargets = 16;
 void Follower::store(const State &S, StoreInst &Store) {
   size_t Targets = Access.resolve(Store.getPointerOperand(), true).size();
   SmallVector<LoadInst *, 8> Loads =
-      Access.usesOf(Store, Store.getPointerOperand());
+      usesOf(Store, Store.getPointerOperand());
   if (Targets == 0)
     end(ValueEnd::UnknownPointer, &Store);
   else if (Targets > ManyTargets)
@@ -139,7 +158,15 @@ void Follower::store(const State &S, StoreInst &Store) {
   else if (Loads.empty() && !IsOutcome)
     end(ValueEnd::Unread, &Store);
   for (LoadInst *Load : Loads)
-    push({Load, S.How, nullptr, false}, &Store);
+    push({Load, throughChoice(S.How, *Load), nullptr, false}, &Store);
+}
+
+/// The loads of what \p Write puts at \p Pointer.
+SmallVector<LoadInst *, 8> Follower::usesOf(const Instruction &Write,
+                                            const Value *Pointer) {
+  SmallVector<LoadInst *, 8> Loads = Access.usesOf(Write, Pointer);
+  Replaced.remove(Write, Pointer, Loads);
+  return Loads;
 }
 
 /// True for the intrinsics that give back their first operand.
@@ -266,10 +293,14 @@ SmallVector<Decision, 2> Follower::followOutcome(Value *Outcome,
   return Found;
 }
 
-void Follower::flag(Value *V, Decision D, unsigned Read, bool IsOperand) {
+/// \p V, made of what \p S follows, decides \p D by itself.
+void Follower::flag(const State &S, Value *V, Decision D, unsigned Read,
+                    bool IsOperand) {
   ParameterComparison C;
   // An argument has no place of its own: there the flag stands at the branch.
   C.IsOperand = IsOperand && isa<Instruction>(V);
+  C.How = S.How;
+  C.ByArgument = S.Path && Calls.callers(D.Predicate->getFunction()).size() > 1;
   C.Read = Read;
   C.Flag = V;
   C.Decisions.push_back(D);
@@ -300,9 +331,13 @@ void Follower::compared(const State &S, CmpInst &Compare, unsigned Operand,
   if (Compare.getOperand(0) == Compare.getOperand(1) ||
       Compare.getOperand(0)->getType()->isPtrOrPtrVectorTy())
     return;
-  if (S.How.Kind == Transform::None && asksForNonZero(Compare, Operand)) {
+  // Whether it is a number is a question of its own.
+  if (Compare.getPredicate() == CmpInst::FCMP_UNO ||
+      Compare.getPredicate() == CmpInst::FCMP_ORD)
+    return end(ValueEnd::Mixed, &Compare);
+  if (S.How.kind() == Transform::None && asksForNonZero(Compare, Operand)) {
     for (const Decision &D : followOutcome(&Compare, S.Path))
-      flag(&Compare, D, Read, /*IsOperand=*/!D.Direct);
+      flag(S, &Compare, D, Read, /*IsOperand=*/!D.Direct);
     return;
   }
   ParameterComparison C;
@@ -315,37 +350,6 @@ void Follower::compared(const State &S, CmpInst &Compare, unsigned Operand,
   Usage.Comparisons.push_back(std::move(C));
 }
 
-/// True where \p A and \p B are computed alike from one pointer.
-static bool isSameAddress(const Value *A, const Value *B) {
-  if (A == B)
-    return true;
-  const auto *First = dyn_cast<GetElementPtrInst>(A);
-  const auto *Second = dyn_cast<GetElementPtrInst>(B);
-  return First && Second && First->getNumIndices() == Second->getNumIndices() &&
-         First->getSourceElementType() == Second->getSourceElementType() &&
-         std::equal(First->idx_begin(), First->idx_end(),
-                    Second->idx_begin()) &&
-         isSameAddress(First->getPointerOperand(), Second->getPointerOperand());
-}
-
-/// True where \p I multiplies a value with itself, be it that the variable is
-/// read twice.
-bool Follower::isSquare(const Instruction &I) const {
-  if (I.getOpcode() != Instruction::FMul && I.getOpcode() != Instruction::Mul)
-    return false;
-  const Value *L = I.getOperand(0), *R = I.getOperand(1);
-  const auto *First = dyn_cast<LoadInst>(L), *Second = dyn_cast<LoadInst>(R);
-  if (L == R || !First || !Second)
-    return L == R;
-  if (First->getParent() != Second->getParent())
-    return false;
-  if (isSameAddress(First->getPointerOperand(), Second->getPointerOperand()))
-    return true;
-  Locations A = Access.resolve(First->getPointerOperand(), true);
-  return A.size() == 1 &&
-         A == Access.resolve(Second->getPointerOperand(), true);
-}
-
 void Follower::useOfValue(const State &S, Use &U, unsigned Read) {
   auto *I = dyn_cast<Instruction>(U.getUser());
   if (!I)
@@ -353,25 +357,38 @@ void Follower::useOfValue(const State &S, Use &U, unsigned Read) {
   if (auto *Compare = dyn_cast<CmpInst>(I))
     return compared(S, *Compare, U.getOperandNo(), Read);
   if (decidesBy(*I, U)) {
-    if (S.How.Kind == Transform::None)
-      flag(S.Origin ? S.Origin : S.V, {I, !S.Origin, S.Way}, Read,
+    if (S.How.kind() == Transform::None || isa<SwitchInst>(I))
+      flag(S, S.Origin ? S.Origin : S.V, {I, !S.Origin, S.Way}, Read,
            /*IsOperand=*/S.Origin != nullptr);
     return;
   }
   if (isLogical(*I) && S.V->getType()->isIntegerTy(1)) {
     for (Decision D : followOutcome(I, S.Path))
-      flag(S.V, D, Read, /*IsOperand=*/!D.Direct);
+      flag(S, S.V, D, Read, /*IsOperand=*/!D.Direct);
     return;
   }
-  if (isShortCircuit(*I, U) && S.How.Kind == Transform::None &&
+  if (isShortCircuit(*I, U) && S.How.kind() == Transform::None &&
       isa<Instruction>(S.V)) {
     for (Decision D : followOutcome(I, S.Path))
-      flag(S.V, {D.Predicate, false, D.Way}, Read, /*IsOperand=*/true);
+      flag(S, S.V, {D.Predicate, false, D.Way}, Read, /*IsOperand=*/true);
     return;
   }
+  if (const auto *Cast = dyn_cast<CastInst>(I))
+    return push(
+        {I, applyCast(S.How, *Cast), S.Path, S.Direct, S.Field, S.Origin});
+  if (choiceOf(*I))
+    return push({I, throughChoice(S.How, *I), S.Path, S.Direct});
+  if (auto *Call = dyn_cast<CallBase>(I))
+    if (const Rule *Row = Rules.match(*Call);
+        Row && Row->Kind == Rule::Held && Row->Relation == "into" &&
+        argument(*Call, *Row, Row->Value) == S.V) {
+      for (CallBase *Out : Texts.numbersFrom(*Call, *Row))
+        push({Out, S.How, nullptr, false}, Call);
+      return;
+    }
   if (carry(S, U))
     return;
-  if (std::optional<Transform> T = apply(S.How, *I, S.V, isSquare(*I)))
+  if (std::optional<Transform> T = apply(S.How, *I, S.V, squareOf(*I)))
     push({I, std::move(*T), S.Path, S.Direct});
   else if (!isa<IntrinsicInst>(I) || !I->getType()->isVoidTy())
     end(ValueEnd::Mixed, I);
@@ -387,11 +404,37 @@ static bool isNumber(StringRef Type) {
   return is_contained(Numbers, Type);
 }
 
+/// Text is followed as an object: what is called with it compares or copies it.
+void Follower::followText(unsigned N) {
+  const ParameterRead &Read = Reads[N];
+  const Value *Object = Read.Target;
+  if (!Object && Read.Call->hasStructRetAttr())
+    Object = Read.Call->getArgOperand(0);
+  if (!Object)
+    return end(ValueEnd::NoNumber, Read.Call);
+  Seen.clear();
+  TextUsage::Found Found = Texts.comparisonsOf(Object);
+  for (unsigned Lost = 0; Lost < Found.Lost; ++Lost)
+    end(ValueEnd::Mixed, Read.Call);
+  for (const TextComparison &T : Found.Comparisons) {
+    ParameterComparison C;
+    C.Read = N;
+    C.Flag = T.Outcome;
+    C.TextRelation = T.Relation;
+    C.ByArgument =
+        T.ByArgument && Calls.callers(T.Outcome->getFunction()).size() > 1;
+    C.Decisions = followOutcome(T.Outcome, nullptr);
+    Usage.Comparisons.push_back(std::move(C));
+  }
+}
+
 void Follower::followRead(unsigned N) {
   const ParameterRead &R = Reads[N];
   ReadAtHand = N;
   size_t HopsBefore = Usage.Hops.size(), Before = Usage.Comparisons.size();
   Here = Hop::None;
+  if (isText(R.Type))
+    return followText(N);
   if (!isNumber(R.Type))
     return end(ValueEnd::NoNumber, R.Call);
   Seen.clear();
@@ -400,13 +443,13 @@ void Follower::followRead(unsigned N) {
   if (!R.Target && R.Values.empty())
     push({R.Call, {}, nullptr, true});
   if (R.Target) {
-    SmallVector<LoadInst *, 8> Loads = Access.usesOf(*R.Call, R.Target);
+    SmallVector<LoadInst *, 8> Loads = usesOf(*R.Call, R.Target);
     if (Loads.empty())
       end(Access.resolve(R.Target, true).empty() ? ValueEnd::UnknownPointer
                                                  : ValueEnd::Unread,
           R.Call);
     for (LoadInst *Load : Loads)
-      push({Load, {}, nullptr, true}, R.Call);
+      push({Load, throughChoice({}, *Load), nullptr, true}, R.Call);
   }
   while (!Work.empty() && !Budget::isSpent()) {
     State S = Work.pop_back_val();
@@ -436,9 +479,10 @@ PreservedAnalyses ParamUsageFinderPrinter::run(Module &M,
      << " comparisons, " << R.lost() << " lost\n";
   for (const ParameterComparison &C : R.Comparisons) {
     OS << "  '" << Reads[C.Read].Name << "' as " << C.How.text() << ' ';
-    const auto *Where = C.Compare ? cast<Instruction>(C.Compare)
-                                  : C.Decisions.front().Predicate;
-    OS << (C.Compare ? "compared" : "flag") << " in "
+    const auto *Where = C.Compare                ? cast<Instruction>(C.Compare)
+                        : C.TextRelation.empty() ? C.Decisions.front().Predicate
+                                                 : cast<Instruction>(C.Flag);
+    OS << (C.Compare || !C.TextRelation.empty() ? "compared" : "flag") << " in "
        << Where->getFunction()->getName() << place(*Where);
     for (const Decision &D : C.Decisions)
       OS << (D.Direct ? " decides" : " later decides") << place(*D.Predicate);

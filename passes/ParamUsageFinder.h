@@ -59,10 +59,12 @@ struct ParameterComparison {
   /// The comparison; null for a flag.
   llvm::CmpInst *Compare = nullptr;
   unsigned Operand = 0; ///< which operand is the parameter's value
-  /// For a flag the value that decides, and whether it does so where it is
-  /// read, as an operand of `&&` or `||` whose outcome goes on.
+  /// For a flag (or a switch) the value that decides, and whether it does so
+  /// where it is read, as an operand of `&&` or `||` whose outcome goes on.
   llvm::Value *Flag = nullptr;
   bool IsOperand = false;
+  /// For a comparison of text, which Flag is the outcome of, its operator.
+  llvm::StringRef TextRelation;
   /// The value came by an argument, and the function has other calls.
   bool ByArgument = false;
   Transform How;

@@ -2,6 +2,7 @@
 #include "Prepare.h"
 
 #include "Functions.h"
+#include "Names.h"
 #include "Options.h"
 #include "Rules.h"
 #include "Texts.h"
@@ -53,9 +54,8 @@ static SmallVector<WeakVH, 0> markSmallLibraryFunctions(Module &M,
   return Marked;
 }
 
-/// Makes \p M fit for the analysis.
-static void prepare(Module &M, const Options &Opts) {
-  SmallVector<WeakVH, 0> Marked = markSmallLibraryFunctions(M, Opts);
+/// Inlines what is marked to be, and with \p Promote makes values of locals.
+static void inlineMarked(Module &M, bool Promote) {
   PassBuilder PB;
   LoopAnalysisManager LAM;
   FunctionAnalysisManager FAM;
@@ -68,9 +68,16 @@ static void prepare(Module &M, const Options &Opts) {
   PB.crossRegisterProxies(LAM, FAM, CGAM, MAM);
   ModulePassManager MPM;
   MPM.addPass(AlwaysInlinerPass(/*InsertLifetime=*/false));
-  MPM.addPass(
-      createModuleToFunctionPassAdaptor(SROAPass(SROAOptions::PreserveCFG)));
+  if (Promote)
+    MPM.addPass(
+        createModuleToFunctionPassAdaptor(SROAPass(SROAOptions::PreserveCFG)));
   MPM.run(M, MAM);
+}
+
+/// Makes \p M fit for the analysis.
+static void prepare(Module &M, const Options &Opts) {
+  SmallVector<WeakVH, 0> Marked = markSmallLibraryFunctions(M, Opts);
+  inlineMarked(M, /*Promote=*/true);
   for (const WeakVH &F : Marked)
     if (F)
       cast<Function>(F)->removeFnAttr(Attribute::AlwaysInline);
@@ -108,6 +115,25 @@ static void callByOwnName(Module &M) {
       });
 }
 
+/// Inlines the functions whose comparisons are their callers' in \p M, code of
+/// -O0: a report inside them would be one for all calls.
+static void inlineTransparent(Module &M) {
+  std::string Error;
+  const Rules &Tables = Rules::ofThisLink(Error);
+  bool Found = false;
+  for (Function &F : definedFunctions(M)) {
+    const DISubprogram *SP = F.getSubprogram();
+    if (!SP || !Tables.isTransparent(qualifiedName(SP->getLinkageName())))
+      continue;
+    F.removeFnAttr(Attribute::OptimizeNone);
+    F.removeFnAttr(Attribute::NoInline);
+    F.addFnAttr(Attribute::AlwaysInline);
+    Found = true;
+  }
+  if (Found)
+    inlineMarked(M, /*Promote=*/false);
+}
+
 AnalysedModule::AnalysedModule(Module &M, const Options &Opts) : Original(M) {
   callByOwnName(M);
   bool Unoptimised = any_of(M, [](const Function &F) {
@@ -117,6 +143,7 @@ AnalysedModule::AnalysedModule(Module &M, const Options &Opts) : Original(M) {
     prepare(M, Opts);
     return;
   }
+  inlineTransparent(M);
   ValueToValueMapTy Map;
   Copy = CloneModule(M, Map);
   allowOptimisation(*Copy);

@@ -53,6 +53,8 @@ static constexpr StringLiteral ReadRequired[] = {"name", "value"};
 static constexpr StringLiteral ExposingKeys[] = {"topic"};
 static constexpr StringLiteral TopicKeys[] = {"name"};
 static constexpr StringLiteral NameKeys[] = {"parts", "to"};
+static constexpr StringLiteral TextKeys[] = {"relation"};
+static constexpr StringLiteral HeldKeys[] = {"relation", "value"};
 
 static const Section Sections[] = {
     {"reads", Rule::Read, ReadKeys, ReadRequired},
@@ -62,6 +64,8 @@ static const Section Sections[] = {
     {"names", Rule::Naming, NameKeys, NameKeys},
     {"accessors", Rule::Accessor, {}, {}},
     {"configs", Rule::Config, {}, {}},
+    {"text", Rule::Text, TextKeys, TextKeys},
+    {"held", Rule::Held, HeldKeys, TextKeys},
 };
 
 /// In the order of the alphabet: a file's first mistake is always the same.
@@ -166,6 +170,8 @@ Error Reader::field(StringRef Key, const json::Value &V, StringRef Place,
     R.TargetArgument = *N;
     return Error::success();
   }
+  if (Key == "relation")
+    return text(V, Place, R.Relation);
   assert(Key == "parts" && "a key that no section has");
   const json::Array *Parts = V.getAsArray();
   if (!Parts || Parts->empty())
@@ -245,6 +251,9 @@ Error Reader::file(const json::Value &Value, RuleFile &Out) {
         return E;
     } else if (Key == "kept") {
       if (Error E = texts(V, Place, Out.Kept))
+        return E;
+    } else if (Key == "transparent") {
+      if (Error E = texts(V, Place, Out.Transparent))
         return E;
     } else if (Key == "containers") {
       if (Error E = containers(V, Place, Out))

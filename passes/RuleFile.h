@@ -14,7 +14,7 @@ namespace tpc {
 struct RuleFile {
   std::vector<Rule> Rows;
   std::vector<std::string> Opaque, Kept; ///< beginnings of names
-  std::vector<std::string> ContainerClasses, ReadingMethods;
+  std::vector<std::string> ContainerClasses, ReadingMethods, Transparent;
 };
 
 /// The rows of \p Text that belong to \p Profile. \p Origin is the file's name,

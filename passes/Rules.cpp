@@ -48,6 +48,7 @@ Expected<Rules> Rules::load(const Options &Opts) {
     append_range(R.KeptPrefixes, File->Kept);
     R.ContainerClasses.insert(File->ContainerClasses.begin(),
                               File->ContainerClasses.end());
+    R.Transparent.insert(File->Transparent.begin(), File->Transparent.end());
     R.ReadingMethods.insert(File->ReadingMethods.begin(),
                             File->ReadingMethods.end());
     return Error::success();
@@ -95,13 +96,23 @@ static bool hasTypes(const Function &F, const Rule &R) {
          });
 }
 
+/// True where one of \p F's operands is a std::string: its own methods, and
+/// the operators, which many classes have under the same name.
+static bool takesText(const Function &F, StringRef Name) {
+  return Name.contains("basic_string::") ||
+         any_of(parameterTypes(F), [](const std::string &T) {
+           return StringRef(T).starts_with("std::__cxx11::basic_string<char,");
+         });
+}
+
 const Rule *Rules::rowOf(const Function &F, StringRef Name) const {
   auto It = ByName.find(Name);
   if (It == ByName.end())
     return nullptr;
   for (const Rule &R : It->second) {
     unsigned Leading = (F.hasStructRetAttr() ? 1 : 0) + (R.Method ? 1 : 0);
-    if ((!R.Arity || F.arg_size() == Leading + *R.Arity) && hasTypes(F, R))
+    if ((!R.Arity || F.arg_size() == Leading + *R.Arity) && hasTypes(F, R) &&
+        (R.Kind != Rule::Text || takesText(F, Name)))
       return &R;
   }
   return nullptr;

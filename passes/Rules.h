@@ -38,6 +38,8 @@ struct Rule {
     Naming,   ///< makes a name, or a handle with a namespace
     Accessor, ///< takes the value out of an object that a read gave
     Config,   ///< hands a class of which each field is a parameter
+    Text,     ///< compares or copies text
+    Held,     ///< puts a number into an object, or takes it out
   };
   /// A piece of what a row of kind Naming makes.
   struct Part {
@@ -63,6 +65,10 @@ struct Rule {
   std::vector<Part> Parts; ///< joined as names are, by slashes
   TargetTy Target = ToResult;
   unsigned TargetArgument = 0;
+  /// Of what is done with text: the operator that the result answers, `compare`
+  /// where it is to be compared with zero, `copy` where nothing is asked. Of an
+  /// object that holds one number: `into` or `outof`.
+  std::string Relation;
 };
 
 /// A method of a container of values.
@@ -96,13 +102,18 @@ public:
     std::optional<ContainerMethod> Container;
   };
   const Match &match(const llvm::Function &F) const;
+  /// True where comparisons in a function of this qualified name are its
+  /// caller's.
+  bool isTransparent(llvm::StringRef Name) const {
+    return Transparent.contains(Name);
+  }
 
 private:
   const Rule *rowOf(const llvm::Function &F, llvm::StringRef Name) const;
 
   llvm::StringMap<std::vector<Rule>> ByName;
   std::vector<std::string> OpaquePrefixes, KeptPrefixes;
-  llvm::StringSet<> ContainerClasses, ReadingMethods;
+  llvm::StringSet<> ContainerClasses, ReadingMethods, Transparent;
   /// By mangled name: each is demangled once.
   mutable llvm::StringMap<Match> Known;
 };
@@ -121,6 +132,11 @@ public:
   /// begins with one that the tables call opaque.
   bool isOpaque(const llvm::Function &F) const {
     return Rows.contains(&F) || Opaque.contains(&F);
+  }
+  /// See Rules::isTransparent.
+  bool isTransparent(llvm::StringRef Name) const {
+    std::string Unused;
+    return Rules::ofThisLink(Unused).isTransparent(Name);
   }
   /// The container's method that \p Call calls, or null.
   const ContainerMethod *container(const llvm::CallBase &Call) const;

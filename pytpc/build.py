@@ -190,6 +190,7 @@ def build_workspace(
     rules: Path | None = None,
     cmake_args: Sequence[str] = (),
     colcon_args: Sequence[str] = (),
+    constants: bool = False,
     bases: Bases | None = None,
     on_output: Callable[[str], None] | None = None,
 ) -> BuildResult:
@@ -202,6 +203,7 @@ def build_workspace(
         rules: the user's own rules, beside those that come with TPC.
         cmake_args: further arguments for each package's CMake.
         colcon_args: further arguments for colcon.
+        constants: have comparisons with constants reported, too.
         bases: where everything is put; ``.tpc`` in the workspace by default.
         on_output: called with each line that colcon writes.
 
@@ -229,7 +231,8 @@ def build_workspace(
         only=packages,
         build_type=build_type,
         rules=rules,
-        cmake_args=cmake_args,
+        # Said both ways: a build folder keeps what it was told last.
+        cmake_args=(f"-DTPC_CONSTANTS={'ON' if constants else 'OFF'}", *cmake_args),
         colcon_args=colcon_args,
     )
     if not any("CMAKE_TOOLCHAIN_FILE" in argument for argument in (*cmake_args, *colcon_args)):

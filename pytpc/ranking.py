@@ -150,7 +150,12 @@ def unknown_keys(events: Events, static_info: StaticInfo) -> dict[str, int]:
 
 
 def parameter_name(comparison: Comparison) -> str:
-    """The parameter's name in the source, or where it is read, if only the running node knows."""
+    """The parameter's name in the source, or where it is read, if only the running node knows.
+
+    A constant has its own name, and its place.
+    """
+    if comparison.source is None or comparison.read_at is None:
+        return f"constant {comparison.name} at {comparison.file}:{comparison.lineno}"
     if comparison.source != DYNAMIC:
         return comparison.source
     return f"{DYNAMIC} at {comparison.read_at.file}:{comparison.read_at.lineno}"
@@ -166,7 +171,7 @@ class _Tpcs:
 
     @classmethod
     def of(cls, static_info: StaticInfo) -> _Tpcs:
-        found = {k: c for k, c in static_info.comparisons.items() if c.type != "constant"}
+        found = static_info.thresholds
         keys = tuple(sorted(found))
         return cls(
             keys,

@@ -9,12 +9,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
+from pytpc.arithmetic import Tree, from_json
 from pytpc.atomic import write_atomic
 from pytpc.errors import InputError, WorkspaceError
 from pytpc.paths import MERGED_FILE, OWN_FOLDER
@@ -38,14 +39,15 @@ class Place:
 class Transform:
     """How a derived threshold comes from its parameter.
 
-    ``affine``: threshold = scale * parameter + offset. ``expression``: only ``text`` is known, and
-    ``scale`` and ``offset`` are None.
+    ``affine``: threshold = scale * parameter + offset. ``expression``: ``tree`` says it (see
+    ``pytpc.arithmetic``; None in files of before), and ``scale`` and ``offset`` are None.
     """
 
     kind: Literal["affine", "expression"]
     scale: float | None = None
     offset: float | None = None
     text: str = ""
+    tree: Tree | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,7 +126,7 @@ class Comparison:
     key: str
     type: Literal["parameter", "flag", "derived", "constant"]
     name: str | None
-    source: str
+    source: str | None
     file: str
     lineno: int
     column: int
@@ -138,7 +140,7 @@ class Comparison:
     publishes: tuple[Place, ...]
     transform: Transform | None
     default: Default
-    read_at: Place
+    read_at: Place | None
     exposed_at: Place
     path: tuple[PathStep, ...] = ()
 
@@ -171,6 +173,7 @@ class Counts:
     not_instrumented: int
     not_exposed: int = 0
     blind_spots: int = 0
+    constants: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -267,6 +270,11 @@ class StaticInfo:
     def comparisons(self) -> dict[str, Comparison]:
         """Every comparison by its key, in the order of the units and their lists."""
         return {found.key: found for unit in self.units for found in unit.comparisons}
+
+    @cached_property
+    def thresholds(self) -> dict[str, Comparison]:
+        """The comparisons with parameters: those with constants left out."""
+        return {key: found for key, found in self.comparisons.items() if found.type != "constant"}
 
     @cached_property
     def _owners(self) -> dict[str, LinkUnit]:
@@ -415,8 +423,12 @@ def _comparison(data: dict[str, Any]) -> Comparison:
     found["param_reads"] = tuple(Place(**place) for place in found["param_reads"])
     found["publishes"] = tuple(Place(**place) for place in found["publishes"])
     if found["transform"] is not None:
-        found["transform"] = Transform(**found["transform"])
-    found["read_at"] = Place(**found["read_at"])
+        how = found["transform"]
+        found["transform"] = Transform(**how)
+        if "tree" in how:
+            found["transform"] = replace(found["transform"], tree=from_json(how["tree"]))
+    if found["read_at"] is not None:
+        found["read_at"] = Place(**found["read_at"])
     found["exposed_at"] = Place(**found["exposed_at"])
     found["path"] = tuple(PathStep(**step) for step in found.get("path", ()))
     return Comparison(**found)
@@ -427,9 +439,13 @@ def _fields(value: DataclassInstance) -> dict[str, object]:
 
 
 def _plain(value: object) -> object:
-    """Dataclasses as dicts and tuples as lists; an expression has neither scale nor offset."""
-    if isinstance(value, Transform) and value.kind == "expression":
-        return {"kind": value.kind, "text": value.text}
+    """Dataclasses as dicts and tuples as lists; of a transform what its kind has."""
+    if isinstance(value, Transform):
+        if value.kind == "affine":
+            names = ["kind", "scale", "offset", "text"]
+        else:
+            names = ["kind", "text"] if value.tree is None else ["kind", "text", "tree"]
+        return {name: _plain(getattr(value, name)) for name in names}
     if is_dataclass(value) and not isinstance(value, type):
         return _fields(value)
     if isinstance(value, tuple):

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
+from pytpc.arithmetic import evaluate
 from pytpc.complaints import complaints
 from pytpc.explain import where
 from pytpc.ingest.recording import Recording
@@ -289,6 +290,8 @@ def _suggested_threshold(found: Comparison, advice: Suggestion) -> float | None:
     if advice.value is None or advice.direction == "switch":
         return None
     how = found.transform
+    if how is not None and how.tree is not None:
+        return evaluate(how.tree, float(advice.value))
     if how is None or how.scale is None or how.offset is None:
         return float(advice.value)
     return how.scale * float(advice.value) + how.offset
@@ -358,13 +361,13 @@ def _facts(mission: MissionReport) -> list[tuple[str, str]]:
     seen = sum(
         1
         for code, key in enumerate(events.keys)
-        if key in static.comparisons and events.by_key.rows(code).size
+        if key in static.thresholds and events.by_key.rows(code).size
     )
     rate = len(events) / recording.seconds if recording.seconds > 0 else math.nan
     return [
         ("Length", f"{recording.seconds:.1f} s"),
         ("Reports", f"{len(events):,} ({rate:.0f} per second)"),
-        ("Comparisons seen", f"{seen} of {len(static.comparisons)} found in the source"),
+        ("Comparisons seen", f"{seen} of {len(static.thresholds)} found in the source"),
         ("Changes of a result", f"{int(events.flop.sum()):,}"),
         ("Nodes that report", str(len(set(events.node.tolist())))),
     ]

@@ -84,6 +84,7 @@ def counts(**changes: int) -> dict[str, int]:
         "not_instrumented": 0,
         "not_exposed": 0,
         "blind_spots": 0,
+        "constants": 0,
         **changes,
     }
 

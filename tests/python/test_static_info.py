@@ -20,7 +20,8 @@ from pytpc.static_info import (
 )
 
 AFFINE = {"kind": "affine", "scale": 0.0174, "offset": 0.0, "text": "x * 0.0174"}
-EXPRESSION = {"kind": "expression", "text": "x * x"}
+EXPRESSION = {"kind": "expression", "text": "x^2 + 1", "tree": ["+", ["pow", "x", 2.0], 1.0]}
+BARE = {"kind": "expression", "text": "x * x"}
 
 
 def write(path: Path, data: object) -> Path:
@@ -62,7 +63,11 @@ def test_a_default_keeps_its_type(tmp_path: Path, default: object) -> None:
     ("transform", "expected"),
     [
         (AFFINE, Transform("affine", 0.0174, 0.0, "x * 0.0174")),
-        (EXPRESSION, Transform("expression", None, None, "x * x")),
+        (BARE, Transform("expression", None, None, "x * x")),
+        (
+            EXPRESSION,
+            Transform("expression", None, None, "x^2 + 1", ("+", ("pow", "x", 2.0), 1.0)),
+        ),
     ],
 )
 def test_transforms_go_there_and_back(

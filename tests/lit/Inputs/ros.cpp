@@ -50,6 +50,18 @@ bool NodeHandle::getParam(const std::string &Name, bool &Value) const {
   return false;
 }
 
+bool NodeHandle::getParam(const std::string &Name, float &Value) const {
+  if (const char *T = text(Name))
+    return Value = std::strtof(T, nullptr), true;
+  return false;
+}
+
+bool NodeHandle::getParam(const std::string &Name, std::string &Value) const {
+  if (const char *T = text(Name))
+    return Value = T, true;
+  return false;
+}
+
 Publisher NodeHandle::named(const std::string &Topic) {
   Publisher P;
   P.Topic = Topic;

@@ -13,14 +13,14 @@ public:
   }
   void step(double V, double W) {
     // CHECK: comparisons of {{.*}}: 2
-    // CHECK-DAG: derived 'radius' relation < as (x)^2 {{.*}} at [[#@LINE+1]]:11
+    // CHECK-DAG: derived 'radius' relation < as x^2 {{.*}} at [[#@LINE+1]]:11
     if (V < Radius * Radius)
       Out.publish(std_msgs::Number());
     above(V, Side);
     above(V, W);
   }
   void above(double V, double &Length) {
-    // CHECK-DAG: derived 'side' relation > as (x)^2 {{.*}} at [[#@LINE+1]]:11
+    // CHECK-DAG: derived 'side' relation > as x^2 {{.*}} at [[#@LINE+1]]:11
     if (V > Length * Length)
       Out.publish(std_msgs::Number());
   }

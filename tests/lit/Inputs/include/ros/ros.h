@@ -69,6 +69,7 @@ public:
   bool getParam(const std::string &Name, std::string &Value) const;
   bool getParamCached(const std::string &Name, double &Value) const;
   bool searchParam(const std::string &Key, std::string &Result) const;
+  bool getParam(const std::string &Name, float &Value) const;
   template <typename T>
   bool param(const std::string &Name, T &Value, const T &Default) const {
     if (getParam(Name, Value))
