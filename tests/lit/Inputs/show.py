@@ -7,7 +7,7 @@ what, path = sys.argv[1:]
 with open(path, encoding="utf-8") as file:
     unit = json.load(file)
 if what == "paths":
-    for found in unit["comparisons"]:
+    for found in (c for c in unit["comparisons"] if "path" in c):
         print(f"{found['source']}: {len(found['path'])} steps")
         for number, step in enumerate(found["path"], start=1):
             place = f"{step['lineno']} {step['function']}"
