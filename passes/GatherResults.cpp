@@ -160,11 +160,19 @@ static void countOthers(std::vector<Comparison> &All) {
       Conditions.unionSets(Work[N], Br);
       Work.insert(Br);
     }
-  for (Comparison &C : All)
-    C.OtherThresholds = count_if(All, [&](const Comparison &O) {
-      return &O != &C && Conditions.isEquivalent(C.Predicate, O.Predicate) &&
-             (O.Compare != C.Compare || !C.Compare);
-    });
+  // Of each condition, and of each comparison in it.
+  DenseMap<const Instruction *, unsigned> InCondition;
+  DenseMap<std::pair<const Instruction *, const CmpInst *>, unsigned> Alike;
+  for (const Comparison &C : All) {
+    const Instruction *Condition = Conditions.getLeaderValue(C.Predicate);
+    ++InCondition[Condition];
+    ++Alike[{Condition, C.Compare}];
+  }
+  for (Comparison &C : All) {
+    const Instruction *Condition = Conditions.getLeaderValue(C.Predicate);
+    C.OtherThresholds = InCondition[Condition] -
+                        (C.Compare ? Alike[{Condition, C.Compare}] : 1);
+  }
 }
 
 /// A UUID of version 5 (RFC 4122) of \p Name, in a namespace of our own.

@@ -45,7 +45,8 @@ static SmallVector<WeakVH, 0> markSmallLibraryFunctions(Module &M,
     if (!F.getSubprogram() || Sources.has(F) ||
         F.hasFnAttribute(Attribute::AlwaysInline) ||
         F.hasFnAttribute(Attribute::NoInline) || sizeOf(F) > MaxInlined ||
-        Tables->match(F) || Tables->isOpaque(F))
+        Tables->match(F) || Tables->isOpaque(F) || Tables->isKept(F) ||
+        Tables->container(F))
       continue;
     F.addFnAttr(Attribute::AlwaysInline);
     Marked.emplace_back(&F);
