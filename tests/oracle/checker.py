@@ -157,7 +157,12 @@ class Checker:
         seen, todo = {value}, [value]
         while todo:
             at = todo.pop()
-            if isinstance(at, Instruction) and at.opcode != "alloca":
+            if isinstance(at, Instruction) and at.opcode == "getelementptr":
+                # An address is no step of its own; what chooses it is.
+                new = set(at.operands) - seen
+                seen |= new
+                todo += new
+            elif isinstance(at, Instruction) and at.opcode != "alloca":
                 out.add(at)
             elif isinstance(at, Argument):
                 calls = self.program.callers(at.function)
