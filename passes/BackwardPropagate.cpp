@@ -103,9 +103,12 @@ void Slicer::decides(Instruction *Predicate) {
 void Slicer::control(const BasicBlock *BB) {
   for (Instruction *Predicate : Ifs.controllers(BB))
     decides(Predicate);
-  if (Ifs.isControlledByEntry(BB))
+  if (Ifs.isControlledByEntry(BB)) {
     for (CallBase *Call : Calls.callers(BB->getParent()))
       enter(Call, Runs);
+    for (Instruction *Mention : Calls.mentions(BB->getParent()))
+      enter(Mention, Runs);
+  }
 }
 
 /// The value of \p V matters: what gives it enters the next round.

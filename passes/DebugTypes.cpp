@@ -194,9 +194,23 @@ const DIType *DebugTypes::find(const Value *Pointer) {
     return Infos.empty() ? nullptr
                          : plain(Infos.front()->getVariable()->getType());
   }
-  if (const auto *Load = dyn_cast<LoadInst>(Pointer))
-    return dereferenced(pointee(Load->getPointerOperand()));
+  if (const auto *Load = dyn_cast<LoadInst>(Pointer)) {
+    // What is loaded from an object is the scalar at its beginning.
+    const DIType *T = element(pointee(Load->getPointerOperand()));
+    for (unsigned Depth = 0; Depth < 16; ++Depth) {
+      const auto *Class = dyn_cast_or_null<DICompositeType>(T);
+      const DIDerivedType *First = Class ? memberAt(Class, 0) : nullptr;
+      if (!First)
+        break;
+      T = element(First->getBaseType());
+    }
+    return dereferenced(T);
+  }
   if (const auto *Call = dyn_cast<CallBase>(Pointer)) {
+    // What `new` makes is written down there.
+    if (const auto *Made =
+            dyn_cast_or_null<DIType>(Call->getMetadata("heapallocsite")))
+      return plain(Made);
     const Function *Callee = Call->getCalledFunction();
     const DISubprogram *SP = Callee ? Callee->getSubprogram() : nullptr;
     if (!SP || !SP->getType() || SP->getType()->getTypeArray().size() == 0)

@@ -174,13 +174,18 @@ static void countOthers(std::vector<Comparison> &All) {
       Conditions.unionSets(Work[N], Br);
       Work.insert(Br);
     }
+  // Of each condition, and of each comparison in it.
+  DenseMap<const Instruction *, unsigned> InCondition;
+  DenseMap<std::pair<const Instruction *, const CmpInst *>, unsigned> Alike;
+  for (const Comparison &C : All) {
+    const Instruction *Condition = Conditions.getLeaderValue(C.Predicate);
+    ++InCondition[Condition];
+    ++Alike[{Condition, C.Compare}];
+  }
   for (Comparison &C : All) {
-    if (Budget::isSpent())
-      return;
-    C.OtherThresholds = count_if(All, [&](const Comparison &O) {
-      return &O != &C && Conditions.isEquivalent(C.Predicate, O.Predicate) &&
-             (O.Compare != C.Compare || !C.Compare);
-    });
+    const Instruction *Condition = Conditions.getLeaderValue(C.Predicate);
+    C.OtherThresholds = InCondition[Condition] -
+                        (C.Compare ? Alike[{Condition, C.Compare}] : 1);
   }
 }
 

@@ -4,6 +4,7 @@
 #include "Budget.h"
 #include "ControlDependence.h"
 #include "Functions.h"
+#include "Options.h"
 #include "Print.h"
 
 #include "llvm/IR/CFG.h"
@@ -77,15 +78,34 @@ const BasicBlock *decidedWay(const BasicBlock *From, const BasicBlock *BB) {
   return Switch->getDefaultDest();
 }
 
+/// True where the program ends soon after \p BB, or leaves by an exception,
+/// whatever happens: what an assertion does that does not hold.
+static bool endsProgram(const BasicBlock *BB) {
+  for (unsigned Steps = 0; Steps < 8 && BB; ++Steps) {
+    const Instruction *T = BB->getTerminator();
+    if (isa<UnreachableInst>(T))
+      return true;
+    if (const auto *Invoke = dyn_cast<InvokeInst>(T))
+      BB = Invoke->getNormalDest();
+    else
+      BB = BB->getUniqueSuccessor();
+  }
+  return false;
+}
+
 /// The flow graph of \p F without the edges that exceptions take, and with
 /// the two nodes of Ferrante et al. behind the blocks: the entry, from which
 /// the function is either entered or not, and the end of not entering it.
+///
+/// Checks of libraries (that a pointer is not null, that a function is there)
+/// that end the program are left out as exceptions are: nobody who reads the
+/// source sees them.
 ///
 /// With \p Threaded, an edge into a block that is decided by the edge goes on
 /// to where the block then leads.
 static FlowGraph flowGraphOf(const Function &F,
                              const DenseMap<const BasicBlock *, unsigned> &Id,
-                             bool Threaded) {
+                             bool Threaded, UserSources &Sources) {
   FlowGraph Graph(F.size() + 2);
   Graph[F.size()] = {Id.lookup(&F.getEntryBlock()),
                      static_cast<unsigned>(F.size()) + 1};
@@ -95,7 +115,13 @@ static FlowGraph flowGraphOf(const Function &F,
       Succs.push_back(Id.lookup(Invoke->getNormalDest()));
       continue;
     }
+    const Instruction *T = BB.getTerminator();
+    bool Library = T->getNumSuccessors() == 2 && T->getDebugLoc() &&
+                   !Sources.has(T->getDebugLoc());
     for (const BasicBlock *Succ : successors(&BB)) {
+      if (Library && endsProgram(Succ) &&
+          !endsProgram(T->getSuccessor(Succ == T->getSuccessor(0) ? 1 : 0)))
+        continue;
       const BasicBlock *On = Threaded ? decidedWay(&BB, Succ) : nullptr;
       Succs.push_back(Id.lookup(On ? On : Succ));
     }
@@ -105,6 +131,8 @@ static FlowGraph flowGraphOf(const Function &F,
 
 IfStatementsResult IfStatements::run(Module &M, ModuleAnalysisManager &) {
   IfStatementsResult R;
+  const Options Opts = Options::fromCommandLine();
+  UserSources Sources(Opts);
   for (Function &F : definedFunctions(M)) {
     if (Budget::isSpent())
       break;
@@ -117,8 +145,8 @@ IfStatementsResult IfStatements::run(Module &M, ModuleAnalysisManager &) {
       Id[&BB] = Blocks.size();
       Blocks.push_back(&BB);
     }
-    FlowGraph Plain = flowGraphOf(F, Id, /*Threaded=*/false);
-    FlowGraph Threaded = flowGraphOf(F, Id, /*Threaded=*/true);
+    FlowGraph Plain = flowGraphOf(F, Id, /*Threaded=*/false, Sources);
+    FlowGraph Threaded = flowGraphOf(F, Id, /*Threaded=*/true, Sources);
     auto Depends = controlDependence(Threaded);
     if (Plain != Threaded) {
       // What a block does that edges were led past is done on all of them;

@@ -11,9 +11,6 @@ using namespace llvm;
 
 namespace tpc {
 
-/// More places than this for one pointer say nothing any more.
-static constexpr unsigned MaxLocations = 64;
-
 /// Classes in classes that are entered. Real ones end long before; classes that
 /// are taken for the same because they look alike may contain each other.
 static constexpr unsigned MaxPath = 32;
@@ -57,6 +54,11 @@ unsigned TypeNumbers::numberOf(StructType *T) {
   return Numbers[T] = N;
 }
 
+bool TypeNumbers::isStandard(unsigned Number) const {
+  return Number < Types.size() &&
+         plainClassName(*Types[Number]).starts_with("std::");
+}
+
 /// True where \p Tail is the end of \p Path.
 static bool endsWith(ArrayRef<Step> Path, ArrayRef<Step> Tail) {
   return Tail.size() <= Path.size() && equal(Tail, Path.take_back(Tail.size()));
@@ -86,8 +88,9 @@ bool AccessResult::mayBe(const Location &A, const Location &B) const {
 
 Type *AccessResult::typeAt(const Location &L) const {
   if (!L.Path.empty())
-    return Numbers.typeOf(L.Path.back().Type)
-        ->getElementType(L.Path.back().Index);
+    return L.Path.back().isField() ? Numbers.typeOf(L.Path.back().Type)
+                                         ->getElementType(L.Path.back().Index)
+                                   : nullptr;
   if (const auto *Global = dyn_cast_or_null<GlobalVariable>(L.Root))
     return Global->getValueType();
   if (const auto *Local = dyn_cast_or_null<AllocaInst>(L.Root))
@@ -106,6 +109,8 @@ const DIType *AccessResult::debugTypeAt(const Location &L) const {
   if (L.Path.empty())
     return L.Root ? Debug->pointee(L.Root) : nullptr;
   const Step &Last = L.Path.back();
+  if (!Last.isField())
+    return nullptr;
   return Debug->field(Debug->classOf(Last.Class), Numbers.typeOf(Last.Type),
                       Last.Index);
 }
@@ -187,6 +192,45 @@ void AccessResult::addTo(Locations &Out, Location L) const {
     Out.push_back(std::move(L));
 }
 
+/// Goes \p Steps further from \p L. How a container keeps its elements, in
+/// nodes or in pairs with a key, makes no difference: those steps are left out.
+void AccessResult::extend(Location &L, ArrayRef<Step> Steps) const {
+  if (L.isElement())
+    Steps = Steps.drop_while(
+        [&](const Step &S) { return Numbers.isStandard(S.Type); });
+  L.Path.append(Steps.begin(), Steps.end());
+}
+
+/// True for the calls that allocate memory.
+static bool isAllocation(const Value *V) {
+  const auto *Call = dyn_cast<CallBase>(V);
+  const Function *Callee = Call ? Call->getCalledFunction() : nullptr;
+  static constexpr StringRef Names[] = {
+      "_Znwm",  "_Znam", "_ZnwmSt11align_val_t", "_ZnamSt11align_val_t",
+      "malloc", "calloc"};
+  return Callee && is_contained(Names, Callee->getName());
+}
+
+/// Adds the place that \p Chain leads to in the allocation at \p L: its type is
+/// not known, but how far it is.
+void AccessResult::addAllocated(const Location &L,
+                                ArrayRef<const GEPOperator *> Chain,
+                                Locations &Out) const {
+  int64_t Bytes = L.Path.empty() ? 0 : L.Path.back().Index;
+  for (const GEPOperator *GEP : Chain) {
+    APInt Offset(Layout->getIndexTypeSizeInBits(GEP->getType()), 0);
+    if (!GEP->accumulateConstantOffset(*Layout, Offset))
+      return;
+    Bytes += Offset.getSExtValue();
+  }
+  if (Bytes < 0)
+    return;
+  Location Here{L.Root, {}};
+  if (Bytes)
+    Here.Path.push_back({Step::Bytes, static_cast<unsigned>(Bytes)});
+  addTo(Out, std::move(Here));
+}
+
 /// The steps of \p GEP's constant indices into classes.
 static SmallVector<Step, 4> stepsOf(const GEPOperator &GEP,
                                     TypeNumbers &Numbers, DebugTypes &Debug) {
@@ -248,6 +292,14 @@ static const Value *throughCasts(const Value *V) {
   }
 }
 
+/// The pointer that \p Pointer is computed from.
+const Value *AccessResult::baseOf(const Value *Pointer) {
+  const Value *Base = throughCasts(Pointer);
+  while (const auto *GEP = dyn_cast<GEPOperator>(Base))
+    Base = throughCasts(GEP->getPointerOperand());
+  return Base;
+}
+
 /// Adds the locations that \p Pointer can lead to, as far as it is known by
 /// now what the pointers that it is computed from lead to.
 void AccessResult::addPointees(const Value *Pointer, Locations &Out) const {
@@ -260,15 +312,25 @@ void AccessResult::addPointees(const Value *Pointer, Locations &Out) const {
   }
   Locations Objects;
   bool Rooted = isa<GlobalVariable>(Base) || isa<AllocaInst>(Base);
-  if (Rooted)
+  if (Rooted || isAllocation(Base))
     Objects.push_back({Base, {}});
   else if (auto It = Targets.find(Base); It != Targets.end())
     Objects = It->second;
   // Besides the objects that are known there are those that are not: of them
   // the path alone is known, from its first class on.
-  if (!Rooted)
+  if (!Rooted && !Complete.contains(Base))
     Objects.insert(Objects.begin(), Location());
   for (Location L : Objects) {
+    if (L.Root && isa<CallBase>(L.Root) &&
+        (L.Path.empty() || L.Path.back().Type == Step::Bytes)) {
+      // Where the way says which class it is, all objects of it are meant.
+      if (none_of(Chain, [](const GEPOperator *GEP) {
+            const auto *S = dyn_cast<StructType>(GEP->getSourceElementType());
+            return S && !S->isLiteral();
+          }))
+        addAllocated(L, Chain, Out);
+      continue;
+    }
     bool Unknown = !L.isKnown();
     int64_t Bytes = 0;
     bool Valid = true;
@@ -285,6 +347,12 @@ void AccessResult::addPointees(const Value *Pointer, Locations &Out) const {
       }
       if (!Struct)
         continue;
+      if (L.isElement()) {
+        Bytes = 0;
+        Valid = true;
+        extend(L, stepsOf(*GEP, Numbers, *Debug));
+        continue;
+      }
       // A base class, or what a pointer of another type was made of.
       if (L.isKnown() && (Bytes != 0 || elementOf(typeAt(L)) != Struct)) {
         Location Inner = L;
@@ -296,7 +364,7 @@ void AccessResult::addPointees(const Value *Pointer, Locations &Out) const {
     }
     if (!Valid || !L.isKnown() || (Unknown && Chain.empty()))
       continue;
-    if (Bytes == 0 || descend(L, Bytes, nullptr))
+    if (Bytes == 0 || L.isElement() || descend(L, Bytes, nullptr))
       addTo(Out, std::move(L));
   }
 }

@@ -12,6 +12,7 @@
 #include "llvm/Passes/PassBuilder.h"
 #include "llvm/Transforms/IPO/AlwaysInliner.h"
 #include "llvm/Transforms/Scalar/SROA.h"
+#include "llvm/Transforms/Utils/BasicBlockUtils.h"
 #include "llvm/Transforms/Utils/Cloning.h"
 
 using namespace llvm;
@@ -45,7 +46,8 @@ static SmallVector<WeakVH, 0> markSmallLibraryFunctions(Module &M,
     if (!F.getSubprogram() || Sources.has(F) ||
         F.hasFnAttribute(Attribute::AlwaysInline) ||
         F.hasFnAttribute(Attribute::NoInline) || sizeOf(F) > MaxInlined ||
-        Tables->match(F) || Tables->isOpaque(F))
+        Tables->match(F) || Tables->isOpaque(F) || Tables->isKept(F) ||
+        Tables->container(F))
       continue;
     F.addFnAttr(Attribute::AlwaysInline);
     Marked.emplace_back(&F);
@@ -55,6 +57,10 @@ static SmallVector<WeakVH, 0> markSmallLibraryFunctions(Module &M,
 
 /// Makes \p M fit for the analysis.
 static void prepare(Module &M, const Options &Opts) {
+  // Only there may a value be computed from itself, and following it back would
+  // not end.
+  for (Function &F : definedFunctions(M))
+    EliminateUnreachableBlocks(F);
   SmallVector<WeakVH, 0> Marked = markSmallLibraryFunctions(M, Opts);
   PassBuilder PB;
   LoopAnalysisManager LAM;

@@ -5,6 +5,7 @@
 #include "Names.h"
 #include "Options.h"
 
+#include "llvm/ADT/SetVector.h"
 #include "llvm/IR/Module.h"
 #include "llvm/Support/JSON.h"
 #include "llvm/Support/MemoryBuffer.h"
@@ -86,18 +87,48 @@ Error Rules::add(StringRef Text, StringRef Origin, StringRef Profile) {
       ByName[R.Function].push_back(std::move(R));
     }
   }
-  if (const json::Array *Names = Top->getArray("opaque"))
-    for (const json::Value &V : *Names)
-      if (std::optional<StringRef> Name = V.getAsString())
-        OpaquePrefixes.push_back(Name->str());
+  const std::pair<StringRef, std::vector<std::string> *> Prefixes[] = {
+      {"opaque", &OpaquePrefixes}, {"kept", &KeptPrefixes}};
+  for (auto [Section, List] : Prefixes)
+    if (const json::Array *Names = Top->getArray(Section))
+      for (const json::Value &V : *Names)
+        if (std::optional<StringRef> Name = V.getAsString())
+          List->push_back(Name->str());
+  if (const json::Object *Containers = Top->getObject("containers")) {
+    auto AddAll = [&](StringRef Key, StringSet<> &To) {
+      if (const json::Array *Names = Containers->getArray(Key))
+        for (const json::Value &V : *Names)
+          if (std::optional<StringRef> Name = V.getAsString())
+            To.insert(*Name);
+    };
+    AddAll("classes", ContainerClasses);
+    AddAll("reading", ReadingMethods);
+  }
   return Error::success();
 }
 
-bool Rules::isOpaque(const Function &F) const {
-  std::string Name = qualifiedName(F.getName());
-  return any_of(OpaquePrefixes, [&](const std::string &Prefix) {
-    return StringRef(Name).starts_with(Prefix);
+static bool beginsWithAny(StringRef Name, ArrayRef<std::string> Prefixes) {
+  return any_of(Prefixes, [&](const std::string &Prefix) {
+    return Name.starts_with(Prefix);
   });
+}
+
+bool Rules::isOpaque(const Function &F) const {
+  return beginsWithAny(qualifiedName(F.getName()), OpaquePrefixes);
+}
+
+bool Rules::isKept(const Function &F) const {
+  return beginsWithAny(qualifiedName(F.getName()), KeptPrefixes);
+}
+
+std::optional<ContainerMethod> Rules::container(const Function &F) const {
+  std::string Name = qualifiedName(F.getName());
+  auto [Class, Method] = StringRef(Name).rsplit("::");
+  if (!ContainerClasses.contains(Class))
+    return std::nullopt;
+  bool IsConst = F.getName().starts_with("_ZNK");
+  return ContainerMethod{!IsConst && !ReadingMethods.contains(Method) &&
+                         !Method.starts_with("~")};
 }
 
 Expected<Rules> Rules::load(const Options &Opts) {
@@ -132,19 +163,62 @@ const Rule *RuleMatches::match(const CallBase &Call) const {
   return Callee ? Rows.lookup(Callee) : nullptr;
 }
 
+const ContainerMethod *RuleMatches::container(const CallBase &Call) const {
+  const Function *Callee = Call.getCalledFunction();
+  auto It = Callee ? Containers.find(Callee) : Containers.end();
+  return It == Containers.end() ? nullptr : &It->second;
+}
+
+namespace {
+
+/// Which functions of libraries call the user's own: the constructors of the
+/// elements of a container, say.
+class UserCode {
+public:
+  explicit UserCode(const Options &Opts) : Sources(Opts) {}
+
+  bool reachedFrom(const Function &F) {
+    SmallSetVector<const Function *, 16> Work;
+    Work.insert(&F);
+    for (unsigned N = 0; N < Work.size(); ++N)
+      for (const Instruction &I : instructions(*Work[N])) {
+        const auto *Call = dyn_cast<CallBase>(&I);
+        const Function *Callee = Call ? Call->getCalledFunction() : nullptr;
+        if (!Callee || Callee->isDeclaration())
+          continue;
+        if (Sources.has(*Callee))
+          return true;
+        Work.insert(Callee);
+      }
+    return false;
+  }
+
+private:
+  UserSources Sources;
+};
+
+} // namespace
+
 RuleMatches RuleAnalysis::run(Module &M, ModuleAnalysisManager &) {
   RuleMatches Result;
-  Expected<Rules> Loaded = Rules::load(Options::fromCommandLine());
+  const Options Opts = Options::fromCommandLine();
+  Expected<Rules> Loaded = Rules::load(Opts);
   if (!Loaded) {
     Result.Error = toString(Loaded.takeError());
     return Result;
   }
   Result.Tables = std::make_shared<const Rules>(std::move(*Loaded));
+  UserCode Users(Opts);
   for (const Function &F : M)
-    if (const Rule *R = Result.Tables->match(F))
+    if (const Rule *R = Result.Tables->match(F)) {
       Result.Rows[&F] = R;
-    else if (Result.Tables->isOpaque(F))
+    } else if (Result.Tables->isOpaque(F)) {
       Result.Opaque.insert(&F);
+    } else if (auto Method = Result.Tables->container(F)) {
+      Result.Containers[&F] = *Method;
+      if (!Users.reachedFrom(F))
+        Result.Opaque.insert(&F);
+    }
   return Result;
 }
 

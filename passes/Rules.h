@@ -13,6 +13,7 @@
 #include "llvm/ADT/DenseMap.h"
 #include "llvm/ADT/DenseSet.h"
 #include "llvm/ADT/StringMap.h"
+#include "llvm/ADT/StringSet.h"
 #include "llvm/IR/InstIterator.h"
 #include "llvm/IR/InstrTypes.h"
 #include "llvm/IR/PassManager.h"
@@ -40,6 +41,11 @@ struct Rule {
   std::optional<unsigned> Default;
 };
 
+/// A method of a container of values.
+struct ContainerMethod {
+  bool Writes; ///< puts its arguments into the container
+};
+
 /// The IR operand of \p Call for the source-level argument \p Number of a
 /// function that \p R describes; null where there is none.
 llvm::Value *argument(const llvm::CallBase &Call, const Rule &R,
@@ -57,12 +63,17 @@ public:
   const Rule *match(const llvm::Function &F) const;
   /// True where \p F is in one of the opaque namespaces.
   bool isOpaque(const llvm::Function &F) const;
+  /// What \p F does to a container; none where it is no method of one.
+  std::optional<ContainerMethod> container(const llvm::Function &F) const;
+  /// True where \p F stays a call that is looked into.
+  bool isKept(const llvm::Function &F) const;
 
 private:
   llvm::Error add(llvm::StringRef Json, llvm::StringRef Origin,
                   llvm::StringRef Profile);
   llvm::StringMap<std::vector<Rule>> ByName;
-  std::vector<std::string> OpaquePrefixes;
+  std::vector<std::string> OpaquePrefixes, KeptPrefixes;
+  llvm::StringSet<> ContainerClasses, ReadingMethods;
 };
 
 /// The rules applied to the functions of a module.
@@ -75,6 +86,8 @@ public:
   bool isOpaque(const llvm::Function &F) const {
     return Rows.contains(&F) || Opaque.contains(&F);
   }
+  /// The container's method that \p Call calls, or null.
+  const ContainerMethod *container(const llvm::CallBase &Call) const;
   std::string Error; ///< why the tables could not be read; else empty
 
 private:
@@ -82,6 +95,7 @@ private:
   std::shared_ptr<const Rules> Tables;
   llvm::DenseMap<const llvm::Function *, const Rule *> Rows;
   llvm::DenseSet<const llvm::Function *> Opaque;
+  llvm::DenseMap<const llvm::Function *, ContainerMethod> Containers;
 };
 
 /// Calls \p F with each call in \p M that a row of \p Kind describes, and with

@@ -1,13 +1,17 @@
 //===- SimpleCallGraph.h - Who calls a function ---------------------------===//
 //
-// Thesis A.5: function -> the call and invoke instructions that call it. Calls
-// that name their callee are resolved; the others are counted, and are what a
-// class hierarchy and callbacks will be resolved from.
+// Thesis A.5: function -> the call and invoke instructions that call it: those
+// that name it, virtual calls by the class hierarchy, and calls through
+// pointers by where the pointers come from. A function that is handed to
+// somebody else to be called (a subscriber's callback, a thread's, a timer's)
+// has the places that mention it; it runs only if they do.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_SIMPLECALLGRAPH_H
 #define TPC_SIMPLECALLGRAPH_H
 
+#include "llvm/ADT/DenseMap.h"
+#include "llvm/ADT/DenseSet.h"
 #include "llvm/ADT/MapVector.h"
 #include "llvm/ADT/SmallVector.h"
 #include "llvm/IR/InstrTypes.h"
@@ -15,6 +19,7 @@
 
 namespace tpc {
 
+struct Options;
 class RuleMatches;
 
 class CallGraphResult {
@@ -26,12 +31,31 @@ public:
   llvm::SmallVector<llvm::Function *, 1>
   callees(const llvm::CallBase &Call) const;
 
-  unsigned IndirectCalls = 0; ///< calls whose callee is not known
+  /// The instructions that hand on the address of \p F, in the order of the
+  /// module.
+  llvm::ArrayRef<llvm::Instruction *> mentions(const llvm::Function *F) const;
+
+  /// True where \p F is called from nowhere but from its callers, as far as
+  /// this module goes.
+  bool allCallsKnown(const llvm::Function &F) const;
+
+  /// Calls whose callee is not known, in the order of the module.
+  llvm::ArrayRef<llvm::CallBase *> unresolved() const { return Unresolved; }
 
 private:
   friend class SimpleCallGraph;
   friend class SimpleCallGraphPrinter;
+  void findMentions(llvm::Module &M, const Options &Opts);
   const RuleMatches *Rules = nullptr;
+  llvm::DenseMap<const llvm::CallBase *, llvm::SmallVector<llvm::Function *, 2>>
+      Indirect;
+  llvm::DenseMap<const llvm::Function *,
+                 llvm::SmallVector<llvm::Instruction *, 2>>
+      Mentions;
+  /// Functions whose address an instruction hands on.
+  llvm::DenseSet<const llvm::Function *> HandedOn;
+  llvm::SmallVector<llvm::CallBase *, 0> Unresolved;
+  llvm::DenseSet<const llvm::FunctionType *> UnresolvedTypes;
   llvm::MapVector<const llvm::Function *,
                   llvm::SmallVector<llvm::CallBase *, 4>>
       Callers;

@@ -241,7 +241,7 @@ json::Object Describer::counts(size_t NumComparisons) const {
       {"dynamic_names",
        count_if(Reads,
                 [](const ParameterRead &R) { return R.Name == DynamicName; })},
-      {"indirect_calls", Calls.IndirectCalls},
+      {"indirect_calls", static_cast<int64_t>(Calls.unresolved().size())},
       {"without_debug_info", Gathered.WithoutDebugInfo},
       {"outside_sources", Gathered.OutsideSources},
       {"lost_values", Usage.Lost},

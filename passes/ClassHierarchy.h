@@ -1,0 +1,69 @@
+//===- ClassHierarchy.h - Where virtual calls go --------------------------===//
+//
+// Class hierarchy analysis (Dean, Grove and Chambers, "Optimization of
+// object-oriented programs using static class hierarchy analysis", ECOOP 1995)
+// on what the Itanium C++ ABI leaves in a module: the vtables, and the type
+// information that says who derives from whom.
+//
+//===----------------------------------------------------------------------===//
+#ifndef TPC_CLASSHIERARCHY_H
+#define TPC_CLASSHIERARCHY_H
+
+#include "DebugTypes.h"
+
+#include "llvm/ADT/MapVector.h"
+#include "llvm/ADT/SmallVector.h"
+#include "llvm/ADT/StringMap.h"
+#include "llvm/IR/InstrTypes.h"
+#include "llvm/IR/Module.h"
+
+#include <optional>
+
+namespace tpc {
+
+/// A call through an object's table of virtual functions.
+struct VirtualCall {
+  const llvm::Value *Object;
+  unsigned Slot;
+};
+
+class ClassHierarchy {
+public:
+  explicit ClassHierarchy(llvm::Module &M);
+
+  /// What kind of virtual call \p Call is; none where it is not one.
+  static std::optional<VirtualCall> match(const llvm::CallBase &Call);
+
+  /// The functions that \p Call, a virtual one, can enter: those that stand in
+  /// its slot in the tables of the object's class and of what derives from it.
+  /// Empty where the class is not known.
+  llvm::SmallVector<llvm::Function *, 4> targets(const llvm::CallBase &Call,
+                                                 const VirtualCall &How);
+
+private:
+  /// A table: the functions behind each of its address points.
+  using Table = llvm::SmallVector<llvm::SmallVector<llvm::Function *, 8>, 1>;
+  struct Class {
+    Table Functions;
+    /// Classes that derive from it, and whether it stands at their beginning.
+    llvm::SmallVector<std::pair<unsigned, bool>, 2> Derived;
+  };
+
+  unsigned numberOf(llvm::StringRef Name);
+  void addTable(const llvm::GlobalVariable &Table);
+  void addBases(const llvm::GlobalVariable &TypeInfo);
+  void collect(unsigned Class, bool AtBeginning, unsigned Slot,
+               const llvm::CallBase &Call,
+               llvm::SmallVectorImpl<llvm::Function *> &Out);
+
+  llvm::StringMap<unsigned> Numbers; ///< by the name as it is mangled
+  llvm::SmallVector<Class, 0> Classes;
+  DebugTypes Debug;
+};
+
+/// True where \p Call can be a call of \p F by their types.
+bool fits(const llvm::CallBase &Call, const llvm::Function &F);
+
+} // namespace tpc
+
+#endif // TPC_CLASSHIERARCHY_H
