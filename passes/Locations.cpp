@@ -3,7 +3,6 @@
 
 #include "Names.h"
 
-#include "llvm/ADT/StringSwitch.h"
 #include "llvm/IR/Instructions.h"
 #include "llvm/IR/Module.h"
 #include "llvm/IR/Operator.h"
@@ -206,10 +205,10 @@ void AccessResult::extend(Location &L, ArrayRef<Step> Steps) const {
 static bool isAllocation(const Value *V) {
   const auto *Call = dyn_cast<CallBase>(V);
   const Function *Callee = Call ? Call->getCalledFunction() : nullptr;
-  return Callee && StringSwitch<bool>(Callee->getName())
-                       .Cases("_Znwm", "_Znam", "_ZnwmSt11align_val_t",
-                              "_ZnamSt11align_val_t", "malloc", "calloc", true)
-                       .Default(false);
+  static constexpr StringRef Names[] = {
+      "_Znwm",  "_Znam", "_ZnwmSt11align_val_t", "_ZnamSt11align_val_t",
+      "malloc", "calloc"};
+  return Callee && is_contained(Names, Callee->getName());
 }
 
 /// Adds the place that \p Chain leads to in the allocation at \p L: its type is

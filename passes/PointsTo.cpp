@@ -216,17 +216,12 @@ bool AccessResult::Builder::update(PointerStore &S, unsigned Number) {
 bool AccessResult::Builder::propagate() {
   bool Changed = false;
   for (Node &N : Nodes)
-    if (isDue(N)) {
-      if (Budget::isSpent())
-        return false;
+    if (!Budget::isSpent() && isDue(N))
       Changed |= update(N);
-    }
-  for (auto [Number, S] : enumerate(PointerStores)) {
-    if (Budget::isSpent())
-      return false;
-    Changed |= update(S, Number);
-  }
-  return Changed;
+  for (auto [Number, S] : enumerate(PointerStores))
+    if (!Budget::isSpent())
+      Changed |= update(S, Number);
+  return Changed && !Budget::isSpent();
 }
 
 /// True where the objects that \p V leads to are all known, given that those
@@ -302,6 +297,8 @@ bool AccessResult::Builder::findComplete() {
   for (bool Changed = true; Changed;) {
     Changed = false;
     for (Node &N : Nodes) {
+      if (Budget::isSpent())
+        return false;
       if (!R.Complete.contains(N.V) ||
           (R.Targets.lookup(N.V).size() < MaxLocations &&
            (!isa<LoadInst>(N.V) || First || findsComplete(N)) &&

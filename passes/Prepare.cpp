@@ -14,6 +14,7 @@
 #include "llvm/Passes/PassBuilder.h"
 #include "llvm/Transforms/IPO/AlwaysInliner.h"
 #include "llvm/Transforms/Scalar/SROA.h"
+#include "llvm/Transforms/Utils/BasicBlockUtils.h"
 #include "llvm/Transforms/Utils/Cloning.h"
 
 using namespace llvm;
@@ -76,6 +77,10 @@ static void inlineMarked(Module &M, bool Promote) {
 
 /// Makes \p M fit for the analysis.
 static void prepare(Module &M, const Options &Opts) {
+  // Only there may a value be computed from itself, and following it back would
+  // not end.
+  for (Function &F : definedFunctions(M))
+    EliminateUnreachableBlocks(F);
   SmallVector<WeakVH, 0> Marked = markSmallLibraryFunctions(M, Opts);
   inlineMarked(M, /*Promote=*/true);
   for (const WeakVH &F : Marked)
