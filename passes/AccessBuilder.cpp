@@ -99,6 +99,12 @@ void AccessResult::Builder::fileAccesses() {
           R.Stores.push_back({&I, L});
           addWrite(I, L);
         }
+      } else if (auto *Update = dyn_cast<AtomicRMWInst>(&I)) {
+        for (const Location &L : R.resolve(Update->getPointerOperand(), true)) {
+          R.file(R.StoreIndex, R.Stores.size(), L);
+          R.Stores.push_back({&I, L});
+          addWrite(I, L);
+        }
       } else if (auto *Copy = dyn_cast<MemTransferInst>(&I)) {
         addCopy(I, R.resolve(Copy->getRawDest(), false),
                 R.resolve(Copy->getRawSource(), false));

@@ -10,6 +10,8 @@
 #include "ClassObjectAccess.h"
 #include "Rules.h"
 
+#include "llvm/ADT/Hashing.h"
+
 namespace tpc {
 
 struct AccessResult::Builder {
@@ -37,6 +39,15 @@ private:
     Locations Where = {};
     unsigned Done = 0;
   };
+  /// The pointers that are kept at a place: what all loads of it find.
+  struct Content {
+    Location Where;
+    /// Only what is stored through pointers without a known root: for places
+    /// with one, which share it.
+    bool Unrooted;
+    Locations Found = {};
+    unsigned Done = 0;
+  };
   /// What a function returns: arguments, and other pointers.
   struct Returned {
     llvm::SmallVector<unsigned, 2> Arguments;
@@ -50,6 +61,8 @@ private:
   void addReturned(const llvm::CallBase &Call, Node &N);
   bool findsComplete(const Node &Load) const;
   bool findComplete();
+  unsigned contentAt(const Location &L, bool Unrooted);
+  void collect(unsigned Number, Locations &Out);
   bool isDue(const Node &N) const;
   bool update(Node &N);
   bool update(PointerStore &S, unsigned Number);
@@ -71,6 +84,8 @@ private:
   llvm::SmallVector<Node, 0> Nodes;
   llvm::SmallVector<PointerStore, 0> PointerStores;
   Index PointerStoreIndex;
+  llvm::SmallVector<Content, 0> Contents;
+  llvm::DenseMap<llvm::hash_code, llvm::SmallVector<unsigned, 1>> ContentIndex;
   llvm::DenseMap<const llvm::Function *, Returned> Results;
   /// Objects that hold pointers to a container's elements: iterators that are
   /// returned in memory, with the container.

@@ -10,6 +10,7 @@
 #include "SimpleCallGraph.h"
 
 #include "llvm/ADT/SmallPtrSet.h"
+#include "llvm/Analysis/ValueTracking.h"
 #include "llvm/IR/IntrinsicInst.h"
 #include "llvm/IR/Module.h"
 
@@ -78,6 +79,7 @@ private:
   void derivedPointer(const Value *Pointer);
   void reachable(CallBase &Call);
 
+  LocationSet SeenWritten, SeenLoaded;
   const CallGraphResult &Calls;
   const AccessResult &Access;
   const IfStatementsResult &Ifs;
@@ -164,8 +166,9 @@ void Slicer::definePointer(const Value *V) {
 /// What is in memory at \p Pointer, a scalar, matters.
 void Slicer::defineMemory(const Value *Pointer) {
   for (const Location &L : Access.resolve(Pointer, true))
-    for (Instruction *Write : Access.writesOf(L))
-      enter(Write, Gives, Why::Writes);
+    if (SeenWritten.insert(L))
+      for (Instruction *Write : Access.writesOf(L))
+        enter(Write, Gives, Why::Writes);
 }
 
 /// A value that control flow merges: the predicates that choose between the
@@ -219,7 +222,9 @@ void Slicer::derivedPointer(const Value *Pointer) {
     if (isa<GetElementPtrInst>(I))
       derivedPointer(I);
     else if (auto *Store = dyn_cast<StoreInst>(I);
-             Store && Store->getPointerOperand() == Pointer)
+             Store && Store->getPointerOperand() == Pointer &&
+             // What is stored into a local object is known by its place.
+             !isa<AllocaInst>(getUnderlyingObject(Pointer)))
       enter(I, Gives, Why::Writes);
     else if (isa<MemTransferInst>(I))
       enter(I, Gives, Why::Writes);
@@ -239,7 +244,7 @@ void Slicer::reachable(CallBase &Call) {
     if (!Arg->getType()->isPointerTy())
       continue;
     for (const Location &L : Access.resolve(Arg, false))
-      for (Instruction *Write : Access.writesInto(L))
+      for (Instruction *Write : Access.writesInto(L, Call))
         enter(Write,
               isa<CallBase>(Write) && !isa<IntrinsicInst>(Write) ? Touches
                                                                  : Gives,
@@ -252,6 +257,12 @@ void Slicer::value(Instruction &I) {
   if (auto *Phi = dyn_cast<PHINode>(&I))
     return phi(*Phi);
   if (auto *Load = dyn_cast<LoadInst>(&I)) {
+    // All loads of a variable that is not local have the same writes.
+    bool New = false;
+    for (const Location &L : Access.touched(*Load))
+      New |= !AccessResult::isSharedBy(L, *Load) || SeenLoaded.insert(L);
+    if (!New)
+      return definePointer(Load->getPointerOperand());
     for (Instruction *Write : Access.definitionsOf(*Load)) {
       // What a library sets to a constant, it sets in its constructors.
       const auto *Store = dyn_cast<StoreInst>(Write);

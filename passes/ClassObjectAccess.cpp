@@ -73,6 +73,8 @@ Locations AccessResult::throughCopies(const Location &L, bool Backward) const {
     const Location Here = All[Next];
     auto Follow = [&](unsigned N) {
       const Copy &C = Copies[N];
+      if (All.size() >= MaxCopied)
+        return;
       for (const Location &Object : Backward ? C.To : C.From)
         if (auto Rest = partOf(Object, Here))
           for (Location Other : Backward ? C.From : C.To) {
@@ -92,6 +94,11 @@ Locations AccessResult::throughCopies(const Location &L, bool Backward) const {
 void AccessResult::collectWrites(const Location &L,
                                  SmallSetVector<Instruction *, 8> &Out) const {
   for (const Location &Here : throughCopies(L, /*Backward=*/true)) {
+    // Several fields that are read as one, in a register: any of them.
+    if (isa_and_nonnull<StructType>(elementOf(typeAt(Here))))
+      for (Instruction *Write : writesInto(Here))
+        if (isa<StoreInst>(Write))
+          Out.insert(Write);
     eachAt(Here, StoreIndex, [&](unsigned N) {
       if (mayBe(Stores[N].Where, Here))
         Out.insert(Stores[N].I);
@@ -188,7 +195,7 @@ static constexpr unsigned MaxWalked = 20'000'000;
 /// walks the flow graph back from it and stops at stores that surely replace
 /// the value. A write in another function happens at a call that is handed
 /// the variable; where its address was stored away, all of them stay.
-void AccessResult::reachingWrites(const LoadInst &Load, const Location &L,
+void AccessResult::reachingWrites(const Instruction &Load, const Location &L,
                                   SmallSetVector<Instruction *, 8> &W) const {
   const LocalHistory &History = historyOf(L, W.getArrayRef());
   if (!History.Known || Walked > MaxWalked)
@@ -226,6 +233,11 @@ void AccessResult::reachingWrites(const LoadInst &Load, const Location &L,
   });
 }
 
+bool AccessResult::isSharedBy(const Location &L, const LoadInst &Load) {
+  const auto *Local = dyn_cast_or_null<AllocaInst>(L.Root);
+  return !Local || Local->getFunction() != Load.getFunction();
+}
+
 ArrayRef<Instruction *>
 AccessResult::definitionsOf(const LoadInst &Load) const {
   if (auto It = Definitions.find(&Load); It != Definitions.end())
@@ -234,8 +246,7 @@ AccessResult::definitionsOf(const LoadInst &Load) const {
   for (const Location &L : touched(Load)) {
     SmallSetVector<Instruction *, 8> Writes;
     collectWrites(L, Writes);
-    if (const auto *Local = dyn_cast_or_null<AllocaInst>(L.Root);
-        Local && Local->getFunction() == Load.getFunction())
+    if (!isSharedBy(L, Load))
       reachingWrites(Load, L, Writes);
     All.insert(Writes.begin(), Writes.end());
   }
@@ -258,6 +269,35 @@ SmallVector<LoadInst *, 8> AccessResult::usesOf(const Instruction &Write,
            !is_contained(definitionsOf(*Load), &Write);
   });
   return All.takeVector();
+}
+
+SmallVector<Instruction *, 8>
+AccessResult::writesInto(const Location &L, const Instruction &At) const {
+  SmallVector<Instruction *, 8> All = writesInto(L);
+  const auto *Local = dyn_cast_or_null<AllocaInst>(L.Root);
+  if (!Local || Local->getFunction() != At.getFunction() || isReachable(L))
+    return All;
+  // Field by field: the last store before \p At counts.
+  SmallPtrSet<const Instruction *, 8> Stores, Reaching;
+  LocationSet Seen;
+  for (const Instruction *Write : All) {
+    const auto *Store = dyn_cast<StoreInst>(Write);
+    if (!Store)
+      continue;
+    Stores.insert(Store);
+    for (const Location &Field : touched(*Store)) {
+      if (Field.Root != L.Root || !Seen.insert(Field))
+        continue;
+      SmallSetVector<Instruction *, 8> W;
+      collectWrites(Field, W);
+      reachingWrites(At, Field, W);
+      Reaching.insert(W.begin(), W.end());
+    }
+  }
+  erase_if(All, [&](const Instruction *Write) {
+    return Stores.contains(Write) && !Reaching.contains(Write);
+  });
+  return All;
 }
 
 SmallVector<Instruction *, 8>

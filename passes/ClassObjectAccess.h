@@ -31,6 +31,8 @@
 
 #include <memory>
 #include <optional>
+#include <set>
+#include <vector>
 
 namespace tpc {
 
@@ -72,6 +74,21 @@ struct Location {
 };
 
 using Locations = llvm::SmallVector<Location, 1>;
+
+/// A set of exactly these locations.
+class LocationSet {
+public:
+  /// True where \p L was not in it.
+  bool insert(const Location &L) {
+    std::vector<uintptr_t> Key{reinterpret_cast<uintptr_t>(L.Root)};
+    for (const Step &S : L.Path)
+      Key.insert(Key.end(), {S.Type, S.Index, S.Class});
+    return Known.insert(std::move(Key)).second;
+  }
+
+private:
+  std::set<std::vector<uintptr_t>> Known;
+};
 
 /// More places than this for one pointer say nothing any more.
 inline constexpr unsigned MaxLocations = 64;
@@ -119,6 +136,10 @@ public:
   llvm::ArrayRef<llvm::Instruction *>
   definitionsOf(const llvm::LoadInst &Load) const;
 
+  /// True where the writes of \p L are the same for all loads: it is no local
+  /// variable of \p Load's function.
+  static bool isSharedBy(const Location &L, const llvm::LoadInst &Load);
+
   /// The loads to which \p Write, a store or call that writes the scalar at
   /// \p Pointer, can give the value.
   llvm::SmallVector<llvm::LoadInst *, 8>
@@ -130,6 +151,10 @@ public:
   /// Stores into the object at \p L, and calls that are handed it or a part
   /// of it.
   llvm::SmallVector<llvm::Instruction *, 8> writesInto(const Location &L) const;
+  /// The same, without stores into a local object of \p At's function that
+  /// others surely replace before \p At.
+  llvm::SmallVector<llvm::Instruction *, 8>
+  writesInto(const Location &L, const llvm::Instruction &At) const;
 
   const TypeNumbers &types() const { return Numbers; }
   DebugTypes &debugTypes() const { return *Debug; }
@@ -186,7 +211,7 @@ private:
   void collectLoads(const Location &L,
                     llvm::SmallSetVector<llvm::LoadInst *, 8> &Out) const;
   Locations throughCopies(const Location &L, bool Backward) const;
-  void reachingWrites(const llvm::LoadInst &Load, const Location &L,
+  void reachingWrites(const llvm::Instruction &Load, const Location &L,
                       llvm::SmallSetVector<llvm::Instruction *, 8> &W) const;
   static Slot slot(const Location &L);
   static const llvm::Value *baseOf(const llvm::Value *Pointer);

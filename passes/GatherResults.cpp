@@ -315,8 +315,9 @@ GatheredResults GatherResults::run(Module &M, ModuleAnalysisManager &AM) {
     C.FlagValue = P.Flag;
     C.TextRelation = P.TextRelation;
     C.IsOperand = P.IsOperand;
-    C.How = P.How;
-    C.Type = P.How.kind() != Transform::None    ? Comparison::Derived
+    if (!P.How.isNarrowing())
+      C.How = P.How;
+    C.Type = C.How.kind() != Transform::None    ? Comparison::Derived
              : P.Flag && P.TextRelation.empty() ? Comparison::Flag
                                                 : Comparison::Parameter;
     C.Reads.push_back(P.Read);

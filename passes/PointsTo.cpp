@@ -36,10 +36,11 @@ void AccessResult::Builder::findEscaped() {
         for (const Use &U : V->uses()) {
           const auto *User = cast<Instruction>(U.getUser());
           const auto *Call = dyn_cast<CallBase>(User);
-          if (isa<GEPOperator>(User) || isa<CastInst>(User))
+          // What is merged of pointers is followed like one of them.
+          if (isa<GEPOperator>(User) || isa<CastInst>(User) ||
+              isa<PHINode>(User) || isa<SelectInst>(User))
             Work.push_back(User);
-          else if (isa<PHINode>(User) || isa<SelectInst>(User) ||
-                   isa<ReturnInst>(User) ||
+          else if (isa<ReturnInst>(User) ||
                    (isa<StoreInst>(User) && U.getOperandNo() == 0) ||
                    (Call && !Calls.callees(*Call).empty()))
             R.Escaped.insert(&I);
@@ -159,10 +160,60 @@ bool AccessResult::Builder::isDue(const Node &N) const {
                   }));
 }
 
+/// The number of the content of \p L.
+unsigned AccessResult::Builder::contentAt(const Location &L, bool Unrooted) {
+  hash_code Hash = hash_combine(L.Root, Unrooted);
+  for (const Step &S : L.Path)
+    Hash = hash_combine(Hash, S.Type, S.Index, S.Class);
+  SmallVector<unsigned, 1> &Alike = ContentIndex[Hash];
+  for (unsigned N : Alike) {
+    const Content &C = Contents[N];
+    if (C.Unrooted == Unrooted && C.Where.Root == L.Root &&
+        equal(C.Where.Path, L.Path, [](const Step &A, const Step &B) {
+          return A.Type == B.Type && A.Index == B.Index && A.Class == B.Class;
+        }))
+      return N;
+  }
+  Alike.push_back(Contents.size());
+  Contents.push_back({L, Unrooted});
+  return Contents.size() - 1;
+}
+
+/// Adds to \p Out the pointers that are kept at a place by now.
+void AccessResult::Builder::collect(unsigned Number, Locations &Out) {
+  const Location Where = Contents[Number].Where;
+  bool Unrooted = Contents[Number].Unrooted;
+  if (Where.Root && !Where.Path.empty() && R.isReachable(Where))
+    collect(contentAt({nullptr, Where.Path}, /*Unrooted=*/true), Out);
+  Content &C = Contents[Number];
+  if (C.Found.size() < MaxLocations &&
+      (!C.Done || SlotGrown.lookup(slot(Where)) > C.Done)) {
+    auto Add = [&](unsigned S) {
+      if (any_of(PointerStores[S].Where,
+                 [&](const Location &To) { return R.mayBe(To, Where); }))
+        R.addPointees(PointerStores[S].I->getValueOperand(), C.Found);
+    };
+    auto Visit = [&](const auto &Map, const auto &Key) {
+      if (auto It = Map.find(Key); It != Map.end())
+        for_each(It->second, Add);
+    };
+    Visit(PointerStoreIndex.Exact, std::pair(slot(Where), Where.Root));
+    if (!Where.Root && !Unrooted)
+      Visit(PointerStoreIndex.Rooted, slot(Where));
+    C.Done = Now;
+  }
+  for (const Location &L : C.Found)
+    R.addTo(Out, L);
+}
+
 /// Adds what \p N's sources lead to by now; true where that is more.
 bool AccessResult::Builder::update(Node &N) {
   Locations Found = R.Targets.lookup(N.V);
   size_t Before = Found.size();
+  if (Before >= MaxLocations) {
+    N.Done = Now;
+    return false;
+  }
   for (const Value *Source : N.Sources)
     R.addPointees(Source, Found);
   if (N.Container)
@@ -176,11 +227,7 @@ bool AccessResult::Builder::update(Node &N) {
       if (auto It = Iterators.find(L.Root); L.Root && It != Iterators.end())
         for (const Value *Container : It->second)
           addElements(Container, Found);
-      R.eachAt(L, PointerStoreIndex, [&](unsigned S) {
-        if (any_of(PointerStores[S].Where,
-                   [&](const Location &To) { return R.mayBe(To, L); }))
-          R.addPointees(PointerStores[S].I->getValueOperand(), Found);
-      });
+      collect(contentAt(L, /*Unrooted=*/false), Found);
     }
   }
   N.Done = Now;

@@ -57,7 +57,6 @@ void Transform::call(StringRef Op, std::optional<double> Constant, bool First) {
 static StringRef signOf(const Application &A) {
   return StringSwitch<StringRef>(A.Op)
       .Case("/", " / ")
-      .Case("div", " div ")
       .Case("rem", " rem ")
       .Case("shr", " >> ")
       .Case("and", " & ")
@@ -80,6 +79,10 @@ static std::string applicationText(const Application &A) {
     return operandText(A.Of) + "^2";
   if (A.Op == "wrap" || A.Op == "wrapu")
     return A.Op + shortest(*A.Constant) + "(" + A.Of.text() + ")";
+  if (A.Op == "div") {
+    std::string X = operandText(A.Of), C = shortest(*A.Constant);
+    return "trunc(" + (A.First ? C + " / " + X : X + " / " + C) + ")";
+  }
   StringRef Sign = signOf(A);
   if (!A.Constant)
     return A.Op + "(" + A.Of.text() + ")";
@@ -90,13 +93,21 @@ static std::string applicationText(const Application &A) {
   return Sign.empty() ? A.Op + "(" + Both + ")" : Both;
 }
 
+bool Transform::isNarrowing() const {
+  return Inner && Scale == 1 && Offset == 0 &&
+         (Inner->Op == "wrap" || Inner->Op == "wrapu") &&
+         Inner->Of.kind() == None;
+}
+
 std::string Transform::text() const {
   if (kind() == None)
     return "x";
   std::string T = Inner ? applicationText(*Inner) : "x";
   if (Inner && !signOf(*Inner).empty() && (Scale != 1 || Offset != 0))
     T = "(" + T + ")";
-  if (Scale != 1)
+  if (Scale == -1 && Inner)
+    T = "-" + T;
+  else if (Scale != 1)
     T = shortest(Scale) + " * " + T;
   if (Offset != 0)
     T += (Offset < 0 ? " - " : " + ") + shortest(std::fabs(Offset));

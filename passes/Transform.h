@@ -42,6 +42,9 @@ struct Transform {
             bool First = false);
   /// For people: `2 * sqrt(x + 1)`.
   std::string text() const;
+  /// True where nothing was done but to keep the value in fewer bits: it is
+  /// meant to fit.
+  bool isNarrowing() const;
   /// The same for programs (docs/formats.md): a number, "x", or a list of an
   /// operator and its operands.
   llvm::json::Value tree() const;

@@ -31,7 +31,7 @@ void numbers(ros::NodeHandle &Handle, ros::Publisher &Out, double V) {
   // CHECK-DAG: relation > as 3 / (x + 1) {{.*}} at [[#@LINE+1]]:9
   if (V > 3 / (X + 1))
     Out.publish(std_msgs::Number());
-  // CHECK-DAG: relation > as -1 * (x + 1)^2 + 5 {{.*}} at [[#@LINE+1]]:9
+  // CHECK-DAG: relation > as -(x + 1)^2 + 5 {{.*}} at [[#@LINE+1]]:9
   if (V > 5 - (X + 1) * (X + 1))
     Out.publish(std_msgs::Number());
   // CHECK-DAG: relation > as 0.017453292519943295 * x {{.*}} at [[#@LINE+1]]:9

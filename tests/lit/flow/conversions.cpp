@@ -30,7 +30,7 @@ void step(ros::NodeHandle &Handle, ros::Publisher &Out, double V, long W) {
   // CHECK-DAG: parameter 'n' relation > as x {{.*}} at [[#@LINE+1]]:9
   if (W > static_cast<int>(static_cast<double>(N)))
     Out.publish(std_msgs::Number());
-  // CHECK-DAG: derived 'n' relation > as wrap8(x) {{.*}} at [[#@LINE+1]]:9
+  // CHECK-DAG: parameter 'n' relation > as x {{.*}} at [[#@LINE+1]]:9
   if (W > static_cast<signed char>(N))
     Out.publish(std_msgs::Number());
   Byte = N;
