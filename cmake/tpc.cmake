@@ -14,6 +14,7 @@
 #   TPC_PROFILE        thesis or default
 #   TPC_MAX_SECONDS    processor time that the analysis of a link unit may take (120)
 #   TPC_MAX_MEMORY     MiB that it may take (4096)
+#   TPC_CONSTANTS      report comparisons with constants of the source, too
 #   TPC_DISABLE        leave this package alone
 
 cmake_policy(PUSH)
@@ -24,6 +25,10 @@ set(_tpc_plugin "${_tpc_prefix}/lib/tpc/TpcPasses.so")
 set(_tpc_log "${_tpc_prefix}/lib/libtpc_log.so")
 if(NOT TPC_CLANG_VERSION)
   set(TPC_CLANG_VERSION 19)
+endif()
+set(_tpc_constants "")
+if(TPC_CONSTANTS)
+  set(_tpc_constants "-tpc-constants")
 endif()
 # The compiler leaves its optimisation to the link, where the analysis comes
 # first and the optimisation follows at the level that was asked for; the level
@@ -202,8 +207,10 @@ macro(_tpc_instrument)
     list(APPEND _tpc_options "-tpc-max-memory=${TPC_MAX_MEMORY}")
   endif()
   if(TPC_RULES)
-    list(APPEND _tpc_options "-tpc-rules=${TPC_RULES}")
+    get_filename_component(_tpc_rules "${TPC_RULES}" ABSOLUTE BASE_DIR "${CMAKE_SOURCE_DIR}")
+    list(APPEND _tpc_options "-tpc-rules=${_tpc_rules}")
   endif()
+  list(APPEND _tpc_options ${_tpc_constants})
   string(REPLACE ";" "," _tpc_linked "${_tpc_languages}")
   add_link_options(
     "$<$<LINK_LANGUAGE:${_tpc_linked}>:LINKER:--load-pass-plugin=${_tpc_plugin}>"
@@ -216,7 +223,7 @@ macro(_tpc_instrument)
 endmacro()
 
 # At the end of the package's CMakeLists.txt: what is linked is linked again when
-# the passes or the log library have changed; and what TPC does not see to after
+# the passes, the log library or the rules have changed; and what TPC does not see to after
 # all is said. Flags in generator expressions and in the interface of another
 # target are not known here.
 function(_tpc_finish)
@@ -258,11 +265,15 @@ function(_tpc_finish_folder folder)
   endforeach()
   get_directory_property(plugin DIRECTORY "${folder}" DEFINITION _tpc_plugin)
   get_directory_property(log DIRECTORY "${folder}" DEFINITION _tpc_log)
+  get_directory_property(rules DIRECTORY "${folder}" DEFINITION _tpc_rules)
   get_property(targets DIRECTORY "${folder}" PROPERTY BUILDSYSTEM_TARGETS)
   foreach(target IN LISTS targets)
     get_target_property(type "${target}" TYPE)
     if(type MATCHES "^(EXECUTABLE|SHARED_LIBRARY|MODULE_LIBRARY)$")
       set_property(TARGET "${target}" APPEND PROPERTY LINK_DEPENDS "${plugin}" "${log}")
+      if(rules AND EXISTS "${rules}")
+        set_property(TARGET "${target}" APPEND PROPERTY LINK_DEPENDS "${rules}")
+      endif()
     elseif(NOT type MATCHES "^(STATIC|OBJECT)_LIBRARY$")
       continue()
     endif()

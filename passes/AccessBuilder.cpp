@@ -58,6 +58,10 @@ static const Value *constantObject(const CallBase &Call,
 
 /// What \p Call can write to.
 void AccessResult::Builder::fileCall(CallBase &Call) {
+  // What is only asked about its text is not written.
+  if (const Rule *Row = Rules.match(Call);
+      Row && Row->Kind == Rule::Text && Row->Relation != "copy")
+    return;
   bool Opaque = Calls.callees(Call).empty();
   const ContainerMethod *Method = Rules.container(Call);
   if (Method && Method->Writes)

@@ -2,14 +2,17 @@
 #include "GatherResults.h"
 
 #include "Budget.h"
+#include "ConstantFinder.h"
 #include "IfStatements.h"
 #include "Names.h"
 #include "Options.h"
 #include "ParamCallFinder.h"
-#include "Print.h"
+#include "Rules.h"
+#include "SimpleCallGraph.h"
 
 #include "llvm/ADT/EquivalenceClasses.h"
 #include "llvm/ADT/SetVector.h"
+#include "llvm/ADT/SmallPtrSet.h"
 #include "llvm/ADT/StringExtras.h"
 #include "llvm/IR/CFG.h"
 #include "llvm/IR/Instructions.h"
@@ -30,11 +33,15 @@ StringRef Comparison::typeName() const {
     return "flag";
   case Derived:
     return "derived";
+  case Constant:
+    return "constant";
   }
   llvm_unreachable("no such type");
 }
 
 StringRef Comparison::relation() const {
+  if (!TextRelation.empty())
+    return TextRelation;
   if (!Compare)
     return "flag";
   CmpInst::Predicate P =
@@ -80,6 +87,7 @@ static bool nearest(const ParameterComparison &C, const SliceResult &Slice,
     Found = true;
     Out.Predicate = D.Predicate;
     Out.Direct = D.Direct;
+    Out.Way = D.Way;
     Out.Slice = *E;
   }
   return Found;
@@ -160,33 +168,33 @@ sameCondition(const BranchInst &First) {
   return Found;
 }
 
-/// Counts for each comparison the others of its condition.
-static void countOthers(std::vector<Comparison> &All) {
+/// Counts for each comparison the others of its condition that compare a
+/// parameter.
+static void countOthers(GatheredResults &R) {
   EquivalenceClasses<const Instruction *> Conditions;
   SmallSetVector<const BranchInst *, 8> Work;
-  for (const Comparison &C : All) {
-    Conditions.insert(C.Predicate);
-    if (const auto *Br = dyn_cast<BranchInst>(C.Predicate))
-      Work.insert(Br);
-  }
+  for (const auto *List : {&R.Comparisons, &R.Constants})
+    for (const Comparison &C : *List) {
+      Conditions.insert(C.Predicate);
+      if (const auto *Br = dyn_cast<BranchInst>(C.Predicate))
+        Work.insert(Br);
+    }
   for (unsigned N = 0; N < Work.size(); ++N)
     for (const BranchInst *Br : sameCondition(*Work[N])) {
       Conditions.unionSets(Work[N], Br);
       Work.insert(Br);
     }
-  // Of each condition, and of each comparison in it.
-  DenseMap<const Instruction *, unsigned> InCondition;
-  DenseMap<std::pair<const Instruction *, const CmpInst *>, unsigned> Alike;
-  for (const Comparison &C : All) {
-    const Instruction *Condition = Conditions.getLeaderValue(C.Predicate);
-    ++InCondition[Condition];
-    ++Alike[{Condition, C.Compare}];
-  }
-  for (Comparison &C : All) {
-    const Instruction *Condition = Conditions.getLeaderValue(C.Predicate);
-    C.OtherThresholds = InCondition[Condition] -
-                        (C.Compare ? Alike[{Condition, C.Compare}] : 1);
-  }
+  // A condition's comparisons are few, a unit's are many.
+  DenseMap<const Instruction *, SmallVector<const Comparison *, 2>> ByCondition;
+  for (const Comparison &C : R.Comparisons)
+    ByCondition[Conditions.getLeaderValue(C.Predicate)].push_back(&C);
+  for (auto *List : {&R.Comparisons, &R.Constants})
+    for (Comparison &C : *List)
+      C.OtherThresholds =
+          count_if(ByCondition.lookup(Conditions.getLeaderValue(C.Predicate)),
+                   [&](const Comparison *O) {
+                     return O != &C && (O->Compare != C.Compare || !C.Compare);
+                   });
 }
 
 /// A UUID of version 5 (RFC 4122) of \p Name, in a namespace of our own.
@@ -205,79 +213,148 @@ static std::string uuidOf(StringRef Name) {
          "-" + Hex.substr(16, 4) + "-" + Hex.substr(20);
 }
 
-/// Gives the comparisons their keys. What a macro writes several times has one
+namespace {
+
+/// Gives comparisons their keys. What a macro writes several times has one
 /// place; there the order in the function tells it apart. Instances of one
-/// function have the same keys.
-static void nameAll(std::vector<Comparison> &All, const Options &Opts,
-                    const ParamCallFinder::Result &Reads) {
-  StringMap<MapVector<const Function *, SmallVector<const Instruction *, 1>>>
-      Places;
-  for (Comparison &C : All) {
-    const DILocation *Loc = C.place().getDebugLoc();
+/// function have the same keys, and so have those that were inlined.
+class Namer {
+public:
+  explicit Namer(const Options &Opts) : Opts(Opts) {}
+
+  /// \p What is the parameter or the constant.
+  std::string keyOf(const Comparison &C, StringRef What) {
     std::string Name = join(
         std::initializer_list<std::string>{
-            Opts.Package, Opts.LinkUnit, Opts.relative(pathOf(Loc)),
-            functionName(*C.place().getFunction()),
-            std::to_string(Loc->getLine()), std::to_string(Loc->getColumn()),
-            Reads[C.Reads.front()].Name},
+            Opts.Package, Opts.LinkUnit, Opts.relative(pathOf(C.Where)),
+            functionNameFor(*C.Where), std::to_string(C.Where->getLine()),
+            std::to_string(C.Where->getColumn()), What.str()},
         "\n");
-    auto &Here = Places[Name][C.place().getFunction()];
+    auto &Here =
+        Places[Name][{C.place().getFunction(), C.Where->getInlinedAt()}];
     auto *Known = find(Here, &C.place());
     if (size_t Ordinal = Known - Here.begin())
       Name += "\n" + std::to_string(Ordinal);
     if (Known == Here.end())
       Here.push_back(&C.place());
-    C.Key = uuidOf(Name);
+    return uuidOf(Name);
   }
-}
+
+private:
+  using Instance = std::pair<const Function *, const DILocation *>;
+  const Options &Opts;
+  StringMap<DenseMap<Instance, SmallVector<const Instruction *, 1>>> Places;
+};
+
+/// Finds out where comparisons stand in the user's own sources.
+class Places {
+public:
+  Places(const Options &Opts, const RuleMatches &Rules)
+      : Sources(Opts), Rules(Rules) {}
+
+  /// The place of \p I, or of the call of the transparent function that it is
+  /// in; null where it is in code that is not the user's.
+  const DILocation *of(const Instruction &I) {
+    const DISubprogram *Through = nullptr;
+    const DILocation *Loc = I.getDebugLoc();
+    for (; Loc && !Sources.has(Loc); Loc = Loc->getInlinedAt())
+      Through = Loc->getScope()->getSubprogram();
+    return Loc && (!Through || isTransparent(Through)) ? Loc : nullptr;
+  }
+
+private:
+  bool isTransparent(const DISubprogram *F) {
+    auto [It, New] = Known.try_emplace(F, false);
+    if (New)
+      It->second = Rules.isTransparent(qualifiedName(F->getLinkageName()));
+    return It->second;
+  }
+
+  UserSources Sources;
+  const RuleMatches &Rules;
+  DenseMap<const DISubprogram *, bool> Known;
+};
+
+} // namespace
 
 GatheredResults GatherResults::run(Module &M, ModuleAnalysisManager &AM) {
   const ParameterUsage &Usage = AM.getResult<ParamUsageFinder>(M);
   const ParamCallFinder::Result &Reads = AM.getResult<ParamCallFinder>(M);
   const SliceResult &Slice = AM.getResult<BackwardPropagate>(M);
   const Options Opts = Options::fromCommandLine();
-  UserSources Sources(Opts);
+  Places Own(Opts, AM.getResult<RuleAnalysis>(M));
   GatheredResults R;
+  SmallPtrSet<const CmpInst *, 16> WithParameter;
+  DenseMap<const Value *, SmallVector<unsigned, 1>> Known; ///< by what compares
   for (const ParameterComparison &P : Usage.Comparisons) {
     if (Budget::isSpent())
       break;
     Comparison C{};
-    if (!nearest(P, Slice, C))
+    if (!nearest(P, Slice, C)) {
+      R.Others.push_back({&P, NotReported::NotExposed});
       continue;
+    }
     C.Compare = P.Compare;
     C.Threshold = P.Operand;
     C.FlagValue = P.Flag;
+    C.TextRelation = P.TextRelation;
     C.IsOperand = P.IsOperand;
     C.How = P.How;
-    C.Type = P.Flag                          ? Comparison::Flag
-             : P.How.Kind == Transform::None ? Comparison::Parameter
-                                             : Comparison::Derived;
+    C.Type = P.How.kind() != Transform::None    ? Comparison::Derived
+             : P.Flag && P.TextRelation.empty() ? Comparison::Flag
+                                                : Comparison::Parameter;
     C.Reads.push_back(P.Read);
-    const DILocation *Loc = C.place().getDebugLoc();
-    if (!Loc) {
-      ++R.WithoutDebugInfo;
+    WithParameter.insert(P.Compare);
+    if (P.Flag)
+      WithParameter.insert(dyn_cast<CmpInst>(P.Flag));
+    C.Where = Own.of(C.place());
+    if (!C.Where) {
+      bool Outside = C.place().getDebugLoc();
+      ++(Outside ? R.OutsideSources : R.WithoutDebugInfo);
+      R.Others.push_back({&P, Outside ? NotReported::OutsideSources
+                                      : NotReported::WithoutDebugInfo});
       continue;
     }
-    if (!Sources.has(Loc)) {
-      ++R.OutsideSources;
-      continue;
-    }
-    if (P.ByArgument && P.Compare)
-      R.Shared.insert(P.Compare->getFunction());
+    if (P.ByArgument)
+      R.Shared.insert(const_cast<Function *>(C.place().getFunction()));
     // A second read of the same parameter is the same comparison.
-    auto Same = find_if(R.Comparisons, [&](const Comparison &O) {
+    SmallVector<unsigned, 1> &Alike = Known[P.Compare ? P.Compare : P.Flag];
+    auto *Same = find_if(Alike, [&](unsigned N) {
+      const Comparison &O = R.Comparisons[N];
       return O.Compare == C.Compare && O.Predicate == C.Predicate &&
              O.FlagValue == C.FlagValue && O.Threshold == C.Threshold &&
              Reads[O.Reads.front()].Name == Reads[P.Read].Name;
     });
-    if (Same == R.Comparisons.end())
+    if (Same == Alike.end()) {
+      Alike.push_back(R.Comparisons.size());
       R.Comparisons.push_back(std::move(C));
-    else if (!is_contained(Same->Reads, P.Read))
-      Same->Reads.push_back(P.Read);
+    } else if (auto &All = R.Comparisons[*Same].Reads;
+               !is_contained(All, P.Read)) {
+      All.push_back(P.Read);
+    }
   }
-  countOthers(R.Comparisons);
-  nameAll(R.Comparisons, Opts, Reads);
+  R.Constants = ConstantFinder(AM.getResult<SimpleCallGraph>(M), Slice,
+                               [&](const CmpInst &Compare) {
+                                 return WithParameter.contains(&Compare)
+                                            ? nullptr
+                                            : Own.of(Compare);
+                               })
+                    .run(AM.getResult<IfStatements>(M).predicates());
+  countOthers(R);
+  Namer Keys(Opts);
+  for (Comparison &C : R.Comparisons)
+    C.Key = Keys.keyOf(C, Reads[C.Reads.front()].Name);
+  for (Comparison &C : R.Constants)
+    C.Key = Keys.keyOf(C, "constant " + C.ConstantName);
   return R;
+}
+
+/// What the printer says of \p C and of where it stands.
+static void print(raw_ostream &OS, const Comparison &C, StringRef What) {
+  OS << "  " << C.typeName() << " '" << What << "' relation " << C.relation()
+     << " as " << C.How.text() << " distance " << C.Slice.Distance << " others "
+     << C.OtherThresholds << " in " << C.place().getFunction()->getName()
+     << " at " << C.Where->getLine() << ':' << C.Where->getColumn() << '\n';
 }
 
 PreservedAnalyses GatherResultsPrinter::run(Module &M,
@@ -287,11 +364,10 @@ PreservedAnalyses GatherResultsPrinter::run(Module &M,
   OS << "threshold predicate comparisons of " << M.getName() << ": "
      << R.Comparisons.size() << '\n';
   for (const Comparison &C : R.Comparisons)
-    OS << "  " << C.typeName() << " '" << Reads[C.Reads.front()].Name
-       << "' relation " << C.relation() << " as " << C.How.text()
-       << " distance " << C.Slice.Distance << " others " << C.OtherThresholds
-       << " in " << C.place().getFunction()->getName() << tpc::place(C.place())
-       << '\n';
+    print(OS, C, Reads[C.Reads.front()].Name);
+  OS << "comparisons with constants: " << R.Constants.size() << '\n';
+  for (const Comparison &C : R.Constants)
+    print(OS, C, C.ConstantName);
   return PreservedAnalyses::all();
 }
 

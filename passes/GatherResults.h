@@ -15,39 +15,58 @@
 namespace tpc {
 
 struct Comparison {
-  enum TypeTy { Parameter, Flag, Derived };
+  enum TypeTy { Parameter, Flag, Derived, Constant };
   TypeTy Type;
-  llvm::CmpInst *Compare;       ///< null for a flag
+  llvm::CmpInst *Compare;       ///< null for a flag and for text
   unsigned Threshold = 0;       ///< operand of Compare that is the threshold
-  llvm::Value *FlagValue;       ///< null for a comparison
+  llvm::Value *FlagValue;       ///< what decides where there is no Compare
+  llvm::StringRef TextRelation; ///< see ParameterComparison
   llvm::Instruction *Predicate; ///< the nearest one that it decides
   bool Direct;                  ///< see Decision
   bool IsOperand;               ///< see ParameterComparison
   Transform How;
   llvm::SmallVector<unsigned, 1> Reads; ///< all of one parameter name
+  std::string ConstantName; ///< of a constant: its variable or its number
   SliceEntry Slice;
+  unsigned Way; ///< see Decision
   unsigned OtherThresholds = 0;
   std::string Key; ///< survives a rebuild
+  /// Where it stands in the user's own sources: for a comparison that is in
+  /// std::min, say, the call of that.
+  const llvm::DILocation *Where;
 
-  /// Where it stands in the source.
+  /// The instruction that stands there.
   const llvm::Instruction &place() const {
     if (Compare)
       return *llvm::cast<llvm::Instruction>(Compare);
-    return IsOperand ? *llvm::cast<llvm::Instruction>(FlagValue) : *Predicate;
+    return IsOperand || !TextRelation.empty()
+               ? *llvm::cast<llvm::Instruction>(FlagValue)
+               : *Predicate;
   }
   llvm::StringRef typeName() const;
   /// The operator with the threshold on the right-hand side, or `flag`.
   llvm::StringRef relation() const;
 };
 
+/// A comparison with a parameter that is not reported, and why.
+struct NotReported {
+  enum WhyTy { NotExposed, OutsideSources, WithoutDebugInfo };
+  const ParameterComparison *Compared;
+  WhyTy Why;
+};
+
 struct GatheredResults {
   /// In the order of the reads and then of the way forward.
   std::vector<Comparison> Comparisons;
+  /// Those with a constant, in the order of the program. None of them is in
+  /// the list above.
+  std::vector<Comparison> Constants;
   unsigned OutsideSources = 0; ///< comparisons in code that is not the user's
   /// Functions that compare a parameter which one of several calls handed
   /// them: their other calls compare something else.
   llvm::SmallSetVector<llvm::Function *, 4> Shared;
   unsigned WithoutDebugInfo = 0; ///< comparisons whose place is not known
+  std::vector<NotReported> Others;
 };
 
 class GatherResults : public llvm::AnalysisInfoMixin<GatherResults> {

@@ -14,6 +14,95 @@ using namespace llvm;
 
 namespace tpc {
 
+/// The instruction that a report on \p V stands before; null where there is no
+/// place that V alone leads to.
+static Instruction *after(Value *V) {
+  auto *I = cast<Instruction>(V);
+  if (auto *Invoke = dyn_cast<InvokeInst>(I)) {
+    BasicBlock *Next = Invoke->getNormalDest();
+    return Next->getSinglePredecessor() ? &*Next->getFirstInsertionPt()
+                                        : nullptr;
+  }
+  if (isa<PHINode>(I))
+    return &*I->getParent()->getFirstInsertionPt();
+  return I->getNextNode();
+}
+
+/// What \p V is the outcome of, without negations: clang itself turns the
+/// branches of `if (!(a < b))` around, and an outcome that is stored negated is
+/// to be reported alike.
+static Value *withoutNegation(Value *V) {
+  for (Value *Next = V; auto *I = dyn_cast<Instruction>(Next);) {
+    bool Negates = I->getOpcode() == Instruction::Xor &&
+                   isa<ConstantInt>(I->getOperand(1)) &&
+                   cast<ConstantInt>(I->getOperand(1))->isOne();
+    if (!Negates && !isa<ZExtInst>(I) &&
+        !(isa<TruncInst>(I) && I->getType()->isIntegerTy(1)))
+      break;
+    Next = I->getOperand(0);
+    if (Negates)
+      V = Next;
+  }
+  return V;
+}
+
+/// The outcome of \p Predicate in the program that is instrumented.
+static Value *outcomeOf(const Instruction &Predicate,
+                        const AnalysedModule &Analysed) {
+  Value *Outcome = Analysed.original(withoutNegation(conditionOf(Predicate)));
+  return Outcome ? Outcome
+                 : conditionOf(*cast<Instruction>(Analysed.original(
+                       const_cast<Instruction *>(&Predicate))));
+}
+
+/// The truth value that \p V, another one, is joined into by itself alone: what
+/// its function goes on with. In the program that is instrumented, where the
+/// joined one has to be as well.
+static Value *joined(Value *V, const AnalysedModule &Analysed) {
+  SmallVector<Value *, 4> Chain{V};
+  while (V->hasOneUse()) {
+    auto *I = dyn_cast<Instruction>(*V->user_begin());
+    if (!I || !(I->isBitwiseLogicOp() || isa<ZExtInst>(I) ||
+                (isa<TruncInst>(I) && I->getType()->isIntegerTy(1)) ||
+                (isa<ICmpInst>(I) && isa<Constant>(I->getOperand(1)))))
+      break;
+    Chain.push_back(V = I);
+  }
+  for (Value *Last : reverse(Chain))
+    if (Value *There = Analysed.original(withoutNegation(Last)))
+      return There;
+  return nullptr;
+}
+
+/// The report on a flag, a switch or text: there is but one value.
+static bool planFlag(const Comparison &C, bool IsUnsigned,
+                     const AnalysedModule &Analysed, Report &R) {
+  auto *Predicate = cast<Instruction>(Analysed.original(C.Predicate));
+  bool IsText = !C.TextRelation.empty();
+  Value *Flag = C.FlagValue == conditionOf(*C.Predicate)
+                    ? conditionOf(*Predicate)
+                    : Analysed.original(C.FlagValue);
+  if (!Flag || Flag->getType()->isVectorTy() ||
+      (!C.Direct && !C.IsOperand && !IsText))
+    return false;
+  R.Before = Predicate;
+  R.Result = outcomeOf(*C.Predicate, Analysed);
+  R.Switch = dyn_cast<SwitchInst>(Predicate);
+  if (C.IsOperand || (IsText && !C.Direct)) {
+    R.Result = IsText ? joined(C.FlagValue, Analysed) : Flag;
+    R.Before = after(R.Result);
+    R.Switch = nullptr;
+  }
+  R.Outcome = IsText ? Flag : R.Result;
+  // An integer that stands as a condition is compared with zero: the value
+  // itself says more than the outcome.
+  if (auto *NotZero = dyn_cast<CmpInst>(Flag); NotZero && !IsText)
+    Flag = NotZero->getOperand(isa<Constant>(NotZero->getOperand(0)) ? 1 : 0);
+  R.Compared = R.Threshold = Flag;
+  R.Signed = !IsUnsigned && !IsText;
+  return R.Before;
+}
+
 std::optional<Report> planReport(const Comparison &C, bool IsUnsigned,
                                  const AnalysedModule &Analysed) {
   Report R;
@@ -21,29 +110,9 @@ std::optional<Report> planReport(const Comparison &C, bool IsUnsigned,
   auto *Predicate = cast_or_null<Instruction>(Analysed.original(C.Predicate));
   if (!Predicate)
     return std::nullopt;
-  if (!C.Compare) {
-    Value *Flag = C.FlagValue == conditionOf(*C.Predicate)
-                      ? conditionOf(*Predicate)
-                      : Analysed.original(C.FlagValue);
-    if (!Flag || Flag->getType()->isVectorTy() || (!C.Direct && !C.IsOperand))
-      return std::nullopt;
-    R.Before = Predicate;
-    R.Result = conditionOf(*Predicate);
-    if (C.IsOperand) {
-      R.Before = cast<Instruction>(Flag)->getNextNode();
-      R.Result = Flag;
-    }
-    // An integer that stands as a condition is compared with zero: the value
-    // itself says more than the outcome.
-    if (auto *NotZero = dyn_cast<CmpInst>(Flag))
-      Flag = NotZero->getOperand(isa<Constant>(NotZero->getOperand(0)) ? 1 : 0);
-    R.Compared = R.Threshold = Flag;
-    R.Outcome = R.Result;
-    R.Signed =
-        !Flag->getType()->isIntegerTy(1) && !Flag->getType()->isIntegerTy(8);
-    return R;
-  }
-  // Vectors are compared element by element: that is not one outcome.
+  if (!C.Compare)
+    return planFlag(C, IsUnsigned, Analysed, R) ? std::optional(R)
+                                                : std::nullopt;
   auto *Compare = cast_or_null<CmpInst>(Analysed.original(C.Compare));
   if (!Compare || Compare->getType()->isVectorTy())
     return std::nullopt;
@@ -57,8 +126,10 @@ std::optional<Report> planReport(const Comparison &C, bool IsUnsigned,
                (IsUnsigned || any_of(Compare->operands(), [](const Use &U) {
                   return isa<ZExtInst>(U);
                 })));
-  R.Before = C.Direct ? Predicate : Compare->getNextNode();
-  R.Result = C.Direct ? conditionOf(*Predicate) : Compare;
+  R.Result = C.Direct ? outcomeOf(*C.Predicate, Analysed)
+                      : joined(C.Compare, Analysed);
+  R.Switch = C.Direct ? dyn_cast<SwitchInst>(Predicate) : nullptr;
+  R.Before = C.Direct ? Predicate : after(R.Result);
   return R;
 }
 
@@ -80,6 +151,15 @@ static Value *toBool(IRBuilder<> &B, Value *V) {
     return V;
   return T->isFloatingPointTy() ? B.CreateFCmpUNE(V, ConstantFP::get(T, 0))
                                 : B.CreateICmpNE(V, Constant::getNullValue(T));
+}
+
+/// Whether \p Switch takes a case that is written out.
+static Value *takesCase(IRBuilder<> &B, SwitchInst &Switch) {
+  Value *Taken = B.getFalse();
+  for (auto Case : Switch.cases())
+    Taken = B.CreateOr(
+        Taken, B.CreateICmpEQ(Switch.getCondition(), Case.getCaseValue()));
+  return Taken;
 }
 
 /// `void log_one(char *key, bool result, double cmp, double thresh, bool res)`
@@ -125,9 +205,11 @@ std::string insertReports(Module &M, ArrayRef<Report> Reports) {
     Before = R.Before;
     IRBuilder<> B(R.Before);
     B.SetCurrentDebugLocation(R.Before->getDebugLoc());
-    CallInst *Call = B.CreateCall(
-        Log, {Key, toBool(B, R.Result), toDouble(B, R.Compared, R.Signed),
-              toDouble(B, R.Threshold, R.Signed), toBool(B, R.Outcome)});
+    Value *Result = R.Switch ? takesCase(B, *R.Switch) : toBool(B, R.Result);
+    Value *Outcome = R.Outcome == R.Result ? Result : toBool(B, R.Outcome);
+    CallInst *Call =
+        B.CreateCall(Log, {Key, Result, toDouble(B, R.Compared, R.Signed),
+                           toDouble(B, R.Threshold, R.Signed), Outcome});
     Call->addParamAttr(1, Attribute::ZExt);
     Call->addParamAttr(4, Attribute::ZExt);
     Collect();
@@ -161,7 +243,8 @@ PreservedAnalyses InstrumentBranchesPrinter::run(Module &M,
   for (const Comparison &C : R.Comparisons)
     OS << "  " << (C.Direct ? "before the predicate" : "where it is evaluated")
        << tpc::place(C.Direct ? *C.Predicate : C.place()) << " of the "
-       << C.typeName() << tpc::place(C.place()) << '\n';
+       << C.typeName() << " at " << C.Where->getLine() << ':'
+       << C.Where->getColumn() << '\n';
   return PreservedAnalyses::all();
 }
 

@@ -11,6 +11,8 @@
 #include "GatherResults.h"
 #include "Prepare.h"
 
+#include "llvm/IR/Instructions.h"
+
 #include <optional>
 
 namespace tpc {
@@ -20,7 +22,9 @@ struct Report {
   std::string Key;
   /// Before this instruction.
   llvm::Instruction *Before;
-  llvm::Value *Result;   ///< the predicate's outcome (any integer)
+  llvm::Value *Result; ///< the predicate's outcome (any integer)
+  /// Where the predicate is a switch, whose outcome is whether it takes a case.
+  llvm::SwitchInst *Switch = nullptr;
   llvm::Value *Compared; ///< what is compared with the threshold
   llvm::Value *Threshold;
   llvm::Value *Outcome; ///< the comparison's outcome
@@ -29,6 +33,9 @@ struct Report {
 
 /// The report for \p C, or none where a value of the analysed program has no
 /// counterpart in the original. \p IsUnsigned says so of the parameter's type.
+/// Where the operands do not come to the predicate, the report stands where the
+/// comparison is evaluated, and has as outcome of the predicate that of all
+/// that is joined there without control flow.
 std::optional<Report> planReport(const Comparison &C, bool IsUnsigned,
                                  const AnalysedModule &Analysed);
 

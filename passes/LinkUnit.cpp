@@ -43,36 +43,51 @@ struct Findings {
   std::string Failure;
 };
 
-/// Analyses \p Analysed; returns the functions whose calls are to be told apart
-/// before that says all.
-static std::vector<std::string> analyse(AnalysedModule &Analysed,
-                                        const Options &Opts, Findings &Out) {
-  fail(Opts.InjectFailure);
-  // Managers of its own: what is analysed may be a copy that goes away again.
+namespace {
+/// A manager of its own: what is analysed may be a copy that goes away again.
+struct OwnAnalyses {
   ModuleAnalysisManager AM;
-  PassBuilder().registerModuleAnalyses(AM);
-  registerAnalyses(AM);
-  Module &Seen = Analysed.module();
-  if (const std::string &Error = AM.getResult<RuleAnalysis>(Seen).Error;
-      !Error.empty()) {
-    Out.Failure = Error;
-    return {};
+  OwnAnalyses() {
+    PassBuilder().registerModuleAnalyses(AM);
+    registerAnalyses(AM);
   }
+};
+} // namespace
+
+/// Functions whose calls are to be told apart before the analysis says all.
+static std::vector<std::string> sharedFunctions(Module &Seen,
+                                                ModuleAnalysisManager &AM) {
+  std::vector<std::string> Shared;
+  for (const Function *F : AM.getResult<GatherResults>(Seen).Shared)
+    Shared.push_back(F->getName().str());
+  return Shared;
+}
+
+/// Writes down what the analysis of \p Analysed came to.
+static void conclude(AnalysedModule &Analysed, ModuleAnalysisManager &AM,
+                     const Options &Opts, Findings &Out) {
+  Module &Seen = Analysed.module();
   const GatheredResults &R = AM.getResult<GatherResults>(Seen);
   const ParamCallFinder::Result &Reads = AM.getResult<ParamCallFinder>(Seen);
-  for (const Comparison &C : R.Comparisons) {
-    StringRef Type = Reads[C.Reads.front()].Type;
-    bool IsUnsigned = Type.starts_with("unsigned") || Type == "bool";
+  auto Plan = [&](const Comparison &C, bool IsUnsigned) {
     if (std::optional<Report> Plan = planReport(C, IsUnsigned, Analysed))
       Out.Reports.push_back(std::move(*Plan));
     else
       ++Out.NotInstrumented;
+  };
+  for (const Comparison &C : R.Comparisons) {
+    StringRef Type = Reads[C.Reads.front()].Type;
+    Plan(C, Type.starts_with("unsigned") || Type == "bool");
   }
+  if (Opts.Constants)
+    for (const Comparison &C : R.Constants)
+      Plan(C, /*IsUnsigned=*/false);
   Out.Unit = describe(Seen, AM, Opts);
-  std::vector<std::string> Shared;
-  for (const Function *F : R.Shared)
-    Shared.push_back(F->getName().str());
-  return Shared;
+}
+
+static std::vector<std::string> namedHelpers(Module &M) {
+  OwnAnalyses Own;
+  return namedByCalls(M, Own.AM);
 }
 
 /// Functions in functions whose calls are told apart.
@@ -84,15 +99,25 @@ static Findings analyseSafely(Module &M, const Options &Opts) {
   Budget Limits(Opts.MaxSeconds, Opts.MaxMemory);
   auto Out = std::make_unique<Findings>();
   bool Survived = runGuarded([&] {
-    for (unsigned Round = 0; Round <= MaxSeparated; ++Round) {
-      *Out = Findings();
-      AnalysedModule Analysed(M, Opts);
-      std::vector<std::string> Shared = analyse(Analysed, Opts, *Out);
-      if (std::string Why = Limits.why(); !Why.empty())
-        Out->Failure = std::move(Why);
-      if (!Out->Failure.empty() || Round == MaxSeparated ||
-          !separateCalls(M, Shared))
-        break;
+    std::optional<AnalysedModule> Analysed(std::in_place, M, Opts);
+    if (separateCalls(M, namedHelpers(Analysed->module())))
+      Analysed.emplace(M, Opts);
+    for (unsigned Round = 0;; ++Round) {
+      fail(Opts.InjectFailure);
+      OwnAnalyses Own;
+      Module &Seen = Analysed->module();
+      Out->Failure = Own.AM.getResult<RuleAnalysis>(Seen).Error;
+      if (!Out->Failure.empty())
+        return;
+      std::vector<std::string> Shared = sharedFunctions(Seen, Own.AM);
+      // Where time or memory ran out, what was counted up to there is told.
+      bool Spent = !Limits.why().empty();
+      if (Spent || Round == MaxSeparated || !separateCalls(M, Shared)) {
+        conclude(*Analysed, Own.AM, Opts, *Out);
+        Out->Failure = Limits.why();
+        return;
+      }
+      Analysed.emplace(M, Opts);
     }
   });
   if (!Survived) {

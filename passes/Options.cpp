@@ -39,6 +39,9 @@ static cl::opt<bool>
     InstrumentOpt("tpc-instrument", cl::cat(Category), cl::init(true),
                   cl::desc("Insert the reports (default: yes)"));
 static cl::opt<bool>
+    ConstantsOpt("tpc-constants", cl::cat(Category),
+                 cl::desc("Report comparisons with constants, too"));
+static cl::opt<bool>
     PrelinkOpt("tpc-prelink", cl::cat(Category), cl::init(true),
                cl::desc("Run the optimisation that the compiler was told to "
                         "leave out (default: yes)"));
@@ -90,6 +93,7 @@ Options Options::fromCommandLine() {
   for (const std::string &Folder : ExcludeOpt)
     O.Excluded.push_back(Folder);
   O.Instrument = InstrumentOpt;
+  O.Constants = ConstantsOpt;
   O.Prelink = PrelinkOpt;
   O.MaxSeconds = MaxSecondsOpt;
   O.MaxMemory = MaxMemoryOpt;

@@ -24,6 +24,7 @@ struct Options {
   std::vector<std::string> RuleFiles; ///< the user's own tables
   std::vector<std::string> Excluded;  ///< folders that are not the user's
   bool Instrument = true;
+  bool Constants = false; ///< report comparisons with constants, too
   bool Prelink = true;
   unsigned MaxSeconds = 0; ///< of the analysis; 0 is no limit
   unsigned MaxMemory = 0;  ///< of the analysis, in MiB; 0 is no limit

@@ -319,7 +319,7 @@ void AccessResult::Builder::findTargets() {
   makeNodes();
   // Where a pointer turns out to lead to too much, what depends on that is
   // looked at again.
-  while (findComplete())
+  while (findComplete() && !Budget::isSpent())
     for (unsigned Round = 0; Round < MaxRounds && propagate(); ++Round)
       ;
 }

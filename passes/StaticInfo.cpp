@@ -2,18 +2,19 @@
 #include "StaticInfo.h"
 
 #include "ClassObjectAccess.h"
+#include "ExplainInfo.h"
 #include "ExternCallFinder.h"
 #include "Functions.h"
 #include "IfStatements.h"
 #include "Names.h"
 #include "ParamCallFinder.h"
 #include "SimpleCallGraph.h"
+#include "Texts.h"
 #include "Variables.h"
 
 #include "llvm/Config/llvm-config.h"
 #include "llvm/IR/Module.h"
 #include "llvm/Support/FileSystem.h"
-#include "llvm/Support/MemoryBuffer.h"
 #include "llvm/Support/Path.h"
 
 using namespace llvm;
@@ -34,30 +35,6 @@ static json::Value textOrNull(StringRef Text) {
 
 namespace {
 
-/// Source files, for the text of a line.
-class SourceLines {
-public:
-  /// Line \p Number of \p Path, stripped; null where it cannot be read.
-  json::Value line(StringRef Path, unsigned Number) {
-    auto [It, New] = Files.try_emplace(Path);
-    if (New)
-      if (auto Buffer = MemoryBuffer::getFile(Path)) {
-        It->second.Text = std::move(*Buffer);
-        It->second.Text->getBuffer().split(It->second.Lines, '\n');
-      }
-    if (Number == 0 || Number > It->second.Lines.size())
-      return nullptr;
-    return json::fixUTF8(It->second.Lines[Number - 1].trim());
-  }
-
-private:
-  struct File {
-    std::unique_ptr<MemoryBuffer> Text;
-    SmallVector<StringRef, 0> Lines;
-  };
-  StringMap<File> Files;
-};
-
 /// Writes down what the analyses of a module found.
 class Describer {
 public:
@@ -70,15 +47,19 @@ public:
         Usage(AM.getResult<ParamUsageFinder>(M)),
         Slice(AM.getResult<BackwardPropagate>(M)),
         Gathered(AM.getResult<GatherResults>(M)),
-        Names(Access.types(), Access.debugTypes()) {}
+        Names(Access.types(), Access.debugTypes()), Explain(M, AM, Opts) {}
 
   json::Array parameters() const;
   json::Array exposing() const;
   json::Array comparisons();
-  json::Object counts(size_t NumComparisons) const;
+  ExplainInfo &explain() { return Explain; }
+  json::Object counts(const json::Array &Comparisons) const;
 
 private:
-  json::Object placed(const Instruction &I) const;
+  json::Object placed(const DILocation *Loc, const Function &F) const;
+  json::Object placed(const Instruction &I) const {
+    return placed(I.getDebugLoc(), *I.getFunction());
+  }
   json::Value where(const Instruction &I) const;
   json::Object comparison(const Comparison &C);
   std::string variable(const Comparison &C) const;
@@ -94,19 +75,22 @@ private:
   const SliceResult &Slice;
   const GatheredResults &Gathered;
   VariableNames Names;
+  ExplainInfo Explain;
   SourceLines Lines;
 };
 
 } // namespace
 
-/// `file`, `lineno`, `column` and `function` of \p I.
-json::Object Describer::placed(const Instruction &I) const {
-  const DILocation *Loc = I.getDebugLoc();
-  return json::Object{
-      {"file", json::fixUTF8(Opts.relative(pathOf(Loc)))},
-      {"lineno", Loc ? Loc->getLine() : 0},
-      {"column", Loc ? Loc->getColumn() : 0},
-      {"function", json::fixUTF8(functionName(*I.getFunction()))}};
+/// `file`, `lineno`, `column` and `function` of \p Loc, which may have been
+/// inlined into \p F.
+json::Object Describer::placed(const DILocation *Loc, const Function &F) const {
+  const DISubprogram *SP = Loc ? Loc->getScope()->getSubprogram() : nullptr;
+  return json::Object{{"file", json::fixUTF8(Opts.relative(pathOf(Loc)))},
+                      {"lineno", Loc ? Loc->getLine() : 0},
+                      {"column", Loc ? Loc->getColumn() : 0},
+                      {"function", json::fixUTF8(SP && SP != F.getSubprogram()
+                                                     ? functionNameFor(*Loc)
+                                                     : functionName(F))}};
 }
 
 json::Value Describer::where(const Instruction &I) const {
@@ -151,6 +135,8 @@ std::string Describer::variable(const Comparison &C) const {
     else
       break;
   }
+  if (C.Type == Comparison::Constant)
+    return C.ConstantName;
   const Value *Target = Reads[C.Reads.front()].Target;
   const auto *Load = dyn_cast<LoadInst>(V);
   for (const Value *Pointer :
@@ -163,7 +149,7 @@ std::string Describer::variable(const Comparison &C) const {
 }
 
 static json::Value describeTransform(const Transform &T) {
-  switch (T.Kind) {
+  switch (T.kind()) {
   case Transform::None:
     return nullptr;
   case Transform::Affine:
@@ -172,54 +158,67 @@ static json::Value describeTransform(const Transform &T) {
                         {"offset", T.Offset},
                         {"text", T.text()}};
   case Transform::Expression:
-    return json::Object{{"kind", "expression"}, {"text", T.text()}};
+    return json::Object{
+        {"kind", "expression"}, {"text", T.text()}, {"tree", T.tree()}};
   }
   llvm_unreachable("no such kind");
 }
 
 json::Object Describer::comparison(const Comparison &C) {
-  const ParameterRead &Read = Reads[C.Reads.front()];
+  // A constant is read nowhere.
+  const ParameterRead *Read =
+      C.Reads.empty() ? nullptr : &Reads[C.Reads.front()];
   const ExposingStatement &Nearest = Exposing[C.Slice.Exposing];
-  const DILocation *Loc = C.place().getDebugLoc();
   json::Array ReadPlaces;
   for (unsigned N : C.Reads)
     ReadPlaces.push_back(where(*Reads[N].Call));
-  json::Object O = placed(C.place());
+  json::Object O = placed(C.Where, *C.place().getFunction());
   O["key"] = C.Key;
   O["type"] = C.typeName();
   O["name"] = textOrNull(variable(C));
-  O["source"] = json::fixUTF8(Read.Name);
+  O["source"] = Read ? json::Value(json::fixUTF8(Read->Name)) : nullptr;
   O["distance"] = C.Slice.Distance;
   O["relation"] = C.relation();
   O["topic"] = textOrNull(Nearest.Topic);
-  O["source_code"] = Lines.line(pathOf(Loc), Loc->getLine());
+  O["source_code"] = Lines.line(pathOf(C.Where), C.Where->getLine());
   O["other_thresholds"] = C.OtherThresholds;
   O["param_reads"] = std::move(ReadPlaces);
   O["publishes"] = json::Array{where(*Nearest.Call)};
   O["transform"] = describeTransform(C.How);
-  O["default"] = Read.Default;
-  O["read_at"] = where(*Read.Call);
+  O["default"] = Read ? Read->Default : nullptr;
+  O["read_at"] = Read ? where(*Read->Call) : nullptr;
   O["exposed_at"] = where(*Nearest.Call);
+  if (Read)
+    O["path"] = Explain.path(C);
   return O;
 }
 
 /// The comparisons in the order of the source; one a key: several instances of
-/// a template are one place.
+/// a template are one place, and the nearest one speaks for them.
 json::Array Describer::comparisons() {
   std::vector<json::Object> All;
   StringMap<size_t> Known;
-  for (const Comparison &C : Gathered.Comparisons) {
-    json::Object O = comparison(C);
-    auto [It, New] = Known.try_emplace(*O.getString("key"), All.size());
-    if (New)
-      All.push_back(std::move(O));
-    else if (O.getInteger("distance") < All[It->second].getInteger("distance"))
-      All[It->second] = std::move(O);
-  }
+  for (const auto *Kind : {&Gathered.Comparisons, &Gathered.Constants})
+    for (const Comparison &C : *Kind) {
+      json::Object O = comparison(C);
+      auto [It, New] = Known.try_emplace(C.Key, All.size());
+      if (New) {
+        All.push_back(std::move(O));
+        continue;
+      }
+      json::Object &Same = All[It->second];
+      json::Array Places = *O.getArray("param_reads");
+      for (const json::Value &Place : *Same.getArray("param_reads"))
+        if (!is_contained(Places, Place))
+          Places.push_back(Place);
+      if (*O.getInteger("distance") < *Same.getInteger("distance"))
+        Same = std::move(O);
+      Same["param_reads"] = std::move(Places);
+    }
   auto Order = [](const json::Object &O) {
-    return std::make_tuple(*O.getString("file"), *O.getInteger("lineno"),
-                           *O.getInteger("column"), *O.getString("source"),
-                           *O.getString("key"));
+    return std::make_tuple(
+        *O.getString("file"), *O.getInteger("lineno"), *O.getInteger("column"),
+        O.getString("source").value_or(""), *O.getString("key"));
   };
   sort(All, [&](const json::Object &A, const json::Object &B) {
     return Order(A) < Order(B);
@@ -230,21 +229,25 @@ json::Array Describer::comparisons() {
   return List;
 }
 
-json::Object Describer::counts(size_t NumComparisons) const {
+json::Object Describer::counts(const json::Array &Comparisons) const {
+  int64_t Constants = count_if(Comparisons, [](const json::Value &V) {
+    return V.getAsObject()->getString("type") == "constant";
+  });
   return json::Object{
       {"functions", range_size(definedFunctions(M))},
       {"predicates", static_cast<int64_t>(Ifs.predicates().size())},
       {"predicates_in_slice", Slice.numPredicates()},
       {"parameter_reads", static_cast<int64_t>(Reads.size())},
       {"exposing_statements", static_cast<int64_t>(Exposing.size())},
-      {"comparisons", static_cast<int64_t>(NumComparisons)},
+      {"comparisons", static_cast<int64_t>(Comparisons.size()) - Constants},
+      {"constants", Constants},
       {"dynamic_names",
        count_if(Reads,
-                [](const ParameterRead &R) { return R.Name == DynamicName; })},
+                [](const ParameterRead &R) { return isDynamic(R.Name); })},
       {"indirect_calls", static_cast<int64_t>(Calls.unresolved().size())},
       {"without_debug_info", Gathered.WithoutDebugInfo},
       {"outside_sources", Gathered.OutsideSources},
-      {"lost_values", Usage.Lost},
+      {"lost_values", Usage.lost()},
       {"not_instrumented", 0}};
 }
 
@@ -267,10 +270,17 @@ json::Object describe(Module &M, ModuleAnalysisManager &AM,
   json::Array Comparisons = D.comparisons();
   Unit["status"] = "ok";
   Unit["failure"] = nullptr;
-  Unit["counts"] = D.counts(Comparisons.size());
+  json::Object Counts = D.counts(Comparisons);
+  json::Array NotExposed = D.explain().notExposed(Comparisons);
+  json::Array BlindSpots = D.explain().blindSpots();
+  Counts["not_exposed"] = static_cast<int64_t>(NotExposed.size());
+  Counts["blind_spots"] = static_cast<int64_t>(BlindSpots.size());
+  Unit["counts"] = std::move(Counts);
   Unit["parameters"] = D.parameters();
   Unit["exposing"] = D.exposing();
   Unit["comparisons"] = std::move(Comparisons);
+  Unit["not_exposed"] = shortened(std::move(NotExposed));
+  Unit["blind_spots"] = shortened(std::move(BlindSpots));
   return Unit;
 }
 
@@ -282,15 +292,16 @@ json::Object describeFailure(const Options &Opts, StringRef Why,
   json::Object Counts;
   for (StringRef Name :
        {"functions", "predicates", "predicates_in_slice", "parameter_reads",
-        "exposing_statements", "comparisons", "dynamic_names", "indirect_calls",
-        "without_debug_info", "outside_sources", "lost_values",
-        "not_instrumented"})
+        "exposing_statements", "comparisons", "constants", "dynamic_names",
+        "indirect_calls", "without_debug_info", "outside_sources",
+        "lost_values", "not_instrumented", "not_exposed", "blind_spots"})
     Counts[Name] = 0;
   if (Known)
     Counts = *Known;
   Counts["comparisons"] = 0;
   Unit["counts"] = std::move(Counts);
-  for (StringRef Name : {"parameters", "exposing", "comparisons"})
+  for (StringRef Name :
+       {"parameters", "exposing", "comparisons", "not_exposed", "blind_spots"})
     Unit[Name] = json::Array();
   return Unit;
 }

@@ -9,12 +9,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
+from pytpc.arithmetic import Tree, from_json
 from pytpc.atomic import write_atomic
 from pytpc.errors import InputError, WorkspaceError
 from pytpc.paths import MERGED_FILE, OWN_FOLDER
@@ -38,19 +39,20 @@ class Place:
 class Transform:
     """How a derived threshold comes from its parameter.
 
-    ``affine``: threshold = scale * parameter + offset. ``expression``: only ``text`` is known, and
-    ``scale`` and ``offset`` are None.
+    ``affine``: threshold = scale * parameter + offset. ``expression``: ``tree`` says it (see
+    ``pytpc.arithmetic``; None in files of before), and ``scale`` and ``offset`` are None.
     """
 
     kind: Literal["affine", "expression"]
     scale: float | None = None
     offset: float | None = None
     text: str = ""
+    tree: Tree | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class ParameterRead:
-    """A call that reads a parameter; ``name`` is ``<dynamic>`` where no constant names it."""
+    """A call that reads a parameter; ``name`` has ``<dynamic>`` for what no constant gives."""
 
     name: str
     api: str
@@ -75,13 +77,56 @@ class Exposing:
 
 
 @dataclass(frozen=True, slots=True)
+class PathStep:
+    """What happens on one line on the way from a parameter's read to what exposes it.
+
+    ``step`` is the most telling thing that happens there, ``what`` says all of it. A place is
+    empty and 0 where steps were left out or no debug information names it.
+    """
+
+    step: str
+    file: str
+    lineno: int
+    column: int
+    function: str
+    what: str
+    source_code: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class NotExposed:
+    """A comparison with a parameter (``source``) on which nothing exposed depends."""
+
+    source: str
+    file: str
+    lineno: int
+    column: int
+    function: str
+    source_code: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class BlindSpot:
+    """A place behind which the analysis does not see; ``parameter`` is None where none is meant."""
+
+    kind: str
+    parameter: str | None
+    file: str
+    lineno: int
+    column: int
+    function: str
+    what: str
+    source_code: str | None
+
+
+@dataclass(frozen=True, slots=True)
 class Comparison:
     """One threshold predicate comparison; the fields are those of docs/formats.md."""
 
     key: str
     type: Literal["parameter", "flag", "derived", "constant"]
     name: str | None
-    source: str
+    source: str | None
     file: str
     lineno: int
     column: int
@@ -95,8 +140,9 @@ class Comparison:
     publishes: tuple[Place, ...]
     transform: Transform | None
     default: Default
-    read_at: Place
+    read_at: Place | None
     exposed_at: Place
+    path: tuple[PathStep, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,6 +171,9 @@ class Counts:
     outside_sources: int
     lost_values: int
     not_instrumented: int
+    not_exposed: int = 0
+    blind_spots: int = 0
+    constants: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,6 +194,8 @@ class LinkUnit:
     parameters: tuple[ParameterRead, ...]
     exposing: tuple[Exposing, ...]
     comparisons: tuple[Comparison, ...]
+    not_exposed: tuple[NotExposed, ...] = ()
+    blind_spots: tuple[BlindSpot, ...] = ()
 
     def to_json(self) -> dict[str, Any]:
         """The unit as the JSON object of docs/formats.md."""
@@ -169,6 +220,8 @@ class LinkUnit:
         unit["parameters"] = tuple(ParameterRead(**read) for read in unit["parameters"])
         unit["exposing"] = tuple(Exposing(**statement) for statement in unit["exposing"])
         unit["comparisons"] = tuple(_comparison(found) for found in unit["comparisons"])
+        unit["not_exposed"] = tuple(NotExposed(**found) for found in unit.get("not_exposed", ()))
+        unit["blind_spots"] = tuple(BlindSpot(**spot) for spot in unit.get("blind_spots", ()))
         return cls(**unit)
 
 
@@ -217,6 +270,11 @@ class StaticInfo:
     def comparisons(self) -> dict[str, Comparison]:
         """Every comparison by its key, in the order of the units and their lists."""
         return {found.key: found for unit in self.units for found in unit.comparisons}
+
+    @cached_property
+    def thresholds(self) -> dict[str, Comparison]:
+        """The comparisons with parameters: those with constants left out."""
+        return {key: found for key, found in self.comparisons.items() if found.type != "constant"}
 
     @cached_property
     def _owners(self) -> dict[str, LinkUnit]:
@@ -365,9 +423,14 @@ def _comparison(data: dict[str, Any]) -> Comparison:
     found["param_reads"] = tuple(Place(**place) for place in found["param_reads"])
     found["publishes"] = tuple(Place(**place) for place in found["publishes"])
     if found["transform"] is not None:
-        found["transform"] = Transform(**found["transform"])
-    found["read_at"] = Place(**found["read_at"])
+        how = found["transform"]
+        found["transform"] = Transform(**how)
+        if "tree" in how:
+            found["transform"] = replace(found["transform"], tree=from_json(how["tree"]))
+    if found["read_at"] is not None:
+        found["read_at"] = Place(**found["read_at"])
     found["exposed_at"] = Place(**found["exposed_at"])
+    found["path"] = tuple(PathStep(**step) for step in found.get("path", ()))
     return Comparison(**found)
 
 
@@ -376,9 +439,13 @@ def _fields(value: DataclassInstance) -> dict[str, object]:
 
 
 def _plain(value: object) -> object:
-    """Dataclasses as dicts and tuples as lists; an expression has neither scale nor offset."""
-    if isinstance(value, Transform) and value.kind == "expression":
-        return {"kind": value.kind, "text": value.text}
+    """Dataclasses as dicts and tuples as lists; of a transform what its kind has."""
+    if isinstance(value, Transform):
+        if value.kind == "affine":
+            names = ["kind", "scale", "offset", "text"]
+        else:
+            names = ["kind", "text"] if value.tree is None else ["kind", "text", "tree"]
+        return {name: _plain(getattr(value, name)) for name in names}
     if is_dataclass(value) and not isinstance(value, type):
         return _fields(value)
     if isinstance(value, tuple):

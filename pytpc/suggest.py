@@ -15,9 +15,19 @@ from typing import Literal
 
 import numpy as np
 
+from pytpc.arithmetic import Expression
 from pytpc.events import Bools, Events, Floats, Int64s
-from pytpc.halfline import Affine, HalfLine, nearest, outcomes, readable, thresholds_for
+from pytpc.halfline import (
+    Affine,
+    HalfLine,
+    Unit,
+    nearest,
+    outcomes,
+    readable,
+    thresholds_for,
+)
 from pytpc.marks import MarkType
+from pytpc.ranking import parameter_name
 from pytpc.scores import WINDOW_S
 from pytpc.static_info import Comparison, LinkUnit
 
@@ -57,7 +67,7 @@ class _Case:
     """What a suggestion is worked out from: the evaluations up to the mark, and the unit."""
 
     comparison: Comparison
-    affine: Affine
+    how: Unit
     whole: bool
     threshold: float
     cmp: Floats
@@ -65,7 +75,7 @@ class _Case:
 
     @property
     def current(self) -> Number:
-        return _number(self.affine.back(self.threshold), self.whole)
+        return _number(self.how.back(self.threshold), self.whole)
 
 
 class _NoneBecause(Exception):
@@ -93,25 +103,31 @@ def suggest(
     """
     current: Number | None = None
     try:
-        affine = _affine(comparison)
+        _refuse(comparison, unit)
         rows = _rows_up_to(events, comparison.key, mark_ns)
         threshold = float(events.thresh[rows[-1]])
-        seen = (events.thresh[rows] - affine.offset) / affine.scale
-        whole = is_whole(comparison, unit, seen)
         if not math.isfinite(threshold):
             raise _NoneBecause("the threshold is not a finite number")
+        how = _unit_of(comparison, threshold)
+        seen = events.thresh[rows]
+        if isinstance(how, Affine):
+            seen = (seen - how.offset) / how.scale
+        else:
+            seen = np.array([how.back(threshold)])
+        whole = is_whole(comparison, unit, seen)
         pair, window = _evaluations(events, rows, mark_ns, kind, window_s)
         used = window if kind == "II" else pair
-        case = _Case(comparison, affine, whole, threshold, events.cmp[used], events.thresh[used])
+        case = _Case(comparison, how, whole, threshold, events.cmp[used], events.thresh[used])
         current = _shown_current(case)
-        if comparison.type == "flag":
+        if comparison.relation == "flag":
             return _switch(case, kind)
         if comparison.relation in {"==", "!="}:
             return _equality(case, kind)
         return _suggestion(case, _first_type(case) if kind == "I" else _second_type(case))
     except _NoneBecause as why:
         reason = str(why)
-        return Suggestion(comparison.source, current, None, None, None, False, reason, reason)
+        name = parameter_name(comparison)
+        return Suggestion(name, current, None, None, None, False, reason, reason)
 
 
 def is_whole(comparison: Comparison, unit: LinkUnit | None, values: Floats) -> bool:
@@ -120,30 +136,47 @@ def is_whole(comparison: Comparison, unit: LinkUnit | None, values: Floats) -> b
     The C++ type of the read decides; where that is not known, a default that is an int together
     with ``values`` (float64[n], seen of the parameter) that are all whole but for rounding.
     """
-    for read in unit.parameters if unit is not None else ():
-        place = (read.file, read.lineno)
-        if read.name == comparison.source and place == (
-            comparison.read_at.file,
-            comparison.read_at.lineno,
-        ):
-            if read.type in _WHOLE_TYPES:
-                return True
-            if read.type in _FLOAT_TYPES:
-                return False
+    read_type = _read_type(comparison, unit)
+    if read_type in _WHOLE_TYPES:
+        return True
+    if read_type in _FLOAT_TYPES:
+        return False
     finite = values[np.isfinite(values)]
     return type(comparison.default) is int and bool(
         np.allclose(finite, np.round(finite), rtol=1e-9, atol=1e-9)
     )
 
 
-def _affine(comparison: Comparison) -> Affine:
+def _read_type(comparison: Comparison, unit: LinkUnit | None) -> str | None:
+    """The C++ type of the read, where the link unit is known."""
+    place = comparison.read_at
+    for read in unit.parameters if unit is not None else ():
+        if read.name == comparison.source and (
+            place is not None and (read.file, read.lineno) == (place.file, place.lineno)
+        ):
+            return read.type
+    return None
+
+
+def _refuse(comparison: Comparison, unit: LinkUnit | None) -> None:
     if comparison.type == "constant":
         raise _NoneBecause("the threshold is a constant in the source, not a parameter")
-    if isinstance(comparison.default, str):
+    read_type = _read_type(comparison, unit) or ""
+    if isinstance(comparison.default, str) or read_type.startswith("std::"):
         raise _NoneBecause("the parameter is text")
+
+
+def _unit_of(comparison: Comparison, threshold: float) -> Unit:
     transform = comparison.transform
     if transform is None:
         return Affine()
+    if transform.tree is not None:
+        default = comparison.default
+        anchor = None if default is None or isinstance(default, str) else float(default)
+        found = Expression(transform.tree, threshold, anchor)
+        if found.current is None:
+            raise _NoneBecause(f"no value of the parameter gives the threshold {transform.text}")
+        return found
     if transform.kind != "affine" or transform.scale is None or transform.offset is None:
         raise _NoneBecause(f"the threshold is computed from the parameter: {transform.text}")
     if transform.scale == 0:
@@ -226,17 +259,20 @@ def _still(case: _Case) -> tuple[Bools, Floats]:
 
 
 def _change(case: _Case, line: HalfLine) -> float:
-    value = nearest(line, case.affine, case.whole)
-    return math.inf if value is None else abs(value - case.affine.back(case.threshold))
+    value = nearest(line, case.how, case.whole)
+    return math.inf if value is None else abs(value - case.how.back(case.threshold))
 
 
 def _suggestion(case: _Case, line: HalfLine) -> Suggestion:
-    first = nearest(line, case.affine, case.whole)
+    first = nearest(line, case.how, case.whole)
     if first is None:
-        raise _NoneBecause("no finite threshold would change the outcome")
-    mine = case.affine.parameters(line)
-    current = case.affine.back(case.threshold)
-    value = first if case.whole else readable(line, case.affine, first, current)
+        if isinstance(case.how, Affine):
+            raise _NoneBecause("no finite threshold would change the outcome")
+        raise _NoneBecause("no value of the parameter near this one gives such a threshold")
+    mine = case.how.parameters(line)
+    assert mine is not None, "there is a nearest one"
+    current = case.how.back(case.threshold)
+    value = first if case.whole else readable(line, case.how, first, current)
     direction: Literal["raise", "lower"] = "raise" if mine.up else "lower"
     return _sentence(case, direction, _number(value, case.whole), mine)
 
@@ -245,43 +281,54 @@ def _equality(case: _Case, kind: MarkType) -> Suggestion:
     """``==`` and ``!=`` have a nearest value only where a window never met the threshold."""
     if kind == "I":
         raise _NoneBecause("the comparison is for equality, which no direction leads away from")
+    if isinstance(case.comparison.default, bool) and case.comparison.type == "parameter":
+        return _switched(case, not case.threshold)
     went, cmps = _still(case)
     if np.any(went == (case.comparison.relation == "==")):
         raise _NoneBecause(f"any value but {show(case.current)} would do")
     met = float(cmps[np.argmin(np.abs(cmps - case.threshold))])
-    value = case.affine.back(met)
-    if case.affine.forward(value) != met or (case.whole and value != round(value)):
+    value = case.how.back(met)
+    if case.how.forward(value) != met or (case.whole and value != round(value)):
         raise _NoneBecause("no value of the parameter gives the compared value exactly")
-    up = value > case.affine.back(case.threshold)
+    up = value > case.how.back(case.threshold)
     line = HalfLine(value, True, up)
     return _sentence(case, "raise" if up else "lower", _number(value, case.whole), line, "exactly")
 
 
 def _switch(case: _Case, kind: MarkType) -> Suggestion:
-    """A flag: the value before it changed (type I), or the other one (type II)."""
-    truth = case.comparison.default is None or isinstance(case.comparison.default, bool)
+    """A flag: the value before it changed (type I), or the other one (type II).
+
+    A number is one in a condition of its own, or in a switch, of which any two values may differ.
+    """
+    truth = _is_truth(case)
     now = case.threshold
     if kind == "I":
         other = float(case.thresh[0])
-        if bool(other) == bool(case.thresh[1]):
+        if other == case.thresh[1]:
             raise _NoneBecause("another comparison of the same condition changed, not the flag")
-        if bool(other) == bool(now):
+        if other == now:
             raise _NoneBecause("the flag has changed back since")
+    elif case.comparison.type == "derived":
+        raise _NoneBecause("the parameter chooses between cases, of which nothing more is known")
     else:
         other = 0.0 if now else 1.0
-    value: Number = bool(other) if truth else _number(other, case.whole)
-    current = _shown_current(case)
-    text = f"switch {case.comparison.source} from {show(current)} to {show(value)}"
-    return Suggestion(
-        case.comparison.source, current, "switch", value, float(value), True, text, None
-    )
+    return _switched(case, bool(other) if truth else _number(case.how.back(other), case.whole))
+
+
+def _switched(case: _Case, value: Number) -> Suggestion:
+    source, current = parameter_name(case.comparison), _shown_current(case)
+    text = f"switch {source} from {show(current)} to {show(value)}"
+    return Suggestion(source, current, "switch", value, float(value), True, text, None)
+
+
+def _is_truth(case: _Case) -> bool:
+    found = case.comparison
+    unknown = found.type == "flag" and found.default is None
+    return unknown or isinstance(found.default, bool)
 
 
 def _shown_current(case: _Case) -> Number:
-    default = case.comparison.default
-    if case.comparison.type == "flag" and (default is None or isinstance(default, bool)):
-        return bool(case.threshold)
-    return case.current
+    return bool(case.threshold) if _is_truth(case) else case.current
 
 
 def _sentence(
@@ -291,7 +338,7 @@ def _sentence(
     line: HalfLine,
     bound: str | None = None,
 ) -> Suggestion:
-    source = case.comparison.source
+    source = parameter_name(case.comparison)
     limit = f"{bound} {line.bound:.6g}" if bound else line.words()
     text = f"{direction} {source} from {show(case.current)} to {exact(value)} ({limit})"
     return Suggestion(

@@ -62,7 +62,7 @@ def run_demo(console: Console, out: Path, seed: int) -> list[str]:
     with step(console, "Build the mission's nodes with TPC's passes"):
         built = build(out / "ws")
         console.print(
-            f"   {many(len(built.static.comparisons), 'comparison')} of parameters found in"
+            f"   {many(len(built.static.thresholds), 'comparison')} of parameters found in"
             f" {many(len(built.units), 'link unit')}"
         )
     missions = [fly(console, treatment, seed, built, out) for treatment in treatments]

@@ -41,13 +41,23 @@ def patch_command(workspace: Path, restore: bool, dry_run: bool, packages: tuple
 @click.option("--package", "packages", multiple=True, metavar="NAME", help="It and what it needs.")
 @click.option("--build-type", default="RelWithDebInfo", show_default=True)
 @click.option("--base", type=_FOLDER, help="Where to build; WORKSPACE/.tpc by default.")
+@click.option(
+    "--rules",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Your own rules (JSON): what else reads a parameter or exposes.",
+)
+@click.option("--constants", is_flag=True, help="Report comparisons with constants, too.")
 @click.argument("colcon_args", nargs=-1, type=click.UNPROCESSED, metavar="[-- COLCON_ARGS]...")
 def build_command(
+    *,
     workspace: Path,
     packages: tuple[str, ...],
     build_type: str,
     base: Path | None,
+    rules: Path | None,
     colcon_args: tuple[str, ...],
+    constants: bool,
 ) -> None:
     """Build a workspace with analysis and instrumentation; its files stay as they are."""
     bases = Bases(base.absolute()) if base is not None else None
@@ -57,7 +67,9 @@ def build_command(
                 workspace,
                 packages=packages,
                 build_type=build_type,
+                rules=rules,
                 colcon_args=colcon_args,
+                constants=constants,
                 bases=bases,
                 on_output=progress.show,
             )
@@ -85,7 +97,8 @@ def collect_command(build_base: Path, output: Path) -> None:
 @click.command("list")
 @click.argument("source", type=_FOLDER, required=False)
 @click.option("--json", "as_json", is_flag=True, help="Print a JSON list.")
-def list_command(source: Path | None, as_json: bool) -> None:
+@click.option("--constants", is_flag=True, help="Those with constants, too.")
+def list_command(source: Path | None, *, as_json: bool, constants: bool) -> None:
     """List the comparisons in SOURCE: a static.json, a build base or a workspace.
 
     Without SOURCE: static.json in this folder, else what `pytpc build` left below it.
@@ -97,10 +110,11 @@ def list_command(source: Path | None, as_json: bool) -> None:
             {"package": unit["package"], "link_unit": unit["link_unit"], **comparison}
             for unit in static.to_json()["units"]
             for comparison in unit["comparisons"]
+            if constants or comparison["type"] != "constant"
         ]
         click.echo(json.dumps(found, indent=1, ensure_ascii=False))
         return
-    _console().print(_comparisons_table(static), highlight=False)
+    _console().print(_comparisons_table(static, constants=constants), highlight=False)
     _warn_of_failed(static)
     click.echo(_found(static))
 
@@ -195,14 +209,16 @@ def _numbers(unit: LinkUnit) -> list[str]:
     ]
 
 
-def _comparisons_table(static: StaticInfo) -> Table:
+def _comparisons_table(static: StaticInfo, *, constants: bool) -> Table:
     table = Table()
     for heading in ("Parameter", "Type", "Place", "Distance", "Exposed as", "Source line"):
         table.add_column(heading, overflow="fold")
     for unit in static.units:
         for found in unit.comparisons:
+            if found.type == "constant" and not constants:
+                continue
             place = f"{unit.package}/{found.file}:{found.lineno}"
-            cells = (found.source, found.type, place, str(found.distance), found.topic or "?")
+            cells = (found.source or "", found.type, place, str(found.distance), found.topic or "?")
             table.add_row(*(Text(cell) for cell in cells), Text(_shown(found)))
     return table
 
@@ -225,7 +241,7 @@ def _warn(text: str) -> None:
 
 def _found(static: StaticInfo) -> str:
     """How much there is, in words."""
-    comparisons, units = len(static.comparisons), len(static.units)
+    comparisons, units = len(static.thresholds), len(static.units)
     return (
         f"{comparisons} comparison{'' if comparisons == 1 else 's'}"
         f" in {units} link unit{'' if units == 1 else 's'}"

@@ -105,6 +105,21 @@ def test_list_as_json_holds_every_field(build_base: Path) -> None:
     assert listed == expected
 
 
+CONSTANT = comparison(
+    key=KEYS[2], type="constant", source=None, name="7", read_at=None, param_reads=[], default=None
+)
+
+
+def test_constants_are_listed_where_that_is_asked_for(tmp_path: Path) -> None:
+    source = tmp_path / "static.json"
+    source.write_text(json.dumps(unit(comparisons=[comparison(), CONSTANT])), encoding="utf-8")
+    assert run("list", source).stdout.splitlines()[-1] == "1 comparison in 1 link unit"
+    assert "constant" not in run("list", source).stdout
+    assert "constant" in run("list", source, "--constants").stdout
+    assert len(json.loads(run("list", source, "--json").stdout)) == 1
+    assert json.loads(run("list", source, "--json", "--constants").stdout)[1]["name"] == "7"
+
+
 def test_list_finds_what_is_here(
     build_base: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -167,13 +182,15 @@ def test_build_hands_over_its_options_and_shows_the_result(
     monkeypatch.setattr(workspace_commands, "build_workspace", fake)
     result = run(
         *("build", tmp_path, "--package", "face", "--package", "arm", "--build-type", "Debug"),
-        *("--base", tmp_path / "own", "--", "--merge-install", "--cmake-args", "-DX=1"),
+        *("--constants", "--base", tmp_path / "own"),
+        *("--", "--merge-install", "--cmake-args", "-DX=1"),
     )
     assert result.exit_code == 0, result.output
     assert given["workspace"] == tmp_path
     assert given["packages"] == ("face", "arm")
     assert given["build_type"] == "Debug"
     assert given["bases"] == Bases(tmp_path / "own")
+    assert given["constants"] is True
     assert given["colcon_args"] == ("--merge-install", "--cmake-args", "-DX=1")
     assert result.stdout.splitlines()[-1] == (
         f"1 comparison in 2 link units, built in 12.3 s: {tmp_path}/own/static.json"

@@ -145,6 +145,56 @@ def test_affine_where_single_steps_are_swallowed():
     assert 1e-3 * found.value + 1e6 < 1000000.5
 
 
+# value < limit^2, limit = 2 (the default): 5 and 7 are not below 4. 5 is below limit^2 for limits
+# above sqrt(5) = 2.23606...; three digits above that are 2.24. For type I, the value fell from 5 to
+# 3.5: False again for squares of at most 3.5, limits of at most 1.8708...: 1.87.
+def test_an_expression():
+    how = Transform("expression", text="x^2", tree=("pow", "x", 2.0))
+    changes = {"type": "derived", "transform": how, "default": 2.0}
+    found = ask([(98, 5, 4), (99, 7, 4)], "II", "<", **changes)
+    assert (found.current, found.direction, found.value) == (2.0, "raise", 2.24)
+    assert found.boundary == pytest.approx(math.sqrt(5))
+    found = ask([(1, 5, 4), (2, 3.5, 4)], "I", "<", **changes)
+    assert (found.direction, found.value) == ("lower", 1.87)
+    # 100 div n <= 20 is a condition on whole numbers: 100 div 4 = 25 and 100 div 5 = 20.
+    how = Transform("expression", text="100 div x", tree=("div", 100.0, "x"))
+    found = ask([(99, 20, 25)], "II", ">=", type="derived", transform=how, default=4)
+    assert (found.current, found.direction, found.value) == (4, "raise", 5)
+    # -1 is no square, whatever the limit.
+    how = Transform("expression", text="x^2", tree=("pow", "x", 2.0))
+    found = ask([(99, -1, 4)], "II", ">", type="derived", transform=how, default=2.0)
+    assert found.reason == "no value of the parameter near this one gives such a threshold"
+    found = ask([(99, 3, -4)], "II", "<", type="derived", transform=how, default=2.0)
+    assert found.reason == "no value of the parameter gives the threshold x^2"
+
+
+# A parameter that a switch chooses by: the case before it changed; which others there are is not
+# known.
+def test_a_switch():
+    table = events([(1, 0, False, 1, 1), (2, 0, True, 3, 3)])
+    found = suggest(table, comparison(0, "limit", "flag", default=3), ns(9), "I")
+    assert (found.current, found.direction, found.value) == (3, "switch", 1)
+    how = Transform("affine", 1.0, 1.0, "x + 1")
+    derived = comparison(0, "limit", "flag", type="derived", transform=how, default=2)
+    found = suggest(table, derived, ns(9), "I")
+    assert (found.current, found.direction, found.value) == (2, "switch", 0)
+    assert "chooses between cases" in str(suggest(table, derived, ns(9), "II").reason)
+
+
+# is_on == wanted: the other value of a truth value is the only one.
+def test_equality_of_truth_values():
+    found = ask([(99, 0, 1)], "II", "==", default=True)
+    assert (found.current, found.direction, found.value) == (True, "switch", False)
+
+
+# Text without a default is known by the type of its read.
+def test_text_by_its_type():
+    read = ParameterRead("limit", "ros::param::get", "std::string", None, "src/node.cpp", 3, 1, "")
+    assert ask([(99, 1, 1)], "II", "==", unit=link_unit([], [read])).reason == (
+        "the parameter is text"
+    )
+
+
 def test_flags_are_switched():
     found = ask([(99, 1, 1)], "II", "flag", default=True)
     assert (found.current, found.direction, found.value) == (True, "switch", False)

@@ -23,6 +23,9 @@ ServiceClient::ServiceClient(const ServiceClient &Other) = default;
 ServiceClient &ServiceClient::operator=(const ServiceClient &Other) = default;
 ServiceClient::~ServiceClient() = default;
 NodeHandle::NodeHandle(const std::string &, const Names &) {}
+NodeHandle::NodeHandle(const NodeHandle &) {}
+NodeHandle::NodeHandle(const NodeHandle &, const std::string &) {}
+NodeHandle &NodeHandle::operator=(const NodeHandle &) { return *this; }
 NodeHandle::~NodeHandle() = default;
 
 static const char *text(const std::string &Name) {
@@ -44,6 +47,18 @@ bool NodeHandle::getParam(const std::string &Name, int &Value) const {
 bool NodeHandle::getParam(const std::string &Name, bool &Value) const {
   if (const char *T = text(Name))
     return Value = std::atoi(T) != 0, true;
+  return false;
+}
+
+bool NodeHandle::getParam(const std::string &Name, float &Value) const {
+  if (const char *T = text(Name))
+    return Value = std::strtof(T, nullptr), true;
+  return false;
+}
+
+bool NodeHandle::getParam(const std::string &Name, std::string &Value) const {
+  if (const char *T = text(Name))
+    return Value = T, true;
   return false;
 }
 

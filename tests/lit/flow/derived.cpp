@@ -17,10 +17,10 @@ void step(ros::NodeHandle &Handle, ros::Publisher &Out, double Value) {
   // CHECK-DAG: derived 'degrees' relation > as 0.5 * x + 2 {{.*}} at [[#@LINE+1]]:
   if (Value > Degrees / 2 + 2)
     Out.publish(std_msgs::Number());
-  // CHECK-DAG: derived 'radius' relation < as (x)^2 {{.*}} at [[#@LINE+1]]:
+  // CHECK-DAG: derived 'radius' relation < as x^2 {{.*}} at [[#@LINE+1]]:
   if (Value < Radius * Radius)
     Out.publish(std_msgs::Number());
-  // CHECK-DAG: derived 'period' relation < as 1 / (x) {{.*}} at [[#@LINE+1]]:
+  // CHECK-DAG: derived 'period' relation < as 1 / x {{.*}} at [[#@LINE+1]]:
   if (Value < 1 / Period)
     Out.publish(std_msgs::Number());
   // CHECK-DAG: derived 'percent' relation >= as -1 * x + 100 {{.*}} at [[#@LINE+1]]:

@@ -1,0 +1,39 @@
+// RUN: %compile -O2 %s -o %t.2.o
+// RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.2.o | FileCheck %s
+// RUN: %compile -O0 %s -o %t.0.o
+// RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.0.o | FileCheck %s
+//
+// Not comparisons with a constant: pointers, truth values, a number as a
+// condition or compared with 0 to the same end, what is compared with a
+// parameter, what exposes nothing, and text.
+#include <ros/ros.h>
+
+static int Count;
+
+int count();
+
+void step(ros::NodeHandle &Handle, ros::Publisher &Out, int N, int *P, bool B,
+          double V, const std::string &S) {
+  // CHECK: comparisons of {{.*}}: 2
+  // CHECK: comparisons with constants: 0
+  if (P != nullptr || !P)
+    Out.publish(std_msgs::Number());
+  if (B == true || B != false)
+    Out.publish(std_msgs::Number());
+  if (N)
+    Out.publish(std_msgs::Number());
+  if (!N || V || N != 0)
+    Out.publish(std_msgs::Number());
+  while (count())
+    Out.publish(std_msgs::Number());
+  if (N > 3)
+    ++Count;
+  int M;
+  Handle.param("m", M, 5);
+  if (M > 3)
+    Out.publish(std_msgs::Number());
+  std::string Mode;
+  Handle.param("mode", Mode, std::string());
+  if (Mode.compare(S) == 0)
+    Out.publish(std_msgs::Number());
+}
