@@ -66,6 +66,12 @@ Expected<Rules> Rules::load(const Options &Opts) {
   return R;
 }
 
+bool Rules::isOpaque(StringRef Name) const {
+  return any_of(OpaquePrefixes, [&](const std::string &Prefix) {
+    return Name.starts_with(Prefix);
+  });
+}
+
 const Rules &Rules::ofThisLink(std::string &Error) {
   struct Tables {
     Rules R;

@@ -102,6 +102,8 @@ public:
     std::optional<ContainerMethod> Container;
   };
   const Match &match(const llvm::Function &F) const;
+  /// True where the class called \p Name is in one of the opaque namespaces.
+  bool isOpaque(llvm::StringRef Name) const;
   /// True where comparisons in a function of this qualified name are its
   /// caller's.
   bool isTransparent(llvm::StringRef Name) const {
@@ -132,6 +134,11 @@ public:
   /// begins with one that the tables call opaque.
   bool isOpaque(const llvm::Function &F) const {
     return Rows.contains(&F) || Opaque.contains(&F);
+  }
+  /// True where the class called \p Name is in one of the opaque namespaces.
+  bool isOpaque(llvm::StringRef Name) const {
+    std::string Unused;
+    return Rules::ofThisLink(Unused).isOpaque(Name);
   }
   /// See Rules::isTransparent.
   bool isTransparent(llvm::StringRef Name) const {
