@@ -54,6 +54,10 @@ FunctionPointers::Cell FunctionPointers::cellOf(const Value *Pointer) {
     return enter(Local->getAllocatedType(), {Pointer, NoIndex});
   if (const auto *Global = dyn_cast<GlobalVariable>(Pointer))
     return enter(Global->getValueType(), {Pointer, NoIndex});
+  // The uses of null are those of all modules, and later LLVMs do not keep
+  // them.
+  if (isa<ConstantData>(Pointer))
+    return {Pointer, NoIndex};
   // A pointer without a type of its own has that of the fields that are
   // reached from it; to the first one no step may be left.
   for (const User *U : Pointer->users())

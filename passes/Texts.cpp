@@ -3,12 +3,12 @@
 
 #include "Names.h"
 
-#include "llvm/ADT/ScopeExit.h"
 #include "llvm/Analysis/ConstantFolding.h"
 #include "llvm/Analysis/ValueTracking.h"
 #include "llvm/IR/CFG.h"
 #include "llvm/IR/IntrinsicInst.h"
 #include "llvm/IR/Module.h"
+#include "llvm/Support/SaveAndRestore.h"
 
 using namespace llvm;
 
@@ -258,8 +258,7 @@ Texts::Known Texts::find(const Value *Pointer, const Instruction &At, Kind K) {
     return {Plain.str()};
   if (Depth == MaxDepth || ++Steps > MaxSteps)
     return {DynamicName};
-  ++Depth;
-  auto Leave = make_scope_exit([&] { --Depth; });
+  SaveAndRestore Deeper(Depth, Depth + 1);
   // A null pointer leads to no object.
   if (isa<ConstantPointerNull>(Pointer))
     return {"", false, true};

@@ -54,9 +54,9 @@ def compare(seed: int, folder: Path) -> Compared:
     """Make, build and run one program both ways; what it was made of stays in ``folder``."""
     draw = random.Random(seed)
     flags = [f"--{draw.choice(['', 'no-'])}{option}" for option in _OPTIONS]
-    made = run(
-        ["csmith", "--seed", str(seed), "--max-funcs", str(draw.randint(2, 8)), *flags], seconds=20
-    )
+    # csmith leaves a file where it is run.
+    words = ["csmith", "--seed", str(seed), "--max-funcs", str(draw.randint(2, 8)), *flags]
+    made = run(words, seconds=20, folder=folder)
     if made.status != 0:
         return Compared("", skipped="csmith")
     source, unit, stubs = folder / "program.c", folder / "program.o", folder / "stubs.o"

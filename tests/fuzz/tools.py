@@ -33,6 +33,7 @@ def run(
     *,
     seconds: int = SECONDS,
     env: Mapping[str, str] | None = None,
+    folder: Path | None = None,
 ) -> Ran:
     """Run a program with a limit of processor time and memory.
 
@@ -47,6 +48,7 @@ def run(
     try:
         ran = subprocess.run(
             [str(word) for word in argv],
+            cwd=folder,
             stdin=subprocess.DEVNULL,
             capture_output=True,
             timeout=30 * seconds,
