@@ -17,7 +17,9 @@ static bool isTruth(const Value *V) {
     if (V->getType()->isIntegerTy(1))
       return true;
     const auto *I = dyn_cast<Instruction>(V);
-    if (!I || !(isa<ZExtInst>(I) || I->isBitwiseLogicOp()))
+    const auto *Expect = dyn_cast<IntrinsicInst>(V);
+    if (!I || !(isa<ZExtInst>(I) || I->isBitwiseLogicOp() ||
+                (Expect && Expect->getIntrinsicID() == Intrinsic::expect)))
       return false;
     V = I->getOperand(isa<Constant>(I->getOperand(0)) ? 1 : 0);
   }

@@ -13,6 +13,7 @@
 #include "llvm/ADT/SetVector.h"
 #include "llvm/ADT/SmallPtrSet.h"
 #include "llvm/ADT/StringExtras.h"
+#include "llvm/Analysis/ValueTracking.h"
 #include "llvm/IR/CFG.h"
 #include "llvm/IR/Instructions.h"
 #include "llvm/IR/Module.h"
@@ -262,12 +263,27 @@ private:
 
 } // namespace
 
+/// True where \p Compare is about a global object of an opaque class: what
+/// the macros for logging ask of their own.
+static bool asksLibrary(const CmpInst &Compare, const RuleMatches &Rules) {
+  return any_of(Compare.operands(), [&](const Use &U) {
+    const auto *Load = dyn_cast<LoadInst>(U);
+    const auto *Global = Load ? dyn_cast<GlobalVariable>(getUnderlyingObject(
+                                    Load->getPointerOperand()))
+                              : nullptr;
+    const auto *Class =
+        Global ? dyn_cast<StructType>(Global->getValueType()) : nullptr;
+    return Class && Rules.isOpaque(plainClassName(*Class));
+  });
+}
+
 GatheredResults GatherResults::run(Module &M, ModuleAnalysisManager &AM) {
   const ParameterUsage &Usage = AM.getResult<ParamUsageFinder>(M);
   const ParamCallFinder::Result &Reads = AM.getResult<ParamCallFinder>(M);
   const SliceResult &Slice = AM.getResult<BackwardPropagate>(M);
   const Options Opts = Options::fromCommandLine();
-  Places Own(Opts, AM.getResult<RuleAnalysis>(M));
+  const RuleMatches &Rules = AM.getResult<RuleAnalysis>(M);
+  Places Own(Opts, Rules);
   GatheredResults R;
   SmallPtrSet<const CmpInst *, 16> WithParameter;
   DenseMap<const Value *, SmallVector<unsigned, 1>> Known; ///< by what compares
@@ -313,7 +329,8 @@ GatheredResults GatherResults::run(Module &M, ModuleAnalysisManager &AM) {
   }
   R.Constants = ConstantFinder(AM.getResult<SimpleCallGraph>(M), Slice,
                                [&](const CmpInst &Compare) {
-                                 return WithParameter.contains(&Compare)
+                                 return WithParameter.contains(&Compare) ||
+                                                asksLibrary(Compare, Rules)
                                             ? nullptr
                                             : Own.of(Compare);
                                })

@@ -120,8 +120,12 @@ static bool beginsWithAny(StringRef Name, ArrayRef<std::string> Prefixes) {
   });
 }
 
+bool Rules::isOpaque(StringRef Name) const {
+  return beginsWithAny(Name, OpaquePrefixes);
+}
+
 bool Rules::isOpaque(const Function &F) const {
-  return beginsWithAny(qualifiedName(F.getName()), OpaquePrefixes);
+  return isOpaque(StringRef(qualifiedName(F.getName())));
 }
 
 bool Rules::isKept(const Function &F) const {

@@ -67,6 +67,7 @@ public:
   const Rule *match(const llvm::Function &F) const;
   /// True where \p F is in one of the opaque namespaces.
   bool isOpaque(const llvm::Function &F) const;
+  bool isOpaque(llvm::StringRef Name) const; ///< the same of a class
   /// True where comparisons in a function of this qualified name are its
   /// caller's.
   bool isTransparent(llvm::StringRef Name) const {
@@ -94,6 +95,10 @@ public:
   /// begins with one that the tables call opaque.
   bool isOpaque(const llvm::Function &F) const {
     return Rows.contains(&F) || Opaque.contains(&F);
+  }
+  /// True where the class called \p Name is in one of the opaque namespaces.
+  bool isOpaque(llvm::StringRef Name) const {
+    return Tables && Tables->isOpaque(Name);
   }
   /// See Rules::isTransparent.
   bool isTransparent(llvm::StringRef Name) const {

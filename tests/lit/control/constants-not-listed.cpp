@@ -5,12 +5,20 @@
 //
 // Not comparisons with a constant: pointers, truth values, a number as a
 // condition or compared with 0 to the same end, what is compared with a
-// parameter, what exposes nothing, and text.
+// parameter, what exposes nothing, text, and what a logging macro asks.
 #include <ros/ros.h>
 
 static int Count;
 
 int count();
+
+// As the macros of ros/console.h write it.
+namespace ros::console {
+struct LogLocation {
+  int Level;
+};
+} // namespace ros::console
+static ros::console::LogLocation Location;
 
 void step(ros::NodeHandle &Handle, ros::Publisher &Out, int N, int *P, bool B,
           double V, const std::string &S) {
@@ -28,6 +36,8 @@ void step(ros::NodeHandle &Handle, ros::Publisher &Out, int N, int *P, bool B,
     Out.publish(std_msgs::Number());
   if (N > 3)
     ++Count;
+  if (__builtin_expect(Location.Level != 1, 0))
+    Out.publish(std_msgs::Number());
   int M;
   Handle.param("m", M, 5);
   if (M > 3)

@@ -16,7 +16,7 @@ enum State { Idle, Moving };
 static bool small(double V);
 
 void step(ros::Publisher &Out, double V, unsigned N, State S, int *P, bool B) {
-  // CHECK-LABEL: comparisons with constants: 7
+  // CHECK-LABEL: comparisons with constants: 8
   // CHECK-DAG: constant '3' relation > as x distance 1 {{.*}} at [[#@LINE+1]]:9
   if (V > 3)
     Out.publish(std_msgs::Number());
@@ -34,6 +34,9 @@ void step(ros::Publisher &Out, double V, unsigned N, State S, int *P, bool B) {
     Out.publish(std_msgs::Number());
   // CHECK-DAG: constant '-1' relation == as x distance 1 {{.*}} at [[#@LINE+1]]:10
   if (*P == -1)
+    Out.publish(std_msgs::Number());
+  // CHECK-DAG: constant '5' relation > as x distance 1 {{.*}} at [[#@LINE+1]]:26
+  if (__builtin_expect(V > 5, 1))
     Out.publish(std_msgs::Number());
   if (small(V))
     Out.publish(std_msgs::Number());
