@@ -21,26 +21,15 @@ AccessResult::Slot AccessResult::slot(const Location &L) {
           L.Path.back().Index};
 }
 
-void AccessResult::file(SmallVectorImpl<Access> &List, Index &In,
-                        Instruction &I, const Location &L) {
-  In[slot(L)].push_back(List.size());
-  List.push_back({&I, L});
+/// True where a pointer without a known root can lead to \p L.
+bool AccessResult::isReachable(const Location &L) const {
+  return !L.Root || !isa<AllocaInst>(L.Root) || Escaped.contains(L.Root);
 }
 
-/// Calls \p F with the numbers that \p In has for \p L and for the objects
-/// that its path leads through.
-template <typename Fn>
-void AccessResult::eachObject(const Location &L, const Index &In, Fn F) {
-  auto Visit = [&](const Location &Object) {
-    auto It = In.find(slot(Object));
-    if (It != In.end())
-      for (unsigned N : It->second)
-        F(N);
-  };
-  if (L.Root)
-    Visit({L.Root, {}});
-  for (size_t K = 1; K <= L.Path.size(); ++K)
-    Visit({L.Root, SmallVector<Step, 4>(ArrayRef(L.Path).take_front(K))});
+void AccessResult::file(Index &In, unsigned N, const Location &L) const {
+  In.Exact[{slot(L), L.Root}].push_back(N);
+  if (L.Root && !L.Path.empty() && isReachable(L))
+    In.Rooted[slot(L)].push_back(N);
 }
 
 /// The numbers of the classes that are in an object of type \p T.
@@ -53,20 +42,33 @@ static void classesIn(Type *T, TypeNumbers &Numbers,
     classesIn(Field, Numbers, Out);
 }
 
-void AccessResult::fileCopy(CopyIndex &In, unsigned N,
-                            const Location &Object) const {
-  In.BySlot[slot(Object)].push_back(N);
+void AccessResult::fileObject(ObjectIndex &In, unsigned N,
+                              const Location &Object) const {
+  file(In.BySlot, N, Object);
+  if (!isReachable(Object))
+    return;
   SmallSetVector<unsigned, 8> Classes;
   classesIn(typeAt(Object), Numbers, Classes);
   for (unsigned Class : Classes)
     In.ByClass[Class].push_back(N);
 }
 
+void AccessResult::filePart(PartIndex &In, unsigned N,
+                            const Location &L) const {
+  if (L.Root)
+    file(In.BySlot, N, {L.Root, {}});
+  for (size_t K = 1; K <= L.Path.size(); ++K)
+    file(In.BySlot, N,
+         {L.Root, SmallVector<Step, 4>(ArrayRef(L.Path).take_front(K))});
+  if (!L.Root && !L.Path.empty())
+    In.ByClass[L.Path[0].Type].push_back(N);
+}
+
 /// \p L and the variables that copies of whole objects put its value into, or
 /// with \p Backward took it from.
 Locations AccessResult::throughCopies(const Location &L, bool Backward) const {
   Locations All{L};
-  const CopyIndex &In = Backward ? CopiesTo : CopiesFrom;
+  const ObjectIndex &In = Backward ? CopiesTo : CopiesFrom;
   for (unsigned Next = 0; Next < All.size() && All.size() < MaxCopied; ++Next) {
     const Location Here = All[Next];
     auto Follow = [&](unsigned N) {
@@ -79,7 +81,7 @@ Locations AccessResult::throughCopies(const Location &L, bool Backward) const {
               All.push_back(std::move(Other));
           }
     };
-    eachObject(Here, In.BySlot, Follow);
+    eachAround(Here, In.BySlot, Follow);
     if (!Here.Root && !Here.Path.empty())
       if (auto It = In.ByClass.find(Here.Path[0].Type); It != In.ByClass.end())
         for_each(It->second, Follow);
@@ -90,12 +92,11 @@ Locations AccessResult::throughCopies(const Location &L, bool Backward) const {
 void AccessResult::collectWrites(const Location &L,
                                  SmallSetVector<Instruction *, 8> &Out) const {
   for (const Location &Here : throughCopies(L, /*Backward=*/true)) {
-    auto It = StoreIndex.find(slot(Here));
-    if (It != StoreIndex.end())
-      for (unsigned N : It->second)
-        if (mayBe(Stores[N].Where, Here))
-          Out.insert(Stores[N].I);
-    eachObject(Here, HandedIndex, [&](unsigned N) {
+    eachAt(Here, StoreIndex, [&](unsigned N) {
+      if (mayBe(Stores[N].Where, Here))
+        Out.insert(Stores[N].I);
+    });
+    eachAround(Here, HandedIndex, [&](unsigned N) {
       if (partOf(Handed[N].Where, Here))
         Out.insert(Handed[N].I);
     });
@@ -105,11 +106,10 @@ void AccessResult::collectWrites(const Location &L,
 void AccessResult::collectLoads(const Location &L,
                                 SmallSetVector<LoadInst *, 8> &Out) const {
   for (const Location &Here : throughCopies(L, /*Backward=*/false)) {
-    auto It = LoadIndex.find(slot(Here));
-    if (It != LoadIndex.end())
-      for (unsigned N : It->second)
-        if (mayBe(Loads[N].Where, Here))
-          Out.insert(cast<LoadInst>(Loads[N].I));
+    eachAt(Here, LoadIndex, [&](unsigned N) {
+      if (mayBe(Loads[N].Where, Here))
+        Out.insert(cast<LoadInst>(Loads[N].I));
+    });
   }
 }
 
@@ -184,8 +184,10 @@ void AccessResult::reachingWrites(const LoadInst &Load, const Location &L,
   });
 }
 
-SmallVector<Instruction *, 8>
+ArrayRef<Instruction *>
 AccessResult::definitionsOf(const LoadInst &Load) const {
+  if (auto It = Definitions.find(&Load); It != Definitions.end())
+    return It->second;
   SmallSetVector<Instruction *, 8> All;
   for (const Location &L : touched(Load)) {
     SmallSetVector<Instruction *, 8> Writes;
@@ -195,7 +197,7 @@ AccessResult::definitionsOf(const LoadInst &Load) const {
       reachingWrites(Load, L, Writes);
     All.insert(Writes.begin(), Writes.end());
   }
-  return All.takeVector();
+  return Definitions[&Load] = All.takeVector();
 }
 
 SmallVector<Instruction *, 8> AccessResult::writesOf(const Location &L) const {
@@ -218,15 +220,25 @@ SmallVector<LoadInst *, 8> AccessResult::usesOf(const Instruction &Write,
 
 SmallVector<Instruction *, 8>
 AccessResult::writesInto(const Location &L) const {
+  SmallSetVector<unsigned, 16> Numbers;
+  auto Add = [&](unsigned N) {
+    if (partOf(L, PartWrites[N].Where))
+      Numbers.insert(N);
+  };
+  eachAt(L, WritesByObject.BySlot, Add);
+  if (isReachable(L)) {
+    SmallSetVector<unsigned, 8> Classes;
+    classesIn(typeAt(L), this->Numbers, Classes);
+    for (unsigned Class : Classes)
+      if (auto It = WritesByObject.ByClass.find(Class);
+          It != WritesByObject.ByClass.end())
+        for_each(It->second, Add);
+  }
+  SmallVector<unsigned, 16> Ordered = Numbers.takeVector();
+  sort(Ordered);
   SmallSetVector<Instruction *, 8> Out;
-  for (const auto *List : {&Stores, &Handed, &Passed})
-    for (const Access &A : *List)
-      if (partOf(L, A.Where))
-        Out.insert(A.I);
-  for (const Copy &C : Copies)
-    for (const Location &To : C.To)
-      if (partOf(L, To))
-        Out.insert(C.I);
+  for (unsigned N : Ordered)
+    Out.insert(PartWrites[N].I);
   return Out.takeVector();
 }
 

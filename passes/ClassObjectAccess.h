@@ -73,6 +73,9 @@ struct Location {
 
 using Locations = llvm::SmallVector<Location, 1>;
 
+/// More places than this for one pointer say nothing any more.
+inline constexpr unsigned MaxLocations = 64;
+
 /// The element of an array, of whatever dimension; else \p T.
 llvm::Type *elementOf(llvm::Type *T);
 
@@ -113,7 +116,7 @@ public:
   /// body that are handed the variable. Copies of whole objects are followed.
   /// Of the writes of a local variable, those that another store surely
   /// replaces on every way to the load are left out.
-  llvm::SmallVector<llvm::Instruction *, 8>
+  llvm::ArrayRef<llvm::Instruction *>
   definitionsOf(const llvm::LoadInst &Load) const;
 
   /// The loads to which \p Write, a store or call that writes the scalar at
@@ -139,14 +142,25 @@ private:
     llvm::Instruction *I;
     Locations To, From;
   };
-  /// A place that an access with this location is filed under.
+  /// The last step to a location, or its root where there is none.
   using Slot = std::pair<const void *, unsigned>;
-  using Index = llvm::DenseMap<Slot, llvm::SmallVector<unsigned, 4>>;
 
   struct Builder;
-  /// Copies by where they write and by where they read: by slot, and by the
-  /// classes that are in the copied object.
-  struct CopyIndex {
+  /// Numbers by location.
+  struct Index {
+    llvm::DenseMap<std::pair<Slot, const llvm::Value *>,
+                   llvm::SmallVector<unsigned, 2>>
+        Exact; ///< of a slot and a root, which may be null
+    /// Those with a root that pointers without a known one can lead to.
+    llvm::DenseMap<Slot, llvm::SmallVector<unsigned, 2>> Rooted;
+  };
+  /// Objects by where they are, and by the classes that are in them.
+  struct ObjectIndex {
+    Index BySlot;
+    llvm::DenseMap<unsigned, llvm::SmallVector<unsigned, 4>> ByClass;
+  };
+  /// Accesses by all objects that they are inside of.
+  struct PartIndex {
     Index BySlot;
     llvm::DenseMap<unsigned, llvm::SmallVector<unsigned, 4>> ByClass;
   };
@@ -175,11 +189,15 @@ private:
   void reachingWrites(const llvm::LoadInst &Load, const Location &L,
                       llvm::SmallSetVector<llvm::Instruction *, 8> &W) const;
   static Slot slot(const Location &L);
+  static const llvm::Value *baseOf(const llvm::Value *Pointer);
+  bool isReachable(const Location &L) const;
+  void file(Index &In, unsigned N, const Location &L) const;
+  void fileObject(ObjectIndex &In, unsigned N, const Location &Object) const;
+  void filePart(PartIndex &In, unsigned N, const Location &L) const;
   template <typename Fn>
-  static void eachObject(const Location &L, const Index &In, Fn F);
-  void fileCopy(CopyIndex &In, unsigned N, const Location &Object) const;
-  void file(llvm::SmallVectorImpl<Access> &List, Index &In,
-            llvm::Instruction &I, const Location &L);
+  void eachAt(const Location &L, const Index &In, Fn F) const;
+  template <typename Fn>
+  void eachAround(const Location &L, const Index &In, Fn F) const;
 
   const llvm::DataLayout *Layout = nullptr;
   std::unique_ptr<DebugTypes> Debug;
@@ -189,13 +207,47 @@ private:
   /// What the pointers that are not computed on the spot can lead to:
   /// arguments, results, merges, and pointers that were in memory.
   llvm::DenseMap<const llvm::Value *, Locations> Targets;
+  /// Those of them that lead to nothing else than their targets.
+  llvm::DenseSet<const llvm::Value *> Complete;
   llvm::SmallVector<Access, 0> Loads, Stores;
-  /// Calls that are handed an object: those without a known body, and others.
-  llvm::SmallVector<Access, 0> Handed, Passed;
+  llvm::SmallVector<Access, 0> Handed; ///< calls without a known body
   llvm::SmallVector<Copy, 0> Copies;
   Index LoadIndex, StoreIndex, HandedIndex;
-  CopyIndex CopiesTo, CopiesFrom;
+  ObjectIndex CopiesTo, CopiesFrom;
+  /// Of all writes, numbered as they stand in PartWrites.
+  PartIndex WritesByObject;
+  llvm::SmallVector<Access, 0> PartWrites;
+  mutable llvm::DenseMap<const llvm::LoadInst *,
+                         llvm::SmallVector<llvm::Instruction *, 8>>
+      Definitions;
 };
+
+/// Calls \p F with the numbers that \p In has for what can be \p L.
+template <typename Fn>
+void AccessResult::eachAt(const Location &L, const Index &In, Fn F) const {
+  auto Visit = [&](const auto &Map, const auto &Key) {
+    if (auto It = Map.find(Key); It != Map.end())
+      llvm::for_each(It->second, F);
+  };
+  Slot Here = slot(L);
+  Visit(In.Exact, std::pair(Here, L.Root));
+  if (!L.Root)
+    Visit(In.Rooted, Here);
+  else if (!L.Path.empty() && isReachable(L))
+    Visit(In.Exact, std::pair(Here, static_cast<const llvm::Value *>(nullptr)));
+}
+
+/// Calls \p F with the numbers that \p In has for \p L and for the objects
+/// that its path leads through.
+template <typename Fn>
+void AccessResult::eachAround(const Location &L, const Index &In, Fn F) const {
+  if (L.Root)
+    eachAt({L.Root, {}}, In, F);
+  for (size_t K = 1; K <= L.Path.size(); ++K)
+    eachAt({L.Root,
+            llvm::SmallVector<Step, 4>(llvm::ArrayRef(L.Path).take_front(K))},
+           In, F);
+}
 
 class ClassObjectAccess : public llvm::AnalysisInfoMixin<ClassObjectAccess> {
 public:

@@ -207,6 +207,10 @@ const DIType *DebugTypes::find(const Value *Pointer) {
     return dereferenced(T);
   }
   if (const auto *Call = dyn_cast<CallBase>(Pointer)) {
+    // What `new` makes is written down there.
+    if (const auto *Made =
+            dyn_cast_or_null<DIType>(Call->getMetadata("heapallocsite")))
+      return plain(Made);
     const Function *Callee = Call->getCalledFunction();
     const DISubprogram *SP = Callee ? Callee->getSubprogram() : nullptr;
     if (!SP || !SP->getType() || SP->getType()->getTypeArray().size() == 0)

@@ -170,17 +170,20 @@ static void countOthers(GatheredResults &R) {
       Conditions.unionSets(Work[N], Br);
       Work.insert(Br);
     }
-  // A condition's comparisons are few, a unit's are many.
-  DenseMap<const Instruction *, SmallVector<const Comparison *, 2>> ByCondition;
-  for (const Comparison &C : R.Comparisons)
-    ByCondition[Conditions.getLeaderValue(C.Predicate)].push_back(&C);
+  // Of each condition, and of each comparison in it.
+  DenseMap<const Instruction *, unsigned> InCondition;
+  DenseMap<std::pair<const Instruction *, const CmpInst *>, unsigned> Alike;
+  for (const Comparison &C : R.Comparisons) {
+    const Instruction *Condition = Conditions.getLeaderValue(C.Predicate);
+    ++InCondition[Condition];
+    ++Alike[{Condition, C.Compare}];
+  }
   for (auto *List : {&R.Comparisons, &R.Constants})
-    for (Comparison &C : *List)
-      C.OtherThresholds =
-          count_if(ByCondition.lookup(Conditions.getLeaderValue(C.Predicate)),
-                   [&](const Comparison *O) {
-                     return O != &C && (O->Compare != C.Compare || !C.Compare);
-                   });
+    for (Comparison &C : *List) {
+      const Instruction *Condition = Conditions.getLeaderValue(C.Predicate);
+      C.OtherThresholds = InCondition[Condition] -
+                          (C.Compare ? Alike[{Condition, C.Compare}] : 1);
+    }
 }
 
 /// A UUID of version 5 (RFC 4122) of \p Name, in a namespace of our own.

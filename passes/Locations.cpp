@@ -12,9 +12,6 @@ using namespace llvm;
 
 namespace tpc {
 
-/// More places than this for one pointer say nothing any more.
-static constexpr unsigned MaxLocations = 64;
-
 //===----------------------------------------------------------------------===//
 // Classes and locations
 //===----------------------------------------------------------------------===//
@@ -286,6 +283,14 @@ static const Value *throughCasts(const Value *V) {
   }
 }
 
+/// The pointer that \p Pointer is computed from.
+const Value *AccessResult::baseOf(const Value *Pointer) {
+  const Value *Base = throughCasts(Pointer);
+  while (const auto *GEP = dyn_cast<GEPOperator>(Base))
+    Base = throughCasts(GEP->getPointerOperand());
+  return Base;
+}
+
 /// Adds the locations that \p Pointer can lead to, as far as it is known by
 /// now what the pointers that it is computed from lead to.
 void AccessResult::addPointees(const Value *Pointer, Locations &Out) const {
@@ -304,12 +309,17 @@ void AccessResult::addPointees(const Value *Pointer, Locations &Out) const {
     Objects = It->second;
   // Besides the objects that are known there are those that are not: of them
   // the path alone is known, from its first class on.
-  if (!Rooted)
+  if (!Rooted && !Complete.contains(Base))
     Objects.insert(Objects.begin(), Location());
   for (Location L : Objects) {
     if (L.Root && isa<CallBase>(L.Root) &&
         (L.Path.empty() || L.Path.back().Type == Step::Bytes)) {
-      addAllocated(L, Chain, Out);
+      // Where the way says which class it is, all objects of it are meant.
+      if (none_of(Chain, [](const GEPOperator *GEP) {
+            const auto *S = dyn_cast<StructType>(GEP->getSourceElementType());
+            return S && !S->isLiteral();
+          }))
+        addAllocated(L, Chain, Out);
       continue;
     }
     bool Unknown = !L.isKnown();

@@ -29,6 +29,12 @@ ArrayRef<Instruction *> CallGraphResult::mentions(const Function *F) const {
                               : ArrayRef(It->second);
 }
 
+bool CallGraphResult::allCallsKnown(const Function &F) const {
+  return !F.hasAddressTaken() ||
+         (!HandedOn.contains(&F) &&
+          !UnresolvedTypes.contains(F.getFunctionType()));
+}
+
 SmallVector<Function *, 1>
 CallGraphResult::callees(const CallBase &Call) const {
   SmallVector<Function *, 1> Found;
@@ -91,6 +97,8 @@ void CallGraphResult::findMentions(Module &M, const Options &Opts) {
       if (I.getModule() == &M && !(Call && Call->isCallee(&U)))
         Found.insert(&I);
     });
+    if (!Found.empty())
+      HandedOn.insert(&F);
     if (Found.empty() || (!Sources.has(F) && callsAnything(F, Sources)))
       continue;
     Mentions[&F] = Found.takeVector();
@@ -156,6 +164,8 @@ CallGraphResult SimpleCallGraph::run(Module &M, ModuleAnalysisManager &AM) {
       if (!R.Indirect.contains(Call))
         R.Unresolved.push_back(Call);
   }
+  for (const CallBase *Call : R.Unresolved)
+    R.UnresolvedTypes.insert(Call->getFunctionType());
   R.findMentions(M, Options::fromCommandLine());
   return R;
 }

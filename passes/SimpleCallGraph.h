@@ -11,6 +11,7 @@
 #define TPC_SIMPLECALLGRAPH_H
 
 #include "llvm/ADT/DenseMap.h"
+#include "llvm/ADT/DenseSet.h"
 #include "llvm/ADT/MapVector.h"
 #include "llvm/ADT/SmallVector.h"
 #include "llvm/IR/InstrTypes.h"
@@ -34,6 +35,10 @@ public:
   /// module.
   llvm::ArrayRef<llvm::Instruction *> mentions(const llvm::Function *F) const;
 
+  /// True where \p F is called from nowhere but from its callers, as far as
+  /// this module goes.
+  bool allCallsKnown(const llvm::Function &F) const;
+
   /// Calls whose callee is not known, in the order of the module.
   llvm::ArrayRef<llvm::CallBase *> unresolved() const { return Unresolved; }
 
@@ -47,7 +52,10 @@ private:
   llvm::DenseMap<const llvm::Function *,
                  llvm::SmallVector<llvm::Instruction *, 2>>
       Mentions;
+  /// Functions whose address an instruction hands on.
+  llvm::DenseSet<const llvm::Function *> HandedOn;
   llvm::SmallVector<llvm::CallBase *, 0> Unresolved;
+  llvm::DenseSet<const llvm::FunctionType *> UnresolvedTypes;
   llvm::MapVector<const llvm::Function *,
                   llvm::SmallVector<llvm::CallBase *, 4>>
       Callers;
