@@ -1,4 +1,4 @@
-.PHONY: demo test setup bench lint
+.PHONY: demo test test-llvm22 fuzz setup bench lint
 PYTHON = .venv/bin/python
 
 demo: setup   ## a robot with a wrong parameter, and its name
@@ -6,6 +6,12 @@ demo: setup   ## a robot with a wrong parameter, and its name
 
 test: setup   ## all tests: passes, Python, a real ROS graph
 	tools/test
+
+fuzz: setup   ## a thousand random modules and programs; more: tools/fuzz --help
+	tools/fuzz
+
+test-llvm22:  ## the passes and their tests with LLVM 22, in build-22
+	tools/test-llvm22
 
 setup:        ## packages, .venv, passes; quick when done before
 	@tools/setup

@@ -12,6 +12,8 @@
 #   TPC_CLANG_VERSION  release of clang, lld and LLVM (19)
 #   TPC_RULES          the user's own file of rules
 #   TPC_PROFILE        thesis or default
+#   TPC_MAX_SECONDS    processor time that the analysis of a link unit may take (120)
+#   TPC_MAX_MEMORY     MiB that it may take (4096)
 #   TPC_CONSTANTS      report comparisons with constants of the source, too
 #   TPC_DISABLE        leave this package alone
 
@@ -198,8 +200,15 @@ macro(_tpc_instrument)
   if(TPC_PROFILE)
     list(APPEND _tpc_options "-tpc-profile=${TPC_PROFILE}")
   endif()
+  if(DEFINED TPC_MAX_SECONDS)
+    list(APPEND _tpc_options "-tpc-max-seconds=${TPC_MAX_SECONDS}")
+  endif()
+  if(DEFINED TPC_MAX_MEMORY)
+    list(APPEND _tpc_options "-tpc-max-memory=${TPC_MAX_MEMORY}")
+  endif()
   if(TPC_RULES)
-    list(APPEND _tpc_options "-tpc-rules=${TPC_RULES}")
+    get_filename_component(_tpc_rules "${TPC_RULES}" ABSOLUTE BASE_DIR "${CMAKE_SOURCE_DIR}")
+    list(APPEND _tpc_options "-tpc-rules=${_tpc_rules}")
   endif()
   list(APPEND _tpc_options ${_tpc_constants})
   string(REPLACE ";" "," _tpc_linked "${_tpc_languages}")
@@ -214,7 +223,7 @@ macro(_tpc_instrument)
 endmacro()
 
 # At the end of the package's CMakeLists.txt: what is linked is linked again when
-# the passes or the log library have changed; and what TPC does not see to after
+# the passes, the log library or the rules have changed; and what TPC does not see to after
 # all is said. Flags in generator expressions and in the interface of another
 # target are not known here.
 function(_tpc_finish)
@@ -256,11 +265,15 @@ function(_tpc_finish_folder folder)
   endforeach()
   get_directory_property(plugin DIRECTORY "${folder}" DEFINITION _tpc_plugin)
   get_directory_property(log DIRECTORY "${folder}" DEFINITION _tpc_log)
+  get_directory_property(rules DIRECTORY "${folder}" DEFINITION _tpc_rules)
   get_property(targets DIRECTORY "${folder}" PROPERTY BUILDSYSTEM_TARGETS)
   foreach(target IN LISTS targets)
     get_target_property(type "${target}" TYPE)
     if(type MATCHES "^(EXECUTABLE|SHARED_LIBRARY|MODULE_LIBRARY)$")
       set_property(TARGET "${target}" APPEND PROPERTY LINK_DEPENDS "${plugin}" "${log}")
+      if(rules AND EXISTS "${rules}")
+        set_property(TARGET "${target}" APPEND PROPERTY LINK_DEPENDS "${rules}")
+      endif()
     elseif(NOT type MATCHES "^(STATIC|OBJECT)_LIBRARY$")
       continue()
     endif()

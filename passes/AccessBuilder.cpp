@@ -1,6 +1,7 @@
 //===- AccessBuilder.cpp - Files the accesses -----------------------------===//
 #include "AccessBuilder.h"
 
+#include "Budget.h"
 #include "Functions.h"
 #include "Print.h"
 
@@ -85,6 +86,8 @@ void AccessResult::Builder::fileAccesses() {
     if (Rules.isOpaque(F))
       continue;
     for (Instruction &I : instructions(F)) {
+      if (Budget::isSpent())
+        return;
       if (auto *Load = dyn_cast<LoadInst>(&I)) {
         for (const Location &L : R.touched(*Load)) {
           R.file(R.LoadIndex, R.Loads.size(), L);

@@ -1,6 +1,7 @@
 //===- BackwardPropagate.cpp ----------------------------------------------===//
 #include "BackwardPropagate.h"
 
+#include "Budget.h"
 #include "ClassObjectAccess.h"
 #include "ExternCallFinder.h"
 #include "IfStatements.h"
@@ -24,6 +25,13 @@ SliceResult::lookup(const Instruction *Predicate) const {
   if (It == Predicates.end())
     return std::nullopt;
   return It->second;
+}
+
+SmallVector<SliceStep, 16> SliceResult::pathOf(const SliceEntry &E) const {
+  SmallVector<SliceStep, 16> Path{Steps[E.Step]};
+  while (Path.back().Why != SliceStep::Exposes)
+    Path.push_back(Steps[Path.back().Next]);
+  return Path;
 }
 
 /// Builds the slice of a module.
@@ -51,10 +59,13 @@ private:
     Instruction *I;
     unsigned char Reasons;
     unsigned Exposing;
+    unsigned Step;
   };
+  using Why = SliceStep::WhyTy;
 
-  void enter(Instruction *I, unsigned char Reasons);
-  void decides(Instruction *Predicate);
+  unsigned addStep(Instruction *I, Why Because);
+  void enter(Instruction *I, unsigned char Reasons, Why Because);
+  void decides(Instruction *Predicate, Why Because);
   void process(const Item &It);
   void control(const BasicBlock *BB);
   void value(Instruction &I);
@@ -82,31 +93,39 @@ private:
   SmallVector<Item, 0> Next; ///< what the next round holds
   unsigned Round = 1;
   unsigned Current = 0; ///< exposing statement of the item at hand
+  unsigned Here = 0;    ///< step of the item at hand
 };
 
-void Slicer::enter(Instruction *I, unsigned char Reasons) {
+unsigned Slicer::addStep(Instruction *I, Why Because) {
+  Result.Steps.push_back({I, Here, Because});
+  return Result.Steps.size() - 1;
+}
+
+void Slicer::enter(Instruction *I, unsigned char Reasons, Why Because) {
   unsigned char &Have = Seen[I];
   unsigned char New = (Reasons | Runs) & ~Have;
   if (!New)
     return;
   Have |= New;
-  Next.push_back({I, New, Current});
+  Next.push_back({I, New, Current, addStep(I, Because)});
 }
 
 /// \p Predicate controls what is at hand: this round is its distance.
-void Slicer::decides(Instruction *Predicate) {
-  Result.Predicates.try_emplace(Predicate, SliceEntry{Round, Current});
-  enter(Predicate, Gives);
+void Slicer::decides(Instruction *Predicate, Why Because) {
+  auto [It, New] = Result.Predicates.try_emplace(Predicate);
+  if (New)
+    It->second = {Round, Current, addStep(Predicate, Because)};
+  enter(Predicate, Gives, Because);
 }
 
 void Slicer::control(const BasicBlock *BB) {
   for (Instruction *Predicate : Ifs.controllers(BB))
-    decides(Predicate);
+    decides(Predicate, Why::Controls);
   if (Ifs.isControlledByEntry(BB)) {
     for (CallBase *Call : Calls.callers(BB->getParent()))
-      enter(Call, Runs);
+      enter(Call, Runs, Why::Calls);
     for (Instruction *Mention : Calls.mentions(BB->getParent()))
-      enter(Mention, Runs);
+      enter(Mention, Runs, Why::Mentions);
   }
 }
 
@@ -115,13 +134,17 @@ void Slicer::define(const Value *V) {
   if (V->getType()->isPointerTy())
     return definePointer(V);
   if (const auto *I = dyn_cast<Instruction>(V))
-    return enter(const_cast<Instruction *>(I), Gives);
+    return enter(const_cast<Instruction *>(I), Gives, Why::Gives);
   const auto *Arg = dyn_cast<Argument>(V);
   if (!Arg || !SeenArguments.insert(Arg).second)
     return;
-  for (const CallBase *Call : Calls.callers(Arg->getParent()))
-    if (Arg->getArgNo() < Call->arg_size())
+  unsigned Inside = Here;
+  for (CallBase *Call : Calls.callers(Arg->getParent()))
+    if (Arg->getArgNo() < Call->arg_size()) {
+      Here = addStep(Call, Why::Passes);
       define(Call->getArgOperand(Arg->getArgNo()));
+      Here = Inside;
+    }
 }
 
 /// Which object a pointer leads to matters where the program chooses it: by
@@ -135,14 +158,14 @@ void Slicer::definePointer(const Value *V) {
   }
   if (isa<PHINode>(V) || isa<SelectInst>(V) || isa<LoadInst>(V) ||
       isa<CallBase>(V))
-    enter(const_cast<Instruction *>(cast<Instruction>(V)), Gives);
+    enter(const_cast<Instruction *>(cast<Instruction>(V)), Gives, Why::Gives);
 }
 
 /// What is in memory at \p Pointer, a scalar, matters.
 void Slicer::defineMemory(const Value *Pointer) {
   for (const Location &L : Access.resolve(Pointer, true))
     for (Instruction *Write : Access.writesOf(L))
-      enter(Write, Gives);
+      enter(Write, Gives, Why::Writes);
 }
 
 /// A value that control flow merges: the predicates that choose between the
@@ -152,9 +175,9 @@ void Slicer::phi(const PHINode &Phi) {
     define(Phi.getIncomingValue(N));
     const BasicBlock *From = Phi.getIncomingBlock(N);
     if (isPredicate(*From->getTerminator()))
-      decides(const_cast<Instruction *>(From->getTerminator()));
+      decides(const_cast<Instruction *>(From->getTerminator()), Why::Chooses);
     for (Instruction *Predicate : Ifs.controllers(From))
-      decides(Predicate);
+      decides(Predicate, Why::Chooses);
   }
 }
 
@@ -164,7 +187,7 @@ void Slicer::callResult(CallBase &Call) {
     for (Function *Callee : Callees)
       for (BasicBlock &BB : *Callee)
         if (isa<ReturnInst>(BB.getTerminator()))
-          enter(BB.getTerminator(), Gives);
+          enter(BB.getTerminator(), Gives, Why::Returns);
     return;
   }
   for (const Use &Arg : Call.args()) {
@@ -197,11 +220,11 @@ void Slicer::derivedPointer(const Value *Pointer) {
       derivedPointer(I);
     else if (auto *Store = dyn_cast<StoreInst>(I);
              Store && Store->getPointerOperand() == Pointer)
-      enter(I, Gives);
+      enter(I, Gives, Why::Writes);
     else if (isa<MemTransferInst>(I))
-      enter(I, Gives);
+      enter(I, Gives, Why::Writes);
     else if (isa<CallBase>(I) && !isa<IntrinsicInst>(I))
-      enter(I, Touches);
+      enter(I, Touches, Why::Writes);
   }
 }
 
@@ -217,9 +240,10 @@ void Slicer::reachable(CallBase &Call) {
       continue;
     for (const Location &L : Access.resolve(Arg, false))
       for (Instruction *Write : Access.writesInto(L))
-        enter(Write, isa<CallBase>(Write) && !isa<IntrinsicInst>(Write)
-                         ? Touches
-                         : Gives);
+        enter(Write,
+              isa<CallBase>(Write) && !isa<IntrinsicInst>(Write) ? Touches
+                                                                 : Gives,
+              Why::Writes);
     derivedPointer(Arg);
   }
 }
@@ -233,7 +257,7 @@ void Slicer::value(Instruction &I) {
       const auto *Store = dyn_cast<StoreInst>(Write);
       if (!Store || !isa<Constant>(Store->getValueOperand()) ||
           Sources.has(*Write->getFunction()))
-        enter(Write, Gives);
+        enter(Write, Gives, Why::Writes);
     }
     return definePointer(Load->getPointerOperand());
   }
@@ -246,7 +270,7 @@ void Slicer::value(Instruction &I) {
     return definePointer(Store->getPointerOperand());
   }
   if (isa<SelectInst>(I))
-    decides(&I);
+    decides(&I, Why::Chooses);
   for (const Use &Operand : I.operands())
     if (!isa<BasicBlock>(Operand))
       define(Operand);
@@ -254,6 +278,7 @@ void Slicer::value(Instruction &I) {
 
 void Slicer::process(const Item &It) {
   Current = It.Exposing;
+  Here = It.Step;
   if (It.Reasons & Runs)
     control(It.I->getParent());
   if (It.Reasons & Gives)
@@ -267,13 +292,16 @@ void Slicer::process(const Item &It) {
 SliceResult Slicer::run() {
   for (const auto &[N, E] : enumerate(Exposing)) {
     Current = N;
-    enter(E.Call, Exposes);
+    enter(E.Call, Exposes, Why::Exposes);
   }
   for (; !Next.empty(); ++Round) {
     SmallVector<Item, 0> Items = std::move(Next);
     Next.clear();
-    for (const Item &It : Items)
+    for (const Item &It : Items) {
+      if (Budget::isSpent())
+        return std::move(Result);
       process(It);
+    }
   }
   return std::move(Result);
 }

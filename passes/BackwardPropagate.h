@@ -27,10 +27,30 @@
 
 namespace tpc {
 
+/// One thing of the slice, and the thing nearer to the exposing statement that
+/// brought it in.
+struct SliceStep {
+  enum WhyTy : unsigned char {
+    Exposes,  ///< it is the exposing statement
+    Controls, ///< decides whether the next one runs
+    Chooses,  ///< decides which value the next one has
+    Calls,    ///< calls the function of the next one
+    Mentions, ///< hands that function on, so that somebody else calls it
+    Gives,    ///< the next one computes with its value
+    Writes,   ///< writes what the next one reads
+    Returns,  ///< returns what the next one, a call, gives
+    Passes,   ///< hands the function of the next one an argument
+  };
+  llvm::Instruction *I;
+  unsigned Next; ///< number of the step that brought it in
+  WhyTy Why;
+};
+
 /// How a predicate got into the slice.
 struct SliceEntry {
   unsigned Distance;
   unsigned Exposing; ///< number of the nearest exposing statement
+  unsigned Step;     ///< number of the predicate's own step
 };
 
 class SliceResult {
@@ -38,10 +58,14 @@ public:
   /// None where no exposing statement depends on \p Predicate.
   std::optional<SliceEntry> lookup(const llvm::Instruction *Predicate) const;
   unsigned numPredicates() const { return Predicates.size(); }
+  /// The way from a predicate to its nearest exposing statement: the one by
+  /// which its distance came about.
+  llvm::SmallVector<SliceStep, 16> pathOf(const SliceEntry &E) const;
 
 private:
   friend class Slicer;
   llvm::DenseMap<const llvm::Instruction *, SliceEntry> Predicates;
+  std::vector<SliceStep> Steps;
 };
 
 class BackwardPropagate : public llvm::AnalysisInfoMixin<BackwardPropagate> {

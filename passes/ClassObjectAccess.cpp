@@ -124,16 +124,65 @@ static bool isOnePlace(const Value *Pointer) {
          !cast<AllocaInst>(Pointer)->getAllocatedType()->isArrayTy();
 }
 
-/// True where \p I is a call that is handed a pointer into \p Local.
-static bool isHanded(const Instruction &I, const Value *Local) {
-  const auto *Call = dyn_cast<CallBase>(&I);
-  return Call && any_of(Call->args(), [&](const Use &U) {
-           const Value *V = U.get();
-           while (const auto *GEP = dyn_cast<GEPOperator>(V))
-             V = GEP->getPointerOperand();
-           return V == Local;
-         });
+/// The calls that are handed a pointer into \p Local; none where its address is
+/// stored away as well, after which any call may be.
+static std::optional<SmallVector<Instruction *, 4>>
+handedTo(const AllocaInst &Local) {
+  SmallVector<Instruction *, 4> Calls;
+  SmallVector<const Value *, 8> Work{&Local};
+  while (!Work.empty()) {
+    const Value *V = Work.pop_back_val();
+    for (const Use &U : V->uses()) {
+      auto *I = cast<Instruction>(U.getUser());
+      if (isa<GetElementPtrInst>(I))
+        Work.push_back(I);
+      else if (isa<CallBase>(I))
+        Calls.push_back(I);
+      else if (isa<StoreInst>(I) && U.getOperandNo() == 0 && V == &Local)
+        return std::nullopt;
+    }
+  }
+  return Calls;
 }
+
+/// What happens to a local variable in its function: the writes of it, and the
+/// calls that are handed it, by block and in order.
+struct AccessResult::LocalHistory {
+  bool Known = false; ///< else anything may happen to it anywhere
+  SmallPtrSet<const Instruction *, 8> Writes;
+  DenseMap<const BasicBlock *, SmallVector<const Instruction *, 2>> Events;
+};
+
+const AccessResult::LocalHistory &
+AccessResult::historyOf(const Location &L, ArrayRef<Instruction *> W) const {
+  auto &Known = Histories[L.Root];
+  for (const auto &[Where, History] : Known)
+    if (Where == L)
+      return *History;
+  const auto &Local = *cast<AllocaInst>(L.Root);
+  auto History = std::make_shared<LocalHistory>();
+  if (auto Handed = handedTo(Local)) {
+    History->Known = true;
+    SmallSetVector<Instruction *, 8> All(Handed->begin(), Handed->end());
+    for (Instruction *Write : W)
+      if (Write->getFunction() == Local.getFunction()) {
+        History->Writes.insert(Write);
+        All.insert(Write);
+      }
+    for (const Instruction *I : All)
+      History->Events[I->getParent()].push_back(I);
+    for (auto &[BB, List] : History->Events)
+      sort(List, [](const Instruction *A, const Instruction *B) {
+        return A->comesBefore(B);
+      });
+  }
+  Known.push_back({L, History});
+  return *Known.back().second;
+}
+
+/// Blocks that are walked through for the loads of a module; after that all
+/// writes of a local variable are taken to reach all its loads.
+static constexpr unsigned MaxWalked = 20'000'000;
 
 /// Leaves in \p W the writes of the local variable \p L that reach \p Load:
 /// walks the flow graph back from it and stops at stores that surely replace
@@ -141,43 +190,36 @@ static bool isHanded(const Instruction &I, const Value *Local) {
 /// the variable; where its address was stored away, all of them stay.
 void AccessResult::reachingWrites(const LoadInst &Load, const Location &L,
                                   SmallSetVector<Instruction *, 8> &W) const {
-  const auto *Local = cast<AllocaInst>(L.Root);
-  for (const User *U : Local->users())
-    if (const auto *Store = dyn_cast<StoreInst>(U);
-        Store && Store->getValueOperand() == Local)
-      return;
+  const LocalHistory &History = historyOf(L, W.getArrayRef());
+  if (!History.Known || Walked > MaxWalked)
+    return;
   SmallPtrSet<const Instruction *, 8> Reached;
   bool CallReached = false;
   SmallPtrSet<const BasicBlock *, 16> Seen;
   SmallVector<const BasicBlock *, 16> Work;
-  // True where the walk goes on above this instruction.
-  auto Step = [&](const Instruction &I) {
-    if (W.contains(const_cast<Instruction *>(&I)))
-      Reached.insert(&I);
-    CallReached |= isHanded(I, Local);
-    const auto *Store = dyn_cast<StoreInst>(&I);
-    return !(Store && W.contains(const_cast<StoreInst *>(Store)) &&
-             isOnePlace(Store->getPointerOperand()));
-  };
-  auto Above = [&](const BasicBlock *BB) {
+  // Walks up through the events of a block that come before \p Below; goes on
+  // above it where no store has replaced the value.
+  auto Through = [&](const BasicBlock *BB, const Instruction *Below) {
+    ++Walked;
+    if (auto It = History.Events.find(BB); It != History.Events.end())
+      for (const Instruction *I : reverse(It->second)) {
+        if (Below && !I->comesBefore(Below))
+          continue;
+        bool Writes = History.Writes.contains(I);
+        if (Writes)
+          Reached.insert(I);
+        CallReached |= isa<CallBase>(I);
+        const auto *Store = dyn_cast<StoreInst>(I);
+        if (Writes && Store && isOnePlace(Store->getPointerOperand()))
+          return;
+      }
     for (const BasicBlock *Pred : predecessors(BB))
       if (Seen.insert(Pred).second)
         Work.push_back(Pred);
   };
-  const Instruction *I = Load.getPrevNode();
-  while (I && Step(*I))
-    I = I->getPrevNode();
-  if (!I)
-    Above(Load.getParent());
-  while (!Work.empty()) {
-    const BasicBlock *BB = Work.pop_back_val();
-    bool Open = true;
-    for (const Instruction &J : reverse(*BB))
-      if (!(Open = Step(J)))
-        break;
-    if (Open)
-      Above(BB);
-  }
+  Through(Load.getParent(), &Load);
+  while (!Work.empty())
+    Through(Work.pop_back_val(), nullptr);
   W.remove_if([&](Instruction *Write) {
     return Write->getFunction() == Load.getFunction() ? !Reached.contains(Write)
                                                       : !CallReached;

@@ -199,6 +199,10 @@ private:
   template <typename Fn>
   void eachAround(const Location &L, const Index &In, Fn F) const;
 
+  struct LocalHistory;
+  const LocalHistory &historyOf(const Location &L,
+                                llvm::ArrayRef<llvm::Instruction *> W) const;
+
   const llvm::DataLayout *Layout = nullptr;
   std::unique_ptr<DebugTypes> Debug;
   /// The locals that code elsewhere can reach without naming them.
@@ -220,6 +224,12 @@ private:
   mutable llvm::DenseMap<const llvm::LoadInst *,
                          llvm::SmallVector<llvm::Instruction *, 8>>
       Definitions;
+  mutable llvm::DenseMap<
+      const llvm::Value *,
+      llvm::SmallVector<
+          std::pair<Location, std::shared_ptr<const LocalHistory>>, 1>>
+      Histories;
+  mutable unsigned Walked = 0;
 };
 
 /// Calls \p F with the numbers that \p In has for what can be \p L.

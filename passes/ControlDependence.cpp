@@ -1,6 +1,8 @@
 //===- ControlDependence.cpp ----------------------------------------------===//
 #include "ControlDependence.h"
 
+#include "Budget.h"
+
 #include <algorithm>
 
 namespace tpc {
@@ -8,6 +10,79 @@ namespace tpc {
 namespace {
 
 constexpr unsigned None = ~0U;
+
+/// The nodes that can be reached from \p Roots, themselves included.
+std::vector<bool> reachedFrom(const FlowGraph &Graph,
+                              std::vector<unsigned> Roots) {
+  std::vector<bool> Seen(Graph.size());
+  while (!Roots.empty()) {
+    unsigned N = Roots.back();
+    Roots.pop_back();
+    if (Seen[N])
+      continue;
+    Seen[N] = true;
+    Roots.insert(Roots.end(), Graph[N].begin(), Graph[N].end());
+  }
+  return Seen;
+}
+
+FlowGraph turnedRound(const FlowGraph &Graph) {
+  FlowGraph Preds(Graph.size());
+  for (unsigned N = 0; N < Graph.size(); ++N)
+    for (unsigned S : Graph[N])
+      Preds[S].push_back(N);
+  return Preds;
+}
+
+/// The loop that \p Node ends up in and that has no way out.
+std::vector<bool> endlessLoop(const FlowGraph &Graph, const FlowGraph &Preds,
+                              unsigned Node) {
+  for (;;) {
+    std::vector<bool> Loop = reachedFrom(Graph, {Node});
+    std::vector<bool> Back = reachedFrom(Preds, {Node});
+    unsigned Behind = 0;
+    while (Behind < Graph.size() && (!Loop[Behind] || Back[Behind]))
+      ++Behind;
+    if (Behind == Graph.size())
+      return Loop;
+    Node = Behind;
+  }
+}
+
+/// Gives each loop that never ends a way out after any round, before it begins
+/// again: an end inside would make what else is in it depend on the branches
+/// that lead there. The nodes for that come after those of \p Graph.
+FlowGraph withEnds(FlowGraph Graph) {
+  for (;;) {
+    FlowGraph Preds = turnedRound(Graph);
+    std::vector<unsigned> Ends;
+    for (unsigned N = 0; N < Graph.size(); ++N)
+      if (Graph[N].empty())
+        Ends.push_back(N);
+    std::vector<bool> Ending = reachedFrom(Preds, Ends);
+    auto Stuck = std::find(Ending.begin(), Ending.end(), false);
+    if (Stuck == Ending.end())
+      return Graph;
+    std::vector<bool> Loop = endlessLoop(
+        Graph, Preds, static_cast<unsigned>(Stuck - Ending.begin()));
+    auto IsEntered = [&](unsigned N) {
+      return Loop[N] && std::any_of(Preds[N].begin(), Preds[N].end(),
+                                    [&](unsigned P) { return !Loop[P]; });
+    };
+    unsigned First = 0;
+    while (First < Graph.size() && !IsEntered(First))
+      ++First;
+    if (First == Graph.size()) // nothing leads there
+      First = static_cast<unsigned>(std::find(Loop.begin(), Loop.end(), true) -
+                                    Loop.begin());
+    unsigned Again = static_cast<unsigned>(Graph.size());
+    for (unsigned P : Preds[First])
+      if (Loop[P])
+        std::replace(Graph[P].begin(), Graph[P].end(), First, Again);
+    Graph.push_back({First, Again + 1});
+    Graph.push_back({});
+  }
+}
 
 /// The graph turned round, with one more node: the exit, from which every
 /// node can be reached.
@@ -23,7 +98,6 @@ public:
 
 private:
   void addExit(unsigned Node);
-  std::vector<bool> reachingExit() const;
   std::vector<unsigned> postOrder() const;
 
   FlowGraph Succs; ///< of the original direction, exit edges included
@@ -61,44 +135,17 @@ std::vector<unsigned> postOrderFrom(const FlowGraph &Graph,
 ReverseGraph::ReverseGraph(const FlowGraph &Graph)
     : Succs(Graph), Preds(Graph.size() + 1) {
   Succs.emplace_back();
-  std::vector<unsigned> Roots;
-  for (unsigned N = 0; N < Graph.size(); ++N) {
-    Roots.push_back(N);
+  for (unsigned N = 0; N < Graph.size(); ++N)
     for (unsigned S : Graph[N])
       Preds[S].push_back(N);
-  }
   for (unsigned N = 0; N < Graph.size(); ++N)
     if (Graph[N].empty())
       addExit(N);
-  // Post-order visits what lies deepest first, so the first node that cannot
-  // reach the exit is the last one of its region in reverse post-order.
-  std::vector<bool> Reaching = reachingExit();
-  for (unsigned N : postOrderFrom(Graph, Roots))
-    if (!Reaching[N]) {
-      addExit(N);
-      Reaching = reachingExit();
-    }
 }
 
 void ReverseGraph::addExit(unsigned Node) {
   Succs[Node].push_back(exit());
   Preds[exit()].push_back(Node);
-}
-
-std::vector<bool> ReverseGraph::reachingExit() const {
-  std::vector<bool> Seen(Preds.size());
-  std::vector<unsigned> Work{exit()};
-  Seen[exit()] = true;
-  while (!Work.empty()) {
-    unsigned N = Work.back();
-    Work.pop_back();
-    for (unsigned P : Preds[N])
-      if (!Seen[P]) {
-        Seen[P] = true;
-        Work.push_back(P);
-      }
-  }
-  return Seen;
 }
 
 std::vector<unsigned> ReverseGraph::postOrder() const {
@@ -126,6 +173,8 @@ std::vector<unsigned> ReverseGraph::postDominators() const {
     for (auto It = Order.rbegin(); It != Order.rend(); ++It) {
       if (*It == exit())
         continue;
+      if (Budget::isSpent())
+        return {};
       unsigned New = None;
       for (unsigned S : Succs[*It])
         if (Idom[S] != None)
@@ -143,18 +192,23 @@ std::vector<unsigned> ReverseGraph::postDominators() const {
 } // namespace
 
 std::vector<std::vector<unsigned>> controlDependence(const FlowGraph &Graph) {
-  ReverseGraph Reverse(Graph);
+  ReverseGraph Reverse(withEnds(Graph));
   std::vector<unsigned> Idom = Reverse.postDominators();
-  std::vector<std::vector<unsigned>> Controllers(Graph.size());
+  std::vector<std::vector<unsigned>> Controllers(Reverse.successors().size());
+  if (Idom.empty()) {
+    Controllers.resize(Graph.size());
+    return Controllers;
+  }
   for (unsigned Branch = 0; Branch < Graph.size(); ++Branch) {
     const std::vector<unsigned> &Succs = Reverse.successors()[Branch];
-    if (Succs.size() < 2)
+    if (Succs.size() < 2 || Budget::isSpent())
       continue;
     for (unsigned S : Succs)
       for (unsigned N = S; N != Idom[Branch] && N != Reverse.exit();
            N = Idom[N])
         Controllers[N].push_back(Branch);
   }
+  Controllers.resize(Graph.size());
   for (std::vector<unsigned> &List : Controllers) {
     std::sort(List.begin(), List.end());
     List.erase(std::unique(List.begin(), List.end()), List.end());

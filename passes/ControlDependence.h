@@ -19,8 +19,8 @@ namespace tpc {
 using FlowGraph = std::vector<std::vector<unsigned>>;
 
 /// For each node the nodes that it is directly control dependent on,
-/// ascending. A region that never reaches an exit is given one at its node
-/// that is last in reverse post-order, so that its inner branches still count.
+/// ascending. A loop that never ends is given an end after any round of it, so
+/// that its inner branches still count.
 std::vector<std::vector<unsigned>> controlDependence(const FlowGraph &Graph);
 
 } // namespace tpc

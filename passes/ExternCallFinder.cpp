@@ -2,8 +2,8 @@
 #include "ExternCallFinder.h"
 
 #include "ClassObjectAccess.h"
-#include "Names.h"
 #include "Print.h"
+#include "Texts.h"
 
 #include "llvm/IR/Module.h"
 
@@ -22,17 +22,18 @@ struct NamedObject {
 /// The publishers and clients of \p M. `advertise` gives its result to a
 /// temporary or variable; from a temporary, a call that is handed both it and
 /// another object (the assignment) passes the name on.
-static SmallVector<NamedObject, 0>
-namedObjects(Module &M, const RuleMatches &Rules, const AccessResult &Access) {
+static SmallVector<NamedObject, 0> namedObjects(Module &M,
+                                                const RuleMatches &Rules,
+                                                const AccessResult &Access,
+                                                Texts &Known) {
   SmallVector<NamedObject, 0> Found;
   forEachCall(M, Rules, Rule::Topic, [&](CallBase &Call, const Rule &Row) {
-    std::optional<std::string> Topic =
-        constantText(argument(Call, Row, Row.Name));
-    if (!Topic || !Call.hasStructRetAttr())
+    std::string Topic = Known.nameOf(Call, Row);
+    if (isDynamic(Topic) || !Call.hasStructRetAttr())
       return;
     Value *Made = Call.getArgOperand(0);
     for (const Location &L : Access.resolve(Made, false))
-      Found.push_back({L, *Topic});
+      Found.push_back({L, Topic});
     if (!isa<AllocaInst>(Made))
       return;
     for (User *U : Made->users()) {
@@ -41,7 +42,7 @@ namedObjects(Module &M, const RuleMatches &Rules, const AccessResult &Access) {
           Assign->getArgOperand(1) != Made)
         continue;
       for (const Location &L : Access.resolve(Assign->getArgOperand(0), false))
-        Found.push_back({L, *Topic});
+        Found.push_back({L, Topic});
     }
   });
   return Found;
@@ -67,13 +68,13 @@ ExternCallFinder::Result ExternCallFinder::run(Module &M,
                                                ModuleAnalysisManager &AM) {
   const RuleMatches &Rules = AM.getResult<RuleAnalysis>(M);
   const AccessResult &Access = AM.getResult<ClassObjectAccess>(M);
-  SmallVector<NamedObject, 0> Named = namedObjects(M, Rules, Access);
+  Texts Known(Rules, AM.getResult<SimpleCallGraph>(M), &Access);
+  SmallVector<NamedObject, 0> Named = namedObjects(M, Rules, Access, Known);
   Result R;
   forEachCall(M, Rules, Rule::Exposing, [&](CallBase &Call, const Rule &Row) {
-    std::string Topic =
-        Row.Name ? constantText(argument(Call, Row, Row.Name)).value_or("")
-                 : topicOf(objectOf(Call, Row), Named, Access);
-    R.push_back({&Call, &Row, std::move(Topic)});
+    std::string Topic = Row.Name ? Known.nameOf(Call, Row)
+                                 : topicOf(objectOf(Call, Row), Named, Access);
+    R.push_back({&Call, &Row, isDynamic(Topic) ? "" : std::move(Topic)});
   });
   return R;
 }

@@ -1,6 +1,7 @@
 //===- GatherResults.cpp --------------------------------------------------===//
 #include "GatherResults.h"
 
+#include "Budget.h"
 #include "ConstantFinder.h"
 #include "IfStatements.h"
 #include "Names.h"
@@ -87,6 +88,7 @@ static bool nearest(const ParameterComparison &C, const SliceResult &Slice,
     Found = true;
     Out.Predicate = D.Predicate;
     Out.Direct = D.Direct;
+    Out.Way = D.Way;
     Out.Slice = *E;
   }
   return Found;
@@ -109,13 +111,26 @@ static const BranchInst *nextBranch(const BasicBlock *BB) {
   return nullptr;
 }
 
+/// True where \p B begins a statement in the block in which \p A is part of
+/// another one, as `bool In = A && ...; if (In)`. Clang 19 gives both the scope
+/// of the block; later ones give a statement's condition the scope of its own.
+static bool nextStatement(const DILocation &A, const DILocation &B) {
+  const auto *Own = dyn_cast<DILexicalBlock>(B.getScope());
+  const auto *Around = dyn_cast<DILexicalBlock>(A.getScope());
+  return Own && Own->getScope() == A.getScope() &&
+         Own->getLine() == B.getLine() && Own->getColumn() == B.getColumn() &&
+         !(Around && Around->getLine() == A.getLine());
+}
+
 /// True where \p A and \p B can belong to one condition, A before B. Clang
 /// gives a statement's condition a scope of its own, in which all operands
-/// stand but the last; that one has the statement's place.
+/// stand but (in clang 19) the last; that one has the statement's place.
 static bool sameStatement(const BranchInst &A, const BranchInst &B) {
   const DILocation *LocA = A.getDebugLoc(), *LocB = B.getDebugLoc();
   if (!LocA || !LocB)
     return false;
+  if (nextStatement(*LocA, *LocB))
+    return true;
   const auto *Scope = dyn_cast<DILexicalBlock>(LocA->getScope());
   return LocA->getScope() == LocB->getScope() ||
          (Scope && Scope->getScope() == LocB->getScope() &&
@@ -170,20 +185,17 @@ static void countOthers(GatheredResults &R) {
       Conditions.unionSets(Work[N], Br);
       Work.insert(Br);
     }
-  // Of each condition, and of each comparison in it.
-  DenseMap<const Instruction *, unsigned> InCondition;
-  DenseMap<std::pair<const Instruction *, const CmpInst *>, unsigned> Alike;
-  for (const Comparison &C : R.Comparisons) {
-    const Instruction *Condition = Conditions.getLeaderValue(C.Predicate);
-    ++InCondition[Condition];
-    ++Alike[{Condition, C.Compare}];
-  }
+  // A condition's comparisons are few, a unit's are many.
+  DenseMap<const Instruction *, SmallVector<const Comparison *, 2>> ByCondition;
+  for (const Comparison &C : R.Comparisons)
+    ByCondition[Conditions.getLeaderValue(C.Predicate)].push_back(&C);
   for (auto *List : {&R.Comparisons, &R.Constants})
-    for (Comparison &C : *List) {
-      const Instruction *Condition = Conditions.getLeaderValue(C.Predicate);
-      C.OtherThresholds = InCondition[Condition] -
-                          (C.Compare ? Alike[{Condition, C.Compare}] : 1);
-    }
+    for (Comparison &C : *List)
+      C.OtherThresholds =
+          count_if(ByCondition.lookup(Conditions.getLeaderValue(C.Predicate)),
+                   [&](const Comparison *O) {
+                     return O != &C && (O->Compare != C.Compare || !C.Compare);
+                   });
 }
 
 /// A UUID of version 5 (RFC 4122) of \p Name, in a namespace of our own.
@@ -291,9 +303,13 @@ GatheredResults GatherResults::run(Module &M, ModuleAnalysisManager &AM) {
   SmallPtrSet<const CmpInst *, 16> WithParameter;
   DenseMap<const Value *, SmallVector<unsigned, 1>> Known; ///< by what compares
   for (const ParameterComparison &P : Usage.Comparisons) {
+    if (Budget::isSpent())
+      break;
     Comparison C{};
-    if (!nearest(P, Slice, C))
+    if (!nearest(P, Slice, C)) {
+      R.Others.push_back({&P, NotReported::NotExposed});
       continue;
+    }
     C.Compare = P.Compare;
     C.Threshold = P.Operand;
     C.FlagValue = P.Flag;
@@ -309,7 +325,10 @@ GatheredResults GatherResults::run(Module &M, ModuleAnalysisManager &AM) {
       WithParameter.insert(dyn_cast<CmpInst>(P.Flag));
     C.Where = Own.of(C.place());
     if (!C.Where) {
-      ++(C.place().getDebugLoc() ? R.OutsideSources : R.WithoutDebugInfo);
+      bool Outside = C.place().getDebugLoc();
+      ++(Outside ? R.OutsideSources : R.WithoutDebugInfo);
+      R.Others.push_back({&P, Outside ? NotReported::OutsideSources
+                                      : NotReported::WithoutDebugInfo});
       continue;
     }
     if (P.ByArgument)

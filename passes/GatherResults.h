@@ -28,6 +28,7 @@ struct Comparison {
   llvm::SmallVector<unsigned, 1> Reads; ///< all of one parameter name
   std::string ConstantName; ///< of a constant: its variable or its number
   SliceEntry Slice;
+  unsigned Way; ///< see Decision
   unsigned OtherThresholds = 0;
   std::string Key; ///< survives a rebuild
   /// Where it stands in the user's own sources: for a comparison that is in
@@ -47,6 +48,13 @@ struct Comparison {
   llvm::StringRef relation() const;
 };
 
+/// A comparison with a parameter that is not reported, and why.
+struct NotReported {
+  enum WhyTy { NotExposed, OutsideSources, WithoutDebugInfo };
+  const ParameterComparison *Compared;
+  WhyTy Why;
+};
+
 struct GatheredResults {
   /// In the order of the reads and then of the way forward.
   std::vector<Comparison> Comparisons;
@@ -58,6 +66,7 @@ struct GatheredResults {
   /// them: their other calls compare something else.
   llvm::SmallSetVector<llvm::Function *, 4> Shared;
   unsigned WithoutDebugInfo = 0; ///< comparisons whose place is not known
+  std::vector<NotReported> Others;
 };
 
 class GatherResults : public llvm::AnalysisInfoMixin<GatherResults> {

@@ -1,6 +1,7 @@
 //===- IfStatements.cpp ---------------------------------------------------===//
 #include "IfStatements.h"
 
+#include "Budget.h"
 #include "ControlDependence.h"
 #include "Functions.h"
 #include "Options.h"
@@ -128,11 +129,40 @@ static FlowGraph flowGraphOf(const Function &F,
   return Graph;
 }
 
+/// Takes the ways out of the blocks that all edges of \p Threaded were led
+/// past: there is nothing that they decide. Blocks that no edge of \p Plain
+/// leads to stay, an exception does.
+static std::vector<bool> leaveOutBypassed(const FlowGraph &Plain,
+                                          FlowGraph &Threaded) {
+  std::vector<bool> Entered(Plain.size()), Reached(Plain.size());
+  for (const std::vector<unsigned> &Succs : Plain)
+    for (unsigned S : Succs)
+      Entered[S] = true;
+  std::vector<unsigned> Work;
+  for (unsigned N = 0; N < Plain.size(); ++N)
+    if (!Entered[N])
+      Work.push_back(N);
+  while (!Work.empty()) {
+    unsigned N = Work.back();
+    Work.pop_back();
+    if (Reached[N])
+      continue;
+    Reached[N] = true;
+    Work.insert(Work.end(), Threaded[N].begin(), Threaded[N].end());
+  }
+  for (unsigned N = 0; N < Plain.size(); ++N)
+    if (!Reached[N])
+      Threaded[N].clear();
+  return Reached;
+}
+
 IfStatementsResult IfStatements::run(Module &M, ModuleAnalysisManager &) {
   IfStatementsResult R;
   const Options Opts = Options::fromCommandLine();
   UserSources Sources(Opts);
   for (Function &F : definedFunctions(M)) {
+    if (Budget::isSpent())
+      break;
     for (Instruction &I : instructions(F))
       if (isPredicate(I))
         R.Predicates.push_back(&I);
@@ -144,16 +174,18 @@ IfStatementsResult IfStatements::run(Module &M, ModuleAnalysisManager &) {
     }
     FlowGraph Plain = flowGraphOf(F, Id, /*Threaded=*/false, Sources);
     FlowGraph Threaded = flowGraphOf(F, Id, /*Threaded=*/true, Sources);
+    std::vector<bool> Reached = leaveOutBypassed(Plain, Threaded);
     auto Depends = controlDependence(Threaded);
     if (Plain != Threaded) {
       // What a block does that edges were led past is done on all of them;
       // one that does nothing is only the end of a condition.
       auto Before = controlDependence(Plain);
       for (unsigned N = 0; N < Blocks.size(); ++N)
-        if (doesSomething(*Blocks[N]) &&
-            any_of(predecessors(Blocks[N]), [&](const BasicBlock *P) {
-              return decidedWay(P, Blocks[N]);
-            }))
+        if (!Reached[N] ||
+            (doesSomething(*Blocks[N]) &&
+             any_of(predecessors(Blocks[N]), [&](const BasicBlock *P) {
+               return decidedWay(P, Blocks[N]);
+             })))
           Depends[N] = Before[N];
     }
     for (unsigned N = 0; N < Blocks.size(); ++N) {

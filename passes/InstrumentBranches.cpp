@@ -1,6 +1,7 @@
 //===- InstrumentBranches.cpp ---------------------------------------------===//
 #include "InstrumentBranches.h"
 
+#include "Guard.h"
 #include "IfStatements.h"
 #include "Print.h"
 
@@ -81,7 +82,8 @@ static bool planFlag(const Comparison &C, bool IsUnsigned,
   Value *Flag = C.FlagValue == conditionOf(*C.Predicate)
                     ? conditionOf(*Predicate)
                     : Analysed.original(C.FlagValue);
-  if (!Flag || (!C.Direct && !C.IsOperand && !IsText))
+  if (!Flag || Flag->getType()->isVectorTy() ||
+      (!C.Direct && !C.IsOperand && !IsText))
     return false;
   R.Before = Predicate;
   R.Result = outcomeOf(*C.Predicate, Analysed);
@@ -112,7 +114,7 @@ std::optional<Report> planReport(const Comparison &C, bool IsUnsigned,
     return planFlag(C, IsUnsigned, Analysed, R) ? std::optional(R)
                                                 : std::nullopt;
   auto *Compare = cast_or_null<CmpInst>(Analysed.original(C.Compare));
-  if (!Compare)
+  if (!Compare || Compare->getType()->isVectorTy())
     return std::nullopt;
   R.Threshold = Compare->getOperand(C.Threshold);
   R.Compared = Compare->getOperand(1 - C.Threshold);
@@ -144,9 +146,11 @@ static Value *toDouble(IRBuilder<> &B, Value *V, bool Signed) {
 }
 
 static Value *toBool(IRBuilder<> &B, Value *V) {
-  return V->getType()->isIntegerTy(1)
-             ? V
-             : B.CreateICmpNE(V, Constant::getNullValue(V->getType()));
+  Type *T = V->getType();
+  if (T->isIntegerTy(1))
+    return V;
+  return T->isFloatingPointTy() ? B.CreateFCmpUNE(V, ConstantFP::get(T, 0))
+                                : B.CreateICmpNE(V, Constant::getNullValue(T));
 }
 
 /// Whether \p Switch takes a case that is written out.
@@ -182,7 +186,14 @@ std::string insertReports(Module &M, ArrayRef<Report> Reports) {
   FunctionCallee Log = logFunction(M);
   SmallVector<Instruction *, 0> Inserted;
   StringMap<GlobalVariable *> Keys;
-  for (const Report &R : Reports) {
+  Instruction *Above = nullptr, *Before = nullptr;
+  auto Collect = [&] {
+    for (Instruction *I = Before ? Before->getPrevNode() : nullptr; I != Above;
+         I = I->getPrevNode())
+      Inserted.push_back(I);
+    Above = Before = nullptr;
+  };
+  auto Insert = [&](const Report &R) {
     GlobalVariable *&Key = Keys[R.Key];
     if (!Key) {
       Constant *Text = ConstantDataArray::getString(M.getContext(), R.Key);
@@ -190,7 +201,8 @@ std::string insertReports(Module &M, ArrayRef<Report> Reports) {
                                GlobalValue::PrivateLinkage, Text, "tpc.key");
       Key->setUnnamedAddr(GlobalValue::UnnamedAddr::Global);
     }
-    Instruction *Above = R.Before->getPrevNode();
+    Above = R.Before->getPrevNode();
+    Before = R.Before;
     IRBuilder<> B(R.Before);
     B.SetCurrentDebugLocation(R.Before->getDebugLoc());
     Value *Result = R.Switch ? takesCase(B, *R.Switch) : toBool(B, R.Result);
@@ -200,14 +212,19 @@ std::string insertReports(Module &M, ArrayRef<Report> Reports) {
                            toDouble(B, R.Threshold, R.Signed), Outcome});
     Call->addParamAttr(1, Attribute::ZExt);
     Call->addParamAttr(4, Attribute::ZExt);
-    for (Instruction *I = R.Before->getPrevNode(); I != Above;
-         I = I->getPrevNode())
-      Inserted.push_back(I);
-  }
+    Collect();
+  };
   std::string Why;
   raw_string_ostream OS(Why);
-  if (!verifyModule(M, &OS))
-    return "";
+  if (runGuarded([&] { for_each(Reports, Insert); })) {
+    if (!verifyModule(M, &OS))
+      return "";
+    Why = "the instrumented module does not verify: " +
+          StringRef(Why).split('\n').first.str();
+  } else {
+    Collect();
+    Why = "the instrumentation crashed";
+  }
   for (Instruction *I : reverse(Inserted))
     I->dropAllReferences();
   for (Instruction *I : Inserted)

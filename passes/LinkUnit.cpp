@@ -2,9 +2,11 @@
 #include "LinkUnit.h"
 
 #include "BackwardPropagate.h"
+#include "Budget.h"
 #include "ClassObjectAccess.h"
 #include "ExternCallFinder.h"
 #include "GatherResults.h"
+#include "Guard.h"
 #include "IfStatements.h"
 #include "InstrumentBranches.h"
 #include "Options.h"
@@ -15,7 +17,6 @@
 #include "StaticInfo.h"
 
 #include "llvm/IR/Module.h"
-#include "llvm/Support/CrashRecoveryContext.h"
 #include "llvm/Support/WithColor.h"
 
 using namespace llvm;
@@ -42,22 +43,30 @@ struct Findings {
   std::string Failure;
 };
 
-/// Analyses \p Analysed; returns the functions whose calls are to be told apart
-/// before that says all.
-static std::vector<std::string> analyse(AnalysedModule &Analysed,
-                                        const Options &Opts, Findings &Out) {
-  if (Opts.InjectFailure)
-    LLVM_BUILTIN_TRAP;
-  // Managers of its own: what is analysed may be a copy that goes away again.
+namespace {
+/// A manager of its own: what is analysed may be a copy that goes away again.
+struct OwnAnalyses {
   ModuleAnalysisManager AM;
-  PassBuilder().registerModuleAnalyses(AM);
-  registerAnalyses(AM);
-  Module &Seen = Analysed.module();
-  if (const std::string &Error = AM.getResult<RuleAnalysis>(Seen).Error;
-      !Error.empty()) {
-    Out.Failure = Error;
-    return {};
+  OwnAnalyses() {
+    PassBuilder().registerModuleAnalyses(AM);
+    registerAnalyses(AM);
   }
+};
+} // namespace
+
+/// Functions whose calls are to be told apart before the analysis says all.
+static std::vector<std::string> sharedFunctions(Module &Seen,
+                                                ModuleAnalysisManager &AM) {
+  std::vector<std::string> Shared;
+  for (const Function *F : AM.getResult<GatherResults>(Seen).Shared)
+    Shared.push_back(F->getName().str());
+  return Shared;
+}
+
+/// Writes down what the analysis of \p Analysed came to.
+static void conclude(AnalysedModule &Analysed, ModuleAnalysisManager &AM,
+                     const Options &Opts, Findings &Out) {
+  Module &Seen = Analysed.module();
   const GatheredResults &R = AM.getResult<GatherResults>(Seen);
   const ParamCallFinder::Result &Reads = AM.getResult<ParamCallFinder>(Seen);
   auto Plan = [&](const Comparison &C, bool IsUnsigned) {
@@ -74,34 +83,50 @@ static std::vector<std::string> analyse(AnalysedModule &Analysed,
     for (const Comparison &C : R.Constants)
       Plan(C, /*IsUnsigned=*/false);
   Out.Unit = describe(Seen, AM, Opts);
-  std::vector<std::string> Shared;
-  for (const Function *F : R.Shared)
-    Shared.push_back(F->getName().str());
-  return Shared;
+}
+
+static std::vector<std::string> namedHelpers(Module &M) {
+  OwnAnalyses Own;
+  return namedByCalls(M, Own.AM);
 }
 
 /// Functions in functions whose calls are told apart.
 static constexpr unsigned MaxSeparated = 3;
 
-/// Runs the analysis so that a crash in it is only a failure of it.
+/// Runs the analysis so that a crash in it, and time or memory without end, is
+/// only a failure of it.
 static Findings analyseSafely(Module &M, const Options &Opts) {
-  Findings Out;
-  CrashRecoveryContext::Enable();
-  CrashRecoveryContext Guard;
-  bool Survived = Guard.RunSafely([&] {
-    for (unsigned Round = 0; Round <= MaxSeparated; ++Round) {
-      Out = Findings();
-      AnalysedModule Analysed(M, Opts);
-      std::vector<std::string> Shared = analyse(Analysed, Opts, Out);
-      if (Round == MaxSeparated || !separateCalls(M, Shared))
-        break;
+  Budget Limits(Opts.MaxSeconds, Opts.MaxMemory);
+  auto Out = std::make_unique<Findings>();
+  bool Survived = runGuarded([&] {
+    std::optional<AnalysedModule> Analysed(std::in_place, M, Opts);
+    if (separateCalls(M, namedHelpers(Analysed->module())))
+      Analysed.emplace(M, Opts);
+    for (unsigned Round = 0;; ++Round) {
+      fail(Opts.InjectFailure);
+      OwnAnalyses Own;
+      Module &Seen = Analysed->module();
+      Out->Failure = Own.AM.getResult<RuleAnalysis>(Seen).Error;
+      if (!Out->Failure.empty())
+        return;
+      std::vector<std::string> Shared = sharedFunctions(Seen, Own.AM);
+      // Where time or memory ran out, what was counted up to there is told.
+      bool Spent = !Limits.why().empty();
+      if (Spent || Round == MaxSeparated || !separateCalls(M, Shared)) {
+        conclude(*Analysed, Own.AM, Opts, *Out);
+        Out->Failure = Limits.why();
+        return;
+      }
+      Analysed.emplace(M, Opts);
     }
   });
   if (!Survived) {
-    Out = Findings();
-    Out.Failure = "the analysis crashed";
+    // What a crash left half done cannot be destroyed.
+    (void)Out.release();
+    Out = std::make_unique<Findings>();
+    Out->Failure = "the analysis crashed";
   }
-  return Out;
+  return std::move(*Out);
 }
 
 static void warn(const Options &Opts, const Twine &Text) {
@@ -113,11 +138,10 @@ PreservedAnalyses LinkUnitPass::run(Module &M, ModuleAnalysisManager &) {
   Findings F = analyseSafely(M, Opts);
   if (F.Failure.empty() && Opts.Instrument)
     if (std::string Why = insertReports(M, F.Reports); !Why.empty())
-      F.Failure = "the instrumented module does not verify: " +
-                  StringRef(Why).split('\n').first.str();
+      F.Failure = std::move(Why);
   if (!F.Failure.empty()) {
     warn(Opts, F.Failure + "; this link unit is left as it was");
-    F.Unit = describeFailure(Opts, F.Failure);
+    F.Unit = describeFailure(Opts, F.Failure, F.Unit.getObject("counts"));
   } else if (json::Object *Counts = F.Unit.getObject("counts")) {
     (*Counts)["not_instrumented"] = F.NotInstrumented;
   }
@@ -140,9 +164,15 @@ static OptimizationLevel levelOf(const Module &M) {
     for (StringRef Word : Words)
       Own = StringSwitch<OptimizationLevel>(Word)
                 .Case("-O0", OptimizationLevel::O0)
-                .Cases("-O", "-O1", "-Og", OptimizationLevel::O1)
-                .Cases("-O2", "-Os", "-Oz", OptimizationLevel::O2)
-                .Cases("-O3", "-O4", "-Ofast", OptimizationLevel::O3)
+                .Case("-O", OptimizationLevel::O1)
+                .Case("-O1", OptimizationLevel::O1)
+                .Case("-Og", OptimizationLevel::O1)
+                .Case("-O2", OptimizationLevel::O2)
+                .Case("-Os", OptimizationLevel::O2)
+                .Case("-Oz", OptimizationLevel::O2)
+                .Case("-O3", OptimizationLevel::O3)
+                .Case("-O4", OptimizationLevel::O3)
+                .Case("-Ofast", OptimizationLevel::O3)
                 .Default(Own);
     if (Own.getSpeedupLevel() > Level.getSpeedupLevel())
       Level = Own;

@@ -3,7 +3,6 @@
 
 #include "Names.h"
 
-#include "llvm/ADT/StringSwitch.h"
 #include "llvm/IR/Instructions.h"
 #include "llvm/IR/Module.h"
 #include "llvm/IR/Operator.h"
@@ -11,6 +10,10 @@
 using namespace llvm;
 
 namespace tpc {
+
+/// Classes in classes that are entered. Real ones end long before; classes that
+/// are taken for the same because they look alike may contain each other.
+static constexpr unsigned MaxPath = 32;
 
 //===----------------------------------------------------------------------===//
 // Classes and locations
@@ -20,6 +23,11 @@ unsigned TypeNumbers::numberOf(StructType *T) {
   if (auto It = Numbers.find(T); It != Numbers.end())
     return It->second;
   // Lambdas and classes of unnamed namespaces have their names to themselves.
+  // Without a name, nothing says that two are the same.
+  if (!T->hasName()) {
+    Types.push_back(T);
+    return Numbers[T] = Types.size() - 1;
+  }
   StringRef Name = plainClassName(*T);
   if (Name == "anon" || Name.contains("(anonymous"))
     Name = T->getName();
@@ -27,8 +35,8 @@ unsigned TypeNumbers::numberOf(StructType *T) {
   for (unsigned N : Alike) {
     ArrayRef<Type *> Mine = T->elements(), Theirs = Types[N]->elements();
     // As a base class, a class is there without the padding at its end.
-    if (T->hasName() && T->getName().contains(".base") !=
-                            Types[N]->getName().contains(".base")) {
+    if (T->getName().contains(".base") !=
+        Types[N]->getName().contains(".base")) {
       size_t Common = std::min(Mine.size(), Theirs.size());
       Mine = Mine.take_front(Common);
       Theirs = Theirs.take_front(Common);
@@ -115,7 +123,7 @@ void AccessResult::enterField(Location &L, StructType *T,
 
 void AccessResult::enterScalar(Location &L) const {
   while (auto *T = dyn_cast_or_null<StructType>(elementOf(typeAt(L)))) {
-    if (T->isOpaque() || T->getNumElements() == 0)
+    if (T->isOpaque() || T->getNumElements() == 0 || L.Path.size() >= MaxPath)
       return;
     enterField(L, T, 0);
   }
@@ -123,7 +131,8 @@ void AccessResult::enterScalar(Location &L) const {
 
 void AccessResult::addScalarsOf(const Location &L, Locations &Out) const {
   auto *T = dyn_cast_or_null<StructType>(elementOf(typeAt(L)));
-  if (!T || T->isOpaque() || T->getNumElements() == 0)
+  if (!T || T->isOpaque() || T->getNumElements() == 0 ||
+      L.Path.size() >= MaxPath)
     return addTo(Out, L);
   for (unsigned Field = 0; Field < T->getNumElements(); ++Field) {
     Location Inner = L;
@@ -196,10 +205,10 @@ void AccessResult::extend(Location &L, ArrayRef<Step> Steps) const {
 static bool isAllocation(const Value *V) {
   const auto *Call = dyn_cast<CallBase>(V);
   const Function *Callee = Call ? Call->getCalledFunction() : nullptr;
-  return Callee && StringSwitch<bool>(Callee->getName())
-                       .Cases("_Znwm", "_Znam", "_ZnwmSt11align_val_t",
-                              "_ZnamSt11align_val_t", "malloc", "calloc", true)
-                       .Default(false);
+  static constexpr StringRef Names[] = {
+      "_Znwm",  "_Znam", "_ZnwmSt11align_val_t", "_ZnamSt11align_val_t",
+      "malloc", "calloc"};
+  return Callee && is_contained(Names, Callee->getName());
 }
 
 /// Adds the place that \p Chain leads to in the allocation at \p L: its type is

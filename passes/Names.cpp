@@ -2,12 +2,8 @@
 #include "Names.h"
 
 #include "llvm/ADT/StringExtras.h"
-#include "llvm/Analysis/ValueTracking.h"
 #include "llvm/Demangle/Demangle.h"
 #include "llvm/IR/DebugInfoMetadata.h"
-#include "llvm/IR/InstrTypes.h"
-#include "llvm/IR/Instructions.h"
-#include "llvm/IR/IntrinsicInst.h"
 
 #include <cstdlib>
 
@@ -36,19 +32,21 @@ static std::string withoutTemplateArguments(StringRef Text) {
   return Out;
 }
 
+/// Owns what a demangler gives.
+static std::string taken(char *Text) {
+  std::string S = Text ? Text : "";
+  std::free(Text);
+  return S;
+}
+
 std::string qualifiedName(StringRef Mangled) {
   ItaniumPartialDemangler Demangler;
   std::string Name = Mangled.str();
   if (Demangler.partialDemangle(Name.c_str()) || !Demangler.isFunction())
     return Name;
-  auto Take = [](char *Text) {
-    std::string S = Text ? Text : "";
-    std::free(Text);
-    return S;
-  };
   std::string Scope =
-      Take(Demangler.getFunctionDeclContextName(nullptr, nullptr));
-  std::string Base = Take(Demangler.getFunctionBaseName(nullptr, nullptr));
+      taken(Demangler.getFunctionDeclContextName(nullptr, nullptr));
+  std::string Base = taken(Demangler.getFunctionBaseName(nullptr, nullptr));
   return withoutTemplateArguments(Scope.empty() ? Base : Scope + "::" + Base);
 }
 
@@ -70,9 +68,9 @@ SmallVector<std::string, 4> parameterTypes(const Function &F) {
   std::string Name = F.getName().str();
   if (Demangler.partialDemangle(Name.c_str()) || !Demangler.isFunction())
     return {};
-  char *Text = Demangler.getFunctionParameters(nullptr, nullptr);
-  std::string All = Text ? Text : "";
-  std::free(Text);
+  std::string All = taken(Demangler.getFunctionParameters(nullptr, nullptr));
+  if (All.empty() || All == "()")
+    return {};
   SmallVector<std::string, 4> Types(1);
   int Depth = 0;
   for (char C : StringRef(All)
@@ -89,53 +87,61 @@ SmallVector<std::string, 4> parameterTypes(const Function &F) {
   return Types;
 }
 
-/// True where \p Call surely does not change the object that it gets as
-/// argument \p N: it is a constant reference, or `this` of a constant method.
-static bool leavesAlone(const CallBase &Call, unsigned N) {
-  const Function *Callee = Call.getCalledFunction();
-  if (Call.onlyReadsMemory(N))
-    return true;
-  if (!Callee)
-    return false;
-  SmallVector<std::string, 4> Types = parameterTypes(*Callee);
-  size_t Hidden =
-      Callee->arg_size() - std::min(Callee->arg_size(), Types.size());
-  if (N >= Hidden)
-    return StringRef(Types[N - Hidden]).ends_with(" const&");
-  return StringRef(demangle(Callee->getName())).ends_with(") const");
+std::string plainType(StringRef Type) {
+  Type = Type.trim();
+  while (Type.consume_back("&") || Type.consume_back(" const") ||
+         Type.consume_back(" "))
+    ;
+  std::string Plain = withoutTemplateArguments(Type);
+  return Plain == "std::__cxx11::basic_string" ? "std::string" : Plain;
 }
 
-std::optional<std::string> constantText(const Value *Object) {
-  if (!Object)
-    return std::nullopt;
-  StringRef Plain;
-  if (getConstantStringInfo(Object, Plain))
-    return Plain.str();
-  if (!isa<AllocaInst>(Object))
-    return std::nullopt;
-  std::optional<std::string> Found;
-  for (const Use &U : Object->uses()) {
-    const auto *Call = dyn_cast<CallBase>(U.getUser());
-    if (Call && isa<IntrinsicInst>(Call))
-      continue;
-    const Function *Callee = Call ? Call->getCalledFunction() : nullptr;
-    if (!Callee || !Call->isArgOperand(&U))
-      return std::nullopt;
-    std::string Name = qualifiedName(Callee->getName());
-    unsigned N = Call->getArgOperandNo(&U);
-    if (N == 0 && Name.find("basic_string::~") != std::string::npos)
-      continue;
-    if (N == 0 && StringRef(Name).ends_with("basic_string::basic_string")) {
-      StringRef Text;
-      if (Found || Call->arg_size() < 2 ||
-          !getConstantStringInfo(Call->getArgOperand(1), Text))
-        return std::nullopt;
-      Found = Text.str();
-    } else if (!leavesAlone(*Call, N)) {
-      return std::nullopt;
+/// What stands between the first angle brackets of \p Text, up to a comma.
+static std::string templateArgument(StringRef Text) {
+  size_t Begin = Text.find('<');
+  if (Begin == StringRef::npos)
+    return "";
+  int Depth = 0;
+  for (size_t I = Begin; I < Text.size(); ++I) {
+    Depth += Text[I] == '<' ? 1 : Text[I] == '>' ? -1 : 0;
+    if (Depth == 0 || (Depth == 1 && Text[I] == ','))
+      return Text.slice(Begin + 1, I).trim().str();
+  }
+  return "";
+}
+
+std::string classArgument(const Function &F) {
+  ItaniumPartialDemangler Demangler;
+  std::string Name = F.getName().str();
+  if (Demangler.partialDemangle(Name.c_str()) || !Demangler.isFunction())
+    return "";
+  return templateArgument(
+      taken(Demangler.getFunctionDeclContextName(nullptr, nullptr)));
+}
+
+std::string resultType(const Function &F) {
+  ItaniumPartialDemangler Demangler;
+  std::string Name = F.getName().str();
+  std::string Text;
+  if (!Demangler.partialDemangle(Name.c_str()) && Demangler.isFunction()) {
+    Text = taken(Demangler.getFunctionReturnType(nullptr, nullptr));
+    // What the compiler was to find out is what the template was made for.
+    if (StringRef(Text).contains("auto")) {
+      std::string Whole = taken(Demangler.getFunctionName(nullptr, nullptr));
+      std::string Scope =
+          taken(Demangler.getFunctionDeclContextName(nullptr, nullptr));
+      Text = templateArgument(StringRef(Whole).drop_front(Scope.size()));
     }
   }
-  return Found;
+  const Type *T = F.getReturnType();
+  if (Text.empty())
+    Text = T->isDoubleTy()      ? "double"
+           : T->isFloatTy()     ? "float"
+           : T->isIntegerTy(1)  ? "bool"
+           : T->isIntegerTy(32) ? "int"
+           : T->isIntegerTy()   ? "long"
+                                : "";
+  return Text;
 }
 
 StringRef plainClassName(const StructType &T) {

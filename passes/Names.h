@@ -6,9 +6,7 @@
 #include "llvm/IR/DebugInfoMetadata.h"
 #include "llvm/IR/DerivedTypes.h"
 #include "llvm/IR/Function.h"
-#include "llvm/IR/Value.h"
 
-#include <optional>
 #include <string>
 
 namespace tpc {
@@ -28,10 +26,17 @@ std::string functionNameFor(const llvm::DILocation &Loc);
 /// The written parameters of \p F, from its demangled name.
 llvm::SmallVector<std::string, 4> parameterTypes(const llvm::Function &F);
 
-/// The text that \p Object, a pointer to a `std::string` or to characters,
-/// is known to hold: it is constant, or it was constructed from one constant
-/// and nothing can have changed it since. None where that cannot be told.
-std::optional<std::string> constantText(const llvm::Value *Object);
+/// \p Type, as parameterTypes gives it, without const, & and template
+/// arguments; `std::string` under that name.
+std::string plainType(llvm::StringRef Type);
+
+/// The first template argument of the class whose method \p F is; empty where
+/// there is none.
+std::string classArgument(const llvm::Function &F);
+
+/// The type of \p F's result: that of its name, which only templates have
+/// there, else what the code tells; empty for an object.
+std::string resultType(const llvm::Function &F);
 
 /// `ns::Node` for the type `class.ns::Node.7`: without the kind, and without
 /// what only tells two copies of one class apart.

@@ -45,9 +45,23 @@ static cl::opt<bool>
     PrelinkOpt("tpc-prelink", cl::cat(Category), cl::init(true),
                cl::desc("Run the optimisation that the compiler was told to "
                         "leave out (default: yes)"));
-static cl::opt<bool>
-    InjectFailureOpt("tpc-inject-failure", cl::cat(Category), cl::Hidden,
-                     cl::desc("Crash inside the analysis (for tests)"));
+static cl::opt<unsigned> MaxSecondsOpt(
+    "tpc-max-seconds", cl::cat(Category), cl::init(120),
+    cl::desc("Processor time that the analysis may take (default: 120; 0: as "
+             "much as it wants); beyond it the unit is left as it was"));
+static cl::opt<unsigned> MaxMemoryOpt(
+    "tpc-max-memory", cl::cat(Category), cl::init(4096),
+    cl::desc("MiB that the analysis may take (default: 4096; 0: as much as it "
+             "wants); beyond it the unit is left as it was"));
+static cl::opt<Failure> InjectFailureOpt(
+    "tpc-inject-failure", cl::cat(Category), cl::Hidden,
+    cl::init(Failure::None), cl::desc("Fail inside the analysis (for tests)"),
+    cl::values(clEnumValN(Failure::Crash, "crash", "trap"),
+               clEnumValN(Failure::Overflow, "overflow", "no more stack"),
+               clEnumValN(Failure::Fatal, "fatal", "LLVM's fatal error"),
+               clEnumValN(Failure::Allocation, "allocation", "operator new"),
+               clEnumValN(Failure::Memory, "memory", "more and more of it"),
+               clEnumValN(Failure::Time, "time", "no end")));
 
 /// The linker's `-o`, from the command line of this process: the module of a
 /// link is always called ld-temp.o, and a plugin is told no more.
@@ -81,6 +95,8 @@ Options Options::fromCommandLine() {
   O.Instrument = InstrumentOpt;
   O.Constants = ConstantsOpt;
   O.Prelink = PrelinkOpt;
+  O.MaxSeconds = MaxSecondsOpt;
+  O.MaxMemory = MaxMemoryOpt;
   O.InjectFailure = InjectFailureOpt;
   return O;
 }

@@ -2,6 +2,8 @@
 #ifndef TPC_OPTIONS_H
 #define TPC_OPTIONS_H
 
+#include "Guard.h"
+
 #include "llvm/ADT/DenseMap.h"
 #include "llvm/ADT/StringRef.h"
 #include "llvm/IR/DebugInfoMetadata.h"
@@ -24,7 +26,9 @@ struct Options {
   bool Instrument = true;
   bool Constants = false; ///< report comparisons with constants, too
   bool Prelink = true;
-  bool InjectFailure = false;
+  unsigned MaxSeconds = 0; ///< of the analysis; 0 is no limit
+  unsigned MaxMemory = 0;  ///< of the analysis, in MiB; 0 is no limit
+  Failure InjectFailure = Failure::None;
 
   /// The options of this process.
   static Options fromCommandLine();

@@ -1,43 +1,22 @@
 //===- ParamCallFinder.cpp ------------------------------------------------===//
 #include "ParamCallFinder.h"
 
+#include "ClassObjectAccess.h"
 #include "Names.h"
+#include "ParameterObjects.h"
 #include "Print.h"
+#include "Texts.h"
 
-#include "llvm/Demangle/Demangle.h"
 #include "llvm/IR/Constants.h"
 #include "llvm/IR/Instructions.h"
 #include "llvm/IR/Module.h"
 #include "llvm/Support/FormatVariadic.h"
-
-#include <cstdlib>
 
 using namespace llvm;
 
 namespace tpc {
 
 AnalysisKey ParamCallFinder::Key;
-
-/// The name of a result's type, which only templates have in their names.
-static std::string resultType(const Function &F) {
-  ItaniumPartialDemangler Demangler;
-  std::string Name = F.getName().str();
-  std::string Text;
-  if (!Demangler.partialDemangle(Name.c_str()) && Demangler.isFunction()) {
-    char *Type = Demangler.getFunctionReturnType(nullptr, nullptr);
-    Text = Type ? Type : "";
-    std::free(Type);
-  }
-  const Type *T = F.getReturnType();
-  if (Text.empty())
-    Text = T->isDoubleTy()      ? "double"
-           : T->isFloatTy()     ? "float"
-           : T->isIntegerTy(1)  ? "bool"
-           : T->isIntegerTy(32) ? "int"
-           : T->isIntegerTy()   ? "long"
-                                : "";
-  return Text;
-}
 
 /// `double` from `double&` or `double const&`.
 static std::string valueType(const Function &F, const Rule &R) {
@@ -53,38 +32,8 @@ static std::string valueType(const Function &F, const Rule &R) {
   return T.str();
 }
 
-/// The constant that \p Pointer is known to point to: a constant global, or a
-/// temporary that one constant is stored to.
-static const Constant *pointedConstant(const Value *Pointer) {
-  if (const auto *Global = dyn_cast<GlobalVariable>(Pointer))
-    return Global->isConstant() && Global->hasInitializer()
-               ? Global->getInitializer()
-               : nullptr;
-  if (!isa<AllocaInst>(Pointer))
-    return nullptr;
-  const Constant *Found = nullptr;
-  for (const User *U : Pointer->users())
-    if (const auto *Store = dyn_cast<StoreInst>(U)) {
-      const auto *C = dyn_cast<Constant>(Store->getValueOperand());
-      if (!C || (Found && Found != C))
-        return nullptr;
-      Found = C;
-    }
-  return Found;
-}
-
-static json::Value defaultOf(const CallBase &Call, const Rule &R,
-                             StringRef Type) {
-  const Value *V = argument(Call, R, R.Default);
-  if (!V)
-    return nullptr;
-  const Constant *C = dyn_cast<Constant>(V);
-  if (V->getType()->isPointerTy()) {
-    if (std::optional<std::string> Text = constantText(V))
-      return json::fixUTF8(*Text);
-    C = pointedConstant(V);
-  }
-  if (const auto *Int = dyn_cast_or_null<ConstantInt>(C)) {
+json::Value jsonOf(const Constant &C, StringRef Type) {
+  if (const auto *Int = dyn_cast<ConstantInt>(&C)) {
     if (Type == "bool" || Int->getBitWidth() == 1)
       return !Int->isZero();
     if (Int->getBitWidth() > 64)
@@ -93,7 +42,7 @@ static json::Value defaultOf(const CallBase &Call, const Rule &R,
       return Int->getZExtValue();
     return Int->getSExtValue();
   }
-  if (const auto *Float = dyn_cast_or_null<ConstantFP>(C)) {
+  if (const auto *Float = dyn_cast<ConstantFP>(&C)) {
     APFloat Value = Float->getValueAPF();
     bool Loses;
     Value.convert(APFloat::IEEEdouble(), APFloat::rmNearestTiesToEven, &Loses);
@@ -104,18 +53,33 @@ static json::Value defaultOf(const CallBase &Call, const Rule &R,
   return nullptr;
 }
 
+static json::Value defaultOf(const CallBase &Call, const Rule &R,
+                             StringRef Type, Texts &Known) {
+  const Value *V = argument(Call, R, R.Default);
+  if (!V)
+    return nullptr;
+  if (Type == "std::string" || Type.contains("char ")) {
+    std::string Text = Known.textAt(V, Call);
+    return isDynamic(Text) ? json::Value(nullptr) : json::fixUTF8(Text);
+  }
+  const Constant *C = Known.constantOf(V);
+  return C ? jsonOf(*C, Type) : nullptr;
+}
+
 ParamCallFinder::Result ParamCallFinder::run(Module &M,
                                              ModuleAnalysisManager &AM) {
   const RuleMatches &Rules = AM.getResult<RuleAnalysis>(M);
+  const AccessResult &Access = AM.getResult<ClassObjectAccess>(M);
+  Texts Known(Rules, AM.getResult<SimpleCallGraph>(M), &Access);
   Result R;
   forEachCall(M, Rules, Rule::Read, [&](CallBase &Call, const Rule &Row) {
     std::string Type = valueType(*Call.getCalledFunction(), Row);
-    json::Value Default = defaultOf(Call, Row, Type);
-    R.push_back(
-        {&Call, &Row,
-         constantText(argument(Call, Row, Row.Name)).value_or(DynamicName),
-         std::move(Type), std::move(Default), argument(Call, Row, Row.Value)});
+    json::Value Default = defaultOf(Call, Row, Type, Known);
+    R.push_back({&Call, &Row, Known.nameOf(Call, Row), std::move(Type),
+                 std::move(Default), argument(Call, Row, Row.Value)});
   });
+  findAccessors(M, Rules, Access, R);
+  findConfigs(M, Rules, Access, R);
   return R;
 }
 

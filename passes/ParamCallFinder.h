@@ -14,18 +14,21 @@
 
 namespace tpc {
 
-/// What stands for a name that no constant gives.
-inline constexpr char DynamicName[] = "<dynamic>";
-
 struct ParameterRead {
   llvm::CallBase *Call;
   const Rule *Row;
-  std::string Name;          ///< or DynamicName
+  std::string Name;          ///< with `<dynamic>` for what no constant gives
   std::string Type;          ///< C++ type of the value, as demangled
   llvm::json::Value Default; ///< number, bool, string or null
   /// Where the value is written; null where it is the call's result.
   llvm::Value *Target;
+  /// Where the value is first seen, if it is neither the result nor written
+  /// by the call.
+  llvm::SmallVector<llvm::Value *, 1> Values = {};
 };
+
+/// \p C, a number of the C++ type \p Type, as JSON; null for what is no number.
+llvm::json::Value jsonOf(const llvm::Constant &C, llvm::StringRef Type);
 
 class ParamCallFinder : public llvm::AnalysisInfoMixin<ParamCallFinder> {
 public:

@@ -1,6 +1,7 @@
 //===- ParamUsageFinder.cpp -----------------------------------------------===//
 #include "ParamUsageFinder.h"
 
+#include "Budget.h"
 #include "ClassObjectAccess.h"
 #include "Idioms.h"
 #include "IfStatements.h"
@@ -19,6 +20,20 @@ using namespace llvm;
 namespace tpc {
 
 AnalysisKey ParamUsageFinder::Key;
+
+unsigned ParameterUsage::lost() const {
+  return count_if(Ends, [](const ValueEnd &E) {
+    return E.Kind == ValueEnd::Mixed || E.Kind == ValueEnd::NoNumber;
+  });
+}
+
+SmallVector<Hop, 16> ParameterUsage::pathTo(unsigned Last) const {
+  SmallVector<Hop, 16> Path;
+  for (unsigned N = Last; N != Hop::None; N = Hops[N].From)
+    Path.push_back(Hops[N]);
+  std::reverse(Path.begin(), Path.end());
+  return Path;
+}
 
 //===----------------------------------------------------------------------===//
 // The way forward
@@ -55,6 +70,7 @@ private:
     /// Where control flow has merged V with other values: the last value
     /// before that.
     Value *Origin = nullptr;
+    unsigned Way = Hop::None; ///< number of the hop that led here
   };
   using Worklist = SmallVector<State, 16>;
 
@@ -69,7 +85,13 @@ private:
   SmallVector<LoadInst *, 8> usesOf(const Instruction &Write,
                                     const Value *Pointer);
   bool carry(const State &S, Use &U);
-  void push(State S);
+  void store(const State &S, StoreInst &Store);
+  void end(ValueEnd::KindTy Kind, Instruction *At);
+  /// Nobody asks for the way of a value that is compared nowhere.
+  void forgetHops(size_t From) {
+    Usage.Hops.erase(Usage.Hops.begin() + From, Usage.Hops.end());
+  }
+  void push(State S, Instruction *Via = nullptr);
   const CallPath *into(const CallBase *Call, const CallPath *Outer);
 
   const CallGraphResult &Calls;
@@ -81,6 +103,9 @@ private:
 
   ParameterUsage Usage;
   Worklist Work;
+  unsigned ReadAtHand = 0;
+  bool IsOutcome = false;    ///< what is followed is not the value itself
+  unsigned Here = Hop::None; ///< hop that led to the state at hand
   DenseSet<std::pair<const Value *, const CallBase *>> Seen;
   SmallVector<std::unique_ptr<CallPath>, 16> Paths;
 };
@@ -96,9 +121,44 @@ const CallPath *Follower::into(const CallBase *Call, const CallPath *Outer) {
   return Paths.back().get();
 }
 
-void Follower::push(State S) {
-  if (Seen.insert({S.V, S.Path ? S.Path->Call : nullptr}).second)
-    Work.push_back(std::move(S));
+/// \p Via is the instruction that brings the value to S.V; none where S.V
+/// computes it itself.
+void Follower::push(State S, Instruction *Via) {
+  if (!Seen.insert({S.V, S.Path ? S.Path->Call : nullptr}).second)
+    return;
+  S.Way = Usage.Hops.size();
+  Usage.Hops.push_back({S.V, Via ? Via : cast<Instruction>(S.V), Here});
+  Work.push_back(std::move(S));
+}
+
+void Follower::end(ValueEnd::KindTy Kind, Instruction *At) {
+  Usage.Ends.push_back({Kind, ReadAtHand, At});
+}
+
+/// \p How, and what \p I, a merge or a load, makes of it where it takes the
+/// value or a constant, whichever is smaller or larger.
+static Transform throughChoice(Transform How, const Instruction &I) {
+  if (std::optional<Choice> C = choiceOf(I))
+    How.call(C->Largest ? "max" : "min", C->Constant);
+  return How;
+}
+
+/// More variables that a store may write to are more than anybody meant.
+static constexpr unsigned ManyTargets = 16;
+
+/// A value goes on to the loads of the variable that it is stored to.
+void Follower::store(const State &S, StoreInst &Store) {
+  size_t Targets = Access.resolve(Store.getPointerOperand(), true).size();
+  SmallVector<LoadInst *, 8> Loads =
+      usesOf(Store, Store.getPointerOperand());
+  if (Targets == 0)
+    end(ValueEnd::UnknownPointer, &Store);
+  else if (Targets > ManyTargets)
+    end(ValueEnd::ManyTargets, &Store);
+  else if (Loads.empty() && !IsOutcome)
+    end(ValueEnd::Unread, &Store);
+  for (LoadInst *Load : Loads)
+    push({Load, throughChoice(S.How, *Load), nullptr, false}, &Store);
 }
 
 /// The loads of what \p Write puts at \p Pointer.
@@ -123,14 +183,6 @@ static bool isCopy(const Instruction &I, const Use &U) {
   default:
     return false;
   }
-}
-
-/// \p How, and what \p I, a merge or a load, makes of it where it takes the
-/// value or a constant, whichever is smaller or larger.
-static Transform throughChoice(Transform How, const Instruction &I) {
-  if (std::optional<Choice> C = choiceOf(I))
-    How.call(C->Largest ? "max" : "min", C->Constant);
-  return How;
 }
 
 /// Carries what is at \p U on to where it is the same value still: casts,
@@ -166,8 +218,7 @@ bool Follower::carry(const State &S, Use &U) {
     return false;
   if (auto *Store = dyn_cast<StoreInst>(I)) {
     if (U.getOperandNo() == 0)
-      for (LoadInst *Load : usesOf(*Store, Store->getPointerOperand()))
-        push({Load, throughChoice(S.How, *Load), nullptr, false});
+      store(S, *Store);
     return true;
   }
   if (auto *Call = dyn_cast<CallBase>(I); Call && !isa<IntrinsicInst>(Call)) {
@@ -177,16 +228,18 @@ bool Follower::carry(const State &S, Use &U) {
     for (Function *Callee : Callees)
       if (Call->getArgOperandNo(&U) < Callee->arg_size())
         push({Callee->getArg(Call->getArgOperandNo(&U)), S.How,
-              into(Call, S.Path), false});
+              into(Call, S.Path), false},
+             Call);
     return true;
   }
   if (isa<ReturnInst>(I)) {
     if (S.Path)
       push({const_cast<CallBase *>(S.Path->Call), S.How, S.Path->Outer, false,
-            S.Field});
+            S.Field},
+           I);
     else
       for (CallBase *Call : Calls.callers(I->getFunction()))
-        push({Call, S.How, nullptr, false, S.Field});
+        push({Call, S.How, nullptr, false, S.Field}, I);
     return true;
   }
   return false;
@@ -209,26 +262,34 @@ SmallVector<Decision, 2> Follower::followOutcome(Value *Outcome,
                                                  const CallPath *Path) {
   Worklist OuterWork = std::move(Work);
   auto OuterSeen = std::move(Seen);
+  unsigned OuterHere = Here;
   Work.clear();
   Seen.clear();
+  IsOutcome = true;
+  size_t HopsBefore = Usage.Hops.size();
   SmallVector<Decision, 2> Found;
   push({Outcome, {}, Path, true});
-  while (!Work.empty()) {
+  while (!Work.empty() && !Budget::isSpent()) {
     State S = Work.pop_back_val();
+    Here = S.Way;
     for (Use &U : S.V->uses()) {
       auto *I = dyn_cast<Instruction>(U.getUser());
       if (!I)
         continue;
       if (decidesBy(*I, U))
-        Found.push_back({I, S.Direct});
+        Found.push_back({I, S.Direct, S.Way});
       else if (isLogical(*I) || isa<ICmpInst>(I))
         push({I, {}, S.Path, S.Direct});
-      else
-        carry(S, U);
+      else if (!carry(S, U))
+        end(ValueEnd::Outcome, I);
     }
   }
   Work = std::move(OuterWork);
   Seen = std::move(OuterSeen);
+  Here = OuterHere;
+  IsOutcome = false;
+  if (Found.empty())
+    forgetHops(HopsBefore);
   return Found;
 }
 
@@ -236,7 +297,8 @@ SmallVector<Decision, 2> Follower::followOutcome(Value *Outcome,
 void Follower::flag(const State &S, Value *V, Decision D, unsigned Read,
                     bool IsOperand) {
   ParameterComparison C;
-  C.IsOperand = IsOperand;
+  // An argument has no place of its own: there the flag stands at the branch.
+  C.IsOperand = IsOperand && isa<Instruction>(V);
   C.How = S.How;
   C.ByArgument = S.Path && Calls.callers(D.Predicate->getFunction()).size() > 1;
   C.Read = Read;
@@ -271,10 +333,8 @@ void Follower::compared(const State &S, CmpInst &Compare, unsigned Operand,
     return;
   // Whether it is a number is a question of its own.
   if (Compare.getPredicate() == CmpInst::FCMP_UNO ||
-      Compare.getPredicate() == CmpInst::FCMP_ORD) {
-    ++Usage.Lost;
-    return;
-  }
+      Compare.getPredicate() == CmpInst::FCMP_ORD)
+    return end(ValueEnd::Mixed, &Compare);
   if (S.How.kind() == Transform::None && asksForNonZero(Compare, Operand)) {
     for (const Decision &D : followOutcome(&Compare, S.Path))
       flag(S, &Compare, D, Read, /*IsOperand=*/!D.Direct);
@@ -298,7 +358,7 @@ void Follower::useOfValue(const State &S, Use &U, unsigned Read) {
     return compared(S, *Compare, U.getOperandNo(), Read);
   if (decidesBy(*I, U)) {
     if (S.How.kind() == Transform::None || isa<SwitchInst>(I))
-      flag(S, S.Origin ? S.Origin : S.V, {I, !S.Origin}, Read,
+      flag(S, S.Origin ? S.Origin : S.V, {I, !S.Origin, S.Way}, Read,
            /*IsOperand=*/S.Origin != nullptr);
     return;
   }
@@ -310,7 +370,7 @@ void Follower::useOfValue(const State &S, Use &U, unsigned Read) {
   if (isShortCircuit(*I, U) && S.How.kind() == Transform::None &&
       isa<Instruction>(S.V)) {
     for (Decision D : followOutcome(I, S.Path))
-      flag(S, S.V, {D.Predicate, false}, Read, /*IsOperand=*/true);
+      flag(S, S.V, {D.Predicate, false, D.Way}, Read, /*IsOperand=*/true);
     return;
   }
   if (const auto *Cast = dyn_cast<CastInst>(I))
@@ -323,7 +383,7 @@ void Follower::useOfValue(const State &S, Use &U, unsigned Read) {
         Row && Row->Kind == Rule::Held && Row->Relation == "into" &&
         argument(*Call, *Row, Row->Value) == S.V) {
       for (CallBase *Out : Texts.numbersFrom(*Call, *Row))
-        push({Out, S.How, nullptr, false});
+        push({Out, S.How, nullptr, false}, Call);
       return;
     }
   if (carry(S, U))
@@ -331,7 +391,7 @@ void Follower::useOfValue(const State &S, Use &U, unsigned Read) {
   if (std::optional<Transform> T = apply(S.How, *I, S.V, squareOf(*I)))
     push({I, std::move(*T), S.Path, S.Direct});
   else if (!isa<IntrinsicInst>(I) || !I->getType()->isVoidTy())
-    ++Usage.Lost;
+    end(ValueEnd::Mixed, I);
 }
 
 /// True for the types whose values are compared as numbers.
@@ -350,13 +410,12 @@ void Follower::followText(unsigned N) {
   const Value *Object = Read.Target;
   if (!Object && Read.Call->hasStructRetAttr())
     Object = Read.Call->getArgOperand(0);
-  if (!Object) {
-    ++Usage.Lost;
-    return;
-  }
+  if (!Object)
+    return end(ValueEnd::NoNumber, Read.Call);
   Seen.clear();
   TextUsage::Found Found = Texts.comparisonsOf(Object);
-  Usage.Lost += Found.Lost;
+  for (unsigned Lost = 0; Lost < Found.Lost; ++Lost)
+    end(ValueEnd::Mixed, Read.Call);
   for (const TextComparison &T : Found.Comparisons) {
     ParameterComparison C;
     C.Read = N;
@@ -370,24 +429,36 @@ void Follower::followText(unsigned N) {
 }
 
 void Follower::followRead(unsigned N) {
-  const ParameterRead &Read = Reads[N];
-  if (isText(Read.Type))
+  const ParameterRead &R = Reads[N];
+  ReadAtHand = N;
+  size_t HopsBefore = Usage.Hops.size(), Before = Usage.Comparisons.size();
+  Here = Hop::None;
+  if (isText(R.Type))
     return followText(N);
-  if (!isNumber(Read.Type)) {
-    ++Usage.Lost;
-    return;
-  }
+  if (!isNumber(R.Type))
+    return end(ValueEnd::NoNumber, R.Call);
   Seen.clear();
-  if (!Read.Target)
-    push({Read.Call, {}, nullptr, true});
-  else
-    for (LoadInst *Load : usesOf(*Read.Call, Read.Target))
-      push({Load, throughChoice({}, *Load), nullptr, true});
-  while (!Work.empty()) {
+  for (Value *V : R.Values)
+    push({V, {}, nullptr, true}, V == R.Call ? nullptr : R.Call);
+  if (!R.Target && R.Values.empty())
+    push({R.Call, {}, nullptr, true});
+  if (R.Target) {
+    SmallVector<LoadInst *, 8> Loads = usesOf(*R.Call, R.Target);
+    if (Loads.empty())
+      end(Access.resolve(R.Target, true).empty() ? ValueEnd::UnknownPointer
+                                                 : ValueEnd::Unread,
+          R.Call);
+    for (LoadInst *Load : Loads)
+      push({Load, throughChoice({}, *Load), nullptr, true}, R.Call);
+  }
+  while (!Work.empty() && !Budget::isSpent()) {
     State S = Work.pop_back_val();
+    Here = S.Way;
     for (Use &U : S.V->uses())
       useOfValue(S, U, N);
   }
+  if (Usage.Comparisons.size() == Before)
+    forgetHops(HopsBefore);
 }
 
 ParameterUsage Follower::run() {
@@ -405,7 +476,7 @@ PreservedAnalyses ParamUsageFinderPrinter::run(Module &M,
   const ParameterUsage &R = AM.getResult<ParamUsageFinder>(M);
   const auto &Reads = AM.getResult<ParamCallFinder>(M);
   OS << "parameter usage of " << M.getName() << ": " << R.Comparisons.size()
-     << " comparisons, " << R.Lost << " lost\n";
+     << " comparisons, " << R.lost() << " lost\n";
   for (const ParameterComparison &C : R.Comparisons) {
     OS << "  '" << Reads[C.Read].Name << "' as " << C.How.text() << ' ';
     const auto *Where = C.Compare                ? cast<Instruction>(C.Compare)

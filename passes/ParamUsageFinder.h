@@ -20,11 +20,37 @@
 
 namespace tpc {
 
+/// One step of a value's way forward.
+struct Hop {
+  llvm::Value *To; ///< what holds the value now
+  llvm::Instruction
+      *Via;      ///< what brought it there; To itself where it computes
+  unsigned From; ///< number of the hop before; None for a read
+  static constexpr unsigned None = ~0U;
+};
+
 /// A predicate that an outcome decides, and whether the outcome comes to it
 /// inside its function by SSA values that control flow does not merge.
 struct Decision {
   llvm::Instruction *Predicate;
   bool Direct;
+  unsigned Way = Hop::None; ///< number of the hop that ends at the predicate
+};
+
+/// A place behind which a parameter's value, or the outcome of a comparison
+/// with it, is not followed, or not surely.
+struct ValueEnd {
+  enum KindTy {
+    Mixed,          ///< it met another variable, or went where nobody looks
+    NoNumber,       ///< the parameter is of a type that is not followed
+    Unread,         ///< it was stored, and nothing loads it
+    UnknownPointer, ///< it was stored where nobody knows
+    ManyTargets,    ///< it was stored to one of very many variables
+    Outcome,        ///< its comparison's outcome went where nobody looks
+  };
+  KindTy Kind;
+  unsigned Read; ///< number of the read
+  llvm::Instruction *At;
 };
 
 /// One comparison with one parameter read's value.
@@ -43,11 +69,25 @@ struct ParameterComparison {
   bool ByArgument = false;
   Transform How;
   llvm::SmallVector<Decision, 2> Decisions;
+
+  /// Where it stands in the source.
+  const llvm::Instruction &place() const {
+    if (Compare)
+      return *Compare;
+    return IsOperand ? *llvm::cast<llvm::Instruction>(Flag)
+                     : *Decisions.front().Predicate;
+  }
 };
 
 struct ParameterUsage {
   std::vector<ParameterComparison> Comparisons;
-  unsigned Lost = 0; ///< places where a value was mixed with another variable
+  std::vector<Hop> Hops;
+  std::vector<ValueEnd> Ends;
+
+  /// Places where a value was mixed with another variable.
+  unsigned lost() const;
+  /// The way from the read to the hop number \p Last.
+  llvm::SmallVector<Hop, 16> pathTo(unsigned Last) const;
 };
 
 class ParamUsageFinder : public llvm::AnalysisInfoMixin<ParamUsageFinder> {

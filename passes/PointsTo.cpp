@@ -1,6 +1,7 @@
 //===- PointsTo.cpp - What pointers lead to -------------------------------===//
 #include "AccessBuilder.h"
 
+#include "Budget.h"
 #include "Functions.h"
 
 #include "llvm/ADT/SmallPtrSet.h"
@@ -24,6 +25,8 @@ void AccessResult::Builder::findEscaped() {
     for (Instruction &I : instructions(F)) {
       if (!isa<AllocaInst>(&I))
         continue;
+      if (Budget::isSpent())
+        return;
       SmallVector<const Value *, 8> Work{&I};
       SmallPtrSet<const Value *, 8> Seen;
       while (!Work.empty()) {
@@ -115,6 +118,8 @@ void AccessResult::Builder::makeNodes() {
       Nodes.push_back(std::move(N));
     }
     for (Instruction &I : instructions(F)) {
+      if (Budget::isSpent())
+        return;
       if (auto *Call = dyn_cast<CallBase>(&I);
           Call && Call->hasStructRetAttr() && Rules.container(*Call))
         Iterators[Call->getArgOperand(0)].push_back(containerOf(*Call));
@@ -211,11 +216,12 @@ bool AccessResult::Builder::update(PointerStore &S, unsigned Number) {
 bool AccessResult::Builder::propagate() {
   bool Changed = false;
   for (Node &N : Nodes)
-    if (isDue(N))
+    if (!Budget::isSpent() && isDue(N))
       Changed |= update(N);
   for (auto [Number, S] : enumerate(PointerStores))
-    Changed |= update(S, Number);
-  return Changed;
+    if (!Budget::isSpent())
+      Changed |= update(S, Number);
+  return Changed && !Budget::isSpent();
 }
 
 /// True where the objects that \p V leads to are all known, given that those
@@ -291,6 +297,8 @@ bool AccessResult::Builder::findComplete() {
   for (bool Changed = true; Changed;) {
     Changed = false;
     for (Node &N : Nodes) {
+      if (Budget::isSpent())
+        return false;
       if (!R.Complete.contains(N.V) ||
           (R.Targets.lookup(N.V).size() < MaxLocations &&
            (!isa<LoadInst>(N.V) || First || findsComplete(N)) &&
@@ -311,7 +319,7 @@ void AccessResult::Builder::findTargets() {
   makeNodes();
   // Where a pointer turns out to lead to too much, what depends on that is
   // looked at again.
-  while (findComplete())
+  while (findComplete() && !Budget::isSpent())
     for (unsigned Round = 0; Round < MaxRounds && propagate(); ++Round)
       ;
 }

@@ -5,6 +5,7 @@
 #include "Names.h"
 #include "Options.h"
 #include "Rules.h"
+#include "Texts.h"
 
 #include "llvm/IR/InstIterator.h"
 #include "llvm/IR/Instructions.h"
@@ -13,6 +14,7 @@
 #include "llvm/Passes/PassBuilder.h"
 #include "llvm/Transforms/IPO/AlwaysInliner.h"
 #include "llvm/Transforms/Scalar/SROA.h"
+#include "llvm/Transforms/Utils/BasicBlockUtils.h"
 #include "llvm/Transforms/Utils/Cloning.h"
 
 using namespace llvm;
@@ -35,19 +37,17 @@ static unsigned sizeOf(const Function &F) {
 static SmallVector<WeakVH, 0> markSmallLibraryFunctions(Module &M,
                                                         const Options &Opts) {
   SmallVector<WeakVH, 0> Marked;
-  Expected<Rules> Tables = Rules::load(Opts);
-  if (!Tables) {
-    // The analysis will meet the same error, and report it.
-    consumeError(Tables.takeError());
+  std::string Error;
+  const RuleMatches Known(Rules::ofThisLink(Error), M);
+  // The analysis meets the same error, and reports it.
+  if (!Error.empty())
     return Marked;
-  }
   UserSources Sources(Opts);
   for (Function &F : definedFunctions(M)) {
     if (!F.getSubprogram() || Sources.has(F) ||
         F.hasFnAttribute(Attribute::AlwaysInline) ||
         F.hasFnAttribute(Attribute::NoInline) || sizeOf(F) > MaxInlined ||
-        Tables->match(F) || Tables->isOpaque(F) || Tables->isKept(F) ||
-        Tables->container(F))
+        Known.staysCall(F))
       continue;
     F.addFnAttr(Attribute::AlwaysInline);
     Marked.emplace_back(&F);
@@ -77,6 +77,10 @@ static void inlineMarked(Module &M, bool Promote) {
 
 /// Makes \p M fit for the analysis.
 static void prepare(Module &M, const Options &Opts) {
+  // Only there may a value be computed from itself, and following it back would
+  // not end.
+  for (Function &F : definedFunctions(M))
+    EliminateUnreachableBlocks(F);
   SmallVector<WeakVH, 0> Marked = markSmallLibraryFunctions(M, Opts);
   inlineMarked(M, /*Promote=*/true);
   for (const WeakVH &F : Marked)
@@ -104,18 +108,27 @@ static void allowOptimisation(Module &M) {
     }
 }
 
+/// Has calls of another name of a function call it by its own: above -O0 the
+/// constructors of a class are one function with two names.
+static void callByOwnName(Module &M) {
+  for (GlobalAlias &Alias : M.aliases())
+    if (auto *F = dyn_cast<Function>(Alias.getAliasee());
+        F && !Alias.isInterposable())
+      Alias.replaceUsesWithIf(F, [](const Use &U) {
+        const auto *Call = dyn_cast<CallBase>(U.getUser());
+        return Call && Call->isCallee(&U);
+      });
+}
+
 /// Inlines the functions whose comparisons are their callers' in \p M, code of
 /// -O0: a report inside them would be one for all calls.
-static void inlineTransparent(Module &M, const Options &Opts) {
-  Expected<Rules> Tables = Rules::load(Opts);
-  if (!Tables) {
-    consumeError(Tables.takeError());
-    return;
-  }
+static void inlineTransparent(Module &M) {
+  std::string Error;
+  const Rules &Tables = Rules::ofThisLink(Error);
   bool Found = false;
   for (Function &F : definedFunctions(M)) {
     const DISubprogram *SP = F.getSubprogram();
-    if (!SP || !Tables->isTransparent(qualifiedName(SP->getLinkageName())))
+    if (!SP || !Tables.isTransparent(qualifiedName(SP->getLinkageName())))
       continue;
     F.removeFnAttr(Attribute::OptimizeNone);
     F.removeFnAttr(Attribute::NoInline);
@@ -127,6 +140,7 @@ static void inlineTransparent(Module &M, const Options &Opts) {
 }
 
 AnalysedModule::AnalysedModule(Module &M, const Options &Opts) : Original(M) {
+  callByOwnName(M);
   bool Unoptimised = any_of(M, [](const Function &F) {
     return F.hasFnAttribute(Attribute::OptimizeNone);
   });
@@ -134,7 +148,7 @@ AnalysedModule::AnalysedModule(Module &M, const Options &Opts) : Original(M) {
     prepare(M, Opts);
     return;
   }
-  inlineTransparent(M, Opts);
+  inlineTransparent(M);
   ValueToValueMapTy Map;
   Copy = CloneModule(M, Map);
   allowOptimisation(*Copy);
@@ -155,22 +169,27 @@ Value *AnalysedModule::original(Value *V) const {
   return Back.lookup(V);
 }
 
-/// A function with more calls, or more instructions, is not copied.
-static constexpr unsigned MaxCopies = 16, MaxCopied = 500;
+/// Copies may add as many instructions to a link unit in one go.
+static constexpr unsigned MaxAdded = 50000;
 
 bool separateCalls(Module &M, ArrayRef<std::string> Names) {
   bool Changed = false;
+  size_t Added = 0;
   for (const std::string &Name : Names) {
     Function *F = M.getFunction(Name);
-    if (!F || F->isDeclaration() || sizeOf(*F) > MaxCopied)
+    if (!F || F->isDeclaration())
       continue;
     SmallVector<CallBase *, 8> Calls;
     for (User *U : F->users())
       if (auto *Call = dyn_cast<CallBase>(U);
           Call && Call->getCalledFunction() == F && Call->getFunction() != F)
         Calls.push_back(Call);
-    if (Calls.size() < 2 || Calls.size() > MaxCopies)
+    if (Calls.size() < 2)
       continue;
+    size_t More = (Calls.size() - 1) * sizeOf(*F);
+    if (Added + More > MaxAdded)
+      continue;
+    Added += More;
     // The users of a value are in no order that means anything; copies of
     // copies keep the place of their call in their name.
     sort(Calls, [](const CallBase *A, const CallBase *B) {
@@ -195,9 +214,23 @@ bool separateCalls(Module &M, ArrayRef<std::string> Names) {
   return Changed;
 }
 
-PreservedAnalyses PreparePass::run(Module &M, ModuleAnalysisManager &) {
+std::vector<std::string> namedByCalls(Module &M, ModuleAnalysisManager &AM) {
+  const RuleMatches &Known = AM.getResult<RuleAnalysis>(M);
+  Texts Names(Known, AM.getResult<SimpleCallGraph>(M), nullptr);
+  forEachCall(M, Known, Rule::Read, [&](CallBase &Call, const Rule &Row) {
+    Names.nameOf(Call, Row);
+  });
+  std::vector<std::string> Found;
+  for (const Function *F : Names.shared())
+    Found.push_back(F->getName().str());
+  return Found;
+}
+
+PreservedAnalyses PreparePass::run(Module &M, ModuleAnalysisManager &AM) {
   allowOptimisation(M);
+  callByOwnName(M);
   prepare(M, Options::fromCommandLine());
+  separateCalls(M, namedByCalls(M, AM));
   return PreservedAnalyses::none();
 }
 

@@ -44,10 +44,15 @@ private:
 /// something was copied.
 bool separateCalls(llvm::Module &M, llvm::ArrayRef<std::string> Names);
 
+/// The functions of \p M, a prepared module, in which the name of a parameter
+/// depends on the call; callers before callees.
+std::vector<std::string> namedByCalls(llvm::Module &M,
+                                      llvm::ModuleAnalysisManager &AM);
+
 /// `tpc-prepare`: the same to a whole module, for the printers.
 class PreparePass : public llvm::PassInfoMixin<PreparePass> {
 public:
-  llvm::PreservedAnalyses run(llvm::Module &M, llvm::ModuleAnalysisManager &);
+  llvm::PreservedAnalyses run(llvm::Module &M, llvm::ModuleAnalysisManager &AM);
   static bool isRequired() { return true; }
 };
 

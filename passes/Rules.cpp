@@ -4,10 +4,10 @@
 #include "BuiltinRules.h"
 #include "Names.h"
 #include "Options.h"
+#include "RuleFile.h"
 
 #include "llvm/ADT/SetVector.h"
 #include "llvm/IR/Module.h"
-#include "llvm/Support/JSON.h"
 #include "llvm/Support/MemoryBuffer.h"
 
 using namespace llvm;
@@ -36,147 +36,142 @@ Value *objectOf(const CallBase &Call, const Rule &R) {
   return Index < Call.arg_size() ? Call.getArgOperand(Index) : nullptr;
 }
 
-static std::optional<unsigned> number(const json::Object &Row, StringRef Key) {
-  if (auto N = Row.getInteger(Key); N && *N >= 0)
-    return static_cast<unsigned>(*N);
-  return std::nullopt;
-}
-
-/// True where the row belongs to \p Profile; a row without profiles to all.
-static bool belongs(const json::Object &Row, StringRef Profile) {
-  const json::Array *Profiles = Row.getArray("profiles");
-  if (!Profiles)
-    return true;
-  return any_of(*Profiles, [&](const json::Value &V) {
-    return V.getAsString() == Profile;
-  });
-}
-
-Error Rules::add(StringRef Text, StringRef Origin, StringRef Profile) {
-  Expected<json::Value> Parsed = json::parse(Text);
-  if (!Parsed)
-    return createStringError(Origin + ": " + toString(Parsed.takeError()));
-  const json::Object *Top = Parsed->getAsObject();
-  if (!Top)
-    return createStringError(Origin + ": rules are not a JSON object");
-  const std::pair<StringRef, Rule::KindTy> Sections[] = {
-      {"reads", Rule::Read},
-      {"exposing", Rule::Exposing},
-      {"topics", Rule::Topic},
-      {"text", Rule::Text},
-      {"held", Rule::Held}};
-  for (auto [Section, Kind] : Sections) {
-    const json::Array *Rows = Top->getArray(Section);
-    if (!Rows)
-      continue;
-    for (const json::Value &V : *Rows) {
-      const json::Object *Row = V.getAsObject();
-      std::optional<StringRef> Function =
-          Row ? Row->getString("function") : std::nullopt;
-      if (!Function)
-        return createStringError(Origin + ": a row of \"" + Section +
-                                 "\" has no \"function\"");
-      if (!belongs(*Row, Profile))
-        continue;
-      Rule R;
-      R.Kind = Kind;
-      R.Function = Function->str();
-      R.Method = Row->getBoolean("method").value_or(false);
-      R.Arity = number(*Row, "arity");
-      R.Name = number(*Row, Kind == Rule::Exposing ? "topic" : "name");
-      R.Value = number(*Row, "value");
-      R.Default = number(*Row, "default");
-      R.Relation = Row->getString("relation").value_or("").str();
-      ByName[R.Function].push_back(std::move(R));
-    }
-  }
-  if (const json::Array *Names = Top->getArray("transparent"))
-    for (const json::Value &V : *Names)
-      if (std::optional<StringRef> Name = V.getAsString())
-        Transparent.insert(*Name);
-  const std::pair<StringRef, std::vector<std::string> *> Prefixes[] = {
-      {"opaque", &OpaquePrefixes}, {"kept", &KeptPrefixes}};
-  for (auto [Section, List] : Prefixes)
-    if (const json::Array *Names = Top->getArray(Section))
-      for (const json::Value &V : *Names)
-        if (std::optional<StringRef> Name = V.getAsString())
-          List->push_back(Name->str());
-  if (const json::Object *Containers = Top->getObject("containers")) {
-    auto AddAll = [&](StringRef Key, StringSet<> &To) {
-      if (const json::Array *Names = Containers->getArray(Key))
-        for (const json::Value &V : *Names)
-          if (std::optional<StringRef> Name = V.getAsString())
-            To.insert(*Name);
-    };
-    AddAll("classes", ContainerClasses);
-    AddAll("reading", ReadingMethods);
-  }
-  return Error::success();
-}
-
-static bool beginsWithAny(StringRef Name, ArrayRef<std::string> Prefixes) {
-  return any_of(Prefixes, [&](const std::string &Prefix) {
-    return Name.starts_with(Prefix);
-  });
-}
-
-bool Rules::isOpaque(StringRef Name) const {
-  return beginsWithAny(Name, OpaquePrefixes);
-}
-
-bool Rules::isOpaque(const Function &F) const {
-  return isOpaque(StringRef(qualifiedName(F.getName())));
-}
-
-bool Rules::isKept(const Function &F) const {
-  return beginsWithAny(qualifiedName(F.getName()), KeptPrefixes);
-}
-
-std::optional<ContainerMethod> Rules::container(const Function &F) const {
-  std::string Name = qualifiedName(F.getName());
-  auto [Class, Method] = StringRef(Name).rsplit("::");
-  if (!ContainerClasses.contains(Class))
-    return std::nullopt;
-  bool IsConst = F.getName().starts_with("_ZNK");
-  return ContainerMethod{!IsConst && !ReadingMethods.contains(Method) &&
-                         !Method.starts_with("~")};
-}
-
 Expected<Rules> Rules::load(const Options &Opts) {
   Rules R;
-  if (Error E = R.add(BuiltinRules, "built-in rules", Opts.Profile))
-    return std::move(E);
+  auto Add = [&](StringRef Text, StringRef Origin) -> Error {
+    Expected<RuleFile> File = parseRules(Text, Origin, Opts.Profile);
+    if (!File)
+      return File.takeError();
+    for (Rule &Row : File->Rows)
+      R.ByName[Row.Function].push_back(std::move(Row));
+    append_range(R.OpaquePrefixes, File->Opaque);
+    append_range(R.KeptPrefixes, File->Kept);
+    R.ContainerClasses.insert(File->ContainerClasses.begin(),
+                              File->ContainerClasses.end());
+    R.Transparent.insert(File->Transparent.begin(), File->Transparent.end());
+    R.ReadingMethods.insert(File->ReadingMethods.begin(),
+                            File->ReadingMethods.end());
+    return Error::success();
+  };
+  for (StringRef Text : BuiltinRules)
+    if (Error E = Add(Text, "built-in rules"))
+      return std::move(E);
   for (const std::string &File : Opts.RuleFiles) {
     auto Buffer = MemoryBuffer::getFile(File);
     if (!Buffer)
       return createStringError(File + ": " + Buffer.getError().message());
-    if (Error E = R.add((*Buffer)->getBuffer(), File, Opts.Profile))
+    if (Error E = Add((*Buffer)->getBuffer(), File))
       return std::move(E);
   }
   return R;
 }
 
+bool Rules::isOpaque(StringRef Name) const {
+  return any_of(OpaquePrefixes, [&](const std::string &Prefix) {
+    return Name.starts_with(Prefix);
+  });
+}
+
+const Rules &Rules::ofThisLink(std::string &Error) {
+  struct Tables {
+    Rules R;
+    std::string Error;
+  };
+  static const Tables Loaded = [] {
+    Tables T;
+    Expected<Rules> R = load(Options::fromCommandLine());
+    if (R)
+      T.R = std::move(*R);
+    else
+      T.Error = toString(R.takeError());
+    return T;
+  }();
+  Error = Loaded.Error;
+  return Loaded.R;
+}
+
+/// True where the written parameters of \p F are those that \p R names.
+static bool hasTypes(const Function &F, const Rule &R) {
+  if (R.Types.empty())
+    return true;
+  SmallVector<std::string, 4> Types = parameterTypes(F);
+  return Types.size() == R.Types.size() &&
+         all_of(zip(Types, R.Types), [](auto P) {
+           auto [Has, Wants] = P;
+           return Wants == "*" || plainType(Has) == Wants;
+         });
+}
+
 /// True where one of \p F's operands is a std::string: its own methods, and
 /// the operators, which many classes have under the same name.
-static bool takesText(const Function &F) {
-  return StringRef(qualifiedName(F.getName())).contains("basic_string::") ||
+static bool takesText(const Function &F, StringRef Name) {
+  return Name.contains("basic_string::") ||
          any_of(parameterTypes(F), [](const std::string &T) {
            return StringRef(T).starts_with("std::__cxx11::basic_string<char,");
          });
 }
 
-const Rule *Rules::match(const Function &F) const {
-  std::string Name = qualifiedName(F.getName());
+const Rule *Rules::rowOf(const Function &F, StringRef Name) const {
   auto It = ByName.find(Name);
   if (It == ByName.end())
     return nullptr;
   for (const Rule &R : It->second) {
     unsigned Leading = (F.hasStructRetAttr() ? 1 : 0) + (R.Method ? 1 : 0);
-    if ((!R.Arity || F.arg_size() == Leading + *R.Arity) &&
-        (R.Kind != Rule::Text || takesText(F)))
+    if ((!R.Arity || F.arg_size() == Leading + *R.Arity) && hasTypes(F, R) &&
+        (R.Kind != Rule::Text || takesText(F, Name)))
       return &R;
   }
   return nullptr;
+}
+
+const Rules::Match &Rules::match(const Function &F) const {
+  auto [It, New] = Known.try_emplace(F.getName());
+  if (!New)
+    return It->second;
+  Match &M = It->second;
+  M.Name = qualifiedName(F.getName());
+  M.Row = rowOf(F, M.Name);
+  // A function of a family that only its mangled name tells from others.
+  auto Begins = [&](StringRef Prefix) {
+    return StringRef(M.Name).starts_with(Prefix) ||
+           (Prefix.starts_with("_Z") && F.getName().starts_with(Prefix));
+  };
+  M.Opaque = any_of(OpaquePrefixes, Begins);
+  M.Kept = any_of(KeptPrefixes, Begins);
+  auto [Class, Method] = StringRef(M.Name).rsplit("::");
+  if (ContainerClasses.contains(Class))
+    M.Container = ContainerMethod{!F.getName().starts_with("_ZNK") &&
+                                  !ReadingMethods.contains(Method) &&
+                                  !Method.starts_with("~")};
+  return M;
+}
+
+RuleMatches::RuleMatches(const Rules &Tables, Module &M) {
+  std::vector<std::string> Classes; // whose fields are parameters
+  for (const Function &F : M) {
+    const Rules::Match &Found = Tables.match(F);
+    if (Found.Row) {
+      Rows[&F] = Found.Row;
+      if (Found.Row->Kind == Rule::Config)
+        Classes.push_back(classArgument(F));
+    } else if (Found.Opaque) {
+      Opaque.insert(&F);
+    } else if (Found.Container) {
+      Containers.insert({&F, *Found.Container});
+    }
+    if (Found.Kept)
+      Kept.insert(&F);
+  }
+  // What belongs to such a class was generated with it.
+  if (Classes.empty())
+    return;
+  for (const Function &F : M)
+    if (any_of(Classes, [&](StringRef Class) {
+          StringRef Name = Tables.match(F).Name;
+          return Name.consume_front(Class) && !Class.empty() &&
+                 (Name.starts_with("::") || Name.starts_with("Statics::"));
+        }))
+      Opaque.insert(&F);
 }
 
 const Rule *RuleMatches::match(const CallBase &Call) const {
@@ -220,26 +215,22 @@ private:
 
 } // namespace
 
-RuleMatches RuleAnalysis::run(Module &M, ModuleAnalysisManager &) {
-  RuleMatches Result;
-  const Options Opts = Options::fromCommandLine();
-  Expected<Rules> Loaded = Rules::load(Opts);
-  if (!Loaded) {
-    Result.Error = toString(Loaded.takeError());
-    return Result;
-  }
-  Result.Tables = std::make_shared<const Rules>(std::move(*Loaded));
+void RuleMatches::closeContainers(const Options &Opts) {
   UserCode Users(Opts);
-  for (const Function &F : M)
-    if (const Rule *R = Result.Tables->match(F)) {
-      Result.Rows[&F] = R;
-    } else if (Result.Tables->isOpaque(F)) {
-      Result.Opaque.insert(&F);
-    } else if (auto Method = Result.Tables->container(F)) {
-      Result.Containers[&F] = *Method;
-      if (!Users.reachedFrom(F))
-        Result.Opaque.insert(&F);
-    }
+  for (const auto &[F, Method] : Containers)
+    if (!Users.reachedFrom(*F))
+      Opaque.insert(F);
+}
+
+RuleMatches RuleAnalysis::run(Module &M, ModuleAnalysisManager &) {
+  std::string Error;
+  const Rules &Tables = Rules::ofThisLink(Error);
+  RuleMatches Result;
+  if (Error.empty()) {
+    Result = RuleMatches(Tables, M);
+    Result.closeContainers(Options::fromCommandLine());
+  }
+  Result.Error = std::move(Error);
   return Result;
 }
 

@@ -1,8 +1,9 @@
 //===- Rules.h - The tables that drive the analysis -----------------------===//
 //
 // SPEC 2: which calls read a parameter, which expose a node's state, which
-// give a publisher its topic. Data, read from JSON; the tables that come with
-// TPC are built in (rules/*.json), the user's are added to them.
+// give a publisher its topic and a node handle its namespace. Data, read from
+// JSON (RuleFile); the tables that come with TPC are built in (rules/*.json),
+// the user's are added to them.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_RULES_H
@@ -12,6 +13,7 @@
 
 #include "llvm/ADT/DenseMap.h"
 #include "llvm/ADT/DenseSet.h"
+#include "llvm/ADT/MapVector.h"
 #include "llvm/ADT/StringMap.h"
 #include "llvm/ADT/StringSet.h"
 #include "llvm/IR/InstIterator.h"
@@ -29,16 +31,40 @@ struct Options;
 
 /// One row. Argument numbers count the parameters as written in the source.
 struct Rule {
-  enum KindTy { Read, Exposing, Topic, Text, Held };
+  enum KindTy {
+    Read,     ///< reads a parameter
+    Exposing, ///< shows what a node has come to
+    Topic,    ///< gives a publisher or client its topic
+    Naming,   ///< makes a name, or a handle with a namespace
+    Accessor, ///< takes the value out of an object that a read gave
+    Config,   ///< hands a class of which each field is a parameter
+    Text,     ///< compares or copies text
+    Held,     ///< puts a number into an object, or takes it out
+  };
+  /// A piece of what a row of kind Naming makes.
+  struct Part {
+    enum FromTy { Argument, Object, Constant } From;
+    unsigned Number = 0; ///< of the argument
+    std::string Text;    ///< of the constant
+  };
+  enum TargetTy { ToResult, ToObject, ToArgument };
+
   KindTy Kind;
   std::string Function;          ///< qualified name without template arguments
   bool Method = false;           ///< has a `this`
   std::optional<unsigned> Arity; ///< none: every overload
+  /// The parameters' types without const, & and template arguments; `*` is any.
+  std::vector<std::string> Types;
   std::optional<unsigned>
       Name; ///< argument with the parameter's or topic's name
   std::optional<unsigned> Value; ///< argument that the value is written to;
                                  ///< none: it is the result
   std::optional<unsigned> Default;
+  /// The namespace of `this`, a node handle, stands before the name.
+  bool Handle = false;
+  std::vector<Part> Parts; ///< joined as names are, by slashes
+  TargetTy Target = ToResult;
+  unsigned TargetArgument = 0;
   /// Of what is done with text: the operator that the result answers, `compare`
   /// where it is to be compared with zero, `copy` where nothing is asked. Of an
   /// object that holds one number: `into` or `outof`.
@@ -62,33 +88,46 @@ class Rules {
 public:
   /// The built-in tables and \p Opts' files, restricted to its profile.
   static llvm::Expected<Rules> load(const Options &Opts);
+  /// The tables of this process, which links one unit: read once, with why
+  /// they could not be read where that is so.
+  static const Rules &ofThisLink(std::string &Error);
 
-  /// The row for \p F, or null.
-  const Rule *match(const llvm::Function &F) const;
-  /// True where \p F is in one of the opaque namespaces.
-  bool isOpaque(const llvm::Function &F) const;
-  bool isOpaque(llvm::StringRef Name) const; ///< the same of a class
+  /// What the tables say of a function.
+  struct Match {
+    std::string Name; ///< qualified, without template arguments
+    const Rule *Row = nullptr;
+    bool Opaque = false; ///< it is in one of the opaque namespaces
+    bool Kept = false;   ///< it stays a call that is looked into
+    /// What it does to a container; none where it is no method of one.
+    std::optional<ContainerMethod> Container;
+  };
+  const Match &match(const llvm::Function &F) const;
+  /// True where the class called \p Name is in one of the opaque namespaces.
+  bool isOpaque(llvm::StringRef Name) const;
   /// True where comparisons in a function of this qualified name are its
   /// caller's.
   bool isTransparent(llvm::StringRef Name) const {
     return Transparent.contains(Name);
   }
-  /// What \p F does to a container; none where it is no method of one.
-  std::optional<ContainerMethod> container(const llvm::Function &F) const;
-  /// True where \p F stays a call that is looked into.
-  bool isKept(const llvm::Function &F) const;
 
 private:
-  llvm::Error add(llvm::StringRef Json, llvm::StringRef Origin,
-                  llvm::StringRef Profile);
+  const Rule *rowOf(const llvm::Function &F, llvm::StringRef Name) const;
+
   llvm::StringMap<std::vector<Rule>> ByName;
   std::vector<std::string> OpaquePrefixes, KeptPrefixes;
   llvm::StringSet<> ContainerClasses, ReadingMethods, Transparent;
+  /// By mangled name: each is demangled once.
+  mutable llvm::StringMap<Match> Known;
 };
 
 /// The rules applied to the functions of a module.
 class RuleMatches {
 public:
+  RuleMatches() = default;
+  RuleMatches(const Rules &Tables, llvm::Module &M);
+  /// Makes opaque the methods of containers that call nothing of the user's.
+  void closeContainers(const Options &Opts);
+
   /// The row that the callee of \p Call matches, or null.
   const Rule *match(const llvm::CallBase &Call) const;
   /// True where \p F is not looked into: a row stands for it, or its name
@@ -98,22 +137,26 @@ public:
   }
   /// True where the class called \p Name is in one of the opaque namespaces.
   bool isOpaque(llvm::StringRef Name) const {
-    return Tables && Tables->isOpaque(Name);
+    std::string Unused;
+    return Rules::ofThisLink(Unused).isOpaque(Name);
   }
   /// See Rules::isTransparent.
   bool isTransparent(llvm::StringRef Name) const {
-    return Tables && Tables->isTransparent(Name);
+    std::string Unused;
+    return Rules::ofThisLink(Unused).isTransparent(Name);
   }
   /// The container's method that \p Call calls, or null.
   const ContainerMethod *container(const llvm::CallBase &Call) const;
+  /// True where \p F stays a call, however small it is.
+  bool staysCall(const llvm::Function &F) const {
+    return isOpaque(F) || Kept.contains(&F) || Containers.contains(&F);
+  }
   std::string Error; ///< why the tables could not be read; else empty
 
 private:
-  friend class RuleAnalysis;
-  std::shared_ptr<const Rules> Tables;
   llvm::DenseMap<const llvm::Function *, const Rule *> Rows;
-  llvm::DenseSet<const llvm::Function *> Opaque;
-  llvm::DenseMap<const llvm::Function *, ContainerMethod> Containers;
+  llvm::DenseSet<const llvm::Function *> Opaque, Kept;
+  llvm::MapVector<const llvm::Function *, ContainerMethod> Containers;
 };
 
 /// Calls \p F with each call in \p M that a row of \p Kind describes, and with

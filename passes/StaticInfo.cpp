@@ -2,18 +2,19 @@
 #include "StaticInfo.h"
 
 #include "ClassObjectAccess.h"
+#include "ExplainInfo.h"
 #include "ExternCallFinder.h"
 #include "Functions.h"
 #include "IfStatements.h"
 #include "Names.h"
 #include "ParamCallFinder.h"
 #include "SimpleCallGraph.h"
+#include "Texts.h"
 #include "Variables.h"
 
 #include "llvm/Config/llvm-config.h"
 #include "llvm/IR/Module.h"
 #include "llvm/Support/FileSystem.h"
-#include "llvm/Support/MemoryBuffer.h"
 #include "llvm/Support/Path.h"
 
 using namespace llvm;
@@ -34,30 +35,6 @@ static json::Value textOrNull(StringRef Text) {
 
 namespace {
 
-/// Source files, for the text of a line.
-class SourceLines {
-public:
-  /// Line \p Number of \p Path, stripped; null where it cannot be read.
-  json::Value line(StringRef Path, unsigned Number) {
-    auto [It, New] = Files.try_emplace(Path);
-    if (New)
-      if (auto Buffer = MemoryBuffer::getFile(Path)) {
-        It->second.Text = std::move(*Buffer);
-        It->second.Text->getBuffer().split(It->second.Lines, '\n');
-      }
-    if (Number == 0 || Number > It->second.Lines.size())
-      return nullptr;
-    return json::fixUTF8(It->second.Lines[Number - 1].trim());
-  }
-
-private:
-  struct File {
-    std::unique_ptr<MemoryBuffer> Text;
-    SmallVector<StringRef, 0> Lines;
-  };
-  StringMap<File> Files;
-};
-
 /// Writes down what the analyses of a module found.
 class Describer {
 public:
@@ -70,11 +47,12 @@ public:
         Usage(AM.getResult<ParamUsageFinder>(M)),
         Slice(AM.getResult<BackwardPropagate>(M)),
         Gathered(AM.getResult<GatherResults>(M)),
-        Names(Access.types(), Access.debugTypes()) {}
+        Names(Access.types(), Access.debugTypes()), Explain(M, AM, Opts) {}
 
   json::Array parameters() const;
   json::Array exposing() const;
   json::Array comparisons();
+  ExplainInfo &explain() { return Explain; }
   json::Object counts(const json::Array &Comparisons) const;
 
 private:
@@ -97,6 +75,7 @@ private:
   const SliceResult &Slice;
   const GatheredResults &Gathered;
   VariableNames Names;
+  ExplainInfo Explain;
   SourceLines Lines;
 };
 
@@ -209,6 +188,8 @@ json::Object Describer::comparison(const Comparison &C) {
   O["default"] = Read ? Read->Default : nullptr;
   O["read_at"] = Read ? where(*Read->Call) : nullptr;
   O["exposed_at"] = where(*Nearest.Call);
+  if (Read)
+    O["path"] = Explain.path(C);
   return O;
 }
 
@@ -262,11 +243,11 @@ json::Object Describer::counts(const json::Array &Comparisons) const {
       {"constants", Constants},
       {"dynamic_names",
        count_if(Reads,
-                [](const ParameterRead &R) { return R.Name == DynamicName; })},
+                [](const ParameterRead &R) { return isDynamic(R.Name); })},
       {"indirect_calls", static_cast<int64_t>(Calls.unresolved().size())},
       {"without_debug_info", Gathered.WithoutDebugInfo},
       {"outside_sources", Gathered.OutsideSources},
-      {"lost_values", Usage.Lost},
+      {"lost_values", Usage.lost()},
       {"not_instrumented", 0}};
 }
 
@@ -289,14 +270,22 @@ json::Object describe(Module &M, ModuleAnalysisManager &AM,
   json::Array Comparisons = D.comparisons();
   Unit["status"] = "ok";
   Unit["failure"] = nullptr;
-  Unit["counts"] = D.counts(Comparisons);
+  json::Object Counts = D.counts(Comparisons);
+  json::Array NotExposed = D.explain().notExposed(Comparisons);
+  json::Array BlindSpots = D.explain().blindSpots();
+  Counts["not_exposed"] = static_cast<int64_t>(NotExposed.size());
+  Counts["blind_spots"] = static_cast<int64_t>(BlindSpots.size());
+  Unit["counts"] = std::move(Counts);
   Unit["parameters"] = D.parameters();
   Unit["exposing"] = D.exposing();
   Unit["comparisons"] = std::move(Comparisons);
+  Unit["not_exposed"] = shortened(std::move(NotExposed));
+  Unit["blind_spots"] = shortened(std::move(BlindSpots));
   return Unit;
 }
 
-json::Object describeFailure(const Options &Opts, StringRef Why) {
+json::Object describeFailure(const Options &Opts, StringRef Why,
+                             const json::Object *Known) {
   json::Object Unit = header(Opts);
   Unit["status"] = "failed";
   Unit["failure"] = json::fixUTF8(Why);
@@ -305,10 +294,14 @@ json::Object describeFailure(const Options &Opts, StringRef Why) {
        {"functions", "predicates", "predicates_in_slice", "parameter_reads",
         "exposing_statements", "comparisons", "constants", "dynamic_names",
         "indirect_calls", "without_debug_info", "outside_sources",
-        "lost_values", "not_instrumented"})
+        "lost_values", "not_instrumented", "not_exposed", "blind_spots"})
     Counts[Name] = 0;
+  if (Known)
+    Counts = *Known;
+  Counts["comparisons"] = 0;
   Unit["counts"] = std::move(Counts);
-  for (StringRef Name : {"parameters", "exposing", "comparisons"})
+  for (StringRef Name :
+       {"parameters", "exposing", "comparisons", "not_exposed", "blind_spots"})
     Unit[Name] = json::Array();
   return Unit;
 }

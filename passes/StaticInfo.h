@@ -18,8 +18,10 @@ namespace tpc {
 llvm::json::Object describe(llvm::Module &M, llvm::ModuleAnalysisManager &AM,
                             const Options &Opts);
 
-/// What a unit's file says where there was no analysis, because of \p Why.
-llvm::json::Object describeFailure(const Options &Opts, llvm::StringRef Why);
+/// What a unit's file says where the analysis failed because of \p Why;
+/// \p Known has the counts as far as it came, or is null.
+llvm::json::Object describeFailure(const Options &Opts, llvm::StringRef Why,
+                                   const llvm::json::Object *Known);
 
 /// Writes \p Unit to \p Path, beside and then renamed.
 llvm::Error writeJson(llvm::json::Object Unit, llvm::StringRef Path);

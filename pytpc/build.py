@@ -31,6 +31,7 @@ from pytpc.paths import (
     require_tools,
     search_path,
 )
+from pytpc.rules import check_rules
 from pytpc.static_info import LinkUnit, StaticInfo, collect, unit_files
 from pytpc.workspace import Package, find_packages, read_cmakelists, select_packages
 
@@ -111,6 +112,7 @@ def colcon_command(
     *,
     only: Iterable[str] = (),
     build_type: str = "RelWithDebInfo",
+    rules: Path | None = None,
     cmake_args: Sequence[str] = (),
     colcon_args: Sequence[str] = (),
 ) -> list[str]:
@@ -122,6 +124,7 @@ def colcon_command(
         toolchain: tpc.cmake.
         only: names; these and what they need are built, or all where empty.
         build_type: CMAKE_BUILD_TYPE.
+        rules: the user's own rules.
         cmake_args: further arguments for each package's CMake.
         colcon_args: further arguments for colcon; a ``--cmake-args`` in them adds to ours.
 
@@ -135,6 +138,8 @@ def colcon_command(
         "--cmake-args",
         f"-DCMAKE_TOOLCHAIN_FILE={toolchain}",
         f"-DCMAKE_BUILD_TYPE={build_type}",
+        # Empty, so that those of an earlier build do not stay in CMake's cache.
+        f"-DTPC_RULES={rules.absolute() if rules is not None else ''}",
         "-DPYTHON_EXECUTABLE=/usr/bin/python3",
         *cmake_args,
     ]
@@ -182,6 +187,7 @@ def build_workspace(
     *,
     packages: Sequence[str] = (),
     build_type: str = "RelWithDebInfo",
+    rules: Path | None = None,
     cmake_args: Sequence[str] = (),
     colcon_args: Sequence[str] = (),
     constants: bool = False,
@@ -194,6 +200,7 @@ def build_workspace(
         workspace: folder with packages; no file of theirs is changed.
         packages: names; these and what they need are built, or all where empty.
         build_type: CMAKE_BUILD_TYPE.
+        rules: the user's own rules, beside those that come with TPC.
         cmake_args: further arguments for each package's CMake.
         colcon_args: further arguments for colcon.
         constants: have comparisons with constants reported, too.
@@ -203,7 +210,7 @@ def build_workspace(
     Raises:
         WorkspaceError: no packages, an unknown name, a folder that cannot be written, or a build
             folder that was configured without TPC.
-        InputError: a broken package.xml, CMakeLists.txt or static information.
+        InputError: a broken package.xml, CMakeLists.txt, file of rules or static information.
         MissingToolError: TPC's C++ half, a compiler, colcon or ROS is absent.
         BuildError: a package does not build.
         RunError: colcon itself fails.
@@ -213,6 +220,8 @@ def build_workspace(
     chosen = select_packages(found, packages)
     for package in chosen:
         read_cmakelists(package)
+    if rules is not None:
+        check_rules(rules)
     toolchain = _require_all(found)
     place = bases if bases is not None else Bases.of(workspace)
     command = colcon_command(
@@ -221,6 +230,7 @@ def build_workspace(
         toolchain,
         only=packages,
         build_type=build_type,
+        rules=rules,
         # Said both ways: a build folder keeps what it was told last.
         cmake_args=(f"-DTPC_CONSTANTS={'ON' if constants else 'OFF'}", *cmake_args),
         colcon_args=colcon_args,

@@ -174,7 +174,7 @@ def _cells(
     if treatment.parameter is None:
         return [time, kind, "", "", "", ""]
     rightly = mark.type == treatment.mark_type
-    found = next((s for s in ranking.suspects if s.parameter == treatment.parameter), None)
+    found = ranking.suspect_of(treatment.parameter)
     if not rightly:
         kind += " (wrong type)"
     if found is None:

@@ -16,6 +16,7 @@ import numpy as np
 from pytpc.events import Events, Floats, Int64s
 from pytpc.ingest.recording import Recording
 from pytpc.marks import Mark, MarkType
+from pytpc.parameters import DYNAMIC, same_parameter
 from pytpc.scores import (
     NONE,
     WINDOW_S,
@@ -28,8 +29,6 @@ from pytpc.scores import (
     type2,
 )
 from pytpc.static_info import Comparison, StaticInfo
-
-DYNAMIC = "<dynamic>"
 
 
 class Evaluation(NamedTuple):
@@ -77,10 +76,13 @@ class MarkRanking:
 
     def position_of(self, parameter: str) -> int | None:
         """The position of a parameter, None where it has no score at this mark."""
-        for suspect in self.suspects:
-            if suspect.parameter == parameter:
-                return suspect.position
-        return None
+        found = self.suspect_of(parameter)
+        return None if found is None else found.position
+
+    def suspect_of(self, parameter: str) -> Suspect | None:
+        """The most suspicious of what ``parameter`` can mean, see `same_parameter`."""
+        same = (s for s in self.suspects if same_parameter(parameter, s.parameter))
+        return next(same, None)
 
 
 def rank_marks(

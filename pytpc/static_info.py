@@ -52,7 +52,7 @@ class Transform:
 
 @dataclass(frozen=True, slots=True)
 class ParameterRead:
-    """A call that reads a parameter; ``name`` is ``<dynamic>`` where no constant names it."""
+    """A call that reads a parameter; ``name`` has ``<dynamic>`` for what no constant gives."""
 
     name: str
     api: str
@@ -74,6 +74,49 @@ class Exposing:
     lineno: int
     column: int
     function: str
+
+
+@dataclass(frozen=True, slots=True)
+class PathStep:
+    """What happens on one line on the way from a parameter's read to what exposes it.
+
+    ``step`` is the most telling thing that happens there, ``what`` says all of it. A place is
+    empty and 0 where steps were left out or no debug information names it.
+    """
+
+    step: str
+    file: str
+    lineno: int
+    column: int
+    function: str
+    what: str
+    source_code: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class NotExposed:
+    """A comparison with a parameter (``source``) on which nothing exposed depends."""
+
+    source: str
+    file: str
+    lineno: int
+    column: int
+    function: str
+    source_code: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class BlindSpot:
+    """A place behind which the analysis does not see; ``parameter`` is None where none is meant."""
+
+    kind: str
+    parameter: str | None
+    file: str
+    lineno: int
+    column: int
+    function: str
+    what: str
+    source_code: str | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,6 +142,7 @@ class Comparison:
     default: Default
     read_at: Place | None
     exposed_at: Place
+    path: tuple[PathStep, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,6 +171,8 @@ class Counts:
     outside_sources: int
     lost_values: int
     not_instrumented: int
+    not_exposed: int = 0
+    blind_spots: int = 0
     constants: int = 0
 
 
@@ -148,6 +194,8 @@ class LinkUnit:
     parameters: tuple[ParameterRead, ...]
     exposing: tuple[Exposing, ...]
     comparisons: tuple[Comparison, ...]
+    not_exposed: tuple[NotExposed, ...] = ()
+    blind_spots: tuple[BlindSpot, ...] = ()
 
     def to_json(self) -> dict[str, Any]:
         """The unit as the JSON object of docs/formats.md."""
@@ -172,6 +220,8 @@ class LinkUnit:
         unit["parameters"] = tuple(ParameterRead(**read) for read in unit["parameters"])
         unit["exposing"] = tuple(Exposing(**statement) for statement in unit["exposing"])
         unit["comparisons"] = tuple(_comparison(found) for found in unit["comparisons"])
+        unit["not_exposed"] = tuple(NotExposed(**found) for found in unit.get("not_exposed", ()))
+        unit["blind_spots"] = tuple(BlindSpot(**spot) for spot in unit.get("blind_spots", ()))
         return cls(**unit)
 
 
@@ -380,6 +430,7 @@ def _comparison(data: dict[str, Any]) -> Comparison:
     if found["read_at"] is not None:
         found["read_at"] = Place(**found["read_at"])
     found["exposed_at"] = Place(**found["exposed_at"])
+    found["path"] = tuple(PathStep(**step) for step in found.get("path", ()))
     return Comparison(**found)
 
 

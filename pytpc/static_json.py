@@ -14,6 +14,8 @@ from jsonschema.exceptions import best_match
 from pytpc.errors import InputError
 
 SCHEMA_VERSION = 1
+UNIT_SCHEMA = "static_info.schema.json"
+RULES_SCHEMA = "rules.schema.json"
 _LONGEST_MESSAGE = 160
 
 
@@ -62,17 +64,26 @@ def check_unit(data: object, path: Path, pointer: str = "") -> dict[str, Any]:
             f" {SCHEMA_VERSION}",
             path,
         )
-    fault = best_match(_validator().iter_errors(data))
-    if fault is not None:
-        raise InputError(f"{pointer + _pointer(fault) or '/'}: {_shortened(fault.message)}", path)
+    check_schema(data, path, UNIT_SCHEMA, pointer)
     if not isinstance(data, dict):
         raise TypeError("the schema let something else than an object pass")
     return data
 
 
+def check_schema(data: object, path: Path, name: str, pointer: str = "") -> None:
+    """See that ``data``, at ``pointer`` in ``path``, is as the schema ``name`` says.
+
+    Raises:
+        InputError: with the JSON pointer of what breaks the schema.
+    """
+    fault = best_match(_validator(name).iter_errors(data))
+    if fault is not None:
+        raise InputError(f"{pointer + _pointer(fault) or '/'}: {_shortened(fault.message)}", path)
+
+
 @cache
-def _validator() -> Draft202012Validator:
-    text = files("pytpc").joinpath("schema", "static_info.schema.json").read_text("utf-8")
+def _validator(name: str) -> Draft202012Validator:
+    text = files("pytpc").joinpath("schema", name).read_text("utf-8")
     schema = json.loads(text)
     Draft202012Validator.check_schema(schema)
     return Draft202012Validator(schema)

@@ -181,6 +181,14 @@ class RawSubscriber:
             if not data:
                 self._drop(connection, link)
 
+    def connections(self) -> set[tuple[str, str]]:
+        """The publishers that are connected, as topic and name of the node, as of the last poll."""
+        return {
+            (link.source.topic, link.source.node)
+            for link in (key.data for key in self._selector.get_map().values())
+            if link is not None
+        }
+
     def close(self) -> None:
         """Leave the graph. A master that is gone already is no error."""
         self._closed.set()

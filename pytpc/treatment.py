@@ -27,7 +27,8 @@ _FIELDS = ("name", "type", "parameter", "node", "old", "new", "launch", "effect"
 class Treatment:
     """One treatment.
 
-    ``parameter`` is the changed one, by the name that the source reads it by, ``node`` whose it is,
+    ``parameter`` is the changed one, by the name that the source reads it by (its namespace may be
+    left out), ``node`` whose it is,
     ``old`` and ``new`` its values; all None where no parameter is changed. ``launch`` are arguments
     for the launch file, ``overlay`` is the file with the parameters, ``effect`` a sentence.
     """
@@ -49,7 +50,7 @@ class Treatment:
 
     @property
     def change(self) -> str:
-        """``min_coverage_limit 0.035 -> 0.062``, or a dash."""
+        """``~min_coverage_limit 0.035 -> 0.062``, or a dash."""
         if self.parameter is None:
             return "-"
         return f"{self.parameter} {self.old:g} -> {self.new:g}"

@@ -41,15 +41,22 @@ def patch_command(workspace: Path, restore: bool, dry_run: bool, packages: tuple
 @click.option("--package", "packages", multiple=True, metavar="NAME", help="It and what it needs.")
 @click.option("--build-type", default="RelWithDebInfo", show_default=True)
 @click.option("--base", type=_FOLDER, help="Where to build; WORKSPACE/.tpc by default.")
+@click.option(
+    "--rules",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Your own rules (JSON): what else reads a parameter or exposes.",
+)
 @click.option("--constants", is_flag=True, help="Report comparisons with constants, too.")
 @click.argument("colcon_args", nargs=-1, type=click.UNPROCESSED, metavar="[-- COLCON_ARGS]...")
 def build_command(
+    *,
     workspace: Path,
     packages: tuple[str, ...],
     build_type: str,
     base: Path | None,
+    rules: Path | None,
     colcon_args: tuple[str, ...],
-    *,
     constants: bool,
 ) -> None:
     """Build a workspace with analysis and instrumentation; its files stay as they are."""
@@ -60,6 +67,7 @@ def build_command(
                 workspace,
                 packages=packages,
                 build_type=build_type,
+                rules=rules,
                 colcon_args=colcon_args,
                 constants=constants,
                 bases=bases,

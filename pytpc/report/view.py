@@ -14,8 +14,10 @@ from markupsafe import Markup
 
 from pytpc.arithmetic import evaluate
 from pytpc.complaints import complaints
+from pytpc.explain import where
 from pytpc.ingest.recording import Recording
 from pytpc.marks import Mark, MarkType
+from pytpc.parameters import same_parameter
 from pytpc.ranking import MarkRanking, Suspect
 from pytpc.report.plots import EvidenceStyle, Lane, evidence_svg, timeline_svg
 from pytpc.report.series import evidence, lane
@@ -55,10 +57,25 @@ class MissionReport:
     treatment: str = ""
     changed_parameter: str | None = None
 
+    def is_changed(self, parameter: str) -> bool:
+        """True where ``parameter``, as in the source, is the one that was changed."""
+        changed = self.changed_parameter
+        return changed is not None and same_parameter(changed, parameter)
+
+
+@dataclass(frozen=True)
+class StepView:
+    """A line of the source on the way from the parameter's read to what is exposed."""
+
+    place: str
+    what: str
+    code: str
+    here: bool
+
 
 @dataclass(frozen=True)
 class SuspectView:
-    """A suspect at a mark; ``plot`` and ``source`` only for those shown with their evidence."""
+    """A suspect at a mark; ``plot``, ``source`` and ``way`` only for those with their evidence."""
 
     position: int
     parameter: str
@@ -86,6 +103,7 @@ class SuspectView:
     plot: Markup
     source: list[Line]
     source_note: str
+    way: list[StepView]
 
 
 @dataclass(frozen=True)
@@ -196,7 +214,7 @@ def _suspect_view(
     unit = mission.static_info.unit_of(suspect.key)
     events = mission.recording.events
     advice = suggest(events, found, mark.time_ns, suspect.type, unit=unit)
-    culprit = suspect.parameter == mission.changed_parameter
+    culprit = mission.is_changed(suspect.parameter)
     lines, note = source_lines(mission.static_info, found) if ident else ([], "")
     plot = _evidence(mission, suspect, mark, advice, ident) if ident else Markup("")
     return SuspectView(
@@ -226,7 +244,20 @@ def _suspect_view(
         plot=plot,
         source=lines,
         source_note=note,
+        way=_way(found) if ident else [],
     )
+
+
+def _way(found: Comparison) -> list[StepView]:
+    return [
+        StepView(
+            place=where(step) if step.file else "",
+            what=step.what,
+            code=(step.source_code or "")[:LONGEST_LINE],
+            here=(step.file, step.lineno) == (found.file, found.lineno),
+        )
+        for step in found.path
+    ]
 
 
 def _evidence(
@@ -244,7 +275,7 @@ def _evidence(
         suggested=_suggested_threshold(found, advice),
         value_name="compared value" if found.relation != "flag" else "flag",
         limit_name=found.name or suspect.parameter,
-        culprit=suspect.parameter == mission.changed_parameter,
+        culprit=mission.is_changed(suspect.parameter),
     )
     label = (
         f"{suspect.parameter}: compared value and threshold around the mark at {at:.1f} s;"
@@ -274,9 +305,10 @@ def _timeline(mission: MissionReport, ident: str) -> Markup:
             known = best.get(suspect.parameter)
             if known is None or suspect.position < known[0]:
                 best[suspect.parameter] = (suspect.position, suspect.key)
-    order = sorted(best, key=lambda name: (best[name][0], name))[:_LANES]
-    changed = mission.changed_parameter
-    if changed is not None and changed in best and changed not in order:
+    ranked = sorted(best, key=lambda name: (best[name][0], name))
+    order = ranked[:_LANES]
+    changed = next((name for name in ranked if mission.is_changed(name)), None)
+    if changed is not None and changed not in order:
         order[-1] = changed
     lanes = [
         Lane(

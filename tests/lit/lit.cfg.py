@@ -20,6 +20,12 @@ load = f"-load={plugin} -load-pass-plugin={plugin}"
 
 # Longer names come first: a substitution is made wherever its name begins.
 config.substitutions += [
+    # The same as the next one with the real headers of ROS.
+    (
+        "%compile-real",
+        f"{clangxx} -std=c++17 -g -flto=full -Xclang -disable-llvm-passes"
+        " -grecord-command-line -c",
+    ),
     # The compiler as tpc.cmake sets it; the level is the test's own word.
     (
         "%compile",
@@ -41,3 +47,12 @@ config.substitutions += [
 config.environment["PATH"] = os.pathsep.join(
     [config.tpc_tools, "/usr/bin", "/bin"]
 )
+if os.path.exists("/usr/include/dynamic_reconfigure/server.h") and os.path.exists(
+    "/usr/share/dynamic_reconfigure/templates/ConfigType.h.template"
+):
+    config.available_features.add("dynamic-reconfigure")
+if all(
+    os.path.exists(f"/usr/include/{header}")
+    for header in ("actionlib/TestAction.h", "tf/transform_broadcaster.h", "std_srvs/Empty.h")
+):
+    config.available_features.add("ros1-headers")

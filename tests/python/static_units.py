@@ -9,6 +9,34 @@ KEYS = [
 ]
 
 
+def step(kind: str, lineno: int, what: str, **changes: Any) -> dict[str, Any]:
+    """A step of a way on a line of src/detector.cpp."""
+    return {
+        "step": kind,
+        "file": "src/detector.cpp",
+        "lineno": lineno,
+        "column": 6,
+        "function": "face::Detector::onImage",
+        "what": what,
+        "source_code": f"line {lineno};",
+        **changes,
+    }
+
+
+def spot(kind: str, parameter: str | None, lineno: int, what: str) -> dict[str, Any]:
+    """A blind spot on a line of src/detector.cpp."""
+    place = step("", lineno, what)
+    del place["step"]
+    return {"kind": kind, "parameter": parameter, **place}
+
+
+def not_exposed(source: str, lineno: int) -> dict[str, Any]:
+    """A comparison on a line of src/detector.cpp on which nothing exposed depends."""
+    place = step("", lineno, "")
+    del place["step"], place["what"]
+    return {"source": source, **place}
+
+
 def comparison(**changes: Any) -> dict[str, Any]:
     """``if (coverage > min_coverage_limit_)`` on line 40 of src/detector.cpp, with changes."""
     return {
@@ -31,6 +59,11 @@ def comparison(**changes: Any) -> dict[str, Any]:
         "default": 0.25,
         "read_at": {"file": "src/detector.cpp", "lineno": 12},
         "exposed_at": {"file": "src/detector.cpp", "lineno": 41},
+        "path": [
+            step("read", 12, "min_coverage_limit read into Detector::min_coverage_limit_"),
+            step("compare", 40, "compared: coverage > min_coverage_limit_; guards publish()"),
+            step("expose", 41, "published on capture"),
+        ],
         **changes,
     }
 
@@ -49,6 +82,8 @@ def counts(**changes: int) -> dict[str, int]:
         "outside_sources": 3,
         "lost_values": 0,
         "not_instrumented": 0,
+        "not_exposed": 0,
+        "blind_spots": 0,
         "constants": 0,
         **changes,
     }
@@ -88,6 +123,8 @@ def unit(**changes: Any) -> dict[str, Any]:
             }
         ],
         "comparisons": [comparison()],
+        "not_exposed": [],
+        "blind_spots": [],
         **changes,
     }
 

@@ -54,6 +54,7 @@ def test_the_whole_command() -> None:
         "--cmake-args",
         "-DCMAKE_TOOLCHAIN_FILE=/opt/tpc/share/tpc/cmake/tpc.cmake",
         "-DCMAKE_BUILD_TYPE=RelWithDebInfo",
+        "-DTPC_RULES=",
         "-DPYTHON_EXECUTABLE=/usr/bin/python3",
         "--build-base",
         "/ws/.tpc/build",
@@ -76,6 +77,20 @@ def test_chosen_packages_are_built_with_what_they_need() -> None:
     assert "-DCMAKE_BUILD_TYPE=Debug" in values(command, "--cmake-args")
 
 
+def test_the_users_rules_go_to_cmake_by_their_absolute_path() -> None:
+    command = colcon_command(BASES, PACKAGES, TOOLCHAIN, rules=Path("own.json"))
+    assert f"-DTPC_RULES={Path.cwd()}/own.json" in values(command, "--cmake-args")
+
+
+def test_broken_rules_end_a_build_before_it_begins(tmp_path: Path) -> None:
+    add_package(tmp_path / "src", "arm")
+    rules = tmp_path / "own.json"
+    rules.write_text('{"reeds": []}')
+    with pytest.raises(InputError, match=r"own\.json: /: .*'reeds'"):
+        build_workspace(tmp_path, rules=rules)
+    assert not (tmp_path / ".tpc").exists()
+
+
 def test_the_users_cmake_arguments_add_to_ours() -> None:
     command = colcon_command(
         BASES,
@@ -94,6 +109,7 @@ def test_the_users_cmake_arguments_add_to_ours() -> None:
     assert values(command, "--cmake-args") == [
         f"-DCMAKE_TOOLCHAIN_FILE={TOOLCHAIN}",
         "-DCMAKE_BUILD_TYPE=RelWithDebInfo",
+        "-DTPC_RULES=",
         "-DPYTHON_EXECUTABLE=/usr/bin/python3",
         "-DFAULT=ON",
         "-DX=1",

@@ -230,7 +230,8 @@ def test_treatments_of_the_example_change_what_they_say(name):
     else:
         assert treatment.node is not None
         node = treatment.node.removeprefix("/")
-        assert changed == {(node, treatment.parameter, treatment.old, treatment.new)}
+        parameter = treatment.parameter.removeprefix("~")
+        assert changed == {(node, parameter, treatment.old, treatment.new)}
 
 
 @pytest.fixture

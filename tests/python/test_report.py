@@ -30,8 +30,17 @@ from pytpc.report.series import (
     thin,
     with_gaps,
 )
+from pytpc.static_info import PathStep
 
 NAN = math.nan
+# Two known lines and a gap; the second line is the comparison's own.
+WAY = (
+    PathStep(
+        "read", "src/node.cpp", 3, 1, "Node::Node", "coverage read into <i>", "get(&c); // <b>"
+    ),
+    PathStep("omitted", "", 0, 0, "", "7 steps left out", None),
+    PathStep("compare", "src/node.cpp", 11, 9, "Node::step", "compared: a > b", "if (a > b)"),
+)
 NASTY = '<script>alert("1")</script>&$x_{1}$'
 
 
@@ -126,7 +135,13 @@ def mission(tmp_path, **changes):
     (source / "node.cpp").write_text("\n".join(lines))
     static = static_info(
         comparison(0, "faces", ">=", lineno=5, source_code="not what is there now", default=3),
-        comparison(1, "coverage", lineno=11, source_code="if (coverage > coverage_) { // <b>"),
+        comparison(
+            1,
+            "coverage",
+            lineno=11,
+            source_code="if (coverage > coverage_) { // <b>",
+            path=WAY,
+        ),
         comparison(2, NASTY, "<", file="gone.cpp", topic=NASTY, function=NASTY, name=NASTY),
         comparison(3, "never"),
         source_root=str(tmp_path),
@@ -272,6 +287,21 @@ def test_source_text(page_text):
     assert "the source file has changed since the build" in text
     assert '<span class="lineno">5</span>not what is there now' in text
     assert "the source file is not on this machine" in text
+
+
+# coverage is the only one with a way: it is on its card where it is ranked, folded.
+def test_the_way_is_folded_on_the_card(page_text):
+    ways = re.findall(r'<details class="way-of">(.*?)</details>', page_text, re.DOTALL)
+    assert ways
+    steps = [re.sub(r"\s+", " ", step) for step in re.findall(r"<li[^>]*>(.*?)</li>", ways[0])]
+    assert steps == [
+        'coverage read into &lt;i&gt; <span class="muted">src/node.cpp:3</span>'
+        "<br><code>get(&amp;c); // &lt;b&gt;</code>",
+        "7 steps left out",
+        'compared: a &gt; b <span class="muted">src/node.cpp:11</span>'
+        "<br><code>if (a &gt; b)</code>",
+    ]
+    assert ways[0].count('<li class="here">') == 1
 
 
 def test_only_the_first_mark_is_unfolded(page_text):

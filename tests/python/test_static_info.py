@@ -121,11 +121,11 @@ def test_what_breaks_the_schema_is_named(
 
 
 def test_a_key_without_a_field_is_a_fault(tmp_path: Path) -> None:
-    for field in unit():
+    for field in unit().keys() - {"not_exposed", "blind_spots"}:
         data = unit()
         del data[field]
         assert f"'{field}' is a required property" in message(write(tmp_path / "u.json", data))
-    for field in comparison():
+    for field in comparison().keys() - {"path"}:
         found = comparison()
         del found[field]
         text = message(write(tmp_path / "u.json", unit(comparisons=[found])))

@@ -23,6 +23,9 @@ ServiceClient::ServiceClient(const ServiceClient &Other) = default;
 ServiceClient &ServiceClient::operator=(const ServiceClient &Other) = default;
 ServiceClient::~ServiceClient() = default;
 NodeHandle::NodeHandle(const std::string &, const Names &) {}
+NodeHandle::NodeHandle(const NodeHandle &) {}
+NodeHandle::NodeHandle(const NodeHandle &, const std::string &) {}
+NodeHandle &NodeHandle::operator=(const NodeHandle &) { return *this; }
 NodeHandle::~NodeHandle() = default;
 
 static const char *text(const std::string &Name) {

@@ -7,5 +7,7 @@
 // Without debug information there are no places: nothing is reported, it is
 // counted, and the program is linked.
 // CHECK: published out 3
+// JSON: "kind": "without_debug_info",
+// JSON-NEXT: "lineno": 0,
 // JSON: "comparisons": 0,
 // JSON: "without_debug_info": 3

@@ -11,12 +11,12 @@
 // CHECK: "file": "static-info.cpp",
 // CHECK: "function": "step(ros::NodeHandle&, double)",
 // CHECK-NEXT: "key": "{{[0-9a-f]+-[0-9a-f]+-5[0-9a-f]+-[89ab][0-9a-f]+-[0-9a-f]+}}",
-// CHECK-NEXT: "lineno": [[#@LINE+24]],
+// CHECK-NEXT: "lineno": [[#@LINE+25]],
 // CHECK-NEXT: "name": "Limit",
 // CHECK-NEXT: "other_thresholds": 0,
 // CHECK: "read_at": {
 // CHECK-NEXT: "file": "static-info.cpp",
-// CHECK-NEXT: "lineno": [[#@LINE+17]]
+// CHECK-NEXT: "lineno": [[#@LINE+18]]
 // CHECK: "relation": ">",
 // CHECK-NEXT: "source": "limit",
 // CHECK-NEXT: "source_code": "if (V > Limit) // \u201cenough\u201d",
@@ -25,6 +25,7 @@
 // CHECK-NEXT: "type": "parameter"
 // CHECK: "exposing_statements": 1,
 // CHECK: "link_unit": "node",
+// CHECK-NEXT: "not_exposed": [],
 // CHECK-NEXT: "package": "pack",
 // CHECK: "schema": 1,
 // CHECK: "status": "ok",

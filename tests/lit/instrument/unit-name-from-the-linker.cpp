@@ -1,5 +1,6 @@
+// RUN: mkdir -p %t.dir
 // RUN: %compile -fPIC -O2 %s -o %t.o
-// RUN: %link -shared -O2 -Wl,-mllvm,-tpc-static-info=%t.json %t.o -o %T/libby.so
+// RUN: %link -shared -O2 -Wl,-mllvm,-tpc-static-info=%t.json %t.o -o %t.dir/libby.so
 // RUN: FileCheck %s --input-file=%t.json
 //
 // Without a name the link unit has that of the linker's output; shared

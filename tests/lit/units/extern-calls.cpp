@@ -32,4 +32,6 @@ private:
   ros::ServiceClient Client;
 };
 
-void run(ros::NodeHandle &Handle) { Node(Handle, "x").step(Handle); }
+void run(ros::NodeHandle &Handle, const std::string &Name) {
+  Node(Handle, Name).step(Handle);
+}

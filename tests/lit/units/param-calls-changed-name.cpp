@@ -1,20 +1,32 @@
 // RUN: %compile -O2 %s -o %t.o
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-param-calls>' %t.o | FileCheck %s
 //
-// A name that was changed after it was made is not known; one that is used
-// twice is.
+// A name is what the last change before the read made of it, on every way to
+// the read; where the ways differ it is not known.
 #include <ros/ros.h>
 
-void load(ros::NodeHandle &Handle, double &A, double &B) {
+void load(ros::NodeHandle &Handle, double &A, double &B, bool Left) {
   std::string Changed = "a";
+  // CHECK: 'a'
   Handle.param(Changed, A, 1.0);
   Changed = "b";
-  // CHECK: '<dynamic>'
+  // CHECK: 'b'
+  Handle.param(Changed, B, 1.0);
+  if (Left)
+    Changed = "left";
   // CHECK: '<dynamic>'
   Handle.param(Changed, B, 1.0);
-  const std::string Same = "same";
+  if (Left)
+    Changed = "same";
+  else
+    Changed = "same";
   // CHECK: 'same'
   // CHECK: 'same'
-  Handle.param(Same, A, 1.0);
-  Handle.param(Same, B, 1.0);
+  Handle.param(Changed, A, 1.0);
+  Handle.param(Changed, B, 1.0);
+  for (int I = 0; I < 3; ++I) {
+    // CHECK: '<dynamic>'
+    Handle.param(Changed, A, 1.0);
+    Changed += "again";
+  }
 }

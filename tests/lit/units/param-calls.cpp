@@ -2,7 +2,7 @@
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-param-calls>' %t.o | FileCheck %s
 //
 // ParamCallFinder: name, type and default of the reads; a name that is
-// computed is dynamic; what param() does inside is no read of the user's.
+// computed is dynamic as far as it is computed; what param() does inside is no read of the user's.
 #include <ros/ros.h>
 
 void load(ros::NodeHandle &Handle, const std::string &Prefix) {
@@ -16,6 +16,6 @@ void load(ros::NodeHandle &Handle, const std::string &Prefix) {
   Handle.param("count", I, -3);
   // CHECK-NEXT: ros::NodeHandle::getParam 'use' bool default null in {{.*}} at [[#@LINE+1]]:10
   Handle.getParam("use", B);
-  // CHECK-NEXT: ros::NodeHandle::param '<dynamic>' double default 1 in {{.*}} at [[#@LINE+1]]:10
+  // CHECK-NEXT: ros::NodeHandle::param '<dynamic>_limit' double default 1 in {{.*}} at [[#@LINE+1]]:10
   Handle.param(Prefix + "_limit", D, 1.0);
 }

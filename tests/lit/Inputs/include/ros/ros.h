@@ -51,6 +51,9 @@ class NodeHandle {
 public:
   using Names = std::map<std::string, std::string>;
   NodeHandle(const std::string &Namespace = "", const Names &Remapped = {});
+  NodeHandle(const NodeHandle &Other);
+  NodeHandle(const NodeHandle &Parent, const std::string &Namespace);
+  NodeHandle &operator=(const NodeHandle &Other);
   ~NodeHandle();
   template <typename M>
   Publisher advertise(const std::string &Topic, uint32_t, bool = false) {
@@ -63,8 +66,10 @@ public:
   bool getParam(const std::string &Name, double &Value) const;
   bool getParam(const std::string &Name, int &Value) const;
   bool getParam(const std::string &Name, bool &Value) const;
-  bool getParam(const std::string &Name, float &Value) const;
   bool getParam(const std::string &Name, std::string &Value) const;
+  bool getParamCached(const std::string &Name, double &Value) const;
+  bool searchParam(const std::string &Key, std::string &Result) const;
+  bool getParam(const std::string &Name, float &Value) const;
   template <typename T>
   bool param(const std::string &Name, T &Value, const T &Default) const {
     if (getParam(Name, Value))
@@ -72,11 +77,39 @@ public:
     Value = Default;
     return false;
   }
+  template <typename T>
+  T param(const std::string &Name, const T &Default) const {
+    T Value;
+    param(Name, Value, Default);
+    return Value;
+  }
 
 private:
   Publisher named(const std::string &Topic);
   ServiceClient client(const std::string &Name);
+  std::string Namespace;
 };
+
+namespace names {
+std::string append(const std::string &Left, const std::string &Right);
+} // namespace names
+
+namespace param {
+bool get(const std::string &Name, double &Value);
+bool getCached(const std::string &Name, double &Value);
+template <typename T>
+bool param(const std::string &Name, T &Value, const T &Default) {
+  if (get(Name, Value))
+    return true;
+  Value = Default;
+  return false;
+}
+template <typename T> T param(const std::string &Name, const T &Default) {
+  T Value;
+  param(Name, Value, Default);
+  return Value;
+}
+} // namespace param
 
 } // namespace ros
 

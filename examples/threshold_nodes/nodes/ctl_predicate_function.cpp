@@ -1,0 +1,58 @@
+// The comparison stands in a called function that returns bool: one that
+// returns the comparison, called with two parameters, and one with returns in
+// ifs.
+#include <ros/ros.h>
+#include <std_msgs/Float64.h>
+#include <std_msgs/String.h>
+
+namespace {
+bool isAbove(double value, double limit) { return value > limit; }
+} // namespace
+
+class Classifier {
+public:
+  Classifier() {
+    ros::param::param("~peak", peak_, 7.5);
+    ros::param::param("~plateau", plateau_, 5.0);
+    ros::param::param("~band_low", band_low_, -3.0);
+    ros::param::param("~band_high", band_high_, 3.0);
+    pub_ = nh_.advertise<std_msgs::String>("output", 1000);
+    sub_ = nh_.subscribe("input", 1000, &Classifier::classify, this);
+  }
+
+private:
+  bool inBand(double value) const {
+    if (value < band_low_)
+      return false;
+    if (value > band_high_)
+      return false;
+    return true;
+  }
+
+  void say(const char *what) {
+    std_msgs::String text;
+    text.data = what;
+    pub_.publish(text);
+  }
+
+  void classify(const std_msgs::Float64::ConstPtr &msg) {
+    if (isAbove(msg->data, peak_))
+      say("peak");
+    else if (isAbove(msg->data, plateau_))
+      say("plateau");
+    if (inBand(msg->data))
+      say("band");
+  }
+
+  ros::NodeHandle nh_;
+  ros::Publisher pub_;
+  ros::Subscriber sub_;
+  double peak_, plateau_, band_low_, band_high_;
+};
+
+int main(int argc, char **argv) {
+  ros::init(argc, argv, "ctl_predicate_function");
+  Classifier classifier;
+  ros::spin();
+  return 0;
+}

@@ -1,0 +1,66 @@
+//===- ExplainInfo.h - Paths and blind spots in the static information ----===//
+//
+// docs/formats.md: `path` of a comparison, `not_exposed`, `blind_spots`.
+//
+//===----------------------------------------------------------------------===//
+#ifndef TPC_EXPLAININFO_H
+#define TPC_EXPLAININFO_H
+
+#include "BlindSpots.h"
+#include "Explain.h"
+
+#include "llvm/ADT/StringMap.h"
+#include "llvm/Support/JSON.h"
+#include "llvm/Support/MemoryBuffer.h"
+
+namespace tpc {
+
+/// Source files, for the text of a line.
+class SourceLines {
+public:
+  /// Line \p Number of \p Path, stripped; null where it cannot be read.
+  llvm::json::Value line(llvm::StringRef Path, unsigned Number);
+
+private:
+  struct File {
+    std::unique_ptr<llvm::MemoryBuffer> Text;
+    llvm::SmallVector<llvm::StringRef, 0> Lines;
+  };
+  llvm::StringMap<File> Files;
+};
+
+/// Writes down why a module's comparisons are found, and why others are not.
+class ExplainInfo {
+public:
+  ExplainInfo(llvm::Module &M, llvm::ModuleAnalysisManager &AM,
+              const Options &Opts);
+
+  llvm::json::Array path(const Comparison &C);
+
+  /// Comparisons with parameters in the user's sources on which nothing
+  /// exposed depends; without the places that are in \p Comparisons, where
+  /// another instance of the same template is exposed.
+  llvm::json::Array notExposed(const llvm::json::Array &Comparisons);
+
+  /// The blind spots in the user's sources, and those that have no place.
+  llvm::json::Array blindSpots();
+
+private:
+  llvm::json::Object placed(const llvm::DILocation *Loc);
+
+  const Options &Opts;
+  const ParameterUsage &Usage;
+  const ParamCallFinder::Result &Reads;
+  const GatheredResults &Gathered;
+  const CallGraphResult &Calls;
+  Wording Words;
+  Explainer Explain;
+  SourceLines Lines;
+};
+
+/// Leaves as much of \p List as is listed.
+llvm::json::Array shortened(llvm::json::Array List);
+
+} // namespace tpc
+
+#endif // TPC_EXPLAININFO_H

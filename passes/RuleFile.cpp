@@ -1,0 +1,291 @@
+//===- RuleFile.cpp -------------------------------------------------------===//
+#include "RuleFile.h"
+
+#include "llvm/ADT/StringExtras.h"
+#include "llvm/Support/JSON.h"
+
+using namespace llvm;
+
+namespace tpc {
+
+namespace {
+
+/// A section of a file: its rows' kind, and what a row can have besides
+/// `function`, `method`, `arity`, `types` and `profiles`.
+struct Section {
+  StringLiteral Name;
+  Rule::KindTy Kind;
+  ArrayRef<StringLiteral> Keys;
+  ArrayRef<StringLiteral> Required;
+};
+
+class Reader {
+public:
+  Reader(StringRef Origin, StringRef Profile)
+      : Origin(Origin), Profile(Profile) {}
+
+  Error file(const json::Value &Top, RuleFile &Out);
+
+private:
+  Error wrong(const Twine &Place, const Twine &Why) const {
+    return createStringError(Origin + ": " + Place + ": " + Why);
+  }
+  Error row(const json::Value &V, const Section &In, StringRef Place,
+            RuleFile &Out);
+  Error containers(const json::Value &V, StringRef Place, RuleFile &Out);
+  Error field(StringRef Key, const json::Value &V, StringRef Place, Rule &R);
+  Error part(const json::Value &V, StringRef Place, Rule &R);
+  Error number(const json::Value &V, StringRef Place,
+               std::optional<unsigned> &Out);
+  Error text(const json::Value &V, StringRef Place, std::string &Out);
+  Error texts(const json::Value &V, StringRef Place,
+              std::vector<std::string> &Out);
+  Error truth(const json::Value &V, StringRef Place, bool &Out);
+
+  StringRef Origin, Profile;
+};
+
+} // namespace
+
+static constexpr StringLiteral ReadKeys[] = {"name", "value", "default",
+                                             "handle"};
+static constexpr StringLiteral ReadRequired[] = {"name", "value"};
+static constexpr StringLiteral ExposingKeys[] = {"topic"};
+static constexpr StringLiteral TopicKeys[] = {"name"};
+static constexpr StringLiteral NameKeys[] = {"parts", "to"};
+static constexpr StringLiteral TextKeys[] = {"relation"};
+static constexpr StringLiteral HeldKeys[] = {"relation", "value"};
+
+static const Section Sections[] = {
+    {"reads", Rule::Read, ReadKeys, ReadRequired},
+    {"exposing", Rule::Exposing, ExposingKeys, {}},
+    {"topics", Rule::Topic, TopicKeys, TopicKeys},
+    {"handles", Rule::Naming, NameKeys, NameKeys},
+    {"names", Rule::Naming, NameKeys, NameKeys},
+    {"accessors", Rule::Accessor, {}, {}},
+    {"configs", Rule::Config, {}, {}},
+    {"text", Rule::Text, TextKeys, TextKeys},
+    {"held", Rule::Held, HeldKeys, TextKeys},
+};
+
+/// In the order of the alphabet: a file's first mistake is always the same.
+static std::vector<StringRef> keysOf(const json::Object &O) {
+  std::vector<StringRef> Keys;
+  for (const auto &[Key, Unused] : O)
+    Keys.push_back(Key);
+  sort(Keys);
+  return Keys;
+}
+
+/// An argument number of a row; no function has more.
+static constexpr int64_t MaxNumber = 255;
+
+Error Reader::number(const json::Value &V, StringRef Place,
+                     std::optional<unsigned> &Out) {
+  std::optional<int64_t> N = V.getAsInteger();
+  if (!N || *N < 0 || *N > MaxNumber)
+    return wrong(Place, "is not a whole number from 0 to 255");
+  Out = static_cast<unsigned>(*N);
+  return Error::success();
+}
+
+Error Reader::text(const json::Value &V, StringRef Place, std::string &Out) {
+  std::optional<StringRef> Text = V.getAsString();
+  if (!Text || Text->empty())
+    return wrong(Place, "is not a text, or an empty one");
+  Out = Text->str();
+  return Error::success();
+}
+
+Error Reader::texts(const json::Value &V, StringRef Place,
+                    std::vector<std::string> &Out) {
+  const json::Array *List = V.getAsArray();
+  if (!List)
+    return wrong(Place, "is not a list");
+  for (const auto &[N, Item] : enumerate(*List))
+    if (Error E =
+            text(Item, (Place + "/" + Twine(N)).str(), Out.emplace_back()))
+      return E;
+  return Error::success();
+}
+
+Error Reader::truth(const json::Value &V, StringRef Place, bool &Out) {
+  std::optional<bool> B = V.getAsBoolean();
+  if (!B)
+    return wrong(Place, "is neither true nor false");
+  Out = *B;
+  return Error::success();
+}
+
+/// A part of a name: an argument's number, "this", or {"text": ...}.
+Error Reader::part(const json::Value &V, StringRef Place, Rule &R) {
+  Rule::Part P{Rule::Part::Argument, 0, ""};
+  if (V.getAsString() == "this") {
+    P.From = Rule::Part::Object;
+  } else if (const json::Object *Constant = V.getAsObject()) {
+    P.From = Rule::Part::Constant;
+    const json::Value *Text = Constant->get("text");
+    if (!Text || Constant->size() != 1)
+      return wrong(Place, "does not have \"text\" and that alone");
+    if (Error E = text(*Text, (Place + "/text").str(), P.Text))
+      return E;
+  } else {
+    std::optional<unsigned> N;
+    if (Error E = number(V, Place, N))
+      return E;
+    P.Number = *N;
+  }
+  R.Parts.push_back(std::move(P));
+  return Error::success();
+}
+
+Error Reader::field(StringRef Key, const json::Value &V, StringRef Place,
+                    Rule &R) {
+  if (Key == "function")
+    return text(V, Place, R.Function);
+  if (Key == "method")
+    return truth(V, Place, R.Method);
+  if (Key == "handle")
+    return truth(V, Place, R.Handle);
+  if (Key == "arity")
+    return number(V, Place, R.Arity);
+  if (Key == "types")
+    return texts(V, Place, R.Types);
+  if (Key == "name" || Key == "topic")
+    return number(V, Place, R.Name);
+  if (Key == "default")
+    return number(V, Place, R.Default);
+  if (Key == "value")
+    return V.getAsString() == "return" ? Error::success()
+                                       : number(V, Place, R.Value);
+  if (Key == "to") {
+    if (V.getAsString() == "return" || V.getAsString() == "this") {
+      R.Target = V.getAsString() == "this" ? Rule::ToObject : Rule::ToResult;
+      return Error::success();
+    }
+    std::optional<unsigned> N;
+    if (Error E = number(V, Place, N))
+      return E;
+    R.Target = Rule::ToArgument;
+    R.TargetArgument = *N;
+    return Error::success();
+  }
+  if (Key == "relation")
+    return text(V, Place, R.Relation);
+  assert(Key == "parts" && "a key that no section has");
+  const json::Array *Parts = V.getAsArray();
+  if (!Parts || Parts->empty())
+    return wrong(Place, "is not a list, or an empty one");
+  for (const auto &[N, Item] : enumerate(*Parts))
+    if (Error E = part(Item, (Place + "/" + Twine(N)).str(), R))
+      return E;
+  return Error::success();
+}
+
+Error Reader::row(const json::Value &V, const Section &In, StringRef Place,
+                  RuleFile &Out) {
+  const json::Object *Row = V.getAsObject();
+  if (!Row)
+    return wrong(Place, "is not an object");
+  static constexpr StringLiteral Common[] = {"function", "method", "arity",
+                                             "types"};
+  Rule R;
+  R.Kind = In.Kind;
+  std::vector<std::string> Profiles;
+  for (StringRef Key : keysOf(*Row)) {
+    std::string At = (Place + "/" + Key).str();
+    const json::Value &Field = *Row->get(Key);
+    if (Key == "profiles") {
+      if (Error E = texts(Field, At, Profiles))
+        return E;
+    } else if (is_contained(Common, Key) || is_contained(In.Keys, Key)) {
+      if (Error E = field(Key, Field, At, R))
+        return E;
+    } else {
+      return wrong(At, "is nothing that a row of \"" + In.Name + "\" has");
+    }
+  }
+  if (R.Function.empty())
+    return wrong(Place, "has no \"function\"");
+  for (StringRef Key : In.Required)
+    if (!Row->get(Key))
+      return wrong(Place, "has no \"" + Key + "\"");
+  // A row without profiles belongs to all.
+  if (Profiles.empty() || is_contained(Profiles, Profile))
+    Out.Rows.push_back(std::move(R));
+  return Error::success();
+}
+
+Error Reader::containers(const json::Value &V, StringRef Place, RuleFile &Out) {
+  const json::Object *Names = V.getAsObject();
+  if (!Names)
+    return wrong(Place, "is not an object");
+  for (StringRef Key : keysOf(*Names)) {
+    std::string At = (Place + "/" + Key).str();
+    if (Key != "classes" && Key != "reading")
+      return wrong(At, "is nothing that \"containers\" has");
+    if (Error E =
+            texts(*Names->get(Key), At,
+                  Key == "classes" ? Out.ContainerClasses : Out.ReadingMethods))
+      return E;
+  }
+  return Error::success();
+}
+
+Error Reader::file(const json::Value &Value, RuleFile &Out) {
+  const json::Object *Top = Value.getAsObject();
+  if (!Top)
+    return wrong("/", "is not an object");
+  for (StringRef Key : keysOf(*Top)) {
+    std::string Place = ("/" + Key).str();
+    const json::Value &V = *Top->get(Key);
+    if (Key == "$schema" || Key == "comment") {
+      std::string Unused;
+      if (Error E = text(V, Place, Unused))
+        return E;
+    } else if (Key == "schema") {
+      if (V.getAsInteger() != 1)
+        return wrong(Place, "is not 1");
+    } else if (Key == "opaque") {
+      if (Error E = texts(V, Place, Out.Opaque))
+        return E;
+    } else if (Key == "kept") {
+      if (Error E = texts(V, Place, Out.Kept))
+        return E;
+    } else if (Key == "transparent") {
+      if (Error E = texts(V, Place, Out.Transparent))
+        return E;
+    } else if (Key == "containers") {
+      if (Error E = containers(V, Place, Out))
+        return E;
+    } else if (none_of(Sections,
+                       [&](const Section &S) { return S.Name == Key; })) {
+      return wrong(Place, "is no section");
+    }
+  }
+  for (const Section &S : Sections) {
+    const json::Value *V = Top->get(S.Name);
+    if (!V)
+      continue;
+    const json::Array *Rows = V->getAsArray();
+    if (!Rows)
+      return wrong("/" + S.Name, "is not a list");
+    for (const auto &[N, Item] : enumerate(*Rows))
+      if (Error E = row(Item, S, ("/" + S.Name + "/" + Twine(N)).str(), Out))
+        return E;
+  }
+  return Error::success();
+}
+
+Expected<RuleFile> parseRules(StringRef Text, StringRef Origin,
+                              StringRef Profile) {
+  Expected<json::Value> Parsed = json::parse(Text);
+  if (!Parsed)
+    return createStringError(Origin + ": " + toString(Parsed.takeError()));
+  RuleFile Out;
+  if (Error E = Reader(Origin, Profile).file(*Parsed, Out))
+    return std::move(E);
+  return Out;
+}
+
+} // namespace tpc

@@ -1,0 +1,188 @@
+"""Commands that say why: ``explain`` and ``blind-spots``."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections import Counter
+from dataclasses import asdict
+from pathlib import Path
+
+import click
+from rich.console import Console
+from rich.padding import Padding
+from rich.table import Table
+from rich.text import Text
+
+from pytpc.explain import Explanation, Found, look_up, where, why_no_comparison
+from pytpc.static_info import LinkUnit, PathStep, StaticInfo, read_static
+from pytpc.words import many, plain
+
+_SOURCE = click.Path(path_type=Path)
+_PIPED_WIDTH = 160
+
+_KINDS = {
+    "lost_value": "value lost",
+    "lost_outcome": "outcome lost",
+    "unknown_pointer": "pointer to nowhere known",
+    "many_targets": "pointer to very many",
+    "unread": "stored, not read here",
+    "dynamic_name": "name put together",
+    "outside_sources": "compared in other code",
+    "without_debug_info": "no debug information",
+    "indirect_call": "call of unknown function",
+}
+
+
+@click.command("explain")
+@click.argument("source", type=_SOURCE)
+@click.argument("question", metavar="KEY|PARAMETER|FILE:LINE")
+@click.option("--all", "show_all", is_flag=True, help="The way of every comparison that fits.")
+@click.option("--json", "as_json", is_flag=True, help="Print a JSON object.")
+def explain_command(source: Path, question: str, show_all: bool, as_json: bool) -> None:
+    """Show the way from a parameter's read over the comparison to what is exposed.
+
+    SOURCE is a static.json, a build base or a workspace. Without --all the comparison nearest to
+    an exposing statement is shown with its way, and the others in a line each.
+    """
+    explanation = look_up(read_static(source), question)
+    if as_json:
+        click.echo(json.dumps(_json(explanation), indent=1, ensure_ascii=False))
+        return
+    console = _console()
+    shown = explanation.comparisons if show_all else explanation.comparisons[:1]
+    for found in shown:
+        _print_way(console, found)
+    rest = explanation.comparisons[len(shown) :]
+    if rest:
+        console.print(Text(f"{many(len(rest), 'more comparison')} (--all shows the ways):"))
+        for found in rest:
+            console.print(Padding(_heading(found), (0, 0, 0, 2), expand=False))
+    if not explanation.comparisons:
+        _print_why_not(console, explanation)
+
+
+@click.command("blind-spots")
+@click.argument("source", type=_SOURCE)
+@click.option("--json", "as_json", is_flag=True, help="Print a JSON list.")
+def blind_spots_command(source: Path, as_json: bool) -> None:
+    """List the places in SOURCE behind which the analysis does not see."""
+    static = read_static(source)
+    if as_json:
+        spots = [
+            {"package": unit.package, "link_unit": unit.link_unit, **asdict(spot)}
+            for unit in static.units
+            for spot in unit.blind_spots
+        ]
+        click.echo(json.dumps(spots, indent=1, ensure_ascii=False))
+        return
+    console = _console()
+    for unit in static.units:
+        if unit.blind_spots:
+            console.print(Text(plain(f"{unit.package}/{unit.link_unit}"), style="bold"))
+            console.print(_spots_table(unit), highlight=False)
+    click.echo(_spots_summary(static))
+
+
+COMMANDS: list[click.Command] = [explain_command, blind_spots_command]
+
+
+def _heading(found: Found) -> Text:
+    comparison, unit = found.comparison, found.unit
+    text = Text(plain(comparison.source), style="bold")
+    text.append(f"  {plain(where(comparison))}", style="default not bold")
+    text.append(
+        f"  {comparison.type}, distance {comparison.distance},"
+        f" in {plain(unit.package)}/{plain(unit.link_unit)}, key {comparison.key}",
+        style="dim not bold",
+    )
+    return text
+
+
+def _print_way(console: Console, found: Found) -> None:
+    console.print(_heading(found))
+    path = found.comparison.path
+    if not path:
+        console.print(
+            Padding(Text("this static information has no ways in it"), (0, 0, 1, 2), expand=False)
+        )
+        return
+    table = _plain_table(3)
+    for step in path:
+        table.add_row(*_cells(step))
+    console.print(Padding(table, (0, 0, 1, 2), expand=False), highlight=False)
+
+
+def _cells(step: PathStep) -> tuple[Text, Text, Text]:
+    what = Text(plain(step.what))
+    # What a function returns at its closing brace has no line worth showing.
+    if step.source_code and step.source_code.strip("}; "):
+        what.append("\n    " + plain(step.source_code), style="dim")
+    place = Text(plain(where(step)) if step.file else "")
+    strong = "bold" if step.step in {"read", "compare", "expose"} else ""
+    return Text(step.step, style=strong), place, what
+
+
+def _print_why_not(console: Console, explanation: Explanation) -> None:
+    for unit, read in explanation.reads:
+        text = Text(plain(read.name), style="bold")
+        text.append(
+            f"  read at {plain(where(read))} in {plain(unit.package)}/{plain(unit.link_unit)}",
+            style="not bold",
+        )
+        console.print(text)
+    console.print(Text("no comparison of it is reported:"))
+    for reason in why_no_comparison(explanation):
+        console.print(Padding(Text(plain(reason)), (0, 0, 0, 2), expand=False))
+
+
+def _json(explanation: Explanation) -> dict[str, object]:
+    def with_unit(unit: LinkUnit, fields: dict[str, object]) -> dict[str, object]:
+        return {"package": unit.package, "link_unit": unit.link_unit, **fields}
+
+    return {
+        "question": explanation.question,
+        "comparisons": [
+            with_unit(each.unit, asdict(each.comparison)) for each in explanation.comparisons
+        ],
+        "reads": [with_unit(unit, asdict(read)) for unit, read in explanation.reads],
+        "not_exposed": [with_unit(unit, asdict(found)) for unit, found in explanation.not_exposed],
+        "blind_spots": [with_unit(unit, asdict(spot)) for unit, spot in explanation.blind_spots],
+        "why_no_comparison": why_no_comparison(explanation),
+    }
+
+
+def _spots_table(unit: LinkUnit) -> Padding:
+    table = _plain_table(4)
+    for spot in unit.blind_spots:
+        what = Text(plain(spot.what))
+        if spot.source_code:
+            what.append("\n    " + plain(spot.source_code), style="dim")
+        cells = (_KINDS.get(spot.kind, spot.kind), spot.parameter or "", where(spot))
+        table.add_row(*(Text(plain(cell)) for cell in cells), what)
+    return Padding(table, (0, 0, 1, 2), expand=False)
+
+
+def _plain_table(columns: int) -> Table:
+    table = Table(box=None, show_header=False, pad_edge=False, padding=(0, 2, 0, 0))
+    table.add_column(no_wrap=True)
+    for _ in range(columns - 1):
+        table.add_column(overflow="fold")
+    return table
+
+
+def _spots_summary(static: StaticInfo) -> str:
+    """How many there are of each kind, and what is only counted."""
+    listed = Counter(spot.kind for unit in static.units for spot in unit.blind_spots)
+    total = sum(unit.counts.blind_spots for unit in static.units)
+    kinds = ", ".join(f"{count} {_KINDS.get(kind, kind)}" for kind, count in listed.items())
+    inside = sum(unit.counts.indirect_calls for unit in static.units)
+    text = many(total, "blind spot") + (f": {kinds}" if kinds else "")
+    hidden = total - listed.total()
+    if hidden:
+        text += f"; {hidden} more are not listed"
+    return f"{text}; {many(inside, 'call')} of unknown functions with those inside libraries"
+
+
+def _console() -> Console:
+    return Console(width=None if sys.stdout.isatty() else _PIPED_WIDTH)

@@ -1,0 +1,185 @@
+"""Why a comparison was found, and why others were not: the static information, asked a question.
+
+``look_up`` takes what a user has at hand (a key, a parameter's name, ``FILE:LINE``) and gives all
+that the static information says about it, as data; ``pytpc explain`` prints it.
+"""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from pytpc.errors import InputError
+from pytpc.static_info import (
+    BlindSpot,
+    Comparison,
+    LinkUnit,
+    NotExposed,
+    ParameterRead,
+    PathStep,
+    StaticInfo,
+)
+
+_CLOSEST = 5
+_SHORTEST_KEY = 4
+_FILE_LINE = re.compile(r"(?P<file>[^:]+):(?P<line>\d+)(:\d+)?")
+_KEY = re.compile(r"[0-9a-f]{4,8}(-[0-9a-f-]*)?")
+
+
+@dataclass(frozen=True)
+class Found:
+    """A comparison that answers the question, with its link unit."""
+
+    unit: LinkUnit
+    comparison: Comparison
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """All that is known about a key, a parameter or a line.
+
+    ``comparisons`` are the nearest to their exposing statements first. The others are the reads,
+    the comparisons on which nothing exposed depends, and the blind spots of the same parameter or
+    line, each with its unit.
+    """
+
+    question: str
+    comparisons: tuple[Found, ...]
+    reads: tuple[tuple[LinkUnit, ParameterRead], ...] = ()
+    not_exposed: tuple[tuple[LinkUnit, NotExposed], ...] = ()
+    blind_spots: tuple[tuple[LinkUnit, BlindSpot], ...] = ()
+
+
+def look_up(static: StaticInfo, question: str) -> Explanation:
+    """What ``static`` says about a key (or its beginning), a parameter or ``FILE:LINE``.
+
+    Raises:
+        InputError: nothing is called so; the message has the parameters with the closest names, or
+            the lines of the file that are known.
+    """
+    place = _FILE_LINE.fullmatch(question)
+    if place is not None:
+        return _at(static, question, place["file"], int(place["line"]))
+    if _KEY.fullmatch(question):
+        by_key = [found for found in _all(static) if found.comparison.key.startswith(question)]
+        if by_key:
+            return Explanation(question, _sorted(by_key))
+    return _of_parameter(static, question)
+
+
+def _all(static: StaticInfo) -> Iterator[Found]:
+    return (Found(unit, found) for unit in static.units for found in unit.comparisons)
+
+
+def _sorted(found: Iterable[Found]) -> tuple[Found, ...]:
+    return tuple(sorted(found, key=lambda each: each.comparison.distance))
+
+
+def _of_parameter(static: StaticInfo, name: str) -> Explanation:
+    explanation = Explanation(
+        question=name,
+        comparisons=_sorted(each for each in _all(static) if _same(each.comparison.source, name)),
+        reads=tuple(
+            (unit, read)
+            for unit in static.units
+            for read in unit.parameters
+            if _same(read.name, name)
+        ),
+        not_exposed=tuple(
+            (unit, found)
+            for unit in static.units
+            for found in unit.not_exposed
+            if _same(found.source, name)
+        ),
+        blind_spots=tuple(
+            (unit, spot)
+            for unit in static.units
+            for spot in unit.blind_spots
+            if _same(spot.parameter, name)
+        ),
+    )
+    if not explanation.reads and not explanation.comparisons:
+        raise InputError(_nothing_like(static, name))
+    return explanation
+
+
+def _same(name: str | None, asked: str) -> bool:
+    """Whether a name is meant; ``~limit`` and ``/arm/limit`` are asked for as ``limit`` too."""
+    return name is not None and (name == asked or re.split("[~/]", name)[-1] == asked)
+
+
+def _nothing_like(static: StaticInfo, name: str) -> str:
+    known = {read.name for unit in static.units for read in unit.parameters}
+    known |= {each.comparison.source for each in _all(static)}
+    close = difflib.get_close_matches(name, sorted(known), n=_CLOSEST, cutoff=0.5)
+    hint = f"; did you mean {', '.join(close)}?" if close else ""
+    dynamic = sum(unit.counts.dynamic_names for unit in static.units)
+    if dynamic:
+        hint += f" ({dynamic} read{'' if dynamic == 1 else 's'} put the name together at run time)"
+    return f"no parameter, key or FILE:LINE {name!r} in this static information{hint}"
+
+
+def _at(static: StaticInfo, question: str, file: str, line: int) -> Explanation:
+    def here(place: Comparison | ParameterRead | NotExposed | BlindSpot | PathStep) -> bool:
+        return place.lineno == line and _same_file(place.file, file)
+
+    own = [each for each in _all(static) if here(each.comparison)]
+    explanation = Explanation(
+        question=question,
+        comparisons=_sorted(own or (e for e in _all(static) if any(map(here, e.comparison.path)))),
+        reads=tuple(
+            (unit, read) for unit in static.units for read in unit.parameters if here(read)
+        ),
+        not_exposed=tuple(
+            (unit, found) for unit in static.units for found in unit.not_exposed if here(found)
+        ),
+        blind_spots=tuple(
+            (unit, spot) for unit in static.units for spot in unit.blind_spots if here(spot)
+        ),
+    )
+    if not (explanation.comparisons or explanation.reads or explanation.not_exposed) and not (
+        explanation.blind_spots
+    ):
+        raise InputError(_nothing_at(static, file, line))
+    return explanation
+
+
+def _same_file(known: str, asked: str) -> bool:
+    """Whether ``known`` is ``asked``, or ends with it, a folder at a time; either may be longer."""
+    known_parts, asked_parts = known.split("/"), asked.removeprefix("./").split("/")
+    shared = min(len(known_parts), len(asked_parts))
+    return known_parts[-shared:] == asked_parts[-shared:]
+
+
+def _nothing_at(static: StaticInfo, file: str, line: int) -> str:
+    lines = {
+        each.comparison.lineno for each in _all(static) if _same_file(each.comparison.file, file)
+    }
+    if not lines:
+        return f"nothing was found in a file {file}"
+    nearest = sorted(sorted(lines, key=lambda other: abs(other - line))[:_CLOSEST])
+    shown = ", ".join(str(number) for number in nearest)
+    return f"nothing was found on line {line} of {file}; comparisons are on line {shown}"
+
+
+def where(place: Comparison | ParameterRead | NotExposed | BlindSpot | PathStep) -> str:
+    """``FILE:LINE``, or that it is not known."""
+    return f"{place.file}:{place.lineno}" if place.file else "a place that is not known"
+
+
+def why_no_comparison(explanation: Explanation) -> list[str]:
+    """For a parameter without a reported comparison: what became of its value, once each."""
+    if explanation.comparisons:
+        return []
+    reasons = [
+        f"compared at {where(found)}, but nothing exposed depends on it"
+        for _, found in explanation.not_exposed
+    ]
+    reasons += [
+        f"{spot.what}, at {where(spot)}"
+        for _, spot in explanation.blind_spots
+        if spot.kind != "lost_outcome"
+    ]
+    return list(dict.fromkeys(reasons)) or ["read, and never compared"]

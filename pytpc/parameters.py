@@ -1,0 +1,27 @@
+"""Names of parameters: as the static analysis knows them, and as a person gives them."""
+
+from __future__ import annotations
+
+import re
+
+DYNAMIC = "<dynamic>"
+"""What stands in a name for a part that only the running node knows."""
+
+
+def same_parameter(given: str, source: str) -> bool:
+    """True where ``given``, by a person, means the parameter that is ``source`` in the program.
+
+    The namespace of the node is no part of what has to be given: ``limit``, ``~limit`` and
+    ``/node/limit`` all mean ``~limit``. A part that the analysis does not know may be anything; a
+    name of which it knows nothing is only itself.
+    """
+    known = _relative(source.removeprefix(f"{DYNAMIC}/"))
+    if given == source or DYNAMIC in (known, given):
+        return given == source
+    pattern = ".+".join(re.escape(part) for part in known.split(DYNAMIC))
+    before = "(?:.*/)?" if given.startswith("/") and not source.startswith("/") else ""
+    return re.fullmatch(before + pattern, _relative(given)) is not None
+
+
+def _relative(name: str) -> str:
+    return name.lstrip("~/")

@@ -1,0 +1,19 @@
+"""The user's own rules: a JSON file that tells the analysis what else reads or exposes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from pytpc.static_json import RULES_SCHEMA, check_schema, parse_json
+
+
+def check_rules(path: Path) -> None:
+    """See that a file of rules has the form of ``schema/rules.schema.json``.
+
+    The plugin checks it again where it links: there a fault is a warning, because a build must not
+    break, and the link unit is left as it was.
+
+    Raises:
+        InputError: the file cannot be read, is no JSON or breaks the schema, with the place.
+    """
+    check_schema(parse_json(path), path, RULES_SCHEMA)

@@ -1,0 +1,1 @@
+"""Fuzzing of the passes: modules that nobody wrote, and programs run with and without them."""

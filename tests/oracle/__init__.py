@@ -1,0 +1,1 @@
+"""An independent check of the passes: SPEC 3 a second time, slow and simple, on random programs."""

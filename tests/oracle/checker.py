@@ -1,0 +1,390 @@
+"""SPEC 1 to 3 a second time: which comparisons of a module are threshold predicate comparisons."""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from tests.oracle.control import ControlDependence
+from tests.oracle.ir import Argument, Function, Instruction, Module, Place, Value, number, parse
+from tests.oracle.memory import SILENT, Memory, Program, extent
+
+RELATIONS = {"eq": "==", "ne": "!=", "gt": ">", "ge": ">=", "lt": "<", "le": "<="}
+SWAPPED = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "==": "==", "!=": "!="}
+CASTS = {"trunc", "zext", "sext", "fptrunc", "fpext", "fptosi", "fptoui", "sitofp", "uitofp"}
+ARITHMETIC = {"add", "sub", "mul", "sdiv", "udiv", "fadd", "fsub", "fmul", "fdiv"}
+Context = tuple[Instruction, ...]
+
+
+class Rules:
+    """The rows of SPEC 2 that the test header ros/ros.h has, by mangled name."""
+
+    READ = re.compile(r"_ZNK3ros10NodeHandle(5param|8getParam)")
+    EXPOSING = re.compile(r"_ZNK?3ros(9Publisher7publish|13ServiceClient4call)")
+    OPAQUE = re.compile(r"_ZNK?St7__cxx1112basic_string")
+
+    def is_opaque(self, name: str) -> bool:
+        return any(r.match(name) for r in (self.READ, self.EXPOSING, self.OPAQUE))
+
+    def target(self, name: str) -> int | None:
+        """The argument of a read that the value is written to."""
+        return 2 if self.READ.match(name) else None
+
+
+@dataclass(frozen=True, order=True)
+class Finding:
+    """A threshold predicate comparison."""
+
+    file: str
+    line: int
+    column: int
+    parameter: str
+    type: str
+    relation: str
+    distance: int
+
+
+@dataclass(frozen=True)
+class Compared:
+    """A place where a parameter decides: a comparison, or a flag's value (then `by` is None)."""
+
+    parameter: str
+    type: str
+    relation: str
+    place: Instruction
+    predicate: Instruction
+
+
+def check(text: str, excluded: str) -> set[Finding]:
+    """The findings of a module, in code that is not below `excluded` nor below /usr."""
+
+    def is_user(file: str) -> bool:
+        return bool(file) and not file.startswith((excluded, "/usr/"))
+
+    return Checker(parse(text, is_user), is_user).findings()
+
+
+class Checker:
+    """The analysis of one module."""
+
+    def __init__(self, module: Module, is_user: Callable[[str], bool]) -> None:
+        self.module, self.rules, self.is_user = module, Rules(), is_user
+        self.program = Program(module, self.rules)
+        self.memory = Memory(module, self.program)
+        self.control = {f: ControlDependence(f) for f in self.program.functions}
+        self.users: dict[Value, list[Instruction]] = defaultdict(list)
+        self.sees: dict[Instruction, list[Instruction]] = defaultdict(list)
+        for i in self.program.instructions:
+            for o in dict.fromkeys(i.operands):
+                self.users[o].append(i)
+            if i.opcode == "load":
+                for d in self.memory.definitions(i):
+                    self.sees[d].append(i)
+        self.distance: dict[Instruction, int] = {}
+        self.slice()
+
+    def findings(self) -> set[Finding]:
+        nearest: dict[tuple[str, ...], int] = {}
+        for c in self.comparisons():
+            place = c.place.place
+            if c.predicate in self.distance and place and self.is_user(place.file) and place.line:
+                what = (place, c.parameter, c.type, c.relation)
+                distance = self.distance[c.predicate]
+                nearest[what] = min(distance, nearest.get(what, distance))
+        return {
+            Finding(p.file, p.line, p.column, parameter, type_, relation, distance)
+            for (p, parameter, type_, relation), distance in nearest.items()
+        }
+
+    # The slice, by rounds ---------------------------------------------------
+
+    def slice(self) -> None:
+        """Breadth first from the exposing calls; `distance` of the predicates on the way."""
+        exposing = [i for i in self.program.instructions if i.is_call and self.exposes(i)]
+        this = [(i, "data") for i in exposing]
+        entered, number_ = set(this), 1
+        while this:
+            following: list[tuple[object, str]] = []
+            for item, why in this:
+                for nearer in self.choosers_of(item):
+                    self.distance.setdefault(nearer, number_)
+                following += self.step(item, why)
+            this = [i for i in dict.fromkeys(following) if i not in entered]
+            entered |= set(this)
+            number_ += 1
+
+    def exposes(self, call: Instruction) -> bool:
+        return bool(self.rules.EXPOSING.match(call.callee.name))
+
+    def choosers_of(self, item: Instruction) -> set[Instruction]:
+        """The predicates that control `item`, or that choose its value."""
+        control = self.control[item.function]
+        found, _ = control.controllers(item.block, item)
+        if item.opcode == "phi":
+            for before in item.blocks:
+                found = found | control.choosers(before, item.block)
+        if item.opcode == "select":
+            found = found | {item}
+        return found
+
+    def step(self, item: Instruction, why: str) -> list[tuple[Instruction, str]]:
+        """What enters the round after that of `item`."""
+        out = [(p, "data") for p in self.choosers_of(item)]
+        _, always = self.control[item.function].controllers(item.block, item)
+        if always:
+            out += [(c, "control") for c in self.program.callers(item.function)]
+        if why == "control":
+            return out
+        known = item.is_call and self.program.callees(item)
+        for o in [] if known else item.operands:
+            out += [(i, "data") for i in self.instructions_of(o)]
+        if item.opcode == "load":
+            definitions = self.memory.definitions(item)
+            out += [(d, "data") for d in definitions if not self.is_constructed(d)]
+        elif known:
+            out += [(r, "data") for f in known for r in self.program.returns(f)]
+        elif item.is_call and self.exposes(item):
+            out += [(w, "data") for w in self.writes_behind(item)]
+        elif item.is_call and not SILENT.match(item.callee.name):
+            out += [(w, "data") for w in self.handed(item)]
+        return out
+
+    def instructions_of(self, value: Value) -> set[Instruction]:
+        """`value`; for an argument what the calls hand over, which may be arguments again."""
+        out: set[Instruction] = set()
+        seen, todo = {value}, [value]
+        while todo:
+            at = todo.pop()
+            if isinstance(at, Instruction) and at.opcode == "getelementptr":
+                # An address is no step of its own; what chooses it is.
+                new = set(at.operands) - seen
+                seen |= new
+                todo += new
+            elif isinstance(at, Instruction) and at.opcode != "alloca":
+                out.add(at)
+            elif isinstance(at, Argument):
+                calls = self.program.callers(at.function)
+                new = {c.arguments[at.index] for c in calls if at.index < len(c.arguments)} - seen
+                seen |= new
+                todo += new
+        return out
+
+    def is_constructed(self, write: Instruction) -> bool:
+        """What a library sets to a constant it sets in a constructor: that decides nothing."""
+        constant = write.opcode == "store" and write.operands[0].kind == "constant"
+        return constant and not self.is_user(write.function.file)
+
+    def handed(self, call: Instruction) -> set[Instruction]:
+        """The writes of the variables that an unknown function is handed: it can read them."""
+        out: set[Instruction] = set()
+        for a in call.arguments:
+            for at in self.memory.of(a):
+                out |= {w.by for w in self.memory.writes_to(at, 1)} - {call}
+        return out
+
+    def writes_behind(self, call: Instruction) -> set[Instruction]:
+        """The writes of all that can be reached from the arguments of `call`."""
+        out: set[Instruction] = set()
+        seen: set[object] = set()
+        # The object that exposes, a publisher, is not what is exposed.
+        shown = list(enumerate(call.arguments))[1:]
+        todo = [(at, extent(call, n)) for n, a in shown for at in self.memory.of(a)]
+        while todo:
+            (o, at), size = todo.pop()
+            if (o, at, size) in seen:
+                continue
+            seen.add((o, at, size))
+            end = 1 << 30 if size is None else at + size
+            out |= {w.by for w in self.memory.writes_to((o, at), end - at)} - {call}
+            for c in self.memory.copies:
+                if c.to[0] is o and c.to[1] < end and at < c.to[1] + c.size:
+                    out.add(c.by)
+                    todo.append((c.source, c.size))
+            for (holder, offset), targets in self.memory.stored.items():
+                if holder is o and at <= offset < end:
+                    todo += [((t, 0), None) for t, _ in targets]
+        return out
+
+    # The way forward --------------------------------------------------------
+
+    def comparisons(self) -> set[Compared]:
+        """All places where a parameter's value decides, in the slice or not."""
+        out: set[Compared] = set()
+        for read in self.program.instructions:
+            if read.is_call and self.rules.READ.match(read.callee.name):
+                name = self.name_of(read)
+                for load in self.sees[read]:
+                    self.follow(name, load, out)
+        return out
+
+    def name_of(self, read: Instruction) -> str:
+        """The constant that the name, a std::string, was constructed from."""
+        for i in self.users[read.arguments[1]]:
+            if i.is_call and i.arguments[0] is read.arguments[1] and len(i.arguments) > 1:
+                text = i.arguments[1]
+                found = re.search(r'c"([^"\\]*)\\00"', text.text)
+                if found:
+                    return found[1]
+        return "<dynamic>"
+
+    def follow(self, name: str, begin: Instruction, out: set[Compared]) -> None:
+        """From the value `begin` to the comparisons."""
+        todo: list[tuple[Value, bool, Context, Value | None]] = [(begin, False, (), None)]
+        seen = set(todo)
+        while todo:
+            value, derived, context, origin = todo.pop()
+            new: list[tuple[Value, bool, Context, Value | None]] = []
+            for user in self.users[value]:
+                if user.opcode in ("icmp", "fcmp"):
+                    self.compared(name, value, derived, user, out, context)
+                elif is_joined(user, value):
+                    if not derived:
+                        self.flag(name, value, self.decides(user, context), out)
+                elif user.opcode in ARITHMETIC | {"fneg"} and self.is_constant_arithmetic(
+                    user, value
+                ):
+                    new.append((user, True, context, None))
+                elif decides_by(user, value):
+                    if not derived:
+                        out.add(Compared(name, "flag", "flag", origin or user, user))
+                else:
+                    # What is merged with other values stands where it was its own.
+                    begins = origin or (value if isinstance(value, Instruction) else None)
+                    merged = begins if user.opcode in ("phi", "select") else None
+                    kept = origin if user.opcode in CASTS | {"freeze"} else merged
+                    new += [(v, derived, c, kept) for v, c in self.carried(user, value, context)]
+            for item in new:
+                if item not in seen:
+                    seen.add(item)
+                    todo.append(item)
+
+    def flag(
+        self, name: str, value: Value, decided: dict[Instruction, bool], out: set[Compared]
+    ) -> None:
+        """A flag stands at the branch; where its outcome goes on to that, where it is read."""
+        for predicate, direct in decided.items():
+            out.add(Compared(name, "flag", "flag", predicate if direct else value, predicate))
+
+    def compared(
+        self,
+        name: str,
+        value: Value,
+        derived: bool,
+        by: Instruction,
+        out: set[Compared],
+        context: Context,
+    ) -> None:
+        left, right = by.operands
+        if left is right:
+            return
+        is_flag = by.predicate in ("ne", "une") and is_zero(right) and not derived
+        relation = RELATIONS[by.predicate[-2:]]
+        relation = SWAPPED[relation] if left is value else relation
+        type_ = "derived" if derived else "parameter"
+        if is_flag:
+            self.flag(name, by, self.decides(by, context), out)
+            return
+        for predicate in self.decides(by, context):
+            out.add(Compared(name, type_, relation, by, predicate))
+
+    def is_constant_arithmetic(self, by: Instruction, value: Value) -> bool:
+        others = [o for o in by.operands if o is not value]
+        is_product = by.opcode in ("mul", "fmul")
+        return all(
+            o.kind == "constant" or (is_product and self.is_same_variable(o, value)) for o in others
+        ) and (bool(others) or is_product or by.opcode == "fneg")
+
+    def is_same_variable(self, a: Value, b: Value) -> bool:
+        """True where both are loads of one variable: `x * x`."""
+        loads = [v for v in (a, b) if isinstance(v, Instruction) and v.opcode == "load"]
+        return len(loads) == 2 and self.memory.definitions(a) == self.memory.definitions(b)
+
+    def carried(
+        self, user: Instruction, value: Value, context: Context
+    ) -> list[tuple[Value, Context]]:
+        """The values that `user` makes of `value` without changing it."""
+        if user.opcode in CASTS | {"phi", "freeze"}:
+            return [(user, context)]
+        if user.opcode == "select" and user.operands[0] is not value:
+            return [(user, context)]
+        if user.opcode == "store" and user.operands[0] is value:
+            return [(load, self.through_memory(user, load, context)) for load in self.sees[user]]
+        if user.is_call:
+            return [
+                (f.arguments[n], push(context, user))
+                for f in self.program.callees(user)
+                for n, a in enumerate(user.arguments)
+                if a is value and n < len(f.arguments)
+            ]
+        if user.opcode == "ret":
+            calls = self.program.callers(user.function)
+            if context:
+                return [(context[-1], context[:-1])] if context[-1] in calls else []
+            return [(c, ()) for c in calls]
+        return []
+
+    def through_memory(self, store: Instruction, load: Instruction, context: Context) -> Context:
+        """Inside one run of a function the call that led into it is still known."""
+        locations = self.memory.of(load.operands[0])
+        own = all(
+            isinstance(o, Instruction) and o.opcode == "alloca" and o.function is load.function
+            for o, _ in locations
+        )
+        return context if own and store.function is load.function else ()
+
+    def decides(self, outcome: Instruction, context: Context) -> dict[Instruction, bool]:
+        """The predicates that the truth value `outcome` decides; True: without a detour.
+
+        A detour is a merge, a variable or a call.
+        """
+        found: dict[Instruction, bool] = {}
+        begin = (outcome, context, not is_condition_end(outcome))
+        todo, seen = [begin], {begin}
+        while todo:
+            value, at, direct = todo.pop()
+            for user in self.users[value]:
+                if decides_by(user, value):
+                    found[user] = found.get(user, False) or direct
+                    continue
+                new = [
+                    (v, c, direct and user.opcode in CASTS | {"freeze", "xor"})
+                    for v, c in self.carried(user, value, at)
+                ]
+                if user.opcode in ("xor", "and", "or", "icmp"):
+                    new = [(user, at, direct)]
+                for item in new:
+                    if item not in seen:
+                        seen.add(item)
+                        todo.append(item)
+        return found
+
+
+def is_joined(user: Instruction, value: Value) -> bool:
+    """True where `user` makes a truth value of a flag: negates it, joins it with another one."""
+    logical = user.opcode in ("xor", "and", "or") and user.type == "i1"
+    return logical or (is_condition_end(user) and isinstance(value, Instruction))
+
+
+def is_condition_end(user: Instruction) -> bool:
+    """True where `user` is what && or || makes of the last operand: else the way decides."""
+    constant = [o for o in user.operands if o.kind == "constant"]
+    return user.opcode == "phi" and user.type == "i1" and len(constant) == len(user.operands) - 1
+
+
+def decides_by(user: Instruction, value: Value) -> bool:
+    """True where `user` is a predicate and `value` what it decides by."""
+    return user.opcode in ("br", "switch", "select") and user.operands[0] is value
+
+
+def is_zero(v: Value) -> bool:
+    return number(v) == 0 or v.text.endswith(" 0.000000e+00")
+
+
+def push(context: Context, call: Instruction) -> Context:
+    """`context` below `call`; a call that is in it already is not entered a second time."""
+    return context if call in context else (*context, call)
+
+
+__all__ = ["Checker", "Finding", "Function", "Place", "check"]

@@ -1,0 +1,164 @@
+"""Control dependence straight from the definition of Ferrante, Ottenstein and Warren (1987).
+
+Y depends on X where an edge leaves X after which Y must be reached, while X need not lead to Y.
+The graph has an entry with an edge to the exit, so that what always runs depends on the entry.
+"""
+
+from __future__ import annotations
+
+import re
+
+import networkx as nx
+
+from tests.oracle.ir import Block, Function, Instruction, Value, number
+
+ENTRY, EXIT, AGAIN = "entry", "exit", "again"
+
+
+def decided_way(before: Block, block: Block) -> Block | None:
+    """Where `block` surely goes on when it is entered from `before`; None where that is open.
+
+    It is so where the terminator decides by a merged value that is a constant on this edge: in
+    the source there is no decision at all, clang only joins ways and parts them again.
+    """
+    end = block.terminator
+    if end.opcode not in ("br", "switch") or len(end.blocks) < 2:
+        return None
+    condition = end.operands[0]
+    value = None if condition.kind == "constant" else folded(condition, before, block)
+    if value is None:
+        return None
+    if end.opcode == "br":
+        return end.blocks[value & 1]
+    cases = [int(c) for c in re.findall(r"i\d+ (-?\d+), label", end.text)]
+    return end.blocks[1 + cases.index(value)] if value in cases else end.blocks[0]
+
+
+def folded(value: Value, before: Block, block: Block) -> int | None:
+    """The number that `value` is when `block` is entered from `before`; None where that is open."""
+    if value.kind == "constant":
+        if found := re.fullmatch(r"i1 (true|false)", value.text):
+            return int(found[1] == "true")
+        return number(value)
+    if not isinstance(value, Instruction) or value.block is not block:
+        return None
+    if value.opcode == "phi":
+        came = value.operands[value.blocks.index(before)]
+        return folded(came, before, block) if came.kind == "constant" else None
+    known = [folded(o, before, block) for o in value.operands]
+    if None in known or value.opcode not in ("zext", "trunc", "xor", "icmp"):
+        return None
+    if value.opcode == "icmp":
+        return {"eq": known[0] == known[1], "ne": known[0] != known[1]}.get(value.predicate)
+    return known[0] ^ known[1] if value.opcode == "xor" else known[0]
+
+
+def flow_graph(function: Function) -> nx.DiGraph:
+    """Nodes are (block, way that it surely goes or None); calls that throw have no edge for it."""
+    graph = nx.DiGraph([(ENTRY, EXIT)])
+
+    def follow(start: Block) -> None:
+        todo = [(ENTRY, (start, None))]
+        while todo:
+            before, node = todo.pop()
+            known = node in graph
+            graph.add_edge(before, node)
+            if known:
+                continue
+            block, way = node
+            following = [way] if way else block.terminator.blocks
+            if block.terminator.opcode == "invoke":
+                following = following[:1]
+            for after in following:
+                todo.append((node, (after, decided_way(block, after))))
+            if not following:
+                graph.add_edge(node, EXIT)
+
+    # What only an exception leads to, and (allowed difference DEAD CODE) what nothing leads to,
+    # is entered as the function is.
+    follow(function.blocks[0])
+    entered = {
+        s
+        for b in function.blocks
+        for s in (
+            b.terminator.blocks[:1] if b.terminator.opcode == "invoke" else b.terminator.blocks
+        )
+    }
+    for block in function.blocks:
+        if block not in entered:
+            follow(block)
+    end_endless_loops(graph, function)
+    return graph
+
+
+def end_endless_loops(graph: nx.DiGraph, function: Function) -> None:
+    """Lets each region that never ends do so after any round, before it begins again.
+
+    The node for that is no predicate; in the source nothing is decided there.
+    """
+    order = {block: n for n, block in enumerate(function.blocks)}
+    while True:
+        stuck = set(graph) - nx.ancestors(graph, EXIT) - {EXIT}
+        if not stuck:
+            return
+        regions = list(nx.strongly_connected_components(graph.subgraph(stuck)))
+        region = next(r for r in regions if all(s in r for n in r for s in graph.successors(n)))
+        entered = [n for n in region if any(p not in region for p in graph.predecessors(n))]
+        first = min(entered, key=lambda n: order[n[0]])
+        again = (AGAIN, first)
+        for before in [p for p in graph.predecessors(first) if p in region]:
+            graph.remove_edge(before, first)
+            graph.add_edge(before, again)
+        graph.add_edge(again, first)
+        graph.add_edge(again, EXIT)
+
+
+class ControlDependence:
+    """Of one function: the predicates that control a block, and an edge between two blocks."""
+
+    def __init__(self, function: Function) -> None:
+        self.graph = flow_graph(function)
+        self.above = self.post_dominators()
+        nodes = [n for n in self.graph if n not in (ENTRY, EXIT) and n[0] != AGAIN]
+        self.of_node = {n: self.controllers_of(n) for n in nodes}
+
+    def post_dominators(self) -> dict[object, set[object]]:
+        """For each node all nodes that every way from it to the exit passes, itself included."""
+        parents = nx.immediate_dominators(self.graph.reverse(), EXIT)
+        out: dict[object, set[object]] = {}
+        for node in self.graph:
+            out[node], at = {node}, node
+            while at != EXIT:
+                at = parents[at]
+                out[node].add(at)
+        return out
+
+    def controllers_of(self, node: object) -> set[object]:
+        """The definition, tried with each edge."""
+        return {
+            x
+            for x, after in self.graph.edges
+            if node in self.above[after] and not (node != x and node in self.above[x])
+        }
+
+    def predicates(self, nodes: set[object]) -> set[Instruction]:
+        found = {n[0].terminator for n in nodes if n != ENTRY and n[0] != AGAIN}
+        return {i for i in found if i.opcode in ("br", "switch") and len(set(i.blocks)) > 1}
+
+    def controllers(self, block: Block, item: Instruction) -> tuple[set[Instruction], bool]:
+        """The predicates that control `item` in `block`, and whether the function's calls do.
+
+        A branch is one only where the way is still open when it is come to.
+        """
+        ways = {n for n in self.of_node if n[0] is block}
+        if item is block.terminator and (block, None) in ways:
+            ways = {(block, None)}
+        nodes = set().union(*(self.of_node[n] for n in ways))
+        return self.predicates(nodes), ENTRY in nodes
+
+    def choosers(self, before: Block, block: Block) -> set[Instruction]:
+        """The predicates that choose the way from `before` to `block`."""
+        found, _ = self.controllers(before, before.instructions[0])
+        end = before.terminator
+        is_choice = end.opcode in ("br", "switch") and len(set(end.blocks)) > 1
+        return found | {end} if is_choice else found

@@ -1,0 +1,507 @@
+"""Random small nodes in C++, as trees, so that a program can be made smaller.
+
+The generator knows nothing of what must be found: whatever compiles is a fair question.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
+
+PROLOGUE = """#include <ros/ros.h>
+
+double sensed(double Old);
+bool chance();
+void logged(double What);
+void mayThrow();
+struct First {
+  int Unused = 0;
+};
+"""
+TYPES = ("double", "int", "bool")
+STARTS = {"double": "0.5", "int": "3", "bool": "false"}
+
+
+@dataclass(frozen=True)
+class Statement:
+    """Texts and, between braces, bodies of statements."""
+
+    parts: tuple[str | tuple[Statement, ...], ...]
+
+    def lines(self, indent: str) -> Iterator[str]:
+        for part in self.parts:
+            if isinstance(part, str):
+                yield indent + part
+            else:
+                yield indent + "{"
+                for s in part:
+                    yield from s.lines(indent + "  ")
+                yield indent + "}"
+
+    def smaller(self) -> Iterator[tuple[Statement, ...]]:
+        """What can stand instead: a body alone, or itself with a smaller body."""
+        for n, part in enumerate(self.parts):
+            if isinstance(part, tuple):
+                yield part
+                for body in smaller(part):
+                    yield (Statement((*self.parts[:n], body, *self.parts[n + 1 :])),)
+
+
+def smaller(body: tuple[Statement, ...]) -> Iterator[tuple[Statement, ...]]:
+    """The bodies with statements less, many first, or with one made smaller."""
+    size = len(body)
+    while size:
+        for n in range(0, len(body), size):
+            yield (*body[:n], *body[n + size :])
+        size //= 2
+    for n, s in enumerate(body):
+        for instead in s.smaller():
+            yield (*body[:n], *instead, *body[n + 1 :])
+
+
+@dataclass(frozen=True)
+class Program:
+    """Declarations in a namespace of their own."""
+
+    name: str
+    body: tuple[Statement, ...]
+
+    def text(self) -> str:
+        lines = [line for s in self.body for line in s.lines("")]
+        return "\n".join([f"namespace {self.name} {{", *lines, f"}} // namespace {self.name}", ""])
+
+    def smaller(self) -> Iterator[Program]:
+        for body in smaller(self.body):
+            yield replace(self, body=body)
+
+
+@dataclass
+class Callable_:
+    """A function that statements can call: `name(arguments)`."""
+
+    name: str
+    result: str
+    arguments: list[str]
+    by_reference: list[bool]
+
+
+@dataclass
+class Scope:
+    """What can be named: variables by type, functions, and where one is."""
+
+    variables: dict[str, list[str]]
+    constants: dict[str, list[str]]
+    functions: list[Callable_]
+    publisher: str | None
+    handle: str | None
+    result: str = "void"
+    in_loop: bool = False
+    in_try: bool = False
+    depth: int = 0
+
+    def inner(self, **changes: object) -> Scope:
+        return replace(
+            self,
+            variables={t: list(v) for t, v in self.variables.items()},
+            constants={t: list(v) for t, v in self.constants.items()},
+            functions=list(self.functions),
+            **{"depth": self.depth + 1, **changes},
+        )
+
+
+@dataclass
+class Generator:
+    """Makes one program from a seed."""
+
+    seed: int
+    name: str
+    random: random.Random = field(init=False)
+    count: int = 0
+    deepest: int = 2
+
+    def __post_init__(self) -> None:
+        self.random = random.Random(self.seed)
+        self.deepest = self.random.choice([0, 0, 1, 1, 2, 4])
+
+    def new(self, prefix: str) -> str:
+        self.count += 1
+        return f"{prefix}{self.count}"
+
+    def one(self, *choices: tuple[int, object]) -> object:
+        """One of the (weight, choice)."""
+        return self.random.choices([c for _, c in choices], [w for w, _ in choices])[0]
+
+    def chance(self, probability: float) -> bool:
+        return self.random.random() < probability
+
+    # Expressions ------------------------------------------------------------
+
+    def variable(self, s: Scope, type_: str) -> str | None:
+        known = s.variables[type_] + s.constants[type_]
+        # What came last is what a reader would use next.
+        return self.random.choice(known[-6:] if self.chance(0.5) else known) if known else None
+
+    def place(self, s: Scope, type_: str) -> str | None:
+        known = s.variables[type_]
+        return self.random.choice(known) if known else None
+
+    def constant(self, type_: str) -> str:
+        if type_ == "double":
+            return self.random.choice(["0.5", "1.5", "2.0", "10.0"])
+        if type_ == "int":
+            return self.random.choice(["1", "2", "3", "7"])
+        return self.random.choice(["true", "false"])
+
+    def expression(self, s: Scope, type_: str, depth: int = 0) -> str:
+        if type_ == "bool":
+            return self.condition(s, depth)
+        name = self.variable(s, type_)
+        if name is None or depth > 2:
+            return name or self.constant(type_)
+        kind = self.one(
+            (8, "name"), (3, "constant"), (4, "scaled"), (2, "both"), (2, "call"), (2, "chosen"),
+            (1, "cast"), (1, "sensed"), (1, "negative"), (1, "square"),
+        )  # fmt: skip
+        if kind == "constant":
+            return self.constant(type_)
+        if kind == "scaled":
+            operator = self.random.choice("+-*" if type_ == "int" else "+-*/")
+            return f"({name} {operator} {self.constant(type_)})"
+        if kind == "both":
+            return f"({name} {self.random.choice('+-*')} {self.expression(s, type_, depth + 1)})"
+        if kind == "call":
+            return self.call(s, type_, depth) or name
+        if kind == "chosen":
+            return (
+                f"({self.condition(s, depth + 1)} ? {self.expression(s, type_, depth + 1)}"
+                f" : {self.expression(s, type_, depth + 1)})"
+            )
+        if kind == "cast":
+            other = "int" if type_ == "double" else "double"
+            return f"static_cast<{type_}>({self.expression(s, other, depth + 1)})"
+        if kind == "sensed" and type_ == "double":
+            return f"sensed({name})"
+        if kind == "negative":
+            return f"(-{name})"
+        if kind == "square":
+            return f"({name} * {name})"
+        return name
+
+    def condition(self, s: Scope, depth: int = 0) -> str:
+        kind = self.one(
+            (9, "compare"), (4, "name"), (3 if depth < 2 else 0, "and"),
+            (3 if depth < 2 else 0, "or"), (1, "not"), (2, "call"), (1, "chance"),
+            (1 if depth < 2 else 0, "chosen"), (1 if depth < 2 else 0, "joined"),
+        )  # fmt: skip
+        if kind == "name" and (name := self.variable(s, "bool")):
+            return name
+        if kind in ("and", "or"):
+            operator = "&&" if kind == "and" else "||"
+            return f"({self.condition(s, depth + 1)} {operator} {self.condition(s, depth + 1)})"
+        if kind == "not":
+            return f"!({self.condition(s, depth + 1)})"
+        if kind == "call" and (call := self.call(s, "bool", depth)):
+            return call
+        if kind == "chance":
+            return "chance()"
+        if kind == "chosen":
+            conditions = [self.condition(s, depth + 1) for _ in range(3)]
+            return "({} ? {} : {})".format(*conditions)
+        if kind == "joined":
+            left, operator = self.comparison(s, depth), self.random.choice("&|")
+            return f"({left} {operator} {self.comparison(s, depth)})"
+        return self.comparison(s, depth)
+
+    def comparison(self, s: Scope, depth: int) -> str:
+        type_ = self.one((3, "double"), (2, "int"))
+        operator = self.one((3, "<"), (3, ">"), (1, "<="), (1, ">="), (1, "=="), (1, "!="))
+        left = self.expression(s, type_, depth + 1)
+        right = self.expression(s, type_, depth + 1)
+        return f"({left} {operator} {right})"
+
+    def call(self, s: Scope, type_: str, depth: int = 0) -> str | None:
+        known = [f for f in s.functions if f.result == type_]
+        if not known:
+            return None
+        f = self.random.choice(known)
+        arguments = []
+        for t, by_reference in zip(f.arguments, f.by_reference, strict=True):
+            if by_reference:
+                place = self.place(s, t)
+                if place is None:
+                    return None
+                arguments.append(place)
+            else:
+                arguments.append(self.expression(s, t, max(depth + 1, 1)))
+        return f"{f.name}({', '.join(arguments)})"
+
+    # Statements -------------------------------------------------------------
+
+    def body(self, s: Scope, size: int) -> tuple[Statement, ...]:
+        s = s.inner()
+        return tuple(made for _ in range(size) for made in self.statement(s))
+
+    def small(self, s: Scope, **changes: object) -> tuple[Statement, ...]:
+        inner = s.inner(**changes) if changes else s
+        return self.body(inner, self.random.randint(1, 3 if s.depth < self.deepest else 1))
+
+    def statement(self, s: Scope) -> list[Statement]:
+        deep = s.depth > self.deepest
+        kinds: list[tuple[int, Callable[[Scope], list[Statement] | None]]] = [
+            (5, self.assign),
+            (3, self.declare),
+            (5, self.expose),
+            (3 if s.handle else 0, self.read),
+            (2, self.log),
+            (2, self.plain_call),
+            (0 if deep else 8, self.branch),
+            (0 if deep else 3, self.loop),
+            (0 if deep else 1, self.switch),
+            (0 if deep else 1, self.jump),
+            (0 if deep else 1, self.attempt),
+            (0 if deep else 1, self.cleaned),
+            (2, self.leave),
+        ]
+        made = self.one(*kinds)(s)
+        return made or []
+
+    def assign(self, s: Scope) -> list[Statement] | None:
+        type_ = self.one((4, "double"), (3, "int"), (3, "bool"))
+        place = self.place(s, type_)
+        if place is None:
+            return None
+        if type_ != "bool" and self.chance(0.25):
+            return [
+                text(f"{place} {self.random.choice(['+=', '-=', '*='])} {self.constant(type_)};")
+            ]
+        if type_ == "int" and self.chance(0.3):
+            return [text(f"++{place};")]
+        return [text(f"{place} = {self.expression(s, type_)};")]
+
+    def declare(self, s: Scope) -> list[Statement]:
+        type_ = self.random.choice(TYPES)
+        name = self.new("L")
+        made = [text(f"{type_} {name} = {self.expression(s, type_)};")]
+        s.variables[type_].append(name)
+        return made
+
+    def expose(self, s: Scope) -> list[Statement] | None:
+        if not s.publisher:
+            return None
+        if self.chance(0.4):
+            return [text(f"{s.publisher}.publish(std_msgs::Number());")]
+        name = self.new("M")
+        inside = [text(f"std_msgs::Number {name};")]
+        inner = s.inner()
+        inner.variables["double"].append(f"{name}.data")
+        inside.append(text(f"{name}.data = {self.expression(s, 'double')};"))
+        if self.chance(0.4):
+            inside += self.statement(inner)
+        inside.append(text(f"{s.publisher}.publish({name});"))
+        return [Statement((tuple(inside),))]
+
+    def read(self, s: Scope) -> list[Statement] | None:
+        type_ = self.random.choice(TYPES)
+        made = []
+        if self.chance(0.4):
+            name = self.new("L")
+            made.append(text(f"{type_} {name} = {STARTS[type_]};"))
+            s.variables[type_].append(name)
+        else:
+            name = self.place(s, type_)
+        if name is None:
+            return None
+        parameter = f"{self.name}_{self.new('p')}"
+        if self.chance(0.3):
+            return [*made, text(f'{s.handle}.getParam("{parameter}", {name});')]
+        default = STARTS[type_]
+        return [*made, text(f'{s.handle}.param("{parameter}", {name}, {default});')]
+
+    def log(self, s: Scope) -> list[Statement]:
+        return [text(f"logged({self.expression(s, 'double')});")]
+
+    def plain_call(self, s: Scope) -> list[Statement] | None:
+        call = self.call(s, self.one((3, "void"), (1, "double"), (1, "bool")))
+        return [text(f"{call};")] if call else None
+
+    def branch(self, s: Scope) -> list[Statement]:
+        parts: list[object] = [f"if ({self.condition(s)})", self.small(s)]
+        if self.chance(0.4):
+            parts += ["else", self.small(s)]
+        return [Statement(tuple(parts))]
+
+    def loop(self, s: Scope) -> list[Statement]:
+        kind = self.one((3, "while"), (3, "for"), (2, "do"), (2, "endless"))
+        body = self.small(s, in_loop=True)
+        if kind == "while":
+            return [Statement((f"while ({self.condition(s)})", body))]
+        if kind == "for":
+            name = self.new("I")
+            inner = s.inner()
+            inner.variables["int"].append(name)
+            body = self.small(inner, in_loop=True)
+            head = f"for (int {name} = 0; {name} < {self.expression(s, 'int', 1)}; ++{name})"
+            return [Statement((head, body))]
+        if kind == "do":
+            return [Statement(("do", body, f"while ({self.condition(s)});"))]
+        end = Statement((f"if ({self.condition(s)})", (text("break;"),)))
+        more = self.small(s, in_loop=True) if self.chance(0.5) else ()
+        if self.chance(0.2):
+            return [Statement(("while (true)", (*body, *more)))]
+        return [Statement(("while (true)", (*body, end, *more)))]
+
+    def switch(self, s: Scope) -> list[Statement]:
+        inside: list[Statement] = []
+        for n in range(self.random.randint(1, 3)):
+            inside.append(text(f"case {n}:"))
+            inside.append(Statement((self.small(s, in_loop=False),)))
+            if self.chance(0.7):
+                inside.append(text("break;"))
+        if self.chance(0.6):
+            inside.append(text("default:"))
+            inside.append(Statement((self.small(s, in_loop=False),)))
+        return [Statement((f"switch ({self.expression(s, 'int')})", tuple(inside)))]
+
+    def jump(self, s: Scope) -> list[Statement]:
+        label = self.new("Label")
+        go = Statement((f"if ({self.condition(s)})", (text(f"goto {label};"),)))
+        if self.chance(0.3):
+            return [Statement(((text(f"{label}:;"), Statement(((*self.small(s), go),))),))]
+        ahead = Statement(((*self.small(s), go, *self.small(s)),))
+        return [Statement(((ahead, text(f"{label}:;")),))]
+
+    def attempt(self, s: Scope) -> list[Statement]:
+        body = list(self.small(s, in_try=True))
+        if self.chance(0.5):
+            body.append(text("mayThrow();"))
+        if self.chance(0.5):
+            body.append(Statement((f"if ({self.condition(s)})", (text("throw 1;"),))))
+            body += self.small(s)
+        handler = self.small(s)
+        return [Statement(("try", tuple(body), "catch (int)", handler))]
+
+    def cleaned(self, s: Scope) -> list[Statement]:
+        inside = (text(f'std::string {self.new("Text")}("to clean up");'), *self.small(s))
+        return [Statement((inside,))]
+
+    def leave(self, s: Scope) -> list[Statement] | None:
+        if s.in_loop and self.chance(0.6):
+            how = self.random.choice(["break;", "continue;"])
+        elif s.depth < 2:
+            return None
+        elif s.result == "void":
+            how = "return;"
+        else:
+            how = f"return {self.expression(s, s.result)};"
+        return [Statement((f"if ({self.condition(s)})", (text(how),)))]
+
+    # Declarations -----------------------------------------------------------
+
+    def function(
+        self, s: Scope, prefix: str, size: int, method: bool
+    ) -> tuple[Statement, Callable_]:
+        """A function that sees what `s` does, and how it is called."""
+        result = self.one((3, "void"), (3, "bool"), (3, "double"), (1, "int"))
+        f = Callable_(self.new(prefix), result, [], [])
+        inner = s.inner(result=result)
+        inner.depth = 0
+        written = []
+        for _ in range(self.random.randint(0, 3)):
+            type_, by_reference = self.random.choice(TYPES), self.chance(0.25)
+            name = self.new("A")
+            f.arguments.append(type_)
+            f.by_reference.append(by_reference)
+            written.append(f"{type_} {'&' if by_reference else ''}{name}")
+            inner.variables[type_].append(name)
+        if not method:
+            inner.publisher = inner.handle = None
+            if self.chance(0.5):
+                inner.publisher = "Global.Out"
+        body = self.body(inner, size)
+        if result != "void":
+            body = (*body, text(f"return {self.expression(inner, result)};"))
+        head = f"{'' if method else 'static '}{result} {f.name}({', '.join(written)})"
+        return Statement((head, body)), f
+
+    def program(self) -> Program:
+        r = self.random
+        out = []
+        range_fields = [(r.choice(TYPES), self.new("R")) for _ in range(r.randint(1, 3))]
+        fields = tuple(text(f"{t} {n} = {STARTS[t]};") for t, n in range_fields)
+        out += [text("struct Range : First"), Statement((fields, ";"))]
+        out += [
+            text("struct : First"),
+            Statement(((text("ros::Publisher Out;"), text("Range Limits;")), "Global;")),
+        ]
+        empty: dict[str, list[str]] = {t: [] for t in TYPES}
+        s = Scope(empty, {t: [] for t in TYPES}, [], None, None)
+        for t, n in range_fields:
+            s.variables[t].append(f"Global.Limits.{n}")
+        for _ in range(r.randint(1, 3)):
+            t, n = r.choice(TYPES), self.new("G")
+            out.append(text(f"static {t} {n} = {STARTS[t]};"))
+            s.variables[t].append(n)
+        for _ in range(r.randint(0, 3)):
+            made, f = self.function(s, "help", r.randint(1, 3), method=False)
+            out.append(made)
+            s.functions.append(f)
+        out += self.node(s, range_fields)
+        return Program(self.name, tuple(out))
+
+    def node(self, s: Scope, range_fields: list[tuple[str, str]]) -> list[Statement]:
+        """A class with parameters and methods, and a function that runs it."""
+        r = self.random
+        inside: list[Statement] = []
+        own = s.inner(publisher="Out")
+        own.depth = 0
+        for _ in range(r.randint(2, 5)):
+            t, n = r.choice(TYPES), self.new("F")
+            inside.append(text(f"{t} {n} = {STARTS[t]};"))
+            own.variables[t].append(n)
+        if self.chance(0.6):
+            inside.append(text("Range Mine;"))
+            for t, n in range_fields:
+                own.variables[t].append(f"Mine.{n}")
+        reading = own.inner(handle="Handle")
+        reading.depth = 0
+        reads = [s for _ in range(r.randint(1, 3)) for s in self.read(reading) or []]
+        extra = self.body(reading, r.randint(0, 2))
+        inside.append(Statement(("explicit Node(ros::NodeHandle &Handle)", (*reads, *extra))))
+        methods = []
+        for _ in range(r.randint(1, 3)):
+            made, f = self.function(own, "step", r.randint(1, 2 + self.deepest), method=True)
+            inside.append(made)
+            own.functions.append(f)
+            methods.append(f)
+        inside.append(text("ros::Publisher Out;"))
+        run = s.inner(publisher="Out", handle="Handle")
+        run.depth = 0
+        for t, n in (("double", "V"), ("int", "N"), ("bool", "B")):
+            run.variables[t].append(n)
+        before = self.body(run, r.randint(0, 3))
+        calls = []
+        for f in methods:
+            run.functions = [Callable_(f"It.{f.name}", f.result, f.arguments, f.by_reference)]
+            if call := self.call(run, f.result):
+                calls.append(text(f"{call};"))
+        run.functions = [
+            Callable_(f"It.{f.name}", f.result, f.arguments, f.by_reference) for f in methods
+        ]
+        after = self.body(run, r.randint(1, 4))
+        head = "void run(ros::NodeHandle &Handle, ros::Publisher &Out, double V, int N, bool B)"
+        body = (*before, text("Node It(Handle);"), *calls, *after)
+        return [
+            text("class Node"),
+            Statement(((text("public:"), *inside), ";")),
+            Statement((head, body)),
+        ]
+
+
+def text(line: str) -> Statement:
+    return Statement((line,))
+
+
+def program(seed: int, name: str = "p") -> Program:
+    """The program of a seed."""
+    return Generator(seed, name).program()
