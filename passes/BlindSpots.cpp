@@ -1,6 +1,6 @@
 //===- BlindSpots.cpp -----------------------------------------------------===//
-#include "Texts.h"
 #include "BlindSpots.h"
+#include "Texts.h"
 
 #include "llvm/IR/IntrinsicInst.h"
 

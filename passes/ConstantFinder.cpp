@@ -21,7 +21,9 @@ static bool isTruth(const Value *V) {
     if (!I || !(isa<ZExtInst>(I) || I->isBitwiseLogicOp() ||
                 (Expect && Expect->getIntrinsicID() == Intrinsic::expect)))
       return false;
-    V = I->getOperand(isa<Constant>(I->getOperand(0)) ? 1 : 0);
+    // Of two operands one can be a constant mask; there may be but one.
+    bool Second = I->isBitwiseLogicOp() && isa<Constant>(I->getOperand(0));
+    V = I->getOperand(Second ? 1 : 0);
   }
   return false;
 }

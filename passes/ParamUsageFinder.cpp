@@ -149,8 +149,7 @@ static constexpr unsigned ManyTargets = 16;
 /// A value goes on to the loads of the variable that it is stored to.
 void Follower::store(const State &S, StoreInst &Store) {
   size_t Targets = Access.resolve(Store.getPointerOperand(), true).size();
-  SmallVector<LoadInst *, 8> Loads =
-      usesOf(Store, Store.getPointerOperand());
+  SmallVector<LoadInst *, 8> Loads = usesOf(Store, Store.getPointerOperand());
   if (Targets == 0)
     end(ValueEnd::UnknownPointer, &Store);
   else if (Targets > ManyTargets)

@@ -112,7 +112,7 @@ def _same(name: str | None, asked: str) -> bool:
 
 def _nothing_like(static: StaticInfo, name: str) -> str:
     known = {read.name for unit in static.units for read in unit.parameters}
-    known |= {each.comparison.source for each in _all(static)}
+    known |= {each.comparison.source for each in _all(static) if each.comparison.source}
     close = difflib.get_close_matches(name, sorted(known), n=_CLOSEST, cutoff=0.5)
     hint = f"; did you mean {', '.join(close)}?" if close else ""
     dynamic = sum(unit.counts.dynamic_names for unit in static.units)

@@ -15,6 +15,7 @@ from rich.table import Table
 from rich.text import Text
 
 from pytpc.explain import Explanation, Found, look_up, where, why_no_comparison
+from pytpc.ranking import parameter_name
 from pytpc.static_info import LinkUnit, PathStep, StaticInfo, read_static
 from pytpc.words import many, plain
 
@@ -89,7 +90,7 @@ COMMANDS: list[click.Command] = [explain_command, blind_spots_command]
 
 def _heading(found: Found) -> Text:
     comparison, unit = found.comparison, found.unit
-    text = Text(plain(comparison.source), style="bold")
+    text = Text(plain(parameter_name(comparison)), style="bold")
     text.append(f"  {plain(where(comparison))}", style="default not bold")
     text.append(
         f"  {comparison.type}, distance {comparison.distance},"
