@@ -34,7 +34,7 @@ void step(ros::NodeHandle &Handle, ros::Publisher &Out, double V, long W) {
   if (W > static_cast<signed char>(N))
     Out.publish(std_msgs::Number());
   Byte = N;
-  // CHECK-DAG: derived 'n' relation > as wrapu8(x) {{.*}} at [[#@LINE+1]]:9
+  // CHECK-DAG: parameter 'n' relation > as x {{.*}} at [[#@LINE+1]]:9
   if (W > Byte)
     Out.publish(std_msgs::Number());
   // CHECK-DAG: parameter 'b' relation > as x {{.*}} at [[#@LINE+1]]:9
