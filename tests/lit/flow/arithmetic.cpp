@@ -46,10 +46,10 @@ void numbers(ros::NodeHandle &Handle, ros::Publisher &Out, double V) {
 void integers(ros::NodeHandle &Handle, ros::Publisher &Out, int V) {
   int N;
   Handle.param("n", N, 5);
-  // CHECK-DAG: relation > as x div 3 {{.*}} at [[#@LINE+1]]:9
+  // CHECK-DAG: relation > as trunc(x / 3) {{.*}} at [[#@LINE+1]]:9
   if (V > N / 3)
     Out.publish(std_msgs::Number());
-  // CHECK-DAG: relation > as (x div 3) rem 4 {{.*}} at [[#@LINE+1]]:9
+  // CHECK-DAG: relation > as trunc(x / 3) rem 4 {{.*}} at [[#@LINE+1]]:9
   if (V > N / 3 % 4)
     Out.publish(std_msgs::Number());
   // CHECK-DAG: relation > as (x & 7) + 1 {{.*}} at [[#@LINE+1]]:9
