@@ -6,6 +6,9 @@ components call their neighbours and a few functions that all share. The same ar
 same text.
 """
 
+# ruff: noqa: E501
+# (Lines of C++ stay whole.)
+
 from __future__ import annotations
 
 import random
@@ -29,6 +32,7 @@ void scale(Vec &v, double by) { v.x *= by; v.y *= by; v.z *= by; }
 """
 
 STAGE = "struct Stage{g} {{ virtual ~Stage{g}() {{}} virtual double run(double in) = 0; Stage{g} *after = nullptr; }};\n"
+NEW = "  {{ auto *p = new Part{n}(nh); p->after = first{g}; first{g} = p; }}\n"
 PARTS_OF_STAGE = 25
 """Classes that derive from one base."""
 
@@ -97,7 +101,14 @@ def large_unit(functions: int, seed: int = 1) -> str:
     parts += [STAGE.format(g=g) for g in stages]
     parts += [f"struct Part{n};\n" for n in range(count)]
     numbers = [
-        {"n": n, "m": rng.randrange(count), "a": rng.randint(1, 9), "b": rng.randint(10, 99), "k": n % 5, "g": n // PARTS_OF_STAGE}
+        {
+            "n": n,
+            "m": rng.randrange(count),
+            "a": rng.randint(1, 9),
+            "b": rng.randint(10, 99),
+            "k": n % 5,
+            "g": n // PARTS_OF_STAGE,
+        }
         for n in range(count)
     ]
     parts += [COMPONENT.format(**one) for one in numbers]
@@ -105,7 +116,7 @@ def large_unit(functions: int, seed: int = 1) -> str:
     parts.append("int main() {\n  ros::NodeHandle nh;\n")
     parts += [f"  Stage{g} *first{g} = nullptr;\n" for g in stages]
     for one in numbers:
-        parts.append("  { auto *p = new Part%(n)d(nh); p->after = first%(g)d; first%(g)d = p; }\n" % one)
+        parts.append(NEW.format(**one))
     parts += [f"  first{g}->run(1.0);\n" for g in stages]
     parts.append("}\n")
     return "".join(parts)
