@@ -86,6 +86,11 @@ def test_analysis_finds_what_was_expected_by_hand(built):
     assert found - expected == Counter()
 
 
+def test_most_comparisons_name_the_topic_that_they_reach(built):
+    topics = [c.topic for unit in built.static.units for c in unit.comparisons]
+    assert sum(topic is not None for topic in topics) > 0.8 * len(topics)
+
+
 def test_clean_mission_gets_no_mark_and_loses_no_report(built, env, tmp_path):
     mission = fly("clean", 1, built, env, tmp_path)
     assert failures(mission) == []
