@@ -103,7 +103,8 @@ const DICompositeType *DebugTypes::asStruct(const DIType *T,
 
 const DIType *DebugTypes::field(const DICompositeType *Class,
                                 StructType *Struct, unsigned Index) const {
-  if (!Class || !Struct->isSized())
+  // A class without its padding can stand for the same with it.
+  if (!Class || !Struct->isSized() || Index >= Struct->getNumElements())
     return nullptr;
   const DIDerivedType *Member = memberAt(
       Class, Layout.getStructLayout(Struct)->getElementOffsetInBits(Index));
@@ -112,6 +113,8 @@ const DIType *DebugTypes::field(const DICompositeType *Class,
 
 StringRef DebugTypes::fieldName(const DICompositeType *Class,
                                 StructType *Struct, unsigned Index) const {
+  if (Index >= Struct->getNumElements())
+    return "";
   const DIDerivedType *Member = memberAt(
       Class, Layout.getStructLayout(Struct)->getElementOffsetInBits(Index));
   return Member && Member->getTag() == dwarf::DW_TAG_member ? Member->getName()

@@ -87,10 +87,15 @@ bool AccessResult::mayBe(const Location &A, const Location &B) const {
 }
 
 Type *AccessResult::typeAt(const Location &L) const {
-  if (!L.Path.empty())
-    return L.Path.back().isField() ? Numbers.typeOf(L.Path.back().Type)
-                                         ->getElementType(L.Path.back().Index)
-                                   : nullptr;
+  if (!L.Path.empty()) {
+    const Step &Last = L.Path.back();
+    if (!Last.isField())
+      return nullptr;
+    const StructType *Class = Numbers.typeOf(Last.Type);
+    return Last.Index < Class->getNumElements()
+               ? Class->getElementType(Last.Index)
+               : nullptr;
+  }
   if (const auto *Global = dyn_cast_or_null<GlobalVariable>(L.Root))
     return Global->getValueType();
   if (const auto *Local = dyn_cast_or_null<AllocaInst>(L.Root))

@@ -8,6 +8,7 @@ import pytest
 from suite.both_ways import Results, Variant, differences, run_all, totals
 from suite.build import Suite, build_suite, instrumented, link_plain
 from suite.expectations import Verdict, nodes
+from suite.known import KNOWN
 from suite.report import judge_all
 
 from pytpc.build import workspace_env
@@ -43,7 +44,11 @@ def results(suite: Suite, tmp_path_factory: pytest.TempPathFactory) -> Results:
 @pytest.mark.parametrize("node", nodes())
 def test_finds_what_a_reader_finds(verdicts: dict[str, Verdict], node: str) -> None:
     verdict = verdicts[node]
-    assert verdict.imprecise or (verdict.missing, verdict.false) == ((), ())
+    is_right = (verdict.missing, verdict.false) == ((), ())
+    if node in KNOWN:
+        assert not is_right, f"{node} is right now: take it out of suite.known"
+        pytest.xfail(KNOWN[node])
+    assert verdict.imprecise or is_right, (verdict.missing, verdict.false)
 
 
 def test_analyses_and_instruments_every_node(suite: Suite) -> None:
