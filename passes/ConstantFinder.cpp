@@ -21,7 +21,8 @@ static bool isTruth(const Value *V) {
     if (!I || !(isa<ZExtInst>(I) || I->isBitwiseLogicOp() ||
                 (Expect && Expect->getIntrinsicID() == Intrinsic::expect)))
       return false;
-    V = I->getOperand(isa<Constant>(I->getOperand(0)) ? 1 : 0);
+    V = I->getOperand(
+        I->isBitwiseLogicOp() && isa<Constant>(I->getOperand(0)) ? 1 : 0);
   }
   return false;
 }
