@@ -80,7 +80,7 @@ def test_imprecise_node_is_right_either_way() -> None:
 
 def test_constants_count_where_the_list_has_them() -> None:
     constant = Entry("nodes/a.cpp", 12, "x > 3", None, "constant", ">", None, None, "")
-    hard_coded = found(type="constant", source=None)
+    hard_coded = found(type="constant", source=None, read_at=None, default=None, param_reads=[])
     assert judge(expectation(), [hard_coded]).is_right
     assert judge(expectation(constants=(constant,)), [hard_coded]).found == 1
     assert not judge(expectation(constants=()), [hard_coded]).is_right
