@@ -1,4 +1,4 @@
-"""The nodes of the suite that the analysis does not get right, and why (docs/analysis-limits.md)."""
+"""The nodes of the suite that the analysis does not get right, and why (analysis-limits.md)."""
 
 OVERWRITTEN = "what is overwritten before it is published counts still"
 BOUND = "what bind and std::function keep is told apart by its type alone"
