@@ -69,7 +69,7 @@ def test_nodes_published_and_reported(suite: Suite, results: Results) -> None:
     comparing = {unit.link_unit for unit in suite.result.units if unit.comparisons}
     reporting = {node for node, variants in results.items() if variants["reporting"].reports}
     assert reporting <= comparing
-    assert len(reporting) > 0.9 * len(comparing)
+    assert len(reporting) > 0.85 * len(comparing)
 
 
 # The levels that are not the default take a build each.
