@@ -74,8 +74,9 @@ struct ParameterComparison {
   const llvm::Instruction &place() const {
     if (Compare)
       return *Compare;
-    return IsOperand ? *llvm::cast<llvm::Instruction>(Flag)
-                     : *Decisions.front().Predicate;
+    // The outcome of a comparison of text may decide nothing.
+    return IsOperand || Decisions.empty() ? *llvm::cast<llvm::Instruction>(Flag)
+                                          : *Decisions.front().Predicate;
   }
 };
 
