@@ -72,7 +72,7 @@ private:
   void value(Instruction &I);
   void define(const Value *V);
   void definePointer(const Value *V);
-  void defineMemory(const Value *Pointer);
+  void defineMemory(const Value *Pointer, const Instruction &At);
   void phi(const PHINode &Phi);
   void callResult(CallBase &Call);
   void touchingCall(CallBase &Call);
@@ -163,11 +163,11 @@ void Slicer::definePointer(const Value *V) {
     enter(const_cast<Instruction *>(cast<Instruction>(V)), Gives, Why::Gives);
 }
 
-/// What is in memory at \p Pointer, a scalar, matters.
-void Slicer::defineMemory(const Value *Pointer) {
+/// What is in memory at \p Pointer, a scalar, matters where \p At reads it.
+void Slicer::defineMemory(const Value *Pointer, const Instruction &At) {
   for (const Location &L : Access.resolve(Pointer, true))
-    if (SeenWritten.insert(L))
-      for (Instruction *Write : Access.writesOf(L))
+    if (!AccessResult::isSharedBy(L, At) || SeenWritten.insert(L))
+      for (Instruction *Write : Access.writesOf(L, At))
         enter(Write, Gives, Why::Writes);
 }
 
@@ -196,7 +196,7 @@ void Slicer::callResult(CallBase &Call) {
   for (const Use &Arg : Call.args()) {
     define(Arg);
     if (Arg->getType()->isPointerTy())
-      defineMemory(Arg);
+      defineMemory(Arg, Call);
   }
 }
 
@@ -206,7 +206,7 @@ void Slicer::touchingCall(CallBase &Call) {
   for (const Use &Arg : Call.args()) {
     define(Arg);
     if (Arg->getType()->isPointerTy())
-      defineMemory(Arg);
+      defineMemory(Arg, Call);
   }
   if (Call.getType()->isPointerTy())
     derivedPointer(&Call);
@@ -273,7 +273,7 @@ void Slicer::value(Instruction &I) {
     return definePointer(Load->getPointerOperand());
   }
   if (auto *Copy = dyn_cast<MemTransferInst>(&I))
-    return defineMemory(Copy->getRawSource());
+    return defineMemory(Copy->getRawSource(), I);
   if (auto *Call = dyn_cast<CallBase>(&I); Call && !isa<IntrinsicInst>(&I))
     return callResult(*Call);
   if (auto *Store = dyn_cast<StoreInst>(&I)) {

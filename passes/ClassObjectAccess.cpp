@@ -191,11 +191,11 @@ AccessResult::historyOf(const Location &L, ArrayRef<Instruction *> W) const {
 /// writes of a local variable are taken to reach all its loads.
 static constexpr unsigned MaxWalked = 20'000'000;
 
-/// Leaves in \p W the writes of the local variable \p L that reach \p Load:
-/// walks the flow graph back from it and stops at stores that surely replace
-/// the value. A write in another function happens at a call that is handed
+/// Leaves in \p W the writes of the local variable \p L that reach \p At: walks
+/// the flow graph back from it and stops at stores that surely replace the
+/// value. A write in another function happens at a call that is handed
 /// the variable; where its address was stored away, all of them stay.
-void AccessResult::reachingWrites(const Instruction &Load, const Location &L,
+void AccessResult::reachingWrites(const Instruction &At, const Location &L,
                                   SmallSetVector<Instruction *, 8> &W) const {
   const LocalHistory &History = historyOf(L, W.getArrayRef());
   if (!History.Known || Walked > MaxWalked)
@@ -224,18 +224,18 @@ void AccessResult::reachingWrites(const Instruction &Load, const Location &L,
       if (Seen.insert(Pred).second)
         Work.push_back(Pred);
   };
-  Through(Load.getParent(), &Load);
+  Through(At.getParent(), &At);
   while (!Work.empty())
     Through(Work.pop_back_val(), nullptr);
   W.remove_if([&](Instruction *Write) {
-    return Write->getFunction() == Load.getFunction() ? !Reached.contains(Write)
-                                                      : !CallReached;
+    return Write->getFunction() == At.getFunction() ? !Reached.contains(Write)
+                                                    : !CallReached;
   });
 }
 
-bool AccessResult::isSharedBy(const Location &L, const LoadInst &Load) {
+bool AccessResult::isSharedBy(const Location &L, const Instruction &At) {
   const auto *Local = dyn_cast_or_null<AllocaInst>(L.Root);
-  return !Local || Local->getFunction() != Load.getFunction();
+  return !Local || Local->getFunction() != At.getFunction();
 }
 
 ArrayRef<Instruction *>
@@ -253,9 +253,12 @@ AccessResult::definitionsOf(const LoadInst &Load) const {
   return Definitions[&Load] = All.takeVector();
 }
 
-SmallVector<Instruction *, 8> AccessResult::writesOf(const Location &L) const {
+SmallVector<Instruction *, 8>
+AccessResult::writesOf(const Location &L, const Instruction &At) const {
   SmallSetVector<Instruction *, 8> Out;
   collectWrites(L, Out);
+  if (!isSharedBy(L, At))
+    reachingWrites(At, L, Out);
   return Out.takeVector();
 }
 

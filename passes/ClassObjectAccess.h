@@ -136,17 +136,18 @@ public:
   llvm::ArrayRef<llvm::Instruction *>
   definitionsOf(const llvm::LoadInst &Load) const;
 
-  /// True where the writes of \p L are the same for all loads: it is no local
-  /// variable of \p Load's function.
-  static bool isSharedBy(const Location &L, const llvm::LoadInst &Load);
+  /// True where the writes of \p L are the same for all that reads it: it is no
+  /// local variable of \p At's function.
+  static bool isSharedBy(const Location &L, const llvm::Instruction &At);
 
   /// The loads to which \p Write, a store or call that writes the scalar at
   /// \p Pointer, can give the value.
   llvm::SmallVector<llvm::LoadInst *, 8>
   usesOf(const llvm::Instruction &Write, const llvm::Value *Pointer) const;
 
-  /// The writes of the scalar at \p L, wherever they are.
-  llvm::SmallVector<llvm::Instruction *, 8> writesOf(const Location &L) const;
+  /// The writes of the scalar at \p L that \p At, which reads it, can see.
+  llvm::SmallVector<llvm::Instruction *, 8>
+  writesOf(const Location &L, const llvm::Instruction &At) const;
 
   /// Stores into the object at \p L, and calls that are handed it or a part
   /// of it.
@@ -211,7 +212,7 @@ private:
   void collectLoads(const Location &L,
                     llvm::SmallSetVector<llvm::LoadInst *, 8> &Out) const;
   Locations throughCopies(const Location &L, bool Backward) const;
-  void reachingWrites(const llvm::Instruction &Load, const Location &L,
+  void reachingWrites(const llvm::Instruction &At, const Location &L,
                       llvm::SmallSetVector<llvm::Instruction *, 8> &W) const;
   static Slot slot(const Location &L);
   static const llvm::Value *baseOf(const llvm::Value *Pointer);
