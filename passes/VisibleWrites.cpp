@@ -94,7 +94,11 @@ bool AccessResult::replaces(const Instruction &Write, const Location &L) const {
            (Store->getValueOperand()->getType()->isAggregateType() ||
             !isa_and_nonnull<StructType>(typeAt(L)));
   auto It = Replaced.find(&Write);
-  return It != Replaced.end() && It->second == L;
+  if (It == Replaced.end())
+    return false;
+  const Location &Whole = It->second;
+  return Whole.Root == L.Root && Whole.Path.size() <= L.Path.size() &&
+         equal(Whole.Path, ArrayRef(L.Path).take_front(Whole.Path.size()));
 }
 
 /// Blocks that are walked through for the loads of a module; after that all
@@ -292,7 +296,7 @@ AccessResult::writesInto(const Location &L, const Instruction &At,
                          const Value *Pointer) const {
   Writes Out;
   bool Local = isLocalOf(L, At) && !isReachable(L);
-  std::map<Location, Writes, LocationOrder> Reached;
+  std::map<Location, Writes, LocationOrder> Gone;
   SmallVector<Part, 4> Parts;
   if (!Local)
     Parts = replacedParts(L, At, Pointer);
@@ -305,17 +309,17 @@ AccessResult::writesInto(const Location &L, const Instruction &At,
                            It == Parts.end() ? std::nullopt
                                              : std::optional(It->Variable));
     }
-    if (!isa<StoreInst>(Write) && Where.Path.size() <= L.Path.size())
-      return true;
-    auto [It, New] = Reached.try_emplace(Where);
+    auto [It, New] = Gone.try_emplace(Where);
     if (New) {
-      It->second = allWrites(Where);
-      reachingWrites(At, Where, It->second);
+      Writes All = allWrites(Where), Reaching = All;
+      reachingWrites(At, Where, Reaching);
+      All.remove_if([&](Instruction *W) { return Reaching.contains(W); });
+      It->second = std::move(All);
     }
-    return It->second.contains(const_cast<Instruction *>(&Write));
+    return !It->second.contains(const_cast<Instruction *>(&Write));
   };
   for (unsigned N : partsOf(L))
-    if (Stays(*PartWrites[N].I, PartWrites[N].Where))
+    if (PartWrites[N].I != &At && Stays(*PartWrites[N].I, PartWrites[N].Where))
       Out.insert(PartWrites[N].I);
   return Out.takeVector();
 }
