@@ -56,12 +56,38 @@ static const Value *constantObject(const CallBase &Call,
   return IsConst ? containerOf(Call) : nullptr;
 }
 
+/// What \p Call, of which the rules say \p Row, always gives a new value: the
+/// variable of a read that has a default, and text that is assigned to.
+static const Value *alwaysReplaced(const CallBase &Call, const Rule &Row) {
+  if (Row.Kind == Rule::Read && Row.Value && Row.Default)
+    return argument(Call, Row, Row.Value);
+  if (Row.Kind == Rule::Text && StringRef(Row.Function).ends_with("operator="))
+    return objectOf(Call, Row);
+  return nullptr;
+}
+
+/// Files that \p Call replaces what is at \p Pointer, where that is one place.
+void AccessResult::Builder::fileReplacing(CallBase &Call,
+                                          const Value *Pointer) {
+  const Locations Where = R.resolve(Pointer, false);
+  if (Where.size() != 1)
+    return;
+  Type *T = R.typeAt(Where.front());
+  if (!T || !T->isSized())
+    return;
+  R.Replaced[&Call] = Where.front();
+  R.Flow->addReplacing(Call, Pointer,
+                       R.Layout->getTypeStoreSize(T).getKnownMinValue());
+}
+
 /// What \p Call can write to.
 void AccessResult::Builder::fileCall(CallBase &Call) {
   // What is only asked about its text is not written.
-  if (const Rule *Row = Rules.match(Call);
-      Row && Row->Kind == Rule::Text && Row->Relation != "copy")
+  const Rule *Row = Rules.match(Call);
+  if (Row && Row->Kind == Rule::Text && Row->Relation != "copy")
     return;
+  if (const Value *Pointer = Row ? alwaysReplaced(Call, *Row) : nullptr)
+    fileReplacing(Call, Pointer);
   bool Opaque = Calls.callees(Call).empty();
   const ContainerMethod *Method = Rules.container(Call);
   if (Method && Method->Writes)
@@ -120,8 +146,9 @@ AccessResult ClassObjectAccess::run(Module &M, ModuleAnalysisManager &AM) {
   AccessResult R;
   R.Layout = &M.getDataLayout();
   R.Debug = std::make_unique<DebugTypes>(*R.Layout);
-  AccessResult::Builder B(R, AM.getResult<SimpleCallGraph>(M),
-                          AM.getResult<RuleAnalysis>(M), M);
+  const CallGraphResult &Calls = AM.getResult<SimpleCallGraph>(M);
+  R.Flow = std::make_unique<Reaching>(M, Calls);
+  AccessResult::Builder B(R, Calls, AM.getResult<RuleAnalysis>(M), M);
   B.findTargets();
   B.fileAccesses();
   return R;

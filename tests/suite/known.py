@@ -8,14 +8,10 @@ NOT_JUDGED = "not looked into yet"
 
 KNOWN = {
     "cmp_bool": NOT_JUDGED,
-    "cmp_chained_cut": OVERWRITTEN,
-    "const_cut": OVERWRITTEN,
     "const_named": CONSTANT,
     "ctl_exception_callee": "exceptions make no dependence (SPEC 3), a reader says that they do",
     "ctl_exception_swallowed": "both ends of a throw that is caught at once lead to one publish",
-    "ctl_value_overwritten": OVERWRITTEN,
     "drv_degrees": "the value before and the value after a conversion share a member",
-    "exp_message_reset": OVERWRITTEN,
     "exp_message_vector_dropped": "what is put into a vector that is only counted",
     "exp_three_calls": "the distance is 3, a reader says 4",
     "exp_timer_start_stop": "the timer and the message share a library's class",
@@ -28,10 +24,8 @@ KNOWN = {
     "val_bind": BOUND,
     "val_bind_unused": BOUND,
     "val_lambda": NOT_JUDGED,
-    "val_locals_globals_cut": OVERWRITTEN,
     "val_message_field": SWAPPED,
     "val_min_max_clamp": NOT_JUDGED,
-    "val_min_max_cut": OVERWRITTEN,
     "val_overwritten_result": OVERWRITTEN,
     "val_std_function": BOUND,
 }
