@@ -91,6 +91,11 @@ Locations AccessResult::throughCopies(const Location &L, bool Backward) const {
   return All;
 }
 
+bool AccessResult::reaches(const Location &From, const Location &To) const {
+  return any_of(throughCopies(From, /*Backward=*/false),
+                [&](const Location &Here) { return mayBe(Here, To); });
+}
+
 void AccessResult::collectWrites(const Location &L,
                                  SmallSetVector<Instruction *, 8> &Out) const {
   for (const Location &Here : throughCopies(L, /*Backward=*/true)) {
@@ -262,7 +267,8 @@ SmallVector<Instruction *, 8> AccessResult::writesOf(const Location &L) const {
 SmallVector<LoadInst *, 8> AccessResult::usesOf(const Instruction &Write,
                                                 const Value *Pointer) const {
   SmallSetVector<LoadInst *, 8> All;
-  for (const Location &L : resolve(Pointer, true))
+  for (const Location &L :
+       isa<StoreInst>(Write) ? touched(Write) : resolve(Pointer, true))
     collectLoads(L, All);
   All.remove_if([&](LoadInst *Load) {
     return isa<AllocaInst>(getUnderlyingObject(Load->getPointerOperand())) &&
