@@ -69,6 +69,9 @@ static void addComparisons(const GatheredResults &Gathered,
     else if (N.Why == NotReported::WithoutDebugInfo)
       Out.push_back({BlindSpot::WithoutDebugInfo, &N.Compared->place(), Name,
                      "compared in code without debug information"});
+    else if (N.Why == NotReported::Measured)
+      Out.push_back({BlindSpot::LostValue, &N.Compared->place(), Name,
+                     "one of the values that are compared with a threshold"});
   }
 }
 
