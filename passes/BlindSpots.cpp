@@ -25,6 +25,8 @@ static std::string whyLost(const Instruction &I) {
     return "mixed with another variable";
   if (isa<GetElementPtrInst>(I))
     return "used as an index";
+  if (isa<CmpInst>(I))
+    return "one of the values that are compared with a threshold";
   return std::string("used by an operation that is not followed (") +
          I.getOpcodeName() + ")";
 }
@@ -44,6 +46,20 @@ static BlindSpot::KindTy kindOf(ValueEnd::KindTy Kind) {
     return BlindSpot::Unread;
   }
   llvm_unreachable("no such kind");
+}
+
+static std::optional<BlindSpot::KindTy> kindOf(NotReported::WhyTy Why) {
+  switch (Why) {
+  case NotReported::NotExposed:
+    return std::nullopt;
+  case NotReported::OutsideSources:
+    return BlindSpot::OutsideSources;
+  case NotReported::WithoutDebugInfo:
+    return BlindSpot::WithoutDebugInfo;
+  case NotReported::Measured:
+    return BlindSpot::LostValue;
+  }
+  llvm_unreachable("no such reason");
 }
 
 std::string BlindSpot::text(const ParamCallFinder::Result &Reads,
@@ -112,11 +128,8 @@ std::vector<BlindSpot> findBlindSpots(const ParameterUsage &Usage,
     if (isDynamic(R.Name))
       All.push_back({BlindSpot::DynamicName, R.Call});
   for (const NotReported &N : Gathered.Others)
-    if (N.Why != NotReported::NotExposed)
-      All.push_back({N.Why == NotReported::OutsideSources
-                         ? BlindSpot::OutsideSources
-                         : BlindSpot::WithoutDebugInfo,
-                     &N.Compared->place(), N.Compared->Read});
+    if (std::optional<BlindSpot::KindTy> Kind = kindOf(N.Why))
+      All.push_back({*Kind, &N.Compared->place(), N.Compared->Read});
   addIndirectCalls(Calls, Words, All);
   return All;
 }

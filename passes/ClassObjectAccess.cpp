@@ -86,6 +86,11 @@ Locations AccessResult::throughCopies(const Location &L, bool Backward) const {
   return All;
 }
 
+bool AccessResult::reaches(const Location &From, const Location &To) const {
+  return any_of(throughCopies(From, /*Backward=*/false),
+                [&](const Location &Here) { return mayBe(Here, To); });
+}
+
 /// The writes of \p L: its own, and those that copies of whole objects bring.
 void AccessResult::collectWrites(const Location &L, Writes &Own,
                                  Writes &Copied) const {

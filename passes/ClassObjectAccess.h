@@ -90,6 +90,13 @@ struct LocationOrder {
   }
 };
 
+/// A scalar that a load or store touches, and the bits of the register that are
+/// it: an object of several scalars can be handed around as one number.
+struct ScalarPart {
+  Location Where;
+  unsigned Low = 0, Size = 0; ///< bits; no size where there is but one scalar
+};
+
 /// A set of exactly these locations.
 class LocationSet {
 public:
@@ -137,9 +144,14 @@ public:
   /// scalar touches. Empty where nothing is known.
   Locations resolve(const llvm::Value *Pointer, bool Scalar) const;
 
-  /// What \p I, a load or store, touches: a scalar, or all scalars of an
-  /// object that is loaded or stored as one value.
+  /// What \p I, a load or store, touches: a scalar, or all scalars of what is
+  /// loaded or stored as one value.
   Locations touched(const llvm::Instruction &I) const;
+  /// The same with the bits of the register.
+  llvm::SmallVector<ScalarPart, 1> partsOf(const llvm::Instruction &I) const;
+  /// True where copies of whole objects can bring what is at \p From to \p To,
+  /// or the two can be the same.
+  bool reaches(const Location &From, const Location &To) const;
 
   /// The writes that can give \p Load its value: stores, and calls without a
   /// body that are handed the variable. Copies of whole objects are followed.
@@ -219,7 +231,10 @@ private:
                     llvm::ArrayRef<const llvm::GEPOperator *> Chain,
                     Locations &Out) const;
   void enterScalar(Location &L) const;
-  void addScalarsOf(const Location &L, Locations &Out) const;
+  void addParts(const Location &L, llvm::Type *T, int64_t At, uint64_t Size,
+                llvm::SmallVectorImpl<ScalarPart> &Out) const;
+  bool addPartsAround(Location L, uint64_t Size,
+                      llvm::SmallVectorImpl<ScalarPart> &Out) const;
   llvm::Type *typeAt(const Location &L) const;
   const llvm::DIType *debugTypeAt(const Location &L) const;
   bool descend(Location &L, int64_t &Offset, llvm::StructType *Until) const;

@@ -2,6 +2,8 @@
 #include "ConstantFinder.h"
 
 #include "IfStatements.h"
+#include "Variables.h"
+#include "Wording.h"
 
 #include "llvm/ADT/SmallPtrSet.h"
 #include "llvm/IR/IntrinsicInst.h"
@@ -28,29 +30,97 @@ static bool isTruth(const Value *V) {
   return false;
 }
 
-/// The number that \p V is: a constant, or what is in a constant global.
-static const Constant *numberOf(const Value *V) {
+/// \p V before conversions.
+static const Value *unconverted(const Value *V) {
   while (const auto *Cast = dyn_cast<CastInst>(V))
     V = Cast->getOperand(0);
+  return V;
+}
+
+/// The constant global that \p Load reads; null where it reads something else.
+static const GlobalVariable *constantGlobal(const LoadInst &Load) {
+  const auto *Global = dyn_cast<GlobalVariable>(Load.getPointerOperand());
+  return Global && Global->isConstant() && Global->hasDefinitiveInitializer()
+             ? Global
+             : nullptr;
+}
+
+/// The number that \p V is as it stands, or that a constant global holds.
+static const Constant *plainNumber(const Value *V) {
+  V = unconverted(V);
   if (const auto *Load = dyn_cast<LoadInst>(V))
-    if (const auto *Global =
-            dyn_cast<GlobalVariable>(Load->getPointerOperand());
-        Global && Global->isConstant() && Global->hasDefinitiveInitializer())
+    if (const GlobalVariable *Global = constantGlobal(*Load))
       V = Global->getInitializer();
   return isa<ConstantInt>(V) || isa<ConstantFP>(V) ? cast<Constant>(V)
                                                    : nullptr;
 }
 
-/// The name of the variable, or the number as text.
-static std::string nameOf(const Value *V, bool Unsigned) {
-  while (const auto *Cast = dyn_cast<CastInst>(V))
-    V = Cast->getOperand(0);
-  if (const auto *Load = dyn_cast<LoadInst>(V)) {
+/// The number that whatever \p Call enters returns; null where there is none.
+const Constant *ConstantFinder::returnedBy(const CallBase &Call) const {
+  const Constant *Only = nullptr;
+  for (const Function *Callee : Calls.callees(Call))
+    for (const BasicBlock &BB : *Callee)
+      if (const auto *Return = dyn_cast<ReturnInst>(BB.getTerminator())) {
+        const Value *V = Return->getReturnValue();
+        const Constant *C = V ? plainNumber(V) : nullptr;
+        if (!C || (Only && Only != C))
+          return nullptr;
+        Only = C;
+      }
+  return Only;
+}
+
+/// The number that \p Load reads where that is a const member, which all
+/// constructors make the same; null elsewhere.
+const Constant *ConstantFinder::ofConstMember(const LoadInst &Load) const {
+  DebugTypes &Debug = Access.debugTypes();
+  Locations Where = Access.touched(Load);
+  if (Where.empty() || !all_of(Where, [&](const Location &L) {
+        return !L.Path.empty() && L.Path.back().isField() &&
+               Debug.isConst(Debug.classOf(L.Path.back().Class),
+                             Access.types().typeOf(L.Path.back().Type),
+                             L.Path.back().Index);
+      }))
+    return nullptr;
+  const Constant *Only = nullptr;
+  for (const Instruction *Write : Access.definitionsOf(Load)) {
+    const auto *Store = dyn_cast<StoreInst>(Write);
+    const Constant *C = Store ? plainNumber(Store->getValueOperand()) : nullptr;
+    if (!C || (Only && Only != C))
+      return nullptr;
+    Only = C;
+  }
+  return Only;
+}
+
+/// The number that \p V is: a constant, what is in a constant global or member,
+/// or what a function always returns.
+const Constant *ConstantFinder::numberOf(const Value *V) const {
+  if (const Constant *C = plainNumber(V))
+    return C;
+  V = unconverted(V);
+  if (const auto *Call = dyn_cast<CallBase>(V))
+    return returnedBy(*Call);
+  const auto *Load = dyn_cast<LoadInst>(V);
+  return Load ? ofConstMember(*Load) : nullptr;
+}
+
+/// The name of the variable or function, or the number as text.
+std::string ConstantFinder::nameOf(const Value *V, bool Unsigned) const {
+  const Value *Source = unconverted(V);
+  if (const auto *Load = dyn_cast<LoadInst>(Source)) {
     SmallVector<DIGlobalVariableExpression *, 1> Infos;
-    cast<GlobalVariable>(Load->getPointerOperand())->getDebugInfo(Infos);
+    if (const GlobalVariable *Global = constantGlobal(*Load))
+      Global->getDebugInfo(Infos);
     if (!Infos.empty())
       return Infos.front()->getVariable()->getName().str();
+    VariableNames Names(Access.types(), Access.debugTypes());
+    for (const Location &L : Access.touched(*Load))
+      if (std::string Name = Names.nameOf(L); !Name.empty())
+        return Name;
   }
+  if (const auto *Call = dyn_cast<CallBase>(Source); Call && !plainNumber(V))
+    return Wording::callee(*Call);
   const Constant *C = numberOf(V);
   if (const auto *Int = dyn_cast<ConstantInt>(C)) {
     SmallString<24> Text;
@@ -73,9 +143,13 @@ static bool asksForNonZero(const CmpInst &Compare) {
 
 void ConstantFinder::compared(CmpInst &Compare, Instruction &Predicate,
                               const SliceEntry &E, bool Direct) {
-  unsigned Threshold = numberOf(Compare.getOperand(1)) ? 1 : 0;
+  // A plain number before one that has to be looked for.
+  unsigned Threshold = plainNumber(Compare.getOperand(1))   ? 1
+                       : plainNumber(Compare.getOperand(0)) ? 0
+                       : numberOf(Compare.getOperand(1))    ? 1
+                                                            : 0;
   const Value *Other = Compare.getOperand(1 - Threshold);
-  if (!numberOf(Compare.getOperand(Threshold)) || numberOf(Other) ||
+  if (!numberOf(Compare.getOperand(Threshold)) || plainNumber(Other) ||
       isTruth(Other) || asksForNonZero(Compare))
     return;
   auto Known = Found.find(&Compare);

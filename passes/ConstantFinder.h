@@ -14,6 +14,7 @@
 #ifndef TPC_CONSTANTFINDER_H
 #define TPC_CONSTANTFINDER_H
 
+#include "ClassObjectAccess.h"
 #include "GatherResults.h"
 #include "SimpleCallGraph.h"
 
@@ -28,9 +29,10 @@ public:
   /// \p Where gives a comparison's place in the user's own sources; null where
   /// it is not to be listed.
   ConstantFinder(
-      const CallGraphResult &Calls, const SliceResult &Slice,
+      const CallGraphResult &Calls, const AccessResult &Access,
+      const SliceResult &Slice,
       llvm::function_ref<const llvm::DILocation *(const llvm::CmpInst &)> Where)
-      : Calls(Calls), Slice(Slice), Where(Where) {}
+      : Calls(Calls), Access(Access), Slice(Slice), Where(Where) {}
 
   std::vector<Comparison> run(llvm::ArrayRef<llvm::Instruction *> Predicates);
 
@@ -39,7 +41,13 @@ private:
   void compared(llvm::CmpInst &Compare, llvm::Instruction &Predicate,
                 const SliceEntry &E, bool Direct);
 
+  const llvm::Constant *numberOf(const llvm::Value *V) const;
+  const llvm::Constant *returnedBy(const llvm::CallBase &Call) const;
+  const llvm::Constant *ofConstMember(const llvm::LoadInst &Load) const;
+  std::string nameOf(const llvm::Value *V, bool Unsigned) const;
+
   const CallGraphResult &Calls;
+  const AccessResult &Access;
   const SliceResult &Slice;
   llvm::function_ref<const llvm::DILocation *(const llvm::CmpInst &)> Where;
   llvm::MapVector<llvm::CmpInst *, Comparison> Found;

@@ -111,6 +111,16 @@ const DIType *DebugTypes::field(const DICompositeType *Class,
   return Member ? plain(Member->getBaseType()) : nullptr;
 }
 
+bool DebugTypes::isConst(const DICompositeType *Class, StructType *Struct,
+                         unsigned Index) const {
+  if (!Class || !Struct->isSized() || Index >= Struct->getNumElements())
+    return false;
+  const DIDerivedType *Member = memberAt(
+      Class, Layout.getStructLayout(Struct)->getElementOffsetInBits(Index));
+  const DIType *T = Member ? Member->getBaseType() : nullptr;
+  return T && T->getTag() == dwarf::DW_TAG_const_type;
+}
+
 StringRef DebugTypes::fieldName(const DICompositeType *Class,
                                 StructType *Struct, unsigned Index) const {
   if (Index >= Struct->getNumElements())

@@ -31,6 +31,9 @@ public:
   /// The type of field \p Index of \p Class, laid out as \p Struct.
   const llvm::DIType *field(const llvm::DICompositeType *Class,
                             llvm::StructType *Struct, unsigned Index) const;
+  /// True where that field is const.
+  bool isConst(const llvm::DICompositeType *Class, llvm::StructType *Struct,
+               unsigned Index) const;
   /// Its name; empty for a base class.
   llvm::StringRef fieldName(const llvm::DICompositeType *Class,
                             llvm::StructType *Struct, unsigned Index) const;

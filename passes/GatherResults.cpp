@@ -8,6 +8,7 @@
 #include "Options.h"
 #include "ParamCallFinder.h"
 #include "Rules.h"
+#include "Sides.h"
 #include "SimpleCallGraph.h"
 
 #include "llvm/ADT/EquivalenceClasses.h"
@@ -299,6 +300,8 @@ GatheredResults GatherResults::run(Module &M, ModuleAnalysisManager &AM) {
   const Options Opts = Options::fromCommandLine();
   const RuleMatches &Rules = AM.getResult<RuleAnalysis>(M);
   Places Own(Opts, Rules);
+  Sides Both(Usage, Reads, AM.getResult<SimpleCallGraph>(M),
+             AM.getResult<ClassObjectAccess>(M));
   GatheredResults R;
   SmallPtrSet<const CmpInst *, 16> WithParameter;
   DenseMap<const Value *, SmallVector<unsigned, 1>> Known; ///< by what compares
@@ -332,6 +335,12 @@ GatheredResults GatherResults::run(Module &M, ModuleAnalysisManager &AM) {
                                       : NotReported::WithoutDebugInfo});
       continue;
     }
+    if (Both.isOtherWay(P))
+      continue;
+    if (Both.isMeasured(P)) {
+      R.Others.push_back({&P, NotReported::Measured});
+      continue;
+    }
     if (P.ByArgument)
       R.Shared.insert(const_cast<Function *>(C.place().getFunction()));
     // A second read of the same parameter is the same comparison.
@@ -350,7 +359,8 @@ GatheredResults GatherResults::run(Module &M, ModuleAnalysisManager &AM) {
       All.push_back(P.Read);
     }
   }
-  R.Constants = ConstantFinder(AM.getResult<SimpleCallGraph>(M), Slice,
+  R.Constants = ConstantFinder(AM.getResult<SimpleCallGraph>(M),
+                               AM.getResult<ClassObjectAccess>(M), Slice,
                                [&](const CmpInst &Compare) {
                                  return WithParameter.contains(&Compare) ||
                                                 asksLibrary(Compare, Rules)

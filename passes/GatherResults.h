@@ -50,7 +50,12 @@ struct Comparison {
 
 /// A comparison with a parameter that is not reported, and why.
 struct NotReported {
-  enum WhyTy { NotExposed, OutsideSources, WithoutDebugInfo };
+  enum WhyTy {
+    NotExposed,
+    OutsideSources,
+    WithoutDebugInfo,
+    Measured, ///< it is compared with another threshold
+  };
   const ParameterComparison *Compared;
   WhyTy Why;
 };

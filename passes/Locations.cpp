@@ -134,25 +134,78 @@ void AccessResult::enterScalar(Location &L) const {
   }
 }
 
-void AccessResult::addScalarsOf(const Location &L, Locations &Out) const {
-  auto *T = dyn_cast_or_null<StructType>(elementOf(typeAt(L)));
-  if (!T || T->isOpaque() || T->getNumElements() == 0 ||
-      L.Path.size() >= MaxPath)
-    return addTo(Out, L);
-  for (unsigned Field = 0; Field < T->getNumElements(); ++Field) {
-    Location Inner = L;
-    enterField(Inner, T, Field);
-    addScalarsOf(Inner, Out);
+/// Adds the scalars of an object of type \p T at \p L, which begins \p At bytes
+/// behind the beginning of an access, as far as the \p Size bytes of that go.
+void AccessResult::addParts(const Location &L, Type *T, int64_t At,
+                            uint64_t Size,
+                            SmallVectorImpl<ScalarPart> &Out) const {
+  T = elementOf(T);
+  if (!T->isSized() || At >= static_cast<int64_t>(Size) ||
+      Out.size() >= MaxLocations)
+    return;
+  auto *Class = dyn_cast<StructType>(T);
+  if (Class && Class->getNumElements() && L.Path.size() < MaxPath) {
+    const StructLayout *Fields = Layout->getStructLayout(Class);
+    for (unsigned Field = 0; Field < Class->getNumElements(); ++Field) {
+      Location Inner = L;
+      enterField(Inner, Class, Field);
+      addParts(Inner, Class->getElementType(Field),
+               At + static_cast<int64_t>(Fields->getElementOffset(Field)), Size,
+               Out);
+    }
+  } else if (At >= 0 && L.isKnown()) {
+    Out.push_back({L, static_cast<unsigned>(At * 8),
+                   static_cast<unsigned>(
+                       Layout->getTypeStoreSizeInBits(T).getFixedValue())});
   }
 }
 
+/// The same for an access that begins with the scalar at \p L: the scalars that
+/// follow it are in one of the objects that it is in. False where it is no more
+/// than that scalar.
+bool AccessResult::addPartsAround(Location L, uint64_t Size,
+                                  SmallVectorImpl<ScalarPart> &Out) const {
+  Type *T = elementOf(typeAt(L));
+  if (!T || !T->isSized() ||
+      Layout->getTypeStoreSize(T).getFixedValue() >= Size)
+    return false;
+  uint64_t At = 0;
+  while (!L.Path.empty() && L.Path.back().isField()) {
+    Step Last = L.Path.pop_back_val();
+    StructType *Class = Numbers.typeOf(Last.Type);
+    const StructLayout *Fields = Layout->getStructLayout(Class);
+    At += Fields->getElementOffset(Last.Index);
+    bool IsOutermost = L.Path.empty() || !L.Path.back().isField();
+    if (!IsOutermost && At + Size > Fields->getSizeInBytes())
+      continue;
+    for (unsigned Field = Last.Index; Field < Class->getNumElements();
+         ++Field) {
+      Location Inner = L;
+      Inner.Path.push_back({Last.Type, Field, Last.Class});
+      addParts(Inner, Class->getElementType(Field),
+               static_cast<int64_t>(Fields->getElementOffset(Field)) -
+                   static_cast<int64_t>(At),
+               Size, Out);
+    }
+    return true;
+  }
+  return false;
+}
+
+SmallVector<ScalarPart, 1> AccessResult::partsOf(const Instruction &I) const {
+  Type *T = getLoadStoreType(const_cast<Instruction *>(&I));
+  SmallVector<ScalarPart, 1> Parts;
+  for (Location &L : resolve(getLoadStorePointerOperand(&I), true))
+    if (!(T->isAggregateType() || T->isIntegerTy()) ||
+        !addPartsAround(L, Layout->getTypeStoreSize(T).getFixedValue(), Parts))
+      Parts.push_back({std::move(L)});
+  return Parts;
+}
+
 Locations AccessResult::touched(const Instruction &I) const {
-  const Value *Pointer = getLoadStorePointerOperand(&I);
-  if (!getLoadStoreType(const_cast<Instruction *>(&I))->isAggregateType())
-    return resolve(Pointer, true);
   Locations All;
-  for (const Location &L : resolve(Pointer, false))
-    addScalarsOf(L, All);
+  for (ScalarPart &Part : partsOf(I))
+    addTo(All, std::move(Part.Where));
   return All;
 }
 

@@ -8,6 +8,7 @@
 #include "Overwrites.h"
 #include "ParamCallFinder.h"
 #include "Print.h"
+#include "Registers.h"
 #include "SimpleCallGraph.h"
 #include "TextUsage.h"
 
@@ -65,8 +66,8 @@ private:
     Transform How;
     const CallPath *Path;
     bool Direct; ///< of an outcome: see Decision
-    /// Where V is an object that is one value: the field that it stands in.
-    std::optional<unsigned> Field = std::nullopt;
+    /// Where V is several numbers in one: the bits that are this one.
+    std::optional<Bits> In = std::nullopt;
     /// Where control flow has merged V with other values: the last value
     /// before that.
     Value *Origin = nullptr;
@@ -84,7 +85,10 @@ private:
   SmallVector<Decision, 2> followOutcome(Value *Outcome, const CallPath *Path);
   SmallVector<LoadInst *, 8> usesOf(const Instruction &Write,
                                     const Value *Pointer);
+  bool repacked(const State &S, Use &U);
   bool carry(const State &S, Use &U);
+  void load(const State &S, Instruction &Write, ArrayRef<ScalarPart> Written,
+            ArrayRef<LoadInst *> Loads);
   void store(const State &S, StoreInst &Store);
   void end(ValueEnd::KindTy Kind, Instruction *At);
   /// Nobody asks for the way of a value that is compared nowhere.
@@ -156,8 +160,52 @@ void Follower::store(const State &S, StoreInst &Store) {
     end(ValueEnd::ManyTargets, &Store);
   else if (Loads.empty() && !IsOutcome)
     end(ValueEnd::Unread, &Store);
-  for (LoadInst *Load : Loads)
-    push({Load, throughChoice(S.How, *Load), nullptr, false}, &Store);
+  State Next{S.V, S.How, nullptr, false, S.In};
+  SmallVector<ScalarPart, 1> Written = Access.partsOf(Store);
+  if (S.In && !Written.empty() && Written.front().Size) {
+    erase_if(Written, [&](const ScalarPart &P) {
+      return S.In->Low < P.Low || S.In->Low + S.In->Size > P.Low + P.Size;
+    });
+    if (Written.empty())
+      return end(ValueEnd::Mixed, &Store);
+    // The whole scalar, or a bit field in it.
+    ScalarPart Own = Written.front();
+    Next.In.reset();
+    if (S.In->Size < Own.Size)
+      Next.In = {S.In->Low - Own.Low, S.In->Size};
+  }
+  load(Next, Store, Written, Loads);
+}
+
+/// The value of \p S, as it stands in the scalar, goes on to \p Loads, which
+/// read what \p Write has put to
+/// \p Written.
+void Follower::load(const State &S, Instruction &Write,
+                    ArrayRef<ScalarPart> Written, ArrayRef<LoadInst *> Loads) {
+  bool WasWide = any_of(Written, [](const ScalarPart &P) { return P.Size; });
+  for (LoadInst *Load : Loads) {
+    State Next{Load, throughChoice(S.How, *Load), nullptr, S.Direct};
+    SmallVector<ScalarPart, 1> Read = Access.partsOf(*Load);
+    bool IsWide = any_of(Read, [](const ScalarPart &P) { return P.Size; });
+    if (!WasWide && !IsWide) {
+      Next.In = S.In;
+      push(std::move(Next), &Write);
+      continue;
+    }
+    // The scalar that was written, wherever it stands in what is read.
+    for (const ScalarPart &To : Read) {
+      if (none_of(Written, [&](const ScalarPart &From) {
+            return Access.reaches(From.Where, To.Where);
+          }))
+        continue;
+      Next.In = S.In;
+      if (To.Size)
+        Next.In =
+            S.In ? Bits{To.Low + S.In->Low, S.In->Size} : Bits{To.Low, To.Size};
+      push(Next, &Write);
+      break;
+    }
+  }
 }
 
 /// The loads of what \p Write puts at \p Pointer.
@@ -184,37 +232,35 @@ static bool isCopy(const Instruction &I, const Use &U) {
   }
 }
 
+/// Carries what is at \p U on where the user only moves it in a register. False
+/// where it does something else, or would lose it.
+bool Follower::repacked(const State &S, Use &U) {
+  Repacked R = repack(U, S.In);
+  if (R.Kind == Repacked::None)
+    return false;
+  if (R.Kind == Repacked::Gone)
+    return true;
+  std::optional<Bits> In;
+  if (R.Kind == Repacked::Part)
+    In = R.In;
+  push({cast<Instruction>(U.getUser()), S.How, S.Path, S.Direct && !In && !S.In,
+        In});
+  return true;
+}
+
 /// Carries what is at \p U on to where it is the same value still: casts,
 /// merges, variables, arguments, results. False where \p U does something
 /// else with it.
 bool Follower::carry(const State &S, Use &U) {
   auto *I = cast<Instruction>(U.getUser());
   if (isa<CastInst>(I) || isa<FreezeInst>(I) || isCopy(*I, U)) {
-    push({I, S.How, S.Path, S.Direct, S.Field, S.Origin});
+    push({I, S.How, S.Path, S.Direct, S.In, S.Origin});
     return true;
   }
   if (isa<PHINode>(I) || (isa<SelectInst>(I) && U.getOperandNo() != 0)) {
-    push({I, S.How, S.Path, false, S.Field, S.Origin ? S.Origin : S.V});
+    push({I, S.How, S.Path, false, S.In, S.Origin ? S.Origin : S.V});
     return true;
   }
-  if (auto *Insert = dyn_cast<InsertValueInst>(I)) {
-    if (Insert->getNumIndices() != 1)
-      return false;
-    unsigned Field = Insert->getIndices()[0];
-    if (!S.Field && U.getOperandNo() == 1)
-      push({I, S.How, S.Path, false, Field});
-    else if (S.Field && S.Field != Field && U.getOperandNo() == 0)
-      push({I, S.How, S.Path, false, S.Field});
-    return true;
-  }
-  if (auto *Extract = dyn_cast<ExtractValueInst>(I)) {
-    if (S.Field && Extract->getNumIndices() == 1 &&
-        Extract->getIndices()[0] == *S.Field)
-      push({I, S.How, S.Path, false});
-    return true;
-  }
-  if (S.Field && !isa<ReturnInst>(I))
-    return false;
   if (auto *Store = dyn_cast<StoreInst>(I)) {
     if (U.getOperandNo() == 0)
       store(S, *Store);
@@ -227,18 +273,18 @@ bool Follower::carry(const State &S, Use &U) {
     for (Function *Callee : Callees)
       if (Call->getArgOperandNo(&U) < Callee->arg_size())
         push({Callee->getArg(Call->getArgOperandNo(&U)), S.How,
-              into(Call, S.Path), false},
+              into(Call, S.Path), false, S.In},
              Call);
     return true;
   }
   if (isa<ReturnInst>(I)) {
     if (S.Path)
       push({const_cast<CallBase *>(S.Path->Call), S.How, S.Path->Outer, false,
-            S.Field},
+            S.In},
            I);
     else
       for (CallBase *Call : Calls.callers(I->getFunction()))
-        push({Call, S.How, nullptr, false, S.Field}, I);
+        push({Call, S.How, nullptr, false, S.In}, I);
     return true;
   }
   return false;
@@ -275,8 +321,14 @@ SmallVector<Decision, 2> Follower::followOutcome(Value *Outcome,
       auto *I = dyn_cast<Instruction>(U.getUser());
       if (!I)
         continue;
-      if (decidesBy(*I, U))
+      if (!S.In && decidesBy(*I, U))
         Found.push_back({I, S.Direct, S.Way});
+      else if (repacked(S, U))
+        continue;
+      else if (S.In && !carry(S, U))
+        end(ValueEnd::Outcome, I);
+      else if (S.In)
+        continue;
       else if (isLogical(*I) || isa<ICmpInst>(I))
         push({I, {}, S.Path, S.Direct});
       else if (!carry(S, U))
@@ -353,6 +405,13 @@ void Follower::useOfValue(const State &S, Use &U, unsigned Read) {
   auto *I = dyn_cast<Instruction>(U.getUser());
   if (!I)
     return;
+  if (repacked(S, U))
+    return;
+  if (S.In) {
+    if (!carry(S, U))
+      end(ValueEnd::Mixed, I);
+    return;
+  }
   if (auto *Compare = dyn_cast<CmpInst>(I))
     return compared(S, *Compare, U.getOperandNo(), Read);
   if (decidesBy(*I, U)) {
@@ -373,8 +432,7 @@ void Follower::useOfValue(const State &S, Use &U, unsigned Read) {
     return;
   }
   if (const auto *Cast = dyn_cast<CastInst>(I))
-    return push(
-        {I, applyCast(S.How, *Cast), S.Path, S.Direct, S.Field, S.Origin});
+    return push({I, applyCast(S.How, *Cast), S.Path, S.Direct, S.In, S.Origin});
   if (choiceOf(*I))
     return push({I, throughChoice(S.How, *I), S.Path, S.Direct});
   if (auto *Call = dyn_cast<CallBase>(I))
@@ -447,8 +505,10 @@ void Follower::followRead(unsigned N) {
       end(Access.resolve(R.Target, true).empty() ? ValueEnd::UnknownPointer
                                                  : ValueEnd::Unread,
           R.Call);
-    for (LoadInst *Load : Loads)
-      push({Load, throughChoice({}, *Load), nullptr, true}, R.Call);
+    SmallVector<ScalarPart, 1> Written;
+    for (Location &L : Access.resolve(R.Target, true))
+      Written.push_back({std::move(L)});
+    load({R.Call, {}, nullptr, true}, *R.Call, Written, Loads);
   }
   while (!Work.empty() && !Budget::isSpent()) {
     State S = Work.pop_back_val();

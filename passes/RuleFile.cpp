@@ -52,7 +52,8 @@ static constexpr StringLiteral ReadKeys[] = {"name", "value", "default",
 static constexpr StringLiteral ReadRequired[] = {"name", "value"};
 static constexpr StringLiteral ExposingKeys[] = {"topic"};
 static constexpr StringLiteral TopicKeys[] = {"name"};
-static constexpr StringLiteral NameKeys[] = {"parts", "to"};
+static constexpr StringLiteral NameKeys[] = {"parts", "to", "absolute"};
+static constexpr StringLiteral NameRequired[] = {"parts", "to"};
 static constexpr StringLiteral TextKeys[] = {"relation"};
 static constexpr StringLiteral HeldKeys[] = {"relation", "value"};
 
@@ -60,8 +61,8 @@ static const Section Sections[] = {
     {"reads", Rule::Read, ReadKeys, ReadRequired},
     {"exposing", Rule::Exposing, ExposingKeys, {}},
     {"topics", Rule::Topic, TopicKeys, TopicKeys},
-    {"handles", Rule::Naming, NameKeys, NameKeys},
-    {"names", Rule::Naming, NameKeys, NameKeys},
+    {"handles", Rule::Naming, NameKeys, NameRequired},
+    {"names", Rule::Naming, NameKeys, NameRequired},
     {"accessors", Rule::Accessor, {}, {}},
     {"configs", Rule::Config, {}, {}},
     {"text", Rule::Text, TextKeys, TextKeys},
@@ -147,6 +148,8 @@ Error Reader::field(StringRef Key, const json::Value &V, StringRef Place,
     return truth(V, Place, R.Method);
   if (Key == "handle")
     return truth(V, Place, R.Handle);
+  if (Key == "absolute")
+    return truth(V, Place, R.Absolute);
   if (Key == "arity")
     return number(V, Place, R.Arity);
   if (Key == "types")

@@ -63,6 +63,8 @@ struct Rule {
   /// The namespace of `this`, a node handle, stands before the name.
   bool Handle = false;
   std::vector<Part> Parts; ///< joined as names are, by slashes
+  /// The name is looked up as it is: no namespace comes before it any more.
+  bool Absolute = false;
   TargetTy Target = ToResult;
   unsigned TargetArgument = 0;
   /// Of what is done with text: the operator that the result answers, `compare`

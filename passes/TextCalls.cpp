@@ -99,8 +99,10 @@ Texts::Known Texts::joined(const CallBase &Call, const Rule &Row) {
                                              : Known{DynamicName};
     }
     All.Varies |= One.Varies;
-    All.Text = joinNames(All.Text, One.None ? DynamicName : One.Text);
+    StringRef Text = One.None ? StringRef(DynamicName) : StringRef(One.Text);
+    All.Text = joinNames(One.Absolute ? "" : All.Text, Text);
   }
+  All.Absolute = Row.Absolute;
   return All;
 }
 
@@ -131,7 +133,8 @@ std::optional<Texts::Effect> Texts::ofString(const CallBase &Call,
     if (Old.None || New.None)
       return std::nullopt;
     return Effect{Effect::Sets,
-                  {concatenated(Old.Text, New.Text), Old.Varies || New.Varies}};
+                  {concatenated(Old.Text, New.Text), Old.Varies || New.Varies,
+                   /*None=*/false, Old.Absolute}};
   }
   if (Method == "clear")
     return Effect{Effect::Clears};
@@ -176,7 +179,8 @@ std::optional<Texts::Effect> Texts::effect(const CallBase &Call, unsigned N,
     if (L.None || R.None)
       return std::nullopt;
     return Effect{Effect::Sets,
-                  {concatenated(L.Text, R.Text), L.Varies || R.Varies}};
+                  {concatenated(L.Text, R.Text), L.Varies || R.Varies,
+                   /*None=*/false, L.Absolute}};
   }
   if (Made && C.Name == "std::__cxx11::to_string")
     if (const auto *Number = dyn_cast<ConstantInt>(Call.getArgOperand(1)))

@@ -28,6 +28,7 @@ template <typename Known> static void merge(Known &Into, const Known &New) {
     return;
   }
   Into.Varies |= New.Varies;
+  Into.Absolute |= New.Absolute;
   if (Into.Text != New.Text)
     Into.Text = DynamicName;
 }
@@ -269,21 +270,25 @@ Texts::Known Texts::find(const Value *Pointer, const Instruction &At, Kind K) {
 // What is asked
 //===----------------------------------------------------------------------===//
 
-std::string Texts::textAt(const Value *Pointer, const Instruction &At) {
+Texts::Known Texts::knownAt(const Value *Pointer, const Instruction &At) {
   if (!Pointer || !Pointer->getType()->isPointerTy())
-    return DynamicName;
+    return unknown(Kind::Text);
   Steps = 0;
   Known K = find(Pointer, At, Kind::Text);
-  return K.None ? DynamicName : K.Text;
+  return K.None ? unknown(Kind::Text) : K;
+}
+
+std::string Texts::textAt(const Value *Pointer, const Instruction &At) {
+  return knownAt(Pointer, At).Text;
 }
 
 std::string Texts::nameOf(const CallBase &Call, const Rule &Row) {
-  std::string Name = textAt(argument(Call, Row, Row.Name), Call);
+  Known Name = knownAt(argument(Call, Row, Row.Name), Call);
   const Value *Handle = Row.Handle ? objectOf(Call, Row) : nullptr;
-  if (!Handle)
-    return Name;
+  if (!Handle || Name.Absolute)
+    return Name.Text;
   Steps = 0;
-  return joinNames(find(Handle, Call, Kind::Handle).Text, Name);
+  return joinNames(find(Handle, Call, Kind::Handle).Text, Name.Text);
 }
 
 const Constant *Texts::constantOf(const Value *V) {

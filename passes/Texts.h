@@ -61,6 +61,8 @@ private:
     std::string Text;
     bool Varies = false;
     bool None = false;
+    /// It is a name that no namespace comes before.
+    bool Absolute = false;
   };
   /// What a call does to an object that it is handed.
   struct Effect {
@@ -80,6 +82,7 @@ private:
   /// What is not known of a text. Of a handle that nobody in the link unit
   /// makes the namespace is left out: the name is then as in the read.
   static Known unknown(Kind K) { return {K == Kind::Text ? DynamicName : ""}; }
+  Known knownAt(const llvm::Value *Pointer, const llvm::Instruction &At);
   Known find(const llvm::Value *Pointer, const llvm::Instruction &At, Kind K);
   Known follow(const llvm::Value *P, const llvm::Instruction &At, Kind K);
   Known above(const llvm::Value *Object, const llvm::Instruction *I,

@@ -247,7 +247,8 @@ AccessResult::definitionsOf(const LoadInst &Load) const {
 SmallVector<LoadInst *, 8> AccessResult::usesOf(const Instruction &Write,
                                                 const Value *Pointer) const {
   SmallSetVector<LoadInst *, 8> All;
-  for (const Location &L : resolve(Pointer, true)) {
+  for (const Location &L :
+       isa<StoreInst>(Write) ? touched(Write) : resolve(Pointer, true)) {
     SmallSetVector<LoadInst *, 8> Own, Copied;
     collectLoads(L, Own, Copied);
     std::optional<Reaching::Variable> Written = variableAt(Pointer, L);

@@ -65,7 +65,7 @@ class Answers:
         out = []
         for place in sorted(one.keys() | other.keys()):
             passes, checker = one.get(place, {}), other.get(place, {})
-            if not agree(passes, checker):
+            if not agree(passes, checker) and not (place in other and other_side(place, one)):
                 out.append(f"{' '.join(map(str, place))}: passes {passes}, checker {checker}")
         return out
 
@@ -90,6 +90,17 @@ def agree(passes: Kinds, checker: Kinds) -> bool:
     if len(checker) > 1 and passes:
         return passes.keys() <= checker.keys() and min(passes.values()) == min(checker.values())
     return passes == checker
+
+
+def other_side(place: tuple[int, int, str], passes: dict[tuple[int, int, str], Kinds]) -> bool:
+    """True where the passes say that another parameter is the threshold there, and this one is not.
+
+    Allowed difference SIDES (README): both operands have a parameter's value, and one of them is
+    something else on another way.
+    """
+    return place not in passes and any(
+        line == place[0] and column == place[1] for line, column, _ in passes
+    )
 
 
 def ask(source: str, folder: Path, level: str = "-O2") -> Answers:

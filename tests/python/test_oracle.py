@@ -20,7 +20,6 @@ KNOWN = {
     1039: SAME,
     1049: REPLACED,
     1072: SWITCH,
-    1074: SAME,
     1116: SWITCH,
     1133: CAST,
     1176: SWITCH + ", and so is one on a conversion",
@@ -51,6 +50,14 @@ def test_a_difference_of_distance_is_one():
     assert run.Answers(one, one).difference() == []
     assert len(run.Answers(one, other).difference()) == 1
     assert len(run.Answers({}, one).difference()) == 1
+
+
+def test_of_two_operands_the_passes_may_report_the_threshold_alone():
+    threshold = {(3, 7, "limit", "parameter", ">"): 1}
+    both = threshold | {(3, 7, "upper", "parameter", "<"): 1}
+    assert run.Answers(threshold, both).difference() == []
+    assert len(run.Answers(both, threshold).difference()) == 1
+    assert len(run.Answers({}, both).difference()) == 2
 
 
 def test_of_two_ways_to_a_place_the_passes_name_one():

@@ -1,0 +1,23 @@
+// RUN: %compile -O2 %s -o %t.o
+// RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
+//
+// Masks and shifts of the program itself are no bit fields: what a mask cuts off
+// is arithmetic, and a number that is packed with another and compared with it
+// is lost.
+#include <ros/ros.h>
+
+void step(ros::NodeHandle &Handle, ros::Publisher &Out, int N) {
+  int Mask, Shifted, Packed;
+  Handle.param("mask", Mask, 1);
+  Handle.param("shifted", Shifted, 1);
+  Handle.param("packed", Packed, 1);
+  // CHECK: comparisons of {{.*}}: 2
+  // CHECK-DAG: derived 'mask' relation > as x & 12 {{.*}} at [[#@LINE+1]]:9
+  if (N > (Mask & 12))
+    Out.publish(std_msgs::Number());
+  // CHECK-DAG: derived 'shifted' relation > as 16 * x {{.*}} at [[#@LINE+1]]:9
+  if (N > (Shifted << 4))
+    Out.publish(std_msgs::Number());
+  if (N > ((Packed & 15) | (N << 4)))
+    Out.publish(std_msgs::Number());
+}
