@@ -203,6 +203,10 @@ void Slicer::callResult(CallBase &Call) {
 /// \p Call is handed an object that matters: it may put its other arguments
 /// into it, and what is written through a pointer that it returns is in it.
 void Slicer::touchingCall(CallBase &Call) {
+  // What an exposing statement shows is in the slice from the beginning; the
+  // publisher that does it is not among it.
+  if (Seen.lookup(&Call) & Exposes)
+    return;
   for (const Use &Arg : Call.args()) {
     define(Arg);
     if (Arg->getType()->isPointerTy())
