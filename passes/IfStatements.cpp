@@ -48,11 +48,30 @@ static bool doesSomething(const BasicBlock &BB) {
   });
 }
 
-const BasicBlock *decidedWay(const BasicBlock *From, const BasicBlock *BB) {
-  const Instruction *T = BB->getTerminator();
-  if (!isPredicate(*T))
+/// Merged values that are constant on one way through the program.
+using KnownMerges = SmallDenseMap<const PHINode *, const ConstantInt *, 4>;
+
+/// Adds to \p Known what the merges of \p BB are where it is entered from
+/// \p From.
+static void enterBlock(const BasicBlock *From, const BasicBlock &BB,
+                       KnownMerges &Known) {
+  SmallVector<std::pair<const PHINode *, const ConstantInt *>, 4> Now;
+  for (const PHINode &Phi : BB.phis()) {
+    const Value *In = Phi.getIncomingValueForBlock(From);
+    const auto *Merge = dyn_cast<PHINode>(In);
+    Now.emplace_back(&Phi,
+                     Merge ? Known.lookup(Merge) : dyn_cast<ConstantInt>(In));
+  }
+  for (const auto &[Phi, C] : Now)
+    Known[Phi] = C;
+}
+
+/// Where \p T surely goes on to; null where that is open.
+static const BasicBlock *surelyNext(const Instruction &T,
+                                    const KnownMerges &Known) {
+  if (!isPredicate(T))
     return nullptr;
-  const Value *Condition = conditionOf(*T);
+  const Value *Condition = conditionOf(T);
   bool Negated = false;
   while (const auto *I = dyn_cast<Instruction>(Condition)) {
     if (I->getOpcode() == Instruction::Xor && I->getType()->isIntegerTy(1) &&
@@ -63,19 +82,35 @@ const BasicBlock *decidedWay(const BasicBlock *From, const BasicBlock *BB) {
     Condition = I->getOperand(0);
   }
   const auto *Phi = dyn_cast<PHINode>(Condition);
-  if (!Phi || Phi->getParent() != BB)
-    return nullptr;
-  const auto *C = dyn_cast<ConstantInt>(Phi->getIncomingValueForBlock(From));
+  const ConstantInt *C = Phi ? Known.lookup(Phi) : nullptr;
   if (!C)
     return nullptr;
-  if (const auto *Br = dyn_cast<BranchInst>(T))
+  if (const auto *Br = dyn_cast<BranchInst>(&T))
     return Br->getSuccessor(C->isZero() == Negated ? 0 : 1);
-  const auto *Switch = cast<SwitchInst>(T);
+  const auto *Switch = cast<SwitchInst>(&T);
   for (auto Case : Switch->cases())
     if (Case.getCaseValue()->getValue() ==
         C->getValue().zextOrTrunc(Case.getCaseValue()->getBitWidth()))
       return Case.getCaseSuccessor();
   return Switch->getDefaultDest();
+}
+
+const BasicBlock *decidedWay(const BasicBlock *From, const BasicBlock *BB,
+                             SmallPtrSetImpl<const BasicBlock *> *Passed) {
+  KnownMerges Known;
+  SmallPtrSet<const BasicBlock *, 4> Seen;
+  const BasicBlock *End = nullptr;
+  while (Seen.insert(BB).second) {
+    enterBlock(From, *BB, Known);
+    const BasicBlock *Next = surelyNext(*BB->getTerminator(), Known);
+    if (!Next)
+      break;
+    if (Passed)
+      Passed->insert(BB);
+    From = std::exchange(BB, Next);
+    End = Next;
+  }
+  return End;
 }
 
 /// True where the program ends soon after \p BB, or leaves by an exception,
@@ -101,11 +136,12 @@ static bool endsProgram(const BasicBlock *BB) {
 /// that end the program are left out as exceptions are: nobody who reads the
 /// source sees them.
 ///
-/// With \p Threaded, an edge into a block that is decided by the edge goes on
-/// to where the block then leads.
+/// With \p Passed, an edge into a block that is decided by the edge goes on
+/// to where the block then leads, and the block is put in there.
 static FlowGraph flowGraphOf(const Function &F,
                              const DenseMap<const BasicBlock *, unsigned> &Id,
-                             bool Threaded, UserSources &Sources) {
+                             SmallPtrSetImpl<const BasicBlock *> *Passed,
+                             UserSources &Sources) {
   FlowGraph Graph(F.size() + 2);
   Graph[F.size()] = {Id.lookup(&F.getEntryBlock()),
                      static_cast<unsigned>(F.size()) + 1};
@@ -122,7 +158,7 @@ static FlowGraph flowGraphOf(const Function &F,
       if (Library && endsProgram(Succ) &&
           !endsProgram(T->getSuccessor(Succ == T->getSuccessor(0) ? 1 : 0)))
         continue;
-      const BasicBlock *On = Threaded ? decidedWay(&BB, Succ) : nullptr;
+      const BasicBlock *On = Passed ? decidedWay(&BB, Succ, Passed) : nullptr;
       Succs.push_back(Id.lookup(On ? On : Succ));
     }
   }
@@ -172,8 +208,9 @@ IfStatementsResult IfStatements::run(Module &M, ModuleAnalysisManager &) {
       Id[&BB] = Blocks.size();
       Blocks.push_back(&BB);
     }
-    FlowGraph Plain = flowGraphOf(F, Id, /*Threaded=*/false, Sources);
-    FlowGraph Threaded = flowGraphOf(F, Id, /*Threaded=*/true, Sources);
+    SmallPtrSet<const BasicBlock *, 8> Passed;
+    FlowGraph Plain = flowGraphOf(F, Id, /*Passed=*/nullptr, Sources);
+    FlowGraph Threaded = flowGraphOf(F, Id, &Passed, Sources);
     std::vector<bool> Reached = leaveOutBypassed(Plain, Threaded);
     auto Depends = controlDependence(Threaded);
     if (Plain != Threaded) {
@@ -182,10 +219,7 @@ IfStatementsResult IfStatements::run(Module &M, ModuleAnalysisManager &) {
       auto Before = controlDependence(Plain);
       for (unsigned N = 0; N < Blocks.size(); ++N)
         if (!Reached[N] ||
-            (doesSomething(*Blocks[N]) &&
-             any_of(predecessors(Blocks[N]), [&](const BasicBlock *P) {
-               return decidedWay(P, Blocks[N]);
-             })))
+            (doesSomething(*Blocks[N]) && Passed.contains(Blocks[N])))
           Depends[N] = Before[N];
     }
     for (unsigned N = 0; N < Blocks.size(); ++N) {

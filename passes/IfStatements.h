@@ -9,6 +9,7 @@
 
 #include "llvm/ADT/DenseMap.h"
 #include "llvm/ADT/DenseSet.h"
+#include "llvm/ADT/SmallPtrSet.h"
 #include "llvm/ADT/SmallVector.h"
 #include "llvm/IR/Instructions.h"
 #include "llvm/IR/PassManager.h"
@@ -22,12 +23,15 @@ bool isPredicate(const llvm::Instruction &I);
 /// What \p Predicate decides by.
 llvm::Value *conditionOf(const llvm::Instruction &Predicate);
 
-/// Where \p BB is entered from \p From, the way that its terminator then goes
-/// for sure, because it decides by a value that is constant on this edge:
-/// clang ends the conditions of loops and variables, and scopes with something
-/// to clean up, in such a block. Null where both ways stay open.
-const llvm::BasicBlock *decidedWay(const llvm::BasicBlock *From,
-                                   const llvm::BasicBlock *BB);
+/// Where \p BB is entered from \p From, where its terminator then goes for
+/// sure, because it decides by a value that is constant on this edge: clang
+/// ends the conditions of loops and variables, and scopes with something to
+/// clean up, in such a block. Scopes in scopes end in several of them, one
+/// after the other; these are put into \p Passed. Null where the first one's
+/// ways stay open.
+const llvm::BasicBlock *
+decidedWay(const llvm::BasicBlock *From, const llvm::BasicBlock *BB,
+           llvm::SmallPtrSetImpl<const llvm::BasicBlock *> *Passed = nullptr);
 
 class IfStatementsResult {
 public:

@@ -83,4 +83,4 @@ def test_control_dependence_by_hand():
     control = ControlDependence(module.functions["f"])
     assert control.controllers(left, left.terminator) == ({top.terminator}, False)
     assert control.controllers(join, join.terminator) == (set(), True)
-    assert control.graph.has_edge((join, None), EXIT)
+    assert control.graph.has_edge((join, ()), EXIT)
