@@ -176,10 +176,8 @@ void Slicer::defineMemory(const Value *Pointer) {
 void Slicer::phi(const PHINode &Phi) {
   for (unsigned N = 0; N < Phi.getNumIncomingValues(); ++N) {
     define(Phi.getIncomingValue(N));
-    const BasicBlock *From = Phi.getIncomingBlock(N);
-    if (isPredicate(*From->getTerminator()))
-      decides(const_cast<Instruction *>(From->getTerminator()), Why::Chooses);
-    for (Instruction *Predicate : Ifs.controllers(From))
+    for (Instruction *Predicate :
+         Ifs.choosers(Phi.getIncomingBlock(N), Phi.getParent()))
       decides(Predicate, Why::Chooses);
   }
 }

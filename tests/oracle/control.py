@@ -173,7 +173,11 @@ class ControlDependence:
 
     def choosers(self, before: Block, block: Block) -> set[Instruction]:
         """The predicates that choose the way from `before` to `block`."""
-        found, _ = self.controllers(before, before.instructions[0])
+        nodes = [n for n in self.of_node if n[0] is before]
+        open_, decided = (before, ()), [n for n in nodes if n[1] and n[1][0] is block]
+        found = self.predicates(set().union(*(self.of_node[n] for n in decided)))
+        if open_ not in nodes:
+            return found
         end = before.terminator
         is_choice = end.opcode in ("br", "switch") and len(set(end.blocks)) > 1
-        return found | {end} if is_choice else found
+        return found | self.predicates(self.of_node[open_]) | ({end} if is_choice else set())
