@@ -29,47 +29,55 @@ static std::string whyLost(const Instruction &I) {
          I.getOpcodeName() + ")";
 }
 
-static BlindSpot spotOf(const ValueEnd &E, const ParameterRead &Read,
-                        Wording &Words) {
-  auto Target = [&] {
-    const auto *Store = dyn_cast<StoreInst>(E.At);
-    return Words.variable(Store ? Store->getPointerOperand() : Read.Target);
-  };
-  switch (E.Kind) {
+static BlindSpot::KindTy kindOf(ValueEnd::KindTy Kind) {
+  switch (Kind) {
   case ValueEnd::Mixed:
-    return {BlindSpot::LostValue, E.At, Read.Name, whyLost(*E.At)};
   case ValueEnd::NoNumber:
-    return {BlindSpot::LostValue, E.At, Read.Name,
-            (Read.Type.empty() ? "a value of unknown type" : Read.Type) +
-                " is not followed"};
+    return BlindSpot::LostValue;
   case ValueEnd::Outcome:
-    return {BlindSpot::LostOutcome, E.At, Read.Name, whyLost(*E.At)};
+    return BlindSpot::LostOutcome;
   case ValueEnd::UnknownPointer:
-    return {BlindSpot::UnknownPointer, E.At, Read.Name,
-            "stored through a pointer to nowhere known"};
+    return BlindSpot::UnknownPointer;
   case ValueEnd::ManyTargets:
-    return {BlindSpot::ManyTargets, E.At, Read.Name,
-            "stored to one of very many variables"};
+    return BlindSpot::ManyTargets;
   case ValueEnd::Unread:
-    return {BlindSpot::Unread, E.At, Read.Name,
-            Wording::with("stored", "into", Target()) +
-                ", and nothing here reads it"};
+    return BlindSpot::Unread;
   }
   llvm_unreachable("no such kind");
 }
 
-static void addComparisons(const GatheredResults &Gathered,
-                           const ParamCallFinder::Result &Reads,
-                           std::vector<BlindSpot> &Out) {
-  for (const NotReported &N : Gathered.Others) {
-    const std::string &Name = Reads[N.Compared->Read].Name;
-    if (N.Why == NotReported::OutsideSources)
-      Out.push_back({BlindSpot::OutsideSources, &N.Compared->place(), Name,
-                     "compared in code that is not yours"});
-    else if (N.Why == NotReported::WithoutDebugInfo)
-      Out.push_back({BlindSpot::WithoutDebugInfo, &N.Compared->place(), Name,
-                     "compared in code without debug information"});
+std::string BlindSpot::text(const ParamCallFinder::Result &Reads,
+                            const Wording &Words) const {
+  switch (Kind) {
+  case LostValue:
+    if (IsNoNumber)
+      return (Reads[Read].Type.empty() ? "a value of unknown type"
+                                       : Reads[Read].Type) +
+             " is not followed";
+    return whyLost(*At);
+  case LostOutcome:
+    return whyLost(*At);
+  case UnknownPointer:
+    return "stored through a pointer to nowhere known";
+  case ManyTargets:
+    return "stored to one of very many variables";
+  case Unread: {
+    const auto *Store = dyn_cast<StoreInst>(At);
+    return Wording::with("stored", "into",
+                         Words.variable(Store ? Store->getPointerOperand()
+                                              : Reads[Read].Target)) +
+           ", and nothing here reads it";
   }
+  case DynamicName:
+    return "reads a parameter whose name is put together";
+  case OutsideSources:
+    return "compared in code that is not yours";
+  case WithoutDebugInfo:
+    return "compared in code without debug information";
+  case IndirectCall:
+    return "calls a function that is not known";
+  }
+  llvm_unreachable("no such kind");
 }
 
 /// Library code calls through pointers of its own all the time; what the user
@@ -79,8 +87,7 @@ static void addIndirectCalls(const CallGraphResult &Calls, Wording &Words,
   auto Add = [&](const CallBase *Call) {
     const DILocation *Place = Words.userPlace(*Call);
     if (Place && Place == Call->getDebugLoc().get())
-      Out.push_back({BlindSpot::IndirectCall, Call, "",
-                     "calls a function that is not known"});
+      Out.push_back({BlindSpot::IndirectCall, Call});
   };
   for (const CallBase *Call : Calls.unresolved()) {
     const Function *F = Call->getFunction();
@@ -98,13 +105,18 @@ std::vector<BlindSpot> findBlindSpots(const ParameterUsage &Usage,
                                       const CallGraphResult &Calls,
                                       Wording &Words) {
   std::vector<BlindSpot> All;
+  All.reserve(Usage.Ends.size());
   for (const ValueEnd &E : Usage.Ends)
-    All.push_back(spotOf(E, Reads[E.Read], Words));
+    All.push_back({kindOf(E.Kind), E.At, E.Read, E.Kind == ValueEnd::NoNumber});
   for (const ParameterRead &R : Reads)
     if (isDynamic(R.Name))
-      All.push_back({BlindSpot::DynamicName, R.Call, "",
-                     "reads a parameter whose name is put together"});
-  addComparisons(Gathered, Reads, All);
+      All.push_back({BlindSpot::DynamicName, R.Call});
+  for (const NotReported &N : Gathered.Others)
+    if (N.Why != NotReported::NotExposed)
+      All.push_back({N.Why == NotReported::OutsideSources
+                         ? BlindSpot::OutsideSources
+                         : BlindSpot::WithoutDebugInfo,
+                     &N.Compared->place(), N.Compared->Read});
   addIndirectCalls(Calls, Words, All);
   return All;
 }

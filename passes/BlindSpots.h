@@ -31,10 +31,14 @@ struct BlindSpot {
   };
   KindTy Kind;
   const llvm::Instruction *At;
-  std::string Parameter; ///< empty where it is about none
-  std::string What;      ///< in a few words
+  static constexpr unsigned None = ~0U;
+  unsigned Read = None;    ///< number of the read; None where it is about none
+  bool IsNoNumber = false; ///< a lost value, for it is of no type of numbers
 
   llvm::StringRef kindName() const;
+  /// What it is, in a few words.
+  std::string text(const ParamCallFinder::Result &Reads,
+                   const Wording &Words) const;
 };
 
 /// The blind spots of a module, in the order of the analyses.

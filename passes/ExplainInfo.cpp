@@ -3,6 +3,8 @@
 
 #include "Names.h"
 
+#include "llvm/ADT/DenseSet.h"
+
 #include <map>
 
 using namespace llvm;
@@ -13,11 +15,92 @@ namespace tpc {
 /// counted.
 static constexpr size_t MaxListed = 200;
 
-json::Array shortened(json::Array List) {
-  while (List.size() > MaxListed)
-    List.pop_back();
-  return List;
-}
+namespace {
+
+/// What there is to list: each place and parameter once, in the order of kinds,
+/// places and names. A large unit has millions, which is why there are only
+/// numbers here until it is known which few are told.
+class Listing {
+public:
+  using Place = std::tuple<std::string, unsigned, unsigned>;
+  struct Entry {
+    unsigned Kind, Place, Name, Index;
+    auto key() const { return std::make_tuple(Kind, Place, Name); }
+  };
+
+  Listing(const ParamCallFinder::Result &Reads, const Options &Opts)
+      : Opts(Opts) {
+    for (const ParameterRead &R : Reads)
+      Names.try_emplace(R.Name, 0);
+    unsigned Rank = 0;
+    for (auto &[Name, Number] : Names)
+      Number = ++Rank; // 0 is for what is about no parameter
+    for (const ParameterRead &R : Reads)
+      NameOf.push_back(Names.at(R.Name));
+  }
+
+  void add(unsigned Kind, const DILocation *Loc, unsigned Read,
+           unsigned Index) {
+    auto [It, New] = PlaceOf.try_emplace(Loc, 0);
+    if (New)
+      Places[place(Loc)].push_back(Loc);
+    Waiting.push_back({{Kind, 0, nameOf(Read), Index}, Loc});
+  }
+
+  /// The parameter \p Name at \p P, as place and name of an entry.
+  std::optional<std::pair<unsigned, unsigned>> at(const Place &P,
+                                                  const std::string &Name) {
+    auto Found = Places.find(P);
+    auto Named = Names.find(Name);
+    if (Found == Places.end() || Named == Names.end())
+      return std::nullopt;
+    return std::pair(rank(Found->second.front()), Named->second);
+  }
+
+  const std::vector<Entry> &sorted() {
+    unsigned Rank = 0;
+    for (auto &[P, Locs] : Places) {
+      for (const DILocation *Loc : Locs)
+        PlaceOf[Loc] = Rank;
+      ++Rank;
+    }
+    for (auto &[E, Loc] : Waiting) {
+      E.Place = rank(Loc);
+      Entries.push_back(E);
+    }
+    llvm::sort(Entries, [](const Entry &A, const Entry &B) {
+      return std::tuple_cat(A.key(), std::tuple(A.Index)) <
+             std::tuple_cat(B.key(), std::tuple(B.Index));
+    });
+    Entries.erase(std::unique(Entries.begin(), Entries.end(),
+                              [](const Entry &A, const Entry &B) {
+                                return A.key() == B.key();
+                              }),
+                  Entries.end());
+    return Entries;
+  }
+
+private:
+  Place place(const DILocation *Loc) const {
+    if (!Loc)
+      return {"", 0, 0};
+    return {Opts.relative(pathOf(Loc)), Loc->getLine(), Loc->getColumn()};
+  }
+  unsigned nameOf(unsigned Read) const {
+    return Read == BlindSpot::None ? 0 : NameOf[Read];
+  }
+  unsigned rank(const DILocation *Loc) const { return PlaceOf.lookup(Loc); }
+
+  const Options &Opts;
+  std::map<std::string, unsigned> Names;
+  std::vector<unsigned> NameOf; // by read
+  std::map<Place, SmallVector<const DILocation *, 1>> Places;
+  DenseMap<const DILocation *, unsigned> PlaceOf;
+  std::vector<std::pair<Entry, const DILocation *>> Waiting;
+  std::vector<Entry> Entries;
+};
+
+} // namespace
 
 json::Value SourceLines::line(StringRef Path, unsigned Number) {
   auto [It, New] = Files.try_emplace(Path);
@@ -75,56 +158,58 @@ json::Array ExplainInfo::path(const Comparison &C) {
   return List;
 }
 
-using Place = std::tuple<std::string, int64_t, int64_t, std::string>;
-
-static Place placeOf(const json::Object &O, StringRef Parameter) {
-  return {O.getString("file")->str(), *O.getInteger("lineno"),
-          *O.getInteger("column"), Parameter.str()};
-}
-
-json::Array ExplainInfo::notExposed(const json::Array &Comparisons) {
-  std::map<Place, json::Object> Found;
-  for (const NotReported &N : Gathered.Others) {
-    const DILocation *Loc = Words.userPlace(N.Compared->place());
-    if (N.Why != NotReported::NotExposed || !Loc)
-      continue;
-    const ParameterRead &Read = Reads[N.Compared->Read];
-    json::Object O = placed(Loc);
-    O["source"] = json::fixUTF8(Read.Name);
-    Place P = placeOf(O, *O.getString("source"));
-    Found.try_emplace(std::move(P), std::move(O));
-  }
+ListedPlaces ExplainInfo::notExposed(const json::Array &Comparisons) {
+  Listing All(Reads, Opts);
+  for (auto [Index, N] : enumerate(Gathered.Others))
+    if (const DILocation *Loc = Words.userPlace(N.Compared->place());
+        Loc && N.Why == NotReported::NotExposed)
+      All.add(0, Loc, N.Compared->Read, Index);
+  ListedPlaces Out;
+  const std::vector<Listing::Entry> &Sorted = All.sorted();
+  DenseSet<std::pair<unsigned, unsigned>> Exposed;
   for (const json::Value &V : Comparisons) {
     const json::Object &C = *V.getAsObject();
-    Found.erase(placeOf(C, C.getString("source").value_or("")));
+    if (auto Known = All.at({C.getString("file")->str(),
+                             static_cast<unsigned>(*C.getInteger("lineno")),
+                             static_cast<unsigned>(*C.getInteger("column"))},
+                            C.getString("source").value_or("").str()))
+      Exposed.insert(*Known);
   }
-  json::Array List;
-  for (auto &[P, O] : Found)
-    List.push_back(std::move(O));
-  return List;
+  for (const Listing::Entry &E : Sorted) {
+    if (Exposed.contains({E.Place, E.Name}) || Out.Count++ >= MaxListed)
+      continue;
+    const ParameterComparison &Compared = *Gathered.Others[E.Index].Compared;
+    json::Object O = placed(Words.userPlace(Compared.place()));
+    O["source"] = json::fixUTF8(Reads[Compared.Read].Name);
+    Out.List.push_back(std::move(O));
+  }
+  return Out;
 }
 
-json::Array ExplainInfo::blindSpots() {
-  std::map<std::pair<BlindSpot::KindTy, Place>, json::Object> Found;
-  for (const BlindSpot &S :
-       findBlindSpots(Usage, Reads, Gathered, Calls, Words)) {
+ListedPlaces ExplainInfo::blindSpots() {
+  const std::vector<BlindSpot> Spots =
+      findBlindSpots(Usage, Reads, Gathered, Calls, Words);
+  Listing All(Reads, Opts);
+  for (auto [Index, S] : enumerate(Spots)) {
     const DILocation *Loc = Words.userPlace(*S.At);
     // What a library does inside is its own business, and is counted.
-    if (!Loc && S.At->getDebugLoc())
-      continue;
-    json::Object O = placed(Loc);
-    Place P = placeOf(O, S.Parameter);
-    O["kind"] = S.kindName();
-    O["parameter"] = S.Parameter.empty()
-                         ? json::Value(nullptr)
-                         : json::Value(json::fixUTF8(S.Parameter));
-    O["what"] = json::fixUTF8(S.What);
-    Found.try_emplace({S.Kind, std::move(P)}, std::move(O));
+    if (Loc || !S.At->getDebugLoc())
+      All.add(S.Kind, Loc, S.Read, Index);
   }
-  json::Array List;
-  for (auto &[Key, O] : Found)
-    List.push_back(std::move(O));
-  return List;
+  ListedPlaces Out;
+  for (const Listing::Entry &E : All.sorted()) {
+    if (Out.Count++ >= MaxListed)
+      continue;
+    const BlindSpot &S = Spots[E.Index];
+    json::Object O = placed(Words.userPlace(*S.At));
+    O["kind"] = S.kindName();
+    O["parameter"] = S.Read == BlindSpot::None
+                         ? json::Value(nullptr)
+                         : json::Value(json::fixUTF8(Reads[S.Read].Name));
+    O["what"] = json::fixUTF8(S.text(Reads, Words));
+    Out.List.push_back(std::move(O));
+  }
+  return Out;
 }
 
 } // namespace tpc

@@ -29,6 +29,12 @@ private:
   llvm::StringMap<File> Files;
 };
 
+/// As many places as are listed, and how many there are.
+struct ListedPlaces {
+  llvm::json::Array List;
+  size_t Count = 0;
+};
+
 /// Writes down why a module's comparisons are found, and why others are not.
 class ExplainInfo {
 public:
@@ -40,10 +46,10 @@ public:
   /// Comparisons with parameters in the user's sources on which nothing
   /// exposed depends; without the places that are in \p Comparisons, where
   /// another instance of the same template is exposed.
-  llvm::json::Array notExposed(const llvm::json::Array &Comparisons);
+  ListedPlaces notExposed(const llvm::json::Array &Comparisons);
 
   /// The blind spots in the user's sources, and those that have no place.
-  llvm::json::Array blindSpots();
+  ListedPlaces blindSpots();
 
 private:
   llvm::json::Object placed(const llvm::DILocation *Loc);
@@ -57,9 +63,6 @@ private:
   Explainer Explain;
   SourceLines Lines;
 };
-
-/// Leaves as much of \p List as is listed.
-llvm::json::Array shortened(llvm::json::Array List);
 
 } // namespace tpc
 

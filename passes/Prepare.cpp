@@ -88,15 +88,16 @@ static void prepare(Module &M, const Options &Opts) {
       cast<Function>(F)->removeFnAttr(Attribute::AlwaysInline);
 }
 
-/// True where \p I only keeps a local variable in memory: promotion takes it
-/// away, and what takes its place stands for something else.
-static bool isLocalMemory(const Instruction &I) {
+/// True where \p I only keeps a local variable in memory that \p Copies has no
+/// more: promotion took it away, and what took its place stands for something
+/// else.
+static bool isPromoted(const Instruction &I, ValueToValueMapTy &Copies) {
   const Value *Pointer = getLoadStorePointerOperand(&I);
   if (!Pointer)
     return isa<AllocaInst>(I);
   while (const auto *GEP = dyn_cast<GEPOperator>(Pointer))
     Pointer = GEP->getPointerOperand();
-  return isa<AllocaInst>(Pointer);
+  return isa<AllocaInst>(Pointer) && !Copies.lookup(Pointer);
 }
 
 /// Takes away the marks of -O0.
@@ -120,8 +121,8 @@ static void callByOwnName(Module &M) {
       });
 }
 
-/// Inlines the functions whose comparisons are their callers' in \p M, code of
-/// -O0: a report inside them would be one for all calls.
+/// Inlines the functions whose comparisons are their callers' in \p M: a report
+/// inside them would be one for all calls.
 static void inlineTransparent(Module &M) {
   std::string Error;
   const Rules &Tables = Rules::ofThisLink(Error);
@@ -139,32 +140,25 @@ static void inlineTransparent(Module &M) {
     inlineMarked(M, /*Promote=*/false);
 }
 
-AnalysedModule::AnalysedModule(Module &M, const Options &Opts) : Original(M) {
+AnalysedModule::AnalysedModule(Module &M, const Options &Opts) {
   callByOwnName(M);
-  bool Unoptimised = any_of(M, [](const Function &F) {
-    return F.hasFnAttribute(Attribute::OptimizeNone);
-  });
-  if (!Unoptimised) {
-    prepare(M, Opts);
-    return;
-  }
   inlineTransparent(M);
   ValueToValueMapTy Map;
   Copy = CloneModule(M, Map);
   allowOptimisation(*Copy);
   prepare(*Copy, Opts);
   // The map follows what promotion replaces; in the order of the program the
-  // instruction itself comes before those that it stands in for.
+  // instruction itself comes before those that it stands in for. Unreachable
+  // code, where an address may be computed from itself, is not in the map.
   for (Function &F : M)
     for (Instruction &I : instructions(F))
-      if (!isLocalMemory(I))
-        if (auto *C = dyn_cast_or_null<Instruction>(Map.lookup(&I));
-            C && C->getOpcode() == I.getOpcode())
-          Back.try_emplace(C, &I);
+      if (auto *C = dyn_cast_or_null<Instruction>(Map.lookup(&I));
+          C && C->getOpcode() == I.getOpcode() && !isPromoted(I, Map))
+        Back.try_emplace(C, &I);
 }
 
 Value *AnalysedModule::original(Value *V) const {
-  if (!Copy || isa<Constant>(V))
+  if (isa<Constant>(V))
     return V;
   return Back.lookup(V);
 }

@@ -2,11 +2,10 @@
 //
 // The analysis wants local variables as SSA values, and small functions of
 // libraries (a message's accessors, std::max, a smart pointer's arrow) inside
-// their callers, so that each use of them stands for itself. Code that was
-// compiled to be optimised gets that anyway, so it is done in place. Code that
-// was compiled with -O0 must stay as it is: there a copy is analysed, and what
-// is found is carried back. Either way the same instructions are seen, and the
-// findings are the same at every level.
+// their callers, so that each use of them stands for itself. That is done to a
+// copy, and what is found is carried back: what the user gets is the program as
+// the compiler would have made it without us, at every level. The findings are
+// the same at every level, too.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_PREPARE_H
@@ -28,13 +27,12 @@ class AnalysedModule {
 public:
   AnalysedModule(llvm::Module &M, const Options &Opts);
 
-  llvm::Module &module() { return Copy ? *Copy : Original; }
+  llvm::Module &module() { return *Copy; }
   /// What \p V of the analysed module is in the original; null where it is
   /// nothing there (a value that promotion made).
   llvm::Value *original(llvm::Value *V) const;
 
 private:
-  llvm::Module &Original;
   std::unique_ptr<llvm::Module> Copy;
   llvm::DenseMap<const llvm::Value *, llvm::Value *> Back;
 };

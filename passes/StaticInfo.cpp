@@ -271,16 +271,16 @@ json::Object describe(Module &M, ModuleAnalysisManager &AM,
   Unit["status"] = "ok";
   Unit["failure"] = nullptr;
   json::Object Counts = D.counts(Comparisons);
-  json::Array NotExposed = D.explain().notExposed(Comparisons);
-  json::Array BlindSpots = D.explain().blindSpots();
-  Counts["not_exposed"] = static_cast<int64_t>(NotExposed.size());
-  Counts["blind_spots"] = static_cast<int64_t>(BlindSpots.size());
+  ListedPlaces NotExposed = D.explain().notExposed(Comparisons);
+  ListedPlaces BlindSpots = D.explain().blindSpots();
+  Counts["not_exposed"] = static_cast<int64_t>(NotExposed.Count);
+  Counts["blind_spots"] = static_cast<int64_t>(BlindSpots.Count);
   Unit["counts"] = std::move(Counts);
   Unit["parameters"] = D.parameters();
   Unit["exposing"] = D.exposing();
   Unit["comparisons"] = std::move(Comparisons);
-  Unit["not_exposed"] = shortened(std::move(NotExposed));
-  Unit["blind_spots"] = shortened(std::move(BlindSpots));
+  Unit["not_exposed"] = std::move(NotExposed.List);
+  Unit["blind_spots"] = std::move(BlindSpots.List);
   return Unit;
 }
 
