@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from tests.oracle.control import ControlDependence
-from tests.oracle.ir import Argument, Function, Instruction, Module, Place, Value, number, parse
+from tests.oracle.ir import Argument, Function, Instruction, Place, Value, number, parse
 from tests.oracle.memory import SILENT, Memory, Program, extent
 
 RELATIONS = {"eq": "==", "ne": "!=", "gt": ">", "ge": ">=", "lt": "<", "le": "<="}
@@ -56,6 +56,7 @@ class Rules:
     """The rows of SPEC 2 that the test header ros/ros.h has, by mangled name."""
 
     READ = re.compile(r"_ZNK3ros10NodeHandle(5param|8getParam)")
+    DEFAULTED = re.compile(r"_ZNK3ros10NodeHandle5param")
     EXPOSING = re.compile(r"_ZNK?3ros(9Publisher7publish|13ServiceClient4call)")
     OPAQUE = re.compile(r"_ZNK?St7__cxx1112basic_string")
 
@@ -91,22 +92,26 @@ class Compared:
     predicate: Instruction
 
 
-def check(text: str, excluded: str) -> set[Finding]:
-    """The findings of a module, in code that is not below `excluded` nor below /usr."""
+def check(text: str, excluded: str, is_narrow: bool = False) -> set[Finding]:
+    """The findings of a module, in code that is not below `excluded` nor below /usr.
+
+    `is_narrow`: writes that are surely replaced are not seen, wherever the variable is.
+    """
 
     def is_user(file: str) -> bool:
         return bool(file) and not file.startswith((excluded, "/usr/"))
 
-    return Checker(parse(text, is_user), is_user).findings()
+    module = parse(text, is_user)
+    memory = Memory(Program(module, Rules()), is_narrow)
+    return Checker(memory, is_user).findings()
 
 
 class Checker:
     """The analysis of one module."""
 
-    def __init__(self, module: Module, is_user: Callable[[str], bool]) -> None:
-        self.module, self.rules, self.is_user = module, Rules(), is_user
-        self.program = Program(module, self.rules)
-        self.memory = Memory(module, self.program)
+    def __init__(self, memory: Memory, is_user: Callable[[str], bool]) -> None:
+        self.memory, self.program, self.is_user = memory, memory.program, is_user
+        self.rules = Rules()
         self.control = {f: ControlDependence(f) for f in self.program.functions}
         self.users: dict[Value, list[Instruction]] = defaultdict(list)
         self.sees: dict[Instruction, list[Instruction]] = defaultdict(list)
@@ -215,7 +220,8 @@ class Checker:
         out: set[Instruction] = set()
         for a in call.arguments:
             for at in self.memory.of(a):
-                out |= {w.by for w in self.memory.writes_to(at, 1)} - {call}
+                writes = {w.by for w in self.memory.writes_to(at, 1)} - {call}
+                out |= self.memory.seen(at, 1, writes, call)
         return out
 
     def writes_behind(self, call: Instruction) -> set[Instruction]:
@@ -231,7 +237,9 @@ class Checker:
                 continue
             seen.add((o, at, size))
             end = 1 << 30 if size is None else at + size
-            out |= {w.by for w in self.memory.writes_to((o, at), end - at)} - {call}
+            for w in self.memory.writes_to((o, at), end - at):
+                if w.by is not call:
+                    out |= self.memory.seen(w.at, w.size, {w.by}, call)
             for c in self.memory.copies:
                 if c.to[0] is o and c.to[1] < end and at < c.to[1] + c.size:
                     out.add(c.by)

@@ -9,9 +9,7 @@ from tests.oracle.ir import parse
 
 SEEDS = range(1000, 1200)
 # Seeds that differ, and how. One that agrees again must be taken out.
-KNOWN = {
-    1049: "a global that is surely written anew after the read is not compared as it was read",
-}
+KNOWN: dict[int, str] = {}
 
 needs_passes = pytest.mark.skipif(not run.PLUGIN.exists(), reason="the passes are not built")
 
