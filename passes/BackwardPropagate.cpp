@@ -179,10 +179,8 @@ void Slicer::defineMemory(const Value *Pointer, const Instruction &At) {
 void Slicer::phi(const PHINode &Phi) {
   for (unsigned N = 0; N < Phi.getNumIncomingValues(); ++N) {
     define(Phi.getIncomingValue(N));
-    const BasicBlock *From = Phi.getIncomingBlock(N);
-    if (isPredicate(*From->getTerminator()))
-      decides(const_cast<Instruction *>(From->getTerminator()), Why::Chooses);
-    for (Instruction *Predicate : Ifs.controllers(From))
+    for (Instruction *Predicate :
+         Ifs.choosers(Phi.getIncomingBlock(N), Phi.getParent()))
       decides(Predicate, Why::Chooses);
   }
 }
@@ -211,6 +209,10 @@ void Slicer::callResult(CallBase &Call) {
 /// \p Call is handed an object that matters: it may put its other arguments
 /// into it, and what is written through a pointer that it returns is in it.
 void Slicer::touchingCall(CallBase &Call) {
+  // What an exposing statement shows is in the slice from the beginning; the
+  // publisher that does it is not among it.
+  if (Seen.lookup(&Call) & Exposes)
+    return;
   defineArguments(Call);
   if (Call.getType()->isPointerTy())
     derivedPointer(&Call);

@@ -11,6 +11,8 @@
 #include "llvm/IR/InstIterator.h"
 #include "llvm/IR/Module.h"
 
+#include <map>
+
 using namespace llvm;
 
 namespace tpc {
@@ -48,11 +50,30 @@ static bool doesSomething(const BasicBlock &BB) {
   });
 }
 
-const BasicBlock *decidedWay(const BasicBlock *From, const BasicBlock *BB) {
-  const Instruction *T = BB->getTerminator();
-  if (!isPredicate(*T))
+/// Merged values that are constant on one way through the program.
+using KnownMerges = SmallDenseMap<const PHINode *, const ConstantInt *, 4>;
+
+/// Adds to \p Known what the merges of \p BB are where it is entered from
+/// \p From.
+static void enterBlock(const BasicBlock *From, const BasicBlock &BB,
+                       KnownMerges &Known) {
+  SmallVector<std::pair<const PHINode *, const ConstantInt *>, 4> Now;
+  for (const PHINode &Phi : BB.phis()) {
+    const Value *In = Phi.getIncomingValueForBlock(From);
+    const auto *Merge = dyn_cast<PHINode>(In);
+    Now.emplace_back(&Phi,
+                     Merge ? Known.lookup(Merge) : dyn_cast<ConstantInt>(In));
+  }
+  for (const auto &[Phi, C] : Now)
+    Known[Phi] = C;
+}
+
+/// Where \p T surely goes on to; null where that is open.
+static const BasicBlock *surelyNext(const Instruction &T,
+                                    const KnownMerges &Known) {
+  if (!isPredicate(T))
     return nullptr;
-  const Value *Condition = conditionOf(*T);
+  const Value *Condition = conditionOf(T);
   bool Negated = false;
   while (const auto *I = dyn_cast<Instruction>(Condition)) {
     if (I->getOpcode() == Instruction::Xor && I->getType()->isIntegerTy(1) &&
@@ -63,19 +84,42 @@ const BasicBlock *decidedWay(const BasicBlock *From, const BasicBlock *BB) {
     Condition = I->getOperand(0);
   }
   const auto *Phi = dyn_cast<PHINode>(Condition);
-  if (!Phi || Phi->getParent() != BB)
-    return nullptr;
-  const auto *C = dyn_cast<ConstantInt>(Phi->getIncomingValueForBlock(From));
+  const ConstantInt *C = Phi ? Known.lookup(Phi) : nullptr;
   if (!C)
     return nullptr;
-  if (const auto *Br = dyn_cast<BranchInst>(T))
+  if (const auto *Br = dyn_cast<BranchInst>(&T))
     return Br->getSuccessor(C->isZero() == Negated ? 0 : 1);
-  const auto *Switch = cast<SwitchInst>(T);
+  const auto *Switch = cast<SwitchInst>(&T);
   for (auto Case : Switch->cases())
     if (Case.getCaseValue()->getValue() ==
         C->getValue().zextOrTrunc(Case.getCaseValue()->getBitWidth()))
       return Case.getCaseSuccessor();
   return Switch->getDefaultDest();
+}
+
+/// The blocks from \p BB on that surely follow each other where \p BB is
+/// entered from \p From, as far as that is sure. The last one's ways are open;
+/// where the first one's are, there is none.
+static SmallVector<const BasicBlock *, 4> decidedPath(const BasicBlock *From,
+                                                      const BasicBlock *BB) {
+  KnownMerges Known;
+  SmallVector<const BasicBlock *, 4> Path;
+  while (!is_contained(Path, BB)) {
+    enterBlock(From, *BB, Known);
+    const BasicBlock *Next = surelyNext(*BB->getTerminator(), Known);
+    if (!Next)
+      break;
+    Path.push_back(BB);
+    From = std::exchange(BB, Next);
+  }
+  if (!Path.empty())
+    Path.push_back(BB);
+  return Path;
+}
+
+const BasicBlock *decidedWay(const BasicBlock *From, const BasicBlock *BB) {
+  SmallVector<const BasicBlock *, 4> Path = decidedPath(From, BB);
+  return Path.empty() ? nullptr : Path.back();
 }
 
 /// True where the program ends soon after \p BB, or leaves by an exception,
@@ -93,54 +137,103 @@ static bool endsProgram(const BasicBlock *BB) {
   return false;
 }
 
-/// The flow graph of \p F without the edges that exceptions take, and with
-/// the two nodes of Ferrante et al. behind the blocks: the entry, from which
-/// the function is either entered or not, and the end of not entering it.
+namespace {
+
+/// The flow graphs of a function, without the edges that exceptions take, and
+/// with the two nodes of Ferrante et al. behind the blocks: the entry, from
+/// which the function is either entered or not, and the end of not entering it.
 ///
 /// Checks of libraries (that a pointer is not null, that a function is there)
 /// that end the program are left out as exceptions are: nobody who reads the
 /// source sees them.
-///
-/// With \p Threaded, an edge into a block that is decided by the edge goes on
-/// to where the block then leads.
-static FlowGraph flowGraphOf(const Function &F,
-                             const DenseMap<const BasicBlock *, unsigned> &Id,
-                             bool Threaded, UserSources &Sources) {
-  FlowGraph Graph(F.size() + 2);
-  Graph[F.size()] = {Id.lookup(&F.getEntryBlock()),
-                     static_cast<unsigned>(F.size()) + 1};
+class Flow {
+public:
+  /// A node for a block as it is on a way that is decided before it is entered.
+  struct Copy {
+    const BasicBlock *BB, *Next;
+    unsigned Node;
+  };
+
+  Flow(Function &F, UserSources &Sources);
+
+  /// The blocks, in order; the number of one is that of its node.
+  SmallVector<BasicBlock *, 32> Blocks;
+  FlowGraph Plain;
+  /// Edges into blocks that are decided by the edge lead to copies of them.
+  FlowGraph Threaded;
+  SmallVector<Copy, 8> Copies;
+  /// Blocks that are also entered where their ways are open, or by exceptions.
+  std::vector<bool> Entered;
+
+private:
+  unsigned copy(ArrayRef<const BasicBlock *> Path);
+  void findEntered();
+
+  DenseMap<const BasicBlock *, unsigned> Id;
+  std::map<std::vector<unsigned>, unsigned> ByPath;
+};
+
+} // namespace
+
+Flow::Flow(Function &F, UserSources &Sources)
+    : Plain(F.size() + 2), Threaded(F.size() + 2) {
+  for (BasicBlock &BB : F) {
+    Id[&BB] = Blocks.size();
+    Blocks.push_back(&BB);
+  }
+  unsigned Size = Blocks.size();
+  Plain[Size] = Threaded[Size] = {Id.lookup(&F.getEntryBlock()), Size + 1};
   for (const BasicBlock &BB : F) {
-    std::vector<unsigned> &Succs = Graph[Id.lookup(&BB)];
-    if (const auto *Invoke = dyn_cast<InvokeInst>(BB.getTerminator())) {
-      Succs.push_back(Id.lookup(Invoke->getNormalDest()));
+    unsigned N = Id.lookup(&BB);
+    const Instruction *T = BB.getTerminator();
+    if (const auto *Invoke = dyn_cast<InvokeInst>(T)) {
+      Plain[N] = Threaded[N] = {Id.lookup(Invoke->getNormalDest())};
       continue;
     }
-    const Instruction *T = BB.getTerminator();
     bool Library = T->getNumSuccessors() == 2 && T->getDebugLoc() &&
                    !Sources.has(T->getDebugLoc());
     for (const BasicBlock *Succ : successors(&BB)) {
       if (Library && endsProgram(Succ) &&
           !endsProgram(T->getSuccessor(Succ == T->getSuccessor(0) ? 1 : 0)))
         continue;
-      const BasicBlock *On = Threaded ? decidedWay(&BB, Succ) : nullptr;
-      Succs.push_back(Id.lookup(On ? On : Succ));
+      Plain[N].push_back(Id.lookup(Succ));
+      SmallVector<const BasicBlock *, 4> Path = decidedPath(&BB, Succ);
+      unsigned On = Path.empty() ? Id.lookup(Succ) : copy(Path);
+      Threaded[N].push_back(On);
     }
   }
-  return Graph;
+  findEntered();
 }
 
-/// Takes the ways out of the blocks that all edges of \p Threaded were led
-/// past: there is nothing that they decide. Blocks that no edge of \p Plain
-/// leads to stay, an exception does.
-static std::vector<bool> leaveOutBypassed(const FlowGraph &Plain,
-                                          FlowGraph &Threaded) {
-  std::vector<bool> Entered(Plain.size()), Reached(Plain.size());
+/// The node that stands for the way through \p Path, up to its last block.
+unsigned Flow::copy(ArrayRef<const BasicBlock *> Path) {
+  if (Path.size() == 1)
+    return Id.lookup(Path.front());
+  std::vector<unsigned> Key;
+  for (const BasicBlock *BB : Path)
+    Key.push_back(Id.lookup(BB));
+  auto [It, New] = ByPath.try_emplace(Key, Threaded.size());
+  unsigned Node = It->second;
+  if (New) {
+    Threaded.emplace_back();
+    Copies.push_back({Path[0], Path[1], Node});
+    unsigned Next = copy(Path.drop_front());
+    Threaded[Node] = {Next};
+  }
+  return Node;
+}
+
+/// Takes the ways out of the blocks that all edges were led past: there is
+/// nothing that they decide. Blocks that no edge leads to stay, an exception
+/// does.
+void Flow::findEntered() {
+  std::vector<bool> HasEdge(Plain.size()), Reached(Threaded.size());
   for (const std::vector<unsigned> &Succs : Plain)
     for (unsigned S : Succs)
-      Entered[S] = true;
+      HasEdge[S] = true;
   std::vector<unsigned> Work;
   for (unsigned N = 0; N < Plain.size(); ++N)
-    if (!Entered[N])
+    if (!HasEdge[N])
       Work.push_back(N);
   while (!Work.empty()) {
     unsigned N = Work.back();
@@ -153,7 +246,33 @@ static std::vector<bool> leaveOutBypassed(const FlowGraph &Plain,
   for (unsigned N = 0; N < Plain.size(); ++N)
     if (!Reached[N])
       Threaded[N].clear();
-  return Reached;
+  Entered.assign(Reached.begin(), Reached.begin() + Blocks.size());
+}
+
+/// What the nodes in \p Depends are as predicates; others of them decide
+/// nothing.
+static SmallVector<Instruction *, 2>
+predicatesIn(ArrayRef<unsigned> Depends, ArrayRef<BasicBlock *> Blocks) {
+  SmallVector<Instruction *, 2> Found;
+  for (unsigned N : Depends)
+    if (N < Blocks.size() && isPredicate(*Blocks[N]->getTerminator()))
+      Found.push_back(Blocks[N]->getTerminator());
+  return Found;
+}
+
+SmallVector<Instruction *, 4>
+IfStatementsResult::choosers(const BasicBlock *From,
+                             const BasicBlock *BB) const {
+  SmallVector<Instruction *, 4> Found;
+  auto It = Decided.find({From, BB});
+  if (It != Decided.end())
+    append_range(Found, It->second);
+  if (It != Decided.end() && Bypassed.contains(From))
+    return Found;
+  if (const Instruction *T = From->getTerminator(); isPredicate(*T))
+    Found.push_back(const_cast<Instruction *>(T));
+  append_range(Found, controllers(From));
+  return Found;
 }
 
 IfStatementsResult IfStatements::run(Module &M, ModuleAnalysisManager &) {
@@ -166,37 +285,32 @@ IfStatementsResult IfStatements::run(Module &M, ModuleAnalysisManager &) {
     for (Instruction &I : instructions(F))
       if (isPredicate(I))
         R.Predicates.push_back(&I);
-    DenseMap<const BasicBlock *, unsigned> Id;
-    SmallVector<BasicBlock *, 32> Blocks;
-    for (BasicBlock &BB : F) {
-      Id[&BB] = Blocks.size();
-      Blocks.push_back(&BB);
+    Flow Graphs(F, Sources);
+    ArrayRef<BasicBlock *> Blocks = Graphs.Blocks;
+    auto Depends = controlDependence(Graphs.Threaded);
+    SmallPtrSet<const BasicBlock *, 8> Passed;
+    for (const Flow::Copy &C : Graphs.Copies) {
+      Passed.insert(C.BB);
+      append_range(R.Decided[{C.BB, C.Next}],
+                   predicatesIn(Depends[C.Node], Blocks));
     }
-    FlowGraph Plain = flowGraphOf(F, Id, /*Threaded=*/false, Sources);
-    FlowGraph Threaded = flowGraphOf(F, Id, /*Threaded=*/true, Sources);
-    std::vector<bool> Reached = leaveOutBypassed(Plain, Threaded);
-    auto Depends = controlDependence(Threaded);
-    if (Plain != Threaded) {
+    if (!Passed.empty()) {
       // What a block does that edges were led past is done on all of them;
       // one that does nothing is only the end of a condition.
-      auto Before = controlDependence(Plain);
-      for (unsigned N = 0; N < Blocks.size(); ++N)
-        if (!Reached[N] ||
-            (doesSomething(*Blocks[N]) &&
-             any_of(predecessors(Blocks[N]), [&](const BasicBlock *P) {
-               return decidedWay(P, Blocks[N]);
-             })))
+      auto Before = controlDependence(Graphs.Plain);
+      for (unsigned N = 0; N < Blocks.size(); ++N) {
+        if (!Graphs.Entered[N])
+          R.Bypassed.insert(Blocks[N]);
+        if (!Graphs.Entered[N] ||
+            (doesSomething(*Blocks[N]) && Passed.contains(Blocks[N])))
           Depends[N] = Before[N];
+      }
     }
     for (unsigned N = 0; N < Blocks.size(); ++N) {
-      SmallVector<Instruction *, 2> Controllers;
-      bool ByEntry = Depends[N].empty();
-      for (unsigned Branch : Depends[N])
-        if (Branch >= Blocks.size())
-          ByEntry = true;
-        else if (Instruction *T = Blocks[Branch]->getTerminator();
-                 isPredicate(*T))
-          Controllers.push_back(T);
+      bool ByEntry =
+          Depends[N].empty() || is_contained(Depends[N], Blocks.size());
+      SmallVector<Instruction *, 2> Controllers =
+          predicatesIn(Depends[N], Blocks);
       if (!Controllers.empty())
         R.Controllers[Blocks[N]] = std::move(Controllers);
       if (ByEntry)

@@ -22,10 +22,11 @@ bool isPredicate(const llvm::Instruction &I);
 /// What \p Predicate decides by.
 llvm::Value *conditionOf(const llvm::Instruction &Predicate);
 
-/// Where \p BB is entered from \p From, the way that its terminator then goes
-/// for sure, because it decides by a value that is constant on this edge:
-/// clang ends the conditions of loops and variables, and scopes with something
-/// to clean up, in such a block. Null where both ways stay open.
+/// Where \p BB is entered from \p From, where its terminator then goes for
+/// sure, because it decides by a value that is constant on this edge: clang
+/// ends the conditions of loops and variables, and scopes with something to
+/// clean up, in such a block, and scopes in scopes in several, one after the
+/// other. Null where both ways stay open.
 const llvm::BasicBlock *decidedWay(const llvm::BasicBlock *From,
                                    const llvm::BasicBlock *BB);
 
@@ -40,6 +41,9 @@ public:
   bool isControlledByEntry(const llvm::BasicBlock *BB) const {
     return ByEntry.contains(BB);
   }
+  /// The predicates that choose the way from \p From to \p BB.
+  llvm::SmallVector<llvm::Instruction *, 4>
+  choosers(const llvm::BasicBlock *From, const llvm::BasicBlock *BB) const;
   /// All predicates, in the order of the module.
   llvm::ArrayRef<llvm::Instruction *> predicates() const { return Predicates; }
 
@@ -49,6 +53,12 @@ private:
                  llvm::SmallVector<llvm::Instruction *, 2>>
       Controllers;
   llvm::DenseSet<const llvm::BasicBlock *> ByEntry;
+  /// Of edges that are also gone where that was decided before: by what.
+  llvm::DenseMap<std::pair<const llvm::BasicBlock *, const llvm::BasicBlock *>,
+                 llvm::SmallVector<llvm::Instruction *, 2>>
+      Decided;
+  /// Blocks that are entered only where it is decided how they go on.
+  llvm::DenseSet<const llvm::BasicBlock *> Bypassed;
   llvm::SmallVector<llvm::Instruction *, 0> Predicates;
 };
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import re
+import struct
 from collections import defaultdict
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from tests.oracle.control import ControlDependence
-from tests.oracle.ir import Argument, Function, Instruction, Module, Place, Value, number, parse
+from tests.oracle.ir import Argument, Function, Instruction, Place, Value, number, parse
 from tests.oracle.memory import SILENT, Memory, Program, extent
 
 RELATIONS = {"eq": "==", "ne": "!=", "gt": ">", "ge": ">=", "lt": "<", "le": "<="}
@@ -18,10 +19,44 @@ ARITHMETIC = {"add", "sub", "mul", "sdiv", "udiv", "fadd", "fsub", "fmul", "fdiv
 Context = tuple[Instruction, ...]
 
 
+@dataclass(frozen=True)
+class How:
+    """What was done to a parameter's value: scale * x + offset, or more than that (`other`).
+
+    `bits` is the width of an integer type that the value is known to fit into; 0: none.
+    """
+
+    scale: float = 1.0
+    offset: float = 0.0
+    other: bool = False
+    bits: int = 0
+
+    @property
+    def is_none(self) -> bool:
+        return (self.scale, self.offset, self.other) == (1.0, 0.0, False)
+
+    def affine(self, scale: float, offset: float) -> How:
+        return How(self.scale * scale, self.offset * scale + offset, self.other)
+
+    def anything(self, bits: int = 0) -> How:
+        return How(other=True, bits=bits)
+
+
+@dataclass(frozen=True)
+class State:
+    """A value on the way forward; `origin` is what it was before it was merged with others."""
+
+    value: Value
+    how: How
+    context: Context
+    origin: Value | None = None
+
+
 class Rules:
     """The rows of SPEC 2 that the test header ros/ros.h has, by mangled name."""
 
     READ = re.compile(r"_ZNK3ros10NodeHandle(5param|8getParam)")
+    DEFAULTED = re.compile(r"_ZNK3ros10NodeHandle5param")
     EXPOSING = re.compile(r"_ZNK?3ros(9Publisher7publish|13ServiceClient4call)")
     OPAQUE = re.compile(r"_ZNK?St7__cxx1112basic_string")
 
@@ -57,22 +92,26 @@ class Compared:
     predicate: Instruction
 
 
-def check(text: str, excluded: str) -> set[Finding]:
-    """The findings of a module, in code that is not below `excluded` nor below /usr."""
+def check(text: str, excluded: str, is_narrow: bool = False) -> set[Finding]:
+    """The findings of a module, in code that is not below `excluded` nor below /usr.
+
+    `is_narrow`: writes that are surely replaced are not seen, wherever the variable is.
+    """
 
     def is_user(file: str) -> bool:
         return bool(file) and not file.startswith((excluded, "/usr/"))
 
-    return Checker(parse(text, is_user), is_user).findings()
+    module = parse(text, is_user)
+    memory = Memory(Program(module, Rules()), is_narrow)
+    return Checker(memory, is_user).findings()
 
 
 class Checker:
     """The analysis of one module."""
 
-    def __init__(self, module: Module, is_user: Callable[[str], bool]) -> None:
-        self.module, self.rules, self.is_user = module, Rules(), is_user
-        self.program = Program(module, self.rules)
-        self.memory = Memory(module, self.program)
+    def __init__(self, memory: Memory, is_user: Callable[[str], bool]) -> None:
+        self.memory, self.program, self.is_user = memory, memory.program, is_user
+        self.rules = Rules()
         self.control = {f: ControlDependence(f) for f in self.program.functions}
         self.users: dict[Value, list[Instruction]] = defaultdict(list)
         self.sees: dict[Instruction, list[Instruction]] = defaultdict(list)
@@ -181,7 +220,8 @@ class Checker:
         out: set[Instruction] = set()
         for a in call.arguments:
             for at in self.memory.of(a):
-                out |= {w.by for w in self.memory.writes_to(at, 1)} - {call}
+                writes = {w.by for w in self.memory.writes_to(at, 1)} - {call}
+                out |= self.memory.seen(at, 1, writes, call)
         return out
 
     def writes_behind(self, call: Instruction) -> set[Instruction]:
@@ -197,7 +237,9 @@ class Checker:
                 continue
             seen.add((o, at, size))
             end = 1 << 30 if size is None else at + size
-            out |= {w.by for w in self.memory.writes_to((o, at), end - at)} - {call}
+            for w in self.memory.writes_to((o, at), end - at):
+                if w.by is not call:
+                    out |= self.memory.seen(w.at, w.size, {w.by}, call)
             for c in self.memory.copies:
                 if c.to[0] is o and c.to[1] < end and at < c.to[1] + c.size:
                     out.add(c.by)
@@ -231,34 +273,45 @@ class Checker:
 
     def follow(self, name: str, begin: Instruction, out: set[Compared]) -> None:
         """From the value `begin` to the comparisons."""
-        todo: list[tuple[Value, bool, Context, Value | None]] = [(begin, False, (), None)]
+        todo = [State(begin, How(), ())]
         seen = set(todo)
+        ways: dict[Value, set[How]] = defaultdict(set)
         while todo:
-            value, derived, context, origin = todo.pop()
-            new: list[tuple[Value, bool, Context, Value | None]] = []
-            for user in self.users[value]:
-                if user.opcode in ("icmp", "fcmp"):
-                    self.compared(name, value, derived, user, out, context)
-                elif is_joined(user, value):
-                    if not derived:
-                        self.flag(name, value, self.decides(user, context), out)
-                elif user.opcode in ARITHMETIC | {"fneg"} and self.is_constant_arithmetic(
-                    user, value
-                ):
-                    new.append((user, True, context, None))
-                elif decides_by(user, value):
-                    if not derived:
-                        out.add(Compared(name, "flag", "flag", origin or user, user))
-                else:
-                    # What is merged with other values stands where it was its own.
-                    begins = origin or (value if isinstance(value, Instruction) else None)
-                    merged = begins if user.opcode in ("phi", "select") else None
-                    kept = origin if user.opcode in CASTS | {"freeze"} else merged
-                    new += [(v, derived, c, kept) for v, c in self.carried(user, value, context)]
-            for item in new:
-                if item not in seen:
-                    seen.add(item)
-                    todo.append(item)
+            at = todo.pop()
+            for user in self.users[at.value]:
+                for item in self.after(name, at, user, out):
+                    ways[item.value].add(item.how)
+                    # In a loop, arithmetic has no end.
+                    many = len(ways[item.value]) > 6
+                    new = replace(item, how=item.how.anything()) if many else item
+                    if new not in seen:
+                        seen.add(new)
+                        todo.append(new)
+
+    def after(self, name: str, at: State, user: Instruction, out: set[Compared]) -> list[State]:
+        """Where `user` carries the value on to; what it compares or decides goes into `out`."""
+        value, how, context, origin = at.value, at.how, at.context, at.origin
+        if user.opcode in ("icmp", "fcmp"):
+            self.compared(name, at, user, out)
+        elif is_joined(user, value):
+            if how.is_none:
+                self.flag(name, value, self.decides(user, context), out)
+        elif decides_by(user, value):
+            if how.is_none:
+                out.add(Compared(name, "flag", "flag", origin or user, user))
+            elif user.opcode == "switch":
+                out.add(Compared(name, "derived", "flag", origin or user, user))
+        elif user.opcode in CASTS:
+            return [State(user, cast(how, user), context, origin)]
+        elif changed := self.computed(how, user, value):
+            return [State(user, changed, context)]
+        else:
+            # What is merged with other values stands where it was its own.
+            begins = origin or (value if isinstance(value, Instruction) else None)
+            merged = begins if user.opcode in ("phi", "select") else None
+            kept = origin if user.opcode == "freeze" else merged
+            return [State(v, how, c, kept) for v, c in self.carried(user, value, context)]
+        return []
 
     def flag(
         self, name: str, value: Value, decided: dict[Instruction, bool], out: set[Compared]
@@ -267,34 +320,43 @@ class Checker:
         for predicate, direct in decided.items():
             out.add(Compared(name, "flag", "flag", predicate if direct else value, predicate))
 
-    def compared(
-        self,
-        name: str,
-        value: Value,
-        derived: bool,
-        by: Instruction,
-        out: set[Compared],
-        context: Context,
-    ) -> None:
+    def compared(self, name: str, at: State, by: Instruction, out: set[Compared]) -> None:
         left, right = by.operands
         if left is right:
             return
-        is_flag = by.predicate in ("ne", "une") and is_zero(right) and not derived
+        is_flag = by.predicate in ("ne", "une") and is_zero(right) and at.how.is_none
         relation = RELATIONS[by.predicate[-2:]]
-        relation = SWAPPED[relation] if left is value else relation
-        type_ = "derived" if derived else "parameter"
+        relation = SWAPPED[relation] if left is at.value else relation
         if is_flag:
-            self.flag(name, by, self.decides(by, context), out)
+            self.flag(name, by, self.decides(by, at.context), out)
             return
-        for predicate in self.decides(by, context):
+        type_ = "parameter" if at.how.is_none else "derived"
+        for predicate in self.decides(by, at.context):
             out.add(Compared(name, type_, relation, by, predicate))
 
-    def is_constant_arithmetic(self, by: Instruction, value: Value) -> bool:
-        others = [o for o in by.operands if o is not value]
-        is_product = by.opcode in ("mul", "fmul")
-        return all(
-            o.kind == "constant" or (is_product and self.is_same_variable(o, value)) for o in others
-        ) and (bool(others) or is_product or by.opcode == "fneg")
+    def computed(self, how: How, by: Instruction, value: Value) -> How | None:
+        """The arithmetic after `by`; None where that is none with constants alone."""
+        if by.opcode == "fneg":
+            return how.affine(-1, 0)
+        if by.opcode not in ARITHMETIC:
+            return None
+        left, right = by.operands
+        if by.opcode in ("mul", "fmul") and (left is right or self.is_same_variable(left, right)):
+            return how.anything()
+        constant = constant_number(right if left is value else left)
+        operation = by.opcode.removeprefix("f")
+        if constant is None:
+            return None
+        if operation == "add":
+            return how.affine(1, constant)
+        if operation == "sub":
+            return how.affine(1, -constant) if left is value else how.affine(-1, constant)
+        if operation == "mul":
+            return how.affine(constant, 0)
+        if by.opcode == "fdiv" and left is value:
+            # By a division, not by the reciprocal: that is not always the same number.
+            return How(how.scale / constant, how.offset / constant, how.other)
+        return how.anything()
 
     def is_same_variable(self, a: Value, b: Value) -> bool:
         """True where both are loads of one variable: `x * x`."""
@@ -376,6 +438,34 @@ def is_condition_end(user: Instruction) -> bool:
 def decides_by(user: Instruction, value: Value) -> bool:
     """True where `user` is a predicate and `value` what it decides by."""
     return user.opcode in ("br", "switch", "select") and user.operands[0] is value
+
+
+def constant_number(v: Value) -> float | None:
+    """The value of a constant; None where `v` is none."""
+    if (known := number(v)) is not None:
+        return float(known)
+    found = re.fullmatch(r"double (\S+)", v.text) if v.kind == "constant" else None
+    if not found:
+        return None
+    if found[1].startswith("0x"):
+        return float(struct.unpack(">d", bytes.fromhex(found[1][2:].zfill(16)))[0])
+    return float(found[1])
+
+
+def cast(how: How, by: Instruction) -> How:
+    """The arithmetic after a conversion: it can cut off bits or a fraction."""
+    begin, to = (bits_of(t) for t in (by.operand_type, by.type))
+    if by.opcode == "trunc" and to > 1 and not 0 < how.bits <= to:
+        return how.anything(to)
+    if by.opcode in ("fptosi", "fptoui") and not how.bits:
+        return how.anything(to)
+    if by.opcode in ("zext", "sext", "uitofp", "sitofp"):
+        return replace(how, bits=how.bits or begin)
+    return how
+
+
+def bits_of(type_: str) -> int:
+    return int(type_[1:]) if re.fullmatch(r"i\d+", type_) else 0
 
 
 def is_zero(v: Value) -> bool:

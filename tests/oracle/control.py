@@ -15,37 +15,52 @@ from tests.oracle.ir import Block, Function, Instruction, Value, number
 ENTRY, EXIT, AGAIN = "entry", "exit", "again"
 
 
-def decided_way(before: Block, block: Block) -> Block | None:
-    """Where `block` surely goes on when it is entered from `before`; None where that is open.
+Way = tuple[Block, ...]
 
-    It is so where the terminator decides by a merged value that is a constant on this edge: in
+
+def decided_way(before: Block, block: Block) -> Way:
+    """The blocks that surely follow when `block` is entered from `before`, as far as it is sure.
+
+    It is so where the terminator decides by a merged value that is a constant on this way: in
     the source there is no decision at all, clang only joins ways and parts them again.
     """
-    end = block.terminator
-    if end.opcode not in ("br", "switch") or len(end.blocks) < 2:
-        return None
-    condition = end.operands[0]
-    value = None if condition.kind == "constant" else folded(condition, before, block)
-    if value is None:
-        return None
-    if end.opcode == "br":
-        return end.blocks[value & 1]
-    cases = [int(c) for c in re.findall(r"i\d+ (-?\d+), label", end.text)]
-    return end.blocks[1 + cases.index(value)] if value in cases else end.blocks[0]
+    merged: dict[Value, int | None] = {}
+    way: list[Block] = []
+    while block not in way[:-1]:
+        came = {p: p.operands[p.blocks.index(before)] for p in block.instructions if is_phi(p)}
+        merged |= {p: folded(v, merged) for p, v in came.items()}
+        end = block.terminator
+        if end.opcode not in ("br", "switch") or len(end.blocks) < 2:
+            break
+        condition = end.operands[0]
+        value = None if condition.kind == "constant" else folded(condition, merged)
+        if value is None:
+            break
+        if end.opcode == "br":
+            after = end.blocks[value & 1]
+        else:
+            cases = [int(c) for c in re.findall(r"i\d+ (-?\d+), label", end.text)]
+            after = end.blocks[1 + cases.index(value)] if value in cases else end.blocks[0]
+        way.append(after)
+        before, block = block, after
+    return tuple(way)
 
 
-def folded(value: Value, before: Block, block: Block) -> int | None:
-    """The number that `value` is when `block` is entered from `before`; None where that is open."""
+def is_phi(i: Instruction) -> bool:
+    return i.opcode == "phi"
+
+
+def folded(value: Value, merged: dict[Value, int | None]) -> int | None:
+    """The number that `value` is where merges are as `merged` says; None where that is open."""
     if value.kind == "constant":
         if found := re.fullmatch(r"i1 (true|false)", value.text):
             return int(found[1] == "true")
         return number(value)
-    if not isinstance(value, Instruction) or value.block is not block:
+    if not isinstance(value, Instruction):
         return None
     if value.opcode == "phi":
-        came = value.operands[value.blocks.index(before)]
-        return folded(came, before, block) if came.kind == "constant" else None
-    known = [folded(o, before, block) for o in value.operands]
+        return merged.get(value)
+    known = [folded(o, merged) for o in value.operands]
     if None in known or value.opcode not in ("zext", "trunc", "xor", "icmp"):
         return None
     if value.opcode == "icmp":
@@ -54,11 +69,11 @@ def folded(value: Value, before: Block, block: Block) -> int | None:
 
 
 def flow_graph(function: Function) -> nx.DiGraph:
-    """Nodes are (block, way that it surely goes or None); calls that throw have no edge for it."""
+    """Nodes are (block, way that surely follows); calls that throw have no edge for it."""
     graph = nx.DiGraph([(ENTRY, EXIT)])
 
     def follow(start: Block) -> None:
-        todo = [(ENTRY, (start, None))]
+        todo = [(ENTRY, (start, ()))]
         while todo:
             before, node = todo.pop()
             known = node in graph
@@ -66,11 +81,11 @@ def flow_graph(function: Function) -> nx.DiGraph:
             if known:
                 continue
             block, way = node
-            following = [way] if way else block.terminator.blocks
+            following = way[:1] if way else block.terminator.blocks
             if block.terminator.opcode == "invoke":
                 following = following[:1]
             for after in following:
-                todo.append((node, (after, decided_way(block, after))))
+                todo.append((node, (after, way[1:] or decided_way(block, after))))
             if not following:
                 graph.add_edge(node, EXIT)
 
@@ -151,14 +166,18 @@ class ControlDependence:
         A branch is one only where the way is still open when it is come to.
         """
         ways = {n for n in self.of_node if n[0] is block}
-        if item is block.terminator and (block, None) in ways:
-            ways = {(block, None)}
+        if item is block.terminator and (block, ()) in ways:
+            ways = {(block, ())}
         nodes = set().union(*(self.of_node[n] for n in ways))
         return self.predicates(nodes), ENTRY in nodes
 
     def choosers(self, before: Block, block: Block) -> set[Instruction]:
         """The predicates that choose the way from `before` to `block`."""
-        found, _ = self.controllers(before, before.instructions[0])
+        nodes = [n for n in self.of_node if n[0] is before]
+        open_, decided = (before, ()), [n for n in nodes if n[1] and n[1][0] is block]
+        found = self.predicates(set().union(*(self.of_node[n] for n in decided)))
+        if open_ not in nodes:
+            return found
         end = before.terminator
         is_choice = end.opcode in ("br", "switch") and len(set(end.blocks)) > 1
-        return found | {end} if is_choice else found
+        return found | self.predicates(self.of_node[open_]) | ({end} if is_choice else set())

@@ -15,6 +15,7 @@ double sensed(double Old);
 bool chance();
 void logged(double What);
 void mayThrow();
+int main() {}
 struct First {
   int Unused = 0;
 };

@@ -79,6 +79,11 @@ class Instruction(Value):
         return self.operands[:-1]
 
     @cached_property
+    def operand_type(self) -> str:
+        """The type of what a conversion converts."""
+        return self.text.split("= ", 1)[1].split(" to ")[0].split()[-2]
+
+    @cached_property
     def predicate(self) -> str:
         """The operator of a comparison, `sgt` or `ogt`."""
         words = self.text.split("= ", 1)[1].split()

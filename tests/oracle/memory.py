@@ -37,10 +37,13 @@ class Copy:
 
 
 class Memory:
-    """Points-to sets and definitions of the loads of a module."""
+    """Points-to sets and definitions of the loads of a module.
 
-    def __init__(self, module: Module, program: Program) -> None:
-        self.module, self.program = module, program
+    `is_narrow`: writes that are surely replaced count for variables that others see too.
+    """
+
+    def __init__(self, program: Program, is_narrow: bool = False) -> None:
+        self.module, self.program, self.is_narrow = program.module, program, is_narrow
         self.targets: dict[Value, set[Location]] = {}
         self.stored: dict[Location, set[Location]] = {}
         self.below: dict[Location, Value] = {}
@@ -212,29 +215,72 @@ class Memory:
     ) -> set[Instruction]:
         """Of the writes of a local those that no store surely replaces on every way to `use`.
 
-        In another function than the local's own, and for what is no local, all of them.
+        In another function than the local's own, and for what is no local, all of them, unless
+        what is known is narrow.
         """
         local = at[0]
         if not isinstance(local, Instruction) or local.opcode != "alloca":
-            return by
+            return self.seen(at, size, by, use)
         if use.function is not local.function:
-            return by
-        kills = {
-            w.by
-            for w in self.writes
-            if w.by in by
-            and w.by.opcode == "store"
-            and w.by.function is use.function
-            and self.of(w.by.operands[1]) == {at}
-            and w.size == size
-        }
+            return self.seen(at, size, by, use)
+        kills = self.replacing(at, size, use.function) & by
         here = {i for i in by if i.function is use.function}
         alive = set()
         for i in by - here:
             calls = self.program.calls_that_lead_to(use.function, i.function)
             if not calls or any(self.gets_to(c, use, kills) for c in calls):
                 alive.add(i)
-        return alive | {i for i in here if self.gets_to(i, use, kills)}
+        alive |= {i for i in here if self.gets_to(i, use, kills)}
+        return alive & self.seen(at, size, by, use) if self.is_narrow else alive
+
+    def replacing(self, at: Location, size: int, f: Function) -> set[Instruction]:
+        """The writes in `f` that surely replace the whole of the variable."""
+        return {
+            w.by
+            for w in self.writes
+            if w.by.function is f
+            and w.at == at
+            and w.size == size
+            and (
+                (w.by.opcode == "store" and self.of(w.by.operands[1]) == {at})
+                or (self.is_narrow and self.program.always_writes(w.by, at, self))
+            )
+        }
+
+    def seen(
+        self, at: Location, size: int, by: set[Instruction], use: Instruction
+    ) -> set[Instruction]:
+        """Of the writes those that can still be there when `use` reads, seen from anywhere."""
+        if not self.is_narrow:
+            return by
+        own = use.function
+        back = self.walk(use, self.replacing(at, size, own), forward=False)
+        entered = own.blocks[0].instructions[0] in back or use is own.blocks[0].instructions[0]
+        found = set()
+        for i in by:
+            f = i.function
+            on = self.walk(i, self.replacing(at, size, f) - {i}, forward=True)
+            left = any(s.opcode == "ret" for s in on)
+            alive = f is own and use in on
+            alive |= entered and (left or self.program.can_run(on, own))
+            alive |= left and self.program.can_run(back, f)
+            if alive:
+                found.add(i)
+        return found
+
+    def walk(self, begin: Instruction, ends: set[Instruction], forward: bool) -> set[Instruction]:
+        """The instructions on the ways from `begin`, which end at `ends`."""
+        graph = self.program.steps(begin.function, exceptions=False)
+        after = graph.successors if forward else graph.predecessors
+        found: set[Instruction] = set()
+        todo = [begin]
+        while todo:
+            for s in after(todo.pop()):
+                if s not in found:
+                    found.add(s)
+                    if s not in ends:
+                        todo.append(s)
+        return found if forward else found - ends
 
     def gets_to(self, begin: Instruction, use: Instruction, kills: set[Instruction]) -> bool:
         """True where a way leads from behind `begin` to `use` and passes none of `kills`."""
@@ -263,7 +309,7 @@ class Program:
         self.graph = nx.DiGraph()
         for f, calls in self.calls.items():
             self.graph.add_edges_from((c.function, f) for c in calls)
-        self.step_graphs: dict[Function, nx.DiGraph] = {}
+        self.step_graphs: dict[tuple[Function, bool], nx.DiGraph] = {}
 
     def is_known(self, f: Function) -> bool:
         """True where `f` has a body, and one that says what it does."""
@@ -290,6 +336,19 @@ class Program:
         target = self.rules.target(call.callee.name)
         return target is None or n == target
 
+    def always_writes(self, i: Instruction, at: Location, memory: Memory) -> bool:
+        """True for a read of a parameter that has a default."""
+        if not (i.is_call and self.rules.DEFAULTED.match(i.callee.name)):
+            return False
+        return memory.of(i.arguments[self.rules.target(i.callee.name)]) == {at}
+
+    def can_run(self, instructions: set[Instruction], f: Function) -> bool:
+        """True where one of the instructions is a call below which `f` runs."""
+        if f not in self.graph:
+            return False
+        above = nx.ancestors(self.graph, f) | {f}
+        return any(c in above for i in instructions if i.is_call for c in self.callees(i))
+
     def calls_that_lead_to(self, where: Function, f: Function) -> list[Instruction]:
         """The calls in `where` below which `f` runs."""
         if f not in self.graph or where not in self.graph:
@@ -299,14 +358,18 @@ class Program:
             i for i in where.instructions if i.is_call and any(c in above for c in self.callees(i))
         ]
 
-    def steps(self, f: Function) -> nx.DiGraph:
-        """Which instruction can follow which, exceptions included."""
-        if f not in self.step_graphs:
-            graph = self.step_graphs[f] = nx.DiGraph()
+    def steps(self, f: Function, exceptions: bool = True) -> nx.DiGraph:
+        """Which instruction can follow which."""
+        if (f, exceptions) not in self.step_graphs:
+            graph = self.step_graphs[f, exceptions] = nx.DiGraph()
             for b in f.blocks:
                 nx.add_path(graph, b.instructions)
-                graph.add_edges_from((b.terminator, s.instructions[0]) for s in b.terminator.blocks)
-        return self.step_graphs[f]
+                graph.add_node(b.terminator)
+                following = b.terminator.blocks
+                if b.terminator.opcode == "invoke" and not exceptions:
+                    following = following[:1]
+                graph.add_edges_from((b.terminator, s.instructions[0]) for s in following)
+        return self.step_graphs[f, exceptions]
 
 
 def store_type(i: Instruction) -> str:
