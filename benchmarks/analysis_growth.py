@@ -52,7 +52,8 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as scratch:
         for size in SIZES:
             bitcode = str(compiled(size, Path(scratch)))
-            runs = [cost([*passes, "-passes=tpc", bitcode]) for _ in range(ROUNDS)]
+            found = f"-tpc-static-info={Path(scratch) / 'found.json'}"
+            runs = [cost([*passes, "-passes=tpc", found, bitcode]) for _ in range(ROUNDS)]
             plain = [cost(["-passes=verify", bitcode]) for _ in range(ROUNDS)]
             seconds[size] = statistics.median(r[0] for r in runs) - statistics.median(
                 r[0] for r in plain

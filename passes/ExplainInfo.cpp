@@ -158,7 +158,7 @@ json::Array ExplainInfo::path(const Comparison &C) {
   return List;
 }
 
-ListedPlaces ExplainInfo::notExposed(const json::Array &Comparisons) {
+ListedPlaces ExplainInfo::notExposed(ArrayRef<SourcePlace> Comparisons) {
   Listing All(Reads, Opts);
   for (auto [Index, N] : enumerate(Gathered.Others))
     if (const DILocation *Loc = Words.userPlace(N.Compared->place());
@@ -167,14 +167,9 @@ ListedPlaces ExplainInfo::notExposed(const json::Array &Comparisons) {
   ListedPlaces Out;
   const std::vector<Listing::Entry> &Sorted = All.sorted();
   DenseSet<std::pair<unsigned, unsigned>> Exposed;
-  for (const json::Value &V : Comparisons) {
-    const json::Object &C = *V.getAsObject();
-    if (auto Known = All.at({C.getString("file")->str(),
-                             static_cast<unsigned>(*C.getInteger("lineno")),
-                             static_cast<unsigned>(*C.getInteger("column"))},
-                            C.getString("source").value_or("").str()))
+  for (const SourcePlace &P : Comparisons)
+    if (auto Known = All.at({P.File, P.Line, P.Column}, P.Source))
       Exposed.insert(*Known);
-  }
   for (const Listing::Entry &E : Sorted) {
     if (Exposed.contains({E.Place, E.Name}) || Out.Count++ >= MaxListed)
       continue;

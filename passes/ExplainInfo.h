@@ -29,6 +29,14 @@ private:
   llvm::StringMap<File> Files;
 };
 
+/// A place of the source where there are comparisons, with one key.
+struct SourcePlace {
+  std::string File; ///< relative to the root of the sources
+  unsigned Line = 0, Column = 0;
+  std::string Source; ///< the parameter; empty for a constant
+  llvm::SmallVector<const Comparison *, 1> Instances; ///< nearest first
+};
+
 /// As many places as are listed, and how many there are.
 struct ListedPlaces {
   llvm::json::Array List;
@@ -46,7 +54,7 @@ public:
   /// Comparisons with parameters in the user's sources on which nothing
   /// exposed depends; without the places that are in \p Comparisons, where
   /// another instance of the same template is exposed.
-  ListedPlaces notExposed(const llvm::json::Array &Comparisons);
+  ListedPlaces notExposed(llvm::ArrayRef<SourcePlace> Comparisons);
 
   /// The blind spots in the user's sources, and those that have no place.
   ListedPlaces blindSpots();

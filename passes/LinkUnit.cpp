@@ -37,7 +37,7 @@ void registerAnalyses(ModuleAnalysisManager &AM) {
 
 /// What the analysis of a unit comes to.
 struct Findings {
-  json::Object Unit;
+  UnitInfo Unit;
   std::vector<Report> Reports;
   unsigned NotInstrumented = 0;
   std::string Failure;
@@ -141,8 +141,9 @@ PreservedAnalyses LinkUnitPass::run(Module &M, ModuleAnalysisManager &) {
       F.Failure = std::move(Why);
   if (!F.Failure.empty()) {
     warn(Opts, F.Failure + "; this link unit is left as it was");
-    F.Unit = describeFailure(Opts, F.Failure, F.Unit.getObject("counts"));
-  } else if (json::Object *Counts = F.Unit.getObject("counts")) {
+    F.Unit =
+        describeFailure(Opts, F.Failure, F.Unit.Fields.getObject("counts"));
+  } else if (json::Object *Counts = F.Unit.Fields.getObject("counts")) {
     (*Counts)["not_instrumented"] = F.NotInstrumented;
   }
   if (!Opts.StaticInfo.empty())

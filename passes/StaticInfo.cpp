@@ -22,6 +22,8 @@ using namespace llvm;
 namespace tpc {
 
 static constexpr int SchemaVersion = 1;
+static constexpr unsigned Indent = 1;
+static constexpr StringLiteral Comparisons = "comparisons";
 
 static std::string textOr(StringRef Text, StringRef Else) {
   return json::fixUTF8(Text.empty() ? Else : Text);
@@ -51,9 +53,10 @@ public:
 
   json::Array parameters() const;
   json::Array exposing() const;
-  json::Array comparisons();
+  std::vector<SourcePlace> comparisons() const;
+  json::Object comparison(const SourcePlace &P);
   ExplainInfo &explain() { return Explain; }
-  json::Object counts(const json::Array &Comparisons) const;
+  json::Object counts(ArrayRef<SourcePlace> Comparisons) const;
 
 private:
   json::Object placed(const DILocation *Loc, const Function &F) const;
@@ -61,7 +64,7 @@ private:
     return placed(I.getDebugLoc(), *I.getFunction());
   }
   json::Value where(const Instruction &I) const;
-  json::Object comparison(const Comparison &C);
+  std::string source(const Comparison &C) const;
   std::string variable(const Comparison &C) const;
 
   Module &M;
@@ -164,19 +167,27 @@ static json::Value describeTransform(const Transform &T) {
   llvm_unreachable("no such kind");
 }
 
-json::Object Describer::comparison(const Comparison &C) {
+std::string Describer::source(const Comparison &C) const {
+  return C.Reads.empty() ? "" : json::fixUTF8(Reads[C.Reads.front()].Name);
+}
+
+json::Object Describer::comparison(const SourcePlace &P) {
+  const Comparison &C = *P.Instances.front();
   // A constant is read nowhere.
   const ParameterRead *Read =
       C.Reads.empty() ? nullptr : &Reads[C.Reads.front()];
   const ExposingStatement &Nearest = Exposing[C.Slice.Exposing];
   json::Array ReadPlaces;
-  for (unsigned N : C.Reads)
-    ReadPlaces.push_back(where(*Reads[N].Call));
+  for (const Comparison *Instance : P.Instances)
+    for (unsigned N : Instance->Reads)
+      if (json::Value Place = where(*Reads[N].Call);
+          !is_contained(ReadPlaces, Place))
+        ReadPlaces.push_back(std::move(Place));
   json::Object O = placed(C.Where, *C.place().getFunction());
   O["key"] = C.Key;
   O["type"] = C.typeName();
   O["name"] = textOrNull(variable(C));
-  O["source"] = Read ? json::Value(json::fixUTF8(Read->Name)) : nullptr;
+  O["source"] = Read ? json::Value(P.Source) : nullptr;
   O["distance"] = C.Slice.Distance;
   O["relation"] = C.relation();
   O["topic"] = textOrNull(Nearest.Topic);
@@ -194,44 +205,40 @@ json::Object Describer::comparison(const Comparison &C) {
 }
 
 /// The comparisons in the order of the source; one a key: several instances of
-/// a template are one place, and the nearest one speaks for them.
-json::Array Describer::comparisons() {
-  std::vector<json::Object> All;
+/// a template are one place, and the nearest one, put first, speaks for them.
+std::vector<SourcePlace> Describer::comparisons() const {
+  std::vector<SourcePlace> All;
   StringMap<size_t> Known;
   for (const auto *Kind : {&Gathered.Comparisons, &Gathered.Constants})
     for (const Comparison &C : *Kind) {
-      json::Object O = comparison(C);
       auto [It, New] = Known.try_emplace(C.Key, All.size());
-      if (New) {
-        All.push_back(std::move(O));
-        continue;
-      }
-      json::Object &Same = All[It->second];
-      json::Array Places = *O.getArray("param_reads");
-      for (const json::Value &Place : *Same.getArray("param_reads"))
-        if (!is_contained(Places, Place))
-          Places.push_back(Place);
-      if (*O.getInteger("distance") < *Same.getInteger("distance"))
-        Same = std::move(O);
-      Same["param_reads"] = std::move(Places);
+      if (New)
+        All.emplace_back();
+      auto &Instances = All[It->second].Instances;
+      Instances.push_back(&C);
+      if (C.Slice.Distance < Instances.front()->Slice.Distance)
+        std::swap(Instances.front(), Instances.back());
     }
-  auto Order = [](const json::Object &O) {
-    return std::make_tuple(
-        *O.getString("file"), *O.getInteger("lineno"), *O.getInteger("column"),
-        O.getString("source").value_or(""), *O.getString("key"));
-  };
-  sort(All, [&](const json::Object &A, const json::Object &B) {
+  for (SourcePlace &P : All) {
+    const Comparison &C = *P.Instances.front();
+    P.File = json::fixUTF8(Opts.relative(pathOf(C.Where)));
+    P.Line = C.Where->getLine();
+    P.Column = C.Where->getColumn();
+    P.Source = source(C);
+  }
+  sort(All, [](const SourcePlace &A, const SourcePlace &B) {
+    auto Order = [](const SourcePlace &P) {
+      return std::tie(P.File, P.Line, P.Column, P.Source,
+                      P.Instances.front()->Key);
+    };
     return Order(A) < Order(B);
   });
-  json::Array List;
-  for (json::Object &O : All)
-    List.push_back(std::move(O));
-  return List;
+  return All;
 }
 
-json::Object Describer::counts(const json::Array &Comparisons) const {
-  int64_t Constants = count_if(Comparisons, [](const json::Value &V) {
-    return V.getAsObject()->getString("type") == "constant";
+json::Object Describer::counts(ArrayRef<SourcePlace> Comparisons) const {
+  int64_t Constants = count_if(Comparisons, [](const SourcePlace &P) {
+    return P.Instances.front()->Type == Comparison::Constant;
   });
   return json::Object{
       {"functions", range_size(definedFunctions(M))},
@@ -263,32 +270,47 @@ static json::Object header(const Options &Opts) {
                                             {"profile", Opts.Profile}}}};
 }
 
-json::Object describe(Module &M, ModuleAnalysisManager &AM,
-                      const Options &Opts) {
+/// \p O as it stands in the array that is an attribute of the whole. An object
+/// of JSON takes kilobytes, and a large unit has a hundred thousand of them.
+static std::string written(json::Object O) {
+  std::string Text;
+  raw_string_ostream OS(Text);
+  json::OStream(OS, Indent).value(std::move(O));
+  std::string Shifted;
+  for (char C : Text) {
+    Shifted += C;
+    if (C == '\n')
+      Shifted.append(2 * Indent, ' ');
+  }
+  return Shifted;
+}
+
+UnitInfo describe(Module &M, ModuleAnalysisManager &AM, const Options &Opts) {
   Describer D(M, AM, Opts);
-  json::Object Unit = header(Opts);
-  json::Array Comparisons = D.comparisons();
-  Unit["status"] = "ok";
-  Unit["failure"] = nullptr;
+  UnitInfo Unit{header(Opts), {}};
+  const std::vector<SourcePlace> Comparisons = D.comparisons();
+  for (const SourcePlace &P : Comparisons)
+    Unit.Comparisons.push_back(written(D.comparison(P)));
   json::Object Counts = D.counts(Comparisons);
   ListedPlaces NotExposed = D.explain().notExposed(Comparisons);
   ListedPlaces BlindSpots = D.explain().blindSpots();
   Counts["not_exposed"] = static_cast<int64_t>(NotExposed.Count);
   Counts["blind_spots"] = static_cast<int64_t>(BlindSpots.Count);
-  Unit["counts"] = std::move(Counts);
-  Unit["parameters"] = D.parameters();
-  Unit["exposing"] = D.exposing();
-  Unit["comparisons"] = std::move(Comparisons);
-  Unit["not_exposed"] = std::move(NotExposed.List);
-  Unit["blind_spots"] = std::move(BlindSpots.List);
+  Unit.Fields["status"] = "ok";
+  Unit.Fields["failure"] = nullptr;
+  Unit.Fields["counts"] = std::move(Counts);
+  Unit.Fields["parameters"] = D.parameters();
+  Unit.Fields["exposing"] = D.exposing();
+  Unit.Fields["not_exposed"] = std::move(NotExposed.List);
+  Unit.Fields["blind_spots"] = std::move(BlindSpots.List);
   return Unit;
 }
 
-json::Object describeFailure(const Options &Opts, StringRef Why,
-                             const json::Object *Known) {
-  json::Object Unit = header(Opts);
-  Unit["status"] = "failed";
-  Unit["failure"] = json::fixUTF8(Why);
+UnitInfo describeFailure(const Options &Opts, StringRef Why,
+                         const json::Object *Known) {
+  UnitInfo Unit{header(Opts), {}};
+  Unit.Fields["status"] = "failed";
+  Unit.Fields["failure"] = json::fixUTF8(Why);
   json::Object Counts;
   for (StringRef Name :
        {"functions", "predicates", "predicates_in_slice", "parameter_reads",
@@ -299,20 +321,34 @@ json::Object describeFailure(const Options &Opts, StringRef Why,
   if (Known)
     Counts = *Known;
   Counts["comparisons"] = 0;
-  Unit["counts"] = std::move(Counts);
+  Unit.Fields["counts"] = std::move(Counts);
   for (StringRef Name :
-       {"parameters", "exposing", "comparisons", "not_exposed", "blind_spots"})
-    Unit[Name] = json::Array();
+       {"parameters", "exposing", "not_exposed", "blind_spots"})
+    Unit.Fields[Name] = json::Array();
   return Unit;
 }
 
-Error writeJson(json::Object Unit, StringRef Path) {
+Error writeJson(UnitInfo Unit, StringRef Path) {
   StringRef Folder = sys::path::parent_path(Path);
   if (!Folder.empty())
     if (std::error_code EC = sys::fs::create_directories(Folder))
       return createFileError(Path, EC);
   return writeToOutput(Path, [&](raw_ostream &OS) {
-    json::OStream(OS, /*IndentSize=*/1).value(std::move(Unit));
+    json::OStream J(OS, Indent);
+    SmallVector<StringRef, 16> Names{Comparisons};
+    for (auto &Field : Unit.Fields)
+      Names.push_back(Field.first);
+    sort(Names);
+    J.object([&] {
+      for (StringRef Name : Names)
+        if (Name == Comparisons)
+          J.attributeArray(Name, [&] {
+            for (const std::string &Text : Unit.Comparisons)
+              J.rawValue(Text);
+          });
+        else
+          J.attribute(Name, *Unit.Fields.get(Name));
+    });
     OS << '\n';
     return Error::success();
   });

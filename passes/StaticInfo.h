@@ -14,17 +14,23 @@
 
 namespace tpc {
 
+/// What a unit's file says. The comparisons are text already: there are many.
+struct UnitInfo {
+  llvm::json::Object Fields;
+  std::vector<std::string> Comparisons;
+};
+
 /// What a unit's file says of the analysis of \p M.
-llvm::json::Object describe(llvm::Module &M, llvm::ModuleAnalysisManager &AM,
-                            const Options &Opts);
+UnitInfo describe(llvm::Module &M, llvm::ModuleAnalysisManager &AM,
+                  const Options &Opts);
 
 /// What a unit's file says where the analysis failed because of \p Why;
 /// \p Known has the counts as far as it came, or is null.
-llvm::json::Object describeFailure(const Options &Opts, llvm::StringRef Why,
-                                   const llvm::json::Object *Known);
+UnitInfo describeFailure(const Options &Opts, llvm::StringRef Why,
+                         const llvm::json::Object *Known);
 
 /// Writes \p Unit to \p Path, beside and then renamed.
-llvm::Error writeJson(llvm::json::Object Unit, llvm::StringRef Path);
+llvm::Error writeJson(UnitInfo Unit, llvm::StringRef Path);
 
 } // namespace tpc
 
