@@ -214,8 +214,7 @@ const DIType *DebugTypes::ofTemporary(const AllocaInst &Local) const {
       Fits = Class;
     return IsNamed;
   };
-  for (DbgVariableRecord *R :
-       variableRecords(const_cast<AllocaInst *>(&Local)))
+  for (DbgVariableRecord *R : variableRecords(const_cast<AllocaInst *>(&Local)))
     if (R->isDbgValue() && R->getExpression()->getNumElements() == 0 &&
         Take(dereferenced(R->getVariable()->getType())))
       return Fits;

@@ -19,8 +19,9 @@ static constexpr unsigned MaxPath = 32;
 // Classes and locations
 //===----------------------------------------------------------------------===//
 
-/// True where \p A and \p B have the same fields, and these the same ones again:
-/// instances of one class template have its name, whatever they are made of.
+/// True where \p A and \p B have the same fields, and these the same ones
+/// again: instances of one class template have its name, whatever they are made
+/// of.
 static bool looksAlike(const StructType &A, const StructType &B) {
   ArrayRef<Type *> Mine = A.elements(), Theirs = B.elements();
   // As a base class, a class is there without the padding at its end.
@@ -202,8 +203,9 @@ SmallVector<ScalarPart, 1> AccessResult::partsOf(const Instruction &I) const {
   Type *T = getLoadStoreType(const_cast<Instruction *>(&I));
   SmallVector<ScalarPart, 1> Parts;
   for (Location &L : resolve(getLoadStorePointerOperand(&I), true))
-    if (!(T->isAggregateType() || T->isIntegerTy()) ||
-        !addPartsAround(L, Layout->getTypeStoreSize(T).getFixedValue(), Parts))
+    if (!(T->isAggregateType() || T->isIntegerTy() || T->isVectorTy()) ||
+        !addPartsAround(L, Layout->getTypeStoreSize(T).getKnownMinValue(),
+                        Parts))
       Parts.push_back({std::move(L)});
   return Parts;
 }

@@ -1,10 +1,6 @@
 """The nodes of the suite that the analysis does not get right, and why (analysis-limits.md)."""
 
 OVERWRITTEN = "what is overwritten before it is published counts still"
-BOUND = "what bind and std::function keep is told apart by its type alone"
-SWAPPED = "both operands come from parameters, and one is taken for the other"
-CONSTANT = "a constant that comes through a variable or a function"
-NOT_JUDGED = "not looked into yet"
 
 KNOWN = {
     "cmp_chained_cut": OVERWRITTEN,
@@ -16,12 +12,8 @@ KNOWN = {
     "exp_message_reset": OVERWRITTEN,
     "exp_message_vector_dropped": "what is put into a vector that is only counted",
     "exp_timer_start_stop": "the timer and the message share a library's class",
-    "thr_boost_bind": BOUND,
     "thr_globals": "elements of an array are one variable",
-    "val_bind": BOUND,
-    "val_bind_unused": BOUND,
     "val_locals_globals_cut": OVERWRITTEN,
     "val_min_max_cut": OVERWRITTEN,
     "val_overwritten_result": OVERWRITTEN,
-    "val_std_function": BOUND,
 }

@@ -2,7 +2,7 @@
 // RUN: llvm-link %t.o -o %t.bc
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.bc | FileCheck %s
 //
-// What bind objects, lambdas and functors keep: each call gets its own numbers,
+// What bind objects, lambdas and functors keep: each class has its own numbers,
 // whatever else is bound, and although the linker makes one class of all that
 // hold a double (which is why the test links). A bound number that nobody
 // compares is none.
@@ -24,7 +24,7 @@ static bool between(double Low, double High, double V) {
   return V > Low && V < High;
 }
 
-static bool above(double Floor, double Unused, double V) {
+static bool above(double Floor, float Unused, double V) {
   // CHECK-DAG: parameter 'floor' relation >= as x {{.*}} at [[#@LINE+1]]:12
   return V >= Floor;
 }
@@ -35,17 +35,18 @@ void step(ros::Publisher &Out, const std::function<bool(double)> &F, double V) {
 }
 
 void run(ros::NodeHandle &Handle, ros::Publisher &Out, double V) {
-  double Low, High, Floor, Unused, Upper, Most;
+  double Low, High, Floor, Upper, Most;
+  float Unused;
   Handle.param("low", Low, 0.5);
   Handle.param("high", High, 1.5);
   Handle.param("floor", Floor, 0.5);
-  Handle.param("unused", Unused, 0.5);
+  Handle.param("unused", Unused, 0.5F);
   Handle.param("upper", Upper, 0.5);
   Handle.param("cap", Most, 0.5);
   using std::placeholders::_1;
   step(Out, std::bind(between, Low, High, _1), V);
   step(Out, std::bind(above, Floor, Unused, _1), V);
-  // CHECK-DAG: parameter 'upper' relation < as x {{.*}} at [[#@LINE+1]]:46
+  // CHECK-DAG: parameter 'upper' relation < as x {{.*}} at [[#@LINE+1]]:42
   step(Out, [Upper](double X) { return X < Upper; }, V);
   step(Out, Cap{Most}, V);
 }
