@@ -58,12 +58,12 @@ static Repacked place(const Instruction &I, const Use &U) {
                                                               : Repacked::None};
   }
   case Instruction::Or: {
-    const Value *Other = I.getOperand(1 - U.getOperandNo());
-    KnownBits Known = bitsOf(V, I);
-    if (Width == 1 || !(~Known.Zero).isSubsetOf(bitsOf(Other, I).Zero) ||
-        isa<Constant>(Other))
-      return {Repacked::None};
-    return at({0, Known.countMaxActiveBits()}, Width);
+    KnownBits Own = bitsOf(V, I),
+              Other = bitsOf(I.getOperand(1 - U.getOperandNo()), I);
+    // A constant flag is the program's own arithmetic.
+    if (Width == 1 || Other.isConstant() || !(~Own.Zero).isSubsetOf(Other.Zero))
+      return {Other.isZero() ? Repacked::Whole : Repacked::None};
+    return at({0, Own.countMaxActiveBits()}, Width);
   }
   case Instruction::Shl: {
     const APInt *By;
