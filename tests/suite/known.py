@@ -11,7 +11,6 @@ KNOWN = {
     "drv_degrees": "the value before and the value after a conversion share a member",
     "exp_message_reset": OVERWRITTEN,
     "exp_message_vector_dropped": "what is put into a vector that is only counted",
-    "exp_timer_start_stop": "the timer and the message share a library's class",
     "thr_globals": "elements of an array are one variable",
     "val_locals_globals_cut": OVERWRITTEN,
     "val_min_max_cut": OVERWRITTEN,
