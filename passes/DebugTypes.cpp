@@ -1,6 +1,7 @@
 //===- DebugTypes.cpp -----------------------------------------------------===//
 #include "DebugTypes.h"
 
+#include "Compat.h"
 #include "Names.h"
 
 #include "llvm/BinaryFormat/Dwarf.h"
@@ -71,6 +72,14 @@ const DIDerivedType *DebugTypes::memberAt(const DICompositeType *Class,
   return nullptr;
 }
 
+/// True where \p Class and \p Struct have one name, scopes apart.
+static bool isNamedAs(const DICompositeType &Class, const StructType &Struct) {
+  StringRef Name = plainClassName(Struct).rsplit(':').second;
+  if (Name.empty())
+    Name = plainClassName(Struct);
+  return Class.getName().split('<').first == Name;
+}
+
 const DICompositeType *DebugTypes::asStruct(const DIType *T,
                                             StructType *Struct) const {
   uint64_t Bits = Struct->isSized()
@@ -78,9 +87,6 @@ const DICompositeType *DebugTypes::asStruct(const DIType *T,
                       : 0;
   // `class.A.base` is A without the padding at its end.
   bool Unpadded = Struct->hasName() && Struct->getName().contains(".base");
-  StringRef Name = plainClassName(*Struct).rsplit(':').second;
-  if (Name.empty())
-    Name = plainClassName(*Struct);
   const DICompositeType *Fits = nullptr;
   const auto *Class = dyn_cast_or_null<DICompositeType>(element(T));
   while (Class) {
@@ -88,7 +94,7 @@ const DICompositeType *DebugTypes::asStruct(const DIType *T,
     if (Size == Bits || (Unpadded && Size >= Bits && Size < Bits + 64)) {
       // The name decides where it can; the linker may have taken that of
       // another class that looks alike.
-      if (Class->getName().split('<').first == Name)
+      if (isNamedAs(*Class, *Struct))
         return Class;
       if (!Fits)
         Fits = Class;
@@ -190,6 +196,39 @@ const DIType *DebugTypes::ofElement(const GEPOperator &GEP) {
   return T;
 }
 
+/// What \p Local, no variable of the source, is to those who are handed it, be
+/// they inlined or not: a class of its name, or else of its size.
+const DIType *DebugTypes::ofTemporary(const AllocaInst &Local) const {
+  auto *Struct = dyn_cast<StructType>(Local.getAllocatedType());
+  if (!Struct)
+    return nullptr;
+  const DICompositeType *Fits = nullptr;
+  // True where it has the name.
+  auto Take = [&](const DIType *T) {
+    const DICompositeType *Class = asStruct(T, Struct);
+    // A base class is not all of it.
+    if (!Class || Class != T)
+      return false;
+    bool IsNamed = isNamedAs(*Class, *Struct);
+    if (!Fits || IsNamed)
+      Fits = Class;
+    return IsNamed;
+  };
+  for (DbgVariableRecord *R : variableRecords(const_cast<AllocaInst *>(&Local)))
+    if (R->isDbgValue() && R->getExpression()->getNumElements() == 0 &&
+        Take(dereferenced(R->getVariable()->getType())))
+      return Fits;
+  for (const Use &U : Local.uses()) {
+    const auto *Call = dyn_cast<CallBase>(U.getUser());
+    const Function *Callee = Call ? Call->getCalledFunction() : nullptr;
+    if (Callee && Call->isArgOperand(&U) &&
+        Call->getArgOperandNo(&U) < Callee->arg_size() &&
+        Take(ofArgument(*Callee->getArg(Call->getArgOperandNo(&U)))))
+      return Fits;
+  }
+  return Fits;
+}
+
 const DIType *DebugTypes::find(const Value *Pointer) {
   if (const auto *Arg = dyn_cast<Argument>(Pointer))
     return ofArgument(*Arg);
@@ -199,7 +238,7 @@ const DIType *DebugTypes::find(const Value *Pointer) {
     for (DbgVariableRecord *R :
          findDVRDeclares(const_cast<AllocaInst *>(Local)))
       return plain(R->getVariable()->getType());
-    return nullptr;
+    return ofTemporary(*Local);
   }
   if (const auto *Global = dyn_cast<GlobalVariable>(Pointer)) {
     SmallVector<DIGlobalVariableExpression *, 1> Infos;

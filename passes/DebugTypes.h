@@ -12,6 +12,7 @@
 #include "llvm/ADT/StringMap.h"
 #include "llvm/IR/DebugInfoMetadata.h"
 #include "llvm/IR/DerivedTypes.h"
+#include "llvm/IR/Instructions.h"
 #include "llvm/IR/Operator.h"
 
 namespace tpc {
@@ -46,6 +47,7 @@ public:
 
 private:
   const llvm::DIType *find(const llvm::Value *Pointer);
+  const llvm::DIType *ofTemporary(const llvm::AllocaInst &Local) const;
   const llvm::DIType *ofArgument(const llvm::Argument &Arg) const;
   const llvm::DIType *ofElement(const llvm::GEPOperator &GEP);
   const llvm::DIDerivedType *memberAt(const llvm::DICompositeType *Class,

@@ -19,6 +19,26 @@ static constexpr unsigned MaxPath = 32;
 // Classes and locations
 //===----------------------------------------------------------------------===//
 
+/// True where \p A and \p B have the same fields, and these the same ones
+/// again: instances of one class template have its name, whatever they are made
+/// of.
+static bool looksAlike(const StructType &A, const StructType &B) {
+  ArrayRef<Type *> Mine = A.elements(), Theirs = B.elements();
+  // As a base class, a class is there without the padding at its end.
+  if (A.hasName() && B.hasName() &&
+      A.getName().contains(".base") != B.getName().contains(".base")) {
+    size_t Common = std::min(Mine.size(), Theirs.size());
+    Mine = Mine.take_front(Common);
+    Theirs = Theirs.take_front(Common);
+  }
+  return Mine.size() == Theirs.size() && all_of(zip(Mine, Theirs), [](auto P) {
+           auto [One, Other] = P;
+           const auto *S = dyn_cast<StructType>(One),
+                      *T = dyn_cast<StructType>(Other);
+           return One == Other || (S && T && looksAlike(*S, *T));
+         });
+}
+
 unsigned TypeNumbers::numberOf(StructType *T) {
   if (auto It = Numbers.find(T); It != Numbers.end())
     return It->second;
@@ -32,22 +52,9 @@ unsigned TypeNumbers::numberOf(StructType *T) {
   if (Name == "anon" || Name.contains("(anonymous"))
     Name = T->getName();
   SmallVector<unsigned, 1> &Alike = ByName[Name];
-  for (unsigned N : Alike) {
-    ArrayRef<Type *> Mine = T->elements(), Theirs = Types[N]->elements();
-    // As a base class, a class is there without the padding at its end.
-    if (T->getName().contains(".base") !=
-        Types[N]->getName().contains(".base")) {
-      size_t Common = std::min(Mine.size(), Theirs.size());
-      Mine = Mine.take_front(Common);
-      Theirs = Theirs.take_front(Common);
-    }
-    if (Mine.size() == Theirs.size() &&
-        all_of(zip(Mine, Theirs), [](auto Pair) {
-          auto [A, B] = Pair;
-          return A == B || (A->isStructTy() && B->isStructTy());
-        }))
+  for (unsigned N : Alike)
+    if (looksAlike(*T, *Types[N]))
       return Numbers[T] = N;
-  }
   unsigned N = Types.size();
   Types.push_back(T);
   Alike.push_back(N);
@@ -196,8 +203,9 @@ SmallVector<ScalarPart, 1> AccessResult::partsOf(const Instruction &I) const {
   Type *T = getLoadStoreType(const_cast<Instruction *>(&I));
   SmallVector<ScalarPart, 1> Parts;
   for (Location &L : resolve(getLoadStorePointerOperand(&I), true))
-    if (!(T->isAggregateType() || T->isIntegerTy()) ||
-        !addPartsAround(L, Layout->getTypeStoreSize(T).getFixedValue(), Parts))
+    if (!(T->isAggregateType() || T->isIntegerTy() || T->isVectorTy()) ||
+        !addPartsAround(L, Layout->getTypeStoreSize(T).getKnownMinValue(),
+                        Parts))
       Parts.push_back({std::move(L)});
   return Parts;
 }

@@ -58,12 +58,12 @@ static Repacked place(const Instruction &I, const Use &U) {
                                                               : Repacked::None};
   }
   case Instruction::Or: {
-    const Value *Other = I.getOperand(1 - U.getOperandNo());
-    KnownBits Known = bitsOf(V, I);
-    if (Width == 1 || !(~Known.Zero).isSubsetOf(bitsOf(Other, I).Zero) ||
-        isa<Constant>(Other))
-      return {Repacked::None};
-    return at({0, Known.countMaxActiveBits()}, Width);
+    KnownBits Own = bitsOf(V, I),
+              Other = bitsOf(I.getOperand(1 - U.getOperandNo()), I);
+    // A constant flag is the program's own arithmetic.
+    if (Width == 1 || Other.isConstant() || !(~Own.Zero).isSubsetOf(Other.Zero))
+      return {Other.isZero() ? Repacked::Whole : Repacked::None};
+    return at({0, Own.countMaxActiveBits()}, Width);
   }
   case Instruction::Shl: {
     const APInt *By;
@@ -151,12 +151,30 @@ static Repacked take(const Instruction &I, const Use &U, Bits In) {
   }
 }
 
-/// Where the field \p Index of \p T is.
-static Bits fieldOf(StructType *T, unsigned Index, const DataLayout &Layout) {
-  return {static_cast<unsigned>(
-              Layout.getStructLayout(T)->getElementOffsetInBits(Index)),
-          static_cast<unsigned>(
-              Layout.getTypeStoreSizeInBits(T->getElementType(Index)))};
+/// Where the part of a struct or vector is that \p I puts in or takes out; none
+/// where that is not constant, or a part of a part.
+static std::optional<Bits> partOf(const Instruction &I) {
+  const DataLayout &Layout = I.getModule()->getDataLayout();
+  const auto *Insert = dyn_cast<InsertValueInst>(&I);
+  const auto *Extract = dyn_cast<ExtractValueInst>(&I);
+  if (Insert || Extract) {
+    auto *T = dyn_cast<StructType>(I.getOperand(0)->getType());
+    ArrayRef<unsigned> Way =
+        Insert ? Insert->getIndices() : Extract->getIndices();
+    if (!T || Way.size() != 1)
+      return std::nullopt;
+    return Bits{static_cast<unsigned>(
+                    Layout.getStructLayout(T)->getElementOffsetInBits(Way[0])),
+                static_cast<unsigned>(
+                    Layout.getTypeStoreSizeInBits(T->getElementType(Way[0])))};
+  }
+  const auto *Number =
+      dyn_cast<ConstantInt>(I.getOperand(isa<InsertElementInst>(I) ? 2 : 1));
+  auto *T = dyn_cast<FixedVectorType>(I.getOperand(0)->getType());
+  if (!T || !Number || Number->getValue().uge(T->getNumElements()))
+    return std::nullopt;
+  unsigned Size = T->getScalarSizeInBits();
+  return Bits{static_cast<unsigned>(Number->getZExtValue()) * Size, Size};
 }
 
 static bool overlap(Bits A, Bits B) {
@@ -165,28 +183,20 @@ static bool overlap(Bits A, Bits B) {
 
 Repacked repack(const Use &U, std::optional<Bits> In) {
   const auto *I = cast<Instruction>(U.getUser());
-  const DataLayout &Layout = I->getModule()->getDataLayout();
-  if (const auto *Insert = dyn_cast<InsertValueInst>(I)) {
-    auto *T = dyn_cast<StructType>(Insert->getType());
-    if (!T || Insert->getNumIndices() != 1)
+  bool IsInsert = isa<InsertValueInst>(I) || isa<InsertElementInst>(I);
+  if (IsInsert || isa<ExtractValueInst>(I) || isa<ExtractElementInst>(I)) {
+    std::optional<Bits> Own = partOf(*I);
+    if (!Own)
       return {Repacked::None};
-    Bits Field = fieldOf(T, Insert->getIndices()[0], Layout);
-    if (U.getOperandNo() == 1)
-      return {Repacked::Part, In ? Bits{Field.Low + In->Low, In->Size} : Field};
-    if (!In || overlap(*In, Field))
+    if (IsInsert && U.getOperandNo() == 1)
+      return {Repacked::Part, In ? Bits{Own->Low + In->Low, In->Size} : *Own};
+    if (!In || overlap(*In, *Own) == IsInsert)
       return {Repacked::Gone};
-    return {Repacked::Part, *In};
-  }
-  if (const auto *Extract = dyn_cast<ExtractValueInst>(I)) {
-    auto *T = dyn_cast<StructType>(Extract->getAggregateOperand()->getType());
-    if (!T || Extract->getNumIndices() != 1)
+    if (IsInsert)
+      return {Repacked::Part, *In};
+    if (In->Low < Own->Low || In->Low + In->Size > Own->Low + Own->Size)
       return {Repacked::None};
-    Bits Field = fieldOf(T, Extract->getIndices()[0], Layout);
-    if (!In || !overlap(*In, Field))
-      return {Repacked::Gone};
-    if (In->Low < Field.Low || In->Low + In->Size > Field.Low + Field.Size)
-      return {Repacked::None};
-    return at({In->Low - Field.Low, In->Size}, Field.Size);
+    return at({In->Low - Own->Low, In->Size}, Own->Size);
   }
   if (!U->getType()->isIntegerTy())
     return {Repacked::None};

@@ -2,7 +2,7 @@
 // RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
 //
 // A struct that is returned and handed over in registers: two numbers in one of
-// 64 bits, or three in a pair. Each number is followed, and no other is taken
+// 64 bits, three in a pair, or two floats in a vector. Each number is followed, and no other is taken
 // for it.
 #include <ros/ros.h>
 
@@ -12,6 +12,17 @@ struct Rate {
 struct Pair {
   int First, Second;
 };
+
+struct Floats {
+  float Near, Far;
+};
+
+static Floats readFloats(ros::NodeHandle &Handle) {
+  Floats F;
+  Handle.param("near", F.Near, 0.5F);
+  Handle.param("far", F.Far, 1.5F);
+  return F;
+}
 
 static Pair readPair(ros::NodeHandle &Handle) {
   Pair P;
@@ -32,7 +43,7 @@ class Filter {
 public:
   Filter(Pair P, Rate R) : P(P), R(R) {}
   void step(ros::Publisher &Out, int N) {
-    // CHECK: comparisons of {{.*}}: 3
+    // CHECK: comparisons of {{.*}}: 4
     // CHECK-DAG: parameter 'second' relation > as x {{.*}} at [[#@LINE+1]]:11
     if (N > P.Second)
       Out.publish(std_msgs::Number());
@@ -50,6 +61,10 @@ private:
 };
 
 void run(ros::NodeHandle &Handle, ros::Publisher &Out, int N) {
+  // CHECK-DAG: parameter 'far' relation > as x {{.*}} at [[#@LINE+2]]:9
+  Floats Two = readFloats(Handle);
+  if (N > Two.Far)
+    Out.publish(std_msgs::Number());
   Filter F(readPair(Handle), readRate(Handle));
   F.step(Out, N);
 }

@@ -3,15 +3,16 @@
 //
 // Masks and shifts of the program itself are no bit fields: what a mask cuts off
 // is arithmetic, and a number that is packed with another and compared with it
-// is lost.
+// is lost. A truth value that is joined with another by `|=` is no bit field.
 #include <ros/ros.h>
 
 void step(ros::NodeHandle &Handle, ros::Publisher &Out, int N) {
-  int Mask, Shifted, Packed;
+  int Mask, Shifted, Packed, Plain;
   Handle.param("mask", Mask, 1);
   Handle.param("shifted", Shifted, 1);
   Handle.param("packed", Packed, 1);
-  // CHECK: comparisons of {{.*}}: 2
+  Handle.param("plain", Plain, 1);
+  // CHECK: comparisons of {{.*}}: 3
   // CHECK-DAG: derived 'mask' relation > as x & 12 {{.*}} at [[#@LINE+1]]:9
   if (N > (Mask & 12))
     Out.publish(std_msgs::Number());
@@ -19,5 +20,10 @@ void step(ros::NodeHandle &Handle, ros::Publisher &Out, int N) {
   if (N > (Shifted << 4))
     Out.publish(std_msgs::Number());
   if (N > ((Packed & 15) | (N << 4)))
+    Out.publish(std_msgs::Number());
+  bool Large = false;
+  // CHECK-DAG: parameter 'plain' relation > as x {{.*}} at [[#@LINE+1]]:14
+  Large |= N > Plain;
+  if (Large)
     Out.publish(std_msgs::Number());
 }
