@@ -32,6 +32,10 @@ class Rules:
         """The argument of a read that the value is written to."""
         return 2 if self.READ.match(name) else None
 
+    def always_writes(self, name: str) -> bool:
+        """True for the read that has a default: the variable has a new value in any case."""
+        return name.startswith("_ZNK3ros10NodeHandle5param")
+
 
 @dataclass(frozen=True, order=True)
 class Finding:

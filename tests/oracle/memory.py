@@ -122,10 +122,7 @@ class Memory:
         if i.opcode == "alloca":
             return {(i, 0)}
         if i.opcode == "getelementptr":
-            text = re.search(
-                r"getelementptr (?:inbounds |nuw |nusw |inrange\S* )*(.*?), ptr ", i.text
-            )
-            by = self.move(text[1], [number(v) for v in i.operands[1:]])
+            by = self.move(source_type(i), [number(v) for v in i.operands[1:]])
             return {(o, at + by) for o, at in self.of(i.operands[0])}
         if i.opcode in ("phi", "select", "freeze", "bitcast", "addrspacecast"):
             return set().union(*map(self.of, i.operands))
@@ -210,22 +207,19 @@ class Memory:
     def reaching(
         self, at: Location, size: int, by: set[Instruction], use: Instruction
     ) -> set[Instruction]:
-        """Of the writes of a local those that no store surely replaces on every way to `use`.
-
-        In another function than the local's own, and for what is no local, all of them.
-        """
+        """Of the writes those that no store surely replaces on every way to `use`."""
         local = at[0]
         if not isinstance(local, Instruction) or local.opcode != "alloca":
-            return by
+            return {i for i in by if self.is_seen(i, at, size, use)}
         if use.function is not local.function:
-            return by
+            return {i for i in by if self.is_seen(i, at, size, use)}
         kills = {
             w.by
             for w in self.writes
             if w.by in by
-            and w.by.opcode == "store"
             and w.by.function is use.function
-            and self.of(w.by.operands[1]) == {at}
+            and (pointer := self.replaced(w.by)) is not None
+            and self.of(pointer) == {at}
             and w.size == size
         }
         here = {i for i in by if i.function is use.function}
@@ -235,6 +229,78 @@ class Memory:
             if not calls or any(self.gets_to(c, use, kills) for c in calls):
                 alive.add(i)
         return alive | {i for i in here if self.gets_to(i, use, kills)}
+
+    def is_seen(self, write: Instruction, at: Location, size: int, use: Instruction) -> bool:
+        """True where what `write` leaves in memory that functions share can be there at `use`.
+
+        It is where it leaves its function unreplaced and `use` can find what was there before its
+        own; where `use` is in a function that runs while it is there, or the write is in one that
+        runs before `use`; and where a way in one function leads from the one to the other.
+        """
+        here, there = write.function, use.function
+        mine = self.replacements(write, at, size) - {write}
+        theirs = self.replacements(use, at, size)
+        if here is there and self.gets_to(write, use, theirs):
+            return True
+        # An exception is no way on.
+        pads = {i for i in here.instructions if i.opcode == "landingpad"}
+        ends = [i for i in here.instructions if i.opcode in ("ret", "unreachable")]
+        leaves = not mine or any(self.gets_to(write, e, mine | pads) for e in ends)
+        begin = there.instructions[0]
+        enters = not theirs or (begin not in theirs and self.gets_to(begin, use, theirs))
+        if leaves and enters:
+            return True
+        if leaves:
+            calls = self.program.calls_that_lead_to(there, here)
+            return any(self.gets_to(c, use, theirs) for c in calls)
+        calls = self.program.calls_that_lead_to(here, there)
+        return enters and any(self.gets_to(write, c, mine | pads) for c in calls)
+
+    def replacements(self, i: Instruction, at: Location, size: int) -> set[Instruction]:
+        """The stores of the function of `i` to what `i` names in the same way."""
+        place = None
+        if i.is_call:
+            for pointer in i.arguments:
+                named, leads = self.named(pointer), self.of(pointer)
+                if named and len(leads) == 1 and next(iter(leads))[0] is at[0]:
+                    place = named[0], named[1] + at[1] - next(iter(leads))[1]
+        else:
+            place = self.named(i.operands[-1])
+        if place is None:
+            return set()
+        return {s for s in i.function.instructions if self.place(s) == (*place, size)}
+
+    def place(self, i: Instruction) -> tuple[Value, int, int] | None:
+        """Where a write puts its value by the code of its function, and its size."""
+        pointer = self.replaced(i)
+        named = self.named(pointer) if pointer is not None else None
+        if named is None:
+            return None
+        size = extent(i, 2) if i.is_call else self.module.layout.size(store_type(i))
+        return None if size is None else (*named, size)
+
+    def replaced(self, i: Instruction) -> Value | None:
+        """The pointer to what `i` gives a new value, whatever was there."""
+        if i.opcode == "store":
+            return i.operands[1]
+        if i.is_call and len(i.arguments) > 3 and self.program.rules.always_writes(i.callee.name):
+            return i.arguments[2]
+        return None
+
+    def named(self, pointer: Value) -> tuple[Value, int] | None:
+        """A pointer as so many bytes from an argument, a local or a global."""
+        if isinstance(pointer, Argument):
+            return pointer, 0
+        if isinstance(pointer, Instruction):
+            if pointer.opcode == "alloca":
+                return pointer, 0
+            inner = self.named(pointer.operands[0]) if pointer.opcode == "getelementptr" else None
+            steps = [number(v) for v in pointer.operands[1:]] if inner else []
+            if inner is None or None in steps:
+                return None
+            return inner[0], inner[1] + self.move(source_type(pointer), steps)
+        found = self.of(pointer)
+        return next(iter(found)) if len(found) == 1 else None
 
     def gets_to(self, begin: Instruction, use: Instruction, kills: set[Instruction]) -> bool:
         """True where a way leads from behind `begin` to `use` and passes none of `kills`."""
@@ -307,6 +373,13 @@ class Program:
                 nx.add_path(graph, b.instructions)
                 graph.add_edges_from((b.terminator, s.instructions[0]) for s in b.terminator.blocks)
         return self.step_graphs[f]
+
+
+def source_type(i: Instruction) -> str:
+    """The type that a getelementptr goes through."""
+    found = re.search(r"getelementptr (?:inbounds |nuw |nusw |inrange\S* )*(.*?), ptr ", i.text)
+    assert found
+    return found[1]
 
 
 def store_type(i: Instruction) -> str:
