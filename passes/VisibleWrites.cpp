@@ -221,7 +221,8 @@ AccessResult::writesOf(const Location &L, const Instruction &At,
     reachingWrites(At, L, All);
     All.remove_if([&](Instruction *Write) {
       return Write->getFunction() != At.getFunction() &&
-             !Flow->reaches(*Write, writtenBy(*Write, L), At, std::nullopt);
+             !Flow->reaches(*Write, writtenBy(*Write, L), At,
+                            Reaching::anywhereIn(*L.Root));
     });
     return All.takeVector();
   }
