@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from tests.oracle.control import ControlDependence
 from tests.oracle.ir import Argument, Function, Instruction, Module, Place, Value, number, parse
-from tests.oracle.memory import SILENT, Memory, Program, extent
+from tests.oracle.memory import SILENT, Memory, Program, Write, extent
 
 RELATIONS = {"eq": "==", "ne": "!=", "gt": ">", "ge": ">=", "lt": "<", "le": "<="}
 SWAPPED = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "==": "==", "!=": "!="}
@@ -184,9 +184,19 @@ class Checker:
         """The writes of the variables that an unknown function is handed: it can read them."""
         out: set[Instruction] = set()
         for a in call.arguments:
-            for at in self.memory.of(a):
-                out |= {w.by for w in self.memory.writes_to(at, 1)} - {call}
+            if a is not self.memory.replaced(call):
+                for at in self.memory.of(a):
+                    out |= self.alive(self.memory.writes_to(at, 1), call)
         return out
+
+    def alive(self, writes: set[Write], call: Instruction) -> set[Instruction]:
+        """Those of `writes` that `call`, which is handed what they write, can see."""
+        out: set[Instruction] = set()
+        for w in writes:
+            same = {x.by for x in writes if x.at == w.at}
+            if w.by in self.memory.reaching(w.at, w.size or 0, same, call):
+                out.add(w.by)
+        return out - {call}
 
     def writes_behind(self, call: Instruction) -> set[Instruction]:
         """The writes of all that can be reached from the arguments of `call`."""
@@ -201,7 +211,7 @@ class Checker:
                 continue
             seen.add((o, at, size))
             end = 1 << 30 if size is None else at + size
-            out |= {w.by for w in self.memory.writes_to((o, at), end - at)} - {call}
+            out |= self.alive(self.memory.writes_to((o, at), end - at), call)
             for c in self.memory.copies:
                 if c.to[0] is o and c.to[1] < end and at < c.to[1] + c.size:
                     out.add(c.by)
