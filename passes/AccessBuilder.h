@@ -75,6 +75,7 @@ private:
   void addWrite(llvm::Instruction &I, const Location &L);
   void addCopy(llvm::Instruction &I, Locations To, Locations From);
   void putInto(llvm::CallBase &Call);
+  void fileReplacing(llvm::CallBase &Call, const llvm::Value *Pointer);
   void fileCall(llvm::CallBase &Call);
 
   AccessResult &R;

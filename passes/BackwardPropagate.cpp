@@ -72,8 +72,9 @@ private:
   void value(Instruction &I);
   void define(const Value *V);
   void definePointer(const Value *V);
-  void defineMemory(const Value *Pointer);
+  void defineMemory(const Value *Pointer, const Instruction &At);
   void phi(const PHINode &Phi);
+  void defineArguments(const CallBase &Call);
   void callResult(CallBase &Call);
   void touchingCall(CallBase &Call);
   void derivedPointer(const Value *Pointer);
@@ -92,6 +93,8 @@ private:
   DenseMap<const Instruction *, unsigned char> Seen;
   SmallPtrSet<const Value *, 16> SeenArguments;
   SmallPtrSet<const Value *, 16> SeenPointers;
+  /// Writes of what an exposing statement shows that are decided about.
+  SmallPtrSet<const Instruction *, 16> Settled;
   SmallVector<Item, 0> Next; ///< what the next round holds
   unsigned Round = 1;
   unsigned Current = 0; ///< exposing statement of the item at hand
@@ -163,11 +166,11 @@ void Slicer::definePointer(const Value *V) {
     enter(const_cast<Instruction *>(cast<Instruction>(V)), Gives, Why::Gives);
 }
 
-/// What is in memory at \p Pointer, a scalar, matters.
-void Slicer::defineMemory(const Value *Pointer) {
+/// What is in memory at \p Pointer, a scalar, matters where \p At reads it.
+void Slicer::defineMemory(const Value *Pointer, const Instruction &At) {
   for (const Location &L : Access.resolve(Pointer, true))
-    if (SeenWritten.insert(L))
-      for (Instruction *Write : Access.writesOf(L))
+    if (!Access.isSharedBy(L, At, Pointer) || SeenWritten.insert(L))
+      for (Instruction *Write : Access.writesOf(L, At, Pointer))
         enter(Write, Gives, Why::Writes);
 }
 
@@ -182,6 +185,15 @@ void Slicer::phi(const PHINode &Phi) {
   }
 }
 
+/// What \p Call is handed matters.
+void Slicer::defineArguments(const CallBase &Call) {
+  for (const Use &Arg : Call.args()) {
+    define(Arg);
+    if (Arg->getType()->isPointerTy() && !Access.replaces(Call, Arg))
+      defineMemory(Arg, Call);
+  }
+}
+
 void Slicer::callResult(CallBase &Call) {
   SmallVector<Function *, 1> Callees = Calls.callees(Call);
   if (!Callees.empty()) {
@@ -191,11 +203,7 @@ void Slicer::callResult(CallBase &Call) {
           enter(BB.getTerminator(), Gives, Why::Returns);
     return;
   }
-  for (const Use &Arg : Call.args()) {
-    define(Arg);
-    if (Arg->getType()->isPointerTy())
-      defineMemory(Arg);
-  }
+  defineArguments(Call);
 }
 
 /// \p Call is handed an object that matters: it may put its other arguments
@@ -205,11 +213,7 @@ void Slicer::touchingCall(CallBase &Call) {
   // publisher that does it is not among it.
   if (Seen.lookup(&Call) & Exposes)
     return;
-  for (const Use &Arg : Call.args()) {
-    define(Arg);
-    if (Arg->getType()->isPointerTy())
-      defineMemory(Arg);
-  }
+  defineArguments(Call);
   if (Call.getType()->isPointerTy())
     derivedPointer(&Call);
 }
@@ -217,9 +221,9 @@ void Slicer::touchingCall(CallBase &Call) {
 void Slicer::derivedPointer(const Value *Pointer) {
   if (!SeenPointers.insert(Pointer).second)
     return;
-  for (const User *U : Pointer->users()) {
-    auto *I = const_cast<Instruction *>(dyn_cast<Instruction>(U));
-    if (!I)
+  for (const Use &U : Pointer->uses()) {
+    auto *I = dyn_cast<Instruction>(U.getUser());
+    if (!I || Access.isPutIn(U))
       continue;
     if (isa<GetElementPtrInst>(I))
       derivedPointer(I);
@@ -230,7 +234,7 @@ void Slicer::derivedPointer(const Value *Pointer) {
       enter(I, Gives, Why::Writes);
     else if (isa<MemTransferInst>(I))
       enter(I, Gives, Why::Writes);
-    else if (isa<CallBase>(I) && !isa<IntrinsicInst>(I))
+    else if (isa<CallBase>(I) && !isa<IntrinsicInst>(I) && !Settled.contains(I))
       enter(I, Touches, Why::Writes);
   }
 }
@@ -245,13 +249,18 @@ void Slicer::reachable(CallBase &Call) {
     define(Arg);
     if (!Arg->getType()->isPointerTy())
       continue;
-    for (const Location &L : Access.resolve(Arg, false))
-      for (Instruction *Write : Access.writesInto(L, Call))
+    for (const Location &L : Access.resolve(Arg, false)) {
+      for (Instruction *Write : Access.writesInto(L, Call, Arg))
         enter(Write,
               isa<CallBase>(Write) && !isa<IntrinsicInst>(Write) ? Touches
                                                                  : Gives,
               Why::Writes);
+      // The others come too late, or are overwritten.
+      for (Instruction *Write : Access.writesInto(L))
+        Settled.insert(Write);
+    }
     derivedPointer(Arg);
+    Settled.clear();
   }
 }
 
@@ -259,10 +268,11 @@ void Slicer::value(Instruction &I) {
   if (auto *Phi = dyn_cast<PHINode>(&I))
     return phi(*Phi);
   if (auto *Load = dyn_cast<LoadInst>(&I)) {
-    // All loads of a variable that is not local have the same writes.
+    // Most loads of a variable that is not local have the same writes.
     bool New = false;
     for (const Location &L : Access.touched(*Load))
-      New |= !AccessResult::isSharedBy(L, *Load) || SeenLoaded.insert(L);
+      New |= !Access.isSharedBy(L, *Load, Load->getPointerOperand()) ||
+             SeenLoaded.insert(L);
     if (!New)
       return definePointer(Load->getPointerOperand());
     for (Instruction *Write : Access.definitionsOf(*Load)) {
@@ -275,7 +285,7 @@ void Slicer::value(Instruction &I) {
     return definePointer(Load->getPointerOperand());
   }
   if (auto *Copy = dyn_cast<MemTransferInst>(&I))
-    return defineMemory(Copy->getRawSource());
+    return defineMemory(Copy->getRawSource(), I);
   if (auto *Call = dyn_cast<CallBase>(&I); Call && !isa<IntrinsicInst>(&I))
     return callResult(*Call);
   if (auto *Store = dyn_cast<StoreInst>(&I)) {

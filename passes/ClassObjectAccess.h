@@ -18,6 +18,7 @@
 #define TPC_CLASSOBJECTACCESS_H
 
 #include "DebugTypes.h"
+#include "Reaching.h"
 #include "SimpleCallGraph.h"
 
 #include "llvm/ADT/DenseMap.h"
@@ -29,6 +30,7 @@
 #include "llvm/IR/Instructions.h"
 #include "llvm/IR/PassManager.h"
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -75,15 +77,25 @@ struct Location {
 
 using Locations = llvm::SmallVector<Location, 1>;
 
+/// Orders locations, to tell apart what is not exactly the same.
+struct LocationOrder {
+  static std::vector<uintptr_t> key(const Location &L) {
+    std::vector<uintptr_t> Key{reinterpret_cast<uintptr_t>(L.Root)};
+    for (const Step &S : L.Path)
+      Key.insert(Key.end(), {S.Type, S.Index, S.Class});
+    return Key;
+  }
+  bool operator()(const Location &A, const Location &B) const {
+    return key(A) < key(B);
+  }
+};
+
 /// A set of exactly these locations.
 class LocationSet {
 public:
   /// True where \p L was not in it.
   bool insert(const Location &L) {
-    std::vector<uintptr_t> Key{reinterpret_cast<uintptr_t>(L.Root)};
-    for (const Step &S : L.Path)
-      Key.insert(Key.end(), {S.Type, S.Index, S.Class});
-    return Known.insert(std::move(Key)).second;
+    return Known.insert(LocationOrder::key(L)).second;
   }
 
 private:
@@ -131,30 +143,43 @@ public:
 
   /// The writes that can give \p Load its value: stores, and calls without a
   /// body that are handed the variable. Copies of whole objects are followed.
-  /// Of the writes of a local variable, those that another store surely
-  /// replaces on every way to the load are left out.
+  /// Writes that another one surely replaces on every way to the load are left
+  /// out.
   llvm::ArrayRef<llvm::Instruction *>
   definitionsOf(const llvm::LoadInst &Load) const;
 
-  /// True where the writes of \p L are the same for all loads: it is no local
-  /// variable of \p Load's function.
-  static bool isSharedBy(const Location &L, const llvm::LoadInst &Load);
+  /// True where \p At, which reads \p L at \p Pointer, sees the same writes as
+  /// all that reads it elsewhere: it is no local variable of \p At's function,
+  /// and no write of it is replaced where others do not see it.
+  bool isSharedBy(const Location &L, const llvm::Instruction &At,
+                  const llvm::Value *Pointer) const;
 
   /// The loads to which \p Write, a store or call that writes the scalar at
   /// \p Pointer, can give the value.
   llvm::SmallVector<llvm::LoadInst *, 8>
   usesOf(const llvm::Instruction &Write, const llvm::Value *Pointer) const;
 
-  /// The writes of the scalar at \p L, wherever they are.
-  llvm::SmallVector<llvm::Instruction *, 8> writesOf(const Location &L) const;
+  /// The writes of the scalar at \p L that \p At, which reads it at \p Pointer,
+  /// can see.
+  llvm::SmallVector<llvm::Instruction *, 8>
+  writesOf(const Location &L, const llvm::Instruction &At,
+           const llvm::Value *Pointer) const;
 
   /// Stores into the object at \p L, and calls that are handed it or a part
   /// of it.
   llvm::SmallVector<llvm::Instruction *, 8> writesInto(const Location &L) const;
-  /// The same, without stores into a local object of \p At's function that
-  /// others surely replace before \p At.
+  /// The same for \p At, which is handed the object by \p Pointer, without
+  /// writes that others surely replace before \p At.
   llvm::SmallVector<llvm::Instruction *, 8>
-  writesInto(const Location &L, const llvm::Instruction &At) const;
+  writesInto(const Location &L, const llvm::Instruction &At,
+             const llvm::Value *Pointer) const;
+
+  /// True where \p Call gives what is at \p Pointer a new value, whatever was
+  /// there.
+  bool replaces(const llvm::CallBase &Call, const llvm::Value *Pointer) const;
+
+  /// True where \p Arg is only put into a container.
+  bool isPutIn(const llvm::Use &Arg) const { return PutIn.contains(&Arg); }
 
   const TypeNumbers &types() const { return Numbers; }
   DebugTypes &debugTypes() const { return *Debug; }
@@ -206,13 +231,29 @@ private:
   bool contains(llvm::Type *Outer, unsigned Inner) const;
   std::optional<llvm::SmallVector<Step, 4>> partOf(const Location &Object,
                                                    const Location &L) const;
-  void collectWrites(const Location &L,
-                     llvm::SmallSetVector<llvm::Instruction *, 8> &Out) const;
+  using Writes = llvm::SmallSetVector<llvm::Instruction *, 8>;
+  void collectWrites(const Location &L, Writes &Own, Writes &Copied) const;
+  Writes allWrites(const Location &L) const;
   void collectLoads(const Location &L,
-                    llvm::SmallSetVector<llvm::LoadInst *, 8> &Out) const;
+                    llvm::SmallSetVector<llvm::LoadInst *, 8> &Own,
+                    llvm::SmallSetVector<llvm::LoadInst *, 8> &Copied) const;
   Locations throughCopies(const Location &L, bool Backward) const;
-  void reachingWrites(const llvm::Instruction &Load, const Location &L,
-                      llvm::SmallSetVector<llvm::Instruction *, 8> &W) const;
+  void reachingWrites(const llvm::Instruction &At, const Location &L,
+                      Writes &W) const;
+  bool replaces(const llvm::Instruction &Write, const Location &L) const;
+  std::optional<Reaching::Variable> variableAt(const llvm::Value *Pointer,
+                                               const Location &L) const;
+  std::optional<Reaching::Variable> writtenBy(const llvm::Instruction &Write,
+                                              const Location &L) const;
+  /// A part of an object, and how a function names it.
+  struct Part {
+    llvm::SmallVector<Step, 4> Way;
+    Reaching::Variable Variable;
+  };
+  llvm::SmallVector<Part, 4> replacedParts(const Location &L,
+                                           const llvm::Instruction &At,
+                                           const llvm::Value *Pointer) const;
+  llvm::SmallVector<unsigned, 16> partsOf(const Location &L) const;
   static Slot slot(const Location &L);
   static const llvm::Value *baseOf(const llvm::Value *Pointer);
   bool isReachable(const Location &L) const;
@@ -223,6 +264,14 @@ private:
   void eachAt(const Location &L, const Index &In, Fn F) const;
   template <typename Fn>
   void eachAround(const Location &L, const Index &In, Fn F) const;
+
+  /// The writes of a variable that is not local.
+  struct SharedWrites {
+    Writes Own;    ///< of itself
+    Writes Copied; ///< of what copies of whole objects put into it
+    bool Narrowed; ///< not all that read it see all of Own
+  };
+  const SharedWrites &sharedWrites(const Location &L) const;
 
   struct LocalHistory;
   const LocalHistory &historyOf(const Location &L,
@@ -255,6 +304,12 @@ private:
           std::pair<Location, std::shared_ptr<const LocalHistory>>, 1>>
       Histories;
   mutable unsigned Walked = 0;
+  std::unique_ptr<Reaching> Flow;
+  /// Calls that replace a whole variable, and which.
+  llvm::DenseMap<const llvm::Instruction *, Location> Replaced;
+  /// Arguments that go into a container.
+  llvm::DenseSet<const llvm::Use *> PutIn;
+  mutable std::map<Location, SharedWrites, LocationOrder> Shared;
 };
 
 /// Calls \p F with the numbers that \p In has for what can be \p L.

@@ -118,6 +118,17 @@ void CallGraphResult::findMentions(Module &M, const Options &Opts) {
     });
 }
 
+/// What a function that is not looked into calls of a library is its own: its
+/// arguments there are no use of what it was handed.
+void CallGraphResult::forgetOpaqueCallers(const Options &Opts) {
+  UserSources Sources(Opts);
+  for (auto &[F, Calls] : Callers)
+    if (!Sources.has(*F))
+      erase_if(Calls, [&](const CallBase *Call) {
+        return Rules->isOpaque(*Call->getFunction());
+      });
+}
+
 CallGraphResult SimpleCallGraph::run(Module &M, ModuleAnalysisManager &AM) {
   CallGraphResult R;
   R.Rules = &AM.getResult<RuleAnalysis>(M);
@@ -166,7 +177,9 @@ CallGraphResult SimpleCallGraph::run(Module &M, ModuleAnalysisManager &AM) {
   }
   for (const CallBase *Call : R.Unresolved)
     R.UnresolvedTypes.insert(Call->getFunctionType());
-  R.findMentions(M, Options::fromCommandLine());
+  const Options Opts = Options::fromCommandLine();
+  R.forgetOpaqueCallers(Opts);
+  R.findMentions(M, Opts);
   return R;
 }
 

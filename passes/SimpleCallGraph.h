@@ -24,7 +24,8 @@ class RuleMatches;
 
 class CallGraphResult {
 public:
-  /// The calls of \p F, in the order of the module.
+  /// The calls of \p F, in the order of the module; for a library's function
+  /// without those by functions that are not looked into.
   llvm::ArrayRef<llvm::CallBase *> callers(const llvm::Function *F) const;
   /// The functions that \p Call may enter and that are looked into: they have
   /// a body, and the rules do not stand for it.
@@ -45,6 +46,7 @@ public:
 private:
   friend class SimpleCallGraph;
   friend class SimpleCallGraphPrinter;
+  void forgetOpaqueCallers(const Options &Opts);
   void findMentions(llvm::Module &M, const Options &Opts);
   const RuleMatches *Rules = nullptr;
   llvm::DenseMap<const llvm::CallBase *, llvm::SmallVector<llvm::Function *, 2>>

@@ -1,6 +1,5 @@
 """The nodes of the suite that the analysis does not get right, and why (analysis-limits.md)."""
 
-OVERWRITTEN = "what is overwritten before it is published counts still"
 BOUND = "what bind and std::function keep is told apart by its type alone"
 SWAPPED = "both operands come from parameters, and one is taken for the other"
 CONSTANT = "a constant that comes through a variable or a function"
@@ -8,14 +7,9 @@ NOT_JUDGED = "not looked into yet"
 
 KNOWN = {
     "cmp_bool": NOT_JUDGED,
-    "cmp_chained_cut": OVERWRITTEN,
-    "const_cut": OVERWRITTEN,
     "const_named": CONSTANT,
     "ctl_exception_callee": "exceptions make no dependence (SPEC 3), a reader says that they do",
     "ctl_exception_swallowed": "both ends of a throw that is caught at once lead to one publish",
-    "ctl_value_overwritten": OVERWRITTEN,
-    "drv_degrees": "the value before and the value after a conversion share a member",
-    "exp_message_reset": OVERWRITTEN,
     "exp_message_vector_dropped": "what is put into a vector that is only counted",
     "exp_three_calls": "the distance is 3, a reader says 4",
     "exp_timer_start_stop": "the timer and the message share a library's class",
@@ -28,10 +22,7 @@ KNOWN = {
     "val_bind": BOUND,
     "val_bind_unused": BOUND,
     "val_lambda": NOT_JUDGED,
-    "val_locals_globals_cut": OVERWRITTEN,
     "val_message_field": SWAPPED,
     "val_min_max_clamp": NOT_JUDGED,
-    "val_min_max_cut": OVERWRITTEN,
-    "val_overwritten_result": OVERWRITTEN,
     "val_std_function": BOUND,
 }

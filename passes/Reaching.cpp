@@ -1,0 +1,308 @@
+//===- Reaching.cpp -------------------------------------------------------===//
+#include "Reaching.h"
+
+#include "Functions.h"
+#include "Names.h"
+
+#include "llvm/IR/CFG.h"
+#include "llvm/IR/InstIterator.h"
+#include "llvm/IR/IntrinsicInst.h"
+
+using namespace llvm;
+
+namespace tpc {
+
+/// Blocks and functions that are walked through for a module; after that every
+/// write is taken to be seen by every read.
+static constexpr unsigned MaxWalked = 5'000'000;
+
+/// True for the functions without a body in which other threads, or callbacks,
+/// have their turn.
+static bool letsOthersRun(const Function &F) {
+  std::string Name = StringRef(qualifiedName(F.getName())).lower();
+  StringRef Last = StringRef(Name).rsplit(':').second;
+  if (Last.empty())
+    Last = Name;
+  static constexpr StringRef Words[] = {"sleep", "wait",  "spin",
+                                        "join",  "yield", "callavailable"};
+  return Last == "call" || Last == "callone" ||
+         any_of(Words, [&](StringRef Word) { return Last.contains(Word); }) ||
+         (Last.ends_with("lock") && !Last.ends_with("clock") &&
+          !Last.ends_with("block"));
+}
+
+Reaching::Reaching(Module &M, const CallGraphResult &Calls)
+    : Layout(M.getDataLayout()), Calls(Calls),
+      Unresolved(Calls.unresolved().begin(), Calls.unresolved().end()) {
+  for (const Function &F : definedFunctions(M))
+    for (const Instruction *I : Calls.mentions(&F))
+      HandedOn[I].push_back(&F);
+}
+
+std::optional<Reaching::Variable> Reaching::variableAt(const Value *Pointer,
+                                                       uint64_t Bytes) const {
+  APInt Offset(Layout.getIndexTypeSizeInBits(Pointer->getType()), 0);
+  const Value *Base = Pointer->stripAndAccumulateConstantOffsets(
+      Layout, Offset, /*AllowNonInbounds=*/true);
+  if (!Bytes || (!isa<Argument>(Base) && !isa<GlobalVariable>(Base) &&
+                 !isa<AllocaInst>(Base)))
+    return std::nullopt;
+  return Variable{{Base, Offset.getSExtValue()}, Bytes};
+}
+
+void Reaching::addReplacing(const CallBase &Call, const Value *Pointer,
+                            uint64_t Bytes) {
+  if (std::optional<Variable> V = variableAt(Pointer, Bytes))
+    Replacing.insert({&Call, *V});
+}
+
+std::optional<Reaching::Variable>
+Reaching::replacedBy(const Instruction &Write) const {
+  if (const auto *Store = dyn_cast<StoreInst>(&Write)) {
+    TypeSize Bytes =
+        Layout.getTypeStoreSize(Store->getValueOperand()->getType());
+    return variableAt(Store->getPointerOperand(),
+                      Bytes.isScalable() ? 0 : Bytes.getFixedValue());
+  }
+  const auto *Call = dyn_cast<CallBase>(&Write);
+  auto It = Call ? Replacing.find(Call) : Replacing.end();
+  if (It == Replacing.end())
+    return std::nullopt;
+  return It->second;
+}
+
+const Reaching::Replacements &Reaching::replacementsIn(const Function &F) {
+  std::unique_ptr<Replacements> &Known = ByFunction[&F];
+  if (Known)
+    return *Known;
+  Known = std::make_unique<Replacements>();
+  for (const Instruction &I : instructions(F))
+    if (std::optional<Variable> V = replacedBy(I)) {
+      Known->ByPlace[V->Where].push_back(&I);
+      Known->ByBase[V->Where.first].push_back(&I);
+    }
+  return *Known;
+}
+
+Reaching::Instructions Reaching::replacing(const Function &F, Variable V) {
+  Instructions Found = replacementsIn(F).ByPlace.lookup(V.Where);
+  erase_if(Found, [&](const Instruction *I) {
+    return replacedBy(*I)->Bytes < V.Bytes;
+  });
+  return Found;
+}
+
+Reaching::Instructions Reaching::replacingFrom(const Function &F,
+                                               const Value *Base) {
+  return replacementsIn(F).ByBase.lookup(Base);
+}
+
+//===----------------------------------------------------------------------===//
+// What a call can run
+//===----------------------------------------------------------------------===//
+
+void Reaching::addRunning(const Instruction &I, Running &Out) const {
+  if (auto It = HandedOn.find(&I); It != HandedOn.end())
+    Out.Functions.insert(It->second.begin(), It->second.end());
+  const auto *Call = dyn_cast<CallBase>(&I);
+  if (!Call)
+    return;
+  for (const Function *Callee : Calls.callees(*Call))
+    Out.Functions.insert(Callee);
+  const Function *Callee = Call->getCalledFunction();
+  Out.Anything |= Unresolved.contains(Call) ||
+                  (Callee && Callee->isDeclaration() && letsOthersRun(*Callee));
+}
+
+ArrayRef<const Instruction *> Reaching::runnersIn(const BasicBlock &BB) {
+  auto [It, New] = Runners.try_emplace(&BB);
+  if (New)
+    for (const Instruction &I : BB)
+      if ((isa<CallBase>(I) && !isa<IntrinsicInst>(I)) || HandedOn.contains(&I))
+        It->second.push_back(&I);
+  return It->second;
+}
+
+const Reaching::Running &Reaching::runBy(const Function &F) {
+  std::unique_ptr<Running> &Known = RunBy[&F];
+  if (!Known) {
+    Known = std::make_unique<Running>();
+    for (const BasicBlock &BB : F)
+      for (const Instruction *I : runnersIn(BB))
+        addRunning(*I, *Known);
+  }
+  return *Known;
+}
+
+bool Reaching::canRun(const Way &W, const Function &F) {
+  if (!W.Closure) {
+    Running All;
+    for (const Instruction *I : W.Runners)
+      addRunning(*I, All);
+    SmallVector<const Function *, 16> Work(All.Functions.begin(),
+                                           All.Functions.end());
+    while (!Work.empty() && !All.Anything) {
+      const Running &Inner = runBy(*Work.pop_back_val());
+      All.Anything |= Inner.Anything || ++Walked > MaxWalked;
+      for (const Function *Next : Inner.Functions)
+        if (All.Functions.insert(Next).second)
+          Work.push_back(Next);
+    }
+    const_cast<Way &>(W).Closure = std::make_unique<Running>(std::move(All));
+  }
+  return W.Closure->Anything || W.Closure->Functions.contains(&F);
+}
+
+//===----------------------------------------------------------------------===//
+// From a write down, from a read up
+//===----------------------------------------------------------------------===//
+
+/// Goes through \p BB below \p From, or from its beginning; false where the
+/// value is replaced there.
+bool Reaching::walkDown(const BasicBlock &BB, const Instruction *From,
+                        const Instructions &Ends, Way &Out) {
+  const Instruction *End = nullptr;
+  for (const Instruction *I : Ends)
+    if (I->getParent() == &BB && (!From || From->comesBefore(I)) &&
+        (!End || I->comesBefore(End)))
+      End = I;
+  for (const Instruction *I : runnersIn(BB))
+    if ((!From || From->comesBefore(I)) && (!End || I->comesBefore(End)))
+      Out.Runners.push_back(I);
+  return !End;
+}
+
+/// True where control leaves the function at the end of \p BB, be it by a
+/// `throw`; not where the program ends.
+static bool isExit(const BasicBlock &BB) {
+  const Instruction *End = BB.getTerminator();
+  if (!isa<UnreachableInst>(End))
+    return End->getNumSuccessors() == 0;
+  const auto *Last =
+      dyn_cast_or_null<CallBase>(End->getPrevNonDebugInstruction());
+  return !Last || !Last->doesNotThrow();
+}
+
+const Reaching::Way &Reaching::after(const Instruction &Write,
+                                     std::optional<Variable> V) {
+  const auto *Store = dyn_cast<StoreInst>(&Write);
+  if (!V || (Store && !Store->isSimple()))
+    return Everywhere;
+  Instructions Ends = replacing(*Write.getFunction(), *V);
+  erase(Ends, &Write);
+  if (Ends.empty() || Walked > MaxWalked)
+    return Everywhere;
+  std::unique_ptr<Way> &Known = After[{&Write, V->Where}];
+  if (Known)
+    return *Known;
+  Known = std::make_unique<Way>();
+  Known->Open = false;
+  SmallPtrSet<const BasicBlock *, 8> Seen;
+  SmallVector<const BasicBlock *, 8> Work;
+  auto Through = [&](const BasicBlock &BB, const Instruction *From) {
+    ++Walked;
+    if (!walkDown(BB, From, Ends, *Known))
+      return;
+    Known->Open |= isExit(BB);
+    const auto *Invoke = dyn_cast<InvokeInst>(BB.getTerminator());
+    for (const BasicBlock *Next : successors(&BB))
+      if (!(Invoke && Next == Invoke->getUnwindDest()) &&
+          Seen.insert(Next).second)
+        Work.push_back(Next);
+  };
+  Through(*Write.getParent(), &Write);
+  while (!Work.empty())
+    Through(*Work.pop_back_val(), nullptr);
+  return *Known;
+}
+
+/// Goes up through \p BB above \p Below, or from its end; the write that
+/// replaced what was there, or null.
+const Instruction *Reaching::walkUp(const BasicBlock &BB,
+                                    const Instruction *Below,
+                                    const Instructions &Ends, Way &Out) {
+  const Instruction *End = nullptr;
+  for (const Instruction *I : Ends)
+    if (I->getParent() == &BB && (!Below || I->comesBefore(Below)) &&
+        (!End || End->comesBefore(I)))
+      End = I;
+  for (const Instruction *I : runnersIn(BB))
+    if ((!Below || I->comesBefore(Below)) && (!End || End->comesBefore(I)))
+      Out.Runners.push_back(I);
+  return End;
+}
+
+const Reaching::Way &Reaching::before(const Instruction &At, Variable V) {
+  Instructions Ends = replacing(*At.getFunction(), V);
+  bool IsLocal = isa<AllocaInst>(V.Where.first);
+  if ((Ends.empty() && !IsLocal) || Walked > MaxWalked)
+    return Everywhere;
+  std::unique_ptr<Way> &Known = Before[{&At, V.Where}];
+  if (Known)
+    return *Known;
+  Known = std::make_unique<Way>();
+  Known->Open = false;
+  // A call that throws has replaced nothing.
+  auto Thrown = [&](const BasicBlock *BB, const BasicBlock *Next) {
+    const auto *Invoke = dyn_cast<InvokeInst>(BB->getTerminator());
+    return Invoke && Next == Invoke->getUnwindDest() &&
+           is_contained(Ends, Invoke);
+  };
+  SmallVector<std::pair<const BasicBlock *, const Instruction *>, 8> Work;
+  SmallPtrSet<const BasicBlock *, 8> SeenThrown;
+  auto Above = [&](const BasicBlock &BB) {
+    // Before its function a local is nobody's.
+    Known->Open |= !IsLocal && &BB == &BB.getParent()->getEntryBlock();
+    for (const BasicBlock *Pred : predecessors(&BB)) {
+      bool ByThrow = Thrown(Pred, &BB);
+      if (ByThrow ? SeenThrown.insert(Pred).second
+                  : !Known->Blocks.contains(Pred))
+        Work.push_back({Pred, ByThrow ? Pred->getTerminator() : nullptr});
+    }
+  };
+  Known->UpperEnd = walkUp(*At.getParent(), &At, Ends, *Known);
+  if (!Known->UpperEnd)
+    Above(*At.getParent());
+  while (!Work.empty()) {
+    auto [BB, Below] = Work.pop_back_val();
+    if (!Below && Known->Blocks.contains(BB))
+      continue;
+    ++Walked;
+    const Instruction *End = walkUp(*BB, Below, Ends, *Known);
+    // Of two ways through a block the longer one counts.
+    auto [It, New] = Known->Blocks.try_emplace(BB, End);
+    if (!New && Below)
+      It->second = End;
+    if (!End)
+      Above(*BB);
+  }
+  return *Known;
+}
+
+/// True where \p Back, the way back from \p At, comes to \p Write.
+bool Reaching::contains(const Way &Back, const Instruction &At,
+                        const Instruction &Write) {
+  auto NotBefore = [&](const Instruction *End) {
+    return !End || End == &Write || End->comesBefore(&Write);
+  };
+  if (Write.getParent() == At.getParent() && Write.comesBefore(&At) &&
+      NotBefore(Back.UpperEnd))
+    return true;
+  auto It = Back.Blocks.find(Write.getParent());
+  return It != Back.Blocks.end() && NotBefore(It->second);
+}
+
+bool Reaching::reaches(const Instruction &Write,
+                       std::optional<Variable> Written, const Instruction &At,
+                       std::optional<Variable> Read) {
+  const Way &Down = after(Write, Written);
+  const Way &Up = Read ? before(At, *Read) : Everywhere;
+  const Function &F = *Write.getFunction(), &G = *At.getFunction();
+  if (&F == &G && (&Up == &Everywhere || contains(Up, At, Write)))
+    return true;
+  if (Down.Open)
+    return Up.Open || canRun(Up, F);
+  return Up.Open && canRun(Down, G);
+}
+
+} // namespace tpc

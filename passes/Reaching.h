@@ -1,0 +1,137 @@
+//===- Reaching.h - Which reads of a member or global see a write ---------===//
+//
+// Reaching definitions (Aho, Sethi and Ullman, "Compilers", 10.5) for memory
+// that functions share. Inside a function a store replaces what an earlier one
+// put into the same variable of the same object. What is there when a function
+// returns is visible to everybody, what is there at a call to what the call can
+// run. Exceptions make no way, as for control dependence.
+//
+// Threads: what is replaced before the function returns is seen by no other
+// thread, unless the function waits, locks or lets callbacks run in between,
+// or the store is atomic.
+//
+//===----------------------------------------------------------------------===//
+#ifndef TPC_REACHING_H
+#define TPC_REACHING_H
+
+#include "SimpleCallGraph.h"
+
+#include "llvm/ADT/SmallPtrSet.h"
+#include "llvm/IR/DataLayout.h"
+#include "llvm/IR/Instructions.h"
+
+#include <memory>
+#include <optional>
+
+namespace tpc {
+
+class Reaching {
+public:
+  /// Where a piece of memory is by the code of its function: so many bytes from
+  /// what an argument points to, from a global's or a local's beginning.
+  using Place = std::pair<const llvm::Value *, int64_t>;
+  struct Variable {
+    Place Where;
+    uint64_t Bytes;
+  };
+
+  using Instructions = llvm::SmallVector<const llvm::Instruction *, 2>;
+
+  Reaching(llvm::Module &M, const CallGraphResult &Calls);
+
+  /// None where \p Pointer is not the same place whenever it is computed.
+  std::optional<Variable> variableAt(const llvm::Value *Pointer,
+                                     uint64_t Bytes) const;
+
+  /// Some part of \p Local that no single write replaces.
+  static Variable anywhereIn(const llvm::Value &Local) {
+    return {{&Local, -1}, 1};
+  }
+
+  /// Says that \p Call always replaces the \p Bytes at \p Pointer.
+  void addReplacing(const llvm::CallBase &Call, const llvm::Value *Pointer,
+                    uint64_t Bytes);
+  /// What \p Write, a store or call, always replaces.
+  std::optional<Variable> replacedBy(const llvm::Instruction &Write) const;
+  /// The writes in \p F that replace the whole of \p V.
+  Instructions replacing(const llvm::Function &F, Variable V);
+
+  /// All such writes in \p F that name their variable by \p Base.
+  Instructions replacingFrom(const llvm::Function &F, const llvm::Value *Base);
+
+  /// True where what \p Write puts into \p Written can still be there when
+  /// \p Read reads it, which names the variable \p Read (none: by a pointer
+  /// that may be another object's).
+  bool reaches(const llvm::Instruction &Write, std::optional<Variable> Written,
+               const llvm::Instruction &At, std::optional<Variable> Read);
+
+  /// True where every read that is not itself narrowed sees \p Write.
+  bool isVisible(const llvm::Instruction &Write,
+                 std::optional<Variable> Written) {
+    return after(Write, Written).Open;
+  }
+  /// True where \p At reads a variable that its function also replaces.
+  bool isNarrowed(const llvm::Instruction &At, std::optional<Variable> Read) {
+    return Read && !replacing(*At.getFunction(), *Read).empty();
+  }
+
+private:
+  /// What instructions can run besides themselves.
+  struct Running {
+    bool Anything = false;
+    llvm::SmallPtrSet<const llvm::Function *, 4> Functions;
+  };
+  /// The way from a write to where others see it, or from a read back to where
+  /// others wrote.
+  struct Way {
+    bool Open = true; ///< leads out of the function
+    llvm::SmallVector<const llvm::Instruction *, 4> Runners;
+    std::unique_ptr<Running> Closure; ///< of Runners, once it was asked for
+    /// Of a way back: the blocks that it leads through and the write at which
+    /// it ends in each, null where it goes through.
+    llvm::DenseMap<const llvm::BasicBlock *, const llvm::Instruction *> Blocks;
+    const llvm::Instruction *UpperEnd = nullptr; ///< in the block of the read
+  };
+  const Way &after(const llvm::Instruction &Write, std::optional<Variable> V);
+  const Way &before(const llvm::Instruction &At, Variable V);
+  static bool contains(const Way &Back, const llvm::Instruction &At,
+                       const llvm::Instruction &Write);
+  bool canRun(const Way &W, const llvm::Function &F);
+  void addRunning(const llvm::Instruction &I, Running &Out) const;
+  const Running &runBy(const llvm::Function &F);
+  llvm::ArrayRef<const llvm::Instruction *>
+  runnersIn(const llvm::BasicBlock &BB);
+  bool walkDown(const llvm::BasicBlock &BB, const llvm::Instruction *From,
+                const Instructions &Ends, Way &Out);
+  const llvm::Instruction *walkUp(const llvm::BasicBlock &BB,
+                                  const llvm::Instruction *Below,
+                                  const Instructions &Ends, Way &Out);
+
+  const llvm::DataLayout &Layout;
+  const CallGraphResult &Calls;
+  llvm::DenseSet<const llvm::CallBase *> Unresolved;
+  llvm::DenseMap<const llvm::CallBase *, Variable> Replacing;
+  /// Functions that an instruction hands on.
+  llvm::DenseMap<const llvm::Instruction *,
+                 llvm::SmallVector<const llvm::Function *, 1>>
+      HandedOn;
+  /// Of a function: the writes that replace a variable, in order.
+  struct Replacements {
+    llvm::DenseMap<Place, Instructions> ByPlace;
+    llvm::DenseMap<const llvm::Value *, Instructions> ByBase;
+  };
+  const Replacements &replacementsIn(const llvm::Function &F);
+  llvm::DenseMap<const llvm::Function *, std::unique_ptr<Replacements>>
+      ByFunction;
+  llvm::DenseMap<const llvm::BasicBlock *, Instructions> Runners;
+  llvm::DenseMap<const llvm::Function *, std::unique_ptr<Running>> RunBy;
+  llvm::DenseMap<std::pair<const llvm::Instruction *, Place>,
+                 std::unique_ptr<Way>>
+      After, Before;
+  Way Everywhere; ///< where nothing is known
+  unsigned Walked = 0;
+};
+
+} // namespace tpc
+
+#endif // TPC_REACHING_H
