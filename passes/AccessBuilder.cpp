@@ -3,6 +3,7 @@
 
 #include "Budget.h"
 #include "Functions.h"
+#include "Names.h"
 #include "Print.h"
 
 #include "llvm/IR/InstIterator.h"
@@ -56,28 +57,44 @@ static const Value *constantObject(const CallBase &Call,
   return IsConst ? containerOf(Call) : nullptr;
 }
 
+/// The container that \p Call, a method of it, puts its arguments into: it does
+/// not write them, unless they are containers that give up their elements.
+static const Value *filledBy(const CallBase &Call,
+                             const ContainerMethod *Method) {
+  const Function *Callee = Call.getCalledFunction();
+  if (!Method || !Method->Writes || !Callee)
+    return nullptr;
+  std::string Name = qualifiedName(Callee->getName());
+  static constexpr StringRef GiveUp[] = {"swap", "merge", "splice"};
+  if (is_contained(GiveUp, StringRef(Name).rsplit(':').second))
+    return nullptr;
+  return containerOf(Call);
+}
+
 /// What \p Call, of which the rules say \p Row, always gives a new value: the
-/// variable of a read that has a default, and text that is assigned to.
+/// variable of a read that has a default, and text that is made or assigned.
 static const Value *alwaysReplaced(const CallBase &Call, const Rule &Row) {
   if (Row.Kind == Rule::Read && Row.Value && Row.Default)
     return argument(Call, Row, Row.Value);
-  if (Row.Kind == Rule::Text && StringRef(Row.Function).ends_with("operator="))
+  if (Row.Kind == Rule::Text && Row.Method && Row.Relation == "copy")
     return objectOf(Call, Row);
   return nullptr;
 }
 
-/// Files that \p Call replaces what is at \p Pointer, where that is one place.
+/// Files that \p Call replaces what is at \p Pointer.
 void AccessResult::Builder::fileReplacing(CallBase &Call,
                                           const Value *Pointer) {
   const Locations Where = R.resolve(Pointer, false);
-  if (Where.size() != 1)
+  if (Where.empty())
     return;
   Type *T = R.typeAt(Where.front());
-  if (!T || !T->isSized())
+  if (!T || !T->isSized() ||
+      any_of(Where, [&](const Location &L) { return R.typeAt(L) != T; }))
     return;
-  R.Replaced[&Call] = Where.front();
   R.Flow->addReplacing(Call, Pointer,
                        R.Layout->getTypeStoreSize(T).getKnownMinValue());
+  if (Where.size() == 1)
+    R.Replaced[&Call] = Where.front();
 }
 
 /// What \p Call can write to.
@@ -93,11 +110,20 @@ void AccessResult::Builder::fileCall(CallBase &Call) {
   if (Method && Method->Writes)
     putInto(Call);
   const Value *Constant = constantObject(Call, Method);
+  const Value *Filled = filledBy(Call, Method);
   for (const auto &[N, Arg] : enumerate(Call.args())) {
     if (!Arg->getType()->isPointerTy() || Call.onlyReadsMemory(N) ||
         Arg.get() == Constant)
       continue;
+    if (Filled && Arg.get() != Filled &&
+        !Call.paramHasAttr(N, Attribute::StructRet)) {
+      R.PutIn.insert(&Call.getArgOperandUse(N));
+      continue;
+    }
     for (const Location &L : R.resolve(Arg, false)) {
+      const auto *Global = dyn_cast_or_null<GlobalVariable>(L.Root);
+      if (Global && Global->isConstant())
+        continue;
       addWrite(Call, L);
       if (!Opaque)
         continue;

@@ -221,9 +221,9 @@ void Slicer::touchingCall(CallBase &Call) {
 void Slicer::derivedPointer(const Value *Pointer) {
   if (!SeenPointers.insert(Pointer).second)
     return;
-  for (const User *U : Pointer->users()) {
-    auto *I = const_cast<Instruction *>(dyn_cast<Instruction>(U));
-    if (!I)
+  for (const Use &U : Pointer->uses()) {
+    auto *I = dyn_cast<Instruction>(U.getUser());
+    if (!I || Access.isPutIn(U))
       continue;
     if (isa<GetElementPtrInst>(I))
       derivedPointer(I);

@@ -190,6 +190,9 @@ public:
   /// there.
   bool replaces(const llvm::CallBase &Call, const llvm::Value *Pointer) const;
 
+  /// True where \p Arg is only put into a container.
+  bool isPutIn(const llvm::Use &Arg) const { return PutIn.contains(&Arg); }
+
   const TypeNumbers &types() const { return Numbers; }
   DebugTypes &debugTypes() const { return *Debug; }
   llvm::ArrayRef<Access> loads() const { return Loads; }
@@ -319,6 +322,8 @@ private:
   std::unique_ptr<Reaching> Flow;
   /// Calls that replace a whole variable, and which.
   llvm::DenseMap<const llvm::Instruction *, Location> Replaced;
+  /// Arguments that go into a container.
+  llvm::DenseSet<const llvm::Use *> PutIn;
   mutable std::map<Location, SharedWrites, LocationOrder> Shared;
 };
 

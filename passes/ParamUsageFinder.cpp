@@ -12,9 +12,11 @@
 #include "SimpleCallGraph.h"
 #include "TextUsage.h"
 
-#include "llvm/ADT/DenseSet.h"
+#include "llvm/ADT/DenseMap.h"
 #include "llvm/IR/IntrinsicInst.h"
 #include "llvm/IR/Module.h"
+
+#include <array>
 
 using namespace llvm;
 
@@ -73,7 +75,24 @@ private:
     Value *Origin = nullptr;
     unsigned Way = Hop::None; ///< number of the hop that led here
   };
-  using Worklist = SmallVector<State, 16>;
+  /// By kind of Transform: what comes to a place in several ways is followed on
+  /// from there with the simplest arithmetic.
+  class Worklist {
+  public:
+    void push(State S) {
+      Transform::KindTy Kind = S.How.kind();
+      ByKind[Kind].push_back(std::move(S));
+    }
+    std::optional<State> pop() {
+      for (SmallVector<State, 16> &Of : ByKind)
+        if (!Of.empty())
+          return Of.pop_back_val();
+      return std::nullopt;
+    }
+
+  private:
+    std::array<SmallVector<State, 16>, Transform::Expression + 1> ByKind;
+  };
 
   void followRead(unsigned N);
   void useOfValue(const State &S, Use &U, unsigned Read);
@@ -97,6 +116,10 @@ private:
   }
   void push(State S, Instruction *Via = nullptr);
   const CallPath *into(const CallBase *Call, const CallPath *Outer);
+  static std::pair<const Value *, const CallBase *> placeOf(const State &S) {
+    return {S.V, S.Path ? S.Path->Call : nullptr};
+  }
+  std::optional<State> next();
 
   const CallGraphResult &Calls;
   const AccessResult &Access;
@@ -110,7 +133,8 @@ private:
   unsigned ReadAtHand = 0;
   bool IsOutcome = false;    ///< what is followed is not the value itself
   unsigned Here = Hop::None; ///< hop that led to the state at hand
-  DenseSet<std::pair<const Value *, const CallBase *>> Seen;
+  /// The simplest arithmetic with which a value was come to, by each call.
+  DenseMap<std::pair<const Value *, const CallBase *>, Transform::KindTy> Seen;
   SmallVector<std::unique_ptr<CallPath>, 16> Paths;
 };
 
@@ -128,15 +152,26 @@ const CallPath *Follower::into(const CallBase *Call, const CallPath *Outer) {
 /// \p Via is the instruction that brings the value to S.V; none where S.V
 /// computes it itself.
 void Follower::push(State S, Instruction *Via) {
-  if (!Seen.insert({S.V, S.Path ? S.Path->Call : nullptr}).second)
+  Transform::KindTy Kind = S.How.kind();
+  auto [It, New] = Seen.try_emplace(placeOf(S), Kind);
+  if (!New && It->second <= Kind)
     return;
+  It->second = Kind;
   S.Way = Usage.Hops.size();
   Usage.Hops.push_back({S.V, Via ? Via : cast<Instruction>(S.V), Here});
-  Work.push_back(std::move(S));
+  Work.push(std::move(S));
 }
 
 void Follower::end(ValueEnd::KindTy Kind, Instruction *At) {
   Usage.Ends.push_back({Kind, ReadAtHand, At});
+}
+
+/// The state to go on from; one that was come to more simply is done with.
+std::optional<Follower::State> Follower::next() {
+  while (std::optional<State> S = Work.pop())
+    if (Seen.lookup(placeOf(*S)) >= S->How.kind() && !Budget::isSpent())
+      return S;
+  return std::nullopt;
 }
 
 /// \p How, and what \p I, a merge or a load, makes of it where it takes the
@@ -305,17 +340,16 @@ static bool decidesBy(const Instruction &I, const Use &U) {
 /// The predicates that \p Outcome, a truth value, decides.
 SmallVector<Decision, 2> Follower::followOutcome(Value *Outcome,
                                                  const CallPath *Path) {
-  Worklist OuterWork = std::move(Work);
+  Worklist OuterWork = std::exchange(Work, {});
   auto OuterSeen = std::move(Seen);
   unsigned OuterHere = Here;
-  Work.clear();
   Seen.clear();
   IsOutcome = true;
   size_t HopsBefore = Usage.Hops.size();
   SmallVector<Decision, 2> Found;
   push({Outcome, {}, Path, true});
-  while (!Work.empty() && !Budget::isSpent()) {
-    State S = Work.pop_back_val();
+  while (std::optional<State> At = next()) {
+    const State &S = *At;
     Here = S.Way;
     for (Use &U : S.V->uses()) {
       auto *I = dyn_cast<Instruction>(U.getUser());
@@ -510,8 +544,8 @@ void Follower::followRead(unsigned N) {
       Written.push_back({std::move(L)});
     load({R.Call, {}, nullptr, true}, *R.Call, Written, Loads);
   }
-  while (!Work.empty() && !Budget::isSpent()) {
-    State S = Work.pop_back_val();
+  while (std::optional<State> At = next()) {
+    const State &S = *At;
     Here = S.Way;
     for (Use &U : S.V->uses())
       useOfValue(S, U, N);

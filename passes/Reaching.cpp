@@ -234,7 +234,8 @@ const Instruction *Reaching::walkUp(const BasicBlock &BB,
 
 const Reaching::Way &Reaching::before(const Instruction &At, Variable V) {
   Instructions Ends = replacing(*At.getFunction(), V);
-  if (Ends.empty() || Walked > MaxWalked)
+  bool IsLocal = isa<AllocaInst>(V.Where.first);
+  if ((Ends.empty() && !IsLocal) || Walked > MaxWalked)
     return Everywhere;
   std::unique_ptr<Way> &Known = Before[{&At, V.Where}];
   if (Known)
@@ -250,7 +251,8 @@ const Reaching::Way &Reaching::before(const Instruction &At, Variable V) {
   SmallVector<std::pair<const BasicBlock *, const Instruction *>, 8> Work;
   SmallPtrSet<const BasicBlock *, 8> SeenThrown;
   auto Above = [&](const BasicBlock &BB) {
-    Known->Open |= &BB == &BB.getParent()->getEntryBlock();
+    // Before its function a local is nobody's.
+    Known->Open |= !IsLocal && &BB == &BB.getParent()->getEntryBlock();
     for (const BasicBlock *Pred : predecessors(&BB)) {
       bool ByThrow = Thrown(Pred, &BB);
       if (ByThrow ? SeenThrown.insert(Pred).second

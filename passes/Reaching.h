@@ -43,6 +43,11 @@ public:
   std::optional<Variable> variableAt(const llvm::Value *Pointer,
                                      uint64_t Bytes) const;
 
+  /// Some part of \p Local that no single write replaces.
+  static Variable anywhereIn(const llvm::Value &Local) {
+    return {{&Local, -1}, 1};
+  }
+
   /// Says that \p Call always replaces the \p Bytes at \p Pointer.
   void addReplacing(const llvm::CallBase &Call, const llvm::Value *Pointer,
                     uint64_t Bytes);

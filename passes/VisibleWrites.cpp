@@ -219,6 +219,11 @@ AccessResult::writesOf(const Location &L, const Instruction &At,
   if (isLocalOf(L, At)) {
     Writes All = allWrites(L);
     reachingWrites(At, L, All);
+    All.remove_if([&](Instruction *Write) {
+      return Write->getFunction() != At.getFunction() &&
+             !Flow->reaches(*Write, writtenBy(*Write, L), At,
+                            Reaching::anywhereIn(*L.Root));
+    });
     return All.takeVector();
   }
   const SharedWrites &All = sharedWrites(L);
@@ -306,9 +311,12 @@ AccessResult::writesInto(const Location &L, const Instruction &At,
     if (!Local) {
       auto Way = partOf(L, Where);
       auto It = find_if(Parts, [&](const Part &P) { return P.Way == Way; });
-      return Flow->reaches(Write, writtenBy(Write, Where), At,
-                           It == Parts.end() ? std::nullopt
-                                             : std::optional(It->Variable));
+      std::optional<Reaching::Variable> Read;
+      if (It != Parts.end())
+        Read = It->Variable;
+      else if (isLocalOf(L, At))
+        Read = Reaching::anywhereIn(*L.Root);
+      return Flow->reaches(Write, writtenBy(Write, Where), At, Read);
     }
     auto [It, New] = Gone.try_emplace(Where);
     if (New) {

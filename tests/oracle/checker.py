@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 from tests.oracle.control import ControlDependence
 from tests.oracle.ir import Argument, Function, Instruction, Place, Value, number, parse
-from tests.oracle.memory import SILENT, Memory, Program, extent
+from tests.oracle.memory import SILENT, Memory, Program, Write, extent
 
 RELATIONS = {"eq": "==", "ne": "!=", "gt": ">", "ge": ">=", "lt": "<", "le": "<="}
 SWAPPED = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "==": "==", "!=": "!="}
@@ -56,7 +56,6 @@ class Rules:
     """The rows of SPEC 2 that the test header ros/ros.h has, by mangled name."""
 
     READ = re.compile(r"_ZNK3ros10NodeHandle(5param|8getParam)")
-    DEFAULTED = re.compile(r"_ZNK3ros10NodeHandle5param")
     EXPOSING = re.compile(r"_ZNK?3ros(9Publisher7publish|13ServiceClient4call)")
     OPAQUE = re.compile(r"_ZNK?St7__cxx1112basic_string")
 
@@ -66,6 +65,10 @@ class Rules:
     def target(self, name: str) -> int | None:
         """The argument of a read that the value is written to."""
         return 2 if self.READ.match(name) else None
+
+    def always_writes(self, name: str) -> bool:
+        """True for the read that has a default: the variable has a new value in any case."""
+        return name.startswith("_ZNK3ros10NodeHandle5param")
 
 
 @dataclass(frozen=True, order=True)
@@ -92,26 +95,22 @@ class Compared:
     predicate: Instruction
 
 
-def check(text: str, excluded: str, is_narrow: bool = False) -> set[Finding]:
-    """The findings of a module, in code that is not below `excluded` nor below /usr.
-
-    `is_narrow`: writes that are surely replaced are not seen, wherever the variable is.
-    """
+def check(text: str, excluded: str) -> set[Finding]:
+    """The findings of a module, in code that is not below `excluded` nor below /usr."""
 
     def is_user(file: str) -> bool:
         return bool(file) and not file.startswith((excluded, "/usr/"))
 
-    module = parse(text, is_user)
-    memory = Memory(Program(module, Rules()), is_narrow)
-    return Checker(memory, is_user).findings()
+    module, rules = parse(text, is_user), Rules()
+    return Checker(Memory(module, Program(module, rules)), rules, is_user).findings()
 
 
 class Checker:
     """The analysis of one module."""
 
-    def __init__(self, memory: Memory, is_user: Callable[[str], bool]) -> None:
-        self.memory, self.program, self.is_user = memory, memory.program, is_user
-        self.rules = Rules()
+    def __init__(self, memory: Memory, rules: Rules, is_user: Callable[[str], bool]) -> None:
+        self.memory, self.program, self.rules = memory, memory.program, rules
+        self.is_user = is_user
         self.control = {f: ControlDependence(f) for f in self.program.functions}
         self.users: dict[Value, list[Instruction]] = defaultdict(list)
         self.sees: dict[Instruction, list[Instruction]] = defaultdict(list)
@@ -219,10 +218,19 @@ class Checker:
         """The writes of the variables that an unknown function is handed: it can read them."""
         out: set[Instruction] = set()
         for a in call.arguments:
-            for at in self.memory.of(a):
-                writes = {w.by for w in self.memory.writes_to(at, 1)} - {call}
-                out |= self.memory.seen(at, 1, writes, call)
+            if a is not self.memory.replaced(call):
+                for at in self.memory.of(a):
+                    out |= self.alive(self.memory.writes_to(at, 1), call)
         return out
+
+    def alive(self, writes: set[Write], call: Instruction) -> set[Instruction]:
+        """Those of `writes` that `call`, which is handed what they write, can see."""
+        out: set[Instruction] = set()
+        for w in writes:
+            same = {x.by for x in writes if x.at == w.at}
+            if w.by in self.memory.reaching(w.at, w.size or 0, same, call):
+                out.add(w.by)
+        return out - {call}
 
     def writes_behind(self, call: Instruction) -> set[Instruction]:
         """The writes of all that can be reached from the arguments of `call`."""
@@ -237,9 +245,7 @@ class Checker:
                 continue
             seen.add((o, at, size))
             end = 1 << 30 if size is None else at + size
-            for w in self.memory.writes_to((o, at), end - at):
-                if w.by is not call:
-                    out |= self.memory.seen(w.at, w.size, {w.by}, call)
+            out |= self.alive(self.memory.writes_to((o, at), end - at), call)
             for c in self.memory.copies:
                 if c.to[0] is o and c.to[1] < end and at < c.to[1] + c.size:
                     out.add(c.by)

@@ -37,13 +37,10 @@ class Copy:
 
 
 class Memory:
-    """Points-to sets and definitions of the loads of a module.
+    """Points-to sets and definitions of the loads of a module."""
 
-    `is_narrow`: writes that are surely replaced count for variables that others see too.
-    """
-
-    def __init__(self, program: Program, is_narrow: bool = False) -> None:
-        self.module, self.program, self.is_narrow = program.module, program, is_narrow
+    def __init__(self, module: Module, program: Program) -> None:
+        self.module, self.program = module, program
         self.targets: dict[Value, set[Location]] = {}
         self.stored: dict[Location, set[Location]] = {}
         self.below: dict[Location, Value] = {}
@@ -125,10 +122,7 @@ class Memory:
         if i.opcode == "alloca":
             return {(i, 0)}
         if i.opcode == "getelementptr":
-            text = re.search(
-                r"getelementptr (?:inbounds |nuw |nusw |inrange\S* )*(.*?), ptr ", i.text
-            )
-            by = self.move(text[1], [number(v) for v in i.operands[1:]])
+            by = self.move(source_type(i), [number(v) for v in i.operands[1:]])
             return {(o, at + by) for o, at in self.of(i.operands[0])}
         if i.opcode in ("phi", "select", "freeze", "bitcast", "addrspacecast"):
             return set().union(*map(self.of, i.operands))
@@ -213,74 +207,100 @@ class Memory:
     def reaching(
         self, at: Location, size: int, by: set[Instruction], use: Instruction
     ) -> set[Instruction]:
-        """Of the writes of a local those that no store surely replaces on every way to `use`.
-
-        In another function than the local's own, and for what is no local, all of them, unless
-        what is known is narrow.
-        """
+        """Of the writes those that no store surely replaces on every way to `use`."""
         local = at[0]
         if not isinstance(local, Instruction) or local.opcode != "alloca":
-            return self.seen(at, size, by, use)
+            return {i for i in by if self.is_seen(i, at, size, use)}
         if use.function is not local.function:
-            return self.seen(at, size, by, use)
-        kills = self.replacing(at, size, use.function) & by
+            return {i for i in by if self.is_seen(i, at, size, use)}
+        kills = {
+            w.by
+            for w in self.writes
+            if w.by in by
+            and w.by.function is use.function
+            and (pointer := self.replaced(w.by)) is not None
+            and self.of(pointer) == {at}
+            and w.size == size
+        }
         here = {i for i in by if i.function is use.function}
         alive = set()
         for i in by - here:
             calls = self.program.calls_that_lead_to(use.function, i.function)
             if not calls or any(self.gets_to(c, use, kills) for c in calls):
                 alive.add(i)
-        alive |= {i for i in here if self.gets_to(i, use, kills)}
-        return alive & self.seen(at, size, by, use) if self.is_narrow else alive
+        return alive | {i for i in here if self.gets_to(i, use, kills)}
 
-    def replacing(self, at: Location, size: int, f: Function) -> set[Instruction]:
-        """The writes in `f` that surely replace the whole of the variable."""
-        return {
-            w.by
-            for w in self.writes
-            if w.by.function is f
-            and w.at == at
-            and w.size == size
-            and (
-                (w.by.opcode == "store" and self.of(w.by.operands[1]) == {at})
-                or (self.is_narrow and self.program.always_writes(w.by, at, self))
-            )
-        }
+    def is_seen(self, write: Instruction, at: Location, size: int, use: Instruction) -> bool:
+        """True where what `write` leaves in memory that functions share can be there at `use`.
 
-    def seen(
-        self, at: Location, size: int, by: set[Instruction], use: Instruction
-    ) -> set[Instruction]:
-        """Of the writes those that can still be there when `use` reads, seen from anywhere."""
-        if not self.is_narrow:
-            return by
-        own = use.function
-        back = self.walk(use, self.replacing(at, size, own), forward=False)
-        entered = own.blocks[0].instructions[0] in back or use is own.blocks[0].instructions[0]
-        found = set()
-        for i in by:
-            f = i.function
-            on = self.walk(i, self.replacing(at, size, f) - {i}, forward=True)
-            left = any(s.opcode == "ret" for s in on)
-            alive = f is own and use in on
-            alive |= entered and (left or self.program.can_run(on, own))
-            alive |= left and self.program.can_run(back, f)
-            if alive:
-                found.add(i)
-        return found
+        It is where it leaves its function unreplaced and `use` can find what was there before its
+        own; where `use` is in a function that runs while it is there, or the write is in one that
+        runs before `use`; and where a way in one function leads from the one to the other.
+        """
+        here, there = write.function, use.function
+        mine = self.replacements(write, at, size) - {write}
+        theirs = self.replacements(use, at, size)
+        if here is there and self.gets_to(write, use, theirs):
+            return True
+        # An exception is no way on.
+        pads = {i for i in here.instructions if i.opcode == "landingpad"}
+        ends = [i for i in here.instructions if i.opcode in ("ret", "unreachable")]
+        leaves = not mine or any(self.gets_to(write, e, mine | pads) for e in ends)
+        begin = there.instructions[0]
+        enters = not theirs or (begin not in theirs and self.gets_to(begin, use, theirs))
+        if leaves and enters:
+            return True
+        if leaves:
+            calls = self.program.calls_that_lead_to(there, here)
+            return any(self.gets_to(c, use, theirs) for c in calls)
+        calls = self.program.calls_that_lead_to(here, there)
+        return enters and any(self.gets_to(write, c, mine | pads) for c in calls)
 
-    def walk(self, begin: Instruction, ends: set[Instruction], forward: bool) -> set[Instruction]:
-        """The instructions on the ways from `begin`, which end at `ends`."""
-        graph = self.program.steps(begin.function, exceptions=False)
-        after = graph.successors if forward else graph.predecessors
-        found: set[Instruction] = set()
-        todo = [begin]
-        while todo:
-            for s in after(todo.pop()):
-                if s not in found:
-                    found.add(s)
-                    if s not in ends:
-                        todo.append(s)
-        return found if forward else found - ends
+    def replacements(self, i: Instruction, at: Location, size: int) -> set[Instruction]:
+        """The stores of the function of `i` to what `i` names in the same way."""
+        place = None
+        if i.is_call:
+            for pointer in i.arguments:
+                named, leads = self.named(pointer), self.of(pointer)
+                if named and len(leads) == 1 and next(iter(leads))[0] is at[0]:
+                    place = named[0], named[1] + at[1] - next(iter(leads))[1]
+        else:
+            place = self.named(i.operands[-1])
+        if place is None:
+            return set()
+        return {s for s in i.function.instructions if self.place(s) == (*place, size)}
+
+    def place(self, i: Instruction) -> tuple[Value, int, int] | None:
+        """Where a write puts its value by the code of its function, and its size."""
+        pointer = self.replaced(i)
+        named = self.named(pointer) if pointer is not None else None
+        if named is None:
+            return None
+        size = extent(i, 2) if i.is_call else self.module.layout.size(store_type(i))
+        return None if size is None else (*named, size)
+
+    def replaced(self, i: Instruction) -> Value | None:
+        """The pointer to what `i` gives a new value, whatever was there."""
+        if i.opcode == "store":
+            return i.operands[1]
+        if i.is_call and len(i.arguments) > 3 and self.program.rules.always_writes(i.callee.name):
+            return i.arguments[2]
+        return None
+
+    def named(self, pointer: Value) -> tuple[Value, int] | None:
+        """A pointer as so many bytes from an argument, a local or a global."""
+        if isinstance(pointer, Argument):
+            return pointer, 0
+        if isinstance(pointer, Instruction):
+            if pointer.opcode == "alloca":
+                return pointer, 0
+            inner = self.named(pointer.operands[0]) if pointer.opcode == "getelementptr" else None
+            steps = [number(v) for v in pointer.operands[1:]] if inner else []
+            if inner is None or None in steps:
+                return None
+            return inner[0], inner[1] + self.move(source_type(pointer), steps)
+        found = self.of(pointer)
+        return next(iter(found)) if len(found) == 1 else None
 
     def gets_to(self, begin: Instruction, use: Instruction, kills: set[Instruction]) -> bool:
         """True where a way leads from behind `begin` to `use` and passes none of `kills`."""
@@ -309,7 +329,7 @@ class Program:
         self.graph = nx.DiGraph()
         for f, calls in self.calls.items():
             self.graph.add_edges_from((c.function, f) for c in calls)
-        self.step_graphs: dict[tuple[Function, bool], nx.DiGraph] = {}
+        self.step_graphs: dict[Function, nx.DiGraph] = {}
 
     def is_known(self, f: Function) -> bool:
         """True where `f` has a body, and one that says what it does."""
@@ -336,19 +356,6 @@ class Program:
         target = self.rules.target(call.callee.name)
         return target is None or n == target
 
-    def always_writes(self, i: Instruction, at: Location, memory: Memory) -> bool:
-        """True for a read of a parameter that has a default."""
-        if not (i.is_call and self.rules.DEFAULTED.match(i.callee.name)):
-            return False
-        return memory.of(i.arguments[self.rules.target(i.callee.name)]) == {at}
-
-    def can_run(self, instructions: set[Instruction], f: Function) -> bool:
-        """True where one of the instructions is a call below which `f` runs."""
-        if f not in self.graph:
-            return False
-        above = nx.ancestors(self.graph, f) | {f}
-        return any(c in above for i in instructions if i.is_call for c in self.callees(i))
-
     def calls_that_lead_to(self, where: Function, f: Function) -> list[Instruction]:
         """The calls in `where` below which `f` runs."""
         if f not in self.graph or where not in self.graph:
@@ -358,18 +365,21 @@ class Program:
             i for i in where.instructions if i.is_call and any(c in above for c in self.callees(i))
         ]
 
-    def steps(self, f: Function, exceptions: bool = True) -> nx.DiGraph:
-        """Which instruction can follow which."""
-        if (f, exceptions) not in self.step_graphs:
-            graph = self.step_graphs[f, exceptions] = nx.DiGraph()
+    def steps(self, f: Function) -> nx.DiGraph:
+        """Which instruction can follow which, exceptions included."""
+        if f not in self.step_graphs:
+            graph = self.step_graphs[f] = nx.DiGraph()
             for b in f.blocks:
                 nx.add_path(graph, b.instructions)
-                graph.add_node(b.terminator)
-                following = b.terminator.blocks
-                if b.terminator.opcode == "invoke" and not exceptions:
-                    following = following[:1]
-                graph.add_edges_from((b.terminator, s.instructions[0]) for s in following)
-        return self.step_graphs[f, exceptions]
+                graph.add_edges_from((b.terminator, s.instructions[0]) for s in b.terminator.blocks)
+        return self.step_graphs[f]
+
+
+def source_type(i: Instruction) -> str:
+    """The type that a getelementptr goes through."""
+    found = re.search(r"getelementptr (?:inbounds |nuw |nusw |inrange\S* )*(.*?), ptr ", i.text)
+    assert found
+    return found[1]
 
 
 def store_type(i: Instruction) -> str:

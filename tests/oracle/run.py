@@ -45,14 +45,10 @@ class Broken(Exception):
 
 @dataclass
 class Answers:
-    """What both find: (line, column, parameter, type, relation) -> distance.
-
-    `wide` is what the checker finds where it sees writes that are surely replaced.
-    """
+    """What both find: (line, column, parameter, type, relation) -> distance."""
 
     passes: Found
     checker: Found
-    wide: Found | None = None
 
     def lines(self, first: int, last: int) -> Answers:
         """The part between two lines, counted from the first."""
@@ -61,20 +57,16 @@ class Answers:
             inside = {k: d for k, d in found.items() if first <= k[0] <= last}
             return {(k[0] - first, *k[1:]): d for k, d in inside.items()}
 
-        wide = self.checker if self.wide is None else self.wide
-        return Answers(part(self.passes), part(self.checker), part(wide))
+        return Answers(part(self.passes), part(self.checker))
 
     def difference(self) -> list[str]:
         """A line for each place that the two disagree about."""
-        wide_ = self.checker if self.wide is None else self.wide
-        one, narrow, wide = (by_place(f) for f in (self.passes, self.checker, wide_))
+        one, other = by_place(self.passes), by_place(self.checker)
         out = []
-        for place in sorted(one.keys() | narrow.keys() | wide.keys()):
-            answers = [found.get(place, {}) for found in (one, narrow, wide)]
-            if not agree(*answers) and not (place in narrow and other_side(place, one)):
-                said = f"{answers[0]}, checker {answers[1]}"
-                said += f" to {answers[2]}" if answers[1] != answers[2] else ""
-                out.append(f"{' '.join(map(str, place))}: passes {said}")
+        for place in sorted(one.keys() | other.keys()):
+            passes, checker = one.get(place, {}), other.get(place, {})
+            if not agree(passes, checker) and not (place in other and other_side(place, one)):
+                out.append(f"{' '.join(map(str, place))}: passes {passes}, checker {checker}")
         return out
 
 
@@ -89,21 +81,15 @@ def by_place(found: Found) -> dict[tuple[int, int, str], Kinds]:
     return out
 
 
-def agree(passes: Kinds, narrow: Kinds, wide: Kinds) -> bool:
-    """True where the answers about one place and parameter are the same.
+def agree(passes: Kinds, checker: Kinds) -> bool:
+    """True where two answers about one place and parameter are the same.
 
     Allowed difference MIXED (README): where a parameter comes to a place in several ways,
-    the passes may name any of them, and the nearest is as near. REPLACED: they may see
-    writes that are surely replaced, or not.
+    the passes may name any of them, and the nearest is as near.
     """
-    if len(wide) < 2 and narrow == wide:
-        return passes == wide
-    if not passes:
-        return not narrow
-    farthest = min(narrow.values()) if narrow else 1 << 30
-    is_all = len(wide) > 1 or narrow.keys() <= passes.keys()
-    nearest = min(passes.values())
-    return passes.keys() <= wide.keys() and is_all and min(wide.values()) <= nearest <= farthest
+    if len(checker) > 1 and passes:
+        return passes.keys() <= checker.keys() and min(passes.values()) == min(checker.values())
+    return passes == checker
 
 
 def other_side(place: tuple[int, int, str], passes: dict[tuple[int, int, str], Kinds]) -> bool:
@@ -132,15 +118,11 @@ def ask(source: str, folder: Path, level: str = "-O2") -> Answers:
         if m := LINE.match(line):
             key = (int(m["line"]), int(m["column"]), m["parameter"], m["type"], m["relation"])
             found[key] = min(int(m["distance"]), found.get(key, 1 << 30))
-    answers = Answers(found, checked(prepared, is_narrow=False))
-    if answers.difference():
-        answers = Answers(found, checked(prepared, is_narrow=True), answers.checker)
-    return answers
-
-
-def checked(prepared: Path, is_narrow: bool) -> Found:
-    findings = check(prepared.read_text(), str(INPUTS), is_narrow)
-    return {(f.line, f.column, f.parameter, f.type, f.relation): f.distance for f in findings}
+    own = {
+        (f.line, f.column, f.parameter, f.type, f.relation): f.distance
+        for f in check(prepared.read_text(), str(INPUTS))
+    }
+    return Answers(found, own)
 
 
 def tool(command: list[str]) -> str:
