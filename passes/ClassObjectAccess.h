@@ -284,7 +284,8 @@ private:
   struct SharedWrites {
     Writes Own;    ///< of itself
     Writes Copied; ///< of what copies of whole objects put into it
-    bool Narrowed; ///< not all that read it see all of Own
+    bool TooMany = false;
+    bool Narrowed = false; ///< not all that read it see all of Own
   };
   const SharedWrites &sharedWrites(const Location &L) const;
 

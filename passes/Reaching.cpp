@@ -16,6 +16,9 @@ namespace tpc {
 /// write is taken to be seen by every read.
 static constexpr unsigned MaxWalked = 5'000'000;
 
+/// Where calls can run more functions than this, they can run all.
+static constexpr unsigned MaxRun = 256;
+
 /// True for the functions without a body in which other threads, or callbacks,
 /// have their turn.
 static bool letsOthersRun(const Function &F) {
@@ -143,11 +146,14 @@ bool Reaching::canRun(const Way &W, const Function &F) {
                                            All.Functions.end());
     while (!Work.empty() && !All.Anything) {
       const Running &Inner = runBy(*Work.pop_back_val());
-      All.Anything |= Inner.Anything || ++Walked > MaxWalked;
+      All.Anything |= Inner.Anything || All.Functions.size() > MaxRun ||
+                      ++Walked > MaxWalked;
       for (const Function *Next : Inner.Functions)
         if (All.Functions.insert(Next).second)
           Work.push_back(Next);
     }
+    if (All.Anything)
+      All.Functions.clear();
     const_cast<Way &>(W).Closure = std::make_unique<Running>(std::move(All));
   }
   return W.Closure->Anything || W.Closure->Functions.contains(&F);

@@ -158,7 +158,7 @@ void AccessResult::reachingWrites(const Instruction &At, const Location &L,
 //===----------------------------------------------------------------------===//
 
 /// More writes of one variable are not told apart by who sees them.
-static constexpr unsigned MaxNarrowed = 256;
+static constexpr unsigned MaxNarrowed = 64;
 
 static bool isLocalOf(const Location &L, const Instruction &At) {
   const auto *Local = dyn_cast_or_null<AllocaInst>(L.Root);
@@ -200,17 +200,25 @@ AccessResult::sharedWrites(const Location &L) const {
   if (!New)
     return All;
   collectWrites(L, All.Own, All.Copied);
-  All.Narrowed =
-      All.Own.size() <= MaxNarrowed && any_of(All.Own, [&](Instruction *Write) {
-        return !Flow->isVisible(*Write, writtenBy(*Write, L));
-      });
+  // Who sees them is not asked; they are collected again where they are needed.
+  All.TooMany = All.Own.size() + All.Copied.size() > MaxNarrowed;
+  if (All.TooMany) {
+    All.Own.clear();
+    All.Copied.clear();
+  }
+  All.Narrowed = any_of(All.Own, [&](Instruction *Write) {
+    return !Flow->isVisible(*Write, writtenBy(*Write, L));
+  });
   return All;
 }
 
 bool AccessResult::isSharedBy(const Location &L, const Instruction &At,
                               const Value *Pointer) const {
-  return !isLocalOf(L, At) && !sharedWrites(L).Narrowed &&
-         !Flow->isNarrowed(At, variableAt(Pointer, L));
+  if (isLocalOf(L, At))
+    return false;
+  const SharedWrites &All = sharedWrites(L);
+  return All.TooMany ||
+         (!All.Narrowed && !Flow->isNarrowed(At, variableAt(Pointer, L)));
 }
 
 SmallVector<Instruction *, 8>
@@ -227,13 +235,13 @@ AccessResult::writesOf(const Location &L, const Instruction &At,
     return All.takeVector();
   }
   const SharedWrites &All = sharedWrites(L);
+  if (All.TooMany)
+    return allWrites(L).takeVector();
   Writes Out = All.Own;
-  if (Out.size() <= MaxNarrowed) {
-    std::optional<Reaching::Variable> Read = variableAt(Pointer, L);
-    Out.remove_if([&](Instruction *Write) {
-      return !Flow->reaches(*Write, writtenBy(*Write, L), At, Read);
-    });
-  }
+  std::optional<Reaching::Variable> Read = variableAt(Pointer, L);
+  Out.remove_if([&](Instruction *Write) {
+    return !Flow->reaches(*Write, writtenBy(*Write, L), At, Read);
+  });
   Out.insert(All.Copied.begin(), All.Copied.end());
   return Out.takeVector();
 }
