@@ -244,8 +244,12 @@ void Slicer::reachable(CallBase &Call) {
   const Rule *Row = Rules.match(Call);
   const Value *Object = Row ? objectOf(Call, *Row) : nullptr;
   for (const Use &Arg : Call.args()) {
-    if (Arg.get() == Object)
+    if (Arg.get() == Object) {
+      // What is in the publisher is not shown; which one it is decides where.
+      if (isa<PHINode, SelectInst>(Object->stripInBoundsOffsets()))
+        definePointer(Object);
       continue;
+    }
     define(Arg);
     if (!Arg->getType()->isPointerTy())
       continue;

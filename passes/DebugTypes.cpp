@@ -196,6 +196,19 @@ const DIType *DebugTypes::ofElement(const GEPOperator &GEP) {
   return T;
 }
 
+/// The scalar at the beginning of what is of type \p T.
+const DIType *DebugTypes::firstScalar(const DIType *T) const {
+  T = element(T);
+  for (unsigned Depth = 0; Depth < 16; ++Depth) {
+    const auto *Class = dyn_cast_or_null<DICompositeType>(T);
+    const DIDerivedType *First = Class ? memberAt(Class, 0) : nullptr;
+    if (!First)
+      break;
+    T = element(First->getBaseType());
+  }
+  return T;
+}
+
 /// What \p Local, no variable of the source, is to those who are handed it, be
 /// they inlined or not: a class of its name, or else of its size.
 const DIType *DebugTypes::ofTemporary(const AllocaInst &Local) const {
@@ -248,15 +261,7 @@ const DIType *DebugTypes::find(const Value *Pointer) {
   }
   if (const auto *Load = dyn_cast<LoadInst>(Pointer)) {
     // What is loaded from an object is the scalar at its beginning.
-    const DIType *T = element(pointee(Load->getPointerOperand()));
-    for (unsigned Depth = 0; Depth < 16; ++Depth) {
-      const auto *Class = dyn_cast_or_null<DICompositeType>(T);
-      const DIDerivedType *First = Class ? memberAt(Class, 0) : nullptr;
-      if (!First)
-        break;
-      T = element(First->getBaseType());
-    }
-    return dereferenced(T);
+    return dereferenced(firstScalar(pointee(Load->getPointerOperand())));
   }
   if (const auto *Call = dyn_cast<CallBase>(Pointer)) {
     // What `new` makes is written down there.
@@ -267,7 +272,8 @@ const DIType *DebugTypes::find(const Value *Pointer) {
     const DISubprogram *SP = Callee ? Callee->getSubprogram() : nullptr;
     if (!SP || !SP->getType() || SP->getType()->getTypeArray().size() == 0)
       return nullptr;
-    return dereferenced(SP->getType()->getTypeArray()[0]);
+    // An iterator may be returned as the pointer that is in it.
+    return dereferenced(firstScalar(SP->getType()->getTypeArray()[0]));
   }
   if (const auto *Phi = dyn_cast<PHINode>(Pointer)) {
     for (const Value *V : Phi->incoming_values())

@@ -46,6 +46,7 @@ public:
   }
 
 private:
+  const llvm::DIType *firstScalar(const llvm::DIType *T) const;
   const llvm::DIType *find(const llvm::Value *Pointer);
   const llvm::DIType *ofTemporary(const llvm::AllocaInst &Local) const;
   const llvm::DIType *ofArgument(const llvm::Argument &Arg) const;
