@@ -88,7 +88,8 @@ TextUsage::Found TextUsage::comparisonsOf(const Value *Object) const {
       if (Relation == "copy") {
         if (U.Operands.size() == 2 && any_of(U.Operands[1], IsHere))
           for (const Location &To : U.Operands[0])
-            if (!is_contained(Objects, To))
+            if (none_of(Objects,
+                        [&](const Location &L) { return L.isSame(To); }))
               Objects.push_back(To);
         continue;
       }
