@@ -402,6 +402,7 @@ void AccessResult::follow(Location &L, const GEPOperator &GEP) const {
     if (auto *Struct = dyn_cast<StructType>(T)) {
       unsigned Field = cast<ConstantInt>(U.get())->getZExtValue();
       const DICompositeType *Class = Debug->asStruct(Source, Struct);
+      enterElement(L);
       L.Path.push_back(
           {Numbers.numberOf(Struct), Field, Debug->numberOf(Class)});
       Source = Debug->field(Class, Struct, Field);
