@@ -44,7 +44,7 @@ handedTo(const AllocaInst &Local) {
         Work.push_back(I);
       else if (isa<CallBase>(I))
         Calls.push_back(I);
-      else if (isa<StoreInst>(I) && U.getOperandNo() == 0 && V == &Local)
+      else if (isa<StoreInst>(I) && U.getOperandNo() == 0)
         return std::nullopt;
     }
   }
