@@ -84,7 +84,7 @@ static const Value *alwaysReplaced(const CallBase &Call, const Rule &Row) {
 /// Files that \p Call replaces what is at \p Pointer.
 void AccessResult::Builder::fileReplacing(CallBase &Call,
                                           const Value *Pointer) {
-  const Locations Where = R.resolve(Pointer, false);
+  const Locations Where = R.handed(Pointer, /*IsOne=*/true);
   if (Where.empty())
     return;
   Type *T = R.typeAt(Where.front());
@@ -93,8 +93,19 @@ void AccessResult::Builder::fileReplacing(CallBase &Call,
     return;
   R.Flow->addReplacing(Call, Pointer,
                        R.Layout->getTypeStoreSize(T).getKnownMinValue());
-  if (Where.size() == 1)
+  if (Where.size() == 1 && Where.front().isOne())
     R.Replaced[&Call] = Where.front();
+}
+
+/// True where argument \p N of \p Call leads to one object, not into an array:
+/// the object of a method, and the variable of a read.
+static bool takesOne(const CallBase &Call, unsigned N, const Rule *Row) {
+  if (Row && Row->Kind == Rule::Read && Row->Value &&
+      argument(Call, *Row, Row->Value) == Call.getArgOperand(N))
+    return true;
+  const Function *Callee = Call.getCalledFunction();
+  return N == (Call.hasStructRetAttr() ? 1 : 0) && Callee &&
+         Callee->getName().starts_with("_ZN");
 }
 
 /// What \p Call can write to.
@@ -120,7 +131,7 @@ void AccessResult::Builder::fileCall(CallBase &Call) {
       R.PutIn.insert(&Call.getArgOperandUse(N));
       continue;
     }
-    for (const Location &L : R.resolve(Arg, false)) {
+    for (const Location &L : R.handed(Arg, takesOne(Call, N, Row))) {
       const auto *Global = dyn_cast_or_null<GlobalVariable>(L.Root);
       if (Global && Global->isConstant())
         continue;
@@ -158,8 +169,8 @@ void AccessResult::Builder::fileAccesses() {
           addWrite(I, L);
         }
       } else if (auto *Copy = dyn_cast<MemTransferInst>(&I)) {
-        addCopy(I, R.resolve(Copy->getRawDest(), false),
-                R.resolve(Copy->getRawSource(), false));
+        addCopy(I, R.copied(*Copy, Copy->getRawDest()),
+                R.copied(*Copy, Copy->getRawSource()));
       } else if (auto *Call = dyn_cast<CallBase>(&I);
                  Call && !isa<IntrinsicInst>(Call)) {
         fileCall(*Call);
@@ -184,11 +195,18 @@ PreservedAnalyses ClassObjectAccessPrinter::run(Module &M,
                                                 ModuleAnalysisManager &AM) {
   const AccessResult &R = AM.getResult<ClassObjectAccess>(M);
   OS << "accesses of " << M.getName() << '\n';
+  auto PrintItem = [&](Nth Item) {
+    if (Item.isNumber())
+      OS << '[' << Item.Number << ']';
+    else if (Item.Number == Nth::Any)
+      OS << "[any]";
+  };
   auto Print = [&](const char *What, ArrayRef<Access> List) {
     for (const Access &A : List) {
       OS << "  " << What << ' ';
       if (A.Where.Root)
         A.Where.Root->printAsOperand(OS, false);
+      PrintItem(A.Where.RootItem);
       for (const Step &S : A.Where.Path) {
         if (!S.isField()) {
           OS << (S.Type == Step::Element ? "[element" : "[byte ");
@@ -200,6 +218,7 @@ PreservedAnalyses ClassObjectAccessPrinter::run(Module &M,
         const StructType *T = R.types().typeOf(S.Type);
         OS << '[' << (T->hasName() ? T->getName() : "literal") << '.' << S.Index
            << ']';
+        PrintItem(S.Item);
       }
       OS << " in " << A.I->getFunction()->getName() << place(*A.I) << '\n';
     }

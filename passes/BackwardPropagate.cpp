@@ -166,9 +166,13 @@ void Slicer::definePointer(const Value *V) {
     enter(const_cast<Instruction *>(cast<Instruction>(V)), Gives, Why::Gives);
 }
 
-/// What is in memory at \p Pointer, a scalar, matters where \p At reads it.
+/// What is in memory at \p Pointer, a scalar or an array of them, matters where
+/// \p At reads it.
 void Slicer::defineMemory(const Value *Pointer, const Instruction &At) {
-  for (const Location &L : Access.resolve(Pointer, true))
+  Locations Read = Access.resolve(Pointer, true);
+  for (Location &L : Read)
+    L.widen();
+  for (const Location &L : Read)
     if (!Access.isSharedBy(L, At, Pointer) || SeenWritten.insert(L))
       for (Instruction *Write : Access.writesOf(L, At, Pointer))
         enter(Write, Gives, Why::Writes);

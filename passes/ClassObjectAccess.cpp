@@ -74,7 +74,9 @@ Locations AccessResult::throughCopies(const Location &L, bool Backward) const {
         if (auto Rest = partOf(Object, Here))
           for (Location Other : Backward ? C.From : C.To) {
             extend(Other, *Rest);
-            if (All.size() < MaxCopied && !is_contained(All, Other))
+            if (All.size() < MaxCopied && none_of(All, [&](const Location &K) {
+                  return K.isSame(Other);
+                }))
               All.push_back(std::move(Other));
           }
     };

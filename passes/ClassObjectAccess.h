@@ -10,8 +10,9 @@
 // of the call's own arguments.
 //
 // Fields are told apart by class and position, not by object: two objects of
-// one class share their fields. Elements of an array are one location, and so
-// are those of a container, however it keeps them (see the rules' containers).
+// one class share their fields. Elements of an array are told apart where their
+// index is constant; those of a container are one location, however it keeps
+// them (see the rules' containers).
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_CLASSOBJECTACCESS_H
@@ -28,6 +29,7 @@
 #include "llvm/ADT/StringMap.h"
 #include "llvm/IR/DerivedTypes.h"
 #include "llvm/IR/Instructions.h"
+#include "llvm/IR/IntrinsicInst.h"
 #include "llvm/IR/PassManager.h"
 
 #include <map>
@@ -38,9 +40,31 @@
 
 namespace tpc {
 
+/// Which element of an array is meant, if any. Elements of elements count
+/// through: the first of the second row of three is number 3.
+struct Nth {
+  /// The whole array, as a pointer its beginning, or no array at all; and an
+  /// element of which is not known which.
+  static constexpr unsigned Whole = ~0U, Any = ~0U - 1;
+  /// Elements behind these are not told apart from any.
+  static constexpr unsigned Most = 64;
+
+  unsigned Number = Whole;
+  bool isNumber() const { return Number < Any; }
+  bool mayBe(Nth O) const {
+    return Number == O.Number || !isNumber() || !O.isNumber();
+  }
+  /// So many elements on.
+  Nth plus(int64_t By) const {
+    int64_t To = (isNumber() ? Number : 0) + By;
+    bool Known = Number != Any && To >= 0 && To < Most;
+    return {Known ? static_cast<unsigned>(To) : Any};
+  }
+};
+
 /// One step into a class: the number of its layout (see TypeNumbers), the
-/// field's index, and which class of the source it is (see DebugTypes), 0 where
-/// that is not known.
+/// field's index, which class of the source it is (see DebugTypes), 0 where
+/// that is not known, and of a field that is an array which element.
 struct Step {
   /// Not classes: the step from a container to its elements, and one of so
   /// many bytes (the index) into an allocation whose type is not known.
@@ -49,9 +73,15 @@ struct Step {
   unsigned Type;
   unsigned Index;
   unsigned Class = 0;
+  Nth Item = {};
+  /// True where the two can be the same step.
   bool operator==(const Step &O) const {
     return Type == O.Type && Index == O.Index &&
-           (Class == O.Class || !Class || !O.Class);
+           (Class == O.Class || !Class || !O.Class) && Item.mayBe(O.Item);
+  }
+  /// The same, and of an array as much is meant.
+  bool isSame(const Step &O) const {
+    return *this == O && Item.Number == O.Item.Number;
   }
   bool isField() const { return Type < Bytes; }
 };
@@ -62,14 +92,47 @@ struct Step {
 struct Location {
   const llvm::Value *Root = nullptr;
   llvm::SmallVector<Step, 4> Path;
+  Nth RootItem = {}; ///< of a root that is an array
+
+  /// Of what is at the end of the path.
+  Nth &item() { return Path.empty() ? RootItem : Path.back().Item; }
+  Nth item() const { return Path.empty() ? RootItem : Path.back().Item; }
+  /// True where it is one variable, not any of an array.
+  bool isOne() const {
+    return RootItem.Number != Nth::Any &&
+           llvm::none_of(
+               Path, [](const Step &S) { return S.Item.Number == Nth::Any; });
+  }
+  /// Means any element where it meant one: at its end, or on all of the way.
+  void widen() {
+    if (item().isNumber())
+      item() = {Nth::Any};
+  }
+  void widenAll() {
+    if (RootItem.isNumber())
+      RootItem = {Nth::Any};
+    for (Step &S : Path)
+      if (S.Item.isNumber())
+        S.Item = {Nth::Any};
+  }
 
   bool isKnown() const { return Root || !Path.empty(); }
+  bool isField() const { return !Path.empty() && Path.back().isField(); }
   /// True for the elements of a container.
   bool isElement() const {
     return !Path.empty() && Path.back().Type == Step::Element;
   }
   bool operator==(const Location &O) const {
-    return Root == O.Root && Path == O.Path;
+    return Root == O.Root && RootItem.mayBe(O.RootItem) && Path == O.Path;
+  }
+  /// The same, and of arrays as much is meant.
+  bool isSame(const Location &O) const {
+    return Root == O.Root && RootItem.Number == O.RootItem.Number &&
+           areSame(Path, O.Path);
+  }
+  static bool areSame(llvm::ArrayRef<Step> A, llvm::ArrayRef<Step> B) {
+    return llvm::equal(
+        A, B, [](const Step &S, const Step &T) { return S.isSame(T); });
   }
   /// True where the two can be the same variable.
   bool mayBe(const Location &O) const;
@@ -80,9 +143,11 @@ using Locations = llvm::SmallVector<Location, 1>;
 /// Orders locations, to tell apart what is not exactly the same.
 struct LocationOrder {
   static std::vector<uintptr_t> key(const Location &L) {
-    std::vector<uintptr_t> Key{reinterpret_cast<uintptr_t>(L.Root)};
+    std::vector<uintptr_t> Key{reinterpret_cast<uintptr_t>(L.Root),
+                               L.RootItem.Number};
+    Key.reserve(2 + 4 * L.Path.size());
     for (const Step &S : L.Path)
-      Key.insert(Key.end(), {S.Type, S.Index, S.Class});
+      Key.insert(Key.end(), {S.Type, S.Index, S.Class, S.Item.Number});
     return Key;
   }
   bool operator()(const Location &A, const Location &B) const {
@@ -143,6 +208,10 @@ public:
   /// entered down to the scalar at its beginning: what a load or store of a
   /// scalar touches. Empty where nothing is known.
   Locations resolve(const llvm::Value *Pointer, bool Scalar) const;
+
+  /// What can be reached from \p Pointer by one who is handed it: of an array
+  /// all elements, unless \p IsOne says that just an object is meant.
+  Locations handed(const llvm::Value *Pointer, bool IsOne) const;
 
   /// What \p I, a load or store, touches: a scalar, or all scalars of what is
   /// loaded or stored as one value.
@@ -230,17 +299,27 @@ private:
   void addPointees(const llvm::Value *Pointer, Locations &Out) const;
   void addTo(Locations &Out, Location L) const;
   void extend(Location &L, llvm::ArrayRef<Step> Steps) const;
+  void moveOn(Location &L, const llvm::Value *Index, llvm::Type *Unit) const;
+  bool anyElement(Location &L) const;
+  void follow(Location &L, const llvm::GEPOperator &GEP) const;
+  void followChain(Location L, llvm::ArrayRef<const llvm::GEPOperator *> Chain,
+                   bool Walks, Locations &Out) const;
+  Locations copied(const llvm::MemTransferInst &Copy,
+                   const llvm::Value *Pointer) const;
   void addAllocated(const Location &L,
                     llvm::ArrayRef<const llvm::GEPOperator *> Chain,
                     Locations &Out) const;
+  void enterElement(Location &L) const;
   void enterScalar(Location &L) const;
   void addParts(const Location &L, llvm::Type *T, int64_t At, uint64_t Size,
                 llvm::SmallVectorImpl<ScalarPart> &Out) const;
   bool addPartsAround(Location L, uint64_t Size,
                       llvm::SmallVectorImpl<ScalarPart> &Out) const;
+  llvm::Type *declaredTypeAt(const Location &L) const;
   llvm::Type *typeAt(const Location &L) const;
   const llvm::DIType *debugTypeAt(const Location &L) const;
-  bool descend(Location &L, int64_t &Offset, llvm::StructType *Until) const;
+  bool isAlike(llvm::Type *A, llvm::Type *B) const;
+  bool descend(Location &L, int64_t &Offset, llvm::Type *Until) const;
   void enterField(Location &L, llvm::StructType *T, unsigned Field) const;
   bool mayBe(const Location &A, const Location &B) const;
   bool contains(llvm::Type *Outer, unsigned Inner) const;
@@ -255,6 +334,7 @@ private:
   Locations throughCopies(const Location &L, bool Backward) const;
   void reachingWrites(const llvm::Instruction &At, const Location &L,
                       Writes &W) const;
+  bool isOneScalar(const Location &L, const llvm::StoreInst &Store) const;
   bool replaces(const llvm::Instruction &Write, const Location &L) const;
   std::optional<Reaching::Variable> variableAt(const llvm::Value *Pointer,
                                                const Location &L) const;

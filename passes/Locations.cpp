@@ -6,6 +6,7 @@
 #include "llvm/IR/Instructions.h"
 #include "llvm/IR/Module.h"
 #include "llvm/IR/Operator.h"
+#include "llvm/IR/PatternMatch.h"
 
 using namespace llvm;
 
@@ -93,7 +94,9 @@ bool AccessResult::mayBe(const Location &A, const Location &B) const {
   return A.mayBe(B);
 }
 
-Type *AccessResult::typeAt(const Location &L) const {
+/// The type that the variable at \p L was declared with, also where \p L is one
+/// element of it.
+Type *AccessResult::declaredTypeAt(const Location &L) const {
   if (!L.Path.empty()) {
     const Step &Last = L.Path.back();
     if (!Last.isField())
@@ -108,6 +111,11 @@ Type *AccessResult::typeAt(const Location &L) const {
   if (const auto *Local = dyn_cast_or_null<AllocaInst>(L.Root))
     return Local->getAllocatedType();
   return nullptr;
+}
+
+Type *AccessResult::typeAt(const Location &L) const {
+  Type *T = declaredTypeAt(L);
+  return L.item().Number == Nth::Whole ? T : elementOf(T);
 }
 
 Type *elementOf(Type *T) {
@@ -133,11 +141,19 @@ void AccessResult::enterField(Location &L, StructType *T,
   L.Path.push_back({Numbers.numberOf(T), Field, Class});
 }
 
+/// Of an array the element at its beginning.
+void AccessResult::enterElement(Location &L) const {
+  if (isa_and_nonnull<ArrayType>(typeAt(L)))
+    L.item() = {0};
+}
+
 void AccessResult::enterScalar(Location &L) const {
-  while (auto *T = dyn_cast_or_null<StructType>(elementOf(typeAt(L)))) {
+  enterElement(L);
+  while (auto *T = dyn_cast_or_null<StructType>(typeAt(L))) {
     if (T->isOpaque() || T->getNumElements() == 0 || L.Path.size() >= MaxPath)
       return;
     enterField(L, T, 0);
+    enterElement(L);
   }
 }
 
@@ -146,10 +162,24 @@ void AccessResult::enterScalar(Location &L) const {
 void AccessResult::addParts(const Location &L, Type *T, int64_t At,
                             uint64_t Size,
                             SmallVectorImpl<ScalarPart> &Out) const {
-  T = elementOf(T);
   if (!T->isSized() || At >= static_cast<int64_t>(Size) ||
       Out.size() >= MaxLocations)
     return;
+  if (T->isArrayTy()) {
+    Type *Element = elementOf(T);
+    int64_t Bytes = Layout->getTypeAllocSize(Element).getFixedValue();
+    int64_t End = Layout->getTypeAllocSize(T).getFixedValue();
+    int64_t Begin = Bytes && At < 0 ? -At / Bytes * Bytes : 0;
+    for (int64_t Here = Begin;
+         Bytes && Here < End && At + Here < static_cast<int64_t>(Size) &&
+         Out.size() < MaxLocations;
+         Here += Bytes) {
+      Location Inner = L;
+      Inner.item() = Nth().plus(Here / Bytes);
+      addParts(Inner, Element, At + Here, Size, Out);
+    }
+    return;
+  }
   auto *Class = dyn_cast<StructType>(T);
   if (Class && Class->getNumElements() && L.Path.size() < MaxPath) {
     const StructLayout *Fields = Layout->getStructLayout(Class);
@@ -176,13 +206,30 @@ bool AccessResult::addPartsAround(Location L, uint64_t Size,
   if (!T || !T->isSized() ||
       Layout->getTypeStoreSize(T).getFixedValue() >= Size)
     return false;
+  bool IsOne = L.isOne();
+  size_t First = Out.size();
   uint64_t At = 0;
-  while (!L.Path.empty() && L.Path.back().isField()) {
+  while (true) {
+    // Of an array the elements that follow, as far as it goes.
+    if (Type *Whole = declaredTypeAt(L); Whole && Whole->isArrayTy()) {
+      uint64_t Bytes =
+          Layout->getTypeAllocSize(elementOf(Whole)).getFixedValue();
+      At += L.item().isNumber() ? L.item().Number * Bytes : 0;
+      L.item() = {};
+      if (!L.isField() ||
+          At + Size <= Layout->getTypeAllocSize(Whole).getFixedValue()) {
+        addParts(L, Whole, -static_cast<int64_t>(At), Size, Out);
+        break;
+      }
+    }
+    if (!L.isField())
+      return false;
     Step Last = L.Path.pop_back_val();
     StructType *Class = Numbers.typeOf(Last.Type);
     const StructLayout *Fields = Layout->getStructLayout(Class);
     At += Fields->getElementOffset(Last.Index);
-    bool IsOutermost = L.Path.empty() || !L.Path.back().isField();
+    Type *Outer = declaredTypeAt(L);
+    bool IsOutermost = !L.isField() && !(Outer && Outer->isArrayTy());
     if (!IsOutermost && At + Size > Fields->getSizeInBytes())
       continue;
     for (unsigned Field = Last.Index; Field < Class->getNumElements();
@@ -194,9 +241,13 @@ bool AccessResult::addPartsAround(Location L, uint64_t Size,
                    static_cast<int64_t>(At),
                Size, Out);
     }
-    return true;
+    break;
   }
-  return false;
+  // Where it begins is not known: any elements.
+  if (!IsOne)
+    for (ScalarPart &Part : drop_begin(Out, First))
+      Part.Where.widenAll();
+  return true;
 }
 
 SmallVector<ScalarPart, 1> AccessResult::partsOf(const Instruction &I) const {
@@ -231,13 +282,15 @@ std::optional<SmallVector<Step, 4>>
 AccessResult::partOf(const Location &Object, const Location &L) const {
   ArrayRef<Step> Path = L.Path;
   if (Object.Root && L.Root) {
-    if (Object.Root != L.Root || Path.size() < Object.Path.size() ||
+    if (Object.Root != L.Root || !Object.RootItem.mayBe(L.RootItem) ||
+        Path.size() < Object.Path.size() ||
         !equal(Path.take_front(Object.Path.size()), Object.Path))
       return std::nullopt;
     return SmallVector<Step, 4>(Path.drop_front(Object.Path.size()));
   }
   for (size_t K = 1; K <= Path.size(); ++K) {
-    Location Front{L.Root, SmallVector<Step, 4>(Path.take_front(K))};
+    Location Front{L.Root, SmallVector<Step, 4>(Path.take_front(K)),
+                   L.RootItem};
     if (mayBe(Front, Object))
       return SmallVector<Step, 4>(Path.drop_front(K));
   }
@@ -253,9 +306,25 @@ AccessResult::partOf(const Location &Object, const Location &L) const {
 // From a pointer to locations
 //===----------------------------------------------------------------------===//
 
+/// More elements of one array are any of them for a pointer.
+static constexpr unsigned MaxItems = 8;
+
 void AccessResult::addTo(Locations &Out, Location L) const {
-  if (L.isKnown() && Out.size() < MaxLocations && !is_contained(Out, L))
-    Out.push_back(std::move(L));
+  auto IsIn = [&](const Location &Other) {
+    return any_of(Out, [&](const Location &K) { return K.isSame(Other); });
+  };
+  if (!L.isKnown() || Out.size() >= MaxLocations || IsIn(L))
+    return;
+  if (L.item().isNumber() && Out.size() >= MaxItems) {
+    Location Any = L;
+    Any.widen();
+    if (static_cast<unsigned>(count(Out, Any)) >= MaxItems) {
+      if (!IsIn(Any))
+        Out.push_back(std::move(Any));
+      return;
+    }
+  }
+  Out.push_back(std::move(L));
 }
 
 /// Goes \p Steps further from \p L. How a container keeps its elements, in
@@ -297,52 +366,108 @@ void AccessResult::addAllocated(const Location &L,
   addTo(Out, std::move(Here));
 }
 
-/// The steps of \p GEP's constant indices into classes.
-static SmallVector<Step, 4> stepsOf(const GEPOperator &GEP,
-                                    TypeNumbers &Numbers, DebugTypes &Debug) {
-  SmallVector<Step, 4> Steps;
+/// Where \p L is in an array, moves it on by \p Index objects of type \p Unit,
+/// each an element or some.
+void AccessResult::moveOn(Location &L, const Value *Index, Type *Unit) const {
+  Type *Array = declaredTypeAt(L);
+  if (!isa_and_nonnull<ArrayType>(Array) || !Unit->isSized())
+    return;
+  const auto *By = dyn_cast<ConstantInt>(Index);
+  uint64_t Bytes = Layout->getTypeAllocSize(elementOf(Array)).getFixedValue();
+  uint64_t Own = Layout->getTypeAllocSize(Unit).getFixedValue();
+  if (By && By->isZero())
+    return;
+  bool Known = By && By->getValue().getSignificantBits() <= 32 && Bytes &&
+               Own % Bytes == 0 && Own / Bytes <= Nth::Most;
+  L.item() = Known ? L.item().plus(By->getSExtValue() *
+                                   static_cast<int64_t>(Own / Bytes))
+                   : Nth{Nth::Any};
+}
+
+/// Makes of a place in an array of scalars any place there; false elsewhere.
+bool AccessResult::anyElement(Location &L) const {
+  Type *Declared = declaredTypeAt(L);
+  if (!isa_and_nonnull<ArrayType>(Declared))
+    return false;
+  L.item() = {Nth::Any};
+  return !elementOf(Declared)->isStructTy();
+}
+
+/// Goes the way of \p GEP from \p L.
+void AccessResult::follow(Location &L, const GEPOperator &GEP) const {
   Type *T = GEP.getSourceElementType();
-  const DIType *Source = Debug.pointee(GEP.getPointerOperand());
+  const DIType *Source = Debug->pointee(GEP.getPointerOperand());
+  moveOn(L, GEP.idx_begin()->get(), T);
   for (const Use &U : drop_begin(GEP.indices())) {
     if (auto *Struct = dyn_cast<StructType>(T)) {
       unsigned Field = cast<ConstantInt>(U.get())->getZExtValue();
-      const DICompositeType *Class = Debug.asStruct(Source, Struct);
-      Steps.push_back({Numbers.numberOf(Struct), Field, Debug.numberOf(Class)});
-      Source = Debug.field(Class, Struct, Field);
+      const DICompositeType *Class = Debug->asStruct(Source, Struct);
+      enterElement(L);
+      L.Path.push_back(
+          {Numbers.numberOf(Struct), Field, Debug->numberOf(Class)});
+      Source = Debug->field(Class, Struct, Field);
       T = Struct->getElementType(Field);
     } else {
       T = GetElementPtrInst::getTypeAtIndex(T, U.get());
+      enterElement(L);
+      moveOn(L, U.get(), T);
     }
   }
-  return Steps;
+}
+
+/// True for one type, and for one class that was read from two files.
+bool AccessResult::isAlike(Type *A, Type *B) const {
+  auto *S = dyn_cast<StructType>(A), *T = dyn_cast<StructType>(B);
+  return A == B || (S && T && Numbers.numberOf(S) == Numbers.numberOf(T));
+}
+
+/// True where \p GEP leads into a class, or from one object to the next.
+static bool entersClass(const GEPOperator &GEP) {
+  Type *T = GEP.getSourceElementType();
+  if (T->isStructTy())
+    return true;
+  for (const Use &U : drop_begin(GEP.indices())) {
+    if (T->isStructTy())
+      return true;
+    T = GetElementPtrInst::getTypeAtIndex(T, U.get());
+  }
+  return false;
 }
 
 /// Goes \p Offset bytes into \p L, and with \p Until no further than to an
-/// object of that type; takes the way off \p Offset. False where nothing
-/// begins there.
-bool AccessResult::descend(Location &L, int64_t &Offset,
-                           StructType *Until) const {
-  Type *T = elementOf(typeAt(L));
-  while (T && Offset >= 0) {
+/// object of that class, or an element of that type in an array; takes the way
+/// off \p Offset. False where nothing begins there.
+bool AccessResult::descend(Location &L, int64_t &Offset, Type *Until) const {
+  while (true) {
+    Type *Whole = declaredTypeAt(L), *T = elementOf(Whole);
+    if (!T || !T->isSized())
+      return false;
+    bool InArray = Whole->isArrayTy();
+    if (int64_t Bytes = Layout->getTypeAllocSize(T).getFixedValue();
+        InArray && Bytes) {
+      int64_t By =
+          Offset >= 0 ? Offset / Bytes : -((Bytes - 1 - Offset) / Bytes);
+      enterElement(L);
+      if (L.item().isNumber() && L.item().Number + By < 0)
+        return false;
+      L.item() = L.item().plus(By);
+      Offset -= By * Bytes;
+    }
     auto *Class = dyn_cast<StructType>(T);
-    if (Class && Until && Offset == 0 &&
-        Numbers.numberOf(Class) == Numbers.numberOf(Until))
+    if (Until && Offset == 0 && (Class || InArray) && isAlike(T, Until))
       return true;
+    if (Offset < 0)
+      return false;
     if (!Class || Class->isOpaque() || Class->getNumElements() == 0)
-      break;
+      return Offset == 0 && !Until;
     const StructLayout *Fields = Layout->getStructLayout(Class);
-    if (static_cast<uint64_t>(Offset) >= Fields->getSizeInBytes())
+    if (static_cast<uint64_t>(Offset) >= Fields->getSizeInBytes() ||
+        L.Path.size() >= MaxPath)
       return false;
     unsigned Field = Fields->getElementContainingOffset(Offset);
     enterField(L, Class, Field);
     Offset -= Fields->getElementOffset(Field);
-    T = Class->getElementType(Field);
-    if (T->isArrayTy()) {
-      T = elementOf(T);
-      Offset %= Layout->getTypeAllocSize(T).getFixedValue();
-    }
   }
-  return T && Offset == 0 && !Until;
 }
 
 /// What is between a pointer and the pointer that it is computed from.
@@ -386,53 +511,76 @@ void AccessResult::addPointees(const Value *Pointer, Locations &Out) const {
   // the path alone is known, from its first class on.
   if (!Rooted && !Complete.contains(Base))
     Objects.insert(Objects.begin(), Location());
-  for (Location L : Objects) {
-    if (L.Root && isa<CallBase>(L.Root) &&
-        (L.Path.empty() || L.Path.back().Type == Step::Bytes)) {
-      // Where the way says which class it is, all objects of it are meant.
-      if (none_of(Chain, [](const GEPOperator *GEP) {
-            const auto *S = dyn_cast<StructType>(GEP->getSourceElementType());
-            return S && !S->isLiteral();
-          }))
-        addAllocated(L, Chain, Out);
+  // A pointer that is an element further each time it is computed.
+  bool Walks = !Rooted && !isa<Argument>(Base);
+  for (const Location &L : Objects)
+    followChain(L, Chain, Walks, Out);
+}
+
+/// Adds the place that \p Chain, the nearest last, leads to from \p L. Where
+/// the pointer there \p Walks, it can be many elements further.
+void AccessResult::followChain(Location L, ArrayRef<const GEPOperator *> Chain,
+                               bool Walks, Locations &Out) const {
+  if (L.Root && isa<CallBase>(L.Root) &&
+      (L.Path.empty() || L.Path.back().Type == Step::Bytes)) {
+    // Where the way says which class it is, all objects of it are meant.
+    if (none_of(Chain, [](const GEPOperator *GEP) {
+          const auto *S = dyn_cast<StructType>(GEP->getSourceElementType());
+          return S && !S->isLiteral();
+        }))
+      addAllocated(L, Chain, Out);
+    return;
+  }
+  bool Unknown = !L.isKnown();
+  size_t Length = L.Path.size();
+  int64_t Bytes = 0;
+  bool Valid = true;
+  for (const GEPOperator *GEP : reverse(Chain)) {
+    Type *Source = GEP->getSourceElementType();
+    Type *Element = elementOf(Source);
+    auto *Struct = dyn_cast<StructType>(Element);
+    // By bytes, or by the shape that the calling convention gives an object
+    // in registers: the way has to be found in the object itself.
+    if ((Struct && Struct->isLiteral()) || Source->isIntegerTy(8)) {
+      APInt Offset(Layout->getIndexTypeSizeInBits(GEP->getType()), 0);
+      if (GEP->accumulateConstantOffset(*Layout, Offset))
+        Bytes += Offset.getSExtValue();
+      else if (Bytes || !anyElement(L))
+        Valid = false;
       continue;
     }
-    bool Unknown = !L.isKnown();
-    int64_t Bytes = 0;
-    bool Valid = true;
-    for (const GEPOperator *GEP : reverse(Chain)) {
-      auto *Struct = dyn_cast<StructType>(GEP->getSourceElementType());
-      // By bytes, or by the shape that the calling convention gives an object
-      // in registers: the way has to be found in the object itself.
-      if ((Struct && Struct->isLiteral()) ||
-          GEP->getSourceElementType()->isIntegerTy(8)) {
-        APInt Offset(Layout->getIndexTypeSizeInBits(GEP->getType()), 0);
-        Valid &= GEP->accumulateConstantOffset(*Layout, Offset);
-        Bytes += Offset.getSExtValue();
-        continue;
-      }
+    if (L.isElement()) {
       if (!Struct)
         continue;
-      if (L.isElement()) {
-        Bytes = 0;
-        Valid = true;
-        extend(L, stepsOf(*GEP, Numbers, *Debug));
-        continue;
-      }
-      // A base class, or what a pointer of another type was made of.
-      if (L.isKnown() && (Bytes != 0 || elementOf(typeAt(L)) != Struct)) {
-        Location Inner = L;
-        L = descend(Inner, Bytes, Struct) ? Inner : Location();
-      }
       Bytes = 0;
       Valid = true;
-      L.Path.append(stepsOf(*GEP, Numbers, *Debug));
-    }
-    if (!Valid || !L.isKnown() || (Unknown && Chain.empty()))
+      Location Way;
+      follow(Way, *GEP);
+      extend(L, Way.Path);
       continue;
-    if (Bytes == 0 || L.isElement() || descend(L, Bytes, nullptr))
-      addTo(Out, std::move(L));
+    }
+    // A base class, or what a pointer of another type was made of.
+    Type *Declared = declaredTypeAt(L);
+    if (L.isKnown() && (Bytes != 0 || elementOf(Declared) != Element ||
+                        (!Struct && !Declared->isArrayTy()))) {
+      Location Inner = L;
+      bool Found = descend(Inner, Bytes, Element);
+      // A number that is in no array is what it is, however far one goes.
+      if (!Found && !entersClass(*GEP))
+        continue;
+      L = Found ? Inner : Location();
+    }
+    Bytes = 0;
+    Valid |= Struct != nullptr;
+    if (Walks && L.Path.size() <= Length &&
+        !match(GEP->idx_begin()->get(), PatternMatch::m_Zero()))
+      anyElement(L);
+    follow(L, *GEP);
   }
+  if (!Valid || !L.isKnown() || (Unknown && Chain.empty()))
+    return;
+  if (Bytes == 0 || L.isElement() || descend(L, Bytes, nullptr))
+    addTo(Out, std::move(L));
 }
 
 Locations AccessResult::resolve(const Value *Pointer, bool Scalar) const {
@@ -446,6 +594,32 @@ Locations AccessResult::resolve(const Value *Pointer, bool Scalar) const {
     addTo(Entered, std::move(L));
   }
   return Entered;
+}
+
+Locations AccessResult::handed(const Value *Pointer, bool IsOne) const {
+  Locations All;
+  for (Location &L : resolve(Pointer, false)) {
+    if (IsOne)
+      enterElement(L);
+    else
+      L.widen();
+    addTo(All, std::move(L));
+  }
+  return All;
+}
+
+/// What \p Copy takes from or puts to \p Pointer: one element where it is no
+/// larger than that.
+Locations AccessResult::copied(const MemTransferInst &Copy,
+                               const Value *Pointer) const {
+  const auto *Bytes = dyn_cast<ConstantInt>(Copy.getLength());
+  return handed(
+      Pointer, Bytes && all_of(resolve(Pointer, false), [&](const Location &L) {
+                 Type *T = elementOf(typeAt(L));
+                 return T && T->isSized() &&
+                        Bytes->getValue().ule(
+                            Layout->getTypeAllocSize(T).getFixedValue());
+               }));
 }
 
 } // namespace tpc

@@ -162,16 +162,15 @@ bool AccessResult::Builder::isDue(const Node &N) const {
 
 /// The number of the content of \p L.
 unsigned AccessResult::Builder::contentAt(const Location &L, bool Unrooted) {
-  hash_code Hash = hash_combine(L.Root, Unrooted);
+  hash_code Hash = hash_combine(L.Root, L.RootItem.Number, Unrooted);
   for (const Step &S : L.Path)
-    Hash = hash_combine(Hash, S.Type, S.Index, S.Class);
+    Hash = hash_combine(Hash, S.Type, S.Index, S.Class, S.Item.Number);
   SmallVector<unsigned, 1> &Alike = ContentIndex[Hash];
   for (unsigned N : Alike) {
     const Content &C = Contents[N];
-    if (C.Unrooted == Unrooted && C.Where.Root == L.Root &&
-        equal(C.Where.Path, L.Path, [](const Step &A, const Step &B) {
-          return A.Type == B.Type && A.Index == B.Index && A.Class == B.Class;
-        }))
+    if (C.Unrooted == Unrooted && C.Where.isSame(L) &&
+        equal(C.Where.Path, L.Path,
+              [](const Step &A, const Step &B) { return A.Class == B.Class; }))
       return N;
   }
   Alike.push_back(Contents.size());
@@ -244,7 +243,7 @@ bool AccessResult::Builder::update(PointerStore &S, unsigned Number) {
   bool More = false;
   if (!S.Done || hasGrown(S.I->getPointerOperand(), S.Done))
     for (const Location &L : R.resolve(S.I->getPointerOperand(), true))
-      if (!is_contained(S.Where, L)) {
+      if (none_of(S.Where, [&](const Location &K) { return K.isSame(L); })) {
         S.Where.push_back(L);
         R.file(PointerStoreIndex, Number, L);
         More = true;

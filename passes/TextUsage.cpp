@@ -18,21 +18,23 @@ TextUsage::TextUsage(Module &M, const AccessResult &Access,
   forEachCall(M, Rules, Rule::Text, [&](CallBase &Call, const Rule &Row) {
     Use U{&Call, &Row, {}};
     for (unsigned N = 0; N < std::min(2U, Call.arg_size()); ++N)
-      U.Operands.push_back(Call.getArgOperand(N)->getType()->isPointerTy()
-                               ? Access.resolve(Call.getArgOperand(N), false)
-                               : Locations());
+      U.Operands.push_back(
+          Call.getArgOperand(N)->getType()->isPointerTy()
+              ? Access.handed(Call.getArgOperand(N), /*IsOne=*/true)
+              : Locations());
     Uses.push_back(std::move(U));
   });
   forEachCall(M, Rules, Rule::Held, [&](CallBase &Call, const Rule &Row) {
     if (Row.Relation == "outof")
-      Numbers.push_back({&Call, Access.resolve(objectOf(Call, Row), false)});
+      Numbers.push_back(
+          {&Call, Access.handed(objectOf(Call, Row), /*IsOne=*/true)});
   });
 }
 
 SmallVector<CallBase *, 2> TextUsage::numbersFrom(const CallBase &Into,
                                                   const Rule &Row) const {
   SmallVector<CallBase *, 2> Found;
-  Locations Objects = Access.resolve(objectOf(Into, Row), false);
+  Locations Objects = Access.handed(objectOf(Into, Row), /*IsOne=*/true);
   for (const auto &[Call, From] : Numbers)
     if (any_of(From, [&](const Location &L) {
           return any_of(Objects, [&](const Location &O) { return L.mayBe(O); });
@@ -78,7 +80,7 @@ static StringRef turned(StringRef Relation) {
 
 TextUsage::Found TextUsage::comparisonsOf(const Value *Object) const {
   Found Out;
-  Locations Objects = Access.resolve(Object, false);
+  Locations Objects = Access.handed(Object, /*IsOne=*/true);
   SmallPtrSet<const CallBase *, 8> Seen;
   for (unsigned Next = 0; Next < Objects.size() && Next < 16; ++Next) {
     const Location Here = Objects[Next];
@@ -88,7 +90,8 @@ TextUsage::Found TextUsage::comparisonsOf(const Value *Object) const {
       if (Relation == "copy") {
         if (U.Operands.size() == 2 && any_of(U.Operands[1], IsHere))
           for (const Location &To : U.Operands[0])
-            if (!is_contained(Objects, To))
+            if (none_of(Objects,
+                        [&](const Location &L) { return L.isSame(To); }))
               Objects.push_back(To);
         continue;
       }

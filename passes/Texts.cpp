@@ -158,7 +158,7 @@ Texts::Known Texts::ofResult(const CallBase &Call, Kind K) {
 /// What everything that writes the member or global \p L gives it. That it was
 /// empty before is not meant.
 Texts::Known Texts::ofMember(const Location &L, Kind K) {
-  if (auto *It = find_if(Members, [&](auto &M) { return M.first == L; });
+  if (auto *It = find_if(Members, [&](auto &M) { return M.first.isSame(L); });
       It != Members.end())
     return It->second;
   size_t Mine = Members.size();

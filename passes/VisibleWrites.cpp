@@ -27,7 +27,7 @@ static bool isOnePlace(const Value *Pointer) {
     Pointer = GEP->getPointerOperand();
   }
   return isa<AllocaInst>(Pointer) &&
-         !cast<AllocaInst>(Pointer)->getAllocatedType()->isArrayTy();
+         !cast<AllocaInst>(Pointer)->isArrayAllocation();
 }
 
 /// The calls that are handed a pointer into \p Local; none where its address is
@@ -44,7 +44,7 @@ handedTo(const AllocaInst &Local) {
         Work.push_back(I);
       else if (isa<CallBase>(I))
         Calls.push_back(I);
-      else if (isa<StoreInst>(I) && U.getOperandNo() == 0 && V == &Local)
+      else if (isa<StoreInst>(I) && U.getOperandNo() == 0)
         return std::nullopt;
     }
   }
@@ -63,7 +63,7 @@ const AccessResult::LocalHistory &
 AccessResult::historyOf(const Location &L, ArrayRef<Instruction *> W) const {
   auto &Known = Histories[L.Root];
   for (const auto &[Where, History] : Known)
-    if (Where == L)
+    if (Where.isSame(L))
       return *History;
   const auto &Local = *cast<AllocaInst>(L.Root);
   auto History = std::make_shared<LocalHistory>();
@@ -86,19 +86,35 @@ AccessResult::historyOf(const Location &L, ArrayRef<Instruction *> W) const {
   return *Known.back().second;
 }
 
+/// True where \p Store, which writes to \p L, writes all of it: of an array the
+/// element that is meant.
+bool AccessResult::isOneScalar(const Location &L,
+                               const StoreInst &Store) const {
+  if (!L.isOne() || isa_and_nonnull<ArrayType>(typeAt(L)))
+    return false;
+  bool InArray = L.RootItem.isNumber() || any_of(L.Path, [](const Step &S) {
+                   return S.Item.isNumber();
+                 });
+  if (InArray && none_of(touched(Store),
+                         [&](const Location &Own) { return Own.isSame(L); }))
+    return false;
+  return Store.getValueOperand()->getType()->isAggregateType() ||
+         !isa_and_nonnull<StructType>(typeAt(L));
+}
+
 /// True where \p Write, which writes \p L, a local variable, leaves nothing of
 /// what was there.
 bool AccessResult::replaces(const Instruction &Write, const Location &L) const {
   if (const auto *Store = dyn_cast<StoreInst>(&Write))
-    return isOnePlace(Store->getPointerOperand()) &&
-           (Store->getValueOperand()->getType()->isAggregateType() ||
-            !isa_and_nonnull<StructType>(typeAt(L)));
+    return isOnePlace(Store->getPointerOperand()) && isOneScalar(L, *Store);
   auto It = Replaced.find(&Write);
   if (It == Replaced.end())
     return false;
   const Location &Whole = It->second;
   return Whole.Root == L.Root && Whole.Path.size() <= L.Path.size() &&
-         equal(Whole.Path, ArrayRef(L.Path).take_front(Whole.Path.size()));
+         Whole.RootItem.Number == L.RootItem.Number &&
+         Location::areSame(Whole.Path,
+                           ArrayRef(L.Path).take_front(Whole.Path.size()));
 }
 
 /// Blocks that are walked through for the loads of a module; after that all
@@ -318,7 +334,9 @@ AccessResult::writesInto(const Location &L, const Instruction &At,
   auto Stays = [&](const Instruction &Write, const Location &Where) {
     if (!Local) {
       auto Way = partOf(L, Where);
-      auto It = find_if(Parts, [&](const Part &P) { return P.Way == Way; });
+      auto It = find_if(Parts, [&](const Part &P) {
+        return Way && Location::areSame(P.Way, *Way);
+      });
       std::optional<Reaching::Variable> Read;
       if (It != Parts.end())
         Read = It->Variable;
