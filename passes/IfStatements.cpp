@@ -229,12 +229,16 @@ public:
 
   Flow(Function &F, UserSources &Sources, const ThrowsResult &Thrown);
 
+  unsigned idOf(const BasicBlock *BB) const { return Id.lookup(BB); }
+
   /// The blocks, in order; the number of one is that of its node.
   SmallVector<BasicBlock *, 32> Blocks;
   FlowGraph Plain;
-  /// Edges into blocks that are decided by the edge lead to copies of them.
+  /// Edges into blocks that are decided by the edge lead to copies of them; in
+  /// Plain those alone that exceptions take.
   FlowGraph Threaded;
   SmallVector<Copy, 8> Copies;
+  size_t NumThrown = 0; ///< The first so many are the ways of exceptions.
   /// Blocks that are also entered where their ways are open, or by exceptions.
   std::vector<bool> Entered;
   LeftInside Left;
@@ -257,6 +261,8 @@ private:
   std::map<std::vector<unsigned>, unsigned> ByPath;
   /// Where calls lead that nobody takes to throw.
   DenseSet<const BasicBlock *> Implicit;
+  /// Where those lead that are.
+  DenseSet<const BasicBlock *> Explicit;
 };
 
 } // namespace
@@ -275,13 +281,19 @@ Flow::Flow(Function &F, UserSources &Sources, const ThrowsResult &Thrown) {
   Threaded.resize(Plain.size());
   Decider.resize(Plain.size());
   Plain[Size] = Threaded[Size] = {Id.lookup(&F.getEntryBlock()), Size + 1};
+  SmallVector<unsigned, 32> Ends;
   for (BasicBlock &BB : F) {
-    unsigned N = endOf(BB);
+    Ends.push_back(endOf(BB));
+    if (auto *Invoke = dyn_cast<InvokeInst>(BB.getTerminator()))
+      invoke(Ends.back(), *Invoke, Thrown);
+  }
+  NumThrown = Copies.size();
+  Plain.insert(Plain.end(), Threaded.begin() + Plain.size(), Threaded.end());
+  for (BasicBlock &BB : F) {
+    unsigned N = Ends[Id.lookup(&BB)];
     Instruction *T = BB.getTerminator();
-    if (auto *Invoke = dyn_cast<InvokeInst>(T)) {
-      invoke(N, *Invoke, Thrown);
+    if (isa<InvokeInst>(T))
       continue;
-    }
     Decider[N] = isPredicate(*T) ? T : nullptr;
     bool Library = T->getNumSuccessors() == 2 && T->getDebugLoc() &&
                    !Sources.has(T->getDebugLoc());
@@ -328,13 +340,14 @@ void Flow::invoke(unsigned Node, InvokeInst &Invoke,
     Decider[Node] = &Invoke;
     Plain[Node] = Threaded[Node] = {Id.lookup(Invoke.getNormalDest())};
   }
-  Plain[Node].push_back(Id.lookup(Pad));
+  Explicit.insert(Pad);
   for (ThrownType Type : Types) {
     SmallVector<const BasicBlock *, 4> Path = pathToHandler(Invoke, Type, Left);
     unsigned On = Path.empty() ? Id.lookup(Pad) : copy(Path);
     if (!is_contained(Threaded[Node], On))
       Threaded[Node].push_back(On);
   }
+  Plain[Node] = Threaded[Node];
 }
 
 /// The node that stands for the way through \p Path, up to its last block.
@@ -355,29 +368,45 @@ unsigned Flow::copy(ArrayRef<const BasicBlock *> Path) {
   return Node;
 }
 
-/// Takes the ways out of the blocks that all edges were led past: there is
-/// nothing that they decide. Blocks that no edge leads to stay, an exception
-/// does.
-void Flow::findEntered() {
-  std::vector<bool> HasEdge(Plain.size()), Reached(Threaded.size());
-  for (const std::vector<unsigned> &Succs : Plain)
-    for (unsigned S : Succs)
-      HasEdge[S] = true;
-  std::vector<unsigned> Work;
-  for (unsigned N = 0; N < Plain.size(); ++N)
-    if (!HasEdge[N] || (N < Blocks.size() && Implicit.contains(Blocks[N])))
-      Work.push_back(N);
-  while (!Work.empty()) {
-    unsigned N = Work.back();
-    Work.pop_back();
+/// The nodes of \p Graph that \p Roots lead to.
+static std::vector<bool> reachedFrom(const FlowGraph &Graph,
+                                     std::vector<unsigned> Roots) {
+  std::vector<bool> Reached(Graph.size());
+  while (!Roots.empty()) {
+    unsigned N = Roots.back();
+    Roots.pop_back();
     if (Reached[N])
       continue;
     Reached[N] = true;
-    Work.insert(Work.end(), Threaded[N].begin(), Threaded[N].end());
+    Roots.insert(Roots.end(), Graph[N].begin(), Graph[N].end());
   }
+  return Reached;
+}
+
+/// Takes the ways out of the blocks that all edges were led past: there is
+/// nothing that they decide. Blocks that no edge leads to stay, an exception
+/// does that nobody threw explicitly.
+void Flow::findEntered() {
+  std::vector<bool> HasEdge(Plain.size());
+  for (const std::vector<unsigned> &Succs : Plain)
+    for (unsigned S : Succs)
+      HasEdge[S] = true;
+  for (const BasicBlock *Pad : Explicit)
+    HasEdge[Id.lookup(Pad)] = true;
+  for (const BasicBlock *Pad : Implicit)
+    HasEdge[Id.lookup(Pad)] = false;
+  std::vector<unsigned> Roots;
   for (unsigned N = 0; N < Plain.size(); ++N)
+    if (!HasEdge[N])
+      Roots.push_back(N);
+  std::vector<bool> Reached = reachedFrom(Threaded, Roots);
+  std::vector<bool> ReachedPlain = reachedFrom(Plain, Roots);
+  for (unsigned N = 0; N < Plain.size(); ++N) {
     if (!Reached[N])
       Threaded[N].clear();
+    if (!ReachedPlain[N])
+      Plain[N].clear();
+  }
   Entered.assign(Reached.begin(), Reached.begin() + Blocks.size());
 }
 
@@ -386,7 +415,8 @@ static SmallVector<Instruction *, 2> decidersIn(ArrayRef<unsigned> Depends,
                                                 const Flow &Graphs) {
   SmallVector<Instruction *, 2> Found;
   for (unsigned N : Depends)
-    if (N < Graphs.Decider.size() && Graphs.Decider[N])
+    if (N < Graphs.Decider.size() && Graphs.Decider[N] &&
+        !is_contained(Found, Graphs.Decider[N]))
       Found.push_back(Graphs.Decider[N]);
   return Found;
 }
@@ -422,12 +452,13 @@ IfStatementsResult IfStatements::run(Module &M, ModuleAnalysisManager &AM) {
     ArrayRef<BasicBlock *> Blocks = Graphs.Blocks;
     auto Depends = controlDependence(Graphs.Threaded);
     SmallPtrSet<const BasicBlock *, 8> Passed;
-    for (const Flow::Copy &C : Graphs.Copies) {
-      Passed.insert(C.BB);
+    for (const auto &[N, C] : enumerate(Graphs.Copies)) {
+      if (N >= Graphs.NumThrown)
+        Passed.insert(C.BB);
       append_range(R.Decided[{C.BB, C.Next}],
                    decidersIn(Depends[C.Node], Graphs));
     }
-    if (!Passed.empty()) {
+    if (!Graphs.Copies.empty()) {
       // What a block does that edges were led past is done on all of them;
       // one that does nothing is only the end of a condition.
       auto Before = controlDependence(Graphs.Plain);
@@ -441,6 +472,17 @@ IfStatementsResult IfStatements::run(Module &M, ModuleAnalysisManager &AM) {
       for (const Flow::Part &P : Graphs.Parts)
         if (!Graphs.Entered[P.Block])
           Depends[P.Node] = Before[P.Node];
+      // What is done where an exception passes through is done on its ways,
+      // too.
+      for (const Flow::Copy &C :
+           ArrayRef(Graphs.Copies).take_front(Graphs.NumThrown)) {
+        unsigned N = Graphs.idOf(C.BB);
+        if (Graphs.Entered[N] && !doesSomething(*C.BB))
+          continue;
+        if (Graphs.Entered[N] && Depends[N].empty())
+          Depends[N].push_back(Blocks.size());
+        append_range(Depends[N], Depends[C.Node]);
+      }
     }
     auto Record = [&](const Value *Part, unsigned N) {
       SmallVector<Instruction *, 2> Controllers =
