@@ -57,7 +57,10 @@ IfStatementsResult::controllersOf(const Value *Part) const {
 /// True where \p BB does more than to choose the way.
 static bool doesSomething(const BasicBlock &BB) {
   return any_of(BB, [](const Instruction &I) {
-    return I.mayHaveSideEffects() && !I.isLifetimeStartOrEnd();
+    const auto *Known = dyn_cast<IntrinsicInst>(&I);
+    bool AsksForType =
+        Known && Known->getIntrinsicID() == Intrinsic::eh_typeid_for;
+    return I.mayHaveSideEffects() && !I.isLifetimeStartOrEnd() && !AsksForType;
   });
 }
 
