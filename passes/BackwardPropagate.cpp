@@ -8,6 +8,7 @@
 #include "Options.h"
 #include "Print.h"
 #include "SimpleCallGraph.h"
+#include "Throws.h"
 
 #include "llvm/ADT/SmallPtrSet.h"
 #include "llvm/Analysis/ValueTracking.h"
@@ -41,7 +42,7 @@ public:
   Slicer(Module &M, ModuleAnalysisManager &AM)
       : Calls(AM.getResult<SimpleCallGraph>(M)),
         Access(AM.getResult<ClassObjectAccess>(M)),
-        Ifs(AM.getResult<IfStatements>(M)),
+        Ifs(AM.getResult<IfStatements>(M)), Thrown(AM.getResult<Throws>(M)),
         Exposing(AM.getResult<ExternCallFinder>(M)),
         Rules(AM.getResult<RuleAnalysis>(M)), Opts(Options::fromCommandLine()),
         Sources(Opts) {}
@@ -51,10 +52,11 @@ public:
 private:
   /// Why an instruction is in the slice; bits.
   enum Reason : unsigned char {
-    Runs = 1,    ///< that it runs matters
-    Gives = 2,   ///< the value that it gives or writes matters
-    Touches = 4, ///< a call that is handed an object which matters
-    Exposes = 8, ///< an exposing statement
+    Runs = 1,      ///< that it runs matters
+    Gives = 2,     ///< the value that it gives or writes matters
+    Touches = 4,   ///< a call that is handed an object which matters
+    Exposes = 8,   ///< an exposing statement
+    Throwing = 16, ///< a call: whether it throws matters
   };
   struct Item {
     Instruction *I;
@@ -68,7 +70,7 @@ private:
   void enter(Instruction *I, unsigned char Reasons, Why Because);
   void decides(Instruction *Predicate, Why Because);
   void process(const Item &It);
-  void control(const BasicBlock *BB);
+  void control(const Instruction &I);
   void value(Instruction &I);
   void define(const Value *V);
   void definePointer(const Value *V);
@@ -77,6 +79,7 @@ private:
   void defineArguments(const CallBase &Call);
   void callResult(CallBase &Call);
   void touchingCall(CallBase &Call);
+  void throwingCall(CallBase &Call);
   void derivedPointer(const Value *Pointer);
   void reachable(CallBase &Call);
 
@@ -84,6 +87,7 @@ private:
   const CallGraphResult &Calls;
   const AccessResult &Access;
   const IfStatementsResult &Ifs;
+  const ThrowsResult &Thrown;
   const ExternCallFinder::Result &Exposing;
   const RuleMatches &Rules;
   const Options Opts;
@@ -115,21 +119,24 @@ void Slicer::enter(Instruction *I, unsigned char Reasons, Why Because) {
   Next.push_back({I, New, Current, addStep(I, Because)});
 }
 
-/// \p Predicate controls what is at hand: this round is its distance.
+/// \p Predicate, or a call that may throw, controls what is at hand: this round
+/// is its distance.
 void Slicer::decides(Instruction *Predicate, Why Because) {
+  if (!isPredicate(*Predicate))
+    return enter(Predicate, Throwing, Because);
   auto [It, New] = Result.Predicates.try_emplace(Predicate);
   if (New)
     It->second = {Round, Current, addStep(Predicate, Because)};
   enter(Predicate, Gives, Because);
 }
 
-void Slicer::control(const BasicBlock *BB) {
-  for (Instruction *Predicate : Ifs.controllers(BB))
+void Slicer::control(const Instruction &I) {
+  for (Instruction *Predicate : Ifs.controllers(I))
     decides(Predicate, Why::Controls);
-  if (Ifs.isControlledByEntry(BB)) {
-    for (CallBase *Call : Calls.callers(BB->getParent()))
+  if (Ifs.isControlledByEntry(I)) {
+    for (CallBase *Call : Calls.callers(I.getFunction()))
       enter(Call, Runs, Why::Calls);
-    for (Instruction *Mention : Calls.mentions(BB->getParent()))
+    for (Instruction *Mention : Calls.mentions(I.getFunction()))
       enter(Mention, Runs, Why::Mentions);
   }
 }
@@ -222,6 +229,13 @@ void Slicer::touchingCall(CallBase &Call) {
     derivedPointer(&Call);
 }
 
+/// Whether \p Call throws matters: what throws in the functions that it calls.
+void Slicer::throwingCall(CallBase &Call) {
+  for (const Function *Callee : Calls.callees(Call))
+    for (CallBase *Inner : Thrown.leaving(Callee))
+      enter(Inner, isThrow(*Inner) ? Runs : Throwing, Why::Throws);
+}
+
 void Slicer::derivedPointer(const Value *Pointer) {
   if (!SeenPointers.insert(Pointer).second)
     return;
@@ -311,11 +325,13 @@ void Slicer::process(const Item &It) {
   Current = It.Exposing;
   Here = It.Step;
   if (It.Reasons & Runs)
-    control(It.I->getParent());
+    control(*It.I);
   if (It.Reasons & Gives)
     value(*It.I);
   if (It.Reasons & Touches)
     touchingCall(*cast<CallBase>(It.I));
+  if (It.Reasons & Throwing)
+    throwingCall(*cast<CallBase>(It.I));
   if (It.Reasons & Exposes)
     reachable(*cast<CallBase>(It.I));
 }

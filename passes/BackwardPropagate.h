@@ -5,7 +5,9 @@
 // predicate first controls an instruction of the slice is its distance.
 //
 // Control: the predicates that control an instruction's block, and the calls
-// of its function where it runs whenever the function does.
+// of its function where it runs whenever the function does. A call that
+// may throw, as the user wrote it, is like a predicate: it enters the next
+// round, and what throws in the function that it calls the one after that.
 // Data: operands; loads to the writes of the variable; arguments to the calls;
 // results to the callee's returns; a value that control flow merges to the
 // predicates that choose it; for an exposing statement all that is reachable
@@ -40,6 +42,7 @@ struct SliceStep {
     Writes,   ///< writes what the next one reads
     Returns,  ///< returns what the next one, a call, gives
     Passes,   ///< hands the function of the next one an argument
+    Throws,   ///< throws, or lets through, what the next one, a call, throws
   };
   llvm::Instruction *I;
   unsigned Next; ///< number of the step that brought it in

@@ -1,6 +1,8 @@
 //===- Explain.cpp --------------------------------------------------------===//
 #include "Explain.h"
 
+#include "Throws.h"
+
 #include "llvm/IR/IntrinsicInst.h"
 
 using namespace llvm;
@@ -142,22 +144,37 @@ void Explainer::dependence(const SliceStep &S, const SliceStep &Next,
   auto Add = [&](PathStep::KindTy Kind, std::string What) {
     add(Out, Kind, *S.I, std::move(What));
   };
+  // A call that may throw decides as a predicate does.
+  std::string How;
+  if (const auto *Call = dyn_cast<CallBase>(S.I))
+    How = " by whether " + Wording::callee(*Call) + " throws";
   switch (S.Why) {
   case SliceStep::Controls: {
+    if (isThrow(*Next.I))
+      return Add(IsFirst ? PathStep::Decide : PathStep::Control,
+                 "decides whether " +
+                     Wording::function(*Next.I->getFunction()) + " throws");
     std::string Guarded = Words.guarded(*Next.I);
     const DILocation *Here = Words.userPlace(*S.I);
     bool SameLine =
         Here && Guarded == "line " + std::to_string(Here->getLine());
     return Add(IsFirst ? PathStep::Decide : PathStep::Control,
-               Guarded.empty() || SameLine ? "" : "guards " + Guarded);
+               Guarded.empty() || SameLine ? "" : "guards " + Guarded + How);
   }
   case SliceStep::Chooses: {
     std::string Name = Words.value(Next.I);
     return Add(IsFirst ? PathStep::Decide : PathStep::Value,
-               !Name.empty() ? "chooses the value of " + Name
-               : Next.I->getType()->isIntegerTy(1) ? "chooses the outcome"
-                                                   : "chooses a value");
+               (!Name.empty() ? "chooses the value of " + Name
+                : Next.I->getType()->isIntegerTy(1) ? "chooses the outcome"
+                                                    : "chooses a value") +
+                   How);
   }
+  case SliceStep::Throws:
+    return Add(PathStep::Return,
+               isThrow(*S.I)
+                   ? "thrown by " + Wording::function(*S.I->getFunction())
+                   : "let through by " +
+                         Wording::function(*S.I->getFunction()));
   case SliceStep::Calls:
     return Add(PathStep::Call,
                "calls " + Wording::function(*Next.I->getFunction()));

@@ -1,7 +1,9 @@
 //===- IfStatements.h - Which predicates control a block ------------------===//
 //
 // Thesis A.7, by control dependence instead of counting visits: early returns,
-// loops and breaks come out right. Exception edges make no dependence.
+// loops and breaks come out right. A `throw` of the user's leads to the handler
+// that takes it, in its own function and in those that call it; where other
+// calls may throw, that makes no dependence.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_IFSTATEMENTS_H
@@ -32,14 +34,26 @@ const llvm::BasicBlock *decidedWay(const llvm::BasicBlock *From,
 
 class IfStatementsResult {
 public:
-  /// The terminators that \p BB is directly controlled by.
+  /// The predicates, and the calls that may throw, that the beginning of \p BB
+  /// is directly controlled by.
   llvm::ArrayRef<llvm::Instruction *>
-  controllers(const llvm::BasicBlock *BB) const;
-  /// True where \p BB runs whenever its function is called, or is reached
-  /// by an exception alone: then the calls of the function control it. A loop
-  /// at the top level of a function has both kinds of controllers.
+  controllers(const llvm::BasicBlock *BB) const {
+    return controllersOf(BB);
+  }
+  /// The same for \p I, which may stand behind a call that throws.
+  llvm::ArrayRef<llvm::Instruction *>
+  controllers(const llvm::Instruction &I) const {
+    return controllersOf(partOf(I));
+  }
+  /// True where \p BB is begun whenever its function is called, or is reached
+  /// by an exception alone that nobody threw explicitly: then the calls of the
+  /// function control it. A loop at the top level of a function has both kinds
+  /// of controllers.
   bool isControlledByEntry(const llvm::BasicBlock *BB) const {
     return ByEntry.contains(BB);
+  }
+  bool isControlledByEntry(const llvm::Instruction &I) const {
+    return ByEntry.contains(partOf(I));
   }
   /// The predicates that choose the way from \p From to \p BB.
   llvm::SmallVector<llvm::Instruction *, 4>
@@ -49,10 +63,22 @@ public:
 
 private:
   friend class IfStatements;
-  llvm::DenseMap<const llvm::BasicBlock *,
-                 llvm::SmallVector<llvm::Instruction *, 2>>
+  friend class IfStatementsPrinter;
+  const llvm::Value *partOf(const llvm::Instruction &I) const;
+  llvm::ArrayRef<llvm::Instruction *>
+  controllersOf(const llvm::Value *Part) const;
+
+  /// By what a part of a block begins with: the block itself, or a call in it
+  /// that may throw, for what stands behind that.
+  llvm::DenseMap<const llvm::Value *, llvm::SmallVector<llvm::Instruction *, 2>>
       Controllers;
-  llvm::DenseSet<const llvm::BasicBlock *> ByEntry;
+  llvm::DenseSet<const llvm::Value *> ByEntry;
+  /// The calls inside of blocks that may throw.
+  llvm::DenseMap<const llvm::BasicBlock *,
+                 llvm::SmallVector<llvm::Instruction *, 1>>
+      Parted;
+  /// The invokes that lead on or to a handler.
+  llvm::DenseSet<const llvm::Instruction *> Choosing;
   /// Of edges that are also gone where that was decided before: by what.
   llvm::DenseMap<std::pair<const llvm::BasicBlock *, const llvm::BasicBlock *>,
                  llvm::SmallVector<llvm::Instruction *, 2>>

@@ -15,6 +15,7 @@
 #include "Rules.h"
 #include "SimpleCallGraph.h"
 #include "StaticInfo.h"
+#include "Throws.h"
 
 #include "llvm/IR/Module.h"
 #include "llvm/Support/WithColor.h"
@@ -27,6 +28,7 @@ void registerAnalyses(ModuleAnalysisManager &AM) {
   AM.registerPass([] { return RuleAnalysis(); });
   AM.registerPass([] { return SimpleCallGraph(); });
   AM.registerPass([] { return ClassObjectAccess(); });
+  AM.registerPass([] { return Throws(); });
   AM.registerPass([] { return IfStatements(); });
   AM.registerPass([] { return ExternCallFinder(); });
   AM.registerPass([] { return ParamCallFinder(); });

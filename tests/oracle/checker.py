@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from tests.oracle.control import ControlDependence
 from tests.oracle.ir import Argument, Function, Instruction, Place, Value, number, parse
 from tests.oracle.memory import SILENT, Memory, Program, Write, extent
+from tests.oracle.throws import Throws, is_throw
 
 RELATIONS = {"eq": "==", "ne": "!=", "gt": ">", "ge": ">=", "lt": "<", "le": "<="}
 SWAPPED = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "==": "==", "!=": "!="}
@@ -111,7 +112,8 @@ class Checker:
     def __init__(self, memory: Memory, rules: Rules, is_user: Callable[[str], bool]) -> None:
         self.memory, self.program, self.rules = memory, memory.program, rules
         self.is_user = is_user
-        self.control = {f: ControlDependence(f) for f in self.program.functions}
+        self.throws = Throws(self.program, lambda place: is_user(place.file))
+        self.control = {f: ControlDependence(f, self.throws) for f in self.program.functions}
         self.users: dict[Value, list[Instruction]] = defaultdict(list)
         self.sees: dict[Instruction, list[Instruction]] = defaultdict(list)
         for i in self.program.instructions:
@@ -169,11 +171,15 @@ class Checker:
 
     def step(self, item: Instruction, why: str) -> list[tuple[Instruction, str]]:
         """What enters the round after that of `item`."""
-        out = [(p, "data") for p in self.choosers_of(item)]
+        out = [(p, "throws" if p.is_call else "data") for p in self.choosers_of(item)]
         _, always = self.control[item.function].controllers(item.block, item)
         if always:
             out += [(c, "control") for c in self.program.callers(item.function)]
-        if why == "control":
+        if why == "throws":
+            # A call that may throw enters as a predicate does, and then what throws below it.
+            inner = [i for f in self.program.callees(item) for i in self.throws.leaving(f)]
+            out += [(i, "control" if is_throw(i) else "throws") for i in inner]
+        if why in ("control", "throws"):
             return out
         known = item.is_call and self.program.callees(item)
         for o in [] if known else item.operands:
