@@ -140,13 +140,13 @@ size_t Sides::lengthOf(const ParameterComparison &C) const {
   return Usage.pathTo(C.Decisions.front().Way).size();
 }
 
-bool Sides::isOtherWay(const ParameterComparison &C) const {
+bool Sides::isOtherWay(const ParameterComparison &C) {
   return C.Compare &&
          any_of(ByCompare.lookup(C.Compare),
                 [&](const ParameterComparison *Other) {
                   return Other->Operand != C.Operand &&
                          Reads[Other->Read].Name == Reads[C.Read].Name &&
-                         lengthOf(*Other) < lengthOf(C);
+                         lengthOf(*Other) < lengthOf(C) && !isMeasured(*Other);
                 });
 }
 

@@ -22,8 +22,9 @@ public:
   Sides(const ParameterUsage &Usage, const ParamCallFinder::Result &Reads,
         const CallGraphResult &Calls, const AccessResult &Access);
 
-  /// True where the other operand is the same parameter by a shorter way.
-  bool isOtherWay(const ParameterComparison &C) const;
+  /// True where the other operand is the same parameter by a shorter way, and
+  /// may be the threshold.
+  bool isOtherWay(const ParameterComparison &C);
   /// True where \p C is about the operand that is not the threshold: it can be
   /// something else than a parameter, and the other one cannot.
   bool isMeasured(const ParameterComparison &C);

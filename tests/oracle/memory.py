@@ -247,7 +247,8 @@ class Memory:
         ends = [i for i in here.instructions if i.opcode in ("ret", "unreachable")]
         leaves = not mine or any(self.gets_to(write, e, mine | pads) for e in ends)
         begin = there.instructions[0]
-        enters = not theirs or (begin not in theirs and self.gets_to(begin, use, theirs))
+        enters = not theirs or begin is use
+        enters = enters or (begin not in theirs and self.gets_to(begin, use, theirs))
         if leaves and enters:
             return True
         if leaves:
