@@ -185,8 +185,13 @@ ListedPlaces ExplainInfo::blindSpots() {
   const std::vector<BlindSpot> Spots =
       findBlindSpots(Usage, Reads, Gathered, Calls, Words);
   Listing All(Reads, Opts);
+  // Very many values may end at one place.
+  DenseMap<const Instruction *, const DILocation *> Places;
   for (auto [Index, S] : enumerate(Spots)) {
-    const DILocation *Loc = Words.userPlace(*S.At);
+    auto [It, New] = Places.try_emplace(S.At);
+    if (New)
+      It->second = Words.userPlace(*S.At);
+    const DILocation *Loc = It->second;
     // What a library does inside is its own business, and is counted.
     if (Loc || !S.At->getDebugLoc())
       All.add(S.Kind, Loc, S.Read, Index);

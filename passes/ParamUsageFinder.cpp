@@ -108,6 +108,13 @@ private:
   bool carry(const State &S, Use &U);
   void load(const State &S, Instruction &Write, ArrayRef<ScalarPart> Written,
             ArrayRef<LoadInst *> Loads);
+  /// What a store writes to, whatever the value.
+  struct Stored {
+    size_t Targets;
+    SmallVector<LoadInst *, 8> Loads;
+    SmallVector<ScalarPart, 1> Written;
+  };
+  const Stored &stored(StoreInst &Store);
   void store(const State &S, StoreInst &Store);
   void end(ValueEnd::KindTy Kind, Instruction *At);
   /// Nobody asks for the way of a value that is compared nowhere.
@@ -127,6 +134,10 @@ private:
   const RuleMatches &Rules;
   const TextUsage Texts;
   Overwrites Replaced;
+
+  // Very many values may come to one place.
+  DenseMap<const StoreInst *, std::unique_ptr<Stored>> Stores;
+  DenseMap<const LoadInst *, std::unique_ptr<SmallVector<ScalarPart, 1>>> Parts;
 
   ParameterUsage Usage;
   Worklist Work;
@@ -185,18 +196,28 @@ static Transform throughChoice(Transform How, const Instruction &I) {
 /// More variables that a store may write to are more than anybody meant.
 static constexpr unsigned ManyTargets = 16;
 
+const Follower::Stored &Follower::stored(StoreInst &Store) {
+  std::unique_ptr<Stored> &Known = Stores[&Store];
+  if (!Known)
+    Known = std::make_unique<Stored>(Stored{
+        Access.resolve(Store.getPointerOperand(), true).size(),
+        usesOf(Store, Store.getPointerOperand()), Access.partsOf(Store)});
+  return *Known;
+}
+
 /// A value goes on to the loads of the variable that it is stored to.
 void Follower::store(const State &S, StoreInst &Store) {
-  size_t Targets = Access.resolve(Store.getPointerOperand(), true).size();
-  SmallVector<LoadInst *, 8> Loads = usesOf(Store, Store.getPointerOperand());
-  if (Targets == 0)
+  const Stored &To = stored(Store);
+  if (To.Targets == 0)
     end(ValueEnd::UnknownPointer, &Store);
-  else if (Targets > ManyTargets)
+  else if (To.Targets > ManyTargets)
     end(ValueEnd::ManyTargets, &Store);
-  else if (Loads.empty() && !IsOutcome)
+  else if (To.Loads.empty() && !IsOutcome)
     end(ValueEnd::Unread, &Store);
+  if (To.Loads.empty() && !S.In)
+    return;
   State Next{S.V, S.How, nullptr, false, S.In};
-  SmallVector<ScalarPart, 1> Written = Access.partsOf(Store);
+  SmallVector<ScalarPart, 1> Written = To.Written;
   if (S.In && !Written.empty() && Written.front().Size) {
     erase_if(Written, [&](const ScalarPart &P) {
       return S.In->Low < P.Low || S.In->Low + S.In->Size > P.Low + P.Size;
@@ -209,7 +230,7 @@ void Follower::store(const State &S, StoreInst &Store) {
     if (S.In->Size < Own.Size)
       Next.In = {S.In->Low - Own.Low, S.In->Size};
   }
-  load(Next, Store, Written, Loads);
+  load(Next, Store, Written, To.Loads);
 }
 
 /// The value of \p S, as it stands in the scalar, goes on to \p Loads, which
@@ -220,7 +241,11 @@ void Follower::load(const State &S, Instruction &Write,
   bool WasWide = any_of(Written, [](const ScalarPart &P) { return P.Size; });
   for (LoadInst *Load : Loads) {
     State Next{Load, throughChoice(S.How, *Load), nullptr, S.Direct};
-    SmallVector<ScalarPart, 1> Read = Access.partsOf(*Load);
+    auto &Known = Parts[Load];
+    if (!Known)
+      Known =
+          std::make_unique<SmallVector<ScalarPart, 1>>(Access.partsOf(*Load));
+    ArrayRef<ScalarPart> Read = *Known;
     bool IsWide = any_of(Read, [](const ScalarPart &P) { return P.Size; });
     if (!WasWide && !IsWide) {
       Next.In = S.In;

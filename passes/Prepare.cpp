@@ -7,6 +7,7 @@
 #include "Rules.h"
 #include "Texts.h"
 
+#include "llvm/IR/DebugInfo.h"
 #include "llvm/IR/InstIterator.h"
 #include "llvm/IR/Instructions.h"
 #include "llvm/IR/IntrinsicInst.h"
@@ -140,10 +141,26 @@ static void inlineTransparent(Module &M) {
     inlineMarked(M, /*Promote=*/false);
 }
 
+/// Has a copy of \p M share its debug information: nothing changes it, and to
+/// copy it takes longer than to copy the program.
+static void shareDebugInfo(const Module &M, ValueToValueMapTy &Map) {
+  DebugInfoFinder Finder;
+  Finder.processModule(M);
+  auto Share = [&](auto Nodes) {
+    for (MDNode *N : Nodes)
+      Map.MD()[N].reset(N);
+  };
+  Share(Finder.compile_units());
+  Share(Finder.subprograms());
+  Share(Finder.types());
+  Share(Finder.scopes());
+}
+
 AnalysedModule::AnalysedModule(Module &M, const Options &Opts) {
   callByOwnName(M);
   inlineTransparent(M);
   ValueToValueMapTy Map;
+  shareDebugInfo(M, Map);
   Copy = CloneModule(M, Map);
   allowOptimisation(*Copy);
   prepare(*Copy, Opts);

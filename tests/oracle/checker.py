@@ -288,7 +288,7 @@ class Checker:
                 for item in self.after(name, at, user, out):
                     ways[item.value].add(item.how)
                     # In a loop, arithmetic has no end.
-                    many = len(ways[item.value]) > 6
+                    many = len(ways[item.value]) > 6 and not item.how.is_none
                     new = replace(item, how=item.how.anything()) if many else item
                     if new not in seen:
                         seen.add(new)

@@ -10,7 +10,7 @@ from __future__ import annotations
 import ctypes
 import re
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cache, cached_property
 
 import llvmlite.binding as llvm
 
@@ -137,6 +137,9 @@ class Layout:
     def __init__(self, text: str) -> None:
         names = re.findall(r'^%("[^"]*"|[\w.$-]+) = type (.*)$', text, re.M)
         self.named = {"%" + name: body for name, body in names}
+        # Few types are asked about again and again.
+        self.size, self.align = cache(self.size), cache(self.align)  # type: ignore[method-assign]
+        self.offsets = cache(self.offsets)  # type: ignore[method-assign]
 
     def body(self, written: str) -> str:
         """The type itself where `written` is a name."""

@@ -306,12 +306,14 @@ class Memory:
     def gets_to(self, begin: Instruction, use: Instruction, kills: set[Instruction]) -> bool:
         """True where a way leads from behind `begin` to `use` and passes none of `kills`."""
         graph = self.program.steps(use.function)
-        free = graph.subgraph(n for n in graph if n is use or n is begin or n not in kills)
-        after = set(graph.successors(begin)) - kills
-        if use in graph.successors(begin):
-            return True
-        return any(nx.has_path(free.subgraph(set(free) - ({begin} if begin in kills else set())),
-                               a, use) for a in after)  # fmt: skip
+        todo, seen = [begin], set(kills)
+        while todo:
+            after = set(graph.successors(todo.pop()))
+            if use in after:
+                return True
+            todo += after - seen
+            seen |= after
+        return False
 
 
 class Program:
