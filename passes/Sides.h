@@ -19,8 +19,11 @@ namespace tpc {
 
 class Sides {
 public:
+  /// Of \p Usage only what \p IsExposed holds for is looked at: another side
+  /// that is not reported makes this one no less of a threshold.
   Sides(const ParameterUsage &Usage, const ParamCallFinder::Result &Reads,
-        const CallGraphResult &Calls, const AccessResult &Access);
+        const CallGraphResult &Calls, const AccessResult &Access,
+        llvm::function_ref<bool(const ParameterComparison &)> IsExposed);
 
   /// True where the other operand is the same parameter by a shorter way, and
   /// may be the threshold.
