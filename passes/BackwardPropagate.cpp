@@ -78,6 +78,7 @@ private:
   void phi(const PHINode &Phi);
   void defineArguments(const CallBase &Call);
   void callResult(CallBase &Call);
+  bool isUsersOwn(const CallBase &Call);
   void touchingCall(CallBase &Call);
   void throwingCall(CallBase &Call);
   void derivedPointer(const Value *Pointer);
@@ -217,6 +218,14 @@ void Slicer::callResult(CallBase &Call) {
   defineArguments(Call);
 }
 
+/// True where \p Call only enters functions of the user's sources: what those
+/// write is seen by their stores. A library's containers are more opaque.
+bool Slicer::isUsersOwn(const CallBase &Call) {
+  SmallVector<Function *, 1> Callees = Calls.callees(Call);
+  return !Callees.empty() &&
+         all_of(Callees, [&](const Function *F) { return Sources.has(*F); });
+}
+
 /// \p Call is handed an object that matters: it may put its other arguments
 /// into it, and what is written through a pointer that it returns is in it.
 void Slicer::touchingCall(CallBase &Call) {
@@ -224,7 +233,8 @@ void Slicer::touchingCall(CallBase &Call) {
   // publisher that does it is not among it.
   if (Seen.lookup(&Call) & Exposes)
     return;
-  defineArguments(Call);
+  if (!isUsersOwn(Call))
+    defineArguments(Call);
   if (Call.getType()->isPointerTy())
     derivedPointer(&Call);
 }

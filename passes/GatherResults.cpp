@@ -301,7 +301,11 @@ GatheredResults GatherResults::run(Module &M, ModuleAnalysisManager &AM) {
   const RuleMatches &Rules = AM.getResult<RuleAnalysis>(M);
   Places Own(Opts, Rules);
   Sides Both(Usage, Reads, AM.getResult<SimpleCallGraph>(M),
-             AM.getResult<ClassObjectAccess>(M));
+             AM.getResult<ClassObjectAccess>(M),
+             [&](const ParameterComparison &P) {
+               Comparison Ignored{};
+               return nearest(P, Slice, Ignored);
+             });
   GatheredResults R;
   SmallPtrSet<const CmpInst *, 16> WithParameter;
   DenseMap<const Value *, SmallVector<unsigned, 1>> Known; ///< by what compares

@@ -13,14 +13,15 @@ namespace tpc {
 static constexpr unsigned MaxSources = 256;
 
 Sides::Sides(const ParameterUsage &Usage, const ParamCallFinder::Result &Reads,
-             const CallGraphResult &Calls, const AccessResult &Access)
+             const CallGraphResult &Calls, const AccessResult &Access,
+             function_ref<bool(const ParameterComparison &)> IsExposed)
     : Usage(Usage), Reads(Reads), Calls(Calls), Access(Access) {
   for (const ParameterRead &Read : Reads) {
     Parameters.insert(Read.Call);
     Parameters.insert(Read.Values.begin(), Read.Values.end());
   }
   for (const ParameterComparison &C : Usage.Comparisons)
-    if (C.Compare)
+    if (C.Compare && IsExposed(C))
       ByCompare[C.Compare].push_back(&C);
 }
 
@@ -135,18 +136,16 @@ bool Sides::isConfigured(const Value *V) {
 
 /// The length of the way from the read to the predicate.
 size_t Sides::lengthOf(const ParameterComparison &C) const {
-  if (C.Decisions.empty())
-    return 0;
   return Usage.pathTo(C.Decisions.front().Way).size();
 }
 
-bool Sides::isOtherWay(const ParameterComparison &C) const {
+bool Sides::isOtherWay(const ParameterComparison &C) {
   return C.Compare &&
          any_of(ByCompare.lookup(C.Compare),
                 [&](const ParameterComparison *Other) {
                   return Other->Operand != C.Operand &&
                          Reads[Other->Read].Name == Reads[C.Read].Name &&
-                         lengthOf(*Other) < lengthOf(C);
+                         lengthOf(*Other) < lengthOf(C) && !isMeasured(*Other);
                 });
 }
 

@@ -19,11 +19,15 @@ namespace tpc {
 
 class Sides {
 public:
+  /// Of \p Usage only what \p IsExposed holds for is looked at: another side
+  /// that is not reported makes this one no less of a threshold.
   Sides(const ParameterUsage &Usage, const ParamCallFinder::Result &Reads,
-        const CallGraphResult &Calls, const AccessResult &Access);
+        const CallGraphResult &Calls, const AccessResult &Access,
+        llvm::function_ref<bool(const ParameterComparison &)> IsExposed);
 
-  /// True where the other operand is the same parameter by a shorter way.
-  bool isOtherWay(const ParameterComparison &C) const;
+  /// True where the other operand is the same parameter by a shorter way, and
+  /// may be the threshold.
+  bool isOtherWay(const ParameterComparison &C);
   /// True where \p C is about the operand that is not the threshold: it can be
   /// something else than a parameter, and the other one cannot.
   bool isMeasured(const ParameterComparison &C);

@@ -25,22 +25,29 @@ class How:
     """What was done to a parameter's value: scale * x + offset, or more than that (`other`).
 
     `bits` is the width of an integer type that the value is known to fit into; 0: none.
+    `repeated`: it was done so often, in a loop, that it is not kept apart any more.
     """
 
     scale: float = 1.0
     offset: float = 0.0
     other: bool = False
     bits: int = 0
+    repeated: bool = False
 
     @property
     def is_none(self) -> bool:
         return (self.scale, self.offset, self.other) == (1.0, 0.0, False)
 
     def affine(self, scale: float, offset: float) -> How:
-        return How(self.scale * scale, self.offset * scale + offset, self.other)
+        changed = self.scale * scale, self.offset * scale + offset
+        return How(*changed, self.other, repeated=self.repeated)
 
     def anything(self, bits: int = 0) -> How:
-        return How(other=True, bits=bits)
+        return How(other=True, bits=bits, repeated=self.repeated)
+
+    @property
+    def type(self) -> str:
+        return "parameter" if self.is_none else "repeated" if self.repeated else "derived"
 
 
 @dataclass(frozen=True)
@@ -295,7 +302,8 @@ class Checker:
                     ways[item.value].add(item.how)
                     # In a loop, arithmetic has no end.
                     many = len(ways[item.value]) > 6 and not item.how.is_none
-                    new = replace(item, how=item.how.anything()) if many else item
+                    how = How(other=True, repeated=True)
+                    new = replace(item, how=how) if many else item
                     if new not in seen:
                         seen.add(new)
                         todo.append(new)
@@ -312,7 +320,7 @@ class Checker:
             if how.is_none:
                 out.add(Compared(name, "flag", "flag", origin or user, user))
             elif user.opcode == "switch":
-                out.add(Compared(name, "derived", "flag", origin or user, user))
+                out.add(Compared(name, how.type, "flag", origin or user, user))
         elif user.opcode in CASTS:
             return [State(user, cast(how, user), context, origin)]
         elif changed := self.computed(how, user, value):
@@ -342,9 +350,8 @@ class Checker:
         if is_flag:
             self.flag(name, by, self.decides(by, at.context), out)
             return
-        type_ = "parameter" if at.how.is_none else "derived"
         for predicate in self.decides(by, at.context):
-            out.add(Compared(name, type_, relation, by, predicate))
+            out.add(Compared(name, at.how.type, relation, by, predicate))
 
     def computed(self, how: How, by: Instruction, value: Value) -> How | None:
         """The arithmetic after `by`; None where that is none with constants alone."""
@@ -367,7 +374,7 @@ class Checker:
             return how.affine(constant, 0)
         if by.opcode == "fdiv" and left is value:
             # By a division, not by the reciprocal: that is not always the same number.
-            return How(how.scale / constant, how.offset / constant, how.other)
+            return replace(how, scale=how.scale / constant, offset=how.offset / constant, bits=0)
         return how.anything()
 
     def is_same_variable(self, a: Value, b: Value) -> bool:

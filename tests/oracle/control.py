@@ -79,7 +79,10 @@ def is_phi(i: Instruction) -> bool:
 
 
 def folded(value: Value, merged: dict[Value, int | None]) -> int | None:
-    """The number that `value` is where merges are as `merged` says; None where that is open."""
+    """The number that `value` is where merges are as `merged` says; None where that is open.
+
+    A comparison is left open: that of a merged constant is one in the source too.
+    """
     if value.kind == "constant":
         if found := re.fullmatch(r"i1 (true|false)", value.text):
             return int(found[1] == "true")
@@ -89,10 +92,8 @@ def folded(value: Value, merged: dict[Value, int | None]) -> int | None:
     if value.opcode == "phi":
         return merged.get(value)
     known = [folded(o, merged) for o in value.operands]
-    if None in known or value.opcode not in ("zext", "trunc", "xor", "icmp"):
+    if None in known or value.opcode not in ("zext", "trunc", "xor"):
         return None
-    if value.opcode == "icmp":
-        return {"eq": known[0] == known[1], "ne": known[0] != known[1]}.get(value.predicate)
     return known[0] ^ known[1] if value.opcode == "xor" else known[0]
 
 

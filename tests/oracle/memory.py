@@ -45,6 +45,7 @@ class Memory:
         self.stored: dict[Location, set[Location]] = {}
         self.below: dict[Location, Value] = {}
         self.solve()
+        self.kept = {o for targets in self.stored.values() for o, _ in targets}
         self.writes: list[Write] = []
         self.copies: list[Copy] = []
         for i in program.instructions:
@@ -226,9 +227,16 @@ class Memory:
         alive = set()
         for i in by - here:
             calls = self.program.calls_that_lead_to(use.function, i.function)
-            if not calls or any(self.gets_to(c, use, kills) for c in calls):
+            handed = [c for c in calls if self.can_reach(c, local)]
+            if not calls or any(self.gets_to(c, use, kills) for c in handed):
                 alive.add(i)
         return alive | {i for i in here if self.gets_to(i, use, kills)}
+
+    def can_reach(self, call: Instruction, local: Value) -> bool:
+        """True where what `call` runs can get at `local`: it is handed, or its address is kept."""
+        return local in self.kept or any(
+            o is local for a in call.arguments for o, _ in self.of(a)
+        )
 
     def is_seen(self, write: Instruction, at: Location, size: int, use: Instruction) -> bool:
         """True where what `write` leaves in memory that functions share can be there at `use`.
@@ -247,7 +255,8 @@ class Memory:
         ends = [i for i in here.instructions if i.opcode in ("ret", "unreachable")]
         leaves = not mine or any(self.gets_to(write, e, mine | pads) for e in ends)
         begin = there.instructions[0]
-        enters = not theirs or (begin not in theirs and self.gets_to(begin, use, theirs))
+        enters = not theirs or begin is use
+        enters = enters or (begin not in theirs and self.gets_to(begin, use, theirs))
         if leaves and enters:
             return True
         if leaves:

@@ -85,10 +85,15 @@ def agree(passes: Kinds, checker: Kinds) -> bool:
     """True where two answers about one place and parameter are the same.
 
     Allowed difference MIXED (README): where a parameter comes to a place in several ways,
-    the passes may name any of them, and the nearest is as near.
+    the passes may name any of them, and the nearest is as near. LOOP: arithmetic in a loop may
+    come to anything, also to the parameter itself.
     """
-    if len(checker) > 1 and passes:
-        return passes.keys() <= checker.keys() and min(passes.values()) == min(checker.values())
+    ways = set(checker)
+    for type_, relation in checker:
+        if type_ == "repeated":
+            ways |= {("parameter", relation), ("derived", relation), ("flag", "flag")}
+    if len(ways) > 1 and passes:
+        return passes.keys() <= ways and min(passes.values()) == min(checker.values())
     return passes == checker
 
 
