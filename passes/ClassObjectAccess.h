@@ -19,6 +19,7 @@
 #define TPC_CLASSOBJECTACCESS_H
 
 #include "DebugTypes.h"
+#include "Location.h"
 #include "Reaching.h"
 #include "SimpleCallGraph.h"
 
@@ -35,147 +36,16 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <vector>
 
 namespace tpc {
 
-/// Which element of an array is meant, if any. Elements of elements count
-/// through: the first of the second row of three is number 3.
-struct Nth {
-  /// The whole array, as a pointer its beginning, or no array at all; and an
-  /// element of which is not known which.
-  static constexpr unsigned Whole = ~0U, Any = ~0U - 1;
-  /// Elements behind these are not told apart from any.
-  static constexpr unsigned Most = 64;
-
-  unsigned Number = Whole;
-  bool isNumber() const { return Number < Any; }
-  bool mayBe(Nth O) const {
-    return Number == O.Number || !isNumber() || !O.isNumber();
-  }
-  /// So many elements on.
-  Nth plus(int64_t By) const {
-    int64_t To = (isNumber() ? Number : 0) + By;
-    bool Known = Number != Any && To >= 0 && To < Most;
-    return {Known ? static_cast<unsigned>(To) : Any};
-  }
-};
-
-/// One step into a class: the number of its layout (see TypeNumbers), the
-/// field's index, which class of the source it is (see DebugTypes), 0 where
-/// that is not known, and of a field that is an array which element.
-struct Step {
-  /// Not classes: the step from a container to its elements, and one of so
-  /// many bytes (the index) into an allocation whose type is not known.
-  static constexpr unsigned Element = ~0U, Bytes = ~0U - 1;
-
-  unsigned Type;
-  unsigned Index;
-  unsigned Class = 0;
-  Nth Item = {};
-  /// True where the two can be the same step.
-  bool operator==(const Step &O) const {
-    return Type == O.Type && Index == O.Index &&
-           (Class == O.Class || !Class || !O.Class) && Item.mayBe(O.Item);
-  }
-  /// The same, and of an array as much is meant.
-  bool isSame(const Step &O) const {
-    return *this == O && Item.Number == O.Item.Number;
-  }
-  bool isField() const { return Type < Bytes; }
-};
-
-/// A variable. With a Root (a global, a local, an allocation) the path is from
-/// its beginning; without one it is a field of whatever object a pointer
-/// leads to, and the path may be the end of a longer one.
-struct Location {
-  const llvm::Value *Root = nullptr;
-  llvm::SmallVector<Step, 4> Path;
-  Nth RootItem = {}; ///< of a root that is an array
-
-  /// Of what is at the end of the path.
-  Nth &item() { return Path.empty() ? RootItem : Path.back().Item; }
-  Nth item() const { return Path.empty() ? RootItem : Path.back().Item; }
-  /// True where it is one variable, not any of an array.
-  bool isOne() const {
-    return RootItem.Number != Nth::Any &&
-           llvm::none_of(
-               Path, [](const Step &S) { return S.Item.Number == Nth::Any; });
-  }
-  /// Means any element where it meant one: at its end, or on all of the way.
-  void widen() {
-    if (item().isNumber())
-      item() = {Nth::Any};
-  }
-  void widenAll() {
-    if (RootItem.isNumber())
-      RootItem = {Nth::Any};
-    for (Step &S : Path)
-      if (S.Item.isNumber())
-        S.Item = {Nth::Any};
-  }
-
-  bool isKnown() const { return Root || !Path.empty(); }
-  bool isField() const { return !Path.empty() && Path.back().isField(); }
-  /// True for the elements of a container.
-  bool isElement() const {
-    return !Path.empty() && Path.back().Type == Step::Element;
-  }
-  bool operator==(const Location &O) const {
-    return Root == O.Root && RootItem.mayBe(O.RootItem) && Path == O.Path;
-  }
-  /// The same, and of arrays as much is meant.
-  bool isSame(const Location &O) const {
-    return Root == O.Root && RootItem.Number == O.RootItem.Number &&
-           areSame(Path, O.Path);
-  }
-  static bool areSame(llvm::ArrayRef<Step> A, llvm::ArrayRef<Step> B) {
-    return llvm::equal(
-        A, B, [](const Step &S, const Step &T) { return S.isSame(T); });
-  }
-  /// True where the two can be the same variable.
-  bool mayBe(const Location &O) const;
-};
-
-using Locations = llvm::SmallVector<Location, 1>;
-
-/// Orders locations, to tell apart what is not exactly the same.
-struct LocationOrder {
-  static std::vector<uintptr_t> key(const Location &L) {
-    std::vector<uintptr_t> Key{reinterpret_cast<uintptr_t>(L.Root),
-                               L.RootItem.Number};
-    Key.reserve(2 + 4 * L.Path.size());
-    for (const Step &S : L.Path)
-      Key.insert(Key.end(), {S.Type, S.Index, S.Class, S.Item.Number});
-    return Key;
-  }
-  bool operator()(const Location &A, const Location &B) const {
-    return key(A) < key(B);
-  }
-};
-
-/// A scalar that a load or store touches, and the bits of the register that are
-/// it: an object of several scalars can be handed around as one number.
-struct ScalarPart {
-  Location Where;
-  unsigned Low = 0, Size = 0; ///< bits; no size where there is but one scalar
-};
-
-/// A set of exactly these locations.
-class LocationSet {
-public:
-  /// True where \p L was not in it.
-  bool insert(const Location &L) {
-    return Known.insert(LocationOrder::key(L)).second;
-  }
-
-private:
-  std::set<std::vector<uintptr_t>> Known;
-};
-
 /// More places than this for one pointer say nothing any more.
 inline constexpr unsigned MaxLocations = 64;
+
+/// Classes in classes that are entered. Real ones end long before; classes that
+/// are taken for the same because they look alike may contain each other.
+inline constexpr unsigned MaxPath = 32;
 
 /// The element of an array, of whatever dimension; else \p T.
 llvm::Type *elementOf(llvm::Type *T);
