@@ -403,12 +403,14 @@ void Flow::findEntered() {
     if (!HasEdge[N])
       Roots.push_back(N);
   std::vector<bool> Reached = reachedFrom(Threaded, Roots);
-  std::vector<bool> ReachedPlain = reachedFrom(Plain, Roots);
-  for (unsigned N = 0; N < Plain.size(); ++N) {
+  for (unsigned N = 0; N < Plain.size(); ++N)
     if (!Reached[N])
       Threaded[N].clear();
-    if (!ReachedPlain[N])
-      Plain[N].clear();
+  if (NumThrown) {
+    std::vector<bool> ReachedPlain = reachedFrom(Plain, Roots);
+    for (unsigned N = 0; N < Plain.size(); ++N)
+      if (!ReachedPlain[N])
+        Plain[N].clear();
   }
   Entered.assign(Reached.begin(), Reached.begin() + Blocks.size());
 }
