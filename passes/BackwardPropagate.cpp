@@ -128,7 +128,9 @@ void Slicer::decides(Instruction *Predicate, Why Because) {
   auto [It, New] = Result.Predicates.try_emplace(Predicate);
   if (New)
     It->second = {Round, Current, addStep(Predicate, Because)};
-  enter(Predicate, Gives, Because);
+  // Which exception is there, those that may throw it decide, not what the
+  // landing pads hand over.
+  enter(Predicate, handlerAskedFor(*Predicate) ? Runs : Gives, Because);
 }
 
 void Slicer::control(const Instruction &I) {

@@ -140,8 +140,7 @@ const BasicBlock *decidedWay(const BasicBlock *From, const BasicBlock *BB) {
   return Path.empty() ? nullptr : Path.back();
 }
 
-/// Where \p T leads an exception of type \p Thrown, in case it asks for that.
-static const BasicBlock *chosenByType(const Instruction &T, ThrownType Thrown) {
+const Constant *handlerAskedFor(const Instruction &T) {
   const auto *Br = dyn_cast<BranchInst>(&T);
   const auto *Cmp = Br && Br->isConditional()
                         ? dyn_cast<ICmpInst>(Br->getCondition())
@@ -151,10 +150,16 @@ static const BasicBlock *chosenByType(const Instruction &T, ThrownType Thrown) {
   for (const Value *Side : Cmp->operands())
     if (const auto *Id = dyn_cast<IntrinsicInst>(Side);
         Id && Id->getIntrinsicID() == Intrinsic::eh_typeid_for)
-      if (std::optional<bool> Taken =
-              isTakenBy(Thrown, cast<Constant>(Id->getArgOperand(0))))
-        return Br->getSuccessor(*Taken ? 0 : 1);
+      return cast<Constant>(Id->getArgOperand(0));
   return nullptr;
+}
+
+/// Where \p T leads an exception of type \p Thrown, in case it asks for that.
+static const BasicBlock *chosenByType(const Instruction &T, ThrownType Thrown) {
+  const Constant *Handler = handlerAskedFor(T);
+  std::optional<bool> Taken =
+      Handler ? isTakenBy(Thrown, Handler) : std::nullopt;
+  return Taken ? T.getSuccessor(*Taken ? 0 : 1) : nullptr;
 }
 
 static bool beginsHandler(const BasicBlock &BB) {
@@ -403,12 +408,14 @@ void Flow::findEntered() {
     if (!HasEdge[N])
       Roots.push_back(N);
   std::vector<bool> Reached = reachedFrom(Threaded, Roots);
-  std::vector<bool> ReachedPlain = reachedFrom(Plain, Roots);
-  for (unsigned N = 0; N < Plain.size(); ++N) {
+  for (unsigned N = 0; N < Plain.size(); ++N)
     if (!Reached[N])
       Threaded[N].clear();
-    if (!ReachedPlain[N])
-      Plain[N].clear();
+  if (NumThrown) {
+    std::vector<bool> ReachedPlain = reachedFrom(Plain, Roots);
+    for (unsigned N = 0; N < Plain.size(); ++N)
+      if (!ReachedPlain[N])
+        Plain[N].clear();
   }
   Entered.assign(Reached.begin(), Reached.begin() + Blocks.size());
 }

@@ -24,6 +24,10 @@ bool isPredicate(const llvm::Instruction &I);
 /// What \p Predicate decides by.
 llvm::Value *conditionOf(const llvm::Instruction &Predicate);
 
+/// The type of the handler that \p T, a branch behind a landing pad, asks for;
+/// null where it is no such branch.
+const llvm::Constant *handlerAskedFor(const llvm::Instruction &T);
+
 /// Where \p BB is entered from \p From, where its terminator then goes for
 /// sure, because it decides by a value that is constant on this edge: clang
 /// ends the conditions of loops and variables, and scopes with something to

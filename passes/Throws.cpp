@@ -145,6 +145,8 @@ static bool addType(ThrowsResult::Types &To, ThrownType &Type) {
 
 Throws::Result Throws::run(Module &M, ModuleAnalysisManager &AM) {
   ThrowsResult R;
+  if (!M.getFunction("__cxa_throw") && !M.getFunction("__cxa_rethrow"))
+    return R;
   const auto &Calls = AM.getResult<SimpleCallGraph>(M);
   const Options Opts = Options::fromCommandLine();
   UserSources Sources(Opts);

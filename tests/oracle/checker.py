@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from tests.oracle.control import ControlDependence
 from tests.oracle.ir import Argument, Function, Instruction, Place, Value, number, parse
 from tests.oracle.memory import SILENT, Memory, Program, Write, extent
-from tests.oracle.throws import Throws, is_throw
+from tests.oracle.throws import Throws, asks_for, is_throw
 
 RELATIONS = {"eq": "==", "ne": "!=", "gt": ">", "ge": ">=", "lt": "<", "le": "<="}
 SWAPPED = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "==": "==", "!=": "!="}
@@ -178,7 +178,8 @@ class Checker:
 
     def step(self, item: Instruction, why: str) -> list[tuple[Instruction, str]]:
         """What enters the round after that of `item`."""
-        out = [(p, "throws" if p.is_call else "data") for p in self.choosers_of(item)]
+        # Which exception is there, what throws it decides, not what a landing pad hands over.
+        out = [(p, how_decides(p)) for p in self.choosers_of(item)]
         _, always = self.control[item.function].controllers(item.block, item)
         if always:
             out += [(c, "control") for c in self.program.callers(item.function)]
@@ -440,6 +441,13 @@ class Checker:
                         seen.add(item)
                         todo.append(item)
         return found
+
+
+def how_decides(predicate: Instruction) -> str:
+    """What of a predicate enters the slice."""
+    if predicate.is_call:
+        return "throws"
+    return "control" if predicate.operands and asks_for(predicate.operands[0]) else "data"
 
 
 def is_joined(user: Instruction, value: Value) -> bool:
