@@ -309,6 +309,10 @@ void Slicer::value(Instruction &I) {
              SeenLoaded.insert(L);
     if (!New)
       return definePointer(Load->getPointerOperand());
+    // What is copied is among the definitions; that it is, matters too.
+    for (const Location &L : Access.touched(*Load))
+      for (Instruction *Copy : Access.copiesTo(L))
+        enter(Copy, Runs, Why::Writes);
     for (Instruction *Write : Access.definitionsOf(*Load)) {
       // What a library sets to a constant, it sets in its constructors.
       const auto *Store = dyn_cast<StoreInst>(Write);

@@ -88,6 +88,25 @@ Locations AccessResult::throughCopies(const Location &L, bool Backward) const {
   return All;
 }
 
+SmallVector<Instruction *, 4> AccessResult::copiesTo(const Location &L) const {
+  SmallSetVector<Instruction *, 4> Found;
+  for (const Location &Here : throughCopies(L, /*Backward=*/true)) {
+    auto Add = [&](unsigned N) {
+      if (any_of(Copies[N].To, [&](const Location &Object) {
+            return partOf(Object, Here).has_value();
+          }))
+        Found.insert(Copies[N].I);
+    };
+    eachAround(Here, CopiesTo.BySlot, Add);
+    if (Here.Root || Here.Path.empty())
+      continue;
+    if (auto It = CopiesTo.ByClass.find(Here.Path[0].Type);
+        It != CopiesTo.ByClass.end())
+      for_each(It->second, Add);
+  }
+  return {Found.begin(), Found.end()};
+}
+
 bool AccessResult::reaches(const Location &From, const Location &To) const {
   return any_of(throughCopies(From, /*Backward=*/false),
                 [&](const Location &Here) { return mayBe(Here, To); });

@@ -99,6 +99,10 @@ public:
   llvm::ArrayRef<llvm::Instruction *>
   definitionsOf(const llvm::LoadInst &Load) const;
 
+  /// The copies of whole objects by which \p L, or what is copied to it, gets
+  /// its value.
+  llvm::SmallVector<llvm::Instruction *, 4> copiesTo(const Location &L) const;
+
   /// True where \p At, which reads \p L at \p Pointer, sees the same writes as
   /// all that reads it elsewhere: it is no local variable of \p At's function,
   /// and no write of it is replaced where others do not see it.

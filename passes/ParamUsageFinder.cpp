@@ -73,6 +73,9 @@ private:
     /// Where control flow has merged V with other values: the last value
     /// before that.
     Value *Origin = nullptr;
+    /// V was come to before, from another Origin: what it decides stands at
+    /// this one as well.
+    bool IsAnotherOrigin = false;
     unsigned Way = Hop::None; ///< number of the hop that led here
   };
   /// By kind of Transform: what comes to a place in several ways is followed on
@@ -95,6 +98,8 @@ private:
   };
 
   void followRead(unsigned N);
+  void decided(const State &S, Instruction &Predicate, unsigned Read);
+  void useOfMerged(const State &S, Use &U, unsigned Read);
   void useOfValue(const State &S, Use &U, unsigned Read);
   void compared(const State &S, CmpInst &Compare, unsigned Operand,
                 unsigned Read);
@@ -146,6 +151,7 @@ private:
   unsigned Here = Hop::None; ///< hop that led to the state at hand
   /// The simplest arithmetic with which a value was come to, by each call.
   DenseMap<std::pair<const Value *, const CallBase *>, Transform::KindTy> Seen;
+  DenseSet<std::pair<const Value *, const Value *>> SeenOrigins;
   SmallVector<std::unique_ptr<CallPath>, 16> Paths;
 };
 
@@ -160,14 +166,24 @@ const CallPath *Follower::into(const CallBase *Call, const CallPath *Outer) {
   return Paths.back().get();
 }
 
+/// Places of merged values that are told apart for one read.
+static constexpr unsigned MaxOrigins = 4096;
+
 /// \p Via is the instruction that brings the value to S.V; none where S.V
 /// computes it itself.
 void Follower::push(State S, Instruction *Via) {
   Transform::KindTy Kind = S.How.kind();
+  bool NewOrigin = S.Origin && !IsOutcome && SeenOrigins.size() < MaxOrigins &&
+                   SeenOrigins.insert({S.V, S.Origin}).second;
   auto [It, New] = Seen.try_emplace(placeOf(S), Kind);
-  if (!New && It->second <= Kind)
-    return;
-  It->second = Kind;
+  if (!New && It->second <= Kind) {
+    if (!NewOrigin)
+      return;
+    S.IsAnotherOrigin = true;
+  } else {
+    S.IsAnotherOrigin = false;
+    It->second = Kind;
+  }
   S.Way = Usage.Hops.size();
   Usage.Hops.push_back({S.V, Via ? Via : cast<Instruction>(S.V), Here});
   Work.push(std::move(S));
@@ -180,7 +196,8 @@ void Follower::end(ValueEnd::KindTy Kind, Instruction *At) {
 /// The state to go on from; one that was come to more simply is done with.
 std::optional<Follower::State> Follower::next() {
   while (std::optional<State> S = Work.pop())
-    if (Seen.lookup(placeOf(*S)) >= S->How.kind() && !Budget::isSpent())
+    if ((S->IsAnotherOrigin || Seen.lookup(placeOf(*S)) >= S->How.kind()) &&
+        !Budget::isSpent())
       return S;
   return std::nullopt;
 }
@@ -460,10 +477,34 @@ void Follower::compared(const State &S, CmpInst &Compare, unsigned Operand,
   Usage.Comparisons.push_back(std::move(C));
 }
 
+/// The value itself decides \p Predicate.
+void Follower::decided(const State &S, Instruction &Predicate, unsigned Read) {
+  if (S.How.kind() == Transform::None || isa<SwitchInst>(Predicate))
+    flag(S, S.Origin ? S.Origin : S.V, {&Predicate, !S.Origin, S.Way}, Read,
+         /*IsOperand=*/S.Origin != nullptr);
+}
+
+/// Of a merged value that was followed from another of its origins already
+/// only what it decides is asked.
+void Follower::useOfMerged(const State &S, Use &U, unsigned Read) {
+  auto *I = dyn_cast<Instruction>(U.getUser());
+  if (!I || S.In)
+    return;
+  if (decidesBy(*I, U))
+    decided(S, *I, Read);
+  else if (const auto *Cast = dyn_cast<CastInst>(I))
+    push({I, applyCast(S.How, *Cast), S.Path, S.Direct, S.In, S.Origin});
+  else if ((isa<PHINode>(I) && !isShortCircuit(*I, U)) || isa<SelectInst>(I) ||
+           isa<FreezeInst>(I))
+    carry(S, U);
+}
+
 void Follower::useOfValue(const State &S, Use &U, unsigned Read) {
   auto *I = dyn_cast<Instruction>(U.getUser());
   if (!I)
     return;
+  if (S.IsAnotherOrigin)
+    return useOfMerged(S, U, Read);
   if (repacked(S, U))
     return;
   if (S.In) {
@@ -473,12 +514,8 @@ void Follower::useOfValue(const State &S, Use &U, unsigned Read) {
   }
   if (auto *Compare = dyn_cast<CmpInst>(I))
     return compared(S, *Compare, U.getOperandNo(), Read);
-  if (decidesBy(*I, U)) {
-    if (S.How.kind() == Transform::None || isa<SwitchInst>(I))
-      flag(S, S.Origin ? S.Origin : S.V, {I, !S.Origin, S.Way}, Read,
-           /*IsOperand=*/S.Origin != nullptr);
-    return;
-  }
+  if (decidesBy(*I, U))
+    return decided(S, *I, Read);
   if (isLogical(*I) && S.V->getType()->isIntegerTy(1)) {
     for (Decision D : followOutcome(I, S.Path))
       flag(S, S.V, D, Read, /*IsOperand=*/!D.Direct);
@@ -554,6 +591,7 @@ void Follower::followRead(unsigned N) {
   if (!isNumber(R.Type))
     return end(ValueEnd::NoNumber, R.Call);
   Seen.clear();
+  SeenOrigins.clear();
   for (Value *V : R.Values)
     push({V, {}, nullptr, true}, V == R.Call ? nullptr : R.Call);
   if (!R.Target && R.Values.empty())

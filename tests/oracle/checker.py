@@ -194,7 +194,13 @@ class Checker:
             out += [(i, "data") for i in self.instructions_of(o)]
         if item.opcode == "load":
             definitions = self.memory.definitions(item)
-            out += [(d, "data") for d in definitions if not self.is_constructed(d)]
+            # What is copied is a definition of its own; of the copy it matters that it is done.
+            copied = {c.by for c in self.memory.copies}
+            out += [
+                (d, "control" if d in copied else "data")
+                for d in definitions
+                if not self.is_constructed(d)
+            ]
         elif known:
             out += [(r, "data") for f in known for r in self.program.returns(f)]
         elif item.is_call and self.exposes(item):
@@ -381,7 +387,11 @@ class Checker:
     def is_same_variable(self, a: Value, b: Value) -> bool:
         """True where both are loads of one variable: `x * x`."""
         loads = [v for v in (a, b) if isinstance(v, Instruction) and v.opcode == "load"]
-        return len(loads) == 2 and self.memory.definitions(a) == self.memory.definitions(b)
+        if len(loads) < 2:
+            return False
+        first, second = (self.memory.named(load.operands[0]) for load in loads)
+        same = first is not None and first == second
+        return same and self.memory.definitions(a) == self.memory.definitions(b)
 
     def carried(
         self, user: Instruction, value: Value, context: Context

@@ -100,6 +100,7 @@ class Scope:
     in_loop: bool = False
     in_try: bool = False
     depth: int = 0
+    objects: list[str] = field(default_factory=list)  # of the struct Range
 
     def inner(self, **changes: object) -> Scope:
         return replace(
@@ -107,6 +108,7 @@ class Scope:
             variables={t: list(v) for t, v in self.variables.items()},
             constants={t: list(v) for t, v in self.constants.items()},
             functions=list(self.functions),
+            objects=list(self.objects),
             **{"depth": self.depth + 1, **changes},
         )
 
@@ -117,6 +119,7 @@ class Generator:
 
     seed: int
     name: str
+    extended: bool = False
     random: random.Random = field(init=False)
     count: int = 0
     deepest: int = 2
@@ -124,6 +127,7 @@ class Generator:
     def __post_init__(self) -> None:
         self.random = random.Random(self.seed)
         self.deepest = self.random.choice([0, 0, 1, 1, 2, 4])
+        self.range_fields: list[tuple[str, str]] = []
 
     def new(self, prefix: str) -> str:
         self.count += 1
@@ -264,6 +268,8 @@ class Generator:
             (0 if deep else 1, self.cleaned),
             (2, self.leave),
         ]
+        if self.extended:
+            kinds += [(4 if s.objects else 0, self.copy), (0 if deep else 3, self.called_at_once)]
         made = self.one(*kinds)(s)
         return made or []
 
@@ -318,6 +324,33 @@ class Generator:
             return [*made, text(f'{s.handle}.getParam("{parameter}", {name});')]
         default = STARTS[type_]
         return [*made, text(f'{s.handle}.param("{parameter}", {name}, {default});')]
+
+    def copy(self, s: Scope) -> list[Statement]:
+        """A struct is copied: into a new one, or over another."""
+        source = self.random.choice(s.objects)
+        if len(s.objects) > 1 and self.chance(0.5):
+            return [text(f"{self.random.choice(s.objects)} = {source};")]
+        name = self.new("S")
+        s.objects.append(name)
+        for t, n in self.range_fields:
+            s.variables[t].append(f"{name}.{n}")
+        return [text(f"Range {name} = {source};")]
+
+    def called_at_once(self, s: Scope) -> list[Statement]:
+        """A lambda, by reference or by value, that is called where it is made."""
+        if self.chance(0.5):
+            body = self.small(s, result="void", in_loop=False)
+            return [Statement(("[&]", body, "();"))]
+        type_, name = self.random.choice(TYPES), self.new("L")
+        inner = s.inner(result=type_, in_loop=False)
+        if self.chance(0.5):
+            body = (*self.small(inner), text(f"return {self.expression(inner, type_)};"))
+            made = Statement((f"{type_} {name} = [&]() -> {type_}", body, "();"))
+        else:
+            body = (text(f"return {self.expression(inner, type_)};"),)
+            made = Statement((f"{type_} {name} = [=]() mutable -> {type_}", body, "();"))
+        s.variables[type_].append(name)
+        return [made]
 
     def log(self, s: Scope) -> list[Statement]:
         return [text(f"logged({self.expression(s, 'double')});")]
@@ -427,8 +460,8 @@ class Generator:
 
     def program(self) -> Program:
         r = self.random
-        out = []
-        range_fields = [(r.choice(TYPES), self.new("R")) for _ in range(r.randint(1, 3))]
+        out: list[Statement] = []
+        range_fields = self.range_fields = [(r.choice(TYPES), self.new("R")) for _ in range(r.randint(1, 3))]
         fields = tuple(text(f"{t} {n} = {STARTS[t]};") for t, n in range_fields)
         out += [text("struct Range : First"), Statement((fields, ";"))]
         out += [
@@ -443,12 +476,39 @@ class Generator:
             t, n = r.choice(TYPES), self.new("G")
             out.append(text(f"static {t} {n} = {STARTS[t]};"))
             s.variables[t].append(n)
+        if self.extended:
+            s.objects.append("Global.Limits")
+            out += self.template(s)
+            out += self.keeper()
         for _ in range(r.randint(0, 3)):
             made, f = self.function(s, "help", r.randint(1, 3), method=False)
             out.append(made)
             s.functions.append(f)
         out += self.node(s, range_fields)
         return Program(self.name, tuple(out))
+
+    def template(self, s: Scope) -> list[Statement]:
+        """A function template, and its instances in `s`."""
+        name, operator = self.new("than"), self.random.choice("<>")
+        for t in ("double", "int"):
+            s.functions.append(Callable_(f"{name}<{t}>", "bool", [t, t], [False, False]))
+        head = f"template <typename T> static bool {name}(T Left, T Right)"
+        return [Statement((head, (text(f"return Left {operator} Right;"),)))]
+
+    def keeper(self) -> list[Statement]:
+        """A class with setters, and a reference as a member."""
+        inside = (
+            text("public:"),
+            text("explicit Keeper(double &Watched) : Watched(Watched) {}"),
+            text("void keep(double Value) { Kept = Value; }"),
+            text("void watch(double Value) { Watched = Value; }"),
+            text("bool isAbove(double Value) const { return Value > Kept; }"),
+            text("bool isLow() const { return Watched < Kept; }"),
+            text("double kept() const { return Kept; }"),
+            text("double &Watched;"),
+            text("double Kept = 0.5;"),
+        )
+        return [text("class Keeper : First"), Statement((inside, ";"))]
 
     def node(self, s: Scope, range_fields: list[tuple[str, str]]) -> list[Statement]:
         """A class with parameters and methods, and a function that runs it."""
@@ -464,6 +524,18 @@ class Generator:
             inside.append(text("Range Mine;"))
             for t, n in range_fields:
                 own.variables[t].append(f"Mine.{n}")
+            if self.extended:
+                own.objects.append("Mine")
+        if self.extended and self.chance(0.6):
+            inside += [text("double Seen = 0.5;"), text("Keeper Own{Seen};")]
+            own.variables["double"] += ["Seen", "Own.Kept"]
+            own.functions += [
+                Callable_("Own.keep", "void", ["double"], [False]),
+                Callable_("Own.watch", "void", ["double"], [False]),
+                Callable_("Own.isAbove", "bool", ["double"], [False]),
+                Callable_("Own.isLow", "bool", [], []),
+                Callable_("Own.kept", "double", [], []),
+            ]
         reading = own.inner(handle="Handle")
         reading.depth = 0
         reads = [s for _ in range(r.randint(1, 3)) for s in self.read(reading) or []]
@@ -503,6 +575,6 @@ def text(line: str) -> Statement:
     return Statement((line,))
 
 
-def program(seed: int, name: str = "p") -> Program:
-    """The program of a seed."""
-    return Generator(seed, name).program()
+def program(seed: int, name: str = "p", extended: bool = False) -> Program:
+    """The program of a seed; `extended`: also with copies, lambdas, setters and templates."""
+    return Generator(seed, name, extended).program()

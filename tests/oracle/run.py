@@ -172,6 +172,7 @@ def main() -> int:
     parser.add_argument("--programs", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--level", default="-O2")
+    parser.add_argument("--extended", action="store_true", help="programs with more kinds of code")
     parser.add_argument("--out", type=Path, default=TOP / "build/oracle")
     parser.add_argument("--shrink-seconds", type=float, default=60)
     parser.add_argument("--most", type=int, default=10, help="disagreements to make smaller")
@@ -181,7 +182,7 @@ def main() -> int:
     seeds = range(options.seed, options.seed + options.programs)
     for begin in range(0, len(seeds), BATCH):
         batch = seeds[begin : begin + BATCH]
-        programs = [program(s, f"p{s}") for s in batch]
+        programs = [program(s, f"p{s}", options.extended) for s in batch]
         try:
             compared = compare(programs, folder, level)
         except Broken as e:
