@@ -461,7 +461,9 @@ class Generator:
     def program(self) -> Program:
         r = self.random
         out: list[Statement] = []
-        range_fields = self.range_fields = [(r.choice(TYPES), self.new("R")) for _ in range(r.randint(1, 3))]
+        range_fields = self.range_fields = [
+            (r.choice(TYPES), self.new("R")) for _ in range(r.randint(1, 3))
+        ]
         fields = tuple(text(f"{t} {n} = {STARTS[t]};") for t, n in range_fields)
         out += [text("struct Range : First"), Statement((fields, ";"))]
         out += [

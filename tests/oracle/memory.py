@@ -234,9 +234,7 @@ class Memory:
 
     def can_reach(self, call: Instruction, local: Value) -> bool:
         """True where what `call` runs can get at `local`: it is handed, or its address is kept."""
-        return local in self.kept or any(
-            o is local for a in call.arguments for o, _ in self.of(a)
-        )
+        return local in self.kept or any(o is local for a in call.arguments for o, _ in self.of(a))
 
     def is_seen(self, write: Instruction, at: Location, size: int, use: Instruction) -> bool:
         """True where what `write` leaves in memory that functions share can be there at `use`.
