@@ -184,8 +184,7 @@ static bool isExit(const BasicBlock &BB) {
   const Instruction *End = BB.getTerminator();
   if (!isa<UnreachableInst>(End))
     return End->getNumSuccessors() == 0;
-  const auto *Last =
-      dyn_cast_or_null<CallBase>(End->getPrevNonDebugInstruction());
+  const auto *Last = dyn_cast_or_null<CallBase>(End->getPrevNode());
   return !Last || !Last->doesNotThrow();
 }
 
