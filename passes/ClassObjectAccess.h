@@ -210,6 +210,7 @@ private:
                       Writes &W) const;
   bool isOneScalar(const Location &L, const llvm::StoreInst &Store) const;
   bool replaces(const llvm::Instruction &Write, const Location &L) const;
+  const llvm::Value *placeOf(const llvm::Instruction &I) const;
   std::optional<Reaching::Variable> variableAt(const llvm::Value *Pointer,
                                                const Location &L) const;
   std::optional<Reaching::Variable> writtenBy(const llvm::Instruction &Write,
@@ -265,8 +266,9 @@ private:
   /// Of all writes, numbered as they stand in PartWrites.
   PartIndex WritesByObject;
   llvm::SmallVector<Access, 0> PartWrites;
-  mutable llvm::DenseMap<const llvm::LoadInst *,
-                         llvm::SmallVector<llvm::Instruction *, 8>>
+  mutable llvm::DenseMap<
+      const llvm::LoadInst *,
+      std::unique_ptr<llvm::SmallVector<llvm::Instruction *, 8>>>
       Definitions;
   mutable llvm::DenseMap<
       const llvm::Value *,

@@ -89,11 +89,14 @@ static const BasicBlock *surelyNext(const Instruction &T,
     return nullptr;
   const Value *Condition = conditionOf(T);
   bool Negated = false;
+  SmallVector<const CastInst *, 4> Casts;
   while (const auto *I = dyn_cast<Instruction>(Condition)) {
     if (I->getOpcode() == Instruction::Xor && I->getType()->isIntegerTy(1) &&
         isa<ConstantInt>(I->getOperand(1)))
       Negated ^= cast<ConstantInt>(I->getOperand(1))->isOne();
-    else if (!isa<CastInst>(I))
+    else if (isa<ZExtInst>(I) || isa<SExtInst>(I) || isa<TruncInst>(I))
+      Casts.push_back(cast<CastInst>(I));
+    else
       break;
     Condition = I->getOperand(0);
   }
@@ -101,12 +104,18 @@ static const BasicBlock *surelyNext(const Instruction &T,
   const ConstantInt *C = Phi ? Known.lookup(Phi) : nullptr;
   if (!C)
     return nullptr;
+  APInt Value = C->getValue();
+  for (const CastInst *Cast : reverse(Casts)) {
+    unsigned Width = Cast->getType()->getIntegerBitWidth();
+    Value = isa<SExtInst>(Cast) ? Value.sext(Width) : Value.zextOrTrunc(Width);
+  }
   if (const auto *Br = dyn_cast<BranchInst>(&T))
-    return Br->getSuccessor(C->isZero() == Negated ? 0 : 1);
+    return Br->getSuccessor(Value.isZero() == Negated ? 0 : 1);
   const auto *Switch = cast<SwitchInst>(&T);
+  if (Negated)
+    return nullptr;
   for (auto Case : Switch->cases())
-    if (Case.getCaseValue()->getValue() ==
-        C->getValue().zextOrTrunc(Case.getCaseValue()->getBitWidth()))
+    if (Case.getCaseValue()->getValue() == Value)
       return Case.getCaseSuccessor();
   return Switch->getDefaultDest();
 }

@@ -5,7 +5,6 @@
 #include "ClassObjectAccess.h"
 #include "Idioms.h"
 #include "IfStatements.h"
-#include "Overwrites.h"
 #include "ParamCallFinder.h"
 #include "Print.h"
 #include "Registers.h"
@@ -57,8 +56,7 @@ public:
       : Calls(AM.getResult<SimpleCallGraph>(M)),
         Access(AM.getResult<ClassObjectAccess>(M)),
         Reads(AM.getResult<ParamCallFinder>(M)),
-        Rules(AM.getResult<RuleAnalysis>(M)), Texts(M, Access, Rules),
-        Replaced(AM.getResult<IfStatements>(M), Calls) {}
+        Rules(AM.getResult<RuleAnalysis>(M)), Texts(M, Access, Rules) {}
 
   ParameterUsage run();
 
@@ -107,8 +105,6 @@ private:
             bool IsOperand = false);
   void followText(unsigned N);
   SmallVector<Decision, 2> followOutcome(Value *Outcome, const CallPath *Path);
-  SmallVector<LoadInst *, 8> usesOf(const Instruction &Write,
-                                    const Value *Pointer);
   bool repacked(const State &S, Use &U);
   bool carry(const State &S, Use &U);
   void load(const State &S, Instruction &Write, ArrayRef<ScalarPart> Written,
@@ -138,7 +134,6 @@ private:
   const ParamCallFinder::Result &Reads;
   const RuleMatches &Rules;
   const TextUsage Texts;
-  Overwrites Replaced;
 
   // Very many values may come to one place.
   DenseMap<const StoreInst *, std::unique_ptr<Stored>> Stores;
@@ -216,9 +211,10 @@ static constexpr unsigned ManyTargets = 16;
 const Follower::Stored &Follower::stored(StoreInst &Store) {
   std::unique_ptr<Stored> &Known = Stores[&Store];
   if (!Known)
-    Known = std::make_unique<Stored>(Stored{
-        Access.resolve(Store.getPointerOperand(), true).size(),
-        usesOf(Store, Store.getPointerOperand()), Access.partsOf(Store)});
+    Known = std::make_unique<Stored>(
+        Stored{Access.resolve(Store.getPointerOperand(), true).size(),
+               Access.usesOf(Store, Store.getPointerOperand()),
+               Access.partsOf(Store)});
   return *Known;
 }
 
@@ -283,14 +279,6 @@ void Follower::load(const State &S, Instruction &Write,
       break;
     }
   }
-}
-
-/// The loads of what \p Write puts at \p Pointer.
-SmallVector<LoadInst *, 8> Follower::usesOf(const Instruction &Write,
-                                            const Value *Pointer) {
-  SmallVector<LoadInst *, 8> Loads = Access.usesOf(Write, Pointer);
-  Replaced.remove(Write, Pointer, Loads);
-  return Loads;
 }
 
 /// True for the intrinsics that give back their first operand.
@@ -597,7 +585,7 @@ void Follower::followRead(unsigned N) {
   if (!R.Target && R.Values.empty())
     push({R.Call, {}, nullptr, true});
   if (R.Target) {
-    SmallVector<LoadInst *, 8> Loads = usesOf(*R.Call, R.Target);
+    SmallVector<LoadInst *, 8> Loads = Access.usesOf(*R.Call, R.Target);
     if (Loads.empty())
       end(Access.resolve(R.Target, true).empty() ? ValueEnd::UnknownPointer
                                                  : ValueEnd::Unread,

@@ -115,11 +115,24 @@ static void allowOptimisation(Module &M) {
 static void callByOwnName(Module &M) {
   for (GlobalAlias &Alias : M.aliases())
     if (auto *F = dyn_cast<Function>(Alias.getAliasee());
-        F && !Alias.isInterposable())
+        F && !Alias.isInterposable() && !F->isInterposable())
       Alias.replaceUsesWithIf(F, [](const Use &U) {
         const auto *Call = dyn_cast<CallBase>(U.getUser());
         return Call && Call->isCallee(&U);
       });
+}
+
+/// True where a copy of \p F in place of \p F cannot be told from it: another
+/// link unit may have the one that counts, and the addresses of labels, which a
+/// table outside may hold, stay those of \p F.
+static bool mayBeCopied(const Function &F) {
+  return !F.isDeclarationForLinker() && !F.isInterposable() &&
+         none_of(F,
+                 [](const BasicBlock &BB) { return BB.hasAddressTaken(); }) &&
+         none_of(instructions(F), [](const Instruction &I) {
+           const auto *Call = dyn_cast<CallBase>(&I);
+           return Call && (Call->cannotDuplicate() || Call->isMustTailCall());
+         });
 }
 
 /// Inlines the functions whose comparisons are their callers' in \p M: a report
@@ -130,7 +143,8 @@ static void inlineTransparent(Module &M) {
   bool Found = false;
   for (Function &F : definedFunctions(M)) {
     const DISubprogram *SP = F.getSubprogram();
-    if (!SP || !Tables.isTransparent(qualifiedName(SP->getLinkageName())))
+    if (!SP || !mayBeCopied(F) ||
+        !Tables.isTransparent(qualifiedName(SP->getLinkageName())))
       continue;
     F.removeFnAttr(Attribute::OptimizeNone);
     F.removeFnAttr(Attribute::NoInline);
@@ -159,7 +173,10 @@ static void shareDebugInfo(const Module &M, ValueToValueMapTy &Map) {
 AnalysedModule::AnalysedModule(Module &M, const Options &Opts) {
   callByOwnName(M);
   inlineTransparent(M);
-  ValueToValueMapTy Map;
+  // Not on the stack: a crash below leaves this function without unwinding, and
+  // the values of M know the map.
+  auto Owner = std::make_unique<ValueToValueMapTy>();
+  ValueToValueMapTy &Map = *Owner;
   shareDebugInfo(M, Map);
   Copy = CloneModule(M, Map);
   allowOptimisation(*Copy);
@@ -188,7 +205,7 @@ bool separateCalls(Module &M, ArrayRef<std::string> Names) {
   size_t Added = 0;
   for (const std::string &Name : Names) {
     Function *F = M.getFunction(Name);
-    if (!F || F->isDeclaration())
+    if (!F || !mayBeCopied(*F))
       continue;
     SmallVector<CallBase *, 8> Calls;
     for (User *U : F->users())

@@ -193,13 +193,14 @@ const Reaching::Way &Reaching::after(const Instruction &Write,
   const auto *Store = dyn_cast<StoreInst>(&Write);
   if (!V || (Store && !Store->isSimple()))
     return Everywhere;
+  const auto Key = std::pair(std::pair(&Write, V->Where), V->Bytes);
+  if (auto It = After.find(Key); It != After.end())
+    return *It->second;
   Instructions Ends = replacing(*Write.getFunction(), *V);
   erase(Ends, &Write);
   if (Ends.empty() || Walked > MaxWalked)
     return Everywhere;
-  std::unique_ptr<Way> &Known = After[{&Write, V->Where}];
-  if (Known)
-    return *Known;
+  std::unique_ptr<Way> &Known = After[Key];
   Known = std::make_unique<Way>();
   Known->Open = false;
   SmallPtrSet<const BasicBlock *, 8> Seen;
@@ -238,13 +239,14 @@ const Instruction *Reaching::walkUp(const BasicBlock &BB,
 }
 
 const Reaching::Way &Reaching::before(const Instruction &At, Variable V) {
+  const auto Key = std::pair(std::pair(&At, V.Where), V.Bytes);
+  if (auto It = Before.find(Key); It != Before.end())
+    return *It->second;
   Instructions Ends = replacing(*At.getFunction(), V);
   bool IsLocal = isa<AllocaInst>(V.Where.first);
   if ((Ends.empty() && !IsLocal) || Walked > MaxWalked)
     return Everywhere;
-  std::unique_ptr<Way> &Known = Before[{&At, V.Where}];
-  if (Known)
-    return *Known;
+  std::unique_ptr<Way> &Known = Before[Key];
   Known = std::make_unique<Way>();
   Known->Open = false;
   // A call that throws has replaced nothing.

@@ -125,8 +125,9 @@ private:
       ByFunction;
   llvm::DenseMap<const llvm::BasicBlock *, Instructions> Runners;
   llvm::DenseMap<const llvm::Function *, std::unique_ptr<Running>> RunBy;
-  llvm::DenseMap<std::pair<const llvm::Instruction *, Place>,
-                 std::unique_ptr<Way>>
+  llvm::DenseMap<
+      std::pair<std::pair<const llvm::Instruction *, Place>, uint64_t>,
+      std::unique_ptr<Way>>
       After, Before;
   Way Everywhere; ///< where nothing is known
   unsigned Walked = 0;

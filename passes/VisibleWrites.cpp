@@ -181,11 +181,18 @@ static bool isLocalOf(const Location &L, const Instruction &At) {
   return Local && Local->getFunction() == At.getFunction();
 }
 
-/// The variable \p L at \p Pointer.
+/// The pointer of \p I, a load or store, where it leads to the one variable
+/// that
+/// \p I touches; null where that is a part of what is touched.
+const Value *AccessResult::placeOf(const Instruction &I) const {
+  return touched(I).size() == 1 ? getLoadStorePointerOperand(&I) : nullptr;
+}
+
+/// The variable \p L at \p Pointer; none where that is null.
 std::optional<Reaching::Variable>
 AccessResult::variableAt(const Value *Pointer, const Location &L) const {
   Type *T = elementOf(typeAt(L));
-  if (!T || !T->isSized())
+  if (!Pointer || !T || !T->isSized())
     return std::nullopt;
   return Flow->variableAt(Pointer,
                           Layout->getTypeStoreSize(T).getKnownMinValue());
@@ -264,13 +271,16 @@ AccessResult::writesOf(const Location &L, const Instruction &At,
 
 ArrayRef<Instruction *>
 AccessResult::definitionsOf(const LoadInst &Load) const {
+  // Whoever goes through the list may ask for others.
   if (auto It = Definitions.find(&Load); It != Definitions.end())
-    return It->second;
+    return *It->second;
   Writes All;
   for (const Location &L : touched(Load))
-    for (Instruction *Write : writesOf(L, Load, Load.getPointerOperand()))
+    for (Instruction *Write : writesOf(L, Load, placeOf(Load)))
       All.insert(Write);
-  return Definitions[&Load] = All.takeVector();
+  auto &Known = Definitions[&Load];
+  Known = std::make_unique<SmallVector<Instruction *, 8>>(All.takeVector());
+  return *Known;
 }
 
 SmallVector<LoadInst *, 8> AccessResult::usesOf(const Instruction &Write,
@@ -280,11 +290,12 @@ SmallVector<LoadInst *, 8> AccessResult::usesOf(const Instruction &Write,
        isa<StoreInst>(Write) ? touched(Write) : resolve(Pointer, true)) {
     SmallSetVector<LoadInst *, 8> Own, Copied;
     collectLoads(L, Own, Copied);
-    std::optional<Reaching::Variable> Written = variableAt(Pointer, L);
+    std::optional<Reaching::Variable> Written =
+        variableAt(isa<StoreInst>(Write) ? placeOf(Write) : Pointer, L);
     Own.remove_if([&](LoadInst *Load) {
-      const Value *Read = Load->getPointerOperand();
-      return !isa<AllocaInst>(getUnderlyingObject(Read)) &&
-             !Flow->reaches(Write, Written, *Load, variableAt(Read, L));
+      return !isa<AllocaInst>(getUnderlyingObject(Load->getPointerOperand())) &&
+             !Flow->reaches(Write, Written, *Load,
+                            variableAt(placeOf(*Load), L));
     });
     All.insert(Own.begin(), Own.end());
     All.insert(Copied.begin(), Copied.end());

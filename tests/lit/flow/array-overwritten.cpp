@@ -13,7 +13,7 @@ struct Series {
 
 double Shared[2];
 
-// CHECK: comparisons of {{.*}}: 9
+// CHECK: comparisons of {{.*}}: 10
 void local(ros::NodeHandle &Handle, ros::Publisher &Out, double V, int I) {
   std_msgs::Number Message;
   double Limits[2];
@@ -25,6 +25,8 @@ void local(ros::NodeHandle &Handle, ros::Publisher &Out, double V, int I) {
   // CHECK-DAG: parameter 'kept' {{.*}} at [[#@LINE+1]]:9
   if (V < Limits[1])
     Out.publish(Message);
+  // Not told: which elements are left to be read by an index that is not known.
+  // CHECK-DAG: parameter 'replaced' {{.*}} at [[#@LINE+2]]:9
   // CHECK-DAG: parameter 'kept' {{.*}} at [[#@LINE+1]]:9
   if (V < Limits[I])
     Out.publish(Message);
