@@ -7,11 +7,6 @@
 
 namespace tpc {
 
-namespace {
-
-constexpr unsigned None = ~0U;
-
-/// The nodes that can be reached from \p Roots, themselves included.
 std::vector<bool> reachedFrom(const FlowGraph &Graph,
                               std::vector<unsigned> Roots) {
   std::vector<bool> Seen(Graph.size());
@@ -25,6 +20,10 @@ std::vector<bool> reachedFrom(const FlowGraph &Graph,
   }
   return Seen;
 }
+
+namespace {
+
+constexpr unsigned None = ~0U;
 
 FlowGraph turnedRound(const FlowGraph &Graph) {
   FlowGraph Preds(Graph.size());

@@ -18,6 +18,11 @@ namespace tpc {
 
 using FlowGraph = std::vector<std::vector<unsigned>>;
 
+/// The nodes of \p Graph that can be reached from \p Roots, themselves
+/// included.
+std::vector<bool> reachedFrom(const FlowGraph &Graph,
+                              std::vector<unsigned> Roots);
+
 /// For each node the nodes that it is directly control dependent on,
 /// ascending. A loop that never ends is given an end after any round of it, so
 /// that its inner branches still count.

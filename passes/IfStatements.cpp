@@ -385,21 +385,6 @@ unsigned Flow::copy(ArrayRef<const BasicBlock *> Path) {
   return Node;
 }
 
-/// The nodes of \p Graph that \p Roots lead to.
-static std::vector<bool> reachedFrom(const FlowGraph &Graph,
-                                     std::vector<unsigned> Roots) {
-  std::vector<bool> Reached(Graph.size());
-  while (!Roots.empty()) {
-    unsigned N = Roots.back();
-    Roots.pop_back();
-    if (Reached[N])
-      continue;
-    Reached[N] = true;
-    Roots.insert(Roots.end(), Graph[N].begin(), Graph[N].end());
-  }
-  return Reached;
-}
-
 /// Takes the ways out of the blocks that all edges were led past: there is
 /// nothing that they decide. Blocks that no edge leads to stay, an exception
 /// does that nobody threw explicitly.

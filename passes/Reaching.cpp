@@ -154,7 +154,7 @@ bool Reaching::canRun(const Way &W, const Function &F) {
     }
     if (All.Anything)
       All.Functions.clear();
-    const_cast<Way &>(W).Closure = std::make_unique<Running>(std::move(All));
+    W.Closure = std::make_unique<Running>(std::move(All));
   }
   return W.Closure->Anything || W.Closure->Functions.contains(&F);
 }

@@ -86,7 +86,8 @@ private:
   struct Way {
     bool Open = true; ///< leads out of the function
     llvm::SmallVector<const llvm::Instruction *, 4> Runners;
-    std::unique_ptr<Running> Closure; ///< of Runners, once it was asked for
+    /// Of Runners, once it was asked for.
+    mutable std::unique_ptr<Running> Closure;
     /// Of a way back: the blocks that it leads through and the write at which
     /// it ends in each, null where it goes through.
     llvm::DenseMap<const llvm::BasicBlock *, const llvm::Instruction *> Blocks;
