@@ -8,6 +8,7 @@ from pathlib import Path
 from conftest import build_example
 
 from pytpc.build import BuildResult
+from pytpc.static_info import Comparison, PathStep
 
 
 def test_finds_the_same_without_optimisation(built: BuildResult, tmp_path: Path) -> None:
@@ -18,6 +19,21 @@ def test_finds_the_same_without_optimisation(built: BuildResult, tmp_path: Path)
         other = unoptimised[key]
         # Far from the exposing statement the compiler's own intermediate values can add a step.
         assert abs(other.distance - comparison.distance) <= (comparison.distance > 3)
-        assert replace(other, distance=comparison.distance) == comparison
+        assert without_compilers_choice(other) == without_compilers_choice(comparison)
     for unit in (*built.units, *result.units):
         assert unit.counts.not_instrumented == 0, unit.link_unit
+
+
+def without_compilers_choice(comparison: Comparison) -> Comparison:
+    """The comparison without its distance and without where its path's functions return.
+
+    Above -O0 clang gives a return of a local the place of the closing brace, where the local's
+    life ends; at -O0 it gives it the place of the return statement.
+    """
+    return replace(comparison, distance=0, path=tuple(map(without_return_place, comparison.path)))
+
+
+def without_return_place(step: PathStep) -> PathStep:
+    if step.step != "return":
+        return step
+    return replace(step, lineno=0, column=0, source_code="")
