@@ -339,6 +339,7 @@ GatheredResults GatherResults::run(Module &M, ModuleAnalysisManager &AM) {
                                       : NotReported::WithoutDebugInfo});
       continue;
     }
+    // The same comparison is reported with its other operand.
     if (Both.isOtherWay(P))
       continue;
     if (Both.isMeasured(P)) {
