@@ -4,6 +4,7 @@
 #include "Functions.h"
 #include "Names.h"
 
+#include "llvm/ADT/SmallPtrSet.h"
 #include "llvm/IR/CFG.h"
 #include "llvm/IR/InstIterator.h"
 #include "llvm/IR/IntrinsicInst.h"
@@ -142,15 +143,11 @@ bool Reaching::canRun(const Way &W, const Function &F) {
     Running All;
     for (const Instruction *I : W.Runners)
       addRunning(*I, All);
-    SmallVector<const Function *, 16> Work(All.Functions.begin(),
-                                           All.Functions.end());
-    while (!Work.empty() && !All.Anything) {
-      const Running &Inner = runBy(*Work.pop_back_val());
+    for (unsigned N = 0; N < All.Functions.size() && !All.Anything; ++N) {
+      const Running &Inner = runBy(*All.Functions[N]);
       All.Anything |= Inner.Anything || All.Functions.size() > MaxRun ||
                       ++Walked > MaxWalked;
-      for (const Function *Next : Inner.Functions)
-        if (All.Functions.insert(Next).second)
-          Work.push_back(Next);
+      All.Functions.insert(Inner.Functions.begin(), Inner.Functions.end());
     }
     if (All.Anything)
       All.Functions.clear();

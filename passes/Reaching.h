@@ -16,7 +16,7 @@
 
 #include "SimpleCallGraph.h"
 
-#include "llvm/ADT/SmallPtrSet.h"
+#include "llvm/ADT/SetVector.h"
 #include "llvm/IR/DataLayout.h"
 #include "llvm/IR/Instructions.h"
 
@@ -79,7 +79,9 @@ private:
   /// What instructions can run besides themselves.
   struct Running {
     bool Anything = false;
-    llvm::SmallPtrSet<const llvm::Function *, 4> Functions;
+    /// In the order in which they were found: how far a search comes before
+    /// it is given up must not depend on addresses.
+    llvm::SmallSetVector<const llvm::Function *, 4> Functions;
   };
   /// The way from a write to where others see it, or from a read back to where
   /// others wrote.
