@@ -35,8 +35,9 @@ static bool letsOthersRun(const Function &F) {
           !Last.ends_with("block"));
 }
 
-Reaching::Reaching(Module &M, const CallGraphResult &Calls)
-    : Layout(M.getDataLayout()), Calls(Calls),
+Reaching::Reaching(Module &M, const CallGraphResult &Calls,
+                   const ThrowsResult &Thrown)
+    : Layout(M.getDataLayout()), Calls(Calls), Thrown(Thrown),
       Unresolved(Calls.unresolved().begin(), Calls.unresolved().end()) {
   for (const Function &F : definedFunctions(M))
     for (const Instruction *I : Calls.mentions(&F))
@@ -170,8 +171,12 @@ bool Reaching::walkDown(const BasicBlock &BB, const Instruction *From,
         (!End || I->comesBefore(End)))
       End = I;
   for (const Instruction *I : runnersIn(BB))
-    if ((!From || From->comesBefore(I)) && (!End || I->comesBefore(End)))
+    if ((!From || From->comesBefore(I)) && (!End || I->comesBefore(End))) {
       Out.Runners.push_back(I);
+      // What an `invoke` throws can be overwritten on its way out.
+      const auto *Call = dyn_cast<CallInst>(I);
+      Out.Open |= Call && Thrown.leaves(*Call);
+    }
   return !End;
 }
 
@@ -201,21 +206,39 @@ const Reaching::Way &Reaching::after(const Instruction &Write,
   Known = std::make_unique<Way>();
   Known->Open = false;
   SmallPtrSet<const BasicBlock *, 8> Seen;
-  SmallVector<const BasicBlock *, 8> Work;
+  // Where something is thrown comes last: by then it is known which blocks are
+  // reached without that, and a `resume` in others lets out what \c Leaves.
+  SmallVector<const BasicBlock *, 8> Work, Pads;
+  bool Unwound = false, Leaves = false, Resumes = false;
   auto Through = [&](const BasicBlock &BB, const Instruction *From) {
     ++Walked;
     if (!walkDown(BB, From, Ends, *Known))
       return;
-    Known->Open |= isExit(BB);
-    const auto *Invoke = dyn_cast<InvokeInst>(BB.getTerminator());
+    const Instruction *End = BB.getTerminator();
+    (Unwound && isa<ResumeInst>(End) ? Resumes : Known->Open) |= isExit(BB);
+    const auto *Invoke = dyn_cast<InvokeInst>(End);
+    if (Invoke && !Thrown.thrownBy(*Invoke).empty()) {
+      Pads.push_back(Invoke->getUnwindDest());
+      Leaves |= Thrown.leaves(*Invoke);
+      if (isThrow(*Invoke))
+        return;
+    }
     for (const BasicBlock *Next : successors(&BB))
       if (!(Invoke && Next == Invoke->getUnwindDest()) &&
           Seen.insert(Next).second)
         Work.push_back(Next);
   };
   Through(*Write.getParent(), &Write);
-  while (!Work.empty())
+  while (!Work.empty() || !Pads.empty()) {
+    if (Work.empty()) {
+      Unwound = true;
+      if (const BasicBlock *Pad = Pads.pop_back_val(); Seen.insert(Pad).second)
+        Work.push_back(Pad);
+      continue;
+    }
     Through(*Work.pop_back_val(), nullptr);
+  }
+  Known->Open |= Leaves && Resumes;
   return *Known;
 }
 

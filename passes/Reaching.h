@@ -4,7 +4,9 @@
 // that functions share. Inside a function a store replaces what an earlier one
 // put into the same variable of the same object. What is there when a function
 // returns is visible to everybody, what is there at a call to what the call can
-// run. Exceptions make no way, as for control dependence.
+// run. Where a call leads to a `throw` of the user's (see Throws), what is
+// there is visible to the handler; other exceptions make no way, as for control
+// dependence.
 //
 // Threads: what is replaced before the function returns is seen by no other
 // thread, unless the function waits, locks or lets callbacks run in between,
@@ -15,6 +17,7 @@
 #define TPC_REACHING_H
 
 #include "SimpleCallGraph.h"
+#include "Throws.h"
 
 #include "llvm/ADT/SetVector.h"
 #include "llvm/IR/DataLayout.h"
@@ -37,7 +40,8 @@ public:
 
   using Instructions = llvm::SmallVector<const llvm::Instruction *, 2>;
 
-  Reaching(llvm::Module &M, const CallGraphResult &Calls);
+  Reaching(llvm::Module &M, const CallGraphResult &Calls,
+           const ThrowsResult &Thrown);
 
   /// None where \p Pointer is not the same place whenever it is computed.
   std::optional<Variable> variableAt(const llvm::Value *Pointer,
@@ -112,6 +116,7 @@ private:
 
   const llvm::DataLayout &Layout;
   const CallGraphResult &Calls;
+  const ThrowsResult &Thrown;
   llvm::DenseSet<const llvm::CallBase *> Unresolved;
   llvm::DenseMap<const llvm::CallBase *, Variable> Replacing;
   /// Functions that an instruction hands on.
