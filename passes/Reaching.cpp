@@ -36,12 +36,16 @@ static bool letsOthersRun(const Function &F) {
 }
 
 Reaching::Reaching(Module &M, const CallGraphResult &Calls,
-                   const ThrowsResult &Thrown)
+                   const ThrowsResult &Thrown, DebugTypes &Debug)
     : Layout(M.getDataLayout()), Calls(Calls), Thrown(Thrown),
-      Unresolved(Calls.unresolved().begin(), Calls.unresolved().end()) {
-  for (const Function &F : definedFunctions(M))
+      Unresolved(Calls.unresolved().begin(), Calls.unresolved().end()),
+      Handed(M, Debug) {
+  for (const Function &F : definedFunctions(M)) {
     for (const Instruction *I : Calls.mentions(&F))
       HandedOn[I].push_back(&F);
+    if (!Calls.mentions(&F).empty())
+      AllHandedOn.push_back(&F);
+  }
 }
 
 std::optional<Reaching::Variable> Reaching::variableAt(const Value *Pointer,
@@ -106,7 +110,7 @@ Reaching::Instructions Reaching::replacingFrom(const Function &F,
 // What a call can run
 //===----------------------------------------------------------------------===//
 
-void Reaching::addRunning(const Instruction &I, Running &Out) const {
+void Reaching::addRunning(const Instruction &I, Running &Out) {
   if (auto It = HandedOn.find(&I); It != HandedOn.end())
     Out.Functions.insert(It->second.begin(), It->second.end());
   const auto *Call = dyn_cast<CallBase>(&I);
@@ -117,6 +121,15 @@ void Reaching::addRunning(const Instruction &I, Running &Out) const {
   const Function *Callee = Call->getCalledFunction();
   Out.Anything |= Unresolved.contains(Call) ||
                   (Callee && Callee->isDeclaration() && letsOthersRun(*Callee));
+  for (const CalledBack::Callable *Object : Handed.handedBy(*Call)) {
+    Out.Anything |=
+        Object->Unknown || (Object->Kept && AllHandedOn.size() > MaxRun);
+    if (Out.Anything)
+      return;
+    Out.Functions.insert(Object->Virtual.begin(), Object->Virtual.end());
+    if (Object->Kept)
+      Out.Functions.insert(AllHandedOn.begin(), AllHandedOn.end());
+  }
 }
 
 ArrayRef<const Instruction *> Reaching::runnersIn(const BasicBlock &BB) {
