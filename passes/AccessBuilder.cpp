@@ -188,7 +188,8 @@ AccessResult ClassObjectAccess::run(Module &M, ModuleAnalysisManager &AM) {
   R.Debug = std::make_unique<DebugTypes>(*R.Layout);
   R.findClassesOfGlobals(M);
   const CallGraphResult &Calls = AM.getResult<SimpleCallGraph>(M);
-  R.Flow = std::make_unique<Reaching>(M, Calls);
+  R.Flow =
+      std::make_unique<Reaching>(M, Calls, AM.getResult<Throws>(M), *R.Debug);
   AccessResult::Builder B(R, Calls, AM.getResult<RuleAnalysis>(M), M);
   B.findTargets();
   B.fileAccesses();

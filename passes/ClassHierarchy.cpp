@@ -42,7 +42,7 @@ std::optional<VirtualCall> ClassHierarchy::match(const CallBase &Call) {
 unsigned ClassHierarchy::numberOf(StringRef Name) {
   auto [It, New] = Numbers.try_emplace(Name, Classes.size());
   if (New)
-    Classes.emplace_back();
+    Classes.emplace_back().Name = It->first();
   return It->second;
 }
 
@@ -122,6 +122,46 @@ void ClassHierarchy::collect(unsigned Number, bool AtBeginning, unsigned Slot,
   }
   for (const auto &[Derived, First] : C.Derived)
     collect(Derived, AtBeginning && First, Slot, Call, Out);
+}
+
+void ClassHierarchy::addFunctions(
+    StringRef Name, SmallSetVector<const Function *, 4> &Out) const {
+  auto It = Numbers.find(Name);
+  if (It == Numbers.end())
+    return;
+  SmallSetVector<unsigned, 8> Work;
+  Work.insert(It->second);
+  for (unsigned N = 0; N < Work.size(); ++N) {
+    const Class &C = Classes[Work[N]];
+    for (const auto &Functions : C.Functions)
+      for (const Function *F : Functions)
+        if (F)
+          Out.insert(F);
+    for (const auto &[Derived, First] : C.Derived)
+      Work.insert(Derived);
+  }
+}
+
+/// `4Node` of the class `N2ns4NodeIdE`; empty for names that are made in other
+/// ways.
+static StringRef ownName(StringRef Mangled) {
+  Mangled.consume_front("N");
+  StringRef Own;
+  while (true) {
+    StringRef Rest = Mangled;
+    size_t Length;
+    if (Rest.consumeInteger(10, Length) || Length > Rest.size())
+      return Own;
+    Own = Mangled.take_front(Mangled.size() - Rest.size() + Length);
+    Mangled = Rest.drop_front(Length);
+  }
+}
+
+void ClassHierarchy::addFunctionsOfNamed(
+    StringRef Mangled, SmallSetVector<const Function *, 4> &Out) const {
+  for (const Class &C : Classes)
+    if (StringRef Own = ownName(C.Name); !Own.empty() && Mangled.contains(Own))
+      addFunctions(C.Name, Out);
 }
 
 SmallVector<Function *, 4> ClassHierarchy::targets(const CallBase &Call,

@@ -12,6 +12,7 @@
 #include "DebugTypes.h"
 
 #include "llvm/ADT/MapVector.h"
+#include "llvm/ADT/SetVector.h"
 #include "llvm/ADT/SmallVector.h"
 #include "llvm/ADT/StringMap.h"
 #include "llvm/IR/InstrTypes.h"
@@ -40,10 +41,22 @@ public:
   llvm::SmallVector<llvm::Function *, 4> targets(const llvm::CallBase &Call,
                                                  const VirtualCall &How);
 
+  /// Adds the functions that stand in the tables of the class \p Name, as it is
+  /// mangled, and of what derives from it.
+  void addFunctions(llvm::StringRef Name,
+                    llvm::SmallSetVector<const llvm::Function *, 4> &Out) const;
+
+  /// The same for all classes whose own name, without scopes and arguments, is
+  /// in \p Mangled.
+  void addFunctionsOfNamed(
+      llvm::StringRef Mangled,
+      llvm::SmallSetVector<const llvm::Function *, 4> &Out) const;
+
 private:
   /// A table: the functions behind each of its address points.
   using Table = llvm::SmallVector<llvm::SmallVector<llvm::Function *, 8>, 1>;
   struct Class {
+    llvm::StringRef Name; ///< as it is mangled
     Table Functions;
     /// Classes that derive from it, and whether it stands at their beginning.
     llvm::SmallVector<std::pair<unsigned, bool>, 2> Derived;

@@ -245,6 +245,8 @@ private:
   };
   const SharedWrites &sharedWrites(const Location &L) const;
 
+  std::optional<llvm::SmallVector<llvm::Instruction *, 4>>
+  handedTo(const llvm::AllocaInst &Local) const;
   struct LocalHistory;
   const LocalHistory &historyOf(const Location &L,
                                 llvm::ArrayRef<llvm::Instruction *> W) const;

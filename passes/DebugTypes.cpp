@@ -14,8 +14,7 @@ using namespace llvm;
 
 namespace tpc {
 
-/// \p T without typedefs and qualifiers.
-static const DIType *plain(const DIType *T) {
+const DIType *DebugTypes::plain(const DIType *T) {
   while (const auto *Derived = dyn_cast_or_null<DIDerivedType>(T)) {
     switch (Derived->getTag()) {
     case dwarf::DW_TAG_typedef:
@@ -30,8 +29,7 @@ static const DIType *plain(const DIType *T) {
   return T;
 }
 
-/// What a pointer or reference of type \p T leads to; null for other types.
-static const DIType *dereferenced(const DIType *T) {
+const DIType *DebugTypes::dereferenced(const DIType *T) {
   const auto *Derived = dyn_cast_or_null<DIDerivedType>(plain(T));
   if (!Derived)
     return nullptr;
@@ -47,10 +45,11 @@ static const DIType *dereferenced(const DIType *T) {
 
 /// The element of an array, of whatever dimension; else \p T.
 static const DIType *element(const DIType *T) {
-  const auto *Array = dyn_cast_or_null<DICompositeType>(plain(T));
+  T = DebugTypes::plain(T);
+  const auto *Array = dyn_cast_or_null<DICompositeType>(T);
   return Array && Array->getTag() == dwarf::DW_TAG_array_type
-             ? plain(Array->getBaseType())
-             : plain(T);
+             ? DebugTypes::plain(Array->getBaseType())
+             : T;
 }
 
 const DIDerivedType *DebugTypes::memberAt(const DICompositeType *Class,
@@ -285,6 +284,8 @@ const DIType *DebugTypes::find(const Value *Pointer) {
       return plain(R->getVariable()->getType());
     return ofTemporary(*Local);
   }
+  if (const auto *F = dyn_cast<Function>(Pointer))
+    return F->getSubprogram() ? F->getSubprogram()->getType() : nullptr;
   if (const auto *Global = dyn_cast<GlobalVariable>(Pointer)) {
     SmallVector<DIGlobalVariableExpression *, 1> Infos;
     Global->getDebugInfo(Infos);

@@ -21,6 +21,11 @@ class DebugTypes {
 public:
   explicit DebugTypes(const llvm::DataLayout &Layout) : Layout(Layout) {}
 
+  /// \p T without typedefs and qualifiers.
+  static const llvm::DIType *plain(const llvm::DIType *T);
+  /// What a pointer or reference of type \p T leads to; null for other types.
+  static const llvm::DIType *dereferenced(const llvm::DIType *T);
+
   /// The type of what \p Pointer points to; null where that is not known.
   const llvm::DIType *pointee(const llvm::Value *Pointer);
 

@@ -4,6 +4,7 @@
 #include "Functions.h"
 #include "Names.h"
 
+#include "llvm/ADT/SmallPtrSet.h"
 #include "llvm/IR/CFG.h"
 #include "llvm/IR/InstIterator.h"
 #include "llvm/IR/IntrinsicInst.h"
@@ -34,12 +35,17 @@ static bool letsOthersRun(const Function &F) {
           !Last.ends_with("block"));
 }
 
-Reaching::Reaching(Module &M, const CallGraphResult &Calls)
-    : Layout(M.getDataLayout()), Calls(Calls),
-      Unresolved(Calls.unresolved().begin(), Calls.unresolved().end()) {
-  for (const Function &F : definedFunctions(M))
+Reaching::Reaching(Module &M, const CallGraphResult &Calls,
+                   const ThrowsResult &Thrown, DebugTypes &Debug)
+    : Layout(M.getDataLayout()), Calls(Calls), Thrown(Thrown),
+      Unresolved(Calls.unresolved().begin(), Calls.unresolved().end()),
+      Handed(M, Debug) {
+  for (const Function &F : definedFunctions(M)) {
     for (const Instruction *I : Calls.mentions(&F))
       HandedOn[I].push_back(&F);
+    if (!Calls.mentions(&F).empty())
+      AllHandedOn.push_back(&F);
+  }
 }
 
 std::optional<Reaching::Variable> Reaching::variableAt(const Value *Pointer,
@@ -104,7 +110,7 @@ Reaching::Instructions Reaching::replacingFrom(const Function &F,
 // What a call can run
 //===----------------------------------------------------------------------===//
 
-void Reaching::addRunning(const Instruction &I, Running &Out) const {
+void Reaching::addRunning(const Instruction &I, Running &Out) {
   if (auto It = HandedOn.find(&I); It != HandedOn.end())
     Out.Functions.insert(It->second.begin(), It->second.end());
   const auto *Call = dyn_cast<CallBase>(&I);
@@ -115,6 +121,15 @@ void Reaching::addRunning(const Instruction &I, Running &Out) const {
   const Function *Callee = Call->getCalledFunction();
   Out.Anything |= Unresolved.contains(Call) ||
                   (Callee && Callee->isDeclaration() && letsOthersRun(*Callee));
+  for (const CalledBack::Callable *Object : Handed.handedBy(*Call)) {
+    Out.Anything |=
+        Object->Unknown || (Object->Kept && AllHandedOn.size() > MaxRun);
+    if (Out.Anything)
+      return;
+    Out.Functions.insert(Object->Virtual.begin(), Object->Virtual.end());
+    if (Object->Kept)
+      Out.Functions.insert(AllHandedOn.begin(), AllHandedOn.end());
+  }
 }
 
 ArrayRef<const Instruction *> Reaching::runnersIn(const BasicBlock &BB) {
@@ -142,15 +157,11 @@ bool Reaching::canRun(const Way &W, const Function &F) {
     Running All;
     for (const Instruction *I : W.Runners)
       addRunning(*I, All);
-    SmallVector<const Function *, 16> Work(All.Functions.begin(),
-                                           All.Functions.end());
-    while (!Work.empty() && !All.Anything) {
-      const Running &Inner = runBy(*Work.pop_back_val());
+    for (unsigned N = 0; N < All.Functions.size() && !All.Anything; ++N) {
+      const Running &Inner = runBy(*All.Functions[N]);
       All.Anything |= Inner.Anything || All.Functions.size() > MaxRun ||
                       ++Walked > MaxWalked;
-      for (const Function *Next : Inner.Functions)
-        if (All.Functions.insert(Next).second)
-          Work.push_back(Next);
+      All.Functions.insert(Inner.Functions.begin(), Inner.Functions.end());
     }
     if (All.Anything)
       All.Functions.clear();
@@ -173,8 +184,12 @@ bool Reaching::walkDown(const BasicBlock &BB, const Instruction *From,
         (!End || I->comesBefore(End)))
       End = I;
   for (const Instruction *I : runnersIn(BB))
-    if ((!From || From->comesBefore(I)) && (!End || I->comesBefore(End)))
+    if ((!From || From->comesBefore(I)) && (!End || I->comesBefore(End))) {
       Out.Runners.push_back(I);
+      // What an `invoke` throws can be overwritten on its way out.
+      const auto *Call = dyn_cast<CallInst>(I);
+      Out.Open |= Call && Thrown.leaves(*Call);
+    }
   return !End;
 }
 
@@ -204,21 +219,39 @@ const Reaching::Way &Reaching::after(const Instruction &Write,
   Known = std::make_unique<Way>();
   Known->Open = false;
   SmallPtrSet<const BasicBlock *, 8> Seen;
-  SmallVector<const BasicBlock *, 8> Work;
+  // Where something is thrown comes last: by then it is known which blocks are
+  // reached without that, and a `resume` in others lets out what \c Leaves.
+  SmallVector<const BasicBlock *, 8> Work, Pads;
+  bool Unwound = false, Leaves = false, Resumes = false;
   auto Through = [&](const BasicBlock &BB, const Instruction *From) {
     ++Walked;
     if (!walkDown(BB, From, Ends, *Known))
       return;
-    Known->Open |= isExit(BB);
-    const auto *Invoke = dyn_cast<InvokeInst>(BB.getTerminator());
+    const Instruction *End = BB.getTerminator();
+    (Unwound && isa<ResumeInst>(End) ? Resumes : Known->Open) |= isExit(BB);
+    const auto *Invoke = dyn_cast<InvokeInst>(End);
+    if (Invoke && !Thrown.thrownBy(*Invoke).empty()) {
+      Pads.push_back(Invoke->getUnwindDest());
+      Leaves |= Thrown.leaves(*Invoke);
+      if (isThrow(*Invoke))
+        return;
+    }
     for (const BasicBlock *Next : successors(&BB))
       if (!(Invoke && Next == Invoke->getUnwindDest()) &&
           Seen.insert(Next).second)
         Work.push_back(Next);
   };
   Through(*Write.getParent(), &Write);
-  while (!Work.empty())
+  while (!Work.empty() || !Pads.empty()) {
+    if (Work.empty()) {
+      Unwound = true;
+      if (const BasicBlock *Pad = Pads.pop_back_val(); Seen.insert(Pad).second)
+        Work.push_back(Pad);
+      continue;
+    }
     Through(*Work.pop_back_val(), nullptr);
+  }
+  Known->Open |= Leaves && Resumes;
   return *Known;
 }
 

@@ -4,7 +4,9 @@
 // that functions share. Inside a function a store replaces what an earlier one
 // put into the same variable of the same object. What is there when a function
 // returns is visible to everybody, what is there at a call to what the call can
-// run. Exceptions make no way, as for control dependence.
+// run: a library's function what it is handed (see CalledBack). Where a call
+// leads to a `throw` of the user's (see Throws), what is there is visible to
+// the handler; other exceptions make no way, as for control dependence.
 //
 // Threads: what is replaced before the function returns is seen by no other
 // thread, unless the function waits, locks or lets callbacks run in between,
@@ -14,9 +16,11 @@
 #ifndef TPC_REACHING_H
 #define TPC_REACHING_H
 
+#include "CalledBack.h"
 #include "SimpleCallGraph.h"
+#include "Throws.h"
 
-#include "llvm/ADT/SmallPtrSet.h"
+#include "llvm/ADT/SetVector.h"
 #include "llvm/IR/DataLayout.h"
 #include "llvm/IR/Instructions.h"
 
@@ -37,7 +41,8 @@ public:
 
   using Instructions = llvm::SmallVector<const llvm::Instruction *, 2>;
 
-  Reaching(llvm::Module &M, const CallGraphResult &Calls);
+  Reaching(llvm::Module &M, const CallGraphResult &Calls,
+           const ThrowsResult &Thrown, DebugTypes &Debug);
 
   /// None where \p Pointer is not the same place whenever it is computed.
   std::optional<Variable> variableAt(const llvm::Value *Pointer,
@@ -79,7 +84,9 @@ private:
   /// What instructions can run besides themselves.
   struct Running {
     bool Anything = false;
-    llvm::SmallPtrSet<const llvm::Function *, 4> Functions;
+    /// In the order in which they were found: how far a search comes before
+    /// it is given up must not depend on addresses.
+    llvm::SmallSetVector<const llvm::Function *, 4> Functions;
   };
   /// The way from a write to where others see it, or from a read back to where
   /// others wrote.
@@ -98,7 +105,7 @@ private:
   static bool contains(const Way &Back, const llvm::Instruction &At,
                        const llvm::Instruction &Write);
   bool canRun(const Way &W, const llvm::Function &F);
-  void addRunning(const llvm::Instruction &I, Running &Out) const;
+  void addRunning(const llvm::Instruction &I, Running &Out);
   const Running &runBy(const llvm::Function &F);
   llvm::ArrayRef<const llvm::Instruction *>
   runnersIn(const llvm::BasicBlock &BB);
@@ -110,12 +117,15 @@ private:
 
   const llvm::DataLayout &Layout;
   const CallGraphResult &Calls;
+  const ThrowsResult &Thrown;
   llvm::DenseSet<const llvm::CallBase *> Unresolved;
   llvm::DenseMap<const llvm::CallBase *, Variable> Replacing;
-  /// Functions that an instruction hands on.
+  CalledBack Handed;
+  /// Functions that an instruction hands on, and all of them.
   llvm::DenseMap<const llvm::Instruction *,
                  llvm::SmallVector<const llvm::Function *, 1>>
       HandedOn;
+  llvm::SmallVector<const llvm::Function *, 0> AllHandedOn;
   /// Of a function: the writes that replace a variable, in order.
   struct Replacements {
     llvm::DenseMap<Place, Instructions> ByPlace;

@@ -129,6 +129,12 @@ ArrayRef<CallBase *> ThrowsResult::leaving(const Function *F) const {
                              : It->second.getArrayRef();
 }
 
+bool ThrowsResult::leaves(const CallBase &Call) const {
+  auto It = Leaving.find(Call.getFunction());
+  return It != Leaving.end() &&
+         It->second.contains(const_cast<CallBase *>(&Call));
+}
+
 /// Adds \p Type; of too many none is told apart, and it becomes null. True
 /// where it is new.
 static bool addType(ThrowsResult::Types &To, ThrownType &Type) {

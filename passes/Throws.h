@@ -39,6 +39,8 @@ public:
   llvm::ArrayRef<ThrownType> thrownBy(const llvm::Instruction &I) const;
   /// The instructions by which exceptions leave \p F.
   llvm::ArrayRef<llvm::CallBase *> leaving(const llvm::Function *F) const;
+  /// True where \p Call is one of those of its function.
+  bool leaves(const llvm::CallBase &Call) const;
 
 private:
   friend class Throws;

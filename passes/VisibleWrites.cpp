@@ -30,24 +30,46 @@ static bool isOnePlace(const Value *Pointer) {
          !cast<AllocaInst>(Pointer)->isArrayAllocation();
 }
 
-/// The calls that are handed a pointer into \p Local; none where its address is
-/// stored away as well, after which any call may be.
-static std::optional<SmallVector<Instruction *, 4>>
-handedTo(const AllocaInst &Local) {
+/// True where \p U, a use of a pointer or of its number, gives nobody the
+/// pointer: it is gone through, compared, or subtracted from another.
+static bool keepsNothing(const Use &U) {
+  const auto *I = cast<Instruction>(U.getUser());
+  if (isa<LoadInst>(I) || isa<CmpInst>(I))
+    return true;
+  if (isa<StoreInst>(I))
+    return U.getOperandNo() == StoreInst::getPointerOperandIndex();
+  if (isa<AtomicRMWInst>(I) || isa<AtomicCmpXchgInst>(I))
+    return U.getOperandNo() == 0;
+  return I->getOpcode() == Instruction::Sub &&
+         all_of(I->operands(),
+                [](const Value *V) { return isa<PtrToIntInst>(V); });
+}
+
+/// The calls that are handed a pointer into \p Local; none where its address
+/// goes elsewhere as well, after which any call may be.
+std::optional<SmallVector<Instruction *, 4>>
+AccessResult::handedTo(const AllocaInst &Local) const {
   SmallVector<Instruction *, 4> Calls;
-  SmallVector<const Value *, 8> Work{&Local};
-  while (!Work.empty()) {
-    const Value *V = Work.pop_back_val();
-    for (const Use &U : V->uses()) {
+  SmallSetVector<const Value *, 8> Names;
+  Names.insert(&Local);
+  for (unsigned N = 0; N < Names.size(); ++N)
+    for (const Use &U : Names[N]->uses()) {
       auto *I = cast<Instruction>(U.getUser());
-      if (isa<GetElementPtrInst>(I))
-        Work.push_back(I);
-      else if (isa<CallBase>(I))
+      if (isa<GetElementPtrInst>(I) || isa<CastInst>(I) || isa<PHINode>(I) ||
+          isa<SelectInst>(I) || isa<FreezeInst>(I)) {
+        Names.insert(I);
+      } else if (isa<CallBase>(I)) {
         Calls.push_back(I);
-      else if (isa<StoreInst>(I) && U.getOperandNo() == 0)
+        // The result may be what was handed over.
+        if (I->getType()->isPointerTy() &&
+            any_of(resolve(I, /*Scalar=*/false), [&](const Location &L) {
+              return L.Root == &Local && !L.isElement();
+            }))
+          Names.insert(I);
+      } else if (!keepsNothing(U)) {
         return std::nullopt;
+      }
     }
-  }
   return Calls;
 }
 
