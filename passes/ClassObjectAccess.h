@@ -141,6 +141,10 @@ public:
   llvm::ArrayRef<Access> loads() const { return Loads; }
   llvm::ArrayRef<Access> stores() const { return Stores; }
 
+  /// How often it was not looked which reads see a write, for the unit is too
+  /// large: there, all do.
+  unsigned givenUp() const { return GivenUp + Flow->givenUp(); }
+
 private:
   friend class ClassObjectAccess;
   struct Copy {
@@ -281,7 +285,8 @@ private:
       llvm::SmallVector<
           std::pair<Location, std::shared_ptr<const LocalHistory>>, 1>>
       Histories;
-  mutable unsigned Walked = 0;
+  mutable llvm::DenseMap<const llvm::Instruction *, const llvm::Value *> Places;
+  mutable unsigned Walked = 0, GivenUp = 0;
   std::unique_ptr<Reaching> Flow;
   /// Calls that replace a whole variable, and which.
   llvm::DenseMap<const llvm::Instruction *, Location> Replaced;

@@ -93,12 +93,28 @@ const Reaching::Replacements &Reaching::replacementsIn(const Function &F) {
   return *Known;
 }
 
-Reaching::Instructions Reaching::replacing(const Function &F, Variable V) {
-  Instructions Found = replacementsIn(F).ByPlace.lookup(V.Where);
-  erase_if(Found, [&](const Instruction *I) {
-    return replacedBy(*I)->Bytes < V.Bytes;
-  });
-  return Found;
+const Reaching::Ends &Reaching::endsOf(const Function &F, Variable V) {
+  auto &Known = EndsByPlace[{&F, V.Where}];
+  auto *It =
+      find_if(Known, [&](const auto &Own) { return Own.first == V.Bytes; });
+  if (It != Known.end())
+    return *It->second;
+  auto Found = std::make_unique<Ends>();
+  if (auto Own = replacementsIn(F).ByPlace.find(V.Where);
+      Own != replacementsIn(F).ByPlace.end())
+    for (const Instruction *I : Own->second)
+      if (replacedBy(*I)->Bytes >= V.Bytes) {
+        Found->All.push_back(I);
+        Found->In[I->getParent()].push_back(I);
+      }
+  Known.push_back({V.Bytes, std::move(Found)});
+  return *Known.back().second;
+}
+
+bool Reaching::isTooMuch() {
+  bool TooMuch = Walked > MaxWalked;
+  GivenUp += TooMuch;
+  return TooMuch;
 }
 
 Reaching::Instructions Reaching::replacingFrom(const Function &F,
@@ -174,15 +190,15 @@ bool Reaching::canRun(const Way &W, const Function &F) {
 // From a write down, from a read up
 //===----------------------------------------------------------------------===//
 
-/// Goes through \p BB below \p From, or from its beginning; false where the
-/// value is replaced there.
+/// Goes through \p BB below \p From, or from its beginning; false where what
+/// \p Write put there is replaced.
 bool Reaching::walkDown(const BasicBlock &BB, const Instruction *From,
-                        const Instructions &Ends, Way &Out) {
-  const Instruction *End = nullptr;
-  for (const Instruction *I : Ends)
-    if (I->getParent() == &BB && (!From || From->comesBefore(I)) &&
-        (!End || I->comesBefore(End)))
-      End = I;
+                        const Instruction &Write, const Ends &At, Way &Out) {
+  ArrayRef<const Instruction *> Own = At.of(BB);
+  const auto *First = find_if(Own, [&](const Instruction *I) {
+    return I != &Write && (!From || From->comesBefore(I));
+  });
+  const Instruction *End = First == Own.end() ? nullptr : *First;
   for (const Instruction *I : runnersIn(BB))
     if ((!From || From->comesBefore(I)) && (!End || I->comesBefore(End))) {
       Out.Runners.push_back(I);
@@ -211,9 +227,10 @@ const Reaching::Way &Reaching::after(const Instruction &Write,
   const auto Key = std::pair(std::pair(&Write, V->Where), V->Bytes);
   if (auto It = After.find(Key); It != After.end())
     return *It->second;
-  Instructions Ends = replacing(*Write.getFunction(), *V);
-  erase(Ends, &Write);
-  if (Ends.empty() || Walked > MaxWalked)
+  const Ends &All = endsOf(*Write.getFunction(), *V);
+  bool HasOthers = any_of(
+      All.All, [&](const Instruction *Other) { return Other != &Write; });
+  if (!HasOthers || isTooMuch())
     return Everywhere;
   std::unique_ptr<Way> &Known = After[Key];
   Known = std::make_unique<Way>();
@@ -225,7 +242,7 @@ const Reaching::Way &Reaching::after(const Instruction &Write,
   bool Unwound = false, Leaves = false, Resumes = false;
   auto Through = [&](const BasicBlock &BB, const Instruction *From) {
     ++Walked;
-    if (!walkDown(BB, From, Ends, *Known))
+    if (!walkDown(BB, From, Write, All, *Known))
       return;
     const Instruction *End = BB.getTerminator();
     (Unwound && isa<ResumeInst>(End) ? Resumes : Known->Open) |= isExit(BB);
@@ -258,13 +275,13 @@ const Reaching::Way &Reaching::after(const Instruction &Write,
 /// Goes up through \p BB above \p Below, or from its end; the write that
 /// replaced what was there, or null.
 const Instruction *Reaching::walkUp(const BasicBlock &BB,
-                                    const Instruction *Below,
-                                    const Instructions &Ends, Way &Out) {
-  const Instruction *End = nullptr;
-  for (const Instruction *I : Ends)
-    if (I->getParent() == &BB && (!Below || I->comesBefore(Below)) &&
-        (!End || End->comesBefore(I)))
-      End = I;
+                                    const Instruction *Below, const Ends &At,
+                                    Way &Out) {
+  ArrayRef<const Instruction *> Own = At.of(BB);
+  auto Last = find_if(reverse(Own), [&](const Instruction *I) {
+    return !Below || I->comesBefore(Below);
+  });
+  const Instruction *End = Last == Own.rend() ? nullptr : *Last;
   for (const Instruction *I : runnersIn(BB))
     if ((!Below || I->comesBefore(Below)) && (!End || End->comesBefore(I)))
       Out.Runners.push_back(I);
@@ -275,9 +292,9 @@ const Reaching::Way &Reaching::before(const Instruction &At, Variable V) {
   const auto Key = std::pair(std::pair(&At, V.Where), V.Bytes);
   if (auto It = Before.find(Key); It != Before.end())
     return *It->second;
-  Instructions Ends = replacing(*At.getFunction(), V);
+  const Ends &All = endsOf(*At.getFunction(), V);
   bool IsLocal = isa<AllocaInst>(V.Where.first);
-  if ((Ends.empty() && !IsLocal) || Walked > MaxWalked)
+  if ((All.All.empty() && !IsLocal) || isTooMuch())
     return Everywhere;
   std::unique_ptr<Way> &Known = Before[Key];
   Known = std::make_unique<Way>();
@@ -286,7 +303,7 @@ const Reaching::Way &Reaching::before(const Instruction &At, Variable V) {
   auto Thrown = [&](const BasicBlock *BB, const BasicBlock *Next) {
     const auto *Invoke = dyn_cast<InvokeInst>(BB->getTerminator());
     return Invoke && Next == Invoke->getUnwindDest() &&
-           is_contained(Ends, Invoke);
+           is_contained(All.of(*BB), Invoke);
   };
   SmallVector<std::pair<const BasicBlock *, const Instruction *>, 8> Work;
   SmallPtrSet<const BasicBlock *, 8> SeenThrown;
@@ -300,7 +317,7 @@ const Reaching::Way &Reaching::before(const Instruction &At, Variable V) {
         Work.push_back({Pred, ByThrow ? Pred->getTerminator() : nullptr});
     }
   };
-  Known->UpperEnd = walkUp(*At.getParent(), &At, Ends, *Known);
+  Known->UpperEnd = walkUp(*At.getParent(), &At, All, *Known);
   if (!Known->UpperEnd)
     Above(*At.getParent());
   while (!Work.empty()) {
@@ -308,7 +325,7 @@ const Reaching::Way &Reaching::before(const Instruction &At, Variable V) {
     if (!Below && Known->Blocks.contains(BB))
       continue;
     ++Walked;
-    const Instruction *End = walkUp(*BB, Below, Ends, *Known);
+    const Instruction *End = walkUp(*BB, Below, All, *Known);
     // Of two ways through a block the longer one counts.
     auto [It, New] = Known->Blocks.try_emplace(BB, End);
     if (!New && Below)

@@ -58,9 +58,6 @@ public:
                     uint64_t Bytes);
   /// What \p Write, a store or call, always replaces.
   std::optional<Variable> replacedBy(const llvm::Instruction &Write) const;
-  /// The writes in \p F that replace the whole of \p V.
-  Instructions replacing(const llvm::Function &F, Variable V);
-
   /// All such writes in \p F that name their variable by \p Base.
   Instructions replacingFrom(const llvm::Function &F, const llvm::Value *Base);
 
@@ -77,8 +74,10 @@ public:
   }
   /// True where \p At reads a variable that its function also replaces.
   bool isNarrowed(const llvm::Instruction &At, std::optional<Variable> Read) {
-    return Read && !replacing(*At.getFunction(), *Read).empty();
+    return Read && !endsOf(*At.getFunction(), *Read).All.empty();
   }
+  /// How often it was not looked who sees a write, for the unit is too large.
+  unsigned givenUp() const { return GivenUp; }
 
 private:
   /// What instructions can run besides themselves.
@@ -100,6 +99,20 @@ private:
     llvm::DenseMap<const llvm::BasicBlock *, const llvm::Instruction *> Blocks;
     const llvm::Instruction *UpperEnd = nullptr; ///< in the block of the read
   };
+  /// The writes in a function that replace the whole of a variable, and those
+  /// of each block, in order.
+  struct Ends {
+    Instructions All;
+    llvm::DenseMap<const llvm::BasicBlock *, Instructions> In;
+    llvm::ArrayRef<const llvm::Instruction *>
+    of(const llvm::BasicBlock &BB) const {
+      auto It = In.find(&BB);
+      return It == In.end() ? llvm::ArrayRef<const llvm::Instruction *>()
+                            : llvm::ArrayRef(It->second);
+    }
+  };
+  const Ends &endsOf(const llvm::Function &F, Variable V);
+  bool isTooMuch();
   const Way &after(const llvm::Instruction &Write, std::optional<Variable> V);
   const Way &before(const llvm::Instruction &At, Variable V);
   static bool contains(const Way &Back, const llvm::Instruction &At,
@@ -110,10 +123,10 @@ private:
   llvm::ArrayRef<const llvm::Instruction *>
   runnersIn(const llvm::BasicBlock &BB);
   bool walkDown(const llvm::BasicBlock &BB, const llvm::Instruction *From,
-                const Instructions &Ends, Way &Out);
+                const llvm::Instruction &Write, const Ends &At, Way &Out);
   const llvm::Instruction *walkUp(const llvm::BasicBlock &BB,
                                   const llvm::Instruction *Below,
-                                  const Instructions &Ends, Way &Out);
+                                  const Ends &At, Way &Out);
 
   const llvm::DataLayout &Layout;
   const CallGraphResult &Calls;
@@ -141,7 +154,11 @@ private:
       std::unique_ptr<Way>>
       After, Before;
   Way Everywhere; ///< where nothing is known
-  unsigned Walked = 0;
+  llvm::DenseMap<
+      std::pair<const llvm::Function *, Place>,
+      llvm::SmallVector<std::pair<uint64_t, std::unique_ptr<Ends>>, 1>>
+      EndsByPlace;
+  unsigned Walked = 0, GivenUp = 0;
 };
 
 } // namespace tpc

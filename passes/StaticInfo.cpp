@@ -255,6 +255,7 @@ json::Object Describer::counts(ArrayRef<SourcePlace> Comparisons) const {
       {"without_debug_info", Gathered.WithoutDebugInfo},
       {"outside_sources", Gathered.OutsideSources},
       {"lost_values", Usage.lost()},
+      {"given_up", Access.givenUp()},
       {"not_instrumented", 0}};
 }
 
@@ -316,7 +317,8 @@ UnitInfo describeFailure(const Options &Opts, StringRef Why,
        {"functions", "predicates", "predicates_in_slice", "parameter_reads",
         "exposing_statements", "comparisons", "constants", "dynamic_names",
         "indirect_calls", "without_debug_info", "outside_sources",
-        "lost_values", "not_instrumented", "not_exposed", "blind_spots"})
+        "lost_values", "given_up", "not_instrumented", "not_exposed",
+        "blind_spots"})
     Counts[Name] = 0;
   if (Known)
     Counts = *Known;

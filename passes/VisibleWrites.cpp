@@ -150,8 +150,12 @@ static constexpr unsigned MaxWalked = 20'000'000;
 void AccessResult::reachingWrites(const Instruction &At, const Location &L,
                                   Writes &W) const {
   const LocalHistory &History = historyOf(L, W.getArrayRef());
-  if (!History.Known || Walked > MaxWalked)
+  if (!History.Known)
     return;
+  if (Walked > MaxWalked) {
+    ++GivenUp;
+    return;
+  }
   SmallPtrSet<const Instruction *, 8> Reached;
   bool CallReached = false;
   SmallPtrSet<const BasicBlock *, 16> Seen, SeenThrown;
@@ -204,10 +208,12 @@ static bool isLocalOf(const Location &L, const Instruction &At) {
 }
 
 /// The pointer of \p I, a load or store, where it leads to the one variable
-/// that
-/// \p I touches; null where that is a part of what is touched.
+/// that \p I touches; null where that is a part of what is touched.
 const Value *AccessResult::placeOf(const Instruction &I) const {
-  return touched(I).size() == 1 ? getLoadStorePointerOperand(&I) : nullptr;
+  auto [It, New] = Places.try_emplace(&I, nullptr);
+  if (New && touched(I).size() == 1)
+    It->second = getLoadStorePointerOperand(&I);
+  return It->second;
 }
 
 /// The variable \p L at \p Pointer; none where that is null.

@@ -174,6 +174,7 @@ class Counts:
     not_exposed: int = 0
     blind_spots: int = 0
     constants: int = 0
+    given_up: int = 0
 
 
 @dataclass(frozen=True, slots=True)

@@ -182,7 +182,11 @@ def _spots_summary(static: StaticInfo) -> str:
     hidden = total - listed.total()
     if hidden:
         text += f"; {hidden} more are not listed"
-    return f"{text}; {many(inside, 'call')} of unknown functions with those inside libraries"
+    text += f"; {many(inside, 'call')} of unknown functions with those inside libraries"
+    too_large = [unit.link_unit for unit in static.units if unit.counts.given_up]
+    if too_large:
+        text += f"; too large to tell which reads see a write: {', '.join(map(plain, too_large))}"
+    return text
 
 
 def _console() -> Console:

@@ -85,6 +85,7 @@ def counts(**changes: int) -> dict[str, int]:
         "not_exposed": 0,
         "blind_spots": 0,
         "constants": 0,
+        "given_up": 0,
         **changes,
     }
 

@@ -218,3 +218,11 @@ def test_blind_spots_are_listed_and_counted(file: Path) -> None:
     told = json.loads(run("blind-spots", file, "--json").stdout)
     assert [found["lineno"] for found in told] == [20, 90]
     assert told[0]["link_unit"] == "detector"
+
+
+def test_blind_spots_name_the_units_that_are_too_large(tmp_path: Path) -> None:
+    path = tmp_path / "detector.json"
+    path.write_text(json.dumps(unit(counts=counts(given_up=3))), encoding="utf-8")
+    assert run("blind-spots", path).stdout.endswith(
+        "; too large to tell which reads see a write: detector\n"
+    )
