@@ -2,6 +2,7 @@
 #include "BackwardPropagate.h"
 
 #include "Budget.h"
+#include "ClassHierarchy.h"
 #include "ClassObjectAccess.h"
 #include "ExternCallFinder.h"
 #include "IfStatements.h"
@@ -80,6 +81,7 @@ private:
   void callResult(CallBase &Call);
   bool isUsersOwn(const CallBase &Call);
   void touchingCall(CallBase &Call);
+  void virtualCall(const CallBase &Call);
   void throwingCall(CallBase &Call);
   void derivedPointer(const Value *Pointer);
   void reachable(CallBase &Call);
@@ -241,6 +243,13 @@ void Slicer::touchingCall(CallBase &Call) {
     derivedPointer(&Call);
 }
 
+/// Which object a virtual function of the user's is called on decides what
+/// runs.
+void Slicer::virtualCall(const CallBase &Call) {
+  if (auto How = ClassHierarchy::match(Call); How && isUsersOwn(Call))
+    definePointer(How->Object);
+}
+
 /// Whether \p Call throws matters: what throws in the functions that it calls.
 void Slicer::throwingCall(CallBase &Call) {
   for (const Function *Callee : Calls.callees(Call))
@@ -342,6 +351,8 @@ void Slicer::process(const Item &It) {
   Here = It.Step;
   if (It.Reasons & Runs)
     control(*It.I);
+  if (const auto *Call = dyn_cast<CallBase>(It.I))
+    virtualCall(*Call);
   if (It.Reasons & Gives)
     value(*It.I);
   if (It.Reasons & Touches)

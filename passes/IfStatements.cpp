@@ -386,8 +386,9 @@ unsigned Flow::copy(ArrayRef<const BasicBlock *> Path) {
 }
 
 /// Takes the ways out of the blocks that all edges were led past: there is
-/// nothing that they decide. Blocks that no edge leads to stay, an exception
-/// does that nobody threw explicitly.
+/// nothing that they decide. In Plain they keep those that somebody goes.
+/// Blocks that no edge leads to stay, an exception does that nobody threw
+/// explicitly.
 void Flow::findEntered() {
   std::vector<bool> HasEdge(Plain.size());
   for (const std::vector<unsigned> &Succs : Plain)
@@ -412,6 +413,12 @@ void Flow::findEntered() {
         Plain[N].clear();
   }
   Entered.assign(Reached.begin(), Reached.begin() + Blocks.size());
+  DenseMap<unsigned, SmallVector<unsigned, 2>> Gone;
+  for (const Copy &C : Copies)
+    Gone[idOf(C.BB)].push_back(idOf(C.Next));
+  for (const auto &[N, Ways] : Gone)
+    if (!Entered[N])
+      erase_if(Plain[N], [&](unsigned S) { return !is_contained(Ways, S); });
 }
 
 /// What decides at the ends of the nodes in \p Depends; at some, nothing does.
@@ -432,7 +439,9 @@ IfStatementsResult::choosers(const BasicBlock *From,
   auto It = Decided.find({From, BB});
   if (It != Decided.end())
     append_range(Found, It->second);
-  if (It != Decided.end() && Bypassed.contains(From))
+  // On the other ways nobody goes: clang has one for a scope's end that is left
+  // to none of the places that it can be left to.
+  if (Bypassed.contains(From))
     return Found;
   const Instruction *T = From->getTerminator();
   if (isPredicate(*T) || Choosing.contains(T))

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 from tests.oracle.control import ControlDependence
 from tests.oracle.ir import Argument, Function, Instruction, Place, Value, number, parse
-from tests.oracle.memory import SILENT, Memory, Program, Write, extent
+from tests.oracle.memory import SILENT, Memory, Program, Write, extent, source_type
 from tests.oracle.throws import Throws, asks_for, is_throw
 
 RELATIONS = {"eq": "==", "ne": "!=", "gt": ">", "ge": ">=", "lt": "<", "le": "<="}
@@ -385,13 +385,27 @@ class Checker:
         return how.anything()
 
     def is_same_variable(self, a: Value, b: Value) -> bool:
-        """True where both are loads of one variable: `x * x`."""
-        loads = [v for v in (a, b) if isinstance(v, Instruction) and v.opcode == "load"]
-        if len(loads) < 2:
+        """True where both are loads of one variable, `x * x`, by the same pointer."""
+        if not all(isinstance(v, Instruction) and v.opcode == "load" for v in (a, b)):
             return False
-        first, second = (self.memory.named(load.operands[0]) for load in loads)
-        same = first is not None and first == second
+        same = self.is_same_pointer(a.operands[0], b.operands[0])
         return same and self.memory.definitions(a) == self.memory.definitions(b)
+
+    def is_same_pointer(self, a: Value, b: Value) -> bool:
+        """True where both are computed in the same way from the same, or name one variable."""
+        first = self.memory.named(a)
+        if a is b or (first is not None and first == self.memory.named(b)):
+            return True
+        parts = [v.operands for v in (a, b) if isinstance(v, Instruction)]
+        if len(parts) < 2 or a.opcode != b.opcode:
+            return False
+        if a.opcode == "load":
+            return self.is_same_variable(a, b)
+        if a.opcode != "getelementptr" or source_type(a) != source_type(b):
+            return False
+        steps = [[number(v) for v in p[1:]] for p in parts]
+        same = steps[0] == steps[1] and None not in steps[0]
+        return same and self.is_same_pointer(parts[0][0], parts[1][0])
 
     def carried(
         self, user: Instruction, value: Value, context: Context

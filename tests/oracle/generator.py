@@ -6,6 +6,7 @@ The generator knows nothing of what must be found: whatever compiles is a fair q
 from __future__ import annotations
 
 import random
+import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 
@@ -41,12 +42,27 @@ class Statement:
                 yield indent + "}"
 
     def smaller(self) -> Iterator[tuple[Statement, ...]]:
-        """What can stand instead: a body alone, or itself with a smaller body."""
+        """What can stand instead: a body alone, or itself with a smaller part."""
         for n, part in enumerate(self.parts):
+            instead: Iterator[str | tuple[Statement, ...]] = simpler(part) if isinstance(part, str) else smaller(part)
             if isinstance(part, tuple):
                 yield part
-                for body in smaller(part):
-                    yield (Statement((*self.parts[:n], body, *self.parts[n + 1 :])),)
+            for new in instead:
+                yield (Statement((*self.parts[:n], new, *self.parts[n + 1 :])),)
+
+
+def simpler(line: str) -> Iterator[str]:
+    """The line with a number, or one of its own parts, for a part in parentheses."""
+    for begin in (n for n, c in enumerate(line) if c == "("):
+        end, depth = begin, 0
+        for end in range(begin, len(line)):
+            depth += {"(": 1, ")": -1}.get(line[end], 0)
+            if depth == 0:
+                break
+        inside = line[begin + 1 : end]
+        for instead in dict.fromkeys(["1", *re.split(r" (?:[-+*/<>&|?:]|[<>=!&|][=&|]) ", inside)]):
+            if len(instead) < len(inside) and instead.count("(") == instead.count(")"):
+                yield line[: begin + 1] + instead + line[end:]
 
 
 def smaller(body: tuple[Statement, ...]) -> Iterator[tuple[Statement, ...]]:
