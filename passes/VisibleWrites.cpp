@@ -309,8 +309,10 @@ SmallVector<LoadInst *, 8> AccessResult::usesOf(const Instruction &Write,
     std::optional<Reaching::Variable> Written =
         variableAt(isa<StoreInst>(Write) ? placeOf(Write) : Pointer, L);
     Own.remove_if([&](LoadInst *Load) {
-      return !isa<AllocaInst>(getUnderlyingObject(Load->getPointerOperand())) &&
-             !Flow->reaches(Write, Written, *Load,
+      // Also where it is read through a reference that may be another's.
+      if (isLocalOf(L, *Load))
+        return !is_contained(definitionsOf(*Load), &Write);
+      return !Flow->reaches(Write, Written, *Load,
                             variableAt(placeOf(*Load), L));
     });
     All.insert(Own.begin(), Own.end());

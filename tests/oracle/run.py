@@ -16,7 +16,7 @@ from itertools import islice
 from pathlib import Path
 
 from tests.oracle.checker import check
-from tests.oracle.generator import PROLOGUE, Program, program
+from tests.oracle.generator import Program, program, prologue
 
 TOP = Path(__file__).resolve().parents[2]
 INPUTS = TOP / "tests/lit/Inputs"
@@ -142,7 +142,7 @@ def tool(command: list[str]) -> str:
 
 def compare(programs: list[Program], folder: Path, level: str = "-O2") -> list[Answers]:
     """The answers for each of the programs, which are compiled as one file."""
-    source, ranges = PROLOGUE, []
+    source, ranges = prologue(programs), []
     for p in programs:
         first = source.count("\n") + 1
         source += p.text()
@@ -203,7 +203,7 @@ def main() -> int:
 def report_smaller(p: Program, kept: Path, level: str, seconds: float) -> None:
     """Makes a differing program smaller and shows it with both answers."""
     kept.mkdir(exist_ok=True)
-    (kept / "program.cpp").write_text(PROLOGUE + p.text())
+    (kept / "program.cpp").write_text(prologue([p]) + p.text())
 
     def differs(candidate: Program) -> bool:
         try:
@@ -215,7 +215,7 @@ def report_smaller(p: Program, kept: Path, level: str, seconds: float) -> None:
         print("  agrees when it is alone")
         return
     small = shrink(p, differs, seconds)
-    (kept / "small.cpp").write_text(PROLOGUE + small.text())
+    (kept / "small.cpp").write_text(prologue([small]) + small.text())
     difference = compare([small], kept / "try", level)[0].difference()
     (kept / "small.txt").write_text("\n".join([*difference, ""]))
     numbered = [f"  {n:3} {line}" for n, line in enumerate(small.text().splitlines())]
