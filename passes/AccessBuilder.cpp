@@ -114,6 +114,9 @@ void AccessResult::Builder::fileCall(CallBase &Call) {
   const Rule *Row = Rules.match(Call);
   if (Row && Row->Kind == Rule::Text && Row->Relation != "copy")
     return;
+  const Function *Callee = Call.getCalledFunction();
+  if (Callee && endsLife(*Callee))
+    return;
   if (const Value *Pointer = Row ? alwaysReplaced(Call, *Row) : nullptr)
     fileReplacing(Call, Pointer);
   bool Opaque = Calls.callees(Call).empty();
@@ -183,6 +186,7 @@ AccessResult ClassObjectAccess::run(Module &M, ModuleAnalysisManager &AM) {
   AccessResult R;
   R.Layout = &M.getDataLayout();
   R.Debug = std::make_unique<DebugTypes>(*R.Layout);
+  R.findClassesOfGlobals(M);
   const CallGraphResult &Calls = AM.getResult<SimpleCallGraph>(M);
   R.Flow = std::make_unique<Reaching>(M, Calls);
   AccessResult::Builder B(R, Calls, AM.getResult<RuleAnalysis>(M), M);

@@ -6,6 +6,7 @@
 #include "ClassObjectAccess.h"
 #include "ExternCallFinder.h"
 #include "IfStatements.h"
+#include "Names.h"
 #include "Options.h"
 #include "Print.h"
 #include "SimpleCallGraph.h"
@@ -79,7 +80,8 @@ private:
   void phi(const PHINode &Phi);
   void defineArguments(const CallBase &Call);
   void callResult(CallBase &Call);
-  bool isUsersOwn(const CallBase &Call);
+  bool isSeenThrough(const CallBase &Call);
+  bool isCounting(const Instruction &I);
   void touchingCall(CallBase &Call);
   void virtualCall(const CallBase &Call);
   void throwingCall(CallBase &Call);
@@ -95,6 +97,7 @@ private:
   const RuleMatches &Rules;
   const Options Opts;
   UserSources Sources;
+  DenseMap<const DISubprogram *, bool> Counting;
 
   SliceResult Result;
   DenseMap<const Instruction *, unsigned char> Seen;
@@ -131,8 +134,21 @@ void Slicer::decides(Instruction *Predicate, Why Because) {
   if (New)
     It->second = {Round, Current, addStep(Predicate, Because)};
   // Which exception is there, those that may throw it decide, not what the
-  // landing pads hand over.
-  enter(Predicate, handlerAskedFor(*Predicate) ? Runs : Gives, Because);
+  // landing pads hand over. And that nobody else needs an object any more is
+  // what nobody means who lets go of it.
+  bool IsGiven = !handlerAskedFor(*Predicate) && !isCounting(*Predicate);
+  enter(Predicate, IsGiven ? Gives : Runs, Because);
+}
+
+bool Slicer::isCounting(const Instruction &I) {
+  const DILocation *Loc = I.getDebugLoc();
+  const DISubprogram *F = Loc ? Loc->getScope()->getSubprogram() : nullptr;
+  if (!F || Sources.has(Loc))
+    return false;
+  auto [It, New] = Counting.try_emplace(F, false);
+  if (New)
+    It->second = Rules.isCounting(qualifiedName(F->getLinkageName()));
+  return It->second;
 }
 
 void Slicer::control(const Instruction &I) {
@@ -222,12 +238,14 @@ void Slicer::callResult(CallBase &Call) {
   defineArguments(Call);
 }
 
-/// True where \p Call only enters functions of the user's sources: what those
-/// write is seen by their stores. A library's containers are more opaque.
-bool Slicer::isUsersOwn(const CallBase &Call) {
+/// True where \p Call only enters functions whose writes are seen by their
+/// stores: the user's own, and what holds one and calls it. A library's
+/// containers are more opaque.
+bool Slicer::isSeenThrough(const CallBase &Call) {
   SmallVector<Function *, 1> Callees = Calls.callees(Call);
-  return !Callees.empty() &&
-         all_of(Callees, [&](const Function *F) { return Sources.has(*F); });
+  return !Callees.empty() && all_of(Callees, [&](const Function *F) {
+    return Sources.has(*F) || Rules.isKept(*F);
+  });
 }
 
 /// \p Call is handed an object that matters: it may put its other arguments
@@ -237,7 +255,7 @@ void Slicer::touchingCall(CallBase &Call) {
   // publisher that does it is not among it.
   if (Seen.lookup(&Call) & Exposes)
     return;
-  if (!isUsersOwn(Call))
+  if (!isSeenThrough(Call))
     defineArguments(Call);
   if (Call.getType()->isPointerTy())
     derivedPointer(&Call);
@@ -273,7 +291,10 @@ void Slicer::derivedPointer(const Value *Pointer) {
       enter(I, Gives, Why::Writes);
     else if (isa<MemTransferInst>(I))
       enter(I, Gives, Why::Writes);
-    else if (isa<CallBase>(I) && !isa<IntrinsicInst>(I) && !Settled.contains(I))
+    else if (auto *Call = dyn_cast<CallBase>(I);
+             Call && !isa<IntrinsicInst>(I) && !Settled.contains(I) &&
+             !(Call->getCalledFunction() &&
+               endsLife(*Call->getCalledFunction())))
       enter(I, Touches, Why::Writes);
   }
 }

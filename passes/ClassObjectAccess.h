@@ -170,6 +170,7 @@ private:
     llvm::DenseMap<unsigned, llvm::SmallVector<unsigned, 4>> ByClass;
   };
 
+  void findClassesOfGlobals(const llvm::Module &M);
   void addPointees(const llvm::Value *Pointer, Locations &Out) const;
   void addTo(Locations &Out, Location L) const;
   void extend(Location &L, llvm::ArrayRef<Step> Steps) const;
@@ -252,6 +253,9 @@ private:
   std::unique_ptr<DebugTypes> Debug;
   /// The locals that code elsewhere can reach without naming them.
   llvm::DenseSet<const llvm::Value *> Escaped;
+  /// Of globals whose type is another for the sake of their initial value.
+  llvm::DenseMap<const llvm::GlobalVariable *, llvm::StructType *>
+      ClassOfGlobal;
   mutable TypeNumbers Numbers;
   /// What the pointers that are not computed on the spot can lead to:
   /// arguments, results, merges, and pointers that were in memory.

@@ -107,6 +107,38 @@ const DICompositeType *DebugTypes::asStruct(const DIType *T,
   return Fits;
 }
 
+/// `ns::Outer::Class` for \p Class, without template arguments, as clang names
+/// its type.
+static std::string qualifiedName(const DICompositeType &Class) {
+  std::string Name = Class.getName().split('<').first.str();
+  for (const DIScope *S = Class.getScope(); S; S = S->getScope()) {
+    if (!isa<DINamespace, DICompositeType>(S))
+      break;
+    StringRef Own = S->getName().split('<').first;
+    Name = (Own.empty() ? "(anonymous namespace)" : Own).str() + "::" + Name;
+  }
+  return Name;
+}
+
+StructType *DebugTypes::classOf(const GlobalVariable &Global,
+                                ArrayRef<StructType *> All) {
+  uint64_t Size = Layout.getTypeAllocSize(Global.getValueType());
+  // Of a class that nobody looks into, there is only its base class.
+  const auto *Class = dyn_cast_or_null<DICompositeType>(pointee(&Global));
+  while (Class && Class->getSizeInBits() == Size * 8) {
+    std::string Name = qualifiedName(*Class);
+    for (StructType *T : All)
+      if (T->isSized() && Layout.getTypeAllocSize(T) == Size &&
+          plainClassName(*T) == Name)
+        return T;
+    const DIDerivedType *First = memberAt(Class, 0);
+    Class = First
+                ? dyn_cast_or_null<DICompositeType>(plain(First->getBaseType()))
+                : nullptr;
+  }
+  return nullptr;
+}
+
 const DIType *DebugTypes::field(const DICompositeType *Class,
                                 StructType *Struct, unsigned Index) const {
   // A class without its padding can stand for the same with it.

@@ -29,6 +29,11 @@ public:
   const llvm::DICompositeType *asStruct(const llvm::DIType *T,
                                         llvm::StructType *Struct) const;
 
+  /// The class of \p All, types of a module, that \p Global is an object of;
+  /// null where none is.
+  llvm::StructType *classOf(const llvm::GlobalVariable &Global,
+                            llvm::ArrayRef<llvm::StructType *> All);
+
   /// The type of field \p Index of \p Class, laid out as \p Struct.
   const llvm::DIType *field(const llvm::DICompositeType *Class,
                             llvm::StructType *Struct, unsigned Index) const;

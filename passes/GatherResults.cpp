@@ -2,6 +2,7 @@
 #include "GatherResults.h"
 
 #include "Budget.h"
+#include "Conditions.h"
 #include "ConstantFinder.h"
 #include "IfStatements.h"
 #include "Names.h"
@@ -11,12 +12,10 @@
 #include "Sides.h"
 #include "SimpleCallGraph.h"
 
-#include "llvm/ADT/EquivalenceClasses.h"
 #include "llvm/ADT/SetVector.h"
 #include "llvm/ADT/SmallPtrSet.h"
 #include "llvm/ADT/StringExtras.h"
 #include "llvm/Analysis/ValueTracking.h"
-#include "llvm/IR/CFG.h"
 #include "llvm/IR/Instructions.h"
 #include "llvm/IR/Module.h"
 #include "llvm/Support/SHA1.h"
@@ -95,108 +94,24 @@ static bool nearest(const ParameterComparison &C, const SliceResult &Slice,
   return Found;
 }
 
-/// The next conditional branch on the way from \p BB that runs nothing
-/// conditional in between.
-static const BranchInst *nextBranch(const BasicBlock *BB) {
-  for (unsigned Steps = 0; Steps < 16; ++Steps) {
-    const Instruction *T = BB->getTerminator();
-    if (const auto *Invoke = dyn_cast<InvokeInst>(T)) {
-      BB = Invoke->getNormalDest();
-      continue;
-    }
-    const auto *Br = dyn_cast<BranchInst>(T);
-    if (!Br || Br->isConditional())
-      return Br;
-    BB = Br->getSuccessor(0);
-  }
-  return nullptr;
-}
-
-/// True where \p B begins a statement in the block in which \p A is part of
-/// another one, as `bool In = A && ...; if (In)`. Clang 19 gives both the scope
-/// of the block; later ones give a statement's condition the scope of its own.
-static bool nextStatement(const DILocation &A, const DILocation &B) {
-  const auto *Own = dyn_cast<DILexicalBlock>(B.getScope());
-  const auto *Around = dyn_cast<DILexicalBlock>(A.getScope());
-  return Own && Own->getScope() == A.getScope() &&
-         Own->getLine() == B.getLine() && Own->getColumn() == B.getColumn() &&
-         !(Around && Around->getLine() == A.getLine());
-}
-
-/// True where \p A and \p B can belong to one condition, A before B. Clang
-/// gives a statement's condition a scope of its own, in which all operands
-/// stand but (in clang 19) the last; that one has the statement's place.
-static bool sameStatement(const BranchInst &A, const BranchInst &B) {
-  const DILocation *LocA = A.getDebugLoc(), *LocB = B.getDebugLoc();
-  if (!LocA || !LocB)
-    return false;
-  if (nextStatement(*LocA, *LocB))
-    return true;
-  const auto *Scope = dyn_cast<DILexicalBlock>(LocA->getScope());
-  return LocA->getScope() == LocB->getScope() ||
-         (Scope && Scope->getScope() == LocB->getScope() &&
-          Scope->getLine() == LocB->getLine() &&
-          Scope->getColumn() == LocB->getColumn());
-}
-
-/// The ways out of \p Br, past blocks that only end a condition.
-static SmallVector<const BasicBlock *, 2> waysOut(const BranchInst &Br) {
-  SmallVector<const BasicBlock *, 2> Ways;
-  for (const BasicBlock *S : successors(&Br)) {
-    const BasicBlock *On = decidedWay(Br.getParent(), S);
-    Ways.push_back(On ? On : S);
-  }
-  return Ways;
-}
-
-/// The branches that are operands of one `&&` or `||` with \p First and come
-/// after it: of its statement, and with a way out that is also its own.
-static SmallVector<const BranchInst *, 4>
-sameCondition(const BranchInst &First) {
-  SmallVector<const BranchInst *, 4> Found;
-  SmallSetVector<const BranchInst *, 8> Chain;
-  Chain.insert(&First);
-  for (unsigned N = 0; N < Chain.size() && N < 16; ++N)
-    for (const BasicBlock *S : successors(Chain[N])) {
-      const BranchInst *Next = nextBranch(S);
-      if (Next && sameStatement(First, *Next))
-        Chain.insert(Next);
-    }
-  SmallVector<const BasicBlock *, 2> Own = waysOut(First);
-  for (const BranchInst *Br : drop_begin(Chain))
-    if (any_of(waysOut(*Br),
-               [&](const BasicBlock *W) { return is_contained(Own, W); }))
-      Found.push_back(Br);
-  return Found;
-}
-
 /// Counts for each comparison the others of its condition that compare a
 /// parameter.
 static void countOthers(GatheredResults &R) {
-  EquivalenceClasses<const Instruction *> Conditions;
-  SmallSetVector<const BranchInst *, 8> Work;
+  SmallVector<const Instruction *, 0> Predicates;
   for (const auto *List : {&R.Comparisons, &R.Constants})
-    for (const Comparison &C : *List) {
-      Conditions.insert(C.Predicate);
-      if (const auto *Br = dyn_cast<BranchInst>(C.Predicate))
-        Work.insert(Br);
-    }
-  for (unsigned N = 0; N < Work.size(); ++N)
-    for (const BranchInst *Br : sameCondition(*Work[N])) {
-      Conditions.unionSets(Work[N], Br);
-      Work.insert(Br);
-    }
+    for (const Comparison &C : *List)
+      Predicates.push_back(C.Predicate);
+  const Conditions All(Predicates);
   // A condition's comparisons are few, a unit's are many.
   DenseMap<const Instruction *, SmallVector<const Comparison *, 2>> ByCondition;
   for (const Comparison &C : R.Comparisons)
-    ByCondition[Conditions.getLeaderValue(C.Predicate)].push_back(&C);
+    ByCondition[All.of(*C.Predicate)].push_back(&C);
   for (auto *List : {&R.Comparisons, &R.Constants})
     for (Comparison &C : *List)
-      C.OtherThresholds =
-          count_if(ByCondition.lookup(Conditions.getLeaderValue(C.Predicate)),
-                   [&](const Comparison *O) {
-                     return O != &C && (O->Compare != C.Compare || !C.Compare);
-                   });
+      C.OtherThresholds = count_if(
+          ByCondition.lookup(All.of(*C.Predicate)), [&](const Comparison *O) {
+            return O != &C && (O->Compare != C.Compare || !C.Compare);
+          });
 }
 
 /// A UUID of version 5 (RFC 4122) of \p Name, in a namespace of our own.
@@ -293,84 +208,134 @@ static bool asksLibrary(const CmpInst &Compare, const RuleMatches &Rules) {
   });
 }
 
-GatheredResults GatherResults::run(Module &M, ModuleAnalysisManager &AM) {
-  const ParameterUsage &Usage = AM.getResult<ParamUsageFinder>(M);
-  const ParamCallFinder::Result &Reads = AM.getResult<ParamCallFinder>(M);
-  const SliceResult &Slice = AM.getResult<BackwardPropagate>(M);
-  const Options Opts = Options::fromCommandLine();
-  const RuleMatches &Rules = AM.getResult<RuleAnalysis>(M);
-  Places Own(Opts, Rules);
-  Sides Both(Usage, Reads, AM.getResult<SimpleCallGraph>(M),
+/// \p P without what is found out about its surroundings.
+static Comparison comparisonOf(const ParameterComparison &P) {
+  Comparison C{};
+  C.Compare = P.Compare;
+  C.Threshold = P.Operand;
+  C.FlagValue = P.Flag;
+  C.TextRelation = P.TextRelation;
+  C.IsOperand = P.IsOperand;
+  if (!P.How.isNarrowing())
+    C.How = P.How;
+  C.Type = C.How.kind() != Transform::None    ? Comparison::Derived
+           : P.Flag && P.TextRelation.empty() ? Comparison::Flag
+                                              : Comparison::Parameter;
+  C.Reads.push_back(P.Read);
+  return C;
+}
+
+namespace {
+
+/// Collects what is reported of the comparisons with parameters.
+class Gatherer {
+public:
+  Gatherer(Module &M, ModuleAnalysisManager &AM, Places &Own)
+      : Usage(AM.getResult<ParamUsageFinder>(M)),
+        Reads(AM.getResult<ParamCallFinder>(M)),
+        Slice(AM.getResult<BackwardPropagate>(M)), Own(Own),
+        Both(Usage, Reads, AM.getResult<SimpleCallGraph>(M),
              AM.getResult<ClassObjectAccess>(M),
              [&](const ParameterComparison &P) {
                Comparison Ignored{};
                return nearest(P, Slice, Ignored);
-             });
+             }) {}
+
+  GatheredResults run() {
+    for (const ParameterComparison &P : Usage.Comparisons) {
+      if (Budget::isSpent())
+        break;
+      if (std::optional<NotReported::WhyTy> Why = gather(P))
+        R.Others.push_back({&P, *Why});
+    }
+    return std::move(R);
+  }
+  /// Of run(): what is compared with a parameter.
+  bool isWithParameter(const CmpInst &Compare) const {
+    return WithParameter.contains(&Compare);
+  }
+
+private:
+  std::optional<NotReported::WhyTy> gather(const ParameterComparison &P);
+  void add(Comparison C);
+
+  const ParameterUsage &Usage;
+  const ParamCallFinder::Result &Reads;
+  const SliceResult &Slice;
+  Places &Own;
+  Sides Both;
   GatheredResults R;
   SmallPtrSet<const CmpInst *, 16> WithParameter;
-  DenseMap<const Value *, SmallVector<unsigned, 1>> Known; ///< by what compares
-  for (const ParameterComparison &P : Usage.Comparisons) {
-    if (Budget::isSpent())
-      break;
-    Comparison C{};
-    if (!nearest(P, Slice, C)) {
-      R.Others.push_back({&P, NotReported::NotExposed});
-      continue;
-    }
-    C.Compare = P.Compare;
-    C.Threshold = P.Operand;
-    C.FlagValue = P.Flag;
-    C.TextRelation = P.TextRelation;
-    C.IsOperand = P.IsOperand;
-    if (!P.How.isNarrowing())
-      C.How = P.How;
-    C.Type = C.How.kind() != Transform::None    ? Comparison::Derived
-             : P.Flag && P.TextRelation.empty() ? Comparison::Flag
-                                                : Comparison::Parameter;
-    C.Reads.push_back(P.Read);
-    WithParameter.insert(P.Compare);
-    if (P.Flag)
-      WithParameter.insert(dyn_cast<CmpInst>(P.Flag));
-    C.Where = Own.of(C.place());
-    if (!C.Where) {
-      bool Outside = C.place().getDebugLoc();
-      ++(Outside ? R.OutsideSources : R.WithoutDebugInfo);
-      R.Others.push_back({&P, Outside ? NotReported::OutsideSources
-                                      : NotReported::WithoutDebugInfo});
-      continue;
-    }
-    if (Both.isOtherWay(P))
-      continue;
-    if (Both.isMeasured(P)) {
-      R.Others.push_back({&P, NotReported::Measured});
-      continue;
-    }
-    if (P.ByArgument)
-      R.Shared.insert(const_cast<Function *>(C.place().getFunction()));
-    // A second read of the same parameter is the same comparison.
-    SmallVector<unsigned, 1> &Alike = Known[P.Compare ? P.Compare : P.Flag];
-    auto *Same = find_if(Alike, [&](unsigned N) {
-      const Comparison &O = R.Comparisons[N];
-      return O.Compare == C.Compare && O.Predicate == C.Predicate &&
-             O.FlagValue == C.FlagValue && O.Threshold == C.Threshold &&
-             Reads[O.Reads.front()].Name == Reads[P.Read].Name;
-    });
-    if (Same == Alike.end()) {
-      Alike.push_back(R.Comparisons.size());
-      R.Comparisons.push_back(std::move(C));
-    } else if (auto &All = R.Comparisons[*Same].Reads;
-               !is_contained(All, P.Read)) {
-      All.push_back(P.Read);
-    }
+  /// Numbers of comparisons, by what compares.
+  DenseMap<const Value *, SmallVector<unsigned, 1>> Known;
+};
+
+} // namespace
+
+/// Why \p P is not reported; none where it is.
+std::optional<NotReported::WhyTy>
+Gatherer::gather(const ParameterComparison &P) {
+  Comparison C = comparisonOf(P);
+  if (!nearest(P, Slice, C))
+    return NotReported::NotExposed;
+  WithParameter.insert(P.Compare);
+  if (P.Flag)
+    WithParameter.insert(dyn_cast<CmpInst>(P.Flag));
+  C.Where = Own.of(C.place());
+  if (!C.Where && C.place().getDebugLoc()) {
+    ++R.OutsideSources;
+    return NotReported::OutsideSources;
   }
+  if (!C.Where) {
+    ++R.WithoutDebugInfo;
+    return NotReported::WithoutDebugInfo;
+  }
+  // The same comparison is reported with its other operand.
+  if (Both.isOtherWay(P))
+    return std::nullopt;
+  if (Both.isMeasured(P))
+    return NotReported::Measured;
+  if (P.ByArgument)
+    R.Shared.insert(const_cast<Function *>(C.place().getFunction()));
+  add(std::move(C));
+  return std::nullopt;
+}
+
+/// Adds \p C, of one read. A second read of the same parameter is the same
+/// comparison.
+void Gatherer::add(Comparison C) {
+  unsigned Read = C.Reads.front();
+  SmallVector<unsigned, 1> &Alike = Known[C.Compare ? C.Compare : C.FlagValue];
+  auto *Same = find_if(Alike, [&](unsigned N) {
+    const Comparison &O = R.Comparisons[N];
+    return O.Compare == C.Compare && O.Predicate == C.Predicate &&
+           O.FlagValue == C.FlagValue && O.Threshold == C.Threshold &&
+           Reads[O.Reads.front()].Name == Reads[Read].Name;
+  });
+  if (Same == Alike.end()) {
+    Alike.push_back(R.Comparisons.size());
+    R.Comparisons.push_back(std::move(C));
+  } else if (auto &All = R.Comparisons[*Same].Reads; !is_contained(All, Read)) {
+    All.push_back(Read);
+  }
+}
+
+GatheredResults GatherResults::run(Module &M, ModuleAnalysisManager &AM) {
+  const ParamCallFinder::Result &Reads = AM.getResult<ParamCallFinder>(M);
+  const Options Opts = Options::fromCommandLine();
+  const RuleMatches &Rules = AM.getResult<RuleAnalysis>(M);
+  Places Own(Opts, Rules);
+  Gatherer WithParameters(M, AM, Own);
+  GatheredResults R = WithParameters.run();
+  auto PlaceOf = [&](const CmpInst &Compare) {
+    return WithParameters.isWithParameter(Compare) ||
+                   asksLibrary(Compare, Rules)
+               ? nullptr
+               : Own.of(Compare);
+  };
   R.Constants = ConstantFinder(AM.getResult<SimpleCallGraph>(M),
-                               AM.getResult<ClassObjectAccess>(M), Slice,
-                               [&](const CmpInst &Compare) {
-                                 return WithParameter.contains(&Compare) ||
-                                                asksLibrary(Compare, Rules)
-                                            ? nullptr
-                                            : Own.of(Compare);
-                               })
+                               AM.getResult<ClassObjectAccess>(M),
+                               AM.getResult<BackwardPropagate>(M), PlaceOf)
                     .run(AM.getResult<IfStatements>(M).predicates());
   countOthers(R);
   Namer Keys(Opts);

@@ -65,11 +65,18 @@ static std::vector<std::string> sharedFunctions(Module &Seen,
   return Shared;
 }
 
-/// Writes down what the analysis of \p Analysed came to.
-static void conclude(AnalysedModule &Analysed, ModuleAnalysisManager &AM,
-                     const Options &Opts, Findings &Out) {
+/// Plans the reports on what the analysis of \p Analysed found. Up to here the
+/// unit is as it was.
+static void plan(AnalysedModule &Analysed, ModuleAnalysisManager &AM,
+                 const Options &Opts, Findings &Out) {
   Module &Seen = Analysed.module();
   const GatheredResults &R = AM.getResult<GatherResults>(Seen);
+  if (R.Comparisons.empty() && !(Opts.Constants && !R.Constants.empty()))
+    return;
+  if (!Analysed.bringBack()) {
+    Out.Failure = "the analysed copy is another program";
+    return;
+  }
   const ParamCallFinder::Result &Reads = AM.getResult<ParamCallFinder>(Seen);
   auto Plan = [&](const Comparison &C, bool IsUnsigned) {
     if (std::optional<Report> Plan = planReport(C, IsUnsigned, Analysed))
@@ -84,7 +91,6 @@ static void conclude(AnalysedModule &Analysed, ModuleAnalysisManager &AM,
   if (Opts.Constants)
     for (const Comparison &C : R.Constants)
       Plan(C, /*IsUnsigned=*/false);
-  Out.Unit = describe(Seen, AM, Opts);
 }
 
 static std::vector<std::string> namedHelpers(Module &M) {
@@ -96,30 +102,33 @@ static std::vector<std::string> namedHelpers(Module &M) {
 static constexpr unsigned MaxSeparated = 3;
 
 /// Runs the analysis so that a crash in it, and time or memory without end, is
-/// only a failure of it.
+/// only a failure of it. \p M is changed only where reports are planned, and as
+/// they need it.
 static Findings analyseSafely(Module &M, const Options &Opts) {
   Budget Limits(Opts.MaxSeconds, Opts.MaxMemory);
   auto Out = std::make_unique<Findings>();
   bool Survived = runGuarded([&] {
-    std::optional<AnalysedModule> Analysed(std::in_place, M, Opts);
-    if (separateCalls(M, namedHelpers(Analysed->module())))
-      Analysed.emplace(M, Opts);
+    AnalysedModule Analysed(M, Opts);
+    Analysed.separate(namedHelpers(Analysed.module()));
     for (unsigned Round = 0;; ++Round) {
       fail(Opts.InjectFailure);
       OwnAnalyses Own;
-      Module &Seen = Analysed->module();
+      Module &Seen = Analysed.module();
       Out->Failure = Own.AM.getResult<RuleAnalysis>(Seen).Error;
       if (!Out->Failure.empty())
         return;
       std::vector<std::string> Shared = sharedFunctions(Seen, Own.AM);
       // Where time or memory ran out, what was counted up to there is told.
       bool Spent = !Limits.why().empty();
-      if (Spent || Round == MaxSeparated || !separateCalls(M, Shared)) {
-        conclude(*Analysed, Own.AM, Opts, *Out);
-        Out->Failure = Limits.why();
-        return;
-      }
-      Analysed.emplace(M, Opts);
+      if (!Spent && Round < MaxSeparated &&
+          Analysed.separate(std::move(Shared)))
+        continue;
+      Out->Unit = describe(Seen, Own.AM, Opts);
+      Out->Failure = Limits.why();
+      fail(Opts.InjectLateFailure);
+      if (Out->Failure.empty() && Opts.Instrument)
+        plan(Analysed, Own.AM, Opts, *Out);
+      return;
     }
   });
   if (!Survived) {
@@ -142,7 +151,10 @@ PreservedAnalyses LinkUnitPass::run(Module &M, ModuleAnalysisManager &) {
     if (std::string Why = insertReports(M, F.Reports); !Why.empty())
       F.Failure = std::move(Why);
   if (!F.Failure.empty()) {
-    warn(Opts, F.Failure + "; this link unit is left as it was");
+    // Where reports were planned, what they need was done before.
+    warn(Opts,
+         F.Failure + (F.Reports.empty() ? "; this link unit is left as it was"
+                                        : "; this link unit gets no reports"));
     F.Unit =
         describeFailure(Opts, F.Failure, F.Unit.Fields.getObject("counts"));
   } else if (json::Object *Counts = F.Unit.Fields.getObject("counts")) {

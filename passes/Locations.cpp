@@ -88,6 +88,15 @@ bool AccessResult::mayBe(const Location &A, const Location &B) const {
   return A.mayBe(B);
 }
 
+void AccessResult::findClassesOfGlobals(const Module &M) {
+  std::vector<StructType *> All = M.getIdentifiedStructTypes();
+  for (const GlobalVariable &Global : M.globals())
+    if (auto *T = dyn_cast<StructType>(Global.getValueType());
+        T && T->isLiteral())
+      if (StructType *Class = Debug->classOf(Global, All))
+        ClassOfGlobal[&Global] = Class;
+}
+
 /// The type that the variable at \p L was declared with, also where \p L is one
 /// element of it.
 Type *AccessResult::declaredTypeAt(const Location &L) const {
@@ -100,8 +109,10 @@ Type *AccessResult::declaredTypeAt(const Location &L) const {
                ? Class->getElementType(Last.Index)
                : nullptr;
   }
-  if (const auto *Global = dyn_cast_or_null<GlobalVariable>(L.Root))
-    return Global->getValueType();
+  if (const auto *Global = dyn_cast_or_null<GlobalVariable>(L.Root)) {
+    StructType *Class = ClassOfGlobal.lookup(Global);
+    return Class ? Class : Global->getValueType();
+  }
   if (const auto *Local = dyn_cast_or_null<AllocaInst>(L.Root))
     return Local->getAllocatedType();
   return nullptr;

@@ -144,6 +144,21 @@ std::string resultType(const Function &F) {
   return Text;
 }
 
+static bool isDestructor(StringRef Mangled) {
+  ItaniumPartialDemangler Demangler;
+  return (Mangled.ends_with("D0Ev") || Mangled.ends_with("D1Ev") ||
+          Mangled.ends_with("D2Ev")) &&
+         !Demangler.partialDemangle(Mangled.str().c_str()) &&
+         Demangler.isCtorOrDtor();
+}
+
+bool endsLife(const Function &F) {
+  StringRef Name = F.getName();
+  return F.isDeclaration() &&
+         (Name == "free" || Name.starts_with("_ZdlPv") ||
+          Name.starts_with("_ZdaPv") || isDestructor(Name));
+}
+
 StringRef plainClassName(const StructType &T) {
   StringRef Name = T.hasName() ? T.getName() : "";
   if (!Name.consume_front("class."))

@@ -53,15 +53,25 @@ static cl::opt<unsigned> MaxMemoryOpt(
     "tpc-max-memory", cl::cat(Category), cl::init(4096),
     cl::desc("MiB that the analysis may take (default: 4096; 0: as much as it "
              "wants); beyond it the unit is left as it was"));
-static cl::opt<Failure> InjectFailureOpt(
-    "tpc-inject-failure", cl::cat(Category), cl::Hidden,
-    cl::init(Failure::None), cl::desc("Fail inside the analysis (for tests)"),
-    cl::values(clEnumValN(Failure::Crash, "crash", "trap"),
-               clEnumValN(Failure::Overflow, "overflow", "no more stack"),
-               clEnumValN(Failure::Fatal, "fatal", "LLVM's fatal error"),
-               clEnumValN(Failure::Allocation, "allocation", "operator new"),
-               clEnumValN(Failure::Memory, "memory", "more and more of it"),
-               clEnumValN(Failure::Time, "time", "no end")));
+static cl::ValuesClass failureKinds() {
+  return cl::values(
+      clEnumValN(Failure::Crash, "crash", "trap"),
+      clEnumValN(Failure::Overflow, "overflow", "no more stack"),
+      clEnumValN(Failure::Fatal, "fatal", "LLVM's fatal error"),
+      clEnumValN(Failure::Allocation, "allocation", "operator new"),
+      clEnumValN(Failure::Memory, "memory", "more and more of it"),
+      clEnumValN(Failure::Time, "time", "no end"));
+}
+static cl::opt<Failure>
+    InjectFailureOpt("tpc-inject-failure", cl::cat(Category), cl::Hidden,
+                     cl::init(Failure::None),
+                     cl::desc("Fail inside the analysis (for tests)"),
+                     failureKinds());
+static cl::opt<Failure>
+    InjectLateFailureOpt("tpc-inject-late-failure", cl::cat(Category),
+                         cl::Hidden, cl::init(Failure::None),
+                         cl::desc("Fail at its end (for tests)"),
+                         failureKinds());
 
 /// The linker's `-o`, from the command line of this process: the module of a
 /// link is always called ld-temp.o, and a plugin is told no more.
@@ -98,6 +108,7 @@ Options Options::fromCommandLine() {
   O.MaxSeconds = MaxSecondsOpt;
   O.MaxMemory = MaxMemoryOpt;
   O.InjectFailure = InjectFailureOpt;
+  O.InjectLateFailure = InjectLateFailureOpt;
   return O;
 }
 

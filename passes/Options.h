@@ -29,6 +29,7 @@ struct Options {
   unsigned MaxSeconds = 0; ///< of the analysis; 0 is no limit
   unsigned MaxMemory = 0;  ///< of the analysis, in MiB; 0 is no limit
   Failure InjectFailure = Failure::None;
+  Failure InjectLateFailure = Failure::None;
 
   /// The options of this process.
   static Options fromCommandLine();

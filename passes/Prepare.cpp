@@ -7,6 +7,8 @@
 #include "Rules.h"
 #include "Texts.h"
 
+#include "llvm/ADT/SmallPtrSet.h"
+#include "llvm/Analysis/InlineCost.h"
 #include "llvm/IR/DebugInfo.h"
 #include "llvm/IR/InstIterator.h"
 #include "llvm/IR/Instructions.h"
@@ -56,8 +58,8 @@ static SmallVector<WeakVH, 0> markSmallLibraryFunctions(Module &M,
   return Marked;
 }
 
-/// Inlines what is marked to be, and with \p Promote makes values of locals.
-static void inlineMarked(Module &M, bool Promote) {
+/// Inlines what is marked to be, and makes values of locals.
+static void inlineMarked(Module &M) {
   PassBuilder PB;
   LoopAnalysisManager LAM;
   FunctionAnalysisManager FAM;
@@ -70,9 +72,8 @@ static void inlineMarked(Module &M, bool Promote) {
   PB.crossRegisterProxies(LAM, FAM, CGAM, MAM);
   ModulePassManager MPM;
   MPM.addPass(AlwaysInlinerPass(/*InsertLifetime=*/false));
-  if (Promote)
-    MPM.addPass(
-        createModuleToFunctionPassAdaptor(SROAPass(SROAOptions::PreserveCFG)));
+  MPM.addPass(
+      createModuleToFunctionPassAdaptor(SROAPass(SROAOptions::PreserveCFG)));
   MPM.run(M, MAM);
 }
 
@@ -83,22 +84,10 @@ static void prepare(Module &M, const Options &Opts) {
   for (Function &F : definedFunctions(M))
     EliminateUnreachableBlocks(F);
   SmallVector<WeakVH, 0> Marked = markSmallLibraryFunctions(M, Opts);
-  inlineMarked(M, /*Promote=*/true);
+  inlineMarked(M);
   for (const WeakVH &F : Marked)
     if (F)
       cast<Function>(F)->removeFnAttr(Attribute::AlwaysInline);
-}
-
-/// True where \p I only keeps a local variable in memory that \p Copies has no
-/// more: promotion took it away, and what took its place stands for something
-/// else.
-static bool isPromoted(const Instruction &I, ValueToValueMapTy &Copies) {
-  const Value *Pointer = getLoadStorePointerOperand(&I);
-  if (!Pointer)
-    return isa<AllocaInst>(I);
-  while (const auto *GEP = dyn_cast<GEPOperator>(Pointer))
-    Pointer = GEP->getPointerOperand();
-  return isa<AllocaInst>(Pointer) && !Copies.lookup(Pointer);
 }
 
 /// Takes away the marks of -O0.
@@ -135,25 +124,98 @@ static bool mayBeCopied(const Function &F) {
          });
 }
 
-/// Inlines the functions whose comparisons are their callers' in \p M: a report
-/// inside them would be one for all calls.
-static void inlineTransparent(Module &M) {
+/// The calls of \p F outside of it, in the order of the module: the users of a
+/// value are in none that two copies of a module share.
+static SmallVector<CallBase *, 8> callsOf(Function &F) {
+  SmallPtrSet<CallBase *, 8> Calls;
+  SmallPtrSet<Function *, 8> Callers;
+  for (User *U : F.users())
+    if (auto *Call = dyn_cast<CallBase>(U);
+        Call && Call->getCalledFunction() == &F && Call->getFunction() != &F) {
+      Calls.insert(Call);
+      Callers.insert(Call->getFunction());
+    }
+  SmallVector<CallBase *, 8> Ordered;
+  if (Calls.empty())
+    return Ordered;
+  for (Function &Caller : *F.getParent())
+    if (Callers.contains(&Caller))
+      for (Instruction &I : instructions(Caller))
+        if (auto *Call = dyn_cast<CallBase>(&I); Call && Calls.contains(Call))
+          Ordered.push_back(Call);
+  return Ordered;
+}
+
+/// Inlines the functions whose comparisons are their callers' in \p M. True
+/// where there are some.
+static bool inlineTransparent(Module &M) {
   std::string Error;
   const Rules &Tables = Rules::ofThisLink(Error);
-  bool Found = false;
+  bool Inlined = false;
   for (Function &F : definedFunctions(M)) {
     const DISubprogram *SP = F.getSubprogram();
     if (!SP || !mayBeCopied(F) ||
-        !Tables.isTransparent(qualifiedName(SP->getLinkageName())))
+        !Tables.isTransparent(qualifiedName(SP->getLinkageName())) ||
+        !isInlineViable(F).isSuccess())
       continue;
-    F.removeFnAttr(Attribute::OptimizeNone);
-    F.removeFnAttr(Attribute::NoInline);
-    F.addFnAttr(Attribute::AlwaysInline);
-    Found = true;
+    for (CallBase *Call : callsOf(F)) {
+      InlineFunctionInfo Info;
+      Inlined |= InlineFunction(*Call, Info, /*MergeAttributes=*/true,
+                                /*CalleeAAR=*/nullptr, /*InsertLifetime=*/false)
+                     .isSuccess();
+    }
   }
-  if (Found)
-    inlineMarked(M, /*Promote=*/false);
+  return Inlined;
 }
+
+/// Copies may add as many instructions to a link unit in one go.
+static constexpr unsigned MaxAdded = 50000;
+
+/// Gives each call of a function of \p Names in \p M a copy of the function, so
+/// that what one call hands it is not taken for what another does. True where
+/// something was copied.
+static bool separateCalls(Module &M, ArrayRef<std::string> Names) {
+  bool Changed = false;
+  size_t Added = 0;
+  for (const std::string &Name : Names) {
+    Function *F = M.getFunction(Name);
+    if (!F || !mayBeCopied(*F))
+      continue;
+    SmallVector<CallBase *, 8> Calls = callsOf(*F);
+    if (Calls.size() < 2)
+      continue;
+    size_t More = (Calls.size() - 1) * sizeOf(*F);
+    if (Added + More > MaxAdded)
+      continue;
+    Added += More;
+    for (CallBase *Call : drop_begin(Calls)) {
+      ValueToValueMapTy Map;
+      Function *Copy = CloneFunction(F, Map);
+      Copy->setName(F->getName() + ".tpc");
+      Copy->setLinkage(GlobalValue::InternalLinkage);
+      Copy->setVisibility(GlobalValue::DefaultVisibility);
+      Copy->setComdat(nullptr);
+      Call->setCalledFunction(Copy);
+      Changed = true;
+    }
+  }
+  return Changed;
+}
+
+Separation::Effect Separation::applyTo(Module &M) const {
+  callByOwnName(M);
+  Effect Done;
+  Done.Any = inlineTransparent(M);
+  for (const std::vector<std::string> &Names : Rounds) {
+    Done.LastRound = separateCalls(M, Names);
+    Done.Any |= Done.LastRound;
+  }
+  return Done;
+}
+
+//===----------------------------------------------------------------------===//
+// The copy that is analysed
+//===----------------------------------------------------------------------===//
 
 /// Has a copy of \p M share its debug information: nothing changes it, and to
 /// copy it takes longer than to copy the program.
@@ -170,76 +232,83 @@ static void shareDebugInfo(const Module &M, ValueToValueMapTy &Map) {
   Share(Finder.scopes());
 }
 
-AnalysedModule::AnalysedModule(Module &M, const Options &Opts) {
-  callByOwnName(M);
-  inlineTransparent(M);
+AnalysedModule::AnalysedModule(Module &M, const Options &Opts)
+    : M(M), Opts(Opts) {
+  copy();
+  prepareCopy();
+}
+
+Separation::Effect AnalysedModule::copy() {
   // Not on the stack: a crash below leaves this function without unwinding, and
   // the values of M know the map.
-  auto Owner = std::make_unique<ValueToValueMapTy>();
-  ValueToValueMapTy &Map = *Owner;
-  shareDebugInfo(M, Map);
-  Copy = CloneModule(M, Map);
+  auto Map = std::make_unique<ValueToValueMapTy>();
+  shareDebugInfo(M, *Map);
+  std::unique_ptr<Module> Next = CloneModule(M, *Map);
+  Separation::Effect Done = Calls.applyTo(*Next);
+  if (!Copy || Done.LastRound) {
+    Instructions.clear();
+    Copy = std::move(Next);
+    IsSeparated = Done.Any;
+  }
+  return Done;
+}
+
+void AnalysedModule::prepareCopy() {
+  for (Function &F : *Copy)
+    for (Instruction &I : instructions(F))
+      Instructions.emplace_back(&I);
   allowOptimisation(*Copy);
   prepare(*Copy, Opts);
-  // The map follows what promotion replaces; in the order of the program the
-  // instruction itself comes before those that it stands in for. Unreachable
-  // code, where an address may be computed from itself, is not in the map.
+}
+
+bool AnalysedModule::separate(std::vector<std::string> Names) {
+  if (Names.empty())
+    return false;
+  Calls.add(std::move(Names));
+  if (!copy().LastRound) {
+    Calls.removeLast();
+    return false;
+  }
+  prepareCopy();
+  return true;
+}
+
+bool AnalysedModule::bringBack() {
+  if (IsSeparated)
+    Calls.applyTo(M);
+  std::vector<Instruction *> There;
   for (Function &F : M)
     for (Instruction &I : instructions(F))
-      if (auto *C = dyn_cast_or_null<Instruction>(Map.lookup(&I));
-          C && C->getOpcode() == I.getOpcode() && !isPromoted(I, Map))
-        Back.try_emplace(C, &I);
+      There.push_back(&I);
+  if (There.size() != Instructions.size())
+    return false;
+  SmallPtrSet<const Value *, 0> Promoted;
+  for (auto [I, Now] : zip_equal(There, Instructions))
+    if (isa<AllocaInst>(I) && !Now)
+      Promoted.insert(I);
+  // What only keeps a local in memory that promotion took away has nothing that
+  // corresponds to it: what took its place stands for something else.
+  auto IsPromoted = [&](const Instruction &I) {
+    const Value *Pointer = getLoadStorePointerOperand(&I);
+    while (const auto *GEP = dyn_cast_or_null<GEPOperator>(Pointer))
+      Pointer = GEP->getPointerOperand();
+    return Pointer && Promoted.contains(Pointer);
+  };
+  // In the order of the program an instruction itself comes before those that
+  // it stands in for.
+  for (auto [I, Handle] : zip_equal(There, Instructions)) {
+    Value *Now = Handle;
+    if (auto *C = dyn_cast_or_null<Instruction>(Now);
+        C && C->getOpcode() == I->getOpcode() && !IsPromoted(*I))
+      Back.try_emplace(C, I);
+  }
+  return true;
 }
 
 Value *AnalysedModule::original(Value *V) const {
   if (isa<Constant>(V))
     return V;
   return Back.lookup(V);
-}
-
-/// Copies may add as many instructions to a link unit in one go.
-static constexpr unsigned MaxAdded = 50000;
-
-bool separateCalls(Module &M, ArrayRef<std::string> Names) {
-  bool Changed = false;
-  size_t Added = 0;
-  for (const std::string &Name : Names) {
-    Function *F = M.getFunction(Name);
-    if (!F || !mayBeCopied(*F))
-      continue;
-    SmallVector<CallBase *, 8> Calls;
-    for (User *U : F->users())
-      if (auto *Call = dyn_cast<CallBase>(U);
-          Call && Call->getCalledFunction() == F && Call->getFunction() != F)
-        Calls.push_back(Call);
-    if (Calls.size() < 2)
-      continue;
-    size_t More = (Calls.size() - 1) * sizeOf(*F);
-    if (Added + More > MaxAdded)
-      continue;
-    Added += More;
-    // The users of a value are in no order that means anything; copies of
-    // copies keep the place of their call in their name.
-    sort(Calls, [](const CallBase *A, const CallBase *B) {
-      auto Place = [](const CallBase *C) {
-        const DebugLoc &Loc = C->getDebugLoc();
-        return std::make_tuple(C->getFunction()->getName(),
-                               Loc ? Loc.getLine() : 0, Loc ? Loc.getCol() : 0);
-      };
-      return Place(A) < Place(B);
-    });
-    for (CallBase *Call : drop_begin(Calls)) {
-      ValueToValueMapTy Map;
-      Function *Copy = CloneFunction(F, Map);
-      Copy->setName(F->getName() + ".tpc");
-      Copy->setLinkage(GlobalValue::InternalLinkage);
-      Copy->setVisibility(GlobalValue::DefaultVisibility);
-      Copy->setComdat(nullptr);
-      Call->setCalledFunction(Copy);
-      Changed = true;
-    }
-  }
-  return Changed;
 }
 
 std::vector<std::string> namedByCalls(Module &M, ModuleAnalysisManager &AM) {

@@ -15,6 +15,7 @@
 #include "llvm/IR/Instruction.h"
 #include "llvm/IR/Module.h"
 #include "llvm/IR/PassManager.h"
+#include "llvm/IR/ValueHandle.h"
 
 #include <memory>
 
@@ -22,25 +23,64 @@ namespace tpc {
 
 struct Options;
 
-/// The module to analyse for a module to instrument.
+/// What is done to a program before reports can be put into it, because a
+/// report inside a function stands for all of its calls: functions whose
+/// comparisons are their callers' are inlined, and functions whose calls are to
+/// be told apart are copied for each of them. Done to two copies of a program
+/// it leaves two copies of one.
+class Separation {
+public:
+  /// Has the calls of each function of \p Names told apart, after what was
+  /// asked for before.
+  void add(std::vector<std::string> Names) {
+    Rounds.push_back(std::move(Names));
+  }
+  void removeLast() { Rounds.pop_back(); }
+
+  /// What applyTo did.
+  struct Effect {
+    bool Any = false;
+    bool LastRound = false; ///< what was asked for last did something
+  };
+  Effect applyTo(llvm::Module &M) const;
+
+private:
+  std::vector<std::vector<std::string>> Rounds;
+};
+
+/// The module to analyse for a module to instrument, which stays as it is.
 class AnalysedModule {
 public:
   AnalysedModule(llvm::Module &M, const Options &Opts);
 
   llvm::Module &module() { return *Copy; }
-  /// What \p V of the analysed module is in the original; null where it is
-  /// nothing there (a value that promotion made).
+
+  /// Starts anew with the calls of each of \p Names told apart. False, and
+  /// nothing has changed, where there are none that can be.
+  bool separate(std::vector<std::string> Names);
+
+  /// Does to \p M, the module that was copied, what separate() asked for, and
+  /// finds the counterparts of the values of the analysed module there. False
+  /// where that is not the same program.
+  bool bringBack();
+  /// After bringBack(): what \p V of the analysed module is in the original;
+  /// null where it is nothing there (a value that promotion made).
   llvm::Value *original(llvm::Value *V) const;
 
 private:
+  Separation::Effect copy();
+  void prepareCopy();
+
+  llvm::Module &M;
+  const Options &Opts;
+  Separation Calls;
   std::unique_ptr<llvm::Module> Copy;
+  bool IsSeparated = false;
+  /// The instructions of Copy as it was before it was prepared, in their order;
+  /// what promotion replaced them with, or null.
+  std::vector<llvm::WeakTrackingVH> Instructions;
   llvm::DenseMap<const llvm::Value *, llvm::Value *> Back;
 };
-
-/// Gives each call of a function of \p Names in \p M a copy of the function, so
-/// that what one call hands it is not taken for what another does. True where
-/// something was copied.
-bool separateCalls(llvm::Module &M, llvm::ArrayRef<std::string> Names);
 
 /// The functions of \p M, a prepared module, in which the name of a parameter
 /// depends on the call; callers before callees.

@@ -255,6 +255,9 @@ Error Reader::file(const json::Value &Value, RuleFile &Out) {
     } else if (Key == "kept") {
       if (Error E = texts(V, Place, Out.Kept))
         return E;
+    } else if (Key == "counting") {
+      if (Error E = texts(V, Place, Out.Counting))
+        return E;
     } else if (Key == "transparent") {
       if (Error E = texts(V, Place, Out.Transparent))
         return E;

@@ -13,7 +13,7 @@ namespace tpc {
 
 struct RuleFile {
   std::vector<Rule> Rows;
-  std::vector<std::string> Opaque, Kept; ///< beginnings of names
+  std::vector<std::string> Opaque, Kept, Counting; ///< beginnings of names
   std::vector<std::string> ContainerClasses, ReadingMethods, Transparent;
 };
 

@@ -46,6 +46,7 @@ Expected<Rules> Rules::load(const Options &Opts) {
       R.ByName[Row.Function].push_back(std::move(Row));
     append_range(R.OpaquePrefixes, File->Opaque);
     append_range(R.KeptPrefixes, File->Kept);
+    append_range(R.CountingPrefixes, File->Counting);
     R.ContainerClasses.insert(File->ContainerClasses.begin(),
                               File->ContainerClasses.end());
     R.Transparent.insert(File->Transparent.begin(), File->Transparent.end());
@@ -66,10 +67,18 @@ Expected<Rules> Rules::load(const Options &Opts) {
   return R;
 }
 
-bool Rules::isOpaque(StringRef Name) const {
-  return any_of(OpaquePrefixes, [&](const std::string &Prefix) {
+static bool beginsWithOneOf(StringRef Name, ArrayRef<std::string> Prefixes) {
+  return any_of(Prefixes, [&](const std::string &Prefix) {
     return Name.starts_with(Prefix);
   });
+}
+
+bool Rules::isOpaque(StringRef Name) const {
+  return beginsWithOneOf(Name, OpaquePrefixes);
+}
+
+bool Rules::isCounting(StringRef Name) const {
+  return beginsWithOneOf(Name, CountingPrefixes);
 }
 
 const Rules &Rules::ofThisLink(std::string &Error) {

@@ -112,11 +112,15 @@ public:
     return Transparent.contains(Name);
   }
 
+  /// True where a function of this qualified name only counts who still needs
+  /// an object.
+  bool isCounting(llvm::StringRef Name) const;
+
 private:
   const Rule *rowOf(const llvm::Function &F, llvm::StringRef Name) const;
 
   llvm::StringMap<std::vector<Rule>> ByName;
-  std::vector<std::string> OpaquePrefixes, KeptPrefixes;
+  std::vector<std::string> OpaquePrefixes, KeptPrefixes, CountingPrefixes;
   llvm::StringSet<> ContainerClasses, ReadingMethods, Transparent;
   /// By mangled name: each is demangled once.
   mutable llvm::StringMap<Match> Known;
@@ -147,12 +151,20 @@ public:
     std::string Unused;
     return Rules::ofThisLink(Unused).isTransparent(Name);
   }
+  /// See Rules::isCounting.
+  bool isCounting(llvm::StringRef Name) const {
+    std::string Unused;
+    return Rules::ofThisLink(Unused).isCounting(Name);
+  }
   /// The container's method that \p Call calls, or null.
   const ContainerMethod *container(const llvm::CallBase &Call) const;
   /// True where \p F stays a call, however small it is.
   bool staysCall(const llvm::Function &F) const {
     return isOpaque(F) || Kept.contains(&F) || Containers.contains(&F);
   }
+  /// True where \p F is looked into as a call of its own: it holds functions or
+  /// what is bound to them.
+  bool isKept(const llvm::Function &F) const { return Kept.contains(&F); }
   std::string Error; ///< why the tables could not be read; else empty
 
 private:

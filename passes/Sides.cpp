@@ -2,6 +2,7 @@
 #include "Sides.h"
 
 #include "SimpleCallGraph.h"
+#include "Texts.h"
 
 #include "llvm/IR/IntrinsicInst.h"
 
@@ -101,8 +102,12 @@ bool Sides::addSources(const Value *V, Sources &Out) const {
     SmallVector<Function *, 1> Callees = Calls.callees(*Call);
     for (const Function *F : Callees)
       for (const BasicBlock &BB : *F)
-        if (const auto *Return = dyn_cast<ReturnInst>(BB.getTerminator()))
+        if (const auto *Return = dyn_cast<ReturnInst>(BB.getTerminator())) {
+          // A callee by another type may return nothing.
+          if (!Return->getReturnValue())
+            return false;
           Out.push_back(Return->getReturnValue());
+        }
     return !Callees.empty();
   }
   if (const auto *Select = dyn_cast<SelectInst>(V)) {
@@ -139,14 +144,22 @@ size_t Sides::lengthOf(const ParameterComparison &C) const {
   return Usage.pathTo(C.Decisions.front().Way).size();
 }
 
+/// Of two parameters whose names depend on what runs nobody knows whether they
+/// are one.
+bool Sides::isSameParameter(unsigned Read, unsigned Other) const {
+  StringRef Name = Reads[Read].Name;
+  return Read == Other ||
+         (Name == Reads[Other].Name && !Name.contains(DynamicName));
+}
+
 bool Sides::isOtherWay(const ParameterComparison &C) {
-  return C.Compare &&
-         any_of(ByCompare.lookup(C.Compare),
-                [&](const ParameterComparison *Other) {
-                  return Other->Operand != C.Operand &&
-                         Reads[Other->Read].Name == Reads[C.Read].Name &&
-                         lengthOf(*Other) < lengthOf(C) && !isMeasured(*Other);
-                });
+  return C.Compare && any_of(ByCompare.lookup(C.Compare),
+                             [&](const ParameterComparison *Other) {
+                               return Other->Operand != C.Operand &&
+                                      isSameParameter(Other->Read, C.Read) &&
+                                      lengthOf(*Other) < lengthOf(C) &&
+                                      !isMeasured(*Other);
+                             });
 }
 
 bool Sides::isMeasured(const ParameterComparison &C) {

@@ -40,6 +40,7 @@ private:
   bool addStored(const llvm::LoadInst &Load, Sources &Out) const;
   bool isHanded(const llvm::Instruction &Call,
                 llvm::ArrayRef<Location> Variables) const;
+  bool isSameParameter(unsigned Read, unsigned Other) const;
   size_t lengthOf(const ParameterComparison &C) const;
 
   const ParameterUsage &Usage;

@@ -10,7 +10,7 @@ import re
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
@@ -22,6 +22,8 @@ TOP = Path(__file__).resolve().parents[2]
 INPUTS = TOP / "tests/lit/Inputs"
 PLUGIN = TOP / "build/install/lib/tpc/TpcPasses.so"
 BATCH = 20
+# What the check does grows faster than the file.
+EXTENDED_BATCH = 4
 COMPILE = [
     "clang++-19",
     "-std=c++17",
@@ -167,6 +169,13 @@ def shrink(p: Program, differs: Callable[[Program], bool], seconds: float = 120)
             position += 1
 
 
+def batches(seeds: range, extended: bool) -> Iterator[range]:
+    """The seeds of programs that are compiled as one file."""
+    size = EXTENDED_BATCH if extended else BATCH
+    for begin in range(0, len(seeds), size):
+        yield seeds[begin : begin + size]
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--programs", type=int, default=200)
@@ -180,8 +189,7 @@ def main() -> int:
     folder, level = options.out, options.level
     findings, differing = 0, []
     seeds = range(options.seed, options.seed + options.programs)
-    for begin in range(0, len(seeds), BATCH):
-        batch = seeds[begin : begin + BATCH]
+    for batch in batches(seeds, options.extended):
         programs = [program(s, f"p{s}", options.extended) for s in batch]
         try:
             compared = compare(programs, folder, level)
