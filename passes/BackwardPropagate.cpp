@@ -264,7 +264,9 @@ void Slicer::touchingCall(CallBase &Call) {
 /// Which object a virtual function of the user's is called on decides what
 /// runs.
 void Slicer::virtualCall(const CallBase &Call) {
-  if (auto How = ClassHierarchy::match(Call); How && isUsersOwn(Call))
+  auto How = ClassHierarchy::match(Call);
+  if (How && any_of(Calls.callees(Call),
+                    [&](const Function *F) { return Sources.has(*F); }))
     definePointer(How->Object);
 }
 
