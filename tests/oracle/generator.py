@@ -46,7 +46,9 @@ class Statement:
     def smaller(self) -> Iterator[tuple[Statement, ...]]:
         """What can stand instead: a body alone, or itself with a smaller part."""
         for n, part in enumerate(self.parts):
-            instead: Iterator[str | tuple[Statement, ...]] = simpler(part) if isinstance(part, str) else smaller(part)
+            instead: Iterator[str | tuple[Statement, ...]] = (
+                simpler(part) if isinstance(part, str) else smaller(part)
+            )
             if isinstance(part, tuple):
                 yield part
             for new in instead:
@@ -203,12 +205,8 @@ class Generator:
         if self.extended:
             kinds += [(3, "limited"), (1 if type_ == "double" and s.tables else 0, "picked")]
         kind = self.one(*kinds)
-        if kind == "limited":
-            return self.limited(s, type_, name, depth)
-        if kind == "picked":
-            which = self.expression(s, "int", depth + 1)
-            given = self.expression(s, "double", depth + 1)
-            return f"{self.random.choice(s.tables)}[({which}) & 1]({given})"
+        if kind in ("limited", "picked"):
+            return getattr(self, kind)(s, type_, name, depth)
         if kind == "constant":
             return self.constant(type_)
         if kind == "scaled":
@@ -228,11 +226,13 @@ class Generator:
             return f"static_cast<{type_}>({self.expression(s, other, depth + 1)})"
         if kind == "sensed" and type_ == "double":
             return f"sensed({name})"
-        if kind == "negative":
-            return f"(-{name})"
-        if kind == "square":
-            return f"({name} * {name})"
-        return name
+        return {"negative": f"(-{name})", "square": f"({name} * {name})"}.get(kind, name)
+
+    def picked(self, s: Scope, type_: str, name: str, depth: int) -> str:
+        """A call of one of the functions in a table."""
+        which = self.expression(s, "int", depth + 1)
+        given = self.expression(s, type_, depth + 1)
+        return f"{self.random.choice(s.tables)}[({which}) & 1]({given})"
 
     def limited(self, s: Scope, type_: str, name: str, depth: int) -> str:
         """A value that a function of the library compares with another one."""
@@ -721,15 +721,14 @@ class Generator:
 
         return [text(member)], choose
 
-    def kept_function(self, s: Scope) -> Callable[[Scope], Statement]:
+    def kept_function(self, own: Scope) -> Callable[[Scope], Statement]:
         """A std::function as a member; of a type that no other program has."""
-        s.functions.append(Callable_("asked", "double", ["double"], [False]))
+        own.functions.append(Callable_("asked", "double", ["double"], [False]))
 
         def lambda_(s: Scope) -> Statement:
             inner = s.inner(result="double", in_loop=False, handle=None)
             inner.depth = 0
             inner.variables["double"].append("A")
-            # It is called when the constructor's arguments and variables are gone.
             body = self.body(inner, self.random.randint(0, 2))
             end = text(f"return {self.expression(inner, 'double')};")
             head = "Asked = [this](const Range &, double A) -> double"

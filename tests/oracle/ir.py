@@ -283,9 +283,10 @@ def split_type(text: str) -> tuple[str, str]:
     for at, c in enumerate(text):
         quoted ^= c == '"'
         depth += 0 if quoted else {"(": 1, "[": 1, "{": 1, ")": -1, "]": -1, "}": -1}.get(c, 0)
-        if c in " ," and depth == 0 and not quoted and not text[:at].endswith("getelementptr"):
-            if not re.match(r"getelementptr (inbounds|nuw|nusw|inrange\S*)?$", text[:at]):
-                return text[:at], text[at:].strip(" ,")
+        # An address that is computed is of several words.
+        ends = c in " ," and depth == 0 and not quoted
+        if ends and not re.match(r"getelementptr( inbounds| nuw| nusw| inrange\S*)*$", text[:at]):
+            return text[:at], text[at:].strip(" ,")
     return text, ""
 
 

@@ -144,7 +144,9 @@ class Memory:
             name = text[1:].strip('"')
             known = self.module.globals.get(name) or self.module.functions.get(name)
             return {(known, 0)} if known else set()
-        found = re.match(r"getelementptr (?:inbounds |nuw |nusw |inrange\([^)]*\) )*\((.*)\)$", text)
+        found = re.match(
+            r"getelementptr (?:inbounds |nuw |nusw |inrange\([^)]*\) )*\((.*)\)$", text
+        )
         if not found:
             return set()
         written, pointer, *indices = split_commas(found[1])
@@ -425,7 +427,9 @@ class Program:
     def mentioned(self, i: Instruction) -> list[Function]:
         """The functions whose address `i` hands on."""
         values = i.arguments if i.is_call else i.operands
-        names = [n for v in values if v.kind == "constant" for n in re.findall(r"@([\w.$]+)", v.text)]
+        names = [
+            n for v in values if v.kind == "constant" for n in re.findall(r"@([\w.$]+)", v.text)
+        ]
         found = [v for v in values if isinstance(v, Function)]
         found += [self.module.functions[n] for n in names if n in self.module.functions]
         return [f for f in dict.fromkeys(found) if self.is_known(f)]

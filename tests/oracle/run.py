@@ -23,7 +23,7 @@ INPUTS = TOP / "tests/lit/Inputs"
 PLUGIN = TOP / "build/install/lib/tpc/TpcPasses.so"
 BATCH = 20
 # What the check does grows faster than the file.
-EXTENDED_BATCH = 4
+EXTENDED_BATCH = 1
 COMPILE = [
     "clang++-19",
     "-std=c++17",
