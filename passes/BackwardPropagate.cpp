@@ -2,6 +2,7 @@
 #include "BackwardPropagate.h"
 
 #include "Budget.h"
+#include "ClassHierarchy.h"
 #include "ClassObjectAccess.h"
 #include "ExternCallFinder.h"
 #include "IfStatements.h"
@@ -82,6 +83,7 @@ private:
   bool isSeenThrough(const CallBase &Call);
   bool isCounting(const Instruction &I);
   void touchingCall(CallBase &Call);
+  void virtualCall(const CallBase &Call);
   void throwingCall(CallBase &Call);
   void derivedPointer(const Value *Pointer);
   void reachable(CallBase &Call);
@@ -259,6 +261,15 @@ void Slicer::touchingCall(CallBase &Call) {
     derivedPointer(&Call);
 }
 
+/// Which object a virtual function of the user's is called on decides what
+/// runs.
+void Slicer::virtualCall(const CallBase &Call) {
+  auto How = ClassHierarchy::match(Call);
+  if (How && any_of(Calls.callees(Call),
+                    [&](const Function *F) { return Sources.has(*F); }))
+    definePointer(How->Object);
+}
+
 /// Whether \p Call throws matters: what throws in the functions that it calls.
 void Slicer::throwingCall(CallBase &Call) {
   for (const Function *Callee : Calls.callees(Call))
@@ -363,6 +374,8 @@ void Slicer::process(const Item &It) {
   Here = It.Step;
   if (It.Reasons & Runs)
     control(*It.I);
+  if (const auto *Call = dyn_cast<CallBase>(It.I))
+    virtualCall(*Call);
   if (It.Reasons & Gives)
     value(*It.I);
   if (It.Reasons & Touches)

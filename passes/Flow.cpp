@@ -268,8 +268,9 @@ unsigned Flow::copy(ArrayRef<const BasicBlock *> Path) {
 }
 
 /// Takes the ways out of the blocks that all edges were led past: there is
-/// nothing that they decide. Blocks that no edge leads to stay, an exception
-/// does that nobody threw explicitly.
+/// nothing that they decide. In Plain they keep those that somebody goes.
+/// Blocks that no edge leads to stay, an exception does that nobody threw
+/// explicitly.
 void Flow::findEntered() {
   std::vector<bool> HasEdge(Plain.size());
   for (const std::vector<unsigned> &Succs : Plain)
@@ -294,6 +295,12 @@ void Flow::findEntered() {
         Plain[N].clear();
   }
   Entered.assign(Reached.begin(), Reached.begin() + Blocks.size());
+  DenseMap<unsigned, SmallVector<unsigned, 2>> Gone;
+  for (const Copy &C : Copies)
+    Gone[idOf(C.BB)].push_back(idOf(C.Next));
+  for (const auto &[N, Ways] : Gone)
+    if (!Entered[N])
+      erase_if(Plain[N], [&](unsigned S) { return !is_contained(Ways, S); });
 }
 
 } // namespace tpc

@@ -73,10 +73,21 @@ AccessResult::handedTo(const AllocaInst &Local) const {
   return Calls;
 }
 
+/// True where \p Write, in the function of \p Local, writes to it and to no
+/// other run's variable of that name.
+static bool isByName(const Instruction &Write, const AllocaInst &Local) {
+  if (const Value *Pointer = getLoadStorePointerOperand(&Write))
+    return getUnderlyingObject(Pointer) == &Local;
+  const auto *Call = dyn_cast<CallBase>(&Write);
+  return Call && any_of(Call->args(), [&](const Use &Arg) {
+           return getUnderlyingObject(Arg) == &Local;
+         });
+}
+
 /// What happens to a local variable in its function: the writes of it, and the
 /// calls that are handed it, by block and in order.
 struct AccessResult::LocalHistory {
-  bool Known = false; ///< else anything may happen to it anywhere
+  bool Known = false; ///< else others may do anything to it anywhere
   SmallPtrSet<const Instruction *, 8> Writes;
   DenseMap<const BasicBlock *, SmallVector<const Instruction *, 2>> Events;
 };
@@ -89,21 +100,23 @@ AccessResult::historyOf(const Location &L, ArrayRef<Instruction *> W) const {
       return *History;
   const auto &Local = *cast<AllocaInst>(L.Root);
   auto History = std::make_shared<LocalHistory>();
-  if (auto Handed = handedTo(Local)) {
-    History->Known = true;
-    SmallSetVector<Instruction *, 8> All(Handed->begin(), Handed->end());
-    for (Instruction *Write : W)
-      if (Write->getFunction() == Local.getFunction()) {
-        History->Writes.insert(Write);
-        All.insert(Write);
-      }
-    for (const Instruction *I : All)
-      History->Events[I->getParent()].push_back(I);
-    for (auto &[BB, List] : History->Events)
-      sort(List, [](const Instruction *A, const Instruction *B) {
-        return A->comesBefore(B);
-      });
-  }
+  auto Handed = handedTo(Local);
+  History->Known = Handed.has_value();
+  SmallSetVector<Instruction *, 8> All;
+  if (Handed)
+    All.insert(Handed->begin(), Handed->end());
+  for (Instruction *Write : W)
+    if (Write->getFunction() == Local.getFunction() &&
+        (Handed || isByName(*Write, Local))) {
+      History->Writes.insert(Write);
+      All.insert(Write);
+    }
+  for (const Instruction *I : All)
+    History->Events[I->getParent()].push_back(I);
+  for (auto &[BB, List] : History->Events)
+    sort(List, [](const Instruction *A, const Instruction *B) {
+      return A->comesBefore(B);
+    });
   Known.push_back({L, History});
   return *Known.back().second;
 }
@@ -146,12 +159,11 @@ static constexpr unsigned MaxWalked = 20'000'000;
 /// Leaves in \p W the writes of the local variable \p L that reach \p At: walks
 /// the flow graph back from it and stops at stores that surely replace the
 /// value. A write in another function happens at a call that is handed
-/// the variable; where its address was stored away, all of them stay.
+/// the variable; where its address was stored away, all of them stay, and only
+/// those that name the variable are followed.
 void AccessResult::reachingWrites(const Instruction &At, const Location &L,
                                   Writes &W) const {
   const LocalHistory &History = historyOf(L, W.getArrayRef());
-  if (!History.Known)
-    return;
   if (Walked > MaxWalked) {
     ++GivenUp;
     return;
@@ -190,8 +202,10 @@ void AccessResult::reachingWrites(const Instruction &At, const Location &L,
     Through(BB, Below);
   }
   W.remove_if([&](Instruction *Write) {
-    return Write->getFunction() == At.getFunction() ? !Reached.contains(Write)
-                                                    : !CallReached;
+    return Write->getFunction() == At.getFunction()
+               ? (History.Known || History.Writes.contains(Write)) &&
+                     !Reached.contains(Write)
+               : History.Known && !CallReached;
   });
 }
 
@@ -321,8 +335,10 @@ SmallVector<LoadInst *, 8> AccessResult::usesOf(const Instruction &Write,
     std::optional<Reaching::Variable> Written =
         variableAt(isa<StoreInst>(Write) ? placeOf(Write) : Pointer, L);
     Own.remove_if([&](LoadInst *Load) {
-      return !isa<AllocaInst>(getUnderlyingObject(Load->getPointerOperand())) &&
-             !Flow->reaches(Write, Written, *Load,
+      // Also where it is read through a reference that may be another's.
+      if (isLocalOf(L, *Load))
+        return !is_contained(definitionsOf(*Load), &Write);
+      return !Flow->reaches(Write, Written, *Load,
                             variableAt(placeOf(*Load), L));
     });
     All.insert(Own.begin(), Own.end());

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 from tests.oracle.control import ControlDependence
 from tests.oracle.ir import Argument, Function, Instruction, Place, Value, number, parse
-from tests.oracle.memory import SILENT, Memory, Program, Write, extent
+from tests.oracle.memory import SILENT, Memory, Program, Write, extent, source_type
 from tests.oracle.throws import Throws, asks_for, is_throw
 
 RELATIONS = {"eq": "==", "ne": "!=", "gt": ">", "ge": ">=", "lt": "<", "le": "<="}
@@ -183,6 +183,10 @@ class Checker:
         _, always = self.control[item.function].controllers(item.block, item)
         if always:
             out += [(c, "control") for c in self.program.callers(item.function)]
+            # What is handed on to be called runs only if it was.
+            out += [(m, "control") for m in self.program.mentions.get(item.function, [])]
+        if item.is_call and (chosen := self.object_of(item)) is not None:
+            out += [(i, "data") for i in self.instructions_of(chosen)]
         if why == "throws":
             # A call that may throw enters as a predicate does, and then what throws below it.
             inner = [i for f in self.program.callees(item) for i in self.throws.leaving(f)]
@@ -208,6 +212,16 @@ class Checker:
         elif item.is_call and not SILENT.match(item.callee.name):
             out += [(w, "data") for w in self.handed(item)]
         return out
+
+    def object_of(self, call: Instruction) -> Value | None:
+        """The object that a virtual function is called on: it decides which one runs."""
+        at: Value | None = None if isinstance(call.callee, Function) else call.callee
+        for opcode in ("load", "getelementptr", "load"):
+            if isinstance(at, Instruction) and at.opcode == opcode:
+                at = at.operands[0]
+            elif opcode != "getelementptr":
+                return None
+        return at if at in call.arguments[:2] and self.program.callees(call) else None
 
     def instructions_of(self, value: Value) -> set[Instruction]:
         """`value`; for an argument what the calls hand over, which may be arguments again."""
@@ -299,13 +313,15 @@ class Checker:
 
     def follow(self, name: str, begin: Instruction, out: set[Compared]) -> None:
         """From the value `begin` to the comparisons."""
-        todo = [State(begin, How(), ())]
+        todo = [State(begin, How(other=is_limit(begin)), ())]
         seen = set(todo)
         ways: dict[Value, set[How]] = defaultdict(set)
         while todo:
             at = todo.pop()
             for user in self.users[at.value]:
-                for item in self.after(name, at, user, out):
+                for found in self.after(name, at, user, out):
+                    limited = is_limit(found.value)
+                    item = replace(found, how=found.how.anything()) if limited else found
                     ways[item.value].add(item.how)
                     # In a loop, arithmetic has no end.
                     many = len(ways[item.value]) > 6 and not item.how.is_none
@@ -364,6 +380,8 @@ class Checker:
         """The arithmetic after `by`; None where that is none with constants alone."""
         if by.opcode == "fneg":
             return how.affine(-1, 0)
+        if by.is_call and by.callee.name in ("llvm.fabs.f64", "fabs"):
+            return how.anything()
         if by.opcode not in ARITHMETIC:
             return None
         left, right = by.operands
@@ -385,13 +403,27 @@ class Checker:
         return how.anything()
 
     def is_same_variable(self, a: Value, b: Value) -> bool:
-        """True where both are loads of one variable: `x * x`."""
-        loads = [v for v in (a, b) if isinstance(v, Instruction) and v.opcode == "load"]
-        if len(loads) < 2:
+        """True where both are loads of one variable, `x * x`, by the same pointer."""
+        if not all(isinstance(v, Instruction) and v.opcode == "load" for v in (a, b)):
             return False
-        first, second = (self.memory.named(load.operands[0]) for load in loads)
-        same = first is not None and first == second
+        same = self.is_same_pointer(a.operands[0], b.operands[0])
         return same and self.memory.definitions(a) == self.memory.definitions(b)
+
+    def is_same_pointer(self, a: Value, b: Value) -> bool:
+        """True where both are computed in the same way from the same, or name one variable."""
+        first = self.memory.named(a)
+        if a is b or (first is not None and first == self.memory.named(b)):
+            return True
+        parts = [v.operands for v in (a, b) if isinstance(v, Instruction)]
+        if len(parts) < 2 or a.opcode != b.opcode:
+            return False
+        if a.opcode == "load":
+            return self.is_same_variable(a, b)
+        if a.opcode != "getelementptr" or source_type(a) != source_type(b):
+            return False
+        steps = [[number(v) for v in p[1:]] for p in parts]
+        same = steps[0] == steps[1] and None not in steps[0]
+        return same and self.is_same_pointer(parts[0][0], parts[1][0])
 
     def carried(
         self, user: Instruction, value: Value, context: Context
@@ -451,6 +483,67 @@ class Checker:
                         seen.add(item)
                         todo.append(item)
         return found
+
+
+def is_limit(value: Value) -> bool:
+    """True for the smaller or larger one of a constant and another value: std::min, x < 3 ? 3 : x.
+
+    That is a merge of the two that the predicate which decides compares, of their values or, of
+    what std::min returns, of references to them.
+    """
+    merge = value
+    if isinstance(value, Instruction) and value.opcode == "load":
+        merge = value.operands[0]
+    if not isinstance(merge, Instruction) or (merge.type == "ptr") != (merge is not value):
+        return False
+    sides = merge.operands[1:] if merge.opcode == "select" else merge.operands
+    if merge.opcode not in ("phi", "select") or len(sides) != 2:
+        return False
+    condition = merge.operands[0] if merge.opcode == "select" else condition_of(merge)
+    if not isinstance(condition, Instruction) or condition.opcode not in ("icmp", "fcmp"):
+        return False
+    if condition.predicate[-2:] not in ("gt", "ge", "lt", "le"):
+        return False
+    compared = condition.operands
+    pairs = (sides, sides[::-1])
+    same = any(all(is_side(c, s) for c, s in zip(compared, p, strict=True)) for p in pairs)
+    return same and sum(constant_side(s) is not None for s in sides) == 1
+
+
+def condition_of(phi: Instruction) -> Value | None:
+    """What decides by which of two ways a merge is come to, where one branch does."""
+    heads = []
+    for block in phi.blocks:
+        before = [b for b in block.function.blocks if block in b.terminator.blocks]
+        is_head = len(block.terminator.blocks) == 2
+        heads.append(block if is_head else before[0] if len(before) == 1 else None)
+    same = heads[0] is not None and heads[0] is heads[1] and len(heads[0].terminator.blocks) == 2
+    return heads[0].terminator.operands[0] if same else None
+
+
+def is_side(compared: Value, side: Value) -> bool:
+    """True where the value that is compared is the one that is merged, or what it refers to."""
+    if is_same(compared, side):
+        return True
+    if isinstance(compared, Instruction) and compared.opcode == "load":
+        again = isinstance(side, Instruction) and side.opcode == "load"
+        if is_same(compared.operands[0], side.operands[0] if again else side):
+            return True
+    known = constant_side(side)
+    return known is not None and constant_number(compared) == known
+
+
+def is_same(a: Value, b: Value) -> bool:
+    return a is b or (a.kind == b.kind == "constant" and a.text == b.text)
+
+
+def constant_side(side: Value) -> float | None:
+    """The number that one side of a merge is, or that the local variable that it refers to has."""
+    if not (isinstance(side, Instruction) and side.opcode == "alloca"):
+        return constant_number(side)
+    stores = [i for i in side.function.instructions if i.opcode == "store"]
+    stored = [i.operands[0] for i in stores if i.operands[1] is side]
+    return constant_number(stored[0]) if len(stored) == 1 else None
 
 
 def how_decides(predicate: Instruction) -> str:

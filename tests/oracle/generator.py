@@ -6,9 +6,11 @@ The generator knows nothing of what must be found: whatever compiles is a fair q
 from __future__ import annotations
 
 import random
+import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 
+LIBRARY = "".join(f"#include <{h}>\n" for h in ("algorithm", "cmath", "functional", "memory"))
 PROLOGUE = """#include <ros/ros.h>
 
 double sensed(double Old);
@@ -22,6 +24,7 @@ struct First {
 """
 TYPES = ("double", "int", "bool")
 STARTS = {"double": "0.5", "int": "3", "bool": "false"}
+MODES = ("Mode::Off", "Mode::Slow", "Mode::Fast")
 
 
 @dataclass(frozen=True)
@@ -41,12 +44,34 @@ class Statement:
                 yield indent + "}"
 
     def smaller(self) -> Iterator[tuple[Statement, ...]]:
-        """What can stand instead: a body alone, or itself with a smaller body."""
+        """What can stand instead: a body alone, or itself with a smaller part."""
         for n, part in enumerate(self.parts):
+            instead: Iterator[str | tuple[Statement, ...]] = (
+                simpler(part) if isinstance(part, str) else smaller(part)
+            )
             if isinstance(part, tuple):
                 yield part
-                for body in smaller(part):
-                    yield (Statement((*self.parts[:n], body, *self.parts[n + 1 :])),)
+            for new in instead:
+                yield (Statement((*self.parts[:n], new, *self.parts[n + 1 :])),)
+
+
+def simpler(line: str) -> Iterator[str]:
+    """The line with a number, or one of its own parts, for a part in parentheses."""
+    for begin in (n for n, c in enumerate(line) if c == "("):
+        end, depth = begin, 0
+        for end in range(begin, len(line)):
+            depth += {"(": 1, ")": -1}.get(line[end], 0)
+            if depth == 0:
+                break
+        inside = line[begin + 1 : end]
+        for instead in dict.fromkeys(["1", *re.split(r" (?:[-+*/<>&|?:]|[<>=!&|][=&|]) ", inside)]):
+            if len(instead) < len(inside) and instead.count("(") == instead.count(")"):
+                yield line[: begin + 1] + instead + line[end:]
+
+
+def prologue(programs: list[Program]) -> str:
+    """What stands before the programs of a file."""
+    return (LIBRARY if any(p.extended for p in programs) else "") + PROLOGUE
 
 
 def smaller(body: tuple[Statement, ...]) -> Iterator[tuple[Statement, ...]]:
@@ -67,6 +92,7 @@ class Program:
 
     name: str
     body: tuple[Statement, ...]
+    extended: bool = False
 
     def text(self) -> str:
         lines = [line for s in self.body for line in s.lines("")]
@@ -101,6 +127,9 @@ class Scope:
     in_try: bool = False
     depth: int = 0
     objects: list[str] = field(default_factory=list)  # of the struct Range
+    modes: list[str] = field(default_factory=list)  # of the enumeration Mode
+    pointers: list[str] = field(default_factory=list)  # to one of the functions `picks`
+    tables: list[str] = field(default_factory=list)  # of two such
 
     def inner(self, **changes: object) -> Scope:
         return replace(
@@ -109,6 +138,9 @@ class Scope:
             constants={t: list(v) for t, v in self.constants.items()},
             functions=list(self.functions),
             objects=list(self.objects),
+            modes=list(self.modes),
+            pointers=list(self.pointers),
+            tables=list(self.tables),
             **{"depth": self.depth + 1, **changes},
         )
 
@@ -128,6 +160,8 @@ class Generator:
         self.random = random.Random(self.seed)
         self.deepest = self.random.choice([0, 0, 1, 1, 2, 4])
         self.range_fields: list[tuple[str, str]] = []
+        self.picks: list[str] = []
+        self.classes: list[str] = []
 
     def new(self, prefix: str) -> str:
         self.count += 1
@@ -164,10 +198,15 @@ class Generator:
         name = self.variable(s, type_)
         if name is None or depth > 2:
             return name or self.constant(type_)
-        kind = self.one(
+        kinds = [
             (8, "name"), (3, "constant"), (4, "scaled"), (2, "both"), (2, "call"), (2, "chosen"),
             (1, "cast"), (1, "sensed"), (1, "negative"), (1, "square"),
-        )  # fmt: skip
+        ]  # fmt: skip
+        if self.extended:
+            kinds += [(3, "limited"), (1 if type_ == "double" and s.tables else 0, "picked")]
+        kind = self.one(*kinds)
+        if kind in ("limited", "picked"):
+            return getattr(self, kind)(s, type_, name, depth)
         if kind == "constant":
             return self.constant(type_)
         if kind == "scaled":
@@ -187,18 +226,39 @@ class Generator:
             return f"static_cast<{type_}>({self.expression(s, other, depth + 1)})"
         if kind == "sensed" and type_ == "double":
             return f"sensed({name})"
-        if kind == "negative":
-            return f"(-{name})"
-        if kind == "square":
-            return f"({name} * {name})"
-        return name
+        return {"negative": f"(-{name})", "square": f"({name} * {name})"}.get(kind, name)
+
+    def picked(self, s: Scope, type_: str, name: str, depth: int) -> str:
+        """A call of one of the functions in a table."""
+        which = self.expression(s, "int", depth + 1)
+        given = self.expression(s, type_, depth + 1)
+        return f"{self.random.choice(s.tables)}[({which}) & 1]({given})"
+
+    def limited(self, s: Scope, type_: str, name: str, depth: int) -> str:
+        """A value that a function of the library compares with another one."""
+        kind = self.one((2, "min"), (2, "max"), (1, "clamp"), (2, "fabs"))
+        other = self.one((1, self.constant(type_)), (1, self.variable(s, type_)))
+        if kind == "fabs" and type_ == "double":
+            return f"std::fabs({self.expression(s, type_, depth + 1)})"
+        if kind == "clamp":
+            low, high = ("0.5", "10.0") if type_ == "double" else ("1", "7")
+            low = self.one((2, low), (1, other))
+            return f"std::clamp({name}, {low}, {high})"
+        function = "max" if kind == "max" else "min"
+        if self.chance(0.4):
+            other = self.one((1, f"({name} + {other})"), (1, f"(-{other})"))
+        return f"std::{function}({', '.join(self.random.sample([name, other], 2))})"
 
     def condition(self, s: Scope, depth: int = 0) -> str:
-        kind = self.one(
+        kinds = [
             (9, "compare"), (4, "name"), (3 if depth < 2 else 0, "and"),
             (3 if depth < 2 else 0, "or"), (1, "not"), (2, "call"), (1, "chance"),
             (1 if depth < 2 else 0, "chosen"), (1 if depth < 2 else 0, "joined"),
-        )  # fmt: skip
+        ]  # fmt: skip
+        kind = self.one(*kinds, *([(2, "mode")] if s.modes else []))
+        if kind == "mode":
+            operator = self.random.choice(["==", "!="])
+            return f"({self.random.choice(s.modes)} {operator} {self.random.choice(MODES)})"
         if kind == "name" and (name := self.variable(s, "bool")):
             return name
         if kind in ("and", "or"):
@@ -269,7 +329,16 @@ class Generator:
             (2, self.leave),
         ]
         if self.extended:
-            kinds += [(4 if s.objects else 0, self.copy), (0 if deep else 3, self.called_at_once)]
+            kinds += [
+                (4 if s.objects else 0, self.copy),
+                (0 if deep else 3, self.called_at_once),
+                (2 if s.modes else 0, self.set_mode),
+                (0 if deep or not s.modes else 2, self.switch_mode),
+                (2 if s.pointers else 0, self.point),
+                (1, self.keep),
+                (1, self.throw),
+                (0 if deep or not s.handle else 3, self.read_if),
+            ]
         made = self.one(*kinds)(s)
         return made or []
 
@@ -324,6 +393,61 @@ class Generator:
             return [*made, text(f'{s.handle}.getParam("{parameter}", {name});')]
         default = STARTS[type_]
         return [*made, text(f'{s.handle}.param("{parameter}", {name}, {default});')]
+
+    def read_if(self, s: Scope) -> list[Statement] | None:
+        """A read whose result, whether there is such a parameter, is used."""
+        type_ = self.random.choice(TYPES)
+        name = self.place(s, type_)
+        if name is None:
+            return None
+        read = f'{s.handle}.getParam("{self.name}_{self.new("p")}", {name})'
+        kind = self.one((2, "if"), (2, "else"), (1, "keep"))
+        if kind == "if":
+            return [Statement((f"if ({read})", self.small(s)))]
+        if kind == "else":
+            return [Statement((f"if (!{read})", (text(f"{name} = {STARTS[type_]};"),)))]
+        found = self.new("L")
+        s.variables["bool"].append(found)
+        return [text(f"bool {found} = {read};")]
+
+    def mode(self, s: Scope) -> str:
+        kind = self.one((3, "constant"), (2, "chosen"), (2, "cast"), (1, "other"))
+        if kind == "chosen":
+            one, other = self.random.sample(MODES, 2)
+            return f"({self.condition(s, 1)} ? {one} : {other})"
+        if kind == "cast":
+            return f"static_cast<Mode>({self.expression(s, 'int', 1)})"
+        return self.random.choice(s.modes if kind == "other" else MODES)
+
+    def set_mode(self, s: Scope) -> list[Statement]:
+        return [text(f"{self.random.choice(s.modes)} = {self.mode(s)};")]
+
+    def switch_mode(self, s: Scope) -> list[Statement]:
+        inside: list[Statement] = []
+        for mode in self.random.sample(MODES, self.random.randint(1, 3)):
+            inside += [text(f"case {mode}:"), Statement((self.small(s, in_loop=False),))]
+            if self.chance(0.8):
+                inside.append(text("break;"))
+        if self.chance(0.4):
+            inside += [text("default:"), Statement((self.small(s, in_loop=False),))]
+        return [Statement((f"switch ({self.random.choice(s.modes)})", tuple(inside)))]
+
+    def point(self, s: Scope) -> list[Statement]:
+        """A pointer to a function is set."""
+        one, other = self.random.sample(self.picks, 2)
+        way = self.one((1, f"&{one}"), (1, f"{self.condition(s, 1)} ? &{one} : &{other}"))
+        return [text(f"{self.random.choice(s.pointers)} = {way};")]
+
+    def keep(self, s: Scope) -> list[Statement]:
+        """A local variable that is there in the next call, too."""
+        type_, name = self.random.choice(TYPES), self.new("Kept")
+        begin = self.one((2, STARTS[type_]), (1, self.expression(s, type_)))
+        s.variables[type_].append(name)
+        return [text(f"static {type_} {name} = {begin};")]
+
+    def throw(self, s: Scope) -> list[Statement]:
+        what = self.random.choice(["1", "Failure()"])
+        return [Statement((f"if ({self.condition(s)})", (text(f"throw {what};"),)))]
 
     def copy(self, s: Scope) -> list[Statement]:
         """A struct is copied: into a new one, or over another."""
@@ -413,7 +537,13 @@ class Generator:
             body.append(Statement((f"if ({self.condition(s)})", (text("throw 1;"),))))
             body += self.small(s)
         handler = self.small(s)
-        return [Statement(("try", tuple(body), "catch (int)", handler))]
+        parts: list[object] = ["try", tuple(body)]
+        if self.extended:
+            if self.chance(0.4):
+                parts += ["catch (const Failure &)", self.small(s)]
+            if self.chance(0.3):
+                return [Statement((*parts, "catch (...)", handler))]
+        return [Statement((*parts, "catch (int)", handler))]
 
     def cleaned(self, s: Scope) -> list[Statement]:
         inside = (text(f'std::string {self.new("Text")}("to clean up");'), *self.small(s))
@@ -482,12 +612,20 @@ class Generator:
             s.objects.append("Global.Limits")
             out += self.template(s)
             out += self.keeper()
+            out += [text("enum class Mode { Off, Slow, Fast };"), text("struct Failure {};")]
+            if self.chance(0.5):
+                s.modes.append("GlobalMode")
+                out.append(text("static Mode GlobalMode = Mode::Off;"))
+            if self.chance(0.4):
+                out += self.chosen_functions(s)
+            if self.chance(0.5):
+                out += self.interface(s)
         for _ in range(r.randint(0, 3)):
             made, f = self.function(s, "help", r.randint(1, 3), method=False)
             out.append(made)
             s.functions.append(f)
         out += self.node(s, range_fields)
-        return Program(self.name, tuple(out))
+        return Program(self.name, tuple(out), self.extended)
 
     def template(self, s: Scope) -> list[Statement]:
         """A function template, and its instances in `s`."""
@@ -511,6 +649,121 @@ class Generator:
             text("double Kept = 0.5;"),
         )
         return [text("class Keeper : First"), Statement((inside, ";"))]
+
+    def chosen_functions(self, s: Scope) -> list[Statement]:
+        """Functions that are called through a table, or a pointer."""
+        made = []
+        for _ in range(self.random.randint(2, 3)):
+            inner = s.inner(result="double", publisher=self.one((1, None), (1, "Global.Out")))
+            inner.depth = 0
+            inner.variables["double"].append("A")
+            body = self.body(inner, self.random.randint(0, 2))
+            name = self.new("pick")
+            self.picks.append(name)
+            end = text(f"return {self.expression(inner, 'double')};")
+            made.append(Statement((f"static double {name}(double A)", (*body, end))))
+        if self.chance(0.6):
+            s.tables.append("Table")
+            two = ", ".join(self.random.sample(self.picks, 2))
+            made.append(text(f"static double (*const Table[])(double) = {{{two}}};"))
+        return made
+
+    def interface(self, s: Scope) -> list[Statement]:
+        """An interface and two or three classes."""
+        abstract = self.chance(0.6)
+        functions = ("double scaled(double A)", "bool accepts(double A)", "void act()")
+        ends = ["return A;", "return A > 1;", ""]
+        inside = [text("public:"), text("virtual ~Way() {}")]
+        for head, end in zip(functions, ends, strict=True):
+            inside.append(text(f"virtual {head} {'= 0;' if abstract else '{ ' + end + ' }'}"))
+        made = [Statement(("class Way", tuple(inside), ";"))]
+        for _ in range(self.random.randint(2, 3)):
+            name = self.new("Way")
+            self.classes.append(name)
+            inside = [text("public:")]
+            own = s.inner()
+            if self.chance(0.4):
+                inside.append(text("double Own = 1.5;"))
+                own.variables["double"].append("Own")
+            for head in functions:
+                if not abstract and self.chance(0.3):
+                    continue
+                result = head.split()[0]
+                inner = own.inner(result=result, publisher="Global.Out")
+                inner.depth = 0
+                if result != "void":
+                    inner.variables["double"].append("A")
+                body = self.body(inner, self.random.randint(0 if result != "void" else 1, 2))
+                if result != "void":
+                    body = (*body, text(f"return {self.expression(inner, result)};"))
+                inside.append(Statement((f"{head} override", body)))
+            made.append(Statement((f"class {name} : public Way", tuple(inside), ";")))
+        return made
+
+    def chosen_object(self, own: Scope) -> tuple[list[Statement], Callable[[Scope], Statement]]:
+        """A member that points to an object behind the interface, and how it is set."""
+        smart = self.chance(0.5)
+        member = "std::unique_ptr<Way> Chosen;" if smart else "Way *Chosen = nullptr;"
+        own.functions += [
+            Callable_("Chosen->scaled", "double", ["double"], [False]),
+            Callable_("Chosen->accepts", "bool", ["double"], [False]),
+            Callable_("Chosen->act", "void", [], []),
+        ]
+
+        def put(name: str) -> Statement:
+            return text(f"Chosen.reset(new {name});" if smart else f"Chosen = new {name};")
+
+        def choose(s: Scope) -> Statement:
+            one, other = self.random.sample(self.classes, 2)
+            if self.chance(0.4):
+                return put(one)
+            return Statement((f"if ({self.condition(s)})", (put(one),), "else", (put(other),)))
+
+        return [text(member)], choose
+
+    def kept_function(self, own: Scope) -> Callable[[Scope], Statement]:
+        """A std::function as a member; of a type that no other program has."""
+        own.functions.append(Callable_("asked", "double", ["double"], [False]))
+
+        def lambda_(s: Scope) -> Statement:
+            inner = s.inner(result="double", in_loop=False, handle=None)
+            inner.depth = 0
+            inner.variables["double"].append("A")
+            body = self.body(inner, self.random.randint(0, 2))
+            end = text(f"return {self.expression(inner, 'double')};")
+            head = "Asked = [this](const Range &, double A) -> double"
+            return Statement((head, (*body, end), ";"))
+
+        return lambda_
+
+    def more_members(
+        self, own: Scope, inside: list[Statement]
+    ) -> list[Callable[[Scope], Statement]]:
+        """Members of further kinds; how the constructor sets them."""
+        setting: list[Callable[[Scope], Statement]] = []
+        if self.chance(0.4):
+            body = (text("Range Inner;"), text("double Wide = 1.5;"))
+            inside += [Statement(("struct Settings", body, ";")), text("Settings Set;")]
+            own.variables["double"].append("Set.Wide")
+            for t, n in self.range_fields:
+                own.variables[t].append(f"Set.Inner.{n}")
+            own.objects.append("Set.Inner")
+        if self.chance(0.5):
+            inside.append(text("Mode Own_ = Mode::Off;"))
+            own.modes.append("Own_")
+        if self.picks and self.chance(0.7):
+            inside.append(text(f"double (*How)(double) = &{self.picks[0]};"))
+            own.pointers.append("How")
+            own.functions.append(Callable_("How", "double", ["double"], [False]))
+        if self.classes:
+            members, choose = self.chosen_object(own)
+            inside += members
+            setting.append(choose)
+        if self.chance(0.25):
+            inside.append(text("std::function<double(const Range &, double)> Asked;"))
+            inside.append(text("double asked(double A) { return Asked(Global.Limits, A); }"))
+            setting.append(self.kept_function(own))
+        return setting
 
     def node(self, s: Scope, range_fields: list[tuple[str, str]]) -> list[Statement]:
         """A class with parameters and methods, and a function that runs it."""
@@ -538,9 +791,16 @@ class Generator:
                 Callable_("Own.isLow", "bool", [], []),
                 Callable_("Own.kept", "double", [], []),
             ]
+        setting: list[Callable[[Scope], Statement]] = []
+        if self.extended:
+            setting = self.more_members(own, inside)
         reading = own.inner(handle="Handle")
         reading.depth = 0
         reads = [s for _ in range(r.randint(1, 3)) for s in self.read(reading) or []]
+        if self.extended:
+            # What is a local of the constructor is gone when a lambda is called.
+            fields = own.inner(depth=0)
+            reads += [choose(fields) for choose in setting]
         extra = self.body(reading, r.randint(0, 2))
         inside.append(Statement(("explicit Node(ros::NodeHandle &Handle)", (*reads, *extra))))
         methods = []

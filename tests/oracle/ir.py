@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import ctypes
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cache, cached_property
 
@@ -193,12 +194,16 @@ class Layout:
             at += self.size(f)
         return [*out, at]
 
-    def offset(self, written: str, indices: list[int | None]) -> int:
-        """Bytes that the indices of an address lead to; the elements of an array are one."""
+    def offset(self, written: str, indices: list[int | None], is_table: bool = False) -> int:
+        """Bytes that the indices of an address lead to; the elements of an array are one.
+
+        Not so those of a table of virtual functions.
+        """
         at = 0
         for index in indices[1:]:
             if array := self.element(written):
                 written = array[1]
+                at += self.size(written) * (index or 0) if is_table else 0
             elif self.is_struct(written) and index is not None:
                 at += self.offsets(written)[index]
                 written = self.fields(written)[index]
@@ -252,6 +257,52 @@ class Places:
             if self.is_user(file) or outer is None:
                 return Place(file, int(self.get(node, "line")), int(self.get(node, "column") or 0))
             node = outer
+
+
+def initial_pointers(module: Module, name: str) -> dict[int, list[str]]:
+    """Where pointers are in the initial value of a global, and how they are written."""
+    text = module.globals[name].text
+    found = re.search(r" (?:constant|global) (.*)", text)
+    out: dict[int, list[str]] = {}
+    # Only what has an initial value with addresses in it is looked into.
+    if found and "@" in found[1] and " external " not in text:
+        written, rest = split_type(found[1])
+        for at, pointer in pointers_in(module.layout, written, split_type(rest)[0], is_table(name)):
+            out.setdefault(at, []).append(pointer)
+    return out
+
+
+def is_table(name: str) -> bool:
+    """True for a table of virtual functions."""
+    return name.startswith("_ZTV")
+
+
+def split_type(text: str) -> tuple[str, str]:
+    """The first word or bracket of `text`, and what is behind it."""
+    depth = quoted = 0
+    for at, c in enumerate(text):
+        quoted ^= c == '"'
+        depth += 0 if quoted else {"(": 1, "[": 1, "{": 1, ")": -1, "]": -1, "}": -1}.get(c, 0)
+        # An address that is computed is of several words.
+        ends = c in " ," and depth == 0 and not quoted
+        if ends and not re.match(r"getelementptr( inbounds| nuw| nusw| inrange\S*)*$", text[:at]):
+            return text[:at], text[at:].strip(" ,")
+    return text, ""
+
+
+def pointers_in(
+    layout: Layout, written: str, value: str, of_table: bool
+) -> Iterator[tuple[int, str]]:
+    """The pointers in a constant of type `written`, each with its offset."""
+    if value.startswith(("@", "getelementptr")):
+        yield 0, value
+    if not value.startswith(("[", "{")):
+        return
+    for n, item in enumerate(split_commas(value[1:-1].strip())):
+        type_, inner = split_type(item)
+        step = layout.offset(written, [0, n], of_table)
+        for at, pointer in pointers_in(layout, type_, inner, of_table):
+            yield step + at, pointer
 
 
 def number(v: Value) -> int | None:

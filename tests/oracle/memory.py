@@ -11,9 +11,23 @@ from dataclasses import dataclass
 
 import networkx as nx
 
-from tests.oracle.ir import Argument, Function, Instruction, Module, Value, number, split_commas
+from tests.oracle.ir import (
+    Argument,
+    Function,
+    Instruction,
+    Module,
+    Value,
+    initial_pointers,
+    is_table,
+    number,
+    split_commas,
+    split_type,
+)
 
 Location = tuple[Value, int]
+UNKNOWN = 4096
+DEEPEST = 1
+"""How often what is behind an unknown pointer is told apart: a list has no end."""
 SILENT = re.compile(r"llvm\.(dbg|eh|lifetime|assume|experimental|invariant|donothing|stackrestore)")
 
 
@@ -44,6 +58,16 @@ class Memory:
         self.targets: dict[Value, set[Location]] = {}
         self.stored: dict[Location, set[Location]] = {}
         self.below: dict[Location, Value] = {}
+        for name, g in module.globals.items():
+            for at, written in initial_pointers(module, name).items():
+                known = self.stored.setdefault((g, at), set())
+                known |= {t for w in written for t in self.constant(w)}
+        # What is called through pointers is handed what those calls hand over; only where there
+        # turn out to be none, nobody knows what.
+        held = {o for known in self.stored.values() for o, _ in known} | set(program.mentions)
+        self.waiting = {o for o in held if isinstance(o, Function)}
+        self.solve()
+        self.waiting.clear()
         self.solve()
         self.kept = {o for targets in self.stored.values() for o, _ in targets}
         self.writes: list[Write] = []
@@ -66,12 +90,25 @@ class Memory:
                 self.add(i, self.computed(i))
                 if i.opcode == "store":
                     self.put(i.operands[1], self.of(i.operands[0]))
+                if i.is_call and not isinstance(i.callee, Function):
+                    self.changed |= self.program.enters(i, self.called(i))
                 for copy in self.copies_of(i):
                     for (o, at), values in list(self.stored.items()):
                         inside = at - copy.source[1]
                         if o is copy.source[0] and 0 <= inside < copy.size:
                             to = (copy.to[0], copy.to[1] + inside)
                             self.extend(self.stored.setdefault(to, set()), values)
+
+    def called(self, call: Instruction) -> set[Function]:
+        """What a call through a pointer enters: by what the pointer can be, but a virtual
+        function is that of any class of the hierarchy."""
+        out = {o for o, at in self.of(call.callee) if isinstance(o, Function)}
+        if isinstance(call.callee, Instruction) and call.callee.opcode == "load":
+            for table, at in self.of(call.callee.operands[0]):
+                for other in self.program.related(table):
+                    known = self.stored.get((other, at), set())
+                    out |= {o for o, _ in known if isinstance(o, Function)}
+        return {f for f in out if len(f.arguments) == len(call.arguments)}
 
     def extend(self, known: set[Location], new: set[Location]) -> None:
         if not new <= known:
@@ -87,7 +124,7 @@ class Memory:
 
     def argument(self, a: Argument) -> None:
         calls = self.program.callers(a.function)
-        if a.text.startswith("ptr") and not calls:
+        if a.text.startswith("ptr") and not calls and a.function not in self.waiting:
             self.add(a, {(a, 0)})
         for call in calls:
             if a.index < len(call.arguments):
@@ -104,19 +141,23 @@ class Memory:
     def constant(self, text: str) -> set[Location]:
         """What an address that is computed from a global leads to."""
         if text.startswith("@"):
-            known = self.module.globals.get(text[1:])
+            name = text[1:].strip('"')
+            known = self.module.globals.get(name) or self.module.functions.get(name)
             return {(known, 0)} if known else set()
-        found = re.match(r"getelementptr (?:inbounds |nuw |nusw )*\((.*)\)$", text)
+        found = re.match(
+            r"getelementptr (?:inbounds |nuw |nusw |inrange\([^)]*\) )*\((.*)\)$", text
+        )
         if not found:
             return set()
         written, pointer, *indices = split_commas(found[1])
-        by = self.move(written, [int(i.split()[1]) for i in indices])
-        return {(o, at + by) for o, at in self.constant(pointer.removeprefix("ptr "))}
+        steps = [int(i.split()[1]) for i in indices]
+        begin = self.constant(pointer.removeprefix("ptr "))
+        return {(o, at + self.move(written, steps, is_table(o.name))) for o, at in begin}
 
-    def move(self, written: str, indices: list[int | None]) -> int:
+    def move(self, written: str, indices: list[int | None], of_table: bool = False) -> int:
         layout = self.module.layout
         first = indices[0] or 0
-        return first * layout.size(written) + layout.offset(written, indices)
+        return first * layout.size(written) + layout.offset(written, indices, of_table)
 
     def computed(self, i: Instruction) -> set[Location]:
         """What the pointer that `i` results in leads to."""
@@ -124,7 +165,9 @@ class Memory:
             return {(i, 0)}
         if i.opcode == "getelementptr":
             by = self.move(source_type(i), [number(v) for v in i.operands[1:]])
-            return {(o, at + by) for o, at in self.of(i.operands[0])}
+            moved = {(o, at + by) for o, at in self.of(i.operands[0])}
+            # What is beyond its object is nothing: in a cycle there would be no end of it.
+            return {(o, at) for o, at in moved if at <= self.size(o)}
         if i.opcode in ("phi", "select", "freeze", "bitcast", "addrspacecast"):
             return set().union(*map(self.of, i.operands))
         if i.opcode == "load" and i.type == "ptr":
@@ -135,12 +178,21 @@ class Memory:
             return set().union(*map(self.of, returned)) if bodies else {(i, 0)}
         return set()
 
+    def size(self, o: Value) -> int:
+        """The bytes of an object; of one whose type is not known, more than most have."""
+        if isinstance(o, Instruction) and o.opcode == "alloca":
+            return self.module.layout.size(split_type(o.text.split("alloca ", 1)[1])[0]) or UNKNOWN
+        return UNKNOWN
+
     def behind(self, location: Location) -> set[Location]:
         """What a pointer in memory leads to; where nobody stored one, an object of its own."""
         if self.stored.get(location):
             return self.stored[location]
         if isinstance(location[0], Argument) or location[0].kind == "unknown":
-            unknown = self.below.setdefault(location, Value("unknown", f"behind {location}"))
+            if location[0].text.count("behind") > DEEPEST:
+                return {(location[0], 0)}
+            text = f"behind {location[0].text} at {location[1]}"
+            unknown = self.below.setdefault(location, Value("unknown", text))
             return {(unknown, 0)}
         return set()
 
@@ -331,13 +383,17 @@ class Program:
         self.functions = [f for f in module.functions.values() if self.is_known(f)]
         self.instructions = [i for f in self.functions for i in f.instructions]
         self.calls: dict[Function, list[Instruction]] = {}
+        self.through_pointers: dict[Instruction, list[Function]] = {}
+        self.graph = nx.DiGraph()
         for i in self.instructions:
             if i.is_call:
                 for f in self.callees(i):
-                    self.calls.setdefault(f, []).append(i)
-        self.graph = nx.DiGraph()
-        for f, calls in self.calls.items():
-            self.graph.add_edges_from((c.function, f) for c in calls)
+                    self.add_call(i, f)
+        self.mentions: dict[Function, list[Instruction]] = {}
+        for i in self.instructions:
+            for f in self.mentioned(i):
+                self.mentions.setdefault(f, []).append(i)
+        self.families = hierarchy(module)
         self.step_graphs: dict[Function, nx.DiGraph] = {}
 
     def is_known(self, f: Function) -> bool:
@@ -351,7 +407,36 @@ class Program:
     def callees(self, call: Instruction) -> list[Function]:
         """The functions that `call` can enter and that are looked into."""
         f = call.callee
-        return [f] if isinstance(f, Function) and self.is_known(f) else []
+        if not isinstance(f, Function):
+            return self.through_pointers.get(call, [])
+        return [f] if self.is_known(f) else []
+
+    def add_call(self, call: Instruction, f: Function) -> None:
+        self.calls.setdefault(f, []).append(call)
+        self.graph.add_edge(call.function, f)
+
+    def enters(self, call: Instruction, found: set[Function]) -> bool:
+        """Notes what a call through a pointer can enter; True where that is new."""
+        known = self.through_pointers.setdefault(call, [])
+        new = [f for f in found if self.is_known(f) and f not in known]
+        for f in sorted(new, key=lambda f: f.name):
+            known.append(f)
+            self.add_call(call, f)
+        return bool(new)
+
+    def mentioned(self, i: Instruction) -> list[Function]:
+        """The functions whose address `i` hands on."""
+        values = i.arguments if i.is_call else i.operands
+        names = [
+            n for v in values if v.kind == "constant" for n in re.findall(r"@([\w.$]+)", v.text)
+        ]
+        found = [v for v in values if isinstance(v, Function)]
+        found += [self.module.functions[n] for n in names if n in self.module.functions]
+        return [f for f in dict.fromkeys(found) if self.is_known(f)]
+
+    def related(self, table: Value) -> set[Value]:
+        """The tables of virtual functions of the classes that `table` is related to."""
+        return self.families.get(table, set())
 
     def callers(self, f: Function) -> list[Instruction]:
         return self.calls.get(f, [])
@@ -382,6 +467,20 @@ class Program:
                 nx.add_path(graph, b.instructions)
                 graph.add_edges_from((b.terminator, s.instructions[0]) for s in b.terminator.blocks)
         return self.step_graphs[f]
+
+
+def hierarchy(module: Module) -> dict[Value, set[Value]]:
+    """For each table of virtual functions those of classes with a base in common."""
+    ids = dict(re.findall(r'^!(\d+) = !\{i64 \d+, !"(_ZTS[^"]*)"\}', module.text, re.M))
+    members: dict[str, set[Value]] = {}
+    bases: dict[Value, set[str]] = {}
+    for name, g in module.globals.items():
+        if name.startswith("_ZTV"):
+            types = {ids[n] for n in re.findall(r"!type !(\d+)", g.text) if n in ids}
+            bases[g] = {t for t in types if not t.startswith("_ZTSM")}
+            for t in bases[g]:
+                members.setdefault(t, set()).add(g)
+    return {g: set().union(*(members[t] for t in types)) for g, types in bases.items()}
 
 
 def source_type(i: Instruction) -> str:

@@ -10,18 +10,20 @@ import re
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 
 from tests.oracle.checker import check
-from tests.oracle.generator import PROLOGUE, Program, program
+from tests.oracle.generator import Program, program, prologue
 
 TOP = Path(__file__).resolve().parents[2]
 INPUTS = TOP / "tests/lit/Inputs"
 PLUGIN = TOP / "build/install/lib/tpc/TpcPasses.so"
 BATCH = 20
+# What the check does grows faster than the file.
+EXTENDED_BATCH = 1
 COMPILE = [
     "clang++-19",
     "-std=c++17",
@@ -142,7 +144,7 @@ def tool(command: list[str]) -> str:
 
 def compare(programs: list[Program], folder: Path, level: str = "-O2") -> list[Answers]:
     """The answers for each of the programs, which are compiled as one file."""
-    source, ranges = PROLOGUE, []
+    source, ranges = prologue(programs), []
     for p in programs:
         first = source.count("\n") + 1
         source += p.text()
@@ -167,6 +169,13 @@ def shrink(p: Program, differs: Callable[[Program], bool], seconds: float = 120)
             position += 1
 
 
+def batches(seeds: range, extended: bool) -> Iterator[range]:
+    """The seeds of programs that are compiled as one file."""
+    size = EXTENDED_BATCH if extended else BATCH
+    for begin in range(0, len(seeds), size):
+        yield seeds[begin : begin + size]
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--programs", type=int, default=200)
@@ -180,8 +189,7 @@ def main() -> int:
     folder, level = options.out, options.level
     findings, differing = 0, []
     seeds = range(options.seed, options.seed + options.programs)
-    for begin in range(0, len(seeds), BATCH):
-        batch = seeds[begin : begin + BATCH]
+    for batch in batches(seeds, options.extended):
         programs = [program(s, f"p{s}", options.extended) for s in batch]
         try:
             compared = compare(programs, folder, level)
@@ -203,7 +211,7 @@ def main() -> int:
 def report_smaller(p: Program, kept: Path, level: str, seconds: float) -> None:
     """Makes a differing program smaller and shows it with both answers."""
     kept.mkdir(exist_ok=True)
-    (kept / "program.cpp").write_text(PROLOGUE + p.text())
+    (kept / "program.cpp").write_text(prologue([p]) + p.text())
 
     def differs(candidate: Program) -> bool:
         try:
@@ -215,7 +223,7 @@ def report_smaller(p: Program, kept: Path, level: str, seconds: float) -> None:
         print("  agrees when it is alone")
         return
     small = shrink(p, differs, seconds)
-    (kept / "small.cpp").write_text(PROLOGUE + small.text())
+    (kept / "small.cpp").write_text(prologue([small]) + small.text())
     difference = compare([small], kept / "try", level)[0].difference()
     (kept / "small.txt").write_text("\n".join([*difference, ""]))
     numbered = [f"  {n:3} {line}" for n, line in enumerate(small.text().splitlines())]
