@@ -157,8 +157,10 @@ void Slicer::control(const Instruction &I) {
   if (Ifs.isControlledByEntry(I)) {
     for (CallBase *Call : Calls.callers(I.getFunction()))
       enter(Call, Runs, Why::Calls);
+    // One of several functions is chosen as a value is.
     for (Instruction *Mention : Calls.mentions(I.getFunction()))
-      enter(Mention, Runs, Why::Mentions);
+      enter(Mention, isa<PHINode, SelectInst>(Mention) ? Gives : Runs,
+            Why::Mentions);
   }
 }
 

@@ -298,9 +298,10 @@ void Flow::findEntered() {
   DenseMap<unsigned, SmallVector<unsigned, 2>> Gone;
   for (const Copy &C : Copies)
     Gone[idOf(C.BB)].push_back(idOf(C.Next));
-  for (const auto &[N, Ways] : Gone)
-    if (!Entered[N])
-      erase_if(Plain[N], [&](unsigned S) { return !is_contained(Ways, S); });
+  for (const auto &Of : Gone)
+    if (!Entered[Of.first])
+      erase_if(Plain[Of.first],
+               [&](unsigned S) { return !is_contained(Of.second, S); });
 }
 
 } // namespace tpc
