@@ -221,11 +221,12 @@ static bool isLocalOf(const Location &L, const Instruction &At) {
   return Local && Local->getFunction() == At.getFunction();
 }
 
-/// The pointer of \p I, a load or store, where it leads to the one variable
-/// that \p I touches; null where that is a part of what is touched.
+/// The pointer of \p I, a load or store, where what it leads to is all that
+/// \p I touches; null where that is a part of it.
 const Value *AccessResult::placeOf(const Instruction &I) const {
   auto [It, New] = Places.try_emplace(&I, nullptr);
-  if (New && touched(I).size() == 1)
+  if (New &&
+      none_of(partsOf(I), [](const ScalarPart &Part) { return Part.Size; }))
     It->second = getLoadStorePointerOperand(&I);
   return It->second;
 }

@@ -574,7 +574,7 @@ def constant_number(v: Value) -> float | None:
     """The value of a constant; None where `v` is none."""
     if (known := number(v)) is not None:
         return float(known)
-    found = re.fullmatch(r"double (\S+)", v.text) if v.kind == "constant" else None
+    found = re.fullmatch(r"double ([-+.\w]*\d[-+.\w]*)", v.text) if v.kind == "constant" else None
     if not found:
         return None
     if found[1].startswith("0x"):
