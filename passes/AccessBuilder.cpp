@@ -147,6 +147,17 @@ void AccessResult::Builder::fileCall(CallBase &Call) {
   }
 }
 
+/// Where \p Store keeps the address of another function's local, notes that.
+void AccessResult::Builder::fileKept(const StoreInst &Store) {
+  const Value *Kept = Store.getValueOperand();
+  if (!Kept->getType()->isPointerTy() || isa<Constant>(Kept))
+    return;
+  for (const Location &L : R.resolve(Kept, false))
+    if (const auto *Local = dyn_cast_or_null<AllocaInst>(L.Root);
+        Local && Local->getFunction() != Store.getFunction() && L.Path.empty())
+      R.KeptElsewhere.insert(Local);
+}
+
 void AccessResult::Builder::fileAccesses() {
   for (Function &F : definedFunctions(M)) {
     if (Rules.isOpaque(F))
@@ -165,6 +176,7 @@ void AccessResult::Builder::fileAccesses() {
           R.Stores.push_back({&I, L});
           addWrite(I, L);
         }
+        fileKept(*Store);
       } else if (auto *Update = dyn_cast<AtomicRMWInst>(&I)) {
         for (const Location &L : R.resolve(Update->getPointerOperand(), true)) {
           R.file(R.StoreIndex, R.Stores.size(), L);

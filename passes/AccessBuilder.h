@@ -22,6 +22,7 @@ struct AccessResult::Builder {
   /// Finds what the pointers of the module lead to.
   void findTargets();
   /// Files what reads and writes; after findTargets.
+  void fileKept(const llvm::StoreInst &Store);
   void fileAccesses();
 
 private:

@@ -16,7 +16,8 @@ static constexpr unsigned MaxParts = 256;
 /// True for the functions that only free or copy what they are handed, or are a
 /// part of the language.
 static bool callsNothing(StringRef Name) {
-  return Name.starts_with("_Zd") || Name.starts_with("_Zn") ||
+  return Name.starts_with("_Zdl") || Name.starts_with("_Zda") ||
+         Name.starts_with("_Znw") || Name.starts_with("_Zna") ||
          Name.starts_with("__") || Name == "free" || Name == "memcmp";
 }
 
@@ -63,6 +64,8 @@ const CalledBack::Callable &CalledBack::ofType(const DIType *T) {
     const auto *Class = dyn_cast<DICompositeType>(Part);
     if (!Class)
       continue;
+    // What is in a class of another unit's is not known.
+    Out->Kept |= Class->isForwardDecl();
     if (Class->getTag() == dwarf::DW_TAG_array_type)
       Add(Class->getBaseType());
     else if (!IsBase)

@@ -259,6 +259,8 @@ private:
   std::unique_ptr<DebugTypes> Debug;
   /// The locals that code elsewhere can reach without naming them.
   llvm::DenseSet<const llvm::Value *> Escaped;
+  /// The locals whose address another function has stored somewhere.
+  llvm::DenseSet<const llvm::Value *> KeptElsewhere;
   /// Of globals whose type is another for the sake of their initial value.
   llvm::DenseMap<const llvm::GlobalVariable *, llvm::StructType *>
       ClassOfGlobal;

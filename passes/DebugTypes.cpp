@@ -108,7 +108,7 @@ const DICompositeType *DebugTypes::asStruct(const DIType *T,
 
 /// `ns::Outer::Class` for \p Class, without template arguments, as clang names
 /// its type.
-static std::string qualifiedName(const DICompositeType &Class) {
+static std::string scopedName(const DICompositeType &Class) {
   std::string Name = Class.getName().split('<').first.str();
   for (const DIScope *S = Class.getScope(); S; S = S->getScope()) {
     if (!isa<DINamespace, DICompositeType>(S))
@@ -125,7 +125,7 @@ StructType *DebugTypes::classOf(const GlobalVariable &Global,
   // Of a class that nobody looks into, there is only its base class.
   const auto *Class = dyn_cast_or_null<DICompositeType>(pointee(&Global));
   while (Class && Class->getSizeInBits() == Size * 8) {
-    std::string Name = qualifiedName(*Class);
+    std::string Name = scopedName(*Class);
     for (StructType *T : All)
       if (T->isSized() && Layout.getTypeAllocSize(T) == Size &&
           plainClassName(*T) == Name)

@@ -43,6 +43,7 @@ struct Findings {
   std::vector<Report> Reports;
   unsigned NotInstrumented = 0;
   std::string Failure;
+  bool IsChanged = false; ///< the unit, by what reports need
 };
 
 namespace {
@@ -73,6 +74,7 @@ static void plan(AnalysedModule &Analysed, ModuleAnalysisManager &AM,
   const GatheredResults &R = AM.getResult<GatherResults>(Seen);
   if (R.Comparisons.empty() && !(Opts.Constants && !R.Constants.empty()))
     return;
+  Out.IsChanged = Analysed.isSeparated();
   if (!Analysed.bringBack()) {
     Out.Failure = "the analysed copy is another program";
     return;
@@ -133,9 +135,10 @@ static Findings analyseSafely(Module &M, const Options &Opts) {
   });
   if (!Survived) {
     // What a crash left half done cannot be destroyed.
-    (void)Out.release();
+    bool IsChanged = Out.release()->IsChanged;
     Out = std::make_unique<Findings>();
     Out->Failure = "the analysis crashed";
+    Out->IsChanged = IsChanged;
   }
   return std::move(*Out);
 }
@@ -151,10 +154,9 @@ PreservedAnalyses LinkUnitPass::run(Module &M, ModuleAnalysisManager &) {
     if (std::string Why = insertReports(M, F.Reports); !Why.empty())
       F.Failure = std::move(Why);
   if (!F.Failure.empty()) {
-    // Where reports were planned, what they need was done before.
     warn(Opts,
-         F.Failure + (F.Reports.empty() ? "; this link unit is left as it was"
-                                        : "; this link unit gets no reports"));
+         F.Failure + (F.IsChanged ? "; this link unit gets no reports"
+                                  : "; this link unit is left as it was"));
     F.Unit =
         describeFailure(Opts, F.Failure, F.Unit.Fields.getObject("counts"));
   } else if (json::Object *Counts = F.Unit.Fields.getObject("counts")) {

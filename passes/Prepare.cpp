@@ -10,6 +10,7 @@
 #include "llvm/ADT/SmallPtrSet.h"
 #include "llvm/Analysis/InlineCost.h"
 #include "llvm/IR/DebugInfo.h"
+#include "llvm/IR/InlineAsm.h"
 #include "llvm/IR/InstIterator.h"
 #include "llvm/IR/Instructions.h"
 #include "llvm/IR/IntrinsicInst.h"
@@ -112,15 +113,18 @@ static void callByOwnName(Module &M) {
 }
 
 /// True where a copy of \p F in place of \p F cannot be told from it: another
-/// link unit may have the one that counts, and the addresses of labels, which a
-/// table outside may hold, stay those of \p F.
+/// link unit may have the one that counts, the addresses of labels, which a
+/// table outside may hold, stay those of \p F, and assembly may define names.
 static bool mayBeCopied(const Function &F) {
   return !F.isDeclarationForLinker() && !F.isInterposable() &&
          none_of(F,
                  [](const BasicBlock &BB) { return BB.hasAddressTaken(); }) &&
          none_of(instructions(F), [](const Instruction &I) {
            const auto *Call = dyn_cast<CallBase>(&I);
-           return Call && (Call->cannotDuplicate() || Call->isMustTailCall());
+           const auto *Assembly =
+               Call ? dyn_cast<InlineAsm>(Call->getCalledOperand()) : nullptr;
+           return Call && (Call->cannotDuplicate() || Call->isMustTailCall() ||
+                           (Assembly && !Assembly->getAsmString().empty()));
          });
 }
 
@@ -171,6 +175,16 @@ static bool inlineTransparent(Module &M) {
 /// Copies may add as many instructions to a link unit in one go.
 static constexpr unsigned MaxAdded = 50000;
 
+/// A name for a copy of \p F. It depends on the names in the module alone; what
+/// LLVM would add to one that is taken depends on how the module came about.
+static std::string copyName(const Function &F) {
+  for (unsigned N = 1;; ++N) {
+    std::string Name = (F.getName() + ".tpc." + Twine(N)).str();
+    if (!F.getParent()->getNamedValue(Name))
+      return Name;
+  }
+}
+
 /// Gives each call of a function of \p Names in \p M a copy of the function, so
 /// that what one call hands it is not taken for what another does. True where
 /// something was copied.
@@ -191,7 +205,7 @@ static bool separateCalls(Module &M, ArrayRef<std::string> Names) {
     for (CallBase *Call : drop_begin(Calls)) {
       ValueToValueMapTy Map;
       Function *Copy = CloneFunction(F, Map);
-      Copy->setName(F->getName() + ".tpc");
+      Copy->setName(copyName(*F));
       Copy->setLinkage(GlobalValue::InternalLinkage);
       Copy->setVisibility(GlobalValue::DefaultVisibility);
       Copy->setComdat(nullptr);
@@ -247,6 +261,7 @@ Separation::Effect AnalysedModule::copy() {
   Separation::Effect Done = Calls.applyTo(*Next);
   if (!Copy || Done.LastRound) {
     Instructions.clear();
+    Opcodes.clear();
     Copy = std::move(Next);
     IsSeparated = Done.Any;
   }
@@ -255,8 +270,10 @@ Separation::Effect AnalysedModule::copy() {
 
 void AnalysedModule::prepareCopy() {
   for (Function &F : *Copy)
-    for (Instruction &I : instructions(F))
+    for (Instruction &I : instructions(F)) {
       Instructions.emplace_back(&I);
+      Opcodes.push_back(I.getOpcode());
+    }
   allowOptimisation(*Copy);
   prepare(*Copy, Opts);
 }
@@ -280,7 +297,9 @@ bool AnalysedModule::bringBack() {
   for (Function &F : M)
     for (Instruction &I : instructions(F))
       There.push_back(&I);
-  if (There.size() != Instructions.size())
+  if (!equal(There, Opcodes, [](const Instruction *I, unsigned Opcode) {
+        return I->getOpcode() == Opcode;
+      }))
     return false;
   SmallPtrSet<const Value *, 0> Promoted;
   for (auto [I, Now] : zip_equal(There, Instructions))

@@ -59,6 +59,8 @@ public:
   /// nothing has changed, where there are none that can be.
   bool separate(std::vector<std::string> Names);
 
+  /// True where bringBack() changes the module that was copied.
+  bool isSeparated() const { return IsSeparated; }
   /// Does to \p M, the module that was copied, what separate() asked for, and
   /// finds the counterparts of the values of the analysed module there. False
   /// where that is not the same program.
@@ -79,6 +81,7 @@ private:
   /// The instructions of Copy as it was before it was prepared, in their order;
   /// what promotion replaced them with, or null.
   std::vector<llvm::WeakTrackingVH> Instructions;
+  std::vector<unsigned char> Opcodes; ///< of these, as they were
   llvm::DenseMap<const llvm::Value *, llvm::Value *> Back;
 };
 

@@ -49,6 +49,8 @@ static bool keepsNothing(const Use &U) {
 /// goes elsewhere as well, after which any call may be.
 std::optional<SmallVector<Instruction *, 4>>
 AccessResult::handedTo(const AllocaInst &Local) const {
+  if (KeptElsewhere.contains(&Local))
+    return std::nullopt;
   SmallVector<Instruction *, 4> Calls;
   SmallSetVector<const Value *, 8> Names;
   Names.insert(&Local);

@@ -13,7 +13,7 @@
 // seen all, and not where only its static information is asked for.
 // CHECK: warning: node: the analysis crashed; this link unit is left as it was
 // REPORTS-DAG: call void @_Z7log_onePcbddb
-// REPORTS-DAG: define internal {{.*}} @_Z4loadRN3ros10NodeHandleEPKcRd.tpc(
+// REPORTS-DAG: define internal {{.*}} @_Z4loadRN3ros10NodeHandleEPKcRd.tpc.1(
 #include <ros/ros.h>
 
 #include <algorithm>
