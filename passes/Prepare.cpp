@@ -269,6 +269,9 @@ Separation::Effect AnalysedModule::copy() {
 }
 
 void AnalysedModule::prepareCopy() {
+  // A handle that is moved takes itself out of a list and into it again.
+  Instructions.reserve(Copy->getInstructionCount());
+  Opcodes.reserve(Instructions.capacity());
   for (Function &F : *Copy)
     for (Instruction &I : instructions(F)) {
       Instructions.emplace_back(&I);
