@@ -89,12 +89,17 @@ bool AccessResult::mayBe(const Location &A, const Location &B) const {
 }
 
 void AccessResult::findClassesOfGlobals(const Module &M) {
-  std::vector<StructType *> All = M.getIdentifiedStructTypes();
-  for (const GlobalVariable &Global : M.globals())
-    if (auto *T = dyn_cast<StructType>(Global.getValueType());
-        T && T->isLiteral())
-      if (StructType *Class = Debug->classOf(Global, All))
-        ClassOfGlobal[&Global] = Class;
+  // All types of a module are not at hand; few modules need them.
+  std::optional<std::vector<StructType *>> All;
+  for (const GlobalVariable &Global : M.globals()) {
+    const auto *T = dyn_cast<StructType>(Global.getValueType());
+    if (!T || !T->isLiteral() || !Debug->pointee(&Global))
+      continue;
+    if (!All)
+      All = M.getIdentifiedStructTypes();
+    if (StructType *Class = Debug->classOf(Global, *All))
+      ClassOfGlobal[&Global] = Class;
+  }
 }
 
 /// The type that the variable at \p L was declared with, also where \p L is one
