@@ -114,8 +114,7 @@ void AccessResult::Builder::fileCall(CallBase &Call) {
   const Rule *Row = Rules.match(Call);
   if (Row && Row->Kind == Rule::Text && Row->Relation != "copy")
     return;
-  const Function *Callee = Call.getCalledFunction();
-  if (Callee && endsLife(*Callee))
+  if (endsLife(Call))
     return;
   if (const Value *Pointer = Row ? alwaysReplaced(Call, *Row) : nullptr)
     fileReplacing(Call, Pointer);

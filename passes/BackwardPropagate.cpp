@@ -297,8 +297,7 @@ void Slicer::derivedPointer(const Value *Pointer) {
       enter(I, Gives, Why::Writes);
     else if (auto *Call = dyn_cast<CallBase>(I);
              Call && !isa<IntrinsicInst>(I) && !Settled.contains(I) &&
-             !(Call->getCalledFunction() &&
-               endsLife(*Call->getCalledFunction())))
+             !endsLife(*Call))
       enter(I, Touches, Why::Writes);
   }
 }

@@ -1,6 +1,8 @@
 //===- CalledBack.cpp -----------------------------------------------------===//
 #include "CalledBack.h"
 
+#include "Names.h"
+
 #include "llvm/ADT/PointerIntPair.h"
 #include "llvm/BinaryFormat/Dwarf.h"
 #include "llvm/IR/Module.h"
@@ -16,9 +18,8 @@ static constexpr unsigned MaxParts = 256;
 /// True for the functions that only free or copy what they are handed, or are a
 /// part of the language.
 static bool callsNothing(StringRef Name) {
-  return Name.starts_with("_Zdl") || Name.starts_with("_Zda") ||
-         Name.starts_with("_Znw") || Name.starts_with("_Zna") ||
-         Name.starts_with("__") || Name == "free" || Name == "memcmp";
+  return givesMemoryBack(Name) || Name.starts_with("_Znw") ||
+         Name.starts_with("_Zna") || Name.starts_with("__") || Name == "memcmp";
 }
 
 const ClassHierarchy &CalledBack::classes() {

@@ -4,6 +4,7 @@
 #include "llvm/ADT/StringExtras.h"
 #include "llvm/Demangle/Demangle.h"
 #include "llvm/IR/DebugInfoMetadata.h"
+#include "llvm/IR/InstrTypes.h"
 
 #include <cstdlib>
 
@@ -152,11 +153,15 @@ static bool isDestructor(StringRef Mangled) {
          Demangler.isCtorOrDtor();
 }
 
-bool endsLife(const Function &F) {
-  StringRef Name = F.getName();
-  return F.isDeclaration() &&
-         (Name == "free" || Name.starts_with("_ZdlPv") ||
-          Name.starts_with("_ZdaPv") || isDestructor(Name));
+bool givesMemoryBack(StringRef Mangled) {
+  return Mangled == "free" || Mangled.starts_with("_ZdlPv") ||
+         Mangled.starts_with("_ZdaPv");
+}
+
+bool endsLife(const CallBase &Call) {
+  const Function *F = Call.getCalledFunction();
+  return F && F->isDeclaration() &&
+         (givesMemoryBack(F->getName()) || isDestructor(F->getName()));
 }
 
 StringRef plainClassName(const StructType &T) {

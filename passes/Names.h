@@ -38,9 +38,12 @@ std::string classArgument(const llvm::Function &F);
 /// there, else what the code tells; empty for an object.
 std::string resultType(const llvm::Function &F);
 
-/// True where \p F has no body and ends the life of the object that it is
-/// handed: whatever it writes there, nobody reads it.
-bool endsLife(const llvm::Function &F);
+/// True for the mangled names of the functions that give memory back.
+bool givesMemoryBack(llvm::StringRef Mangled);
+
+/// True where \p Call calls a function without a body that ends the life of the
+/// object that it is handed: whatever it writes there, nobody reads it.
+bool endsLife(const llvm::CallBase &Call);
 
 /// `ns::Node` for the type `class.ns::Node.7`: without the kind, and without
 /// what only tells two copies of one class apart.

@@ -175,14 +175,15 @@ static bool inlineTransparent(Module &M) {
 /// Copies may add as many instructions to a link unit in one go.
 static constexpr unsigned MaxAdded = 50000;
 
-/// A name for a copy of \p F. It depends on the names in the module alone; what
-/// LLVM would add to one that is taken depends on how the module came about.
-static std::string copyName(const Function &F) {
-  for (unsigned N = 1;; ++N) {
-    std::string Name = (F.getName() + ".tpc." + Twine(N)).str();
-    if (!F.getParent()->getNamedValue(Name))
-      return Name;
-  }
+/// A name for a copy of \p F, after \p Number, the last one's. It depends on
+/// the names in the module alone; what LLVM would add to one that is taken
+/// depends on how the module came about.
+static std::string copyName(const Function &F, unsigned &Number) {
+  std::string Name;
+  do
+    Name = (F.getName() + ".tpc." + Twine(++Number)).str();
+  while (F.getParent()->getNamedValue(Name));
+  return Name;
 }
 
 /// Gives each call of a function of \p Names in \p M a copy of the function, so
@@ -202,10 +203,11 @@ static bool separateCalls(Module &M, ArrayRef<std::string> Names) {
     if (Added + More > MaxAdded)
       continue;
     Added += More;
+    unsigned Number = 0;
     for (CallBase *Call : drop_begin(Calls)) {
       ValueToValueMapTy Map;
       Function *Copy = CloneFunction(F, Map);
-      Copy->setName(copyName(*F));
+      Copy->setName(copyName(*F, Number));
       Copy->setLinkage(GlobalValue::InternalLinkage);
       Copy->setVisibility(GlobalValue::DefaultVisibility);
       Copy->setComdat(nullptr);
@@ -252,7 +254,7 @@ AnalysedModule::AnalysedModule(Module &M, const Options &Opts)
   prepareCopy();
 }
 
-Separation::Effect AnalysedModule::copy() {
+bool AnalysedModule::copy() {
   // Not on the stack: a crash below leaves this function without unwinding, and
   // the values of M know the map.
   auto Map = std::make_unique<ValueToValueMapTy>();
@@ -265,7 +267,7 @@ Separation::Effect AnalysedModule::copy() {
     Copy = std::move(Next);
     IsSeparated = Done.Any;
   }
-  return Done;
+  return Done.LastRound;
 }
 
 void AnalysedModule::prepareCopy() {
@@ -285,7 +287,7 @@ bool AnalysedModule::separate(std::vector<std::string> Names) {
   if (Names.empty())
     return false;
   Calls.add(std::move(Names));
-  if (!copy().LastRound) {
+  if (!copy()) {
     Calls.removeLast();
     return false;
   }

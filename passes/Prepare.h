@@ -70,7 +70,8 @@ public:
   llvm::Value *original(llvm::Value *V) const;
 
 private:
-  Separation::Effect copy();
+  /// True where what was asked for last did something.
+  bool copy();
   void prepareCopy();
 
   llvm::Module &M;
