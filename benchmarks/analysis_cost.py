@@ -1,16 +1,19 @@
 """What the passes cost a build: CPU time of image_capture with them and without, in one run.
 
-Without them the same clang, level and full link-time optimisation are used. Builds alternate, and
-the medians are compared.
+Without them the same clang, level and full link-time optimisation are used. Each command that
+compiles or links is run in turn with and without, so that a machine that is slower for a while is
+slower for both, and the sums of the commands' medians are compared.
 """
 
 from __future__ import annotations
 
 import os
+import re
 import resource
-import shutil
+import shlex
 import statistics
 import subprocess
+import sys
 import tempfile
 from pathlib import Path
 
@@ -29,30 +32,62 @@ PLAIN = (
     "-DCMAKE_EXE_LINKER_FLAGS=-flto=full -fuse-ld=lld-19",
     "-DCMAKE_SHARED_LINKER_FLAGS=-flto=full -fuse-ld=lld-19",
 )
+ENVIRONMENT = {**os.environ, "PATH": "/usr/bin:/bin"}
 
 
-def cpu_of_build(folder: Path, options: tuple[str, ...]) -> float:
-    """CPU seconds, of all processes, that building the package's link units takes."""
-    environment = {**os.environ, "PATH": "/usr/bin:/bin"}
-    shutil.rmtree(folder, ignore_errors=True)
+def built(folder: Path, options: tuple[str, ...]) -> dict[str, str]:
+    """Builds the package; the commands that compiled and linked it, by what they wrote."""
     configure = ["cmake", "-S", str(PACKAGE), "-B", str(folder), "-G", "Ninja"]
     configure += ["-DCMAKE_BUILD_TYPE=RelWithDebInfo", "-DPYTHON_EXECUTABLE=/usr/bin/python3"]
-    subprocess.run([*configure, *options], env=environment, check=True, capture_output=True)
+    ninja = ["ninja", "-C", str(folder)]
+    subprocess.run([*configure, *options], env=ENVIRONMENT, check=True, capture_output=True)
+    subprocess.run(ninja, env=ENVIRONMENT, check=True, capture_output=True)
+    listed = subprocess.run(
+        [*ninja, "-t", "commands"], env=ENVIRONMENT, check=True, capture_output=True, text=True
+    )
+    commands = {}
+    for line in listed.stdout.splitlines():
+        output = re.search(r" -o (\S+)", line)
+        if output and "clang" in line:
+            name = shlex.split(output[1])[0].replace(str(folder), "")
+            commands[name] = line
+    return commands
+
+
+def cpu_seconds(command: str, folder: Path) -> float:
+    """What one command of the build costs, with all its processes."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    subprocess.run(["ninja", "-C", str(folder)], env=environment, check=True, capture_output=True)
+    subprocess.run(
+        command, shell=True, cwd=folder, env=ENVIRONMENT, check=True, capture_output=True
+    )
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
-def main() -> None:
-    """Prints the ratio of the medians."""
-    with_passes, without = [], []
-    with tempfile.TemporaryDirectory() as scratch:
+def medians(ways: dict[Path, dict[str, str]]) -> list[float]:
+    """The sum of the commands' medians, for each way of building; the ways take turns."""
+    (first, *others) = ways.values()
+    if any(other.keys() != first.keys() for other in others):
+        sys.exit("the two builds do not consist of the same commands")
+    sums = [0.0] * len(ways)
+    for name in first:
+        seconds: list[list[float]] = [[] for _ in ways]
         for _ in range(ROUNDS):
-            options = (f"-DCMAKE_TOOLCHAIN_FILE={cmake_file()}",)
-            with_passes.append(cpu_of_build(Path(scratch) / "with", options))
-            without.append(cpu_of_build(Path(scratch) / "without", PLAIN))
-    ratio = statistics.median(with_passes) / statistics.median(without)
+            for own, (folder, commands) in zip(seconds, ways.items(), strict=True):
+                own.append(cpu_seconds(commands[name], folder))
+        sums = [total + statistics.median(own) for total, own in zip(sums, seconds, strict=True)]
+    return sums
+
+
+def main() -> None:
+    """Prints the ratio."""
+    with tempfile.TemporaryDirectory() as scratch:
+        folders = Path(scratch) / "with", Path(scratch) / "without"
+        options = (f"-DCMAKE_TOOLCHAIN_FILE={cmake_file()}",), PLAIN
+        with_passes, without = medians(
+            {folder: built(folder, own) for folder, own in zip(folders, options, strict=True)}
+        )
+    ratio = with_passes / without
     figure(
         "analysis-cost",
         "build_cpu_with_over_without",

@@ -17,12 +17,12 @@ from pathlib import Path
 from figures import figure
 from large_units import large_unit
 
-from pytpc.paths import plugin
+from pytpc.paths import defer_plugin, plugin
 
 STUB = Path(__file__).resolve().parents[1] / "tests" / "lit" / "Inputs" / "include"
 SIZES = (200, 2_000, 20_000)
 ROUNDS = 3
-FLAGS = ("-std=c++17", "-g", "-O2", "-flto=full", "-Xclang", "-disable-llvm-passes")
+FLAGS = ("-std=c++17", "-g", "-O2", "-flto=full", f"-fpass-plugin={defer_plugin()}")
 
 
 def compiled(functions: int, folder: Path) -> Path:

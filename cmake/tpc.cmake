@@ -22,6 +22,7 @@ cmake_policy(VERSION 3.16)
 
 get_filename_component(_tpc_prefix "${CMAKE_CURRENT_LIST_DIR}/../../.." ABSOLUTE)
 set(_tpc_plugin "${_tpc_prefix}/lib/tpc/TpcPasses.so")
+set(_tpc_defer "${_tpc_prefix}/lib/tpc/TpcDefer.so")
 set(_tpc_log "${_tpc_prefix}/lib/libtpc_log.so")
 if(NOT TPC_CLANG_VERSION)
   set(TPC_CLANG_VERSION 19)
@@ -30,16 +31,16 @@ set(_tpc_constants "")
 if(TPC_CONSTANTS)
   set(_tpc_constants "-tpc-constants")
 endif()
-# The compiler leaves its optimisation to the link, where the analysis comes
-# first and the optimisation follows at the level that was asked for; the level
-# is read from the recorded command line. A warning that only clang or only gcc
-# knows must not end a build that gcc did. To clang -g is no less than -g3.
-string(CONCAT _tpc_compile_flags " -g -flto=full -Xclang -disable-llvm-passes"
+# The compiler leaves its optimisation to the link (the plugin sees to it), where
+# the analysis comes first and the optimisation follows at the level that was
+# asked for; the level is read from the recorded command line. A warning that only
+# clang or only gcc knows must not end a build that gcc did. To clang -g is no less
+# than -g3.
+string(CONCAT _tpc_compile_flags " -g -flto=full -fpass-plugin=\"${_tpc_defer}\""
   " -grecord-command-line -Wno-error -Wno-unknown-warning-option")
 
 # Sets `found` to the first flag in `text` that has the compiler instrument the
-# code by itself: it would do so in the passes that TPC makes it leave out, so
-# the flag would be lost without a word.
+# code by itself: the analysis would take that for the package's own.
 function(_tpc_find_sanitizer text found)
   set(pattern "-fsanitize=[^ ]+|--coverage|-ftest-coverage|-fcoverage-mapping|-fprofile-[^ ]+")
   if(text MATCHES "(^| )(${pattern})")
@@ -128,13 +129,14 @@ endmacro()
 # Sets _tpc_obstacle to why the package cannot be instrumented; empty where it can.
 macro(_tpc_find_obstacle)
   set(_tpc_obstacle "")
-  if(NOT EXISTS "${_tpc_plugin}")
-    set(_tpc_obstacle "${_tpc_plugin} is not there")
-  elseif(NOT EXISTS "${_tpc_log}")
-    set(_tpc_obstacle "${_tpc_log} is not there")
-  elseif(NOT TPC_LLD)
+  if(NOT TPC_LLD)
     set(_tpc_obstacle "ld.lld-${TPC_CLANG_VERSION} is not here (apt-get install lld-${TPC_CLANG_VERSION})")
   endif()
+  foreach(_tpc_part IN ITEMS "${_tpc_defer}" "${_tpc_plugin}" "${_tpc_log}")
+    if(NOT EXISTS "${_tpc_part}")
+      set(_tpc_obstacle "${_tpc_part} is not there")
+    endif()
+  endforeach()
   foreach(_tpc_language IN LISTS _tpc_languages)
     if(NOT CMAKE_${_tpc_language}_COMPILER_ID STREQUAL "Clang")
       set(_tpc_obstacle "the compiler is ${CMAKE_${_tpc_language}_COMPILER_ID}, not clang (a build folder keeps its compiler: remove ${CMAKE_BINARY_DIR})")
@@ -223,8 +225,8 @@ macro(_tpc_instrument)
 endmacro()
 
 # At the end of the package's CMakeLists.txt: what is linked is linked again when
-# the passes, the log library or the rules have changed; and what TPC does not see to after
-# all is said. Flags in generator expressions and in the interface of another
+# the passes, the log library or the rules have changed; and what TPC does not see
+# to after all is said. Flags in generator expressions and in the interface of another
 # target are not known here.
 function(_tpc_finish)
   _tpc_finish_folder("${CMAKE_SOURCE_DIR}")
@@ -259,7 +261,7 @@ function(_tpc_finish_folder folder)
     get_directory_property(rule DIRECTORY "${folder}" DEFINITION CMAKE_${language}_COMPILE_OBJECT)
     get_directory_property(common DIRECTORY "${folder}" DEFINITION CMAKE_${language}_FLAGS)
     list(APPEND common_flags "${common}")
-    if(language IN_LIST enabled AND NOT rule MATCHES "-disable-llvm-passes")
+    if(language IN_LIST enabled AND NOT rule MATCHES "-fpass-plugin=")
       list(APPEND patterns "\\.(${suffixes_${language}})$")
     endif()
   endforeach()
@@ -280,9 +282,9 @@ function(_tpc_finish_folder folder)
     get_property(flags TARGET "${target}" PROPERTY COMPILE_FLAGS)
     get_property(options TARGET "${target}" PROPERTY COMPILE_OPTIONS)
     string(REGEX REPLACE ";(SHELL:)?" " " flags "${common_flags};${flags};${options}")
-    _tpc_find_sanitizer("${flags}" flag)
-    if(flag)
-      set_property(GLOBAL APPEND PROPERTY _tpc_lost "${flag} of ${target}")
+    # These are of the passes that the compiler is made to leave out.
+    if(flags MATCHES "(^| )(-f(cs-)?profile-(generate|use|sample-use)[^ ]*)")
+      set_property(GLOBAL APPEND PROPERTY _tpc_lost "${CMAKE_MATCH_2} of ${target}")
     endif()
     get_property(sources TARGET "${target}" PROPERTY SOURCES)
     foreach(pattern IN LISTS patterns)

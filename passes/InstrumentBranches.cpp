@@ -5,6 +5,7 @@
 #include "IfStatements.h"
 #include "Print.h"
 
+#include "llvm/ADT/SmallPtrSet.h"
 #include "llvm/IR/IRBuilder.h"
 #include "llvm/IR/Instructions.h"
 #include "llvm/IR/Verifier.h"
@@ -179,7 +180,8 @@ static FunctionCallee logFunction(Module &M) {
   return Callee;
 }
 
-std::string insertReports(Module &M, ArrayRef<Report> Reports) {
+std::string insertReports(Module &M, ArrayRef<Report> Reports,
+                          bool WholeModule) {
   if (Reports.empty())
     return "";
   bool WasThere = M.getFunction("_Z7log_onePcbddb");
@@ -217,7 +219,13 @@ std::string insertReports(Module &M, ArrayRef<Report> Reports) {
   std::string Why;
   raw_string_ostream OS(Why);
   if (runGuarded([&] { for_each(Reports, Insert); })) {
-    if (!verifyModule(M, &OS))
+    SmallPtrSet<const Function *, 16> Changed;
+    for (const Report &R : Reports)
+      Changed.insert(R.Before->getFunction());
+    if (WholeModule ? !verifyModule(M, &OS)
+                    : none_of(Changed, [&](const Function *F) {
+                        return verifyFunction(*F, &OS);
+                      }))
       return "";
     Why = "the instrumented module does not verify: " +
           StringRef(Why).split('\n').first.str();

@@ -151,7 +151,8 @@ PreservedAnalyses LinkUnitPass::run(Module &M, ModuleAnalysisManager &) {
   const Options Opts = Options::fromCommandLine();
   Findings F = analyseSafely(M, Opts);
   if (F.Failure.empty() && Opts.Instrument)
-    if (std::string Why = insertReports(M, F.Reports); !Why.empty())
+    if (std::string Why = insertReports(M, F.Reports, F.IsChanged);
+        !Why.empty())
       F.Failure = std::move(Why);
   if (!F.Failure.empty()) {
     warn(Opts,
@@ -200,7 +201,14 @@ static OptimizationLevel levelOf(const Module &M) {
 PreservedAnalyses PrelinkPass::run(Module &M, ModuleAnalysisManager &AM) {
   if (!Options::fromCommandLine().Prelink)
     return PreservedAnalyses::all();
-  return PB.buildLTOPreLinkDefaultPipeline(levelOf(M)).run(M, AM);
+  OptimizationLevel Level = levelOf(M);
+  if (Level == OptimizationLevel::O0)
+    return PB.buildO0DefaultPipeline(Level, /*LTOPreLink=*/true).run(M, AM);
+  // What clang does after it, lld does now.
+  return PB
+      .buildModuleSimplificationPipeline(Level,
+                                         ThinOrFullLTOPhase::FullLTOPreLink)
+      .run(M, AM);
 }
 
 } // namespace tpc

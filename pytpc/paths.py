@@ -66,6 +66,15 @@ def plugin() -> Path:
     return _installed("lib/tpc/TpcPasses.so")
 
 
+def defer_plugin() -> Path:
+    """The installed plugin of clang that leaves its passes to the link.
+
+    Raises:
+        MissingToolError: it is not there; the message says how to install it.
+    """
+    return _installed("lib/tpc/TpcDefer.so")
+
+
 def log_library() -> Path:
     """The installed library that instrumented nodes report through.
 

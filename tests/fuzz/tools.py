@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from pytpc.paths import plugin
+from pytpc.paths import defer_plugin, plugin
 
 ROOT = Path(__file__).parents[2]
 LIT_INPUTS = ROOT / "tests/lit/Inputs"
@@ -66,7 +66,7 @@ def run(
 def compile_unit(source: Path, output: Path, flags: Sequence[str | Path]) -> Ran:
     """Compile C or C++ to a module as tpc.cmake has it compiled."""
     compiler = BIN / ("clang" if source.suffix == ".c" else "clang++")
-    own = ["-w", "-g", "-flto=full", "-Xclang", "-disable-llvm-passes", "-grecord-command-line"]
+    own = ["-w", "-g", "-flto=full", f"-fpass-plugin={defer_plugin()}", "-grecord-command-line"]
     return run([compiler, *own, "-c", *flags, source, "-o", output])
 
 

@@ -23,13 +23,13 @@ config.substitutions += [
     # The same as the next one with the real headers of ROS.
     (
         "%compile-real",
-        f"{clangxx} -std=c++17 -g -flto=full -Xclang -disable-llvm-passes"
+        f"{clangxx} -std=c++17 -g -flto=full -fpass-plugin={config.tpc_defer}"
         " -grecord-command-line -c",
     ),
     # The compiler as tpc.cmake sets it; the level is the test's own word.
     (
         "%compile",
-        f"{clangxx} -std=c++17 -g -flto=full -Xclang -disable-llvm-passes"
+        f"{clangxx} -std=c++17 -g -flto=full -fpass-plugin={config.tpc_defer}"
         f" -grecord-command-line -isystem {inputs}/include -c",
     ),
     ("%native", f"{clangxx} -std=c++17 -O1 -isystem {inputs}/include"),

@@ -130,7 +130,7 @@ def test_a_launcher_is_kept_and_the_flags_stand_once(tmp_path: Path) -> None:
     assert len(compiled) == 2
     for line in compiled:
         assert line.startswith("/usr/bin/env ")
-        assert line.count("-disable-llvm-passes") == 1
+        assert line.count("-fpass-plugin=") == 1
 
 
 def test_what_is_installed_finds_the_log_and_is_linked_again_with_new_passes(
@@ -271,17 +271,41 @@ def test_a_sanitizer_of_another_configuration_is_no_obstacle(tmp_path: Path) -> 
     assert (result.analysed(), result.warnings()) == (["x"], [])
 
 
-def test_a_sanitizer_that_comes_after_project_is_said_to_be_lost(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("flag", "name"),
+    [
+        ("-fsanitize=address", "__asan_init"),
+        ("-fsanitize=thread", "__tsan_init"),
+        ("--coverage", "llvm_gcov_init"),
+        ("-fprofile-instr-generate", "__profc_main"),
+    ],
+)
+def test_a_sanitizer_that_comes_after_project_is_kept(
+    tmp_path: Path, flag: str, name: str
+) -> None:
     lists = HEAD + (
-        "add_library(x STATIC main.cpp)\ntarget_compile_options(x PRIVATE -fsanitize=address)\n"
+        f"add_library(x STATIC main.cpp)\ntarget_compile_options(x PRIVATE {flag})\n"
+        "add_library(y STATIC main.cpp)\n"
+    )
+    result = build(tmp_path, lists)
+    assert result.warnings() == []
+    for library, kept in ("x", True), ("y", False):
+        shown = run(["llvm-nm-19", *result.folder.rglob(f"lib{library}.a")]).stdout
+        assert "main" in shown
+        assert (name in shown) == kept
+
+
+def test_a_profile_that_is_lost_is_said_to_be(tmp_path: Path) -> None:
+    lists = HEAD + (
+        "add_library(x STATIC main.cpp)\ntarget_compile_options(x PRIVATE -fprofile-generate)\n"
         "add_library(y STATIC main.cpp)\n"
     )
     (warning,) = build(tmp_path, lists).warnings()
-    assert warning.startswith("TPC: lost in what is built with TPC: -fsanitize=address of x; ")
-    late = 'set(CMAKE_CXX_FLAGS "${CMAKE_CXX_FLAGS} --coverage")\n'
+    assert warning.startswith("TPC: lost in what is built with TPC: -fprofile-generate of x; ")
+    late = 'set(CMAKE_CXX_FLAGS "${CMAKE_CXX_FLAGS} -fprofile-generate=here")\n'
     lists = f"{HEAD}{late}add_library(z STATIC main.cpp)\n"
     (warning,) = build(tmp_path, lists, name="late").warnings()
-    assert "--coverage of z; " in warning
+    assert "-fprofile-generate=here of z; " in warning
 
 
 # --- languages
