@@ -46,11 +46,9 @@ static void registerPasses(PassBuilder &PB) {
       });
   if (PassInstrumentationCallbacks *Callbacks =
           PB.getPassInstrumentationCallbacks())
-    Callbacks->registerShouldRunOptionalPassCallback(
-        [](StringRef Pass, Any) {
-          return Pass == "GCOVProfilerPass" ||
-                 Pass == "InstrProfilingLoweringPass";
-        });
+    Callbacks->registerShouldRunOptionalPassCallback([](StringRef Pass, Any) {
+      return Pass == "GCOVProfilerPass" || Pass == "InstrProfilingLoweringPass";
+    });
 }
 
 extern "C" LLVM_ATTRIBUTE_WEAK PassPluginLibraryInfo llvmGetPassPluginInfo() {
