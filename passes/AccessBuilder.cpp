@@ -176,12 +176,6 @@ void AccessResult::Builder::fileAccesses() {
           addWrite(I, L);
         }
         fileKept(*Store);
-      } else if (auto *Update = dyn_cast<AtomicRMWInst>(&I)) {
-        for (const Location &L : R.resolve(Update->getPointerOperand(), true)) {
-          R.file(R.StoreIndex, R.Stores.size(), L);
-          R.Stores.push_back({&I, L});
-          addWrite(I, L);
-        }
       } else if (auto *Copy = dyn_cast<MemTransferInst>(&I)) {
         addCopy(I, R.copied(*Copy, Copy->getRawDest()),
                 R.copied(*Copy, Copy->getRawSource()));

@@ -196,10 +196,6 @@ void Explainer::dependence(const SliceStep &S, const SliceStep &Next,
       return Add(
           PathStep::Store,
           Wording::with("copied", "to", Words.object(Copy->getRawDest())));
-    if (const auto *Update = dyn_cast<AtomicRMWInst>(S.I))
-      return Add(PathStep::Store,
-                 Wording::with("updated", "in",
-                               Words.variable(Update->getPointerOperand())));
     return Add(PathStep::Store,
                "written by " + Wording::callee(*cast<CallBase>(S.I)));
   case SliceStep::Gives:

@@ -38,7 +38,9 @@ void AccessResult::Builder::findEscaped() {
           const auto *Call = dyn_cast<CallBase>(User);
           // What is merged of pointers is followed like one of them.
           if (isa<GEPOperator>(User) || isa<CastInst>(User) ||
-              isa<PHINode>(User) || isa<SelectInst>(User))
+              isa<PHINode>(User) || isa<SelectInst>(User) ||
+              isa<FreezeInst>(User) || isa<InsertValueInst>(User) ||
+              isa<ExtractValueInst>(User))
             Work.push_back(User);
           else if (isa<ReturnInst>(User) ||
                    (isa<StoreInst>(User) && U.getOperandNo() == 0) ||

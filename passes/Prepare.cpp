@@ -20,6 +20,7 @@
 #include "llvm/Transforms/Scalar/SROA.h"
 #include "llvm/Transforms/Utils/BasicBlockUtils.h"
 #include "llvm/Transforms/Utils/Cloning.h"
+#include "llvm/Transforms/Utils/LowerAtomic.h"
 
 using namespace llvm;
 
@@ -78,8 +79,21 @@ static void inlineMarked(Module &M) {
   MPM.run(M, MAM);
 }
 
+/// Makes loads and stores of what reads and writes memory in one go: that no
+/// other thread comes between is nothing to the analysis.
+static void takeAtomicsApart(Module &M) {
+  for (Function &F : definedFunctions(M))
+    for (Instruction &I : make_early_inc_range(instructions(F))) {
+      if (auto *Update = dyn_cast<AtomicRMWInst>(&I))
+        lowerAtomicRMWInst(Update);
+      else if (auto *Exchange = dyn_cast<AtomicCmpXchgInst>(&I))
+        lowerAtomicCmpXchgInst(Exchange);
+    }
+}
+
 /// Makes \p M fit for the analysis.
 static void prepare(Module &M, const Options &Opts) {
+  takeAtomicsApart(M);
   // Only there may a value be computed from itself, and following it back would
   // not end.
   for (Function &F : definedFunctions(M))
@@ -323,7 +337,9 @@ bool AnalysedModule::bringBack() {
   for (auto [I, Handle] : zip_equal(There, Instructions)) {
     Value *Now = Handle;
     if (auto *C = dyn_cast_or_null<Instruction>(Now);
-        C && C->getOpcode() == I->getOpcode() && !IsPromoted(*I))
+        C && !IsPromoted(*I) &&
+        (C->getOpcode() == I->getOpcode() ||
+         (isa<AtomicRMWInst>(I) && isa<LoadInst>(C))))
       Back.try_emplace(C, I);
   }
   return true;

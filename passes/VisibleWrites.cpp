@@ -38,8 +38,6 @@ static bool keepsNothing(const Use &U) {
     return true;
   if (isa<StoreInst>(I))
     return U.getOperandNo() == StoreInst::getPointerOperandIndex();
-  if (isa<AtomicRMWInst>(I) || isa<AtomicCmpXchgInst>(I))
-    return U.getOperandNo() == 0;
   return I->getOpcode() == Instruction::Sub &&
          all_of(I->operands(),
                 [](const Value *V) { return isa<PtrToIntInst>(V); });
