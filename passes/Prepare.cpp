@@ -79,15 +79,23 @@ static void inlineMarked(Module &M) {
   MPM.run(M, MAM);
 }
 
-/// Makes loads and stores of what reads and writes memory in one go: that no
-/// other thread comes between is nothing to the analysis.
+/// Makes loads and stores of what reads and writes memory in one go. That no
+/// other thread comes between is nothing to the analysis; that others see what
+/// is stored is.
 static void takeAtomicsApart(Module &M) {
   for (Function &F : definedFunctions(M))
     for (Instruction &I : make_early_inc_range(instructions(F))) {
+      Instruction *After = I.getNextNode();
       if (auto *Update = dyn_cast<AtomicRMWInst>(&I))
         lowerAtomicRMWInst(Update);
       else if (auto *Exchange = dyn_cast<AtomicCmpXchgInst>(&I))
         lowerAtomicCmpXchgInst(Exchange);
+      else
+        continue;
+      Instruction *Last = After->getPrevNode();
+      while (!isa<StoreInst>(Last))
+        Last = Last->getPrevNode();
+      cast<StoreInst>(Last)->setAtomic(AtomicOrdering::SequentiallyConsistent);
     }
 }
 
