@@ -97,7 +97,6 @@ private:
   const RuleMatches &Rules;
   const Options Opts;
   UserSources Sources;
-  DenseMap<const DISubprogram *, bool> Counting;
 
   SliceResult Result;
   DenseMap<const Instruction *, unsigned char> Seen;
@@ -143,12 +142,7 @@ void Slicer::decides(Instruction *Predicate, Why Because) {
 bool Slicer::isCounting(const Instruction &I) {
   const DILocation *Loc = I.getDebugLoc();
   const DISubprogram *F = Loc ? Loc->getScope()->getSubprogram() : nullptr;
-  if (!F || Sources.has(Loc))
-    return false;
-  auto [It, New] = Counting.try_emplace(F, false);
-  if (New)
-    It->second = Rules.isCounting(qualifiedName(F->getLinkageName()));
-  return It->second;
+  return F && !Sources.has(Loc) && Rules.isCounting(*F);
 }
 
 void Slicer::control(const Instruction &I) {

@@ -176,20 +176,12 @@ public:
     const DILocation *Loc = I.getDebugLoc();
     for (; Loc && !Sources.has(Loc); Loc = Loc->getInlinedAt())
       Through = Loc->getScope()->getSubprogram();
-    return Loc && (!Through || isTransparent(Through)) ? Loc : nullptr;
+    return Loc && (!Through || Rules.isTransparent(*Through)) ? Loc : nullptr;
   }
 
 private:
-  bool isTransparent(const DISubprogram *F) {
-    auto [It, New] = Known.try_emplace(F, false);
-    if (New)
-      It->second = Rules.isTransparent(qualifiedName(F->getLinkageName()));
-    return It->second;
-  }
-
   UserSources Sources;
   const RuleMatches &Rules;
-  DenseMap<const DISubprogram *, bool> Known;
 };
 
 } // namespace

@@ -188,6 +188,16 @@ const Rule *RuleMatches::match(const CallBase &Call) const {
   return Callee ? Rows.lookup(Callee) : nullptr;
 }
 
+const RuleMatches::Inlined &RuleMatches::inlined(const DISubprogram &F) const {
+  auto [It, New] = InlinedFunctions.try_emplace(&F);
+  if (New) {
+    std::string Unused, Name = qualifiedName(F.getLinkageName());
+    const Rules &Tables = Rules::ofThisLink(Unused);
+    It->second = {Tables.isTransparent(Name), Tables.isCounting(Name)};
+  }
+  return It->second;
+}
+
 const ContainerMethod *RuleMatches::container(const CallBase &Call) const {
   const Function *Callee = Call.getCalledFunction();
   auto It = Callee ? Containers.find(Callee) : Containers.end();

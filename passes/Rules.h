@@ -16,6 +16,7 @@
 #include "llvm/ADT/MapVector.h"
 #include "llvm/ADT/StringMap.h"
 #include "llvm/ADT/StringSet.h"
+#include "llvm/IR/DebugInfoMetadata.h"
 #include "llvm/IR/InstIterator.h"
 #include "llvm/IR/InstrTypes.h"
 #include "llvm/IR/PassManager.h"
@@ -146,15 +147,13 @@ public:
     std::string Unused;
     return Rules::ofThisLink(Unused).isOpaque(Name);
   }
-  /// See Rules::isTransparent.
-  bool isTransparent(llvm::StringRef Name) const {
-    std::string Unused;
-    return Rules::ofThisLink(Unused).isTransparent(Name);
+  /// See Rules::isTransparent; \p F may have been inlined.
+  bool isTransparent(const llvm::DISubprogram &F) const {
+    return inlined(F).Transparent;
   }
-  /// See Rules::isCounting.
-  bool isCounting(llvm::StringRef Name) const {
-    std::string Unused;
-    return Rules::ofThisLink(Unused).isCounting(Name);
+  /// See Rules::isCounting; \p F may have been inlined.
+  bool isCounting(const llvm::DISubprogram &F) const {
+    return inlined(F).Counting;
   }
   /// The container's method that \p Call calls, or null.
   const ContainerMethod *container(const llvm::CallBase &Call) const;
@@ -168,9 +167,17 @@ public:
   std::string Error; ///< why the tables could not be read; else empty
 
 private:
+  /// What the tables say of a function that may be there no more.
+  struct Inlined {
+    bool Transparent = false, Counting = false;
+  };
+  const Inlined &inlined(const llvm::DISubprogram &F) const;
+
   llvm::DenseMap<const llvm::Function *, const Rule *> Rows;
   llvm::DenseSet<const llvm::Function *> Opaque, Kept;
   llvm::MapVector<const llvm::Function *, ContainerMethod> Containers;
+  /// Each name is demangled once.
+  mutable llvm::DenseMap<const llvm::DISubprogram *, Inlined> InlinedFunctions;
 };
 
 /// Calls \p F with each call in \p M that a row of \p Kind describes, and with
