@@ -35,12 +35,19 @@ endif()
 # the analysis comes first and the optimisation follows at the level that was
 # asked for; the level is read from the recorded command line. A warning that only
 # clang or only gcc knows must not end a build that gcc did. To clang -g is no less
-# than -g3.
-string(CONCAT _tpc_compile_flags " -g -flto=full -fpass-plugin=\"${_tpc_defer}\""
+# than -g3. What another plugin made is compiled again, and not taken from a cache.
+set(_tpc_defer_hash "")
+if(EXISTS "${_tpc_defer}")
+  file(SHA256 "${_tpc_defer}" _tpc_defer_hash)
+  string(SUBSTRING "${_tpc_defer_hash}" 0 8 _tpc_defer_hash)
+endif()
+string(CONCAT _tpc_compile_flags
+  " -g -flto=full -fpass-plugin=\"${_tpc_defer}\" -DTPC_DEFER=0x${_tpc_defer_hash}"
   " -grecord-command-line -Wno-error -Wno-unknown-warning-option")
 
 # Sets `found` to the first flag in `text` that has the compiler instrument the
-# code by itself: the analysis would take that for the package's own.
+# code by itself: it would do so in the passes that TPC makes it leave out, so
+# the flag would be lost without a word.
 function(_tpc_find_sanitizer text found)
   set(pattern "-fsanitize=[^ ]+|--coverage|-ftest-coverage|-fcoverage-mapping|-fprofile-[^ ]+")
   if(text MATCHES "(^| )(${pattern})")
@@ -282,9 +289,9 @@ function(_tpc_finish_folder folder)
     get_property(flags TARGET "${target}" PROPERTY COMPILE_FLAGS)
     get_property(options TARGET "${target}" PROPERTY COMPILE_OPTIONS)
     string(REGEX REPLACE ";(SHELL:)?" " " flags "${common_flags};${flags};${options}")
-    # These are of the passes that the compiler is made to leave out.
-    if(flags MATCHES "(^| )(-f(cs-)?profile-(generate|use|sample-use)[^ ]*)")
-      set_property(GLOBAL APPEND PROPERTY _tpc_lost "${CMAKE_MATCH_2} of ${target}")
+    _tpc_find_sanitizer("${flags}" flag)
+    if(flag)
+      set_property(GLOBAL APPEND PROPERTY _tpc_lost "${flag} of ${target}")
     endif()
     get_property(sources TARGET "${target}" PROPERTY SOURCES)
     foreach(pattern IN LISTS patterns)
@@ -317,6 +324,8 @@ macro(_tpc_enter_project)
     get_property(_tpc_deferred GLOBAL PROPERTY _tpc_deferred)
     if(NOT _tpc_deferred)
       set_property(GLOBAL PROPERTY _tpc_deferred TRUE)
+      set_property(DIRECTORY "${CMAKE_SOURCE_DIR}" APPEND PROPERTY
+        CMAKE_CONFIGURE_DEPENDS "${_tpc_defer}")
       cmake_language(DEFER DIRECTORY "${CMAKE_SOURCE_DIR}" CALL _tpc_finish)
     endif()
   else()

@@ -5,7 +5,7 @@
 #include "IfStatements.h"
 #include "Print.h"
 
-#include "llvm/ADT/SmallPtrSet.h"
+#include "llvm/ADT/SetVector.h"
 #include "llvm/IR/IRBuilder.h"
 #include "llvm/IR/Instructions.h"
 #include "llvm/IR/Verifier.h"
@@ -219,7 +219,7 @@ std::string insertReports(Module &M, ArrayRef<Report> Reports,
   std::string Why;
   raw_string_ostream OS(Why);
   if (runGuarded([&] { for_each(Reports, Insert); })) {
-    SmallPtrSet<const Function *, 16> Changed;
+    SmallSetVector<const Function *, 16> Changed;
     for (const Report &R : Reports)
       Changed.insert(R.Before->getFunction());
     if (WholeModule ? !verifyModule(M, &OS)

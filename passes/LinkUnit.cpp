@@ -201,14 +201,7 @@ static OptimizationLevel levelOf(const Module &M) {
 PreservedAnalyses PrelinkPass::run(Module &M, ModuleAnalysisManager &AM) {
   if (!Options::fromCommandLine().Prelink)
     return PreservedAnalyses::all();
-  OptimizationLevel Level = levelOf(M);
-  if (Level == OptimizationLevel::O0)
-    return PB.buildO0DefaultPipeline(Level, /*LTOPreLink=*/true).run(M, AM);
-  // What clang does after it, lld does now.
-  return PB
-      .buildModuleSimplificationPipeline(Level,
-                                         ThinOrFullLTOPhase::FullLTOPreLink)
-      .run(M, AM);
+  return PB.buildLTOPreLinkDefaultPipeline(levelOf(M)).run(M, AM);
 }
 
 } // namespace tpc

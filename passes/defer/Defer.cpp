@@ -1,18 +1,19 @@
 //===- Defer.cpp - The compiler's own passes wait for the link ------------===//
 //
 // A plugin for clang. What the files of a link unit are analysed as is what
-// clang made of the source, so of its passes none runs but those that must
-// (what sanitizers are made of is among them) and those that count what is
-// covered; the rest does at the link (PrelinkPass). What that would keep alive
-// is given up here: an optimised file no longer has the inline functions that
-// went into their callers, and an executable or library has then not to export
-// them.
+// clang made of the source, so of its passes none runs but those that must; the
+// rest does at the link (PrelinkPass). What that would keep alive is given up
+// here: an optimised file no longer has the inline functions that went into
+// their callers, and an executable or library has then not to export them.
 //
 //===----------------------------------------------------------------------===//
+#include "Compat.h"
+
+#include "llvm/IR/DebugInfoMetadata.h"
 #include "llvm/IR/InstrTypes.h"
 #include "llvm/IR/Module.h"
 #include "llvm/Passes/PassBuilder.h"
-#include "llvm/Passes/PassPlugin.h"
+#include "llvm/Support/Path.h"
 
 using namespace llvm;
 
@@ -25,15 +26,44 @@ static bool isOnlyCalled(const Function &F) {
   });
 }
 
+/// True where the body of \p F is in a header of the system's or of ROS: who
+/// calls it has it as well. Of one that stands elsewhere there may be no other
+/// body: that of a template in a source file, say.
+static bool isOfSystem(const Function &F) {
+  const DISubprogram *SP = F.getSubprogram();
+  if (!SP || !SP->getFile())
+    return false;
+  SmallString<128> Path;
+  if (sys::path::is_relative(SP->getFilename()))
+    Path = SP->getDirectory();
+  sys::path::append(Path, SP->getFilename());
+  sys::path::remove_dots(Path, /*remove_dot_dot=*/true);
+  return any_of(ArrayRef<StringRef>{"/usr/include/", "/usr/lib/",
+                                    "/usr/local/include/", "/opt/ros/"},
+                [&](StringRef Folder) { return Path.starts_with(Folder); });
+}
+
+/// True while a file with coroutines is compiled. The passes that must run take
+/// half of a coroutine apart, and the rest of it cannot be left to the link.
+static bool HasCoroutines = false;
+
 namespace {
-/// Has the linker export no inline function for the sake of its address alone.
-struct ReleaseInlineFunctions : PassInfoMixin<ReleaseInlineFunctions> {
+struct PrepareForLink : PassInfoMixin<PrepareForLink> {
   static bool isRequired() { return true; }
 
   PreservedAnalyses run(Module &M, ModuleAnalysisManager &) {
-    for (Function &F : M)
-      if (F.hasLinkOnceODRLinkage() && isOnlyCalled(F))
+    HasCoroutines = false;
+    for (Function &F : M) {
+      // Has the linker export no inline function for the sake of its address.
+      if (F.hasLinkOnceODRLinkage() && isOnlyCalled(F) && isOfSystem(F))
         F.setUnnamedAddr(GlobalValue::UnnamedAddr::Global);
+      // The passes of sanitizers are among those that must run.
+      for (Attribute::AttrKind Kind :
+           {Attribute::SanitizeAddress, Attribute::SanitizeHWAddress,
+            Attribute::SanitizeMemory, Attribute::SanitizeThread})
+        F.removeFnAttr(Kind);
+      HasCoroutines |= F.isPresplitCoroutine();
+    }
     return PreservedAnalyses::all();
   }
 };
@@ -42,12 +72,13 @@ struct ReleaseInlineFunctions : PassInfoMixin<ReleaseInlineFunctions> {
 static void registerPasses(PassBuilder &PB) {
   PB.registerPipelineStartEPCallback(
       [](ModulePassManager &MPM, OptimizationLevel) {
-        MPM.addPass(ReleaseInlineFunctions());
+        MPM.addPass(PrepareForLink());
       });
   if (PassInstrumentationCallbacks *Callbacks =
           PB.getPassInstrumentationCallbacks())
     Callbacks->registerShouldRunOptionalPassCallback([](StringRef Pass, Any) {
-      return Pass == "GCOVProfilerPass" || Pass == "InstrProfilingLoweringPass";
+      return HasCoroutines && (Pass == "ModuleInlinerWrapperPass" ||
+                               Pass == "DevirtSCCRepeatedPass");
     });
 }
 

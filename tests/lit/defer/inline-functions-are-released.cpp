@@ -3,30 +3,35 @@
 // RUN: %link -shared %t.o -o %t.so
 // RUN: llvm-nm -D %t.so | FileCheck %s --check-prefix=EXPORTED
 //
-// What clang writes is as the source has it. An inline function that nobody
-// takes the address of is not exported for being in the file, as it would not
-// be if it had gone into its callers there; one that somebody takes it of, an
-// instantiation that is asked for, and the variables in functions are.
-// CHECK-DAG: define linkonce_odr {{.*}} @_Z6calledi({{.*}}) unnamed_addr #
-// CHECK-DAG: define linkonce_odr {{.*}} @_Z5takeni({{.*}}) #
+// An inline function of a system header that nobody takes the address of is not
+// exported for being in the file, as it would not be if it had gone into its
+// callers there. One that somebody takes it of is; so are the user's own (of a
+// template in a source file there may be no other body) and the variables in
+// functions.
+// CHECK-DAG: define linkonce_odr {{.*}} @_ZSt3maxIiERKT_S2_S2_({{.*}}) unnamed_addr #
+// CHECK-DAG: define linkonce_odr {{.*}} @_ZSt3minIiERKT_S2_S2_({{.*}}) #
+// CHECK-DAG: define linkonce_odr {{.*}} @_Z6calledi({{.*}}) #
 // CHECK-DAG: define weak_odr {{.*}} @_Z9requestedIiET_S0_({{.*}}) #
-// CHECK-DAG: call {{.*}} @_Z6calledi(
+// CHECK-DAG: call {{.*}} @_ZSt3maxIiERKT_S2_S2_(
 //
-// EXPORTED-NOT: _Z6calledi
-// EXPORTED-DAG: _Z5takeni
+// EXPORTED-NOT: _ZSt3max
+// EXPORTED-DAG: _ZSt3minIiERKT_S2_S2_
+// EXPORTED-DAG: _Z6calledi
 // EXPORTED-DAG: _Z9requestedIiET_S0_
 // EXPORTED-DAG: _ZZ6callediE5Count
-// EXPORTED-NOT: _Z6calledi
+// EXPORTED-NOT: _ZSt3max
+#include <algorithm>
 
 inline int called(int V) {
   static int Count;
   return V + ++Count;
 }
 
-inline int taken(int V) { return V * 3; }
-
 template <typename T> T requested(T V) { return V - 1; }
 template int requested<int>(int);
 
-using Function = int (*)(int);
-extern "C" Function use(int V) { return called(V) > 3 ? taken : nullptr; }
+using Function = const int &(*)(const int &, const int &);
+extern "C" Function use(int V) {
+  Function Min = std::min<int>;
+  return std::max(called(V), 2) > 3 ? Min : nullptr;
+}
