@@ -183,8 +183,9 @@ class Checker:
         _, always = self.control[item.function].controllers(item.block, item)
         if always:
             out += [(c, "control") for c in self.program.callers(item.function)]
-            # What is handed on to be called runs only if it was.
-            out += [(m, "control") for m in self.program.mentions.get(item.function, [])]
+            # What is handed on to be called runs only if it was; one of several is a value.
+            mentions = self.program.mentions.get(item.function, [])
+            out += [(m, "data" if is_choice(m) else "control") for m in mentions]
         if item.is_call and (chosen := self.object_of(item)) is not None:
             out += [(i, "data") for i in self.instructions_of(chosen)]
         if why == "throws":
@@ -321,12 +322,14 @@ class Checker:
             for user in self.users[at.value]:
                 for found in self.after(name, at, user, out):
                     limited = is_limit(found.value)
-                    item = replace(found, how=found.how.anything()) if limited else found
-                    ways[item.value].add(item.how)
+                    if limited:
+                        # Arithmetic, as if it were one instruction: what it was is behind.
+                        found = replace(found, how=found.how.anything(), origin=None)
+                    ways[found.value].add(found.how)
                     # In a loop, arithmetic has no end.
-                    many = len(ways[item.value]) > 6 and not item.how.is_none
+                    many = len(ways[found.value]) > 6 and not found.how.is_none
                     how = How(other=True, repeated=True)
-                    new = replace(item, how=how) if many else item
+                    new = replace(found, how=how) if many else found
                     if new not in seen:
                         seen.add(new)
                         todo.append(new)
@@ -531,6 +534,11 @@ def is_side(compared: Value, side: Value) -> bool:
             return True
     known = constant_side(side)
     return known is not None and constant_number(compared) == known
+
+
+def is_choice(i: Instruction) -> bool:
+    """True for one of several values."""
+    return i.opcode in ("phi", "select")
 
 
 def is_same(a: Value, b: Value) -> bool:
