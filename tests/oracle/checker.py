@@ -321,15 +321,15 @@ class Checker:
             at = todo.pop()
             for user in self.users[at.value]:
                 for found in self.after(name, at, user, out):
-                    limited = is_limit(found.value)
-                    if limited:
+                    item = found
+                    if is_limit(found.value):
                         # Arithmetic, as if it were one instruction: what it was is behind.
-                        found = replace(found, how=found.how.anything(), origin=None)
-                    ways[found.value].add(found.how)
+                        item = replace(found, how=found.how.anything(), origin=None)
+                    ways[item.value].add(item.how)
                     # In a loop, arithmetic has no end.
-                    many = len(ways[found.value]) > 6 and not found.how.is_none
+                    many = len(ways[item.value]) > 6 and not item.how.is_none
                     how = How(other=True, repeated=True)
-                    new = replace(found, how=how) if many else found
+                    new = replace(item, how=how) if many else item
                     if new not in seen:
                         seen.add(new)
                         todo.append(new)
