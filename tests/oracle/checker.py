@@ -195,7 +195,11 @@ class Checker:
         if why in ("control", "throws"):
             return out
         known = item.is_call and self.program.callees(item)
-        for o in [] if known else item.operands:
+        shown = item.operands
+        if item.is_call and self.exposes(item):
+            out += [(i, "data") for i in self.publisher(item.arguments[0])]
+            shown = item.operands[1:]
+        for o in [] if known else shown:
             out += [(i, "data") for i in self.instructions_of(o)]
         if item.opcode == "load":
             definitions = self.memory.definitions(item)
@@ -242,6 +246,29 @@ class Checker:
                 new = {c.arguments[at.index] for c in calls if at.index < len(c.arguments)} - seen
                 seen |= new
                 todo += new
+        return out
+
+    def publisher(self, value: Value) -> set[Instruction]:
+        """What chooses a publisher, not how the object that it is in came about."""
+        out: set[Instruction] = set()
+        seen, todo = {value}, [(value, True)]
+        while todo:
+            at, is_itself = todo.pop()
+            new: list[Value] = []
+            if isinstance(at, Argument):
+                calls = self.program.callers(at.function)
+                new = [c.arguments[at.index] for c in calls if at.index < len(c.arguments)]
+            elif isinstance(at, Instruction) and at.opcode == "getelementptr":
+                out |= {i for index in at.operands[1:] for i in self.instructions_of(index)}
+                new, is_itself = at.operands[:1], False
+            elif isinstance(at, Instruction):
+                returned = at.is_call and any(
+                    self.is_user(f.file) for f in self.program.callees(at)
+                )
+                if is_choice(at) or (is_itself and (at.opcode == "load" or returned)):
+                    out.add(at)
+            todo += [(v, is_itself) for v in new if v not in seen]
+            seen |= set(new)
         return out
 
     def is_constructed(self, write: Instruction) -> bool:

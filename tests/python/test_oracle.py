@@ -54,6 +54,17 @@ def test_of_two_ways_to_a_place_the_passes_name_one():
     assert len(run.Answers(ways, one).difference()) == 1
 
 
+def test_a_flag_may_stand_for_what_it_also_is_by_arithmetic():
+    flag = {(3, 2, "limit", "flag", "flag"): 1}
+    both = flag | {(3, 7, "limit", "derived", "!="): 1}
+    assert run.Answers(flag, both).difference() == []
+    assert len(run.Answers({}, both).difference()) == 2
+    far = flag | {(3, 7, "limit", "derived", "!="): 2}
+    assert len(run.Answers(flag, far).difference()) == 1
+    other = flag | {(3, 7, "limit", "derived", ">"): 1}
+    assert len(run.Answers(flag, other).difference()) == 1
+
+
 def test_a_program_is_the_same_again():
     assert program(7, "p").text() == program(7, "p").text()
     assert program(7, "p").text() != program(8, "p").text()
