@@ -433,7 +433,8 @@ class Checker:
         return how.anything()
 
     def is_same_variable(self, a: Value, b: Value) -> bool:
-        """True where both are loads of one variable, `x * x`, by the same pointer."""
+        """True where both are loads of one variable, `x * x` or `x * -x`, by the same pointer."""
+        a, b = positive(a), positive(b)
         if not all(isinstance(v, Instruction) and v.opcode == "load" for v in (a, b)):
             return False
         same = self.is_same_pointer(a.operands[0], b.operands[0])
@@ -515,6 +516,15 @@ class Checker:
         return found
 
 
+def positive(v: Value) -> Value:
+    """What `v` is the negative of, if of anything."""
+    while isinstance(v, Instruction) and (
+        v.opcode == "fneg" or (v.opcode == "sub" and number(v.operands[0]) == 0)
+    ):
+        v = v.operands[-1]
+    return v
+
+
 def is_limit(value: Value) -> bool:
     """True for the smaller or larger one of a constant and another value: std::min, x < 3 ? 3 : x.
 
@@ -573,12 +583,14 @@ def is_same(a: Value, b: Value) -> bool:
 
 
 def constant_side(side: Value) -> float | None:
-    """The number that one side of a merge is, or that the local variable that it refers to has."""
+    """The number that one side of a merge is, or that the temporary that it refers to has."""
     if not (isinstance(side, Instruction) and side.opcode == "alloca"):
         return constant_number(side)
-    stores = [i for i in side.function.instructions if i.opcode == "store"]
-    stored = [i.operands[0] for i in stores if i.operands[1] is side]
-    return constant_number(stored[0]) if len(stored) == 1 else None
+    users = [i for i in side.function.instructions if side in i.operands]
+    stored = [i.operands[0] for i in users if i.opcode == "store" and i.operands[1] is side]
+    # Who else is handed it may write to it; what ends it is not in the module's own code.
+    handed = [i for i in users if i.is_call and not SILENT.match(i.callee.name)]
+    return constant_number(stored[0]) if len(stored) == 1 and not handed else None
 
 
 def how_decides(predicate: Instruction) -> str:
