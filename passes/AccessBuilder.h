@@ -60,6 +60,7 @@ private:
   void makeNode(llvm::Instruction &I);
   const Returned &returnedBy(const llvm::Function &F);
   void addReturned(const llvm::CallBase &Call, Node &N);
+  void findFilled();
   bool findsComplete(const Node &Load) const;
   bool findComplete();
   unsigned contentAt(const Location &L, bool Unrooted);
@@ -97,6 +98,8 @@ private:
   /// in a slot became more.
   unsigned Now = 1;
   bool Assumed = false; ///< the complete pointers were guessed
+  /// Locals that somebody else, or a copy, may put pointers into.
+  llvm::DenseSet<const llvm::Value *> Filled;
   llvm::DenseMap<const llvm::Value *, unsigned> Grown;
   llvm::DenseMap<Slot, unsigned> SlotGrown;
 };

@@ -86,6 +86,7 @@ private:
   void virtualCall(const CallBase &Call);
   void throwingCall(CallBase &Call);
   void derivedPointer(const Value *Pointer);
+  void publisher(const Value *Object);
   void reachable(CallBase &Call);
 
   LocationSet SeenWritten, SeenLoaded;
@@ -296,15 +297,43 @@ void Slicer::derivedPointer(const Value *Pointer) {
   }
 }
 
+/// What is in the publisher at \p Object is not shown; which one it is decides
+/// where: what chooses it, the pointer to it that was stored, and what the
+/// user's functions return. Of an object that it is in only what chooses that.
+void Slicer::publisher(const Value *Object) {
+  SmallVector<std::pair<const Value *, bool>, 4> Work{{Object, true}};
+  SmallPtrSet<const Value *, 8> Known;
+  while (!Work.empty()) {
+    auto [V, IsItself] = Work.pop_back_val();
+    if (!Known.insert(V).second)
+      continue;
+    if (const auto *GEP = dyn_cast<GetElementPtrInst>(V)) {
+      for (const Use &Index : GEP->indices())
+        define(Index);
+      Work.push_back({GEP->getPointerOperand(), false});
+    } else if (const auto *Arg = dyn_cast<Argument>(V)) {
+      for (const CallBase *Call : Calls.callers(Arg->getParent()))
+        if (Arg->getArgNo() < Call->arg_size())
+          Work.push_back({Call->getArgOperand(Arg->getArgNo()), IsItself});
+    } else {
+      const auto *Call = dyn_cast<CallBase>(V);
+      bool Returned =
+          Call && any_of(Calls.callees(*Call),
+                         [&](const Function *F) { return Sources.has(*F); });
+      if (isa<PHINode, SelectInst>(V) ||
+          (IsItself && (isa<LoadInst>(V) || Returned)))
+        definePointer(V);
+    }
+  }
+}
+
 /// All that an exposing statement shows: what is in its arguments.
 void Slicer::reachable(CallBase &Call) {
   const Rule *Row = Rules.match(Call);
   const Value *Object = Row ? objectOf(Call, *Row) : nullptr;
   for (const Use &Arg : Call.args()) {
     if (Arg.get() == Object) {
-      // What is in the publisher is not shown; which one it is decides where.
-      if (isa<PHINode, SelectInst>(Object->stripInBoundsOffsets()))
-        definePointer(Object);
+      publisher(Object);
       continue;
     }
     define(Arg);

@@ -283,9 +283,9 @@ Gatherer::gather(const ParameterComparison &P) {
     return NotReported::WithoutDebugInfo;
   }
   // The same comparison is reported with its other operand.
-  if (Both.isOtherWay(P))
+  if (Both.isOtherWay(P, *C.Predicate))
     return std::nullopt;
-  if (Both.isMeasured(P))
+  if (Both.isMeasured(P, *C.Predicate))
     return NotReported::Measured;
   if (P.ByArgument)
     R.Shared.insert(const_cast<Function *>(C.place().getFunction()));

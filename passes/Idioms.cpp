@@ -6,6 +6,7 @@
 #include "llvm/IR/GlobalVariable.h"
 #include "llvm/IR/IntrinsicInst.h"
 #include "llvm/IR/Operator.h"
+#include "llvm/IR/PatternMatch.h"
 
 using namespace llvm;
 
@@ -199,18 +200,21 @@ static bool isSameValue(const Value *A, const Value *B, unsigned Depth = 0) {
 }
 
 int squareOf(const Instruction &I) {
+  using namespace PatternMatch;
   const auto *Fma = dyn_cast<IntrinsicInst>(&I);
   if (I.getOpcode() != Instruction::FMul && I.getOpcode() != Instruction::Mul &&
       !(Fma && Fma->getIntrinsicID() == Intrinsic::fmuladd))
     return 0;
   const Value *L = I.getOperand(0), *R = I.getOperand(1);
   int Sign = 1;
-  for (const Value **Side : {&L, &R})
-    if (const auto *Negation = dyn_cast<Instruction>(*Side);
-        Negation && Negation->getOpcode() == Instruction::FNeg) {
-      *Side = Negation->getOperand(0);
+  for (const Value **Side : {&L, &R}) {
+    const Value *Inner;
+    auto Negated = m_CombineOr(m_FNeg(m_Value(Inner)), m_Neg(m_Value(Inner)));
+    if (match(*Side, Negated)) {
+      *Side = Inner;
       Sign = -Sign;
     }
+  }
   return isSameValue(L, R) ? Sign : 0;
 }
 

@@ -6,6 +6,7 @@
 
 #include "llvm/ADT/SmallPtrSet.h"
 #include "llvm/IR/InstIterator.h"
+#include "llvm/IR/IntrinsicInst.h"
 #include "llvm/IR/Operator.h"
 
 #include <utility>
@@ -292,6 +293,28 @@ static bool isComplete(const Value *V,
   }
 }
 
+/// Finds the locals that are copied to, or handed to what is not looked into.
+void AccessResult::Builder::findFilled() {
+  auto Add = [&](const Value *Pointer) {
+    for (const Location &L : R.resolve(Pointer, false))
+      if (isa_and_nonnull<AllocaInst>(L.Root))
+        Filled.insert(L.Root);
+  };
+  for (Function &F : definedFunctions(M))
+    for (const Instruction &I : instructions(F)) {
+      if (Budget::isSpent())
+        return;
+      const auto *Call = dyn_cast<CallBase>(&I);
+      if (const auto *Copy = dyn_cast<MemTransferInst>(&I))
+        Add(Copy->getRawDest());
+      else if (Call && !isa<IntrinsicInst>(Call) &&
+               Calls.callees(*Call).empty())
+        for (const Use &Arg : Call->args())
+          if (Arg->getType()->isPointerTy())
+            Add(Arg);
+    }
+}
+
 /// True where all pointers that a load finds in memory are complete: it reads
 /// fields and variables that the program stores such pointers to, and others
 /// do not know of.
@@ -301,9 +324,9 @@ bool AccessResult::Builder::findsComplete(const Node &Load) const {
     return isComplete(cast<LoadInst>(Load.V)->getPointerOperand(), R.Complete);
   bool Stored = false;
   for (const Location &L : Load.Where) {
-    bool Shared = L.Root ? isa<GlobalVariable>(L.Root) || isa<CallBase>(L.Root)
-                         : L.Path.back().isField();
-    if (!Shared)
+    bool IsKnown = L.Root ? !isa<AllocaInst>(L.Root) || !Filled.contains(L.Root)
+                          : L.Path.back().isField();
+    if (!IsKnown)
       return false;
     bool Complete = true;
     R.eachAt(L, PointerStoreIndex, [&](unsigned S) {
@@ -339,6 +362,7 @@ bool AccessResult::Builder::findComplete() {
         R.Complete.insert(N.V);
     }
   }
+  findFilled();
   // The largest set that holds itself up: what fails is taken out until
   // nothing fails any more.
   bool Fell = First;

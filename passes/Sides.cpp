@@ -152,21 +152,30 @@ bool Sides::isSameParameter(unsigned Read, unsigned Other) const {
          (Name == Reads[Other].Name && !Name.contains(DynamicName));
 }
 
-bool Sides::isOtherWay(const ParameterComparison &C) {
+static bool decides(const ParameterComparison &C, const Instruction &P) {
+  return any_of(C.Decisions,
+                [&](const Decision &D) { return D.Predicate == &P; });
+}
+
+bool Sides::isOtherWay(const ParameterComparison &C,
+                       const Instruction &Predicate) {
   return C.Compare && any_of(ByCompare.lookup(C.Compare),
                              [&](const ParameterComparison *Other) {
                                return Other->Operand != C.Operand &&
+                                      decides(*Other, Predicate) &&
                                       isSameParameter(Other->Read, C.Read) &&
                                       lengthOf(*Other) < lengthOf(C) &&
-                                      !isMeasured(*Other);
+                                      !isMeasured(*Other, Predicate);
                              });
 }
 
-bool Sides::isMeasured(const ParameterComparison &C) {
+bool Sides::isMeasured(const ParameterComparison &C,
+                       const Instruction &Predicate) {
   return C.Compare &&
          any_of(ByCompare.lookup(C.Compare),
                 [&](const ParameterComparison *Other) {
-                  return Other->Operand != C.Operand;
+                  return Other->Operand != C.Operand &&
+                         decides(*Other, Predicate);
                 }) &&
          !isConfigured(C.Compare->getOperand(C.Operand)) &&
          isConfigured(C.Compare->getOperand(1 - C.Operand));

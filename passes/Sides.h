@@ -26,11 +26,15 @@ public:
         llvm::function_ref<bool(const ParameterComparison &)> IsExposed);
 
   /// True where the other operand is the same parameter by a shorter way, and
-  /// may be the threshold.
-  bool isOtherWay(const ParameterComparison &C);
-  /// True where \p C is about the operand that is not the threshold: it can be
-  /// something else than a parameter, and the other one cannot.
-  bool isMeasured(const ParameterComparison &C);
+  /// may be the threshold, in what decides \p Predicate: calls of a function
+  /// may differ there.
+  bool isOtherWay(const ParameterComparison &C,
+                  const llvm::Instruction &Predicate);
+  /// True where \p C is, in what decides \p Predicate, about the operand that
+  /// is not the threshold: it can be something else than a parameter, and the
+  /// other one cannot.
+  bool isMeasured(const ParameterComparison &C,
+                  const llvm::Instruction &Predicate);
 
 private:
   using Sources = llvm::SmallVector<const llvm::Value *, 8>;

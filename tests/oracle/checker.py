@@ -183,8 +183,9 @@ class Checker:
         _, always = self.control[item.function].controllers(item.block, item)
         if always:
             out += [(c, "control") for c in self.program.callers(item.function)]
-            # What is handed on to be called runs only if it was.
-            out += [(m, "control") for m in self.program.mentions.get(item.function, [])]
+            # What is handed on to be called runs only if it was; one of several is a value.
+            mentions = self.program.mentions.get(item.function, [])
+            out += [(m, "data" if is_choice(m) else "control") for m in mentions]
         if item.is_call and (chosen := self.object_of(item)) is not None:
             out += [(i, "data") for i in self.instructions_of(chosen)]
         if why == "throws":
@@ -194,7 +195,11 @@ class Checker:
         if why in ("control", "throws"):
             return out
         known = item.is_call and self.program.callees(item)
-        for o in [] if known else item.operands:
+        shown = item.operands
+        if item.is_call and self.exposes(item):
+            out += [(i, "data") for i in self.publisher(item.arguments[0])]
+            shown = item.operands[1:]
+        for o in [] if known else shown:
             out += [(i, "data") for i in self.instructions_of(o)]
         if item.opcode == "load":
             definitions = self.memory.definitions(item)
@@ -241,6 +246,29 @@ class Checker:
                 new = {c.arguments[at.index] for c in calls if at.index < len(c.arguments)} - seen
                 seen |= new
                 todo += new
+        return out
+
+    def publisher(self, value: Value) -> set[Instruction]:
+        """What chooses a publisher, not how the object that it is in came about."""
+        out: set[Instruction] = set()
+        seen, todo = {value}, [(value, True)]
+        while todo:
+            at, is_itself = todo.pop()
+            new: list[Value] = []
+            if isinstance(at, Argument):
+                calls = self.program.callers(at.function)
+                new = [c.arguments[at.index] for c in calls if at.index < len(c.arguments)]
+            elif isinstance(at, Instruction) and at.opcode == "getelementptr":
+                out |= {i for index in at.operands[1:] for i in self.instructions_of(index)}
+                new, is_itself = at.operands[:1], False
+            elif isinstance(at, Instruction):
+                returned = at.is_call and any(
+                    self.is_user(f.file) for f in self.program.callees(at)
+                )
+                if is_choice(at) or (is_itself and (at.opcode == "load" or returned)):
+                    out.add(at)
+            todo += [(v, is_itself) for v in new if v not in seen]
+            seen |= set(new)
         return out
 
     def is_constructed(self, write: Instruction) -> bool:
@@ -320,8 +348,10 @@ class Checker:
             at = todo.pop()
             for user in self.users[at.value]:
                 for found in self.after(name, at, user, out):
-                    limited = is_limit(found.value)
-                    item = replace(found, how=found.how.anything()) if limited else found
+                    item = found
+                    if is_limit(found.value):
+                        # Arithmetic, as if it were one instruction: what it was is behind.
+                        item = replace(found, how=found.how.anything(), origin=None)
                     ways[item.value].add(item.how)
                     # In a loop, arithmetic has no end.
                     many = len(ways[item.value]) > 6 and not item.how.is_none
@@ -403,7 +433,8 @@ class Checker:
         return how.anything()
 
     def is_same_variable(self, a: Value, b: Value) -> bool:
-        """True where both are loads of one variable, `x * x`, by the same pointer."""
+        """True where both are loads of one variable, `x * x` or `x * -x`, by the same pointer."""
+        a, b = positive(a), positive(b)
         if not all(isinstance(v, Instruction) and v.opcode == "load" for v in (a, b)):
             return False
         same = self.is_same_pointer(a.operands[0], b.operands[0])
@@ -485,6 +516,15 @@ class Checker:
         return found
 
 
+def positive(v: Value) -> Value:
+    """What `v` is the negative of, if of anything."""
+    while isinstance(v, Instruction) and (
+        v.opcode == "fneg" or (v.opcode == "sub" and number(v.operands[0]) == 0)
+    ):
+        v = v.operands[-1]
+    return v
+
+
 def is_limit(value: Value) -> bool:
     """True for the smaller or larger one of a constant and another value: std::min, x < 3 ? 3 : x.
 
@@ -533,17 +573,24 @@ def is_side(compared: Value, side: Value) -> bool:
     return known is not None and constant_number(compared) == known
 
 
+def is_choice(i: Instruction) -> bool:
+    """True for one of several values."""
+    return i.opcode in ("phi", "select")
+
+
 def is_same(a: Value, b: Value) -> bool:
     return a is b or (a.kind == b.kind == "constant" and a.text == b.text)
 
 
 def constant_side(side: Value) -> float | None:
-    """The number that one side of a merge is, or that the local variable that it refers to has."""
+    """The number that one side of a merge is, or that the temporary that it refers to has."""
     if not (isinstance(side, Instruction) and side.opcode == "alloca"):
         return constant_number(side)
-    stores = [i for i in side.function.instructions if i.opcode == "store"]
-    stored = [i.operands[0] for i in stores if i.operands[1] is side]
-    return constant_number(stored[0]) if len(stored) == 1 else None
+    users = [i for i in side.function.instructions if side in i.operands]
+    stored = [i.operands[0] for i in users if i.opcode == "store" and i.operands[1] is side]
+    # Who else is handed it may write to it; what ends it is not in the module's own code.
+    handed = [i for i in users if i.is_call and not SILENT.match(i.callee.name)]
+    return constant_number(stored[0]) if len(stored) == 1 and not handed else None
 
 
 def how_decides(predicate: Instruction) -> str:

@@ -11,6 +11,7 @@ import re
 import networkx as nx
 
 from tests.oracle.ir import Block, Function, Instruction, Value, number
+from tests.oracle.memory import SILENT
 from tests.oracle.throws import (
     Throws,
     Type,
@@ -106,10 +107,11 @@ def followers(end: Instruction, thrown: Calls) -> list[Block]:
     return end.blocks[1:] if is_throw(end) else end.blocks
 
 
-def flow_graph(function: Function, thrown: Calls) -> nx.DiGraph:
+def flow_graph(function: Function, thrown: Calls, plain: bool = False) -> nx.DiGraph:
     """Nodes are (block, way that surely follows), or (block, the call that a part is behind).
 
     Calls have an edge for what they throw where a `throw` in the user's code is behind it.
+    In a `plain` graph only what an exception's type decides is sure.
     """
     graph = nx.DiGraph([(ENTRY, EXIT)])
 
@@ -134,7 +136,8 @@ def flow_graph(function: Function, thrown: Calls) -> nx.DiGraph:
                     for t in sorted(thrown[end], key=str):
                         todo.append((node, (after, decided_way(block, after, thrown, (t,)))))
                     continue
-                todo.append((node, (after, way[1:] or decided_way(block, after, thrown))))
+                sure = () if plain else decided_way(block, after, thrown)
+                todo.append((node, (after, way[1:] or sure)))
             if not following:
                 graph.add_edge(node, EXIT)
 
@@ -177,12 +180,22 @@ def end_endless_loops(graph: nx.DiGraph, function: Function) -> None:
         graph.add_edge(again, EXIT)
 
 
+def does_something(block: Block) -> bool:
+    """True for more than an end of a condition, where the ways join and part again."""
+    calls = [i for i in block.instructions if i.opcode == "call"]
+    stores = any(i.opcode == "store" for i in block.instructions)
+    return stores or any(not SILENT.match(c.callee.name) for c in calls)
+
+
 class ControlDependence:
     """Of one function: the predicates that control a block, and an edge between two blocks."""
 
-    def __init__(self, function: Function, throws: Throws | None = None) -> None:
+    def __init__(
+        self, function: Function, throws: Throws | None = None, plain: bool = False
+    ) -> None:
         self.thrown: Calls = throws.thrown if throws else {}
-        self.graph = flow_graph(function, self.thrown)
+        self.graph = flow_graph(function, self.thrown, plain)
+        self.plain = self if plain else ControlDependence(function, throws, plain=True)
         self.above = self.post_dominators()
         nodes = [n for n in self.graph if n not in (ENTRY, EXIT) and n[0] != AGAIN]
         self.of_node = {n: self.controllers_of(n) for n in nodes}
@@ -234,6 +247,9 @@ class ControlDependence:
         is_open = (block, ()) in ways and (item is block.terminator or only_asks(block))
         if parts(block, self.thrown) or is_open:
             ways = {self.part(item)}
+        elif len(ways) > 1 and does_something(block) and self.plain is not self:
+            # What is done on all ways through a block depends on none of them.
+            return self.plain.controllers(block, item)
         nodes = set().union(*(self.of_node[n] for n in ways))
         return self.predicates(nodes), ENTRY in nodes
 

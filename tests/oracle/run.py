@@ -67,7 +67,8 @@ class Answers:
         out = []
         for place in sorted(one.keys() | other.keys()):
             passes, checker = one.get(place, {}), other.get(place, {})
-            if not agree(passes, checker) and not (place in other and other_side(place, one)):
+            allowed = place in other and (other_side(place, one) or as_flag(place, one, other))
+            if not agree(passes, checker) and not allowed:
                 out.append(f"{' '.join(map(str, place))}: passes {passes}, checker {checker}")
         return out
 
@@ -107,6 +108,29 @@ def other_side(place: tuple[int, int, str], passes: dict[tuple[int, int, str], K
     """
     return place not in passes and any(
         line == place[0] and column == place[1] for line, column, _ in passes
+    )
+
+
+def as_flag(
+    place: tuple[int, int, str],
+    passes: dict[tuple[int, int, str], Kinds],
+    checker: dict[tuple[int, int, str], Kinds],
+) -> bool:
+    """True where a derived comparison with zero is, for both, also a flag that is as near.
+
+    Allowed difference FLAG (README): a flag stands at its branch, a derived comparison where it
+    compares, and of several ways to one condition the passes name one.
+    """
+    kinds = checker[place]
+    if place in passes or any(t == "parameter" or r not in ("==", "!=") for t, r in kinds):
+        return False
+    line, _, parameter = place
+    flag = ("flag", "flag")
+    distance = min(kinds.values())
+    return any(
+        (at[0], at[2]) == (line, parameter)
+        and found.get(flag) == distance == checker.get(at, {}).get(flag)
+        for at, found in passes.items()
     )
 
 
