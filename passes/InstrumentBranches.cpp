@@ -5,7 +5,6 @@
 #include "IfStatements.h"
 #include "Print.h"
 
-#include "llvm/ADT/SetVector.h"
 #include "llvm/IR/IRBuilder.h"
 #include "llvm/IR/Instructions.h"
 #include "llvm/IR/Verifier.h"
@@ -180,8 +179,7 @@ static FunctionCallee logFunction(Module &M) {
   return Callee;
 }
 
-std::string insertReports(Module &M, ArrayRef<Report> Reports,
-                          bool WholeModule) {
+std::string insertReports(Module &M, ArrayRef<Report> Reports) {
   if (Reports.empty())
     return "";
   bool WasThere = M.getFunction("_Z7log_onePcbddb");
@@ -219,13 +217,7 @@ std::string insertReports(Module &M, ArrayRef<Report> Reports,
   std::string Why;
   raw_string_ostream OS(Why);
   if (runGuarded([&] { for_each(Reports, Insert); })) {
-    SmallSetVector<const Function *, 16> Changed;
-    for (const Report &R : Reports)
-      Changed.insert(R.Before->getFunction());
-    if (WholeModule ? !verifyModule(M, &OS)
-                    : none_of(Changed, [&](const Function *F) {
-                        return verifyFunction(*F, &OS);
-                      }))
+    if (!verifyModule(M, &OS))
       return "";
     Why = "the instrumented module does not verify: " +
           StringRef(Why).split('\n').first.str();

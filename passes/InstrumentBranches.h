@@ -39,11 +39,9 @@ struct Report {
 std::optional<Report> planReport(const Comparison &C, bool IsUnsigned,
                                  const AnalysedModule &Analysed);
 
-/// Inserts \p Reports. Where their functions (with \p WholeModule, all of the
-/// module) do not verify afterwards, takes them out again and returns why; else
-/// returns nothing.
-std::string insertReports(llvm::Module &M, llvm::ArrayRef<Report> Reports,
-                          bool WholeModule);
+/// Inserts \p Reports. Where the module does not verify afterwards, takes them
+/// out again and returns why; else returns nothing.
+std::string insertReports(llvm::Module &M, llvm::ArrayRef<Report> Reports);
 
 /// `print<tpc-instrument-branches>`: where reports would be put.
 class InstrumentBranchesPrinter

@@ -151,8 +151,7 @@ PreservedAnalyses LinkUnitPass::run(Module &M, ModuleAnalysisManager &) {
   const Options Opts = Options::fromCommandLine();
   Findings F = analyseSafely(M, Opts);
   if (F.Failure.empty() && Opts.Instrument)
-    if (std::string Why = insertReports(M, F.Reports, F.IsChanged);
-        !Why.empty())
+    if (std::string Why = insertReports(M, F.Reports); !Why.empty())
       F.Failure = std::move(Why);
   if (!F.Failure.empty()) {
     warn(Opts,
