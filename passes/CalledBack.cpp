@@ -22,6 +22,16 @@ static bool callsNothing(StringRef Name) {
          Name.starts_with("_Zna") || Name.starts_with("__") || Name == "memcmp";
 }
 
+/// True where \p Class, of which no more than the name is known, may keep
+/// functions. Those of the standard library's classes that do say so.
+static bool mayKeep(const DICompositeType &Class) {
+  StringRef Name = Class.getIdentifier();
+  bool IsStandard = Name.consume_front("_ZTS") &&
+                    (Name.starts_with("St") || Name.starts_with("Sa") ||
+                     Name.starts_with("NSt"));
+  return !IsStandard || Name.contains("function") || Name.contains("PF");
+}
+
 const ClassHierarchy &CalledBack::classes() {
   if (!Classes)
     Classes.emplace(M);
@@ -65,8 +75,7 @@ const CalledBack::Callable &CalledBack::ofType(const DIType *T) {
     const auto *Class = dyn_cast<DICompositeType>(Part);
     if (!Class)
       continue;
-    // What is in a class of another unit's is not known.
-    Out->Kept |= Class->isForwardDecl();
+    Out->Kept |= Class->isForwardDecl() && mayKeep(*Class);
     if (Class->getTag() == dwarf::DW_TAG_array_type)
       Add(Class->getBaseType());
     else if (!IsBase)
