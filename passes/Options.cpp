@@ -150,18 +150,6 @@ bool UserSources::has(const DILocation *Loc) {
   return Loc && has(Loc->getFile());
 }
 
-std::string pathOf(const DIFile *File) {
-  if (!File)
-    return "";
-  SmallString<256> Path(File->getFilename());
-  if (!sys::path::is_absolute(Path)) {
-    Path = File->getDirectory();
-    sys::path::append(Path, File->getFilename());
-  }
-  sys::path::remove_dots(Path, /*remove_dot_dot=*/true);
-  return std::string(Path);
-}
-
 std::string pathOf(const DILocation *Loc) {
   return Loc ? pathOf(Loc->getFile()) : "";
 }

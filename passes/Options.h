@@ -3,6 +3,7 @@
 #define TPC_OPTIONS_H
 
 #include "Guard.h"
+#include "SourcePath.h"
 
 #include "llvm/ADT/DenseMap.h"
 #include "llvm/ADT/StringRef.h"
@@ -59,7 +60,6 @@ private:
 /// The absolute path of the file of \p Loc, without `.` and `..`; empty
 /// where there is no location.
 std::string pathOf(const llvm::DILocation *Loc);
-std::string pathOf(const llvm::DIFile *File);
 
 } // namespace tpc
 

@@ -8,14 +8,15 @@
 //
 //===----------------------------------------------------------------------===//
 #include "Compat.h"
+#include "SourcePath.h"
 
 #include "llvm/IR/DebugInfoMetadata.h"
 #include "llvm/IR/InstrTypes.h"
 #include "llvm/IR/Module.h"
 #include "llvm/Passes/PassBuilder.h"
-#include "llvm/Support/Path.h"
 
 using namespace llvm;
+using namespace tpc;
 
 /// True where \p F is only ever called. Where no file of a link unit asks for
 /// its address, nobody can tell which copy of an inline function is called.
@@ -31,16 +32,13 @@ static bool isOnlyCalled(const Function &F) {
 /// body: that of a template in a source file, say.
 static bool isOfSystem(const Function &F) {
   const DISubprogram *SP = F.getSubprogram();
-  if (!SP || !SP->getFile())
+  if (!SP)
     return false;
-  SmallString<128> Path;
-  if (sys::path::is_relative(SP->getFilename()))
-    Path = SP->getDirectory();
-  sys::path::append(Path, SP->getFilename());
-  sys::path::remove_dots(Path, /*remove_dot_dot=*/true);
-  return any_of(ArrayRef<StringRef>{"/usr/include/", "/usr/lib/",
-                                    "/usr/local/include/", "/opt/ros/"},
-                [&](StringRef Folder) { return Path.starts_with(Folder); });
+  const std::string Path = pathOf(SP->getFile());
+  return any_of(
+      ArrayRef<StringRef>{"/usr/include/", "/usr/lib/", "/usr/local/include/",
+                          "/opt/ros/"},
+      [&](StringRef Folder) { return StringRef(Path).starts_with(Folder); });
 }
 
 /// True while a file with coroutines is compiled. The passes that must run take
