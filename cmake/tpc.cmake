@@ -15,21 +15,25 @@
 #   TPC_MAX_SECONDS    processor time that the analysis of a link unit may take (120)
 #   TPC_MAX_MEMORY     MiB that it may take (4096)
 #   TPC_CONSTANTS      report comparisons with constants of the source, too
+#   TPC_TESTS          have test programs analysed and reporting, too
 #   TPC_DISABLE        leave this package alone
+#   TPC_LEFT_ALONE     a list of folders of packages that are left alone, compiler and all
+#
+# A target's property TPC_INSTRUMENT, set to OFF, keeps the reports out of it; set to
+# ON it has them put into a test program. What is worked out for each target stands
+# in tpc-targets.cmake.
 
 cmake_policy(PUSH)
 cmake_policy(VERSION 3.16)
+include("${CMAKE_CURRENT_LIST_DIR}/tpc-targets.cmake")
 
+set(_tpc_file "${CMAKE_CURRENT_LIST_FILE}")
 get_filename_component(_tpc_prefix "${CMAKE_CURRENT_LIST_DIR}/../../.." ABSOLUTE)
 set(_tpc_plugin "${_tpc_prefix}/lib/tpc/TpcPasses.so")
 set(_tpc_defer "${_tpc_prefix}/lib/tpc/TpcDefer.so")
 set(_tpc_log "${_tpc_prefix}/lib/libtpc_log.so")
 if(NOT TPC_CLANG_VERSION)
   set(TPC_CLANG_VERSION 19)
-endif()
-set(_tpc_constants "")
-if(TPC_CONSTANTS)
-  set(_tpc_constants "-tpc-constants")
 endif()
 # The compiler leaves its optimisation to the link (the plugin sees to it), where
 # the analysis comes first and the optimisation follows at the level that was
@@ -42,7 +46,7 @@ if(EXISTS "${_tpc_defer}")
   string(SUBSTRING "${_tpc_defer_hash}" 0 8 _tpc_defer_hash)
 endif()
 string(CONCAT _tpc_compile_flags
-  " -g -flto=full -fpass-plugin=\"${_tpc_defer}\" -DTPC_DEFER=0x${_tpc_defer_hash}"
+  "-g -flto=full -fpass-plugin=\"${_tpc_defer}\" -DTPC_DEFER=0x${_tpc_defer_hash}"
   " -grecord-command-line -Wno-error -Wno-unknown-warning-option")
 
 # Sets `found` to the first flag in `text` that has the compiler instrument the
@@ -102,6 +106,7 @@ endfunction()
 # Chooses clang and LLVM's archiver, where nobody has chosen another compiler. A
 # package with a sanitizer that clang cannot link keeps the compiler it had.
 macro(_tpc_choose_compilers)
+  set(_tpc_chose TRUE)
   find_program(TPC_CLANG clang-${TPC_CLANG_VERSION})
   find_program(TPC_CLANGXX clang++-${TPC_CLANG_VERSION})
   find_program(TPC_AR llvm-ar-${TPC_CLANG_VERSION})
@@ -136,6 +141,12 @@ endmacro()
 # Sets _tpc_obstacle to why the package cannot be instrumented; empty where it can.
 macro(_tpc_find_obstacle)
   set(_tpc_obstacle "")
+  set(_tpc_mend "a build folder keeps its compiler: remove ${CMAKE_BINARY_DIR}")
+  if(NOT _tpc_chose)
+    # The compilers were chosen before this file was read: by hand, or in a
+    # CMakeLists.txt above this one, as that of catkin_make.
+    set(_tpc_mend "configure a new build folder with -DCMAKE_TOOLCHAIN_FILE=${_tpc_file}")
+  endif()
   if(NOT TPC_LLD)
     set(_tpc_obstacle "ld.lld-${TPC_CLANG_VERSION} is not here (apt-get install lld-${TPC_CLANG_VERSION})")
   endif()
@@ -146,7 +157,7 @@ macro(_tpc_find_obstacle)
   endforeach()
   foreach(_tpc_language IN LISTS _tpc_languages)
     if(NOT CMAKE_${_tpc_language}_COMPILER_ID STREQUAL "Clang")
-      set(_tpc_obstacle "the compiler is ${CMAKE_${_tpc_language}_COMPILER_ID}, not clang (a build folder keeps its compiler: remove ${CMAKE_BINARY_DIR})")
+      set(_tpc_obstacle "the compiler is ${CMAKE_${_tpc_language}_COMPILER_ID}, not clang (${_tpc_mend})")
     elseif(NOT CMAKE_${_tpc_language}_COMPILER_VERSION MATCHES "^${TPC_CLANG_VERSION}\\.")
       set(_tpc_obstacle "the compiler is clang ${CMAKE_${_tpc_language}_COMPILER_VERSION}, the passes are for ${TPC_CLANG_VERSION}")
     endif()
@@ -154,6 +165,9 @@ macro(_tpc_find_obstacle)
   _tpc_find_sanitizer_of_package()
   if(_tpc_sanitizer)
     set(_tpc_obstacle "${_tpc_sanitizer} in ${_tpc_sanitizer_place} does not go together with it")
+  endif()
+  if(TPC_DISABLE)
+    set(_tpc_obstacle "TPC_DISABLE is set")
   endif()
 endmacro()
 
@@ -169,6 +183,35 @@ macro(_tpc_link_with_lld)
     endforeach()
     list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES CMAKE_${_tpc_language}_LINK_EXECUTABLE)
   endforeach()
+endmacro()
+
+# Adds flags to the compile rule of a language, behind those of the target.
+macro(_tpc_add_compile_flags language flags)
+  string(REPLACE "<FLAGS>" "<FLAGS> ${flags}"
+    CMAKE_${language}_COMPILE_OBJECT "${CMAKE_${language}_COMPILE_OBJECT}")
+endmacro()
+
+# In a probe: with -Werror among its flags, one that only gcc knows or that clang has
+# no use for would make every answer a no.
+macro(_tpc_tolerate_flags_in_probes)
+  foreach(_tpc_language C CXX)
+    if(CMAKE_${_tpc_language}_COMPILER_ID STREQUAL "Clang")
+      _tpc_add_compile_flags(${_tpc_language} "-Wno-unknown-warning-option -Qunused-arguments")
+    endif()
+  endforeach()
+endmacro()
+
+# For assembler sources: to clang the flags for C and C++ that it gets are of no use, of
+# which it warns and gcc does not.
+macro(_tpc_tolerate_flags_of_assembler)
+  if(NOT CMAKE_ASM_COMPILER)
+    set(CMAKE_ASM_COMPILE_OBJECT
+      "<CMAKE_ASM_COMPILER> <DEFINES> <INCLUDES> <FLAGS> -o <OBJECT> -c <SOURCE>")
+  endif()
+  if(NOT CMAKE_ASM_COMPILER OR CMAKE_ASM_COMPILER STREQUAL "${TPC_CLANG}"
+      OR CMAKE_ASM_COMPILER STREQUAL "${TPC_CLANGXX}")
+    _tpc_add_compile_flags(ASM "-Wno-error -Qunused-arguments")
+  endif()
 endmacro()
 
 # Gives a language that the package enables later, by enable_language(), the
@@ -194,115 +237,62 @@ macro(_tpc_instrument)
   foreach(_tpc_language IN LISTS _tpc_languages)
     # Behind the flags of the target, whose -fno-lto, -flto=thin or -Werror
     # would break the build or undo ours.
-    string(REPLACE "<FLAGS>" "<FLAGS>${_tpc_compile_flags}"
-      CMAKE_${_tpc_language}_COMPILE_OBJECT "${CMAKE_${_tpc_language}_COMPILE_OBJECT}")
-    # At the end of every link line; left out of what reports nothing.
-    string(APPEND CMAKE_${_tpc_language}_STANDARD_LIBRARIES
-      " -Wl,--push-state,--as-needed \"${_tpc_log}\" -Wl,--pop-state")
+    _tpc_add_compile_flags(${_tpc_language} "${_tpc_compile_flags}")
   endforeach()
-  set(_tpc_options
-    "-tpc-link-unit=$<TARGET_PROPERTY:NAME>"
-    "-tpc-package=${PROJECT_NAME}"
-    "-tpc-source-root=${CMAKE_SOURCE_DIR}"
-    "-tpc-exclude=${CMAKE_BINARY_DIR}"
-    "-tpc-static-info=${CMAKE_BINARY_DIR}/tpc/$<TARGET_PROPERTY:NAME>.json")
-  if(TPC_PROFILE)
-    list(APPEND _tpc_options "-tpc-profile=${TPC_PROFILE}")
+  if(_tpc_chose)
+    _tpc_tolerate_flags_of_assembler()
   endif()
-  if(DEFINED TPC_MAX_SECONDS)
-    list(APPEND _tpc_options "-tpc-max-seconds=${TPC_MAX_SECONDS}")
-  endif()
-  if(DEFINED TPC_MAX_MEMORY)
-    list(APPEND _tpc_options "-tpc-max-memory=${TPC_MAX_MEMORY}")
-  endif()
+  string(REPLACE ";" "," _tpc_linked "${_tpc_languages}")
+  # In every program and library, because the optimisation that the compiler left
+  # out is the plugin's to make up for.
+  _tpc_add_link_option("--load-pass-plugin=${_tpc_plugin}" "")
+  # Options of a plugin are known only once it is loaded this way as well.
+  _tpc_add_plugin_option("-load=${_tpc_plugin}" "")
+  _tpc_add_plugin_option("-tpc-analyse=false" "$<TARGET_PROPERTY:_TPC_OFF>")
+  set(_tpc_on "$<NOT:$<BOOL:$<TARGET_PROPERTY:_TPC_OFF>>>")
+  _tpc_add_plugin_option("-tpc-link-unit=$<TARGET_PROPERTY:NAME>" "${_tpc_on}")
+  _tpc_add_plugin_option("-tpc-package=$<TARGET_PROPERTY:_TPC_PACKAGE>" "${_tpc_on}")
+  _tpc_add_plugin_option("-tpc-source-root=$<TARGET_PROPERTY:_TPC_SOURCE_ROOT>" "${_tpc_on}")
+  _tpc_add_plugin_option("-tpc-exclude=$<TARGET_PROPERTY:_TPC_EXCLUDED>"
+    "$<BOOL:$<TARGET_PROPERTY:_TPC_EXCLUDED>>")
+  _tpc_add_plugin_option("-tpc-static-info=$<TARGET_PROPERTY:_TPC_STATIC_INFO>" "${_tpc_on}")
+  foreach(_tpc_setting PROFILE MAX_SECONDS MAX_MEMORY)
+    if(NOT "${TPC_${_tpc_setting}}" STREQUAL "")
+      string(TOLOWER "${_tpc_setting}" _tpc_option)
+      string(REPLACE "_" "-" _tpc_option "${_tpc_option}")
+      _tpc_add_plugin_option("-tpc-${_tpc_option}=${TPC_${_tpc_setting}}" "${_tpc_on}")
+    endif()
+  endforeach()
   if(TPC_RULES)
     get_filename_component(_tpc_rules "${TPC_RULES}" ABSOLUTE BASE_DIR "${CMAKE_SOURCE_DIR}")
-    list(APPEND _tpc_options "-tpc-rules=${_tpc_rules}")
+    _tpc_add_plugin_option("-tpc-rules=${_tpc_rules}" "${_tpc_on}")
   endif()
-  list(APPEND _tpc_options ${_tpc_constants})
-  string(REPLACE ";" "," _tpc_linked "${_tpc_languages}")
-  add_link_options(
-    "$<$<LINK_LANGUAGE:${_tpc_linked}>:LINKER:--load-pass-plugin=${_tpc_plugin}>"
-    # Options of a plugin are known only once it is loaded this way as well.
-    "$<$<LINK_LANGUAGE:${_tpc_linked}>:LINKER:-mllvm,-load=${_tpc_plugin}>"
-    "$<$<LINK_LANGUAGE:${_tpc_linked}>:LINKER:-rpath,${_tpc_prefix}/lib>")
-  foreach(_tpc_option IN LISTS _tpc_options)
-    add_link_options("$<$<LINK_LANGUAGE:${_tpc_linked}>:LINKER:-mllvm,${_tpc_option}>")
-  endforeach()
+  if(TPC_CONSTANTS)
+    _tpc_add_plugin_option("-tpc-constants" "${_tpc_on}")
+  endif()
+  # Left out of what reports nothing. The log is found where it is, not where a
+  # caller's LD_LIBRARY_PATH says.
+  _tpc_add_quoted_option("--push-state --as-needed \"${_tpc_log}\" --pop-state" "${_tpc_on}")
+  _tpc_add_link_option("-rpath=${_tpc_prefix}/lib" "${_tpc_on}")
 endmacro()
 
-# At the end of the package's CMakeLists.txt: what is linked is linked again when
-# the passes, the log library or the rules have changed; and what TPC does not see
-# to after all is said. Flags in generator expressions and in the interface of another
-# target are not known here.
-function(_tpc_finish)
-  _tpc_finish_folder("${CMAKE_SOURCE_DIR}")
-  get_property(lost GLOBAL PROPERTY _tpc_lost)
-  if(lost)
-    string(REPLACE ";" ", " lost "${lost}")
-    message(WARNING "TPC: lost in what is built with TPC: ${lost}; keep it with -DTPC_DISABLE=ON")
-  endif()
-  get_property(plain GLOBAL PROPERTY _tpc_plain)
-  if(plain)
-    string(REPLACE ";" ", " plain "${plain}")
-    message(WARNING "TPC: built without instrumentation, because the language was enabled after "
-      "project() or its compile rule was replaced: ${plain}; name the language in project()")
-  endif()
-endfunction()
+# Has the linker given an option, where `condition` (a generator expression; always
+# where it is empty) is 1. A comma in it is no separator, and neither is a space.
+macro(_tpc_add_link_option option condition)
+  _tpc_add_quoted_option("\"${option}\"" "${condition}")
+endmacro()
 
-function(_tpc_finish_folder folder)
-  get_directory_property(below DIRECTORY "${folder}" SUBDIRECTORIES)
-  foreach(subfolder IN LISTS below)
-    _tpc_finish_folder("${subfolder}")
-  endforeach()
-  get_directory_property(entered DIRECTORY "${folder}" DEFINITION _tpc_entered)
-  if(NOT entered)
-    return()
+# The same for an option of LLVM's or of its plugins.
+macro(_tpc_add_plugin_option option condition)
+  _tpc_add_quoted_option("-mllvm \"${option}\"" "${condition}")
+endmacro()
+
+function(_tpc_add_quoted_option option condition)
+  set(linked "$<LINK_LANGUAGE:${_tpc_linked}>")
+  if(condition)
+    set(linked "$<AND:${linked},$<BOOL:${condition}>>")
   endif()
-  get_property(enabled GLOBAL PROPERTY ENABLED_LANGUAGES)
-  set(patterns "")
-  set(common_flags "")
-  set(suffixes_C "c")
-  set(suffixes_CXX "C|cc|cpp|cxx|c\\+\\+|CPP")
-  foreach(language C CXX)
-    get_directory_property(rule DIRECTORY "${folder}" DEFINITION CMAKE_${language}_COMPILE_OBJECT)
-    get_directory_property(common DIRECTORY "${folder}" DEFINITION CMAKE_${language}_FLAGS)
-    list(APPEND common_flags "${common}")
-    if(language IN_LIST enabled AND NOT rule MATCHES "-fpass-plugin=")
-      list(APPEND patterns "\\.(${suffixes_${language}})$")
-    endif()
-  endforeach()
-  get_directory_property(plugin DIRECTORY "${folder}" DEFINITION _tpc_plugin)
-  get_directory_property(log DIRECTORY "${folder}" DEFINITION _tpc_log)
-  get_directory_property(rules DIRECTORY "${folder}" DEFINITION _tpc_rules)
-  get_property(targets DIRECTORY "${folder}" PROPERTY BUILDSYSTEM_TARGETS)
-  foreach(target IN LISTS targets)
-    get_target_property(type "${target}" TYPE)
-    if(type MATCHES "^(EXECUTABLE|SHARED_LIBRARY|MODULE_LIBRARY)$")
-      set_property(TARGET "${target}" APPEND PROPERTY LINK_DEPENDS "${plugin}" "${log}")
-      if(rules AND EXISTS "${rules}")
-        set_property(TARGET "${target}" APPEND PROPERTY LINK_DEPENDS "${rules}")
-      endif()
-    elseif(NOT type MATCHES "^(STATIC|OBJECT)_LIBRARY$")
-      continue()
-    endif()
-    get_property(flags TARGET "${target}" PROPERTY COMPILE_FLAGS)
-    get_property(options TARGET "${target}" PROPERTY COMPILE_OPTIONS)
-    string(REGEX REPLACE ";(SHELL:)?" " " flags "${common_flags};${flags};${options}")
-    _tpc_find_sanitizer("${flags}" flag)
-    if(flag)
-      set_property(GLOBAL APPEND PROPERTY _tpc_lost "${flag} of ${target}")
-    endif()
-    get_property(sources TARGET "${target}" PROPERTY SOURCES)
-    foreach(pattern IN LISTS patterns)
-      set(matching "${sources}")
-      list(FILTER matching INCLUDE REGEX "${pattern}")
-      if(matching)
-        set_property(GLOBAL APPEND PROPERTY _tpc_plain "${target}")
-        break()
-      endif()
-    endforeach()
-  endforeach()
+  add_link_options("$<${linked}:LINKER:SHELL:${option}>")
 endfunction()
 
 # After project(): sees to the languages that it has enabled.
@@ -315,18 +305,11 @@ macro(_tpc_enter_project)
   endforeach()
   find_program(TPC_LLD ld.lld-${TPC_CLANG_VERSION})
   _tpc_find_obstacle()
-  if(NOT TPC_DISABLE AND NOT _tpc_obstacle)
-    set(_tpc_entered TRUE)
+  set(_tpc_entered TRUE)
+  if(NOT _tpc_obstacle)
     if(_tpc_languages)
       set(_tpc_done TRUE)
       _tpc_instrument()
-    endif()
-    get_property(_tpc_deferred GLOBAL PROPERTY _tpc_deferred)
-    if(NOT _tpc_deferred)
-      set_property(GLOBAL PROPERTY _tpc_deferred TRUE)
-      set_property(DIRECTORY "${CMAKE_SOURCE_DIR}" APPEND PROPERTY
-        CMAKE_CONFIGURE_DEPENDS "${_tpc_defer}")
-      cmake_language(DEFER DIRECTORY "${CMAKE_SOURCE_DIR}" CALL _tpc_finish)
     endif()
   else()
     set(_tpc_done TRUE)
@@ -334,22 +317,42 @@ macro(_tpc_enter_project)
       message(WARNING "TPC: ${PROJECT_NAME} is built without instrumentation: ${_tpc_obstacle}")
     endif()
     # It may use the libraries of instrumented packages all the same, if the
-    # compilers are those that we chose.
-    if(TPC_LLD AND CMAKE_C_COMPILER_ID AND CMAKE_C_COMPILER STREQUAL "${TPC_CLANG}")
-      _tpc_link_with_lld(C)
-    endif()
-    if(TPC_LLD AND CMAKE_CXX_COMPILER_ID AND CMAKE_CXX_COMPILER STREQUAL "${TPC_CLANGXX}")
-      _tpc_link_with_lld(CXX)
-    endif()
+    # compilers are those that we chose; and what they warn of ends no build.
+    foreach(_tpc_language IN LISTS _tpc_languages)
+      if(CMAKE_${_tpc_language}_COMPILER STREQUAL "${TPC_CLANG}"
+          OR CMAKE_${_tpc_language}_COMPILER STREQUAL "${TPC_CLANGXX}")
+        _tpc_add_compile_flags(${_tpc_language} "-Wno-error -Wno-unknown-warning-option")
+        _tpc_tolerate_flags_of_assembler()
+        if(TPC_LLD)
+          _tpc_link_with_lld(${_tpc_language})
+        endif()
+      endif()
+    endforeach()
+  endif()
+  get_property(_tpc_deferred GLOBAL PROPERTY _tpc_deferred)
+  if(NOT _tpc_deferred)
+    set_property(GLOBAL PROPERTY _tpc_deferred TRUE)
+    set_property(DIRECTORY "${CMAKE_SOURCE_DIR}" APPEND PROPERTY
+      CMAKE_CONFIGURE_DEPENDS "${_tpc_defer}")
+    cmake_language(DEFER DIRECTORY "${CMAKE_SOURCE_DIR}" CALL _tpc_finish)
   endif()
 endmacro()
 
 get_property(_tpc_probe GLOBAL PROPERTY IN_TRY_COMPILE)
 get_property(_tpc_enabled GLOBAL PROPERTY ENABLED_LANGUAGES)
-if(_tpc_probe)
+if("${CMAKE_SOURCE_DIR}" IN_LIST TPC_LEFT_ALONE)
+  set(_tpc_left_alone TRUE)
+  # The probes of the package, too, which are projects of their own.
+  list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES _tpc_left_alone)
+endif()
+if(_tpc_left_alone)
+  # Not even another compiler.
+elseif(_tpc_probe)
   # Probes of the compiler are nobody's program; they only need the compiler.
   if(NOT _tpc_enabled)
     _tpc_choose_compilers()
+  else()
+    _tpc_tolerate_flags_in_probes()
   endif()
 elseif(NOT _tpc_enabled)
   _tpc_choose_compilers()
@@ -359,6 +362,7 @@ elseif(NOT _tpc_enabled)
     set(_tpc_next_include "${CMAKE_PROJECT_INCLUDE}")
     set(CMAKE_PROJECT_INCLUDE "${CMAKE_CURRENT_LIST_FILE}")
   endif()
+  list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES CMAKE_PROJECT_INCLUDE)
 elseif(NOT _tpc_done)
   # Otherwise a project() inside the package, which has inherited the rules.
   _tpc_enter_project()

@@ -3,6 +3,7 @@
 
 #include "Compat.h"
 #include "Names.h"
+#include "SourcePath.h"
 
 #include "llvm/BinaryFormat/Dwarf.h"
 #include "llvm/IR/DebugInfo.h"
@@ -168,21 +169,41 @@ StringRef DebugTypes::fieldName(const DICompositeType *Class,
                                                             : "";
 }
 
+/// Where a struct of C's kind is declared, at file scope; else empty. In C++ it
+/// has an identifier as well.
+static std::string declaredAt(const DICompositeType &Class) {
+  if (!Class.getFile() || !Class.getLine() ||
+      !isa_and_nonnull<DIFile>(Class.getScope() ? Class.getScope()
+                                                : Class.getFile()))
+    return "";
+  return (pathOf(Class.getFile()) + ":" + Twine(Class.getLine()) + ":" +
+          Class.getName() + ":" + Twine(Class.getSizeInBits()))
+      .str();
+}
+
 unsigned DebugTypes::numberOf(const DICompositeType *Class) {
   if (!Class)
     return 0;
   unsigned &Number = Numbers[Class];
   if (Number)
     return Number;
-  // Classes with a name across files carry it as their identifier.
-  if (StringRef Name = Class->getIdentifier(); !Name.empty()) {
-    unsigned &Same = ByIdentifier[Name];
-    if (Same)
-      return Number = Same;
-    Same = Classes.size() + 1;
+  // Classes with a name across files carry it as their identifier. Those of C
+  // do not, and are the same where a header declares them.
+  SmallVector<StringRef, 2> Names;
+  const std::string Place = declaredAt(*Class);
+  for (StringRef Name : {Class->getIdentifier(), StringRef(Place)})
+    if (!Name.empty())
+      Names.push_back(Name);
+  for (StringRef Name : Names)
+    if (!Number)
+      Number = ByName.lookup(Name);
+  if (!Number) {
+    Classes.push_back(Class);
+    Number = Classes.size();
   }
-  Classes.push_back(Class);
-  return Number = Classes.size();
+  for (StringRef Name : Names)
+    ByName.try_emplace(Name, Number);
+  return Number;
 }
 
 const DIType *DebugTypes::ofArgument(const Argument &Arg) const {

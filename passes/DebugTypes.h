@@ -67,7 +67,7 @@ private:
   const llvm::DataLayout &Layout;
   llvm::DenseMap<const llvm::Value *, const llvm::DIType *> Known;
   llvm::DenseMap<const llvm::DICompositeType *, unsigned> Numbers;
-  llvm::StringMap<unsigned> ByIdentifier;
+  llvm::StringMap<unsigned> ByName;
   llvm::SmallVector<const llvm::DICompositeType *, 0> Classes;
 };
 

@@ -149,6 +149,8 @@ static void warn(const Options &Opts, const Twine &Text) {
 
 PreservedAnalyses LinkUnitPass::run(Module &M, ModuleAnalysisManager &) {
   const Options Opts = Options::fromCommandLine();
+  if (!Opts.Analyse)
+    return PreservedAnalyses::all();
   Findings F = analyseSafely(M, Opts);
   if (F.Failure.empty() && Opts.Instrument)
     if (std::string Why = insertReports(M, F.Reports); !Why.empty())

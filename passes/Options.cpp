@@ -36,6 +36,10 @@ static cl::list<std::string>
                cl::desc("A folder whose code is reported on nowhere; may be "
                         "repeated; /usr and /opt/ros always are"));
 static cl::opt<bool>
+    AnalyseOpt("tpc-analyse", cl::cat(Category), cl::init(true),
+               cl::desc("Analyse the unit; if not, it is only optimised as the "
+                        "compiler was told to leave it (default: yes)"));
+static cl::opt<bool>
     InstrumentOpt("tpc-instrument", cl::cat(Category), cl::init(true),
                   cl::desc("Insert the reports (default: yes)"));
 static cl::opt<bool>
@@ -102,6 +106,7 @@ Options Options::fromCommandLine() {
   O.Excluded = {"/usr", "/opt/ros"};
   for (const std::string &Folder : ExcludeOpt)
     O.Excluded.push_back(Folder);
+  O.Analyse = AnalyseOpt;
   O.Instrument = InstrumentOpt;
   O.Constants = ConstantsOpt;
   O.Prelink = PrelinkOpt;
@@ -122,8 +127,13 @@ static bool isBelow(StringRef Path, StringRef Folder) {
 bool Options::isUserSource(StringRef Path) const {
   if (Path.empty())
     return false;
-  return none_of(Excluded,
-                 [&](const std::string &F) { return isBelow(Path, F); });
+  // A workspace may be below /usr: the folder that is nearer decides.
+  size_t Own = !SourceRoot.empty() && isBelow(Path, SourceRoot)
+                   ? StringRef(SourceRoot).rtrim('/').size()
+                   : 0;
+  return none_of(Excluded, [&](const std::string &F) {
+    return isBelow(Path, F) && StringRef(F).rtrim('/').size() >= Own;
+  });
 }
 
 std::string Options::relative(StringRef Path) const {

@@ -24,6 +24,7 @@ struct Options {
   std::string Profile;    ///< profile of the rules
   std::vector<std::string> RuleFiles; ///< the user's own tables
   std::vector<std::string> Excluded;  ///< folders that are not the user's
+  bool Analyse = true; ///< else the unit is only optimised
   bool Instrument = true;
   bool Constants = false; ///< report comparisons with constants, too
   bool Prelink = true;
@@ -36,7 +37,7 @@ struct Options {
   static Options fromCommandLine();
 
   /// True where \p Path (absolute) is one of the user's own sources: it is
-  /// below none of the excluded folders.
+  /// below none of the excluded folders, or the source root is nearer to it.
   bool isUserSource(llvm::StringRef Path) const;
 
   /// \p Path relative to SourceRoot where it is below it, else unchanged.

@@ -26,6 +26,12 @@ config.substitutions += [
         f"{clangxx} -std=c++17 -g -flto=full -fpass-plugin={config.tpc_defer}"
         " -grecord-command-line -c",
     ),
+    # The same for C, of which ROS has no headers.
+    (
+        "%compile-c",
+        f"{os.path.join(config.tpc_tools, 'clang')} -g -flto=full"
+        f" -fpass-plugin={config.tpc_defer} -grecord-command-line -c",
+    ),
     # The compiler as tpc.cmake sets it; the level is the test's own word.
     (
         "%compile",

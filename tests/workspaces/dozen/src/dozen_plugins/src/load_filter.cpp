@@ -1,0 +1,18 @@
+// Loads the plugin by its name and prints how many of eight values it lets through.
+#include <dozen_plugins/filter.h>
+#include <pluginlib/class_loader.hpp>
+#include <ros/ros.h>
+
+#include <cstdio>
+
+int main(int argc, char **argv) {
+  ros::init(argc, argv, "load_filter");
+  ros::NodeHandle handle;
+  pluginlib::ClassLoader<dozen_plugins::Filter> loader("dozen_plugins", "dozen_plugins::Filter");
+  auto filter = loader.createUniqueInstance("dozen_plugins/HighPass");
+  filter->start(handle);
+  int passed = 0;
+  for (int i = 0; i < 8; ++i)
+    passed += filter->offer(i);
+  std::printf("%d passed\n", passed);
+}

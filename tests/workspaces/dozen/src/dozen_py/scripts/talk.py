@@ -1,0 +1,2 @@
+#!/usr/bin/env python3
+"""Does nothing: there has to be a script to install."""

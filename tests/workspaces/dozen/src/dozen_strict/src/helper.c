@@ -1,0 +1,2 @@
+int doubled(int value);
+int doubled(int value) { return 2 * value; }
