@@ -20,11 +20,20 @@ _ANALYSED = frozenset({"CXX", "C"})
 
 @dataclass(frozen=True, slots=True)
 class LinkTarget:
-    """A target that is linked from C or C++ sources; ``built`` says whether its file is there."""
+    """A target that is linked as C or C++; ``artifact`` is the file that comes of it.
+
+    ``objects`` is the folder in which its sources are compiled, where it has sources.
+    """
 
     name: str
     package: str
-    built: bool
+    artifact: Path | None
+    objects: Path | None = None
+
+    @property
+    def built(self) -> bool:
+        """Whether its file is there."""
+        return self.artifact is not None and self.artifact.is_file()
 
 
 def ask_for_targets(build_folder: Path) -> None:
@@ -67,20 +76,27 @@ def link_targets(build_folder: Path) -> list[LinkTarget] | None:
         targets = [
             _link_target(target, configuration["projects"], entry["projectIndex"], build_folder)
             for target, entry in zip(described, configuration["targets"], strict=True)
-            if target["type"] in _LINKED and _languages(target) & _ANALYSED
+            if target["type"] in _LINKED and _language(target) in _ANALYSED
         ]
     except (KeyError, IndexError, TypeError) as error:
         raise InputError(f"not an answer of CMake's file API: {error!r}", indexes[-1]) from error
     return sorted(targets, key=lambda target: target.name)
 
 
-def _languages(target: dict[str, Any]) -> frozenset[str]:
-    return frozenset(group["language"] for group in target.get("compileGroups", []))
+def _language(target: dict[str, Any]) -> str | None:
+    """The language whose compiler links it; a target of other targets' objects has it, too."""
+    link: dict[str, str] = target.get("link", {})
+    groups: list[dict[str, str]] = target.get("compileGroups", [])
+    return link.get("language") or next((group["language"] for group in groups), None)
 
 
 def _link_target(
     target: dict[str, Any], projects: list[Any], project: int, build_folder: Path
 ) -> LinkTarget:
     artifacts = [build_folder / artifact["path"] for artifact in target.get("artifacts", [])]
-    built = bool(artifacts) and artifacts[0].is_file()
-    return LinkTarget(target["name"], projects[project]["name"], built)
+    below = target.get("paths", {}).get("build")
+    objects = None
+    if below is not None and target.get("compileGroups"):
+        objects = build_folder / below / "CMakeFiles" / f"{target['name']}.dir"
+    name: str = projects[project]["name"]
+    return LinkTarget(target["name"], name, artifacts[0] if artifacts else None, objects)

@@ -19,9 +19,10 @@ from pathlib import Path
 import click
 from rich.console import Console
 
-from pytpc.build import Bases, BuildError, BuildResult, build_workspace, workspace_env
+from pytpc.build import BuildResult, build_workspace, workspace_env
 from pytpc.cli.event_commands import progress
 from pytpc.cli.mission_commands import mission_progress
+from pytpc.colcon import Bases, BuildError
 from pytpc.demo import TreatedMission, failures, result_table, run_treatment
 from pytpc.errors import TpcError, WorkspaceError
 from pytpc.report import write_report

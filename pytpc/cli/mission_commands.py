@@ -10,7 +10,8 @@ from pathlib import Path
 import click
 from rich.console import Console
 
-from pytpc.build import Bases, workspace_env
+from pytpc.build import workspace_env
+from pytpc.colcon import Bases
 from pytpc.mission import DEFAULT_TOPICS, Progress, run_mission
 from pytpc.words import many
 

@@ -16,8 +16,10 @@ from rich.table import Table
 from rich.text import Text
 
 from pytpc import patch
-from pytpc.build import Bases, BuildError, BuildResult, build_workspace
+from pytpc.build import BuildResult, build_workspace
+from pytpc.colcon import Bases, BuildError
 from pytpc.errors import WorkspaceError
+from pytpc.link_units import remark
 from pytpc.static_info import Comparison, LinkUnit, StaticInfo, collect, read_static
 
 _FOLDER = click.Path(path_type=Path, file_okay=True)
@@ -48,6 +50,9 @@ def patch_command(workspace: Path, restore: bool, dry_run: bool, packages: tuple
     help="Your own rules (JSON): what else reads a parameter or exposes.",
 )
 @click.option("--constants", is_flag=True, help="Report comparisons with constants, too.")
+@click.option("--tests", is_flag=True, help="Have test programs report, too.")
+@click.option("--no-fallback", is_flag=True, help="End where a package does not build with TPC.")
+@click.option("--retry", is_flag=True, help="Try packages that were built without TPC again.")
 @click.argument("colcon_args", nargs=-1, type=click.UNPROCESSED, metavar="[-- COLCON_ARGS]...")
 def build_command(
     *,
@@ -58,6 +63,9 @@ def build_command(
     rules: Path | None,
     colcon_args: tuple[str, ...],
     constants: bool,
+    tests: bool,
+    no_fallback: bool,
+    retry: bool,
 ) -> None:
     """Build a workspace with analysis and instrumentation; its files stay as they are."""
     bases = Bases(base.absolute()) if base is not None else None
@@ -70,6 +78,9 @@ def build_command(
                 rules=rules,
                 colcon_args=colcon_args,
                 constants=constants,
+                tests=tests,
+                fallback=not no_fallback,
+                retry=retry,
                 bases=bases,
                 on_output=progress.show,
             )
@@ -173,11 +184,13 @@ class _Advance:
 
 def _show_build(result: BuildResult) -> None:
     _show_units(result.static)
-    for target in result.missing:
-        _warn(
-            f"{target.name} of package {target.package} was linked without the analysis,"
-            " so it reports nothing"
-        )
+    for package, why in result.left_alone.items():
+        _warn(f"package {package} is built without TPC, with which it does not build: {why}")
+    for unit in result.left_out:
+        if unit.package not in result.left_alone:
+            click.echo(f"{unit.package}/{unit.name} reports nothing: {unit.reason}", err=True)
+    if result.left_alone:
+        click.echo("pytpc build --retry tries again with TPC", err=True)
     click.echo(
         f"{_found(result.static)}, built in {result.seconds:.1f} s: {result.bases.static_info}"
     )
@@ -197,7 +210,7 @@ def _units_table(static: StaticInfo) -> Table:
         table.add_column(heading, justify="right")
     table.add_column("Status")
     for unit in static.units:
-        table.add_row(Text(unit.package), Text(unit.link_unit), *_numbers(unit), unit.status)
+        table.add_row(Text(unit.package), Text(unit.link_unit), *_numbers(unit), remark(unit))
     return table
 
 

@@ -15,16 +15,14 @@ from packages import add_package, install_prefix
 from static_units import comparison, failed_unit, unit
 
 from pytpc import build
-from pytpc.build import (
+from pytpc.build import build_workspace, workspace_env
+from pytpc.colcon import (
     Bases,
     BuildError,
     build_environment,
-    build_workspace,
     colcon_command,
-    failed_jobs,
-    workspace_env,
+    ended_jobs,
 )
-from pytpc.cmake_targets import LinkTarget
 from pytpc.errors import InputError, MissingToolError, RunError, TpcError, WorkspaceError
 from pytpc.workspace import Package
 
@@ -151,9 +149,9 @@ EVENTS = r"""[0.1] (arm) JobQueued: {'identifier': 'arm', 'dependencies': Ordere
 """
 
 
-def test_only_the_package_that_failed_by_itself_is_named() -> None:
-    assert failed_jobs(EVENTS) == [("face", "2")]
-    assert failed_jobs("") == []
+def test_a_package_that_was_interrupted_did_not_end() -> None:
+    assert ended_jobs(EVENTS) == {"arm": "0", "face": "2"}
+    assert ended_jobs("") == {}
 
 
 @pytest.fixture
@@ -175,10 +173,11 @@ class FakeColcon:
         self.lines: list[str] = []
         monkeypatch.setattr(build, "colcon_command", self._command)
 
-    def _command(self, bases: Bases, *_: object, **__: object) -> list[str]:
+    def _command(self, bases: Bases, *_: object, **options: object) -> list[str]:
         head = [
             "import os, sys, time",
             "from pathlib import Path",
+            f"cmake_args = {options['cmake_args']!r}",
             f"base = Path({str(bases.root)!r})",
         ]
         return [sys.executable, "-c", "\n".join([*head, *self.lines])]
@@ -192,7 +191,14 @@ class FakeColcon:
 
     def logs(self, events: str) -> None:
         self.writes("log/build_1/events.log", events)
-        self.lines.append("(base / 'log/latest_build').symlink_to('build_1')")
+        self.link_log("'build_1'")
+
+    def link_log(self, name: str) -> None:
+        self.lines += [
+            "link = base / 'log/latest_build'",
+            "link.unlink(missing_ok=True)",
+            f"link.symlink_to({name})",
+        ]
 
 
 @pytest.fixture
@@ -226,7 +232,9 @@ def test_a_build_gives_units_and_what_was_missed(workspace: Path, colcon: FakeCo
     result = build_workspace(workspace, on_output=said.append)
     assert said == ["Starting >>> face", "Finished <<< face [1s]"]
     assert [found.link_unit for found in result.units] == ["broken", "detector"]
-    assert result.missing == (LinkTarget("thin", "face", built=True),)
+    (left_out,) = result.left_out
+    assert (left_out.package, left_out.name) == ("face", "thin")
+    assert left_out.reason == "its package was configured without TPC"
     assert [package.name for package in result.packages] == ["arm", "face"]
     assert not stale.exists()
     assert result.bases.install == workspace / ".tpc/install"
@@ -256,7 +264,7 @@ def test_a_package_that_fails_is_named_with_the_end_of_its_errors(
     colcon.writes("log/build_1/face/stderr.log", "".join(f"error {n}\n" for n in range(100)))
     colcon.lines.append("sys.exit(1)")
     with pytest.raises(BuildError) as caught:
-        build_workspace(workspace)
+        build_workspace(workspace, fallback=False)
     assert caught.value.package == "face"
     assert caught.value.tail == tuple(f"error {n}" for n in range(75, 100))
     log = workspace / ".tpc/log/build_1/face/stdout_stderr.log"
@@ -387,3 +395,70 @@ def test_an_install_base_that_is_none_or_fails_is_one_line(tmp_path: Path) -> No
     with pytest.raises(RunError) as caught:
         workspace_env(tmp_path)
     assert str(caught.value) == f"{tmp_path}/setup.bash: fails with status 3: broken"
+
+
+def fails_with_tpc(colcon: FakeColcon, *, without: str = "0") -> None:
+    """Package face fails unless it is left alone; then it ends with the status ``without``."""
+    colcon.lines += [
+        "alone = next(one for one in cmake_args if one.startswith('-DTPC_LEFT_ALONE='))",
+        f"status = {without!r} if alone.endswith('/src/face') else '2'",
+        "name = f'build_{status}'",
+        "(base / 'log' / name / 'face').mkdir(parents=True, exist_ok=True)",
+        "ended = f\"[1.0] (face) JobEnded: {{'identifier': 'face', 'rc': {status}}}\\n\"",
+        "(base / 'log' / name / 'events.log').write_text(ended)",
+        "(base / 'log' / name / 'face/stderr.log').write_text(f'error: {status}\\nstop\\n')",
+        "(base / 'build/face').mkdir(parents=True, exist_ok=True)",
+        "(base / 'build/face/made').write_text(status)",
+    ]
+    colcon.link_log("name")
+    colcon.lines.append("sys.exit(status != '0')")
+
+
+def test_a_package_that_builds_only_without_tpc_is_left_alone(
+    workspace: Path, colcon: FakeColcon
+) -> None:
+    fails_with_tpc(colcon)
+    result = build_workspace(workspace)
+    assert result.left_alone == {"face": "error: 2"}
+    # The folder with the other compiler is gone, and stays away.
+    assert (workspace / ".tpc/build/face/made").read_text() == "0"
+    assert not [*(workspace / ".tpc/set-aside").glob("*")]
+    assert build_workspace(workspace).left_alone == {"face": "error: 2"}
+
+
+def test_a_package_that_does_not_build_at_all_keeps_its_folder(
+    workspace: Path, colcon: FakeColcon
+) -> None:
+    fails_with_tpc(colcon, without="3")
+    with pytest.raises(BuildError) as caught:
+        build_workspace(workspace)
+    assert (caught.value.package, caught.value.tail[0]) == ("face", "error: 3")
+    assert (workspace / ".tpc/build/face/made").read_text() == "2"
+    assert not (workspace / ".tpc/left-alone.json").exists()
+
+
+def test_another_try_begins_without_the_old_folder(workspace: Path, colcon: FakeColcon) -> None:
+    fails_with_tpc(colcon)
+    build_workspace(workspace)
+    colcon.lines = ["assert not (base / 'build/face/made').exists()"]
+    assert build_workspace(workspace, retry=True).left_alone == {}
+    assert not (workspace / ".tpc/left-alone.json").exists()
+
+
+def test_a_try_that_was_interrupted_is_undone(workspace: Path, colcon: FakeColcon) -> None:
+    aside = workspace / ".tpc/set-aside/face"
+    aside.mkdir(parents=True)
+    (aside / "made").write_text("with TPC")
+    (workspace / ".tpc/build/face").mkdir(parents=True)
+    colcon.lines.append("assert (base / 'build/face/made').read_text() == 'with TPC'")
+    assert build_workspace(workspace).left_alone == {}
+
+
+@pytest.mark.parametrize("text", ["[]", '{"face": 1}'])
+def test_a_broken_list_of_packages_left_alone_is_named(
+    workspace: Path, colcon: FakeColcon, text: str
+) -> None:
+    (workspace / ".tpc").mkdir()
+    (workspace / ".tpc/left-alone.json").write_text(text)
+    with pytest.raises(InputError, match=r"left-alone\.json: not a list of packages"):
+        build_workspace(workspace)

@@ -13,11 +13,12 @@ from click.testing import CliRunner, Result
 from packages import add_package, install_prefix
 from static_units import KEYS, comparison, failed_unit, unit
 
-from pytpc.build import Bases, BuildError, BuildResult
+from pytpc.build import BuildResult
 from pytpc.cli import workspace_commands
 from pytpc.cli.main import main
-from pytpc.cmake_targets import LinkTarget
+from pytpc.colcon import Bases, BuildError
 from pytpc.errors import InputError
+from pytpc.link_units import UnitState
 from pytpc.static_info import LinkUnit, StaticInfo
 
 
@@ -176,13 +177,17 @@ def test_build_hands_over_its_options_and_shows_the_result(
         static = StaticInfo.of(
             LinkUnit.from_json(data, tmp_path) for data in (unit(), failed_unit())
         )
-        missing = (LinkTarget("thin", "face", built=True),)
-        return BuildResult(options["bases"], (), static, missing, 12.34)
+        left_out = (
+            UnitState("face", "thin", tmp_path / "thin", "it is a test"),
+            UnitState("leg", "node", tmp_path / "node", "its package does not build with TPC"),
+        )
+        alone = {"leg": "a.cpp:1: error: no"}
+        return BuildResult(options["bases"], (), static, left_out, alone, 12.34)
 
     monkeypatch.setattr(workspace_commands, "build_workspace", fake)
     result = run(
         *("build", tmp_path, "--package", "face", "--package", "arm", "--build-type", "Debug"),
-        *("--constants", "--base", tmp_path / "own"),
+        *("--constants", "--base", tmp_path / "own", "--tests", "--no-fallback", "--retry"),
         *("--", "--merge-install", "--cmake-args", "-DX=1"),
     )
     assert result.exit_code == 0, result.output
@@ -190,7 +195,8 @@ def test_build_hands_over_its_options_and_shows_the_result(
     assert given["packages"] == ("face", "arm")
     assert given["build_type"] == "Debug"
     assert given["bases"] == Bases(tmp_path / "own")
-    assert given["constants"] is True
+    assert (given["constants"], given["tests"], given["retry"]) == (True, True, True)
+    assert given["fallback"] is False
     assert given["colcon_args"] == ("--merge-install", "--cmake-args", "-DX=1")
     assert result.stdout.splitlines()[-1] == (
         f"1 comparison in 2 link units, built in 12.3 s: {tmp_path}/own/static.json"
@@ -199,8 +205,10 @@ def test_build_hands_over_its_options_and_shows_the_result(
         "Starting >>> face",
         "pytpc: warning: broken of package face was left as it was and reports nothing:"
         " the instrumented module does not verify",
-        "pytpc: warning: thin of package face was linked without the analysis,"
-        " so it reports nothing",
+        "pytpc: warning: package leg is built without TPC, with which it does not build:"
+        " a.cpp:1: error: no",
+        "face/thin reports nothing: it is a test",
+        "pytpc build --retry tries again with TPC",
     ]
 
 

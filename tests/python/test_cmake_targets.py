@@ -28,10 +28,11 @@ def test_linked_targets_are_told_from_others(tmp_path: Path) -> None:
         ],
     )
     assert link_targets(tmp_path) == [
-        LinkTarget("a_plugin", "inner", built=False),
-        LinkTarget("common", "face", built=False),
-        LinkTarget("detector", "face", built=True),
+        LinkTarget("a_plugin", "inner", tmp_path / "devel/a_plugin"),
+        LinkTarget("common", "face", tmp_path / "devel/common"),
+        LinkTarget("detector", "face", tmp_path / "devel/detector"),
     ]
+    assert [unit.built for unit in link_targets(tmp_path) or ()] == [False, False, True]
 
 
 def test_without_an_answer_nothing_is_claimed(tmp_path: Path) -> None:
@@ -56,7 +57,9 @@ def test_cmake_itself_answers(tmp_path: Path) -> None:
     (source / "CMakeLists.txt").write_text(
         "cmake_minimum_required(VERSION 3.10)\nproject(tiny C)\n"
         "add_executable(node main.c)\nadd_executable(later EXCLUDE_FROM_ALL main.c)\n"
-        "add_library(part STATIC main.c)\nadd_custom_target(doc)\n",
+        "add_library(part STATIC main.c)\nadd_custom_target(doc)\n"
+        "add_library(objects OBJECT main.c)\n"
+        "add_executable(of_objects $<TARGET_OBJECTS:objects>)\n",
         encoding="utf-8",
     )
     (source / "main.c").write_text("int main(void) { return 0; }\n", encoding="utf-8")
@@ -64,6 +67,9 @@ def test_cmake_itself_answers(tmp_path: Path) -> None:
     subprocess.run(["cmake", "-S", source, "-B", binary], check=True, capture_output=True)
     subprocess.run(["cmake", "--build", binary], check=True, capture_output=True)
     assert link_targets(binary) == [
-        LinkTarget("later", "tiny", built=False),
-        LinkTarget("node", "tiny", built=True),
+        LinkTarget("later", "tiny", binary / "later", binary / "CMakeFiles/later.dir"),
+        LinkTarget("node", "tiny", binary / "node", binary / "CMakeFiles/node.dir"),
+        LinkTarget("of_objects", "tiny", binary / "of_objects"),
     ]
+    assert [unit.built for unit in link_targets(binary) or ()] == [False, True, True]
+    assert (binary / "CMakeFiles/node.dir/main.c.o").is_file()

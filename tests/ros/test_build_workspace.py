@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 
 from pytpc import patch
-from pytpc.build import BuildError, build_environment, build_workspace, workspace_env
+from pytpc.build import build_workspace, workspace_env
+from pytpc.colcon import BuildError, build_environment
 from pytpc.errors import MissingToolError, WorkspaceError
 from pytpc.paths import cmake_file, log_library, plugin
 from pytpc.static_info import collect

@@ -13,7 +13,8 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
-from pytpc.build import BuildResult, build_environment, build_workspace
+from pytpc.build import BuildResult, build_workspace
+from pytpc.colcon import build_environment
 from suite.expectations import PACKAGE
 
 _XLINKER = "-Xlinker"

@@ -1,0 +1,249 @@
+"""colcon, which builds the packages: its command, its environment, and what its logs say.
+
+The user's own build, install and log folders are not touched: everything goes into ``Bases``.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+import signal
+import subprocess
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from glob import escape
+from pathlib import Path
+
+from pytpc.errors import RunError, WorkspaceError
+from pytpc.paths import MERGED_FILE, OWN_FOLDER, search_path
+from pytpc.workspace import Package
+
+_TAIL_LINES = 25
+_OWN_OPTIONS = ("--build-base", "--install-base", "--log-base", "--paths", "--base-paths")
+_HANDLERS = ("console_direct+", "console_cohesion-", "console_stderr-", "summary-")
+_JOB_ENDED = re.compile(
+    r"^\[[0-9.]+\] \([^)]*\) JobEnded: \{'identifier': '(?P<name>[^']+)', 'rc': (?P<rc>.+)\}$",
+    re.MULTILINE,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Bases:
+    """Where a build puts things: ``build``, ``install`` and ``log`` below ``root``."""
+
+    root: Path
+
+    @classmethod
+    def of(cls, workspace: Path) -> Bases:
+        """The bases within a workspace: its hidden folder ``.tpc``."""
+        return cls(workspace.absolute() / OWN_FOLDER)
+
+    @property
+    def build(self) -> Path:
+        """CMake's build folders, one per package, and the static information in them."""
+        return self.root / "build"
+
+    @property
+    def install(self) -> Path:
+        """What the nodes are run from; see ``workspace_env``."""
+        return self.root / "install"
+
+    @property
+    def log(self) -> Path:
+        """Colcon's logs."""
+        return self.root / "log"
+
+    @property
+    def static_info(self) -> Path:
+        """The merged static information of the last build."""
+        return self.root / MERGED_FILE
+
+
+class BuildError(RunError):
+    """A package did not build.
+
+    ``tail`` is the end of what it wrote to standard error, ``finished`` are the packages that were
+    built before that.
+    """
+
+    def __init__(
+        self,
+        message: str,
+        path: Path,
+        package: str,
+        tail: Sequence[str],
+        finished: frozenset[str] = frozenset(),
+    ) -> None:
+        """Keep the tail apart, because the message is one line."""
+        super().__init__(message, path)
+        self.package = package
+        self.tail = tuple(tail)
+        self.finished = finished
+
+
+def colcon_command(
+    bases: Bases,
+    packages: Sequence[Package],
+    toolchain: Path,
+    *,
+    only: Iterable[str] = (),
+    build_type: str = "RelWithDebInfo",
+    rules: Path | None = None,
+    cmake_args: Sequence[str] = (),
+    colcon_args: Sequence[str] = (),
+) -> list[str]:
+    """The command that builds packages with TPC.
+
+    Args:
+        bases: where everything is put.
+        packages: the packages of the workspace; colcon is told their folders and searches none.
+        toolchain: tpc.cmake.
+        only: names; these and what they need are built, or all where empty.
+        build_type: CMAKE_BUILD_TYPE.
+        rules: the user's own rules.
+        cmake_args: further arguments for each package's CMake.
+        colcon_args: further arguments for colcon; a ``--cmake-args`` in them adds to ours.
+
+    Raises:
+        WorkspaceError: ``colcon_args`` has an option that TPC sets itself.
+    """
+    for argument in colcon_args:
+        if argument.partition("=")[0] in _OWN_OPTIONS:
+            raise WorkspaceError(f"{argument.partition('=')[0]} cannot be given: TPC sets it")
+    for_cmake = [
+        "--cmake-args",
+        f"-DCMAKE_TOOLCHAIN_FILE={toolchain}",
+        f"-DCMAKE_BUILD_TYPE={build_type}",
+        # Empty, so that those of an earlier build do not stay in CMake's cache.
+        f"-DTPC_RULES={rules.absolute() if rules is not None else ''}",
+        "-DPYTHON_EXECUTABLE=/usr/bin/python3",
+        *cmake_args,
+    ]
+    # Of several --cmake-args the last one counts, so each of the user's has to begin with ours.
+    further: list[str] = []
+    for argument in colcon_args:
+        further += for_cmake if argument == "--cmake-args" else [argument]
+    names = list(only)
+    if "--cmake-args" not in colcon_args:
+        further += for_cmake
+    # Colcon takes an option that it does not know for a value of the option before it, so what
+    # the user gives stands where there is none and a slip of his is an error.
+    return [
+        "colcon",
+        "--log-base",
+        str(bases.log),
+        "build",
+        *further,
+        "--build-base",
+        str(bases.build),
+        "--install-base",
+        str(bases.install),
+        "--event-handlers",
+        *_HANDLERS,
+        "--paths",
+        *(_unglobbed(str(package.path.absolute())) for package in packages),
+        *(["--packages-up-to", *names] if names else []),
+    ]
+
+
+def build_environment() -> dict[str, str]:
+    """The caller's environment without his Python's and make's, the system's programs first.
+
+    Under ``make -j`` the job server's pipe does not reach us, and a make below would run one job.
+    """
+    own = {"PYTHONHOME", "VIRTUAL_ENV", "PATH", "MAKELEVEL", "MFLAGS"}
+    if "--jobserver" in os.environ.get("MAKEFLAGS", ""):
+        own.add("MAKEFLAGS")
+    environment = {name: value for name, value in os.environ.items() if name not in own}
+    return {**environment, "PATH": search_path(), "PYTHONUNBUFFERED": "1"}
+
+
+def run_colcon(
+    command: list[str], workspace: Path, bases: Bases, on_output: Callable[[str], None] | None
+) -> None:
+    """Run colcon to its end; an interruption ends the compilers below it, too.
+
+    Raises:
+        BuildError: a package does not build.
+        RunError: colcon itself fails.
+    """
+    before = _latest_log(bases)
+    said: list[str] = []
+    with subprocess.Popen(
+        command,
+        cwd=workspace,
+        env=build_environment(),
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        errors="replace",
+        start_new_session=True,
+    ) as process:
+        try:
+            for line in process.stdout or ():
+                said = [*said[-_TAIL_LINES:], line.rstrip()]
+                if on_output is not None:
+                    on_output(line.rstrip())
+        except BaseException:
+            _end_group(process)
+            raise
+    latest = _latest_log(bases)
+    if latest is not None and latest != before:
+        _raise_for_failed_package(latest)
+    if process.returncode != 0:
+        end = next((line for line in reversed(said) if line), "it says nothing")
+        raise RunError(f"colcon ends with status {process.returncode}: {end}")
+
+
+def _end_group(process: subprocess.Popen[str]) -> None:
+    """End colcon and the compilers below it, gently first: colcon then records what it left."""
+    for end, patience in ((signal.SIGINT, 10), (signal.SIGTERM, 5), (signal.SIGKILL, None)):
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(process.pid, end)
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            process.wait(timeout=patience)
+            return
+
+
+def _latest_log(bases: Bases) -> Path | None:
+    link = bases.log / "latest_build"
+    return link.resolve() if link.exists() else None
+
+
+def ended_jobs(events: str) -> dict[str, str]:
+    """The status with which each package ended, from colcon's events.log.
+
+    Packages that were interrupted because another one failed are left out.
+    """
+    ended = ((match["name"], match["rc"]) for match in _JOB_ENDED.finditer(events))
+    return {name: status for name, status in ended if status != "'SIGINT'"}
+
+
+def _raise_for_failed_package(log: Path) -> None:
+    jobs = ended_jobs((log / "events.log").read_text("utf-8", "replace"))
+    finished = frozenset(name for name, status in jobs.items() if status == "0")
+    for name, status in jobs.items():
+        if status == "0":
+            continue
+        folder = log / name
+        tail = _tail(folder / "stderr.log") or _tail(folder / "stdout.log")
+        raise BuildError(
+            f"package {name} does not build (status {status}); this is its output",
+            folder / "stdout_stderr.log",
+            name,
+            tail,
+            finished,
+        )
+
+
+def _tail(path: Path) -> list[str]:
+    if not path.is_file():
+        return []
+    return path.read_text("utf-8", "replace").rstrip().splitlines()[-_TAIL_LINES:]
+
+
+def _unglobbed(path: str) -> str:
+    """Colcon expands a path with a star in it, and only such a path."""
+    return escape(path) if "*" in path else path

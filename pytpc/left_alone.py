@@ -1,0 +1,119 @@
+"""Packages that build with the user's compiler and not with TPC: these are left alone.
+
+clang takes less than gcc here and there. Rather than end the build, such a package is configured
+anew without anything of TPC's, compiler included, and that is remembered in ``left-alone.json``
+until the user asks for another try.
+"""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Sequence
+from pathlib import Path
+
+from pytpc.atomic import write_atomic
+from pytpc.colcon import Bases, BuildError
+from pytpc.errors import InputError
+from pytpc.static_json import dump_json, parse_json
+from pytpc.workspace import Package
+
+_FILE = "left-alone.json"
+_ASIDE = "set-aside"
+
+
+class LeftAlone:
+    """The packages of one build that are left alone, each with the reason.
+
+    A package is first tried: its build folder is set aside. The try ends with ``keep`` or
+    ``give_up``; one that was interrupted is undone when the next build begins.
+    """
+
+    def __init__(self, bases: Bases, packages: Sequence[Package], *, retry: bool = False) -> None:
+        """Read what earlier builds left alone of ``packages``.
+
+        Args:
+            bases: of the build.
+            packages: all of the workspace.
+            retry: forget it, and the build folders with the other compiler.
+
+        Raises:
+            InputError: the file is broken.
+            OSError: a folder cannot be written.
+        """
+        self._bases = bases
+        self._folders = {package.name: package.path.absolute() for package in packages}
+        self._tried: set[str] = set()
+        self.reasons = self._read()
+        for folder in sorted((bases.root / _ASIDE).glob("*")):
+            self._put_back(folder.name)
+        if retry:
+            for name in self.reasons:
+                shutil.rmtree(bases.build / name, ignore_errors=True)
+            self.reasons = {}
+            self._save()
+
+    @property
+    def folders(self) -> list[Path]:
+        """The folders of the packages, those that are being tried among them."""
+        return [folder for name, folder in self._folders.items() if name in self.reasons]
+
+    def can_try(self, error: BuildError) -> bool:
+        """Whether the package that failed was built with TPC."""
+        return error.package in self._folders and error.package not in self.reasons
+
+    def begin(self, error: BuildError) -> None:
+        """Set the build folder of the package aside, so that the next build is without TPC."""
+        self._keep(self._tried & error.finished)
+        self._tried.add(error.package)
+        self.reasons[error.package] = _reason(error)
+        aside = self._bases.root / _ASIDE / error.package
+        aside.parent.mkdir(parents=True, exist_ok=True)
+        (self._bases.build / error.package).replace(aside)
+
+    def keep(self) -> None:
+        """All that were tried build without TPC: remember that."""
+        self._keep(set(self._tried))
+
+    def give_up(self, error: BuildError) -> None:
+        """One does not build without TPC, either: its build folder is as it was."""
+        self._keep(self._tried & error.finished)
+        for name in sorted(self._tried):
+            del self.reasons[name]
+            self._put_back(name)
+        self._tried.clear()
+
+    def _keep(self, names: set[str]) -> None:
+        for name in names:
+            shutil.rmtree(self._bases.root / _ASIDE / name)
+        self._tried -= names
+        self._save()
+
+    def _put_back(self, name: str) -> None:
+        folder = self._bases.build / name
+        shutil.rmtree(folder, ignore_errors=True)
+        (self._bases.root / _ASIDE / name).replace(folder)
+
+    def _read(self) -> dict[str, str]:
+        path = self._bases.root / _FILE
+        if not path.is_file():
+            return {}
+        data = parse_json(path)
+        if not isinstance(data, dict) or not all(isinstance(why, str) for why in data.values()):
+            raise InputError("not a list of packages with reasons; it can be removed", path)
+        return {name: why for name, why in data.items() if name in self._folders}
+
+    def _save(self) -> None:
+        path = self._bases.root / _FILE
+        known = {name: why for name, why in self.reasons.items() if name not in self._tried}
+        if known:
+            write_atomic(path, dump_json(known))
+        else:
+            path.unlink(missing_ok=True)
+
+
+def _reason(error: BuildError) -> str:
+    """The first line of its output that has an error in it."""
+    for line in error.tail:
+        if "error:" in line.lower() or "CMake Error" in line:
+            return " ".join(line.split())
+    return " ".join(error.tail[-1].split()) if error.tail else error.message

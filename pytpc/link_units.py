@@ -1,0 +1,162 @@
+"""Which link units a build has, which of them were analysed, and why the others were not.
+
+CMake's file API says what is linked; ``tpc/targets.tsv``, which tpc.cmake leaves in the build
+folder, says what it left out and why; the objects and the file that was linked say the rest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from pytpc.cmake_targets import LinkTarget, link_targets
+from pytpc.errors import InputError
+from pytpc.static_info import LinkUnit
+
+_RECORD = Path("tpc/targets.tsv")
+_FIELDS = 5
+_BITCODE = (b"BC\xc0\xde", b"\xde\xc0\x17\x0b")
+_CACHE = "CMakeCache.txt"
+
+
+@dataclass(frozen=True, slots=True)
+class Recorded:
+    """What tpc.cmake noted of a link unit; ``left_out`` is why, or empty where it is not."""
+
+    package: str
+    name: str
+    artifact: Path
+    static_info: Path
+    left_out: str
+
+
+@dataclass(frozen=True, slots=True)
+class UnitState:
+    """A link unit that is there; ``reason`` says why it was not analysed, None where it was."""
+
+    package: str
+    name: str
+    artifact: Path
+    reason: str | None
+
+
+def build_folders(base: Path) -> list[Path]:
+    """CMake's build folders: ``base`` itself, or those right below it, sorted.
+
+    colcon and catkin_tools have a build folder for each package, catkin_make one for all.
+
+    Raises:
+        InputError: no such folder.
+    """
+    if not base.is_dir():
+        raise InputError("no such build folder", base)
+    if (base / _CACHE).is_file():
+        return [base]
+    return sorted(folder for folder in base.iterdir() if (folder / _CACHE).is_file())
+
+
+def recorded_units(build_folder: Path) -> list[Recorded] | None:
+    """What tpc.cmake noted in a build folder; None where it noted nothing.
+
+    Raises:
+        InputError: the file is broken, with the line.
+    """
+    path = build_folder / _RECORD
+    try:
+        text = path.read_text("utf-8")
+    except FileNotFoundError:
+        return None
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"cannot be read: {error}", path) from error
+    units = []
+    for number, line in enumerate(text.split("\n")[:-1], start=1):
+        fields = line.split("\t")
+        if len(fields) != _FIELDS:
+            raise InputError(f"{len(fields)} fields where {_FIELDS} are", path, number)
+        package, name, artifact, static_info, left_out = fields
+        units.append(Recorded(package, name, Path(artifact), Path(static_info), left_out))
+    return units
+
+
+def unit_states(build_folder: Path) -> list[UnitState]:
+    """Every link unit whose file is there, sorted by package and name.
+
+    Raises:
+        InputError: an answer of CMake, or the record, is broken.
+    """
+    recorded = recorded_units(build_folder)
+    by_name = {unit.name: unit for unit in recorded or ()}
+    states = []
+    for target in _known_targets(build_folder, by_name):
+        if target.artifact is None or not target.built:
+            continue
+        unit = by_name.get(target.name)
+        here = build_folder / _RECORD.parent / f"{target.name}.json"
+        reason: str | None = None
+        if unit is not None:
+            reason = None if unit.static_info.is_file() else _why(unit, target)
+        elif recorded is not None:
+            reason = "it was made in a part of the build that tpc.cmake does not see"
+        elif not here.is_file():
+            reason = "its package was configured without TPC"
+        package = unit.package if unit is not None else target.package
+        states.append(UnitState(package, target.name, target.artifact, reason))
+    return sorted(states, key=lambda state: (state.package, state.name))
+
+
+def stale_files(build_folder: Path, files: list[Path]) -> Iterator[Path]:
+    """Those of ``files`` that are of no link unit which this build folder still has."""
+    recorded = recorded_units(build_folder)
+    targets = link_targets(build_folder)
+    if targets is None and recorded is None:
+        return
+    names = {target.name for target in targets or ()} | {unit.name for unit in recorded or ()}
+    left_out = {unit.static_info for unit in recorded or () if unit.left_out}
+    for path in files:
+        if path.stem not in names or path in left_out:
+            yield path
+
+
+def remark(unit: LinkUnit) -> str:
+    """What there is to say of an analysed unit: ``ok``, or why it has no comparisons."""
+    if unit.status != "ok":
+        return "left as it was"
+    counts = unit.counts
+    if not counts.comparisons and not counts.parameter_reads and not counts.exposing_statements:
+        return "no ROS call"
+    if not counts.comparisons and counts.without_debug_info:
+        return "no debug information"
+    return "ok"
+
+
+def _known_targets(build_folder: Path, recorded: dict[str, Recorded]) -> list[LinkTarget]:
+    """Those that CMake told of; before it was asked, those that tpc.cmake noted."""
+    targets = link_targets(build_folder)
+    if targets is not None:
+        return targets
+    return [LinkTarget(unit.name, unit.package, unit.artifact) for unit in recorded.values()]
+
+
+def _why(unit: Recorded, target: LinkTarget) -> str:
+    if unit.left_out:
+        return unit.left_out
+    objects = sorted(target.objects.rglob("*.o")) if target.objects is not None else []
+    beginnings = [_beginning(path) for path in objects]
+    if objects and not any(data.startswith(_BITCODE) for data in beginnings):
+        return "its objects are native code, not compiled with -flto"
+    # Clang marks what is not for ThinLTO.
+    if any(
+        data.startswith(_BITCODE) and b"ThinLTO" not in path.read_bytes()
+        for path, data in zip(objects, beginnings, strict=True)
+    ):
+        return "it was compiled for ThinLTO, which sees no link unit as a whole"
+    return (
+        "the linker did not run the analysis, or its file was removed since; "
+        f"remove {unit.artifact} and build again"
+    )
+
+
+def _beginning(path: Path) -> bytes:
+    with path.open("rb") as stream:
+        return stream.read(4)
