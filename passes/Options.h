@@ -24,7 +24,7 @@ struct Options {
   std::string Profile;    ///< profile of the rules
   std::vector<std::string> RuleFiles; ///< the user's own tables
   std::vector<std::string> Excluded;  ///< folders that are not the user's
-  bool Analyse = true; ///< else the unit is only optimised
+  bool Analyse = true;                ///< else the unit is only optimised
   bool Instrument = true;
   bool Constants = false; ///< report comparisons with constants, too
   bool Prelink = true;
