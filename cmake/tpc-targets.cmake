@@ -135,13 +135,13 @@ endfunction()
 # the log library or the rules have changed, and lists it.
 function(_tpc_finish_link_unit folder target obstacle is_plain)
   _tpc_find_package("${folder}")
-  set(off "${obstacle}")
-  if(NOT off)
-    _tpc_find_reason_to_leave_out("${folder}" "${target}" off)
+  set(left_out "${obstacle}")
+  if(NOT left_out)
+    _tpc_find_reason_to_leave_out("${folder}" "${target}" left_out)
   endif()
   set(file "${binary}/tpc/${target}.json")
   set_target_properties("${target}" PROPERTIES
-    _TPC_OFF "${off}" _TPC_PACKAGE "${package}" _TPC_SOURCE_ROOT "${root}"
+    _TPC_OFF "${left_out}" _TPC_PACKAGE "${package}" _TPC_SOURCE_ROOT "${root}"
     _TPC_EXCLUDED "${excluded}" _TPC_STATIC_INFO "${file}")
   if(NOT obstacle)
     foreach(part _tpc_plugin _tpc_log _tpc_rules)
@@ -151,14 +151,14 @@ function(_tpc_finish_link_unit folder target obstacle is_plain)
       endif()
     endforeach()
   endif()
-  if(off)
+  if(left_out)
     # What an earlier build found says nothing of what is built now.
     file(REMOVE "${file}")
   elseif(is_plain)
-    set(off "the language was enabled after project(), or its compile rule was replaced")
+    set(left_out "the language was enabled after project(), or its compile rule was replaced")
   endif()
   set_property(GLOBAL APPEND_STRING PROPERTY _tpc_listed
-    "${package}\t${target}\t$<TARGET_FILE:${target}>\t${file}\t${off}\n")
+    "${package}\t${target}\t$<TARGET_FILE:${target}>\t${file}\t${left_out}\n")
 endfunction()
 
 # Sets `reason` to why a target gets no reports in a package that does; empty where it

@@ -103,14 +103,18 @@ function(_tpc_try_clang flags links)
   endif()
 endfunction()
 
-# Chooses clang and LLVM's archiver, where nobody has chosen another compiler. A
-# package with a sanitizer that clang cannot link keeps the compiler it had.
-macro(_tpc_choose_compilers)
-  set(_tpc_chose TRUE)
+macro(_tpc_find_compilers)
   find_program(TPC_CLANG clang-${TPC_CLANG_VERSION})
   find_program(TPC_CLANGXX clang++-${TPC_CLANG_VERSION})
   find_program(TPC_AR llvm-ar-${TPC_CLANG_VERSION})
   find_program(TPC_RANLIB llvm-ranlib-${TPC_CLANG_VERSION})
+  find_program(TPC_LLD ld.lld-${TPC_CLANG_VERSION})
+endmacro()
+
+# Chooses clang and LLVM's archiver, where nobody has chosen another compiler. A
+# package with a sanitizer that clang cannot link keeps the compiler it had.
+macro(_tpc_choose_compilers)
+  _tpc_find_compilers()
   set(_tpc_clang_links TRUE)
   _tpc_find_sanitizer_of_package()
   if(TPC_CLANG AND _tpc_sanitizer AND NOT _tpc_probe)
@@ -138,15 +142,22 @@ macro(_tpc_choose_compilers)
   endif()
 endmacro()
 
+# Sets `result` to whether somebody named the compiler of a language: of itself CMake
+# takes cc and c++.
+function(_tpc_is_chosen_by_hand language result)
+  get_filename_component(name "${CMAKE_${language}_COMPILER}" NAME)
+  get_property(help CACHE CMAKE_${language}_COMPILER PROPERTY HELPSTRING)
+  if(help MATCHES "specified on the command line" OR CMAKE_TOOLCHAIN_FILE
+      OR NOT name MATCHES "^(cc|c\\+\\+)$")
+    set(${result} TRUE PARENT_SCOPE)
+  else()
+    set(${result} FALSE PARENT_SCOPE)
+  endif()
+endfunction()
+
 # Sets _tpc_obstacle to why the package cannot be instrumented; empty where it can.
 macro(_tpc_find_obstacle)
   set(_tpc_obstacle "")
-  set(_tpc_mend "a build folder keeps its compiler: remove ${CMAKE_BINARY_DIR}")
-  if(NOT _tpc_chose)
-    # The compilers were chosen before this file was read: by hand, or in a
-    # CMakeLists.txt above this one, as that of catkin_make.
-    set(_tpc_mend "configure a new build folder with -DCMAKE_TOOLCHAIN_FILE=${_tpc_file}")
-  endif()
   if(NOT TPC_LLD)
     set(_tpc_obstacle "ld.lld-${TPC_CLANG_VERSION} is not here (apt-get install lld-${TPC_CLANG_VERSION})")
   endif()
@@ -156,8 +167,12 @@ macro(_tpc_find_obstacle)
     endif()
   endforeach()
   foreach(_tpc_language IN LISTS _tpc_languages)
-    if(NOT CMAKE_${_tpc_language}_COMPILER_ID STREQUAL "Clang")
-      set(_tpc_obstacle "the compiler is ${CMAKE_${_tpc_language}_COMPILER_ID}, not clang (${_tpc_mend})")
+    _tpc_is_chosen_by_hand(${_tpc_language} _tpc_by_hand)
+    if(CMAKE_${_tpc_language}_COMPILER_ID STREQUAL "GNU" AND NOT _tpc_by_hand
+        AND TPC_CLANG AND TPC_CLANGXX AND TPC_AR AND TPC_RANLIB)
+      # Nobody's choice but CMake's: clang can take its place, see _tpc_replace_gcc.
+    elseif(NOT CMAKE_${_tpc_language}_COMPILER_ID STREQUAL "Clang")
+      set(_tpc_obstacle "the compiler is ${CMAKE_${_tpc_language}_COMPILER_ID}, not clang")
     elseif(NOT CMAKE_${_tpc_language}_COMPILER_VERSION MATCHES "^${TPC_CLANG_VERSION}\\.")
       set(_tpc_obstacle "the compiler is clang ${CMAKE_${_tpc_language}_COMPILER_VERSION}, the passes are for ${TPC_CLANG_VERSION}")
     endif()
@@ -204,14 +219,43 @@ endmacro()
 # For assembler sources: to clang the flags for C and C++ that it gets are of no use, of
 # which it warns and gcc does not.
 macro(_tpc_tolerate_flags_of_assembler)
-  if(NOT CMAKE_ASM_COMPILER)
-    set(CMAKE_ASM_COMPILE_OBJECT
-      "<CMAKE_ASM_COMPILER> <DEFINES> <INCLUDES> <FLAGS> -o <OBJECT> -c <SOURCE>")
+  # Where it is enabled later it is the compiler for C, or else that for C++.
+  set(_tpc_assembler "${CMAKE_ASM_COMPILER}")
+  foreach(_tpc_compiler CMAKE_C_COMPILER CMAKE_CXX_COMPILER)
+    if(NOT _tpc_assembler)
+      set(_tpc_assembler "${${_tpc_compiler}}")
+    endif()
+  endforeach()
+  if(_tpc_assembler STREQUAL "${TPC_CLANG}" OR _tpc_assembler STREQUAL "${TPC_CLANGXX}")
+    if(NOT CMAKE_ASM_COMPILE_OBJECT)
+      set(CMAKE_ASM_COMPILE_OBJECT
+        "<CMAKE_ASM_COMPILER> <DEFINES> <INCLUDES> <FLAGS> -o <OBJECT> -c <SOURCE>")
+    endif()
+    if(NOT CMAKE_ASM_COMPILE_OBJECT MATCHES "-Qunused-arguments")
+      _tpc_add_compile_flags(ASM "-Wno-error -Qunused-arguments")
+    endif()
   endif()
-  if(NOT CMAKE_ASM_COMPILER OR CMAKE_ASM_COMPILER STREQUAL "${TPC_CLANG}"
-      OR CMAKE_ASM_COMPILER STREQUAL "${TPC_CLANGXX}")
-    _tpc_add_compile_flags(ASM "-Wno-error -Qunused-arguments")
-  endif()
+endmacro()
+
+# Has clang compile and link where CMake found gcc before this file was read: in a
+# build folder of before, or in a CMakeLists.txt above, as catkin_make's. What the
+# package asked of gcc stays true of its flags, which clang takes as well.
+macro(_tpc_replace_gcc)
+  set(_tpc_instead_of_C "${TPC_CLANG}")
+  set(_tpc_instead_of_CXX "${TPC_CLANGXX}")
+  foreach(_tpc_language ${ARGN})
+    if(CMAKE_${_tpc_language}_COMPILER_ID STREQUAL "GNU")
+      foreach(_tpc_rule COMPILE_OBJECT LINK_EXECUTABLE CREATE_SHARED_LIBRARY CREATE_SHARED_MODULE)
+        string(REPLACE "<CMAKE_${_tpc_language}_COMPILER>"
+          "\"${_tpc_instead_of_${_tpc_language}}\""
+          CMAKE_${_tpc_language}_${_tpc_rule} "${CMAKE_${_tpc_language}_${_tpc_rule}}")
+      endforeach()
+      set(CMAKE_AR "${TPC_AR}")
+      set(CMAKE_RANLIB "${TPC_RANLIB}")
+      set(CMAKE_${_tpc_language}_COMPILER_AR "${TPC_AR}")
+      set(CMAKE_${_tpc_language}_COMPILER_RANLIB "${TPC_RANLIB}")
+    endif()
+  endforeach()
 endmacro()
 
 # Gives a language that the package enables later, by enable_language(), the
@@ -233,15 +277,14 @@ macro(_tpc_instrument)
     _tpc_prepare_language(C CXX)
     set(_tpc_languages C CXX)
   endif()
+  _tpc_replace_gcc(${_tpc_languages})
   _tpc_link_with_lld(${_tpc_languages})
   foreach(_tpc_language IN LISTS _tpc_languages)
     # Behind the flags of the target, whose -fno-lto, -flto=thin or -Werror
     # would break the build or undo ours.
     _tpc_add_compile_flags(${_tpc_language} "${_tpc_compile_flags}")
   endforeach()
-  if(_tpc_chose)
-    _tpc_tolerate_flags_of_assembler()
-  endif()
+  _tpc_tolerate_flags_of_assembler()
   string(REPLACE ";" "," _tpc_linked "${_tpc_languages}")
   # In every program and library, because the optimisation that the compiler left
   # out is the plugin's to make up for.
@@ -303,7 +346,7 @@ macro(_tpc_enter_project)
       list(REMOVE_ITEM _tpc_languages ${_tpc_language})
     endif()
   endforeach()
-  find_program(TPC_LLD ld.lld-${TPC_CLANG_VERSION})
+  _tpc_find_compilers()
   _tpc_find_obstacle()
   set(_tpc_entered TRUE)
   if(NOT _tpc_obstacle)

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from pytpc.errors import MissingToolError
+from pytpc.link_units import recorded_units
 from pytpc.paths import SYSTEM_PATH, cmake_file, log_library, plugin
 
 try:
@@ -334,6 +335,126 @@ def test_the_users_own_file_is_included_after_project(tmp_path: Path) -> None:
         arguments = [toolchain(), f"-DCMAKE_PROJECT_INCLUDE={own}", f"-DTPC_DISABLE={disable}"]
         result = build(tmp_path, lists, *arguments, name=name)
         assert result.analysed() == (["x"] if disable == "OFF" else [])
+
+
+def include() -> str:
+    """What the patch puts at the top of a CMakeLists.txt."""
+    return f'include("{cmake_file()}" OPTIONAL)\n'
+
+
+def test_a_build_folder_that_gcc_was_found_for_goes_on_with_clang(tmp_path: Path) -> None:
+    targets = (
+        "add_library(l STATIC other.cpp)\nadd_executable(x main.cpp)\n"
+        "target_link_libraries(x PRIVATE l)\n"
+    )
+    plain = build(tmp_path, HEAD + targets, "-DCMAKE_BUILD_TYPE=Release")
+    assert plain.analysed() == []
+    result = build(tmp_path, include() + HEAD + targets, "-DCMAKE_BUILD_TYPE=Release")
+    assert (result.analysed(), result.warnings()) == (["x"], [])
+    assert result.runs("x").returncode in (0, 1)
+    assert build(tmp_path, HEAD + targets).runs("x").returncode in (0, 1)
+
+
+def test_packages_below_a_toplevel_that_found_gcc_are_instrumented(tmp_path: Path) -> None:
+    for name in ("a", "b"):
+        folder = tmp_path / "p" / name
+        folder.mkdir(parents=True)
+        (folder / "package.xml").touch()
+        (folder / "main.cpp").write_text(MAIN, encoding="utf-8")
+        lists = f"project({name} CXX)\nadd_executable({name}_node main.cpp)\n"
+        (folder / "CMakeLists.txt").write_text(include() + lists, encoding="utf-8")
+    top = "cmake_minimum_required(VERSION 3.16)\nproject(Project)\n"
+    subfolders = "add_subdirectory(a)\nadd_subdirectory(b)\nadd_executable(top main.cpp)\n"
+    result = build(tmp_path, top + subfolders, "-DCMAKE_BUILD_TYPE=Release")
+    assert result.warnings() == []
+    found = sorted(str(path.relative_to(result.folder)) for path in result.folder.rglob("*.json"))
+    assert [path for path in found if "tpc/" in path] == ["a/tpc/a_node.json", "b/tpc/b_node.json"]
+    assert {unit.package for unit in recorded_units(result.folder) or ()} == {"a", "b"}
+
+
+def test_a_target_can_be_left_out_and_a_test_is(tmp_path: Path) -> None:
+    lists = HEAD + (
+        "add_library(gtest STATIC other.cpp)\nadd_executable(quiet main.cpp)\n"
+        "set_property(TARGET quiet PROPERTY TPC_INSTRUMENT OFF)\n"
+        "add_executable(t main.cpp)\ntarget_link_libraries(t PRIVATE gtest)\n"
+        "add_executable(u main.cpp)\ntarget_link_libraries(u PRIVATE gtest)\n"
+        "set_property(TARGET u PROPERTY TPC_INSTRUMENT ON)\nadd_executable(x main.cpp)\n"
+    )
+    result = build(tmp_path, lists, toolchain(), "-DCMAKE_BUILD_TYPE=Release")
+    assert result.analysed() == ["u", "x"]
+    reasons = {unit.name: unit.left_out for unit in recorded_units(result.folder) or ()}
+    assert reasons == {
+        "quiet": "its property TPC_INSTRUMENT is OFF",
+        "t": "it is a test (TPC_TESTS=ON has tests analysed, too)",
+        "u": "",
+        "x": "",
+    }
+    dynamic = run(["readelf", "-d", result.folder / "quiet"]).stdout
+    assert "libtpc_log" not in dynamic
+    # It is optimised all the same: nothing of std::string is left to call.
+    assert "_ZNSt7__cxx1112basic_string" not in run(["nm", "-C", result.folder / "quiet"]).stdout
+    result = build(tmp_path, lists, toolchain(), "-DTPC_TESTS=ON")
+    assert result.analysed() == ["t", "u", "x"]
+
+
+def test_a_static_program_is_linked_without_the_log(tmp_path: Path) -> None:
+    lists = HEAD + "add_executable(x main.cpp)\ntarget_link_options(x PRIVATE -static)\n"
+    result = build(tmp_path, lists)
+    assert (result.analysed(), result.runs("x").returncode) == ([], 0)
+    (unit,) = recorded_units(result.folder) or ()
+    assert unit.left_out == "it is linked with -static, and reports need a shared library"
+
+
+def test_a_build_in_the_source_folder_finds_its_own_code(tmp_path: Path) -> None:
+    folder = tmp_path / "p"
+    build(tmp_path, HEAD + "add_executable(x main.cpp)\n")
+    assert run(["cmake", "-S", folder, "-B", folder, toolchain()]).returncode == 0
+    commands = run(["cmake", "--build", folder, "-v"]).stdout
+    assert f"-tpc-exclude={folder}/devel" in commands
+    assert f"-tpc-exclude={folder} " not in commands
+
+
+def test_a_comma_and_a_space_in_the_path_are_no_separators(tmp_path: Path) -> None:
+    result = build(tmp_path / "a, b", HEAD + "add_executable(x main.cpp)\n")
+    assert result.analysed() == ["x"]
+
+
+def test_a_package_that_is_left_alone_keeps_its_compiler(tmp_path: Path) -> None:
+    lists = HEAD + (
+        "include(CheckCXXCompilerFlag)\ncheck_cxx_compiler_flag(-fno-gcse HAS)\n"
+        "if(NOT HAS)\n  message(FATAL_ERROR no)\nendif()\nadd_executable(x main.cpp)\n"
+    )
+    result = build(tmp_path, lists, toolchain(), f"-DTPC_LEFT_ALONE=/x;{tmp_path}/p")
+    assert (result.analysed(), result.warnings()) == ([], [])
+    assert recorded_units(result.folder) is None
+    cache = (result.folder / "CMakeCache.txt").read_text("utf-8")
+    assert "CMAKE_CXX_COMPILER:FILEPATH=/usr/bin/c++" in cache
+    assert "TPC_CLANG:" not in cache
+
+
+def test_a_probe_with_warnings_as_errors_does_not_fail_for_clang(tmp_path: Path) -> None:
+    lists = HEAD + (
+        'set(CMAKE_CXX_FLAGS "-Wall -Werror -Wno-maybe-uninitialized -Wl,-z,now")\n'
+        "include(CheckCXXCompilerFlag)\ncheck_cxx_compiler_flag(-Wshadow HAS)\n"
+        "if(NOT HAS)\n  message(FATAL_ERROR no)\nendif()\nadd_executable(x main.cpp)\n"
+    )
+    assert build(tmp_path, lists).analysed() == ["x"]
+    assert build(tmp_path, include() + lists, "-DA=B", name="q").analysed() == ["x"]
+
+
+@pytest.mark.parametrize("later", [False, True])
+def test_assembler_sources_do_not_mind_flags_for_c(tmp_path: Path, later: bool) -> None:
+    (tmp_path / "p").mkdir()
+    code = "\t.text\n\t.globl one\none:\n\tmovl $1, %eax\n\tret\n"
+    code += '\t.section .note.GNU-stack,"",@progbits\n'
+    (tmp_path / "p/one.s").write_text(code, encoding="ascii")
+    languages = "C CXX)\nenable_language(ASM)\n" if later else "C CXX ASM)\n"
+    lists = f"cmake_minimum_required(VERSION 3.16)\nproject(p {languages}" + (
+        "add_compile_options(-Werror -O3 -DX)\nadd_executable(x main.cpp one.s)\n"
+    )
+    assert build(tmp_path, lists).analysed() == ["x"]
+    disabled = build(tmp_path, lists, toolchain(), "-DTPC_DISABLE=ON")
+    assert disabled.analysed() == []
 
 
 def test_another_compiler_is_one_warning(tmp_path: Path) -> None:
