@@ -3,17 +3,14 @@
 #
 # tpc.cmake's link options read these properties of a target:
 #
-#   _TPC_OFF          why it is neither analysed nor reporting; empty where it is
+#   _TPC_OFF  why it is neither analysed nor reporting; empty where it is
 #   _TPC_PACKAGE, _TPC_SOURCE_ROOT, _TPC_EXCLUDED, _TPC_STATIC_INFO
 #
 # Every link unit is listed in <build folder>/tpc/targets.tsv, with its file and the
 # reason why it is left out, if it is: so that nothing is missing silently.
-
-# Libraries that only a test program is linked with.
-set(_tpc_test_library
-  "^(GTest::)?(gtest|gmock)(_main)?$|/lib(gtest|gmock)(_main)?\\.|^Catch2(::|$)|^doctest::"
-  "boost_unit_test_framework|Boost::(unit_test_framework|prg_exec_monitor)|^rosunit$")
-string(REPLACE ";" "|" _tpc_test_library "${_tpc_test_library}")
+#
+# The functions run in the scope of the top CMakeLists.txt, which need not have read
+# this file: they know no variables but those of the folders that they ask.
 
 function(_tpc_finish)
   set_property(GLOBAL PROPERTY _tpc_listed "")
@@ -176,8 +173,12 @@ function(_tpc_find_reason_to_leave_out folder target reason)
   if(is_static)
     set(${reason} "it is linked with -static, and reports need a shared library" PARENT_SCOPE)
   endif()
+  # Libraries that only a test program is linked with.
+  string(CONCAT test_library
+    "^(GTest::)?(gtest|gmock)(_main)?$|/lib(gtest|gmock)(_main)?\\.|^Catch2(::|$)|^doctest::"
+    "|boost_unit_test_framework|Boost::(unit_test_framework|prg_exec_monitor)|^rosunit$")
   get_property(libraries TARGET "${target}" PROPERTY LINK_LIBRARIES)
-  list(FILTER libraries INCLUDE REGEX "${_tpc_test_library}")
+  list(FILTER libraries INCLUDE REGEX "${test_library}")
   set(tests "")
   if(TARGET tests)
     get_property(tests TARGET tests PROPERTY MANUALLY_ADDED_DEPENDENCIES)

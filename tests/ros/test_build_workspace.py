@@ -3,7 +3,10 @@
 import json
 import os
 import shutil
+import signal
 import subprocess
+import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -142,6 +145,70 @@ def test_a_unit_without_analysis_is_noticed(tmp_path: Path) -> None:
     result = build_workspace(tmp_path)
     assert [unit.link_unit for unit in result.units] == ["tiny_node"]
     assert [(target.package, target.name) for target in result.missing] == [("tiny", "native")]
+
+
+def test_the_findings_follow_a_changed_file(tmp_path: Path) -> None:
+    package = make_package(tmp_path)
+    build_workspace(tmp_path)
+    changed = NODE.replace("  void step", "  // one line more\n  void step")
+    (package / "src/node.cpp").write_text(changed, encoding="utf-8")
+    (found,) = build_workspace(tmp_path).static.thresholds.values()
+    assert (found.lineno, found.exposed_at.lineno) == (11, 14)
+
+
+def test_an_interrupted_build_goes_on(tmp_path: Path) -> None:
+    make_package(tmp_path)
+    command = [sys.executable, "-m", "pytpc", "build", tmp_path]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stderr is not None
+        assert next(process.stderr) == "Starting >>> tiny\n"
+        object_file = tmp_path / ".tpc/build/tiny/CMakeFiles/tiny_node.dir"
+        deadline = time.monotonic() + 60
+        while not object_file.is_dir() and time.monotonic() < deadline:
+            time.sleep(0.05)
+        process.send_signal(signal.SIGINT)
+        assert process.stderr.read().endswith("pytpc: interrupted\n")
+    assert process.returncode == 130
+    assert not (tmp_path / ".tpc/static.json").exists()
+    (found,) = build_workspace(tmp_path).static.thresholds.values()
+    assert found.source == "limit"
+
+
+# Functions in functions are gcc's own.
+NESTED = """int twice(int value);
+int twice(int value) {
+  int add(int other) { return value + other; }
+  return add(value);
+}
+"""
+
+
+def test_a_package_that_clang_does_not_take_is_built_without_tpc(tmp_path: Path) -> None:
+    package = make_package(tmp_path)
+    other = tmp_path / "src" / "nested"
+    shutil.copytree(package, other)
+    for name in ("package.xml", "CMakeLists.txt"):
+        text = (other / name).read_text("utf-8").replace("tiny", "nested")
+        (other / name).write_text(text.replace("src/node.cpp", "src/node.cpp src/nested.c"))
+    (other / "src/nested.c").write_text(NESTED, encoding="utf-8")
+    with pytest.raises(BuildError) as caught:
+        build_workspace(tmp_path, fallback=False)
+    assert caught.value.package == "nested"
+    result = build_workspace(tmp_path)
+    assert list(result.left_alone) == ["nested"]
+    assert "function definition is not allowed here" in result.left_alone["nested"]
+    assert [unit.package for unit in result.units] == ["tiny"]
+    (left_out,) = result.left_out
+    assert left_out.reason == "its package does not build with TPC"
+    comment = (tmp_path / ".tpc/install/nested/lib/nested/nested_node").read_bytes()
+    assert b"GCC: (" in comment
+    assert b"clang version" not in comment
+    # Mended, it is built with TPC again when asked to.
+    (other / "src/nested.c").write_text("int twice;\n", encoding="utf-8")
+    assert list(build_workspace(tmp_path).left_alone) == ["nested"]
+    again = build_workspace(tmp_path, retry=True)
+    assert (again.left_alone, again.left_out) == ({}, ())
+    assert [unit.package for unit in again.units] == ["nested", "tiny"]
 
 
 def test_a_fault_in_the_sources_is_shown(tmp_path: Path) -> None:

@@ -1,5 +1,7 @@
-// Loads the plugin by its name and prints how many of eight values it lets through.
+// Loads the plugin and the nodelet by their names and prints how many of eight values
+// the plugin lets through.
 #include <dozen_plugins/filter.h>
+#include <nodelet/nodelet.h>
 #include <pluginlib/class_loader.hpp>
 #include <ros/ros.h>
 
@@ -11,6 +13,9 @@ int main(int argc, char **argv) {
   pluginlib::ClassLoader<dozen_plugins::Filter> loader("dozen_plugins", "dozen_plugins::Filter");
   auto filter = loader.createUniqueInstance("dozen_plugins/HighPass");
   filter->start(handle);
+  pluginlib::ClassLoader<nodelet::Nodelet> nodelets("nodelet", "nodelet::Nodelet");
+  if (!nodelets.createUniqueInstance("dozen_plugins/Relay"))
+    return 1;
   int passed = 0;
   for (int i = 0; i < 8; ++i)
     passed += filter->offer(i);

@@ -12,7 +12,7 @@ class Relay : public nodelet::Nodelet {
     subscriber_ = handle.subscribe("in", 1, &Relay::receive, this);
   }
   void receive(const std_msgs::Float64::ConstPtr &message) {
-    if (message->data > least_) // TPC least
+    if (message->data > least_) // TPC ~least
       publisher_.publish(message);
   }
   double least_ = 0;

@@ -1,3 +1,3 @@
 #include <dozen_libs/gate.h>
 
-double clamped(double value, double most) { return value > most ? most : value; } // TPC most (in libs_node)
+double clamped(double value, double most) { return value > most ? most : value; } // TPC most

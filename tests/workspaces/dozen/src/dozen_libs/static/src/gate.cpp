@@ -6,7 +6,7 @@ Gate::Gate(ros::NodeHandle &handle)
       publisher_(handle.advertise<std_msgs::Float64>("gate", 1)) {}
 
 void Gate::offer(double value) {
-  if (value < level_) // TPC gate/level
+  if (value < level_) // TPC gate/level, most
     return;
   std_msgs::Float64 message;
   message.data = value;
