@@ -24,6 +24,7 @@ get_filename_component(_tpc_prefix "${CMAKE_CURRENT_LIST_DIR}/../../.." ABSOLUTE
 set(_tpc_plugin "${_tpc_prefix}/lib/tpc/TpcPasses.so")
 set(_tpc_defer "${_tpc_prefix}/lib/tpc/TpcDefer.so")
 set(_tpc_log "${_tpc_prefix}/lib/libtpc_log.so")
+set(_tpc_flags_file "${_tpc_prefix}/share/tpc/flags")
 if(NOT TPC_CLANG_VERSION)
   set(TPC_CLANG_VERSION 19)
 endif()
@@ -31,19 +32,36 @@ set(_tpc_constants "")
 if(TPC_CONSTANTS)
   set(_tpc_constants "-tpc-constants")
 endif()
-# The compiler leaves its optimisation to the link (the plugin sees to it), where
-# the analysis comes first and the optimisation follows at the level that was
-# asked for; the level is read from the recorded command line. A warning that only
-# clang or only gcc knows must not end a build that gcc did. To clang -g is no less
-# than -g3. What another plugin made is compiled again, and not taken from a cache.
+# Adds the flags of one kind in share/tpc/flags to `text`, as a shell reads them; the words
+# of a linker's flag are joined as it wants them. What they are for is said there.
+function(_tpc_read_flags kind text)
+  set(read "${${text}}")
+  if(EXISTS "${_tpc_flags_file}")
+    file(STRINGS "${_tpc_flags_file}" flags REGEX "^${kind} ")
+    foreach(flag IN LISTS flags)
+      string(REGEX REPLACE "^${kind} " "" flag "${flag}")
+      if(kind MATCHES "^(linker|last)$")
+        string(REPLACE " " "," flag "-Wl,${flag}")
+      endif()
+      string(REPLACE "@PREFIX@" "${_tpc_prefix}" placed "${flag}")
+      string(REPLACE "@LLD@" "${TPC_LLD}" placed "${placed}")
+      if(NOT placed STREQUAL flag)
+        set(placed "\"${placed}\"")
+      endif()
+      string(APPEND read " ${placed}")
+    endforeach()
+  endif()
+  set(${text} "${read}" PARENT_SCOPE)
+endfunction()
+
+# What another plugin made is compiled again, and not taken from a cache.
 set(_tpc_defer_hash "")
 if(EXISTS "${_tpc_defer}")
   file(SHA256 "${_tpc_defer}" _tpc_defer_hash)
   string(SUBSTRING "${_tpc_defer_hash}" 0 8 _tpc_defer_hash)
 endif()
-string(CONCAT _tpc_compile_flags
-  " -g -flto=full -fpass-plugin=\"${_tpc_defer}\" -DTPC_DEFER=0x${_tpc_defer_hash}"
-  " -grecord-command-line -Wno-error -Wno-unknown-warning-option")
+set(_tpc_compile_flags " -DTPC_DEFER=0x${_tpc_defer_hash}")
+_tpc_read_flags(compile _tpc_compile_flags)
 
 # Sets `found` to the first flag in `text` that has the compiler instrument the
 # code by itself: it would do so in the passes that TPC makes it leave out, so
@@ -139,7 +157,7 @@ macro(_tpc_find_obstacle)
   if(NOT TPC_LLD)
     set(_tpc_obstacle "ld.lld-${TPC_CLANG_VERSION} is not here (apt-get install lld-${TPC_CLANG_VERSION})")
   endif()
-  foreach(_tpc_part IN ITEMS "${_tpc_defer}" "${_tpc_plugin}" "${_tpc_log}")
+  foreach(_tpc_part IN ITEMS "${_tpc_flags_file}" "${_tpc_defer}" "${_tpc_plugin}" "${_tpc_log}")
     if(NOT EXISTS "${_tpc_part}")
       set(_tpc_obstacle "${_tpc_part} is not there")
     endif()
@@ -162,9 +180,11 @@ endmacro()
 # because CMAKE_EXE_LINKER_FLAGS is for all languages, and gfortran and nvcc do
 # not know these flags; and because packages overwrite that variable.
 macro(_tpc_link_with_lld)
+  set(_tpc_link_flags "")
+  _tpc_read_flags(link _tpc_link_flags)
   foreach(_tpc_language ${ARGN})
     foreach(_tpc_rule LINK_EXECUTABLE CREATE_SHARED_LIBRARY CREATE_SHARED_MODULE)
-      string(REPLACE "<LINK_FLAGS>" "<LINK_FLAGS> -flto=full --ld-path=\"${TPC_LLD}\""
+      string(REPLACE "<LINK_FLAGS>" "<LINK_FLAGS>${_tpc_link_flags}"
         CMAKE_${_tpc_language}_${_tpc_rule} "${CMAKE_${_tpc_language}_${_tpc_rule}}")
     endforeach()
     list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES CMAKE_${_tpc_language}_LINK_EXECUTABLE)
@@ -191,14 +211,15 @@ macro(_tpc_instrument)
     set(_tpc_languages C CXX)
   endif()
   _tpc_link_with_lld(${_tpc_languages})
+  set(_tpc_last_flags "")
+  _tpc_read_flags(last _tpc_last_flags)
   foreach(_tpc_language IN LISTS _tpc_languages)
     # Behind the flags of the target, whose -fno-lto, -flto=thin or -Werror
     # would break the build or undo ours.
     string(REPLACE "<FLAGS>" "<FLAGS>${_tpc_compile_flags}"
       CMAKE_${_tpc_language}_COMPILE_OBJECT "${CMAKE_${_tpc_language}_COMPILE_OBJECT}")
-    # At the end of every link line; left out of what reports nothing.
-    string(APPEND CMAKE_${_tpc_language}_STANDARD_LIBRARIES
-      " -Wl,--push-state,--as-needed \"${_tpc_log}\" -Wl,--pop-state")
+    # At the end of every link line.
+    string(APPEND CMAKE_${_tpc_language}_STANDARD_LIBRARIES "${_tpc_last_flags}")
   endforeach()
   set(_tpc_options
     "-tpc-link-unit=$<TARGET_PROPERTY:NAME>"
@@ -221,11 +242,9 @@ macro(_tpc_instrument)
   endif()
   list(APPEND _tpc_options ${_tpc_constants})
   string(REPLACE ";" "," _tpc_linked "${_tpc_languages}")
-  add_link_options(
-    "$<$<LINK_LANGUAGE:${_tpc_linked}>:LINKER:--load-pass-plugin=${_tpc_plugin}>"
-    # Options of a plugin are known only once it is loaded this way as well.
-    "$<$<LINK_LANGUAGE:${_tpc_linked}>:LINKER:-mllvm,-load=${_tpc_plugin}>"
-    "$<$<LINK_LANGUAGE:${_tpc_linked}>:LINKER:-rpath,${_tpc_prefix}/lib>")
+  set(_tpc_linker_flags "")
+  _tpc_read_flags(linker _tpc_linker_flags)
+  add_link_options("$<$<LINK_LANGUAGE:${_tpc_linked}>:SHELL:${_tpc_linker_flags}>")
   foreach(_tpc_option IN LISTS _tpc_options)
     add_link_options("$<$<LINK_LANGUAGE:${_tpc_linked}>:LINKER:-mllvm,${_tpc_option}>")
   endforeach()
