@@ -84,6 +84,24 @@ def log_library() -> Path:
     return _installed("lib/libtpc_log.so")
 
 
+def compiler_wrapper() -> Path:
+    """The installed tpc-clang++, the compiler for builds that are not CMake.
+
+    Raises:
+        MissingToolError: it is not there; the message says how to install it.
+    """
+    return _installed("bin/tpc-clang++")
+
+
+def mixin_index() -> Path:
+    """The installed index of colcon's mixins.
+
+    Raises:
+        MissingToolError: it is not there; the message says how to install it.
+    """
+    return _installed("share/tpc/colcon/index.yaml")
+
+
 def search_path() -> str:
     """Folders in which programs are looked for: the system's before those of the caller.
 

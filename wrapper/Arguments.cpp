@@ -255,7 +255,9 @@ public:
   Arguments run() {
     while (At < Words.size())
       one(Words[At++]);
-    if (IsQuestion || (Found.Inputs.empty() && !HasLinkerInput))
+    const bool HasInput = !Found.Inputs.empty() || HasLinkerInput;
+    Found.AsksLinker &= !HasInput;
+    if (IsQuestion || !(HasInput || Found.AsksLinker))
       Found.Goal = Step::Answer;
     else
       Found.Goal = CompilesOnly ? Step::Compile : Step::Link;
@@ -343,6 +345,7 @@ private:
   }
 
   void linkerFlag(std::string_view Flag) {
+    Found.AsksLinker |= isOneOf(Flag, {"--version", "-v", "-V", "--help"});
     Found.IsRelocatable |= isOneOf(Flag, {"-r", "--relocatable"});
   }
 

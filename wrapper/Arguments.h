@@ -38,6 +38,7 @@ struct Arguments {
   std::string Output;         ///< -o; empty where there is none
   bool IsStatic = false;      ///< -static, -static-pie
   bool IsRelocatable = false; ///< -r
+  bool AsksLinker = false;    ///< no more than which linker it is
   /// The first flag that does not go together with TPC; empty where none.
   std::string Obstacle;
   /// Number of the argument before which flags have to be added: that of "--",

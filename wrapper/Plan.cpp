@@ -46,7 +46,7 @@ static bool isProbeFolder(const fs::path &Folder) {
 }
 
 bool isProbe(const Arguments &Asked, const fs::path &Folder) {
-  if (isProbeFolder(Folder))
+  if (Asked.AsksLinker || isProbeFolder(Folder))
     return true;
   auto IsOfProbe = [](const fs::path &Path) {
     return Path == "/dev/null" || isProbeName(Path.filename()) ||
