@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
+from typing import Any
 from xml.parsers import expat
 
 from pytpc.cmake_syntax import find_fault
@@ -45,7 +46,7 @@ def find_packages(workspace: Path) -> list[Package]:
     """
     if not workspace.is_dir():
         raise WorkspaceError("no such folder", workspace)
-    packages = [_read_package(folder) for folder in _package_folders(workspace)]
+    packages = [_read_package(folder) for folder in package_folders(workspace)]
     if not packages:
         raise WorkspaceError(f"no packages here: no {MANIFEST} in this folder or below", workspace)
     by_name: dict[str, Package] = {}
@@ -94,7 +95,8 @@ def read_cmakelists(package: Package) -> bytes | None:
     return data
 
 
-def _package_folders(workspace: Path) -> Iterator[Path]:
+def package_folders(workspace: Path) -> Iterator[Path]:
+    """The folders with a package.xml, sorted; which are skipped ``find_packages`` says."""
     seen: set[str] = set()
     for folder, below, files in os.walk(workspace, followlinks=True):
         real = os.path.realpath(folder)
@@ -116,6 +118,17 @@ def _is_searched(folder: Path) -> bool:
 
 
 def _read_package(folder: Path) -> Package:
+    manifest = read_manifest(folder)
+    return Package(manifest.name, folder, manifest.get_build_type())
+
+
+def read_manifest(folder: Path) -> Any:
+    """A package.xml as catkin_pkg's ``Package``, with its conditions evaluated.
+
+    Raises:
+        InputError: it cannot be read as one, with its line where there is one.
+        MissingToolError: catkin_pkg is not installed.
+    """
     try:
         from catkin_pkg.package import InvalidPackage, parse_package_string  # noqa: PLC0415
     except ImportError as error:
@@ -128,7 +141,7 @@ def _read_package(folder: Path) -> Package:
         expat.ParserCreate().Parse(raw, True)
         manifest = parse_package_string(raw, filename=str(path), warnings=[])
         manifest.evaluate_conditions({"ROS_VERSION": "1", **os.environ})
-        return Package(manifest.name, folder, manifest.get_build_type())
+        manifest.get_build_type()
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror}", path) from error
     except expat.ExpatError as error:
@@ -139,3 +152,4 @@ def _read_package(folder: Path) -> Package:
     except (InvalidPackage, ValueError, AssertionError, LookupError) as error:
         what = getattr(error, "msg", None) or str(error)
         raise InputError(f"not a package manifest: {what}", path) from error
+    return manifest

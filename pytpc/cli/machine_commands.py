@@ -37,9 +37,7 @@ def toolchain_command(
     ways = list(Way) if tool is None else [Way(tool)]
     found = {way: steps(way, prefix(), choices) for way in ways}
     if as_json:
-        data = [
-            {"tool": way.value, "steps": [_step(step) for step in found[way]]} for way in ways
-        ]
+        data = [{"tool": way.value, "steps": [_step(step) for step in found[way]]} for way in ways]
         click.echo(json.dumps(data, indent=1, ensure_ascii=False))
         return
     click.echo("\n".join(shown(way, found[way]) for way in ways), nl=False)

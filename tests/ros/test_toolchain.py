@@ -1,4 +1,4 @@
-"""What `pytpc toolchain` prints, pasted into a shell: each tool builds and the analysis is there."""
+"""What `pytpc toolchain` prints, pasted into a shell: each tool builds, and is analysed."""
 
 from __future__ import annotations
 
