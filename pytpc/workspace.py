@@ -89,10 +89,19 @@ def read_cmakelists(package: Package) -> bytes | None:
         return None
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror}", path) from error
+    check_syntax(data, path)
+    return data
+
+
+def check_syntax(data: bytes, path: Path) -> None:
+    """See that CMake can parse the bytes of a list file.
+
+    Raises:
+        InputError: it cannot, with the line in ``path``.
+    """
     fault = find_fault(data)
     if fault is not None:
         raise InputError(f"CMake cannot parse this file: {fault.message}", path, fault.line)
-    return data
 
 
 def package_folders(workspace: Path) -> Iterator[Path]:
