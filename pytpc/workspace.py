@@ -32,6 +32,19 @@ class Package:
         return self.path / "CMakeLists.txt"
 
 
+@dataclass(frozen=True, slots=True)
+class Manifest:
+    """What a package.xml says: names of other packages, in its order, conditions evaluated.
+
+    ``build_depends`` are needed to build the package, ``run_depends`` to run it.
+    """
+
+    name: str
+    build_type: str
+    build_depends: tuple[str, ...]
+    run_depends: tuple[str, ...]
+
+
 def find_packages(workspace: Path) -> list[Package]:
     """All packages below a folder, sorted by path.
 
@@ -128,11 +141,11 @@ def _is_searched(folder: Path) -> bool:
 
 def _read_package(folder: Path) -> Package:
     manifest = read_manifest(folder)
-    return Package(manifest.name, folder, manifest.get_build_type())
+    return Package(manifest.name, folder, manifest.build_type)
 
 
-def read_manifest(folder: Path) -> Any:
-    """A package.xml as catkin_pkg's ``Package``, with its conditions evaluated.
+def read_manifest(folder: Path) -> Manifest:
+    """The package.xml of a folder.
 
     Raises:
         InputError: it cannot be read as one, with its line where there is one.
@@ -150,7 +163,7 @@ def read_manifest(folder: Path) -> Any:
         expat.ParserCreate().Parse(raw, True)
         manifest = parse_package_string(raw, filename=str(path), warnings=[])
         manifest.evaluate_conditions({"ROS_VERSION": "1", **os.environ})
-        manifest.get_build_type()
+        build_type = manifest.get_build_type()
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror}", path) from error
     except expat.ExpatError as error:
@@ -161,4 +174,16 @@ def read_manifest(folder: Path) -> Any:
     except (InvalidPackage, ValueError, AssertionError, LookupError) as error:
         what = getattr(error, "msg", None) or str(error)
         raise InputError(f"not a package manifest: {what}", path) from error
-    return manifest
+    return Manifest(
+        manifest.name,
+        build_type,
+        _names(manifest.build_depends, manifest.buildtool_depends, manifest.build_export_depends),
+        _names(manifest.exec_depends),
+    )
+
+
+def _names(*lists: Iterable[Any]) -> tuple[str, ...]:
+    """Of catkin_pkg's dependencies those whose condition holds, each once."""
+    return tuple(
+        dict.fromkeys(one.name for each in lists for one in each if one.evaluated_condition)
+    )

@@ -210,7 +210,7 @@ def test_two_patches_and_a_restore_at_once(workspace: Path) -> None:
         ]
         assert [process.wait(60) for process in together] == [0, 0, 0, 0]
         subprocess.run([*command, *last], stdout=subprocess.DEVNULL, check=True)
-        lists = [path for path in workspace.rglob("CMakeLists.txt")]
+        lists = list(workspace.rglob("CMakeLists.txt"))
         patched = [path.read_bytes().startswith(HEAD) for path in lists]
         assert patched == [not last] * 22
     assert contents(workspace) == before
