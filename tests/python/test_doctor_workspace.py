@@ -195,7 +195,8 @@ def test_blocks(workspace: Path) -> None:
 def cache(folder: Path, source: Path, compiler: str, toolchain: str = "") -> None:
     folder.mkdir(parents=True)
     (folder / "CMakeCache.txt").write_text(
-        f"# a comment\nCMAKE_CXX_COMPILER:FILEPATH={compiler}\nCMAKE_HOME_DIRECTORY:INTERNAL={source}\n"
+        f"# a comment\nCMAKE_CXX_COMPILER:FILEPATH={compiler}\n"
+        f"CMAKE_HOME_DIRECTORY:INTERNAL={source}\n"
         + (f"CMAKE_TOOLCHAIN_FILE:UNINITIALIZED={toolchain}\n" if toolchain else ""),
         encoding="utf-8",
     )
