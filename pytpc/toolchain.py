@@ -163,6 +163,8 @@ def _compilers(prefix: Path, choices: Choices) -> list[Step]:
             Step(("export", f"{name}={value}"), "compilers and archiver")
             for name, value in variables.items()
         ),
+        # What calls a linker by itself has to have one that knows bitcode.
+        Step(("export", "LD=ld.lld-19"), "compilers and archiver"),
         *(
             Step(("export", f"{name}={value}"), "what to analyse")
             for name, value in choices.variables().items()
