@@ -32,22 +32,40 @@ get_filename_component(_tpc_prefix "${CMAKE_CURRENT_LIST_DIR}/../../.." ABSOLUTE
 set(_tpc_plugin "${_tpc_prefix}/lib/tpc/TpcPasses.so")
 set(_tpc_defer "${_tpc_prefix}/lib/tpc/TpcDefer.so")
 set(_tpc_log "${_tpc_prefix}/lib/libtpc_log.so")
+set(_tpc_flags_file "${_tpc_prefix}/share/tpc/flags")
 if(NOT TPC_CLANG_VERSION)
   set(TPC_CLANG_VERSION 19)
 endif()
-# The compiler leaves its optimisation to the link (the plugin sees to it), where
-# the analysis comes first and the optimisation follows at the level that was
-# asked for; the level is read from the recorded command line. A warning that only
-# clang or only gcc knows must not end a build that gcc did. To clang -g is no less
-# than -g3. What another plugin made is compiled again, and not taken from a cache.
+# Sets `text` to the flags of one kind in share/tpc/flags, as a shell reads them. What they
+# are for is said there.
+function(_tpc_read_flags kind text)
+  set(read "")
+  if(EXISTS "${_tpc_flags_file}")
+    file(STRINGS "${_tpc_flags_file}" flags REGEX "^${kind} ")
+    foreach(flag IN LISTS flags)
+      string(REPLACE " " ";" words "${flag}")
+      list(REMOVE_AT words 0)
+      foreach(word IN LISTS words)
+        string(REPLACE "@PREFIX@" "${_tpc_prefix}" placed "${word}")
+        string(REPLACE "@LLD@" "${TPC_LLD}" placed "${placed}")
+        if(NOT placed STREQUAL word)
+          set(placed "\"${placed}\"")
+        endif()
+        string(APPEND read " ${placed}")
+      endforeach()
+    endforeach()
+  endif()
+  set(${text} "${read}" PARENT_SCOPE)
+endfunction()
+
+# What another plugin made is compiled again, and not taken from a cache.
 set(_tpc_defer_hash "")
 if(EXISTS "${_tpc_defer}")
   file(SHA256 "${_tpc_defer}" _tpc_defer_hash)
   string(SUBSTRING "${_tpc_defer_hash}" 0 8 _tpc_defer_hash)
 endif()
-string(CONCAT _tpc_compile_flags
-  "-g -flto=full -fpass-plugin=\"${_tpc_defer}\" -DTPC_DEFER=0x${_tpc_defer_hash}"
-  " -grecord-command-line -Wno-error -Wno-unknown-warning-option")
+_tpc_read_flags(compile _tpc_compile_flags)
+string(PREPEND _tpc_compile_flags "-DTPC_DEFER=0x${_tpc_defer_hash}")
 
 # Sets `found` to the first flag in `text` that has the compiler instrument the
 # code by itself: it would do so in the passes that TPC makes it leave out, so
@@ -161,7 +179,7 @@ macro(_tpc_find_obstacle)
   if(NOT TPC_LLD)
     set(_tpc_obstacle "ld.lld-${TPC_CLANG_VERSION} is not here (apt-get install lld-${TPC_CLANG_VERSION})")
   endif()
-  foreach(_tpc_part IN ITEMS "${_tpc_defer}" "${_tpc_plugin}" "${_tpc_log}")
+  foreach(_tpc_part IN ITEMS "${_tpc_flags_file}" "${_tpc_defer}" "${_tpc_plugin}" "${_tpc_log}")
     if(NOT EXISTS "${_tpc_part}")
       set(_tpc_obstacle "${_tpc_part} is not there")
     endif()
@@ -191,9 +209,10 @@ endmacro()
 # because CMAKE_EXE_LINKER_FLAGS is for all languages, and gfortran and nvcc do
 # not know these flags; and because packages overwrite that variable.
 macro(_tpc_link_with_lld)
+  _tpc_read_flags(link _tpc_link_flags)
   foreach(_tpc_language ${ARGN})
     foreach(_tpc_rule LINK_EXECUTABLE CREATE_SHARED_LIBRARY CREATE_SHARED_MODULE)
-      string(REPLACE "<LINK_FLAGS>" "<LINK_FLAGS> -flto=full --ld-path=\"${TPC_LLD}\""
+      string(REPLACE "<LINK_FLAGS>" "<LINK_FLAGS>${_tpc_link_flags}"
         CMAKE_${_tpc_language}_${_tpc_rule} "${CMAKE_${_tpc_language}_${_tpc_rule}}")
     endforeach()
     list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES CMAKE_${_tpc_language}_LINK_EXECUTABLE)
@@ -288,9 +307,8 @@ macro(_tpc_instrument)
   string(REPLACE ";" "," _tpc_linked "${_tpc_languages}")
   # In every program and library, because the optimisation that the compiler left
   # out is the plugin's to make up for.
-  _tpc_add_link_option("--load-pass-plugin=${_tpc_plugin}" "")
-  # Options of a plugin are known only once it is loaded this way as well.
-  _tpc_add_plugin_option("-load=${_tpc_plugin}" "")
+  _tpc_read_flags(linker _tpc_linker_flags)
+  _tpc_add_link_options("${_tpc_linker_flags}" "")
   _tpc_add_plugin_option("-tpc-analyse=false" "$<TARGET_PROPERTY:_TPC_OFF>")
   set(_tpc_on "$<NOT:$<BOOL:$<TARGET_PROPERTY:_TPC_OFF>>>")
   _tpc_add_plugin_option("-tpc-link-unit=$<TARGET_PROPERTY:NAME>" "${_tpc_on}")
@@ -313,29 +331,24 @@ macro(_tpc_instrument)
   if(TPC_CONSTANTS)
     _tpc_add_plugin_option("-tpc-constants" "${_tpc_on}")
   endif()
-  # Left out of what reports nothing. The log is found where it is, not where a
-  # caller's LD_LIBRARY_PATH says.
-  _tpc_add_quoted_option("--push-state --as-needed \"${_tpc_log}\" --pop-state" "${_tpc_on}")
-  _tpc_add_link_option("-rpath=${_tpc_prefix}/lib" "${_tpc_on}")
+  _tpc_read_flags(last _tpc_last_flags)
+  _tpc_add_link_options("${_tpc_last_flags}" "${_tpc_on}")
 endmacro()
 
-# Has the linker given an option, where `condition` (a generator expression; always
-# where it is empty) is 1. A comma in it is no separator, and neither is a space.
-macro(_tpc_add_link_option option condition)
-  _tpc_add_quoted_option("\"${option}\"" "${condition}")
-endmacro()
-
-# The same for an option of LLVM's or of its plugins.
-macro(_tpc_add_plugin_option option condition)
-  _tpc_add_quoted_option("-mllvm \"${option}\"" "${condition}")
-endmacro()
-
-function(_tpc_add_quoted_option option condition)
+# Has the linker given options, where `condition` (a generator expression; always where
+# it is empty) is 1. A comma in them is no separator, and a space in quotes neither.
+function(_tpc_add_link_options options condition)
   set(linked "$<LINK_LANGUAGE:${_tpc_linked}>")
   if(condition)
     set(linked "$<AND:${linked},$<BOOL:${condition}>>")
   endif()
-  add_link_options("$<${linked}:LINKER:SHELL:${option}>")
+  string(STRIP "${options}" options)
+  add_link_options("$<${linked}:LINKER:SHELL:${options}>")
+endfunction()
+
+# The same for an option of LLVM's or of its plugins.
+function(_tpc_add_plugin_option option condition)
+  _tpc_add_link_options("-mllvm \"${option}\"" "${condition}")
 endfunction()
 
 # After project(): sees to the languages that it has enabled.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import re
 import secrets
 from pathlib import Path
 
@@ -36,6 +37,17 @@ def stage_beside(target: Path, data: bytes, mode: int = 0o644) -> Path:
             staged.unlink()
         raise
     return staged
+
+
+def leftovers(target: Path) -> list[Path]:
+    """What ``stage_beside`` left for ``target`` in a process that was killed, sorted."""
+    name = re.compile(re.escape(f".{target.name}.tpc-") + "[0-9a-f]{8}")
+    try:
+        with os.scandir(target.parent) as entries:
+            found = [entry.name for entry in entries if name.fullmatch(entry.name)]
+    except OSError:
+        return []
+    return [target.with_name(name) for name in sorted(found)]
 
 
 def write_atomic(target: Path, data: bytes) -> None:

@@ -24,7 +24,7 @@ _BLOCK = re.compile(
     + rb"(?P=end)",
     re.MULTILINE,
 )
-_MARKER = re.compile(rb"^[ \t]*#[^\n]*(?:>>> tpc >>>|<<< tpc <<<)", re.MULTILINE)
+MARKER = re.compile(rb"^[ \t]*#[^\n]*(?:>>> tpc >>>|<<< tpc <<<)", re.MULTILINE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,7 +89,7 @@ def _split(data: bytes) -> _Split:
 
 def _refuse_markers(text: bytes, lines_before: int) -> None:
     """A marker outside a whole block means that the block was edited, copied or cut."""
-    marker = _MARKER.search(text)
+    marker = MARKER.search(text)
     if marker is not None:
         raise WorkspaceError(
             "TPC's block was edited by hand, so nothing is touched; delete its lines"

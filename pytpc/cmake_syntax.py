@@ -7,6 +7,7 @@ only warns about (arguments without white space between them) is no fault here e
 
 from __future__ import annotations
 
+import contextlib
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -108,6 +109,18 @@ def find_fault(data: bytes) -> SyntaxFault | None:
     except _FaultError as error:
         return error.fault
     return _nesting_fault(parser.commands)
+
+
+def command_names(data: bytes) -> list[tuple[str, int]]:
+    """The commands that stand in a list file: names in lower case, each with its line.
+
+    Commands that only variables or included files give are not among them, nor is anything behind
+    a fault in the file.
+    """
+    parser = _Parser(list(tokens(data.removeprefix(UTF8_BOM))))
+    with contextlib.suppress(_FaultError):
+        parser.file()
+    return parser.commands
 
 
 class _FaultError(Exception):

@@ -3,6 +3,9 @@
 All files are read, checked and written beside the old ones before the first is replaced, so that a
 workspace is never half patched. What a file needs to be is worked out in ``pytpc.cmake_block``.
 
+A run that was killed between two files leaves the first ones patched; the next run does the others
+and removes what the killed one had written beside them.
+
 Commands: ``python -m pytpc.patch``, ``pytpc patch`` and ``modify_cmakelists.py``.
 """
 
@@ -11,21 +14,45 @@ from __future__ import annotations
 import argparse
 import contextlib
 import difflib
+import fcntl
 import os
 import re
 import stat
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from pytpc.atomic import stage_beside
-from pytpc.cmake_block import patch_text, restore_text
+from pytpc.atomic import leftovers, stage_beside
+from pytpc.cmake_block import MARKER, patch_text, restore_text
+from pytpc.cmake_syntax import command_names
 from pytpc.errors import InputError, TpcError, WorkspaceError
 from pytpc.paths import cmake_file
-from pytpc.workspace import Package, find_packages, read_cmakelists, select_packages
+from pytpc.workspace import (
+    IGNORE_MARKERS,
+    MANIFEST,
+    check_syntax,
+    find_packages,
+    read_cmakelists,
+    select_packages,
+)
 
-__all__ = ["Change", "apply_changes", "diff", "main", "patch_text", "plan", "restore_text", "run"]
+__all__ = [
+    "Change",
+    "apply_changes",
+    "calls_project",
+    "diff",
+    "main",
+    "patch_text",
+    "plan",
+    "plan_tree",
+    "restore_text",
+    "run",
+]
+
+
+_LIST_FILE = "CMakeLists.txt"
+_WHOSE = {False: "package's CMakeLists.txt,", True: "CMakeLists.txt that calls project(),"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,28 +85,57 @@ def plan(
 
     Raises:
         WorkspaceError: no packages, an unknown name, or a block that was edited by hand.
-        InputError: a package.xml or CMakeLists.txt that is broken, with file and line.
+        InputError: a package.xml or CMakeLists.txt that is broken, with file and line, or one
+            that does not call project() itself (for patching only).
         MissingToolError: TPC's C++ half is not installed (for patching only).
     """
     chosen = select_packages(find_packages(workspace), packages)
-    included = "" if restore else str(cmake_file())
-    changes: dict[Path, Change] = {}
-    as_they_should_be: set[Path] = set()
-    for package in chosen:
-        before = _read_as_is(package) if restore else read_cmakelists(package)
-        if before is None:
+    files = [
+        (package.cmakelists, before)
+        for package in chosen
+        if (before := _read_as_is(package.cmakelists) if restore else read_cmakelists(package))
+        is not None
+    ]
+    return _plan_files(files, restore=restore)
+
+
+def plan_tree(folder: Path, *, restore: bool = False) -> tuple[list[Change], int, list[Path]]:
+    """The same for any folder: each CMakeLists.txt below it that calls project().
+
+    Hidden folders, build folders and folders with ``COLCON_IGNORE`` or its like are skipped.
+
+    Returns:
+        As ``plan``, and the files that are left alone because they are symbolic links to one
+        outside of the folder, which is not the user's (the toplevel file of catkin_make).
+
+    Raises:
+        WorkspaceError: no such folder, no such file in it, or a block that was edited by hand.
+        InputError: a file that is broken, with its line, or a package's without project().
+        MissingToolError: TPC's C++ half is not installed (for patching only).
+    """
+    if not folder.is_dir():
+        raise WorkspaceError("no such folder", folder)
+    files: list[tuple[Path, bytes]] = []
+    foreign: list[Path] = []
+    top = folder.resolve()
+    for path in _list_files(folder):
+        if path.is_symlink() and not path.resolve().is_relative_to(top):
+            foreign.append(path)
             continue
-        path = package.cmakelists
-        try:
-            after = restore_text(before) if restore else patch_text(before, included)
-        except WorkspaceError as error:
-            raise WorkspaceError(error.message, path, error.line) from error
-        real = path.resolve()
-        if before == after:
-            as_they_should_be.add(real)
-        else:
-            changes.setdefault(real, Change(path, real, before, after))
-    return list(changes.values()), len(as_they_should_be)
+        before = _read_as_is(path)
+        is_package = (path.parent / MANIFEST).is_file()
+        if before is not None and (is_package or calls_project(before) or MARKER.search(before)):
+            if not restore:
+                check_syntax(before, path)
+            files.append((path, before))
+    if not files and not restore:
+        raise WorkspaceError("no CMakeLists.txt with project() in this folder or below", folder)
+    return (*_plan_files(files, restore=restore), foreign)
+
+
+def calls_project(data: bytes) -> bool:
+    """Whether a list file calls project() itself; CMake wants that of a top-level one."""
+    return any(name == "project" for name, _ in command_names(data))
 
 
 def apply_changes(changes: Sequence[Change]) -> None:
@@ -88,7 +144,8 @@ def apply_changes(changes: Sequence[Change]) -> None:
     Mode and, where permitted, owner of each file stay, and so do symbolic links to it.
 
     Raises:
-        WorkspaceError: a file cannot be written; then every file is as it was.
+        WorkspaceError: a file cannot be written, or was changed since it was read; then every
+            file is as it was, or the message says which is not.
     """
     staged: list[Path] = []
     replaced: list[Change] = []
@@ -97,18 +154,32 @@ def apply_changes(changes: Sequence[Change]) -> None:
             staged.append(_stage(change, change.after))
         for change, new in zip(changes, staged, strict=True):
             replaced.append(change)
+            if change.real.read_bytes() != change.before:
+                replaced.pop()
+                raise WorkspaceError("was changed meanwhile; no file was changed", change.path)
             new.replace(change.real)
     except BaseException as error:
-        for change in replaced:
-            _stage(change, change.before).replace(change.real)
+        stuck = [change for change in replaced if not _put_back(change)]
         for new in staged:
-            new.unlink(missing_ok=True)
+            with contextlib.suppress(OSError):
+                new.unlink(missing_ok=True)
         if isinstance(error, OSError):
             at_fault = changes[len(staged)] if len(staged) < len(changes) else replaced[-1]
+            done = f"still changed: {stuck[0].path}" if stuck else "no file was changed"
             raise WorkspaceError(
-                f"cannot be written: {error.strerror}; no file was changed", at_fault.path
+                f"cannot be written: {error.strerror}; {done}", at_fault.path
             ) from error
         raise
+
+
+def _put_back(change: Change) -> bool:
+    """Whether the file has its old content again, or still."""
+    try:
+        if change.real.read_bytes() != change.before:
+            _stage(change, change.before).replace(change.real)
+    except OSError:
+        return False
+    return True
 
 
 def diff(change: Change, workspace: Path) -> bytes:
@@ -133,51 +204,98 @@ def diff(change: Change, workspace: Path) -> bytes:
 
 
 def run(
-    workspace: Path, *, restore: bool = False, dry_run: bool = False, packages: Iterable[str] = ()
+    workspace: Path,
+    *,
+    restore: bool = False,
+    dry_run: bool = False,
+    packages: Iterable[str] = (),
+    any_tree: bool = False,
 ) -> None:
     """Plan, then show the diff or write, and say on standard output what was done.
 
+    Args:
+        workspace: folder with packages; with ``any_tree`` any folder, as for ``plan_tree``.
+        restore: take the blocks out.
+        dry_run: write nothing.
+        packages: names; all where empty.
+        any_tree: see above; then without ``packages``.
+
     Raises:
-        TpcError: as ``plan`` and ``apply_changes``.
+        TpcError: as ``plan``, ``plan_tree`` and ``apply_changes``.
     """
-    changes, unchanged = plan(workspace, restore=restore, packages=packages)
-    if dry_run:
-        sys.stdout.flush()
-        sys.stdout.buffer.write(b"".join(diff(change, workspace) for change in changes))
-        sys.stdout.buffer.flush()
-        return
-    apply_changes(changes)
+    with _alone(workspace):
+        foreign: list[Path] = []
+        if any_tree:
+            changes, unchanged, foreign = plan_tree(workspace, restore=restore)
+        else:
+            changes, unchanged = plan(workspace, restore=restore, packages=packages)
+        if dry_run:
+            sys.stdout.flush()
+            sys.stdout.buffer.write(b"".join(diff(change, workspace) for change in changes))
+            sys.stdout.buffer.flush()
+            return
+        for path in {*_list_files(workspace), *(change.real for change in changes)}:
+            for left in leftovers(path):
+                with contextlib.suppress(OSError):
+                    left.unlink()
+        apply_changes(changes)
     done = "restored" if restore else "patched"
     for change in changes:
         print(f"{done} {change.path}")
+    for path in foreign:
+        print(f"left alone {path}, a link to {path.resolve()}")
     already = f", {unchanged} already {'without' if restore else 'with'} the block"
     print(f"{len(changes)} {done}{already if unchanged else ''}")
 
 
-def main(arguments: Sequence[str] | None = None, program: str = "python -m pytpc.patch") -> int:
+@contextlib.contextmanager
+def _alone(folder: Path) -> Iterator[None]:
+    """Wait until no other patch is at work in the folder; where it cannot be locked, do not."""
+    with contextlib.ExitStack() as stack:
+        with contextlib.suppress(OSError):
+            descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+            stack.callback(os.close, descriptor)
+            fcntl.flock(descriptor, fcntl.LOCK_EX)
+        yield
+
+
+def main(
+    arguments: Sequence[str] | None = None,
+    program: str = "python -m pytpc.patch",
+    *,
+    any_tree: bool = False,
+) -> int:
     """The command line; it needs no package from outside Debian, unlike ``pytpc``.
+
+    Args:
+        arguments: without the program's name; those of the process where None.
+        program: how it is called in its help.
+        any_tree: take any folder with CMake projects, packages or not.
 
     Returns:
         The exit status: 0, 1 after an error that was shown as one line, 130 when interrupted.
     """
     parser = argparse.ArgumentParser(
         prog=program,
-        description="Put TPC's three lines at the top of each package's CMakeLists.txt,"
+        description=f"Put TPC's three lines at the top of each {_WHOSE[any_tree]}"
         " or take them out again.",
     )
-    parser.add_argument("workspace", type=Path, help="folder with ROS packages")
+    help_text = "any folder" if any_tree else "folder with ROS packages"
+    parser.add_argument("workspace", type=Path, metavar="folder", help=help_text)
     parser.add_argument("--restore", action="store_true", help="take the lines out again")
     parser.add_argument("--dry-run", action="store_true", help="only show the difference")
-    parser.add_argument(
-        "--package", action="append", default=[], metavar="NAME", help="only this one (repeatable)"
-    )
+    if not any_tree:
+        parser.add_argument(
+            "--package", action="append", metavar="NAME", help="only this one (repeatable)"
+        )
     chosen = parser.parse_args(arguments)
     try:
         run(
             chosen.workspace,
             restore=chosen.restore,
             dry_run=chosen.dry_run,
-            packages=chosen.package,
+            packages=() if any_tree else chosen.package or (),
+            any_tree=any_tree,
         )
     except TpcError as error:
         print(f"pytpc: error: {error}", file=sys.stderr)
@@ -187,14 +305,48 @@ def main(arguments: Sequence[str] | None = None, program: str = "python -m pytpc
     return 0
 
 
-def _read_as_is(package: Package) -> bytes | None:
+def _plan_files(files: Iterable[tuple[Path, bytes]], *, restore: bool) -> tuple[list[Change], int]:
+    included = "" if restore else str(cmake_file())
+    changes: dict[Path, Change] = {}
+    as_they_should_be: set[Path] = set()
+    for path, before in files:
+        if not restore and not calls_project(before):
+            raise InputError(
+                "does not call project() itself, as CMake wants it of a package's file; add"
+                " project(NAME) behind cmake_minimum_required()",
+                path,
+            )
+        try:
+            after = restore_text(before) if restore else patch_text(before, included)
+        except WorkspaceError as error:
+            raise WorkspaceError(error.message, path, error.line) from error
+        real = path.resolve()
+        if before == after:
+            as_they_should_be.add(real)
+        else:
+            changes.setdefault(real, Change(path, real, before, after))
+    return list(changes.values()), len(as_they_should_be)
+
+
+def _list_files(folder: Path) -> Iterator[Path]:
+    """The files CMakeLists.txt below a folder, sorted, without those of build folders."""
+    for here, below, files in os.walk(folder):
+        if "CMakeCache.txt" in files or not IGNORE_MARKERS.isdisjoint(files):
+            below.clear()
+            continue
+        below[:] = sorted(name for name in below if not name.startswith("."))
+        if _LIST_FILE in files:
+            yield Path(here, _LIST_FILE)
+
+
+def _read_as_is(path: Path) -> bytes | None:
     """Unchecked: a file that was broken after it was patched can still be restored."""
     try:
-        return package.cmakelists.read_bytes()
+        return path.read_bytes()
     except FileNotFoundError:
         return None
     except OSError as error:
-        raise InputError(f"cannot be read: {error.strerror}", package.cmakelists) from error
+        raise InputError(f"cannot be read: {error.strerror}", path) from error
 
 
 def _stage(change: Change, data: bytes) -> Path:

@@ -84,6 +84,24 @@ def log_library() -> Path:
     return _installed("lib/libtpc_log.so")
 
 
+def compiler_wrapper() -> Path:
+    """The installed tpc-clang++, the compiler for builds that are not CMake.
+
+    Raises:
+        MissingToolError: it is not there; the message says how to install it.
+    """
+    return _installed("bin/tpc-clang++")
+
+
+def mixin_index() -> Path:
+    """The installed index of colcon's mixins.
+
+    Raises:
+        MissingToolError: it is not there; the message says how to install it.
+    """
+    return _installed("share/tpc/colcon/index.yaml")
+
+
 def search_path() -> str:
     """Folders in which programs are looked for: the system's before those of the caller.
 
@@ -135,18 +153,23 @@ def require_ros() -> None:
         MissingToolError: it is not; the message has the command that installs it.
     """
     listed = os.environ.get("CMAKE_PREFIX_PATH", "").split(os.pathsep)
-    prefixes = [Path(folder) for folder in listed if folder]
-    prefixes += ROS_PREFIXES
-    absent = [
-        name
-        for name, place in _ROS_PLACES.items()
-        if not any((candidate / place).is_file() for candidate in prefixes)
-    ]
+    found = ros_places([*(Path(folder) for folder in listed if folder), *ROS_PREFIXES])
+    absent = [name for name in _ROS_PLACES if name not in found]
     if absent:
         raise MissingToolError(
             f"{_listed(absent)} of ROS 1 not found on this machine; mend it with:"
             f" apt-get install {ROS_PACKAGES}"
         )
+
+
+def ros_places(prefixes: Iterable[Path]) -> dict[str, Path]:
+    """The first prefix that holds catkin, and that which holds roscpp; only those that are."""
+    found: dict[str, Path] = {}
+    for prefix in prefixes:
+        for name, place in _ROS_PLACES.items():
+            if (prefix / place).is_file():
+                found.setdefault(name, prefix)
+    return found
 
 
 def _installed(place: str) -> Path:

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
+from typing import Any
 from xml.parsers import expat
 
 from pytpc.cmake_syntax import find_fault
@@ -31,6 +32,19 @@ class Package:
         return self.path / "CMakeLists.txt"
 
 
+@dataclass(frozen=True, slots=True)
+class Manifest:
+    """What a package.xml says: names of other packages, in its order, conditions evaluated.
+
+    ``build_depends`` are needed to build the package, ``run_depends`` to run it.
+    """
+
+    name: str
+    build_type: str
+    build_depends: tuple[str, ...]
+    run_depends: tuple[str, ...]
+
+
 def find_packages(workspace: Path) -> list[Package]:
     """All packages below a folder, sorted by path.
 
@@ -45,7 +59,7 @@ def find_packages(workspace: Path) -> list[Package]:
     """
     if not workspace.is_dir():
         raise WorkspaceError("no such folder", workspace)
-    packages = [_read_package(folder) for folder in _package_folders(workspace)]
+    packages = [_read_package(folder) for folder in package_folders(workspace)]
     if not packages:
         raise WorkspaceError(f"no packages here: no {MANIFEST} in this folder or below", workspace)
     by_name: dict[str, Package] = {}
@@ -88,13 +102,23 @@ def read_cmakelists(package: Package) -> bytes | None:
         return None
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror}", path) from error
-    fault = find_fault(data)
-    if fault is not None:
-        raise InputError(f"CMake cannot parse this file: {fault.message}", path, fault.line)
+    check_syntax(data, path)
     return data
 
 
-def _package_folders(workspace: Path) -> Iterator[Path]:
+def check_syntax(data: bytes, path: Path) -> None:
+    """See that CMake can parse the bytes of a list file.
+
+    Raises:
+        InputError: it cannot, with the line in ``path``.
+    """
+    fault = find_fault(data)
+    if fault is not None:
+        raise InputError(f"CMake cannot parse this file: {fault.message}", path, fault.line)
+
+
+def package_folders(workspace: Path) -> Iterator[Path]:
+    """The folders with a package.xml, sorted; which are skipped ``find_packages`` says."""
     seen: set[str] = set()
     for folder, below, files in os.walk(workspace, followlinks=True):
         real = os.path.realpath(folder)
@@ -116,6 +140,17 @@ def _is_searched(folder: Path) -> bool:
 
 
 def _read_package(folder: Path) -> Package:
+    manifest = read_manifest(folder)
+    return Package(manifest.name, folder, manifest.build_type)
+
+
+def read_manifest(folder: Path) -> Manifest:
+    """The package.xml of a folder.
+
+    Raises:
+        InputError: it cannot be read as one, with its line where there is one.
+        MissingToolError: catkin_pkg is not installed.
+    """
     try:
         from catkin_pkg.package import InvalidPackage, parse_package_string  # noqa: PLC0415
     except ImportError as error:
@@ -128,7 +163,7 @@ def _read_package(folder: Path) -> Package:
         expat.ParserCreate().Parse(raw, True)
         manifest = parse_package_string(raw, filename=str(path), warnings=[])
         manifest.evaluate_conditions({"ROS_VERSION": "1", **os.environ})
-        return Package(manifest.name, folder, manifest.get_build_type())
+        build_type = manifest.get_build_type()
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror}", path) from error
     except expat.ExpatError as error:
@@ -139,3 +174,16 @@ def _read_package(folder: Path) -> Package:
     except (InvalidPackage, ValueError, AssertionError, LookupError) as error:
         what = getattr(error, "msg", None) or str(error)
         raise InputError(f"not a package manifest: {what}", path) from error
+    return Manifest(
+        manifest.name,
+        build_type,
+        _names(manifest.build_depends, manifest.buildtool_depends, manifest.build_export_depends),
+        _names(manifest.exec_depends),
+    )
+
+
+def _names(*lists: Iterable[Any]) -> tuple[str, ...]:
+    """Of catkin_pkg's dependencies those whose condition holds, each once."""
+    return tuple(
+        dict.fromkeys(one.name for each in lists for one in each if one.evaluated_condition)
+    )

@@ -46,6 +46,9 @@ config.substitutions += [
         f" -Wl,-mllvm,-load={plugin} -Wl,-mllvm,-tpc-exclude={inputs}/include",
     ),
     ("%opt", f"{opt} {load} -tpc-exclude={inputs}/include"),
+    # The compilers for builds that are not CMake: %tpc-clang and %tpc-clang++.
+    ("%tpc-clang", os.path.join(config.tpc_bin, "tpc-clang")),
+    ("%tpc-ar", os.path.join(config.tpc_bin, "tpc-ar")),
     ("%inputs", inputs),
     ("%python", config.tpc_python),
     ("%log-library", config.tpc_log),

@@ -13,7 +13,7 @@ from packages import add_package, install_prefix
 
 from pytpc import patch
 from pytpc.errors import InputError, MissingToolError, WorkspaceError
-from pytpc.patch import apply_changes, diff, patch_text, plan, restore_text
+from pytpc.patch import Change, apply_changes, diff, patch_text, plan, restore_text
 
 ROOT = Path(__file__).resolve().parents[2]
 BOM = b"\xef\xbb\xbf"
@@ -320,12 +320,12 @@ def test_patching_needs_the_installed_file_and_restoring_does_not(
 def test_the_diff_is_one_that_patch_applies(workspace: Path, prefix: Path, text: bytes) -> None:
     path = workspace / "src/arm/CMakeLists.txt"
     path.write_bytes(text)
-    changes, _ = plan(workspace, packages=["arm"])
-    shown = diff(changes[0], workspace)
+    change = Change(path, path, text, patch_text(text, FILE))
+    shown = diff(change, workspace)
     assert shown.startswith(b"--- a/src/arm/CMakeLists.txt\n+++ b/src/arm/CMakeLists.txt\n@@ ")
     command = ["patch", "--binary", "-p1"]
     subprocess.run(command, cwd=workspace, input=shown, check=True, capture_output=True)
-    assert path.read_bytes() == changes[0].after
+    assert path.read_bytes() == change.after
 
 
 def test_a_dry_run_shows_and_writes_nothing(

@@ -1,0 +1,52 @@
+"""What a check finds."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from enum import Enum
+
+
+class Severity(Enum):
+    """How bad it is; the order is that of the members."""
+
+    ERROR = "error"  # a build does not work
+    WARNING = "warning"  # it works, with less than could be
+    NOTE = "note"  # good to know
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """One thing that is wrong.
+
+    ``where`` is a file (with ``:line``), a folder or a variable, ``mend`` a command, or what to do.
+    """
+
+    severity: Severity
+    what: str
+    where: str | None = None
+    mend: str | None = None
+
+    def to_json(self) -> dict[str, str | None]:
+        """The fields, the severity by its name."""
+        return {**asdict(self), "severity": self.severity.value}
+
+
+def error(what: str, where: object = None, mend: str | None = None) -> Finding:
+    """A finding that keeps a build from working."""
+    return Finding(Severity.ERROR, what, None if where is None else str(where), mend)
+
+
+def warning(what: str, where: object = None, mend: str | None = None) -> Finding:
+    """A finding with which a build does less than it could."""
+    return Finding(Severity.WARNING, what, None if where is None else str(where), mend)
+
+
+def note(what: str, where: object = None, mend: str | None = None) -> Finding:
+    """A finding that is good to know."""
+    return Finding(Severity.NOTE, what, None if where is None else str(where), mend)
+
+
+def by_severity(findings: list[Finding]) -> list[Finding]:
+    """The worst first, otherwise in the order in which they were found, each once."""
+    order = list(Severity)
+    return sorted(dict.fromkeys(findings), key=lambda found: order.index(found.severity))

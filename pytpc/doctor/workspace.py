@@ -1,0 +1,293 @@
+"""Checks of a workspace: packages, what they need, build folders. No check touches it."""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from pytpc.cmake_block import patch_text, restore_text
+from pytpc.cmake_syntax import UTF8_BOM, Kind, command_names, find_fault, tokens
+from pytpc.doctor.finding import Finding, error, note, warning
+from pytpc.doctor.machine import UNSUITED
+from pytpc.errors import InputError, WorkspaceError
+from pytpc.workspace import MANIFEST, Manifest
+
+_COMMENTS = (Kind.LINE_COMMENT, Kind.BRACKET_COMMENT)
+_CMAKE_BUILD_TYPES = ("catkin", "cmake", "ament_cmake")
+
+
+@dataclass(frozen=True, slots=True)
+class SeenPackage:
+    """A package's folder as it was found.
+
+    ``manifest`` is what could be read, or why it could not; ``lists`` the bytes of CMakeLists.txt,
+    None where there is none, or why they cannot be read.
+    """
+
+    folder: Path
+    manifest: Manifest | InputError
+    lists: bytes | InputError | None
+    is_writable: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class BuildFolder:
+    """A folder with a CMakeCache.txt: sources, compiler of C++ (else of C), toolchain file."""
+
+    folder: Path
+    source: Path
+    compiler: str
+    toolchain: str
+
+
+@dataclass(frozen=True, slots=True)
+class SeenWorkspace:
+    """What was seen of a workspace; ``odd_names`` are files whose names are not UTF-8."""
+
+    folder: Path
+    packages: Sequence[SeenPackage]
+    builds: Sequence[BuildFolder] = ()
+    odd_names: Sequence[str] = ()
+    is_writable: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Known:
+    """What there is outside of the workspace.
+
+    ``packages`` have a package.xml in a prefix that CMake looks in; ``debian`` are the packages
+    that apt offers, ``installed`` those that dpkg has.
+    """
+
+    packages: frozenset[str]
+    debian: frozenset[str]
+    installed: frozenset[str]
+    cmake_file: str
+    own_builds: Path
+
+
+def check_workspace(seen: SeenWorkspace, known: Known) -> list[Finding]:
+    """All findings about a workspace."""
+    if not seen.packages:
+        return [error(f"no packages here: no {MANIFEST} in this folder or below", seen.folder)]
+    findings = [
+        *(one for package in seen.packages for one in _package(package, known)),
+        *_names(seen),
+        *_cycles(seen),
+        *_dependencies(seen, known),
+        *_builds(seen, known),
+    ]
+    if not seen.is_writable:
+        findings.append(
+            error("cannot be written, and a build puts .tpc here", seen.folder, "chmod u+w")
+        )
+    findings += [
+        warning("a name that is not UTF-8, which some tools cannot show", name, "mv it")
+        for name in seen.odd_names
+    ]
+    return findings
+
+
+def find_cycle(needs: Mapping[str, Sequence[str]]) -> list[str]:
+    """Names that need one another in a circle, the first one again at the end; none: empty.
+
+    Args:
+        needs: for each name the names that it needs; those without a row of their own need none.
+    """
+    done: set[str] = set()
+    for start in sorted(needs):
+        way: list[str] = []
+        rest = [iter([start])]
+        while rest:
+            name = next(rest[-1], None)
+            if name is None:
+                rest.pop()
+                if way:
+                    done.add(way.pop())
+            elif name in way:
+                return [*way[way.index(name) :], name]
+            elif name not in done:
+                way.append(name)
+                rest.append(iter(sorted(set(needs.get(name, ())))))
+    return []
+
+
+def debian_names(name: str, *, distribution: str | None = None) -> list[str]:
+    """What Debian, or the archive of a ROS distribution, may call a package; the likeliest first.
+
+    Debian has roscpp as libroscpp-dev, rospy as python3-rospy, message_generation as
+    ros-message-generation, catkin as catkin.
+    """
+    plain = name.lower().replace("_", "-")
+    first = [f"ros-{distribution}-{plain}"] if distribution else []
+    return [*first, f"lib{plain}-dev", f"ros-{plain}", f"python3-{plain}", plain]
+
+
+def unsuited_flags(lists: bytes) -> list[tuple[int, str]]:
+    """Flags in a list file that do not go together with TPC, with their lines."""
+    found: list[tuple[int, str]] = []
+    for token in tokens(lists.removeprefix(UTF8_BOM)):
+        if token.kind in _COMMENTS:
+            continue
+        text = token.text.decode("latin-1")
+        found += [
+            (token.line + text.count("\n", 0, match.start()), match[0])
+            for match in UNSUITED.finditer(text)
+        ]
+    return found
+
+
+def _package(package: SeenPackage, known: Known) -> Iterator[Finding]:
+    if isinstance(package.manifest, InputError):
+        yield _of(package.manifest)
+        build_type = ""
+    else:
+        build_type = package.manifest.build_type
+    path = package.folder / "CMakeLists.txt"
+    if isinstance(package.lists, InputError):
+        yield _of(package.lists)
+        return
+    if package.lists is None:
+        if build_type in _CMAKE_BUILD_TYPES:
+            yield error(f"a {build_type} package without this file", path)
+        return
+    fault = find_fault(package.lists)
+    if fault is not None:
+        yield error(f"CMake cannot parse this file: {fault.message}", f"{path}:{fault.line}")
+        return
+    if not any(name == "project" for name, _ in command_names(package.lists)):
+        yield error(
+            "does not call project() itself",
+            path,
+            "add project(NAME) behind cmake_minimum_required()",
+        )
+    yield from _block(package.lists, path, known.cmake_file)
+    if not package.is_writable:
+        yield note("cannot be written: it can be built, but not patched", package.folder)
+    for line, flag in unsuited_flags(package.lists):
+        yield warning(
+            f"{flag} does not go together with TPC: what it is for is not instrumented",
+            f"{path}:{line}",
+        )
+
+
+def _block(lists: bytes, path: Path, cmake_file: str) -> Iterator[Finding]:
+    try:
+        plain = restore_text(lists)
+        if plain != lists and patch_text(lists, cmake_file) != lists:
+            yield warning(
+                "TPC's block names another installation",
+                path,
+                "python -m pytpc.patch WORKSPACE",
+            )
+    except WorkspaceError as fault:
+        where = path if fault.line is None else f"{path}:{fault.line}"
+        yield warning(fault.message, where)
+
+
+def _names(seen: SeenWorkspace) -> Iterator[Finding]:
+    folders: dict[str, list[Path]] = defaultdict(list)
+    for package in seen.packages:
+        if isinstance(package.manifest, Manifest):
+            folders[package.manifest.name].append(package.folder)
+    for name, found in folders.items():
+        if len(found) > 1:
+            yield error(
+                f"package {name} occurs {len(found)} times: {', '.join(map(str, found))}",
+                seen.folder,
+                f"touch {found[-1] / 'COLCON_IGNORE'}",
+            )
+
+
+def _cycles(seen: SeenWorkspace) -> Iterator[Finding]:
+    needs = {manifest.name: manifest.build_depends for manifest in _manifests(seen)}
+    within = {name: [one for one in needed if one in needs] for name, needed in needs.items()}
+    cycle = find_cycle(within)
+    if cycle:
+        yield error(
+            f"packages need one another: {' -> '.join(cycle)}",
+            seen.folder,
+            f"take {cycle[1]} out of the package.xml of {cycle[0]}",
+        )
+
+
+def _dependencies(seen: SeenWorkspace, known: Known) -> Iterator[Finding]:
+    own = {manifest.name for manifest in _manifests(seen)}
+    users: dict[tuple[str, bool], list[str]] = defaultdict(list)
+    for manifest in _manifests(seen):
+        for name in manifest.build_depends:
+            users[name, True].append(manifest.name)
+        for name in manifest.run_depends:
+            if name not in manifest.build_depends:
+                users[name, False].append(manifest.name)
+    for (name, is_built_with), packages in users.items():
+        if name in own or name in known.packages:
+            continue
+        offered = [one for one in debian_names(name) if one in known.debian]
+        if any(one in known.installed for one in (name, *offered[:1])):
+            continue
+        by = f"needed to {'build' if is_built_with else 'run'} {', '.join(packages)}"
+        if offered:
+            say = error if is_built_with else warning
+            yield say(f"{name} is not here, {by}", mend=f"apt-get install {offered[0]}")
+        else:
+            yield warning(
+                f"{name} is neither in the workspace nor installed as a package of that name, {by}",
+                mend=f"rosdep install --from-paths {seen.folder}",
+            )
+
+
+def _builds(seen: SeenWorkspace, known: Known) -> Iterator[Finding]:
+    patched = {
+        package.folder.resolve()
+        for package in seen.packages
+        if isinstance(package.lists, bytes) and _has_block(package.lists)
+    }
+    plain: dict[Path, list[BuildFolder]] = defaultdict(list)
+    for build in seen.builds:
+        if build.folder.is_relative_to(known.own_builds):
+            if build.toolchain != known.cmake_file:
+                yield error(
+                    "was configured without TPC, or with one that was elsewhere, and CMake keeps"
+                    " the compiler of a build folder",
+                    build.folder,
+                    f"rm -r {build.folder}",
+                )
+        elif build.toolchain != known.cmake_file and not re.search(
+            r"clang(\+\+)?-19$", build.compiler
+        ):
+            source = build.source.resolve()
+            if any(folder == source or folder.is_relative_to(source) for folder in patched):
+                yield warning(
+                    f"CMake keeps the compiler of a build folder, here {build.compiler}, so that"
+                    " the patched package is not instrumented",
+                    build.folder,
+                    f"rm -r {build.folder}",
+                )
+            else:
+                plain[build.folder.parent].append(build)
+    for base, builds in plain.items():
+        yield note(
+            f"built with {builds[0].compiler}: a patched package needs another build folder",
+            builds[0].folder if len(builds) == 1 else base,
+        )
+
+
+def _has_block(lists: bytes) -> bool:
+    try:
+        return restore_text(lists) != lists
+    except WorkspaceError:
+        return True
+
+
+def _manifests(seen: SeenWorkspace) -> list[Manifest]:
+    found = [package.manifest for package in seen.packages]
+    return [manifest for manifest in found if isinstance(manifest, Manifest)]
+
+
+def _of(fault: InputError) -> Finding:
+    where = fault.path if fault.line is None else f"{fault.path}:{fault.line}"
+    return error(fault.message, where)
