@@ -189,7 +189,7 @@ def test_catkin_make_on_a_patched_workspace_does_the_same(
         run(["catkin_make"], workspace, variables)
         check(collect(workspace / "build"), sources, by_colcon)
         assert left_out(build_folders(workspace / "build")).keys() <= LEFT_OUT.keys()
-        results = tests_of(workspace, variables)
+        results = results_of(workspace, variables)
         assert left_out(build_folders(workspace / "build")) == LEFT_OUT
         filters_run(workspace / "devel", tmp_path / "graph")
     finally:
@@ -201,11 +201,11 @@ def test_catkin_make_on_a_patched_workspace_does_the_same(
     # gtest's two tests, rostest's one, each with none that failed; without TPC just the same.
     assert results == ["gtest-test_doubler.xml: 2 0 0", "rostest-test_node.xml: 1 0 0"]
     run(["catkin_make", "--pkg", "dozen_tested"], workspace, variables)
-    assert tests_of(workspace, variables) == results
+    assert results_of(workspace, variables) == results
     assert [*(workspace / "build").rglob("tpc/*.json")] == []
 
 
-def tests_of(workspace: Path, variables: dict[str, str]) -> list[str]:
+def results_of(workspace: Path, variables: dict[str, str]) -> list[str]:
     """The results of the package's own tests: tests, errors and failures of each file."""
     environment = {
         **variables,
