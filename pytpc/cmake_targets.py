@@ -20,11 +20,15 @@ _ANALYSED = frozenset({"CXX", "C"})
 
 @dataclass(frozen=True, slots=True)
 class LinkTarget:
-    """A target that is linked from C or C++ sources; ``built`` says whether its file is there."""
+    """A target that is linked from C or C++ sources; ``built`` says whether its file is there.
+
+    ``artifact`` is that file; None where CMake names none.
+    """
 
     name: str
     package: str
     built: bool
+    artifact: Path | None = None
 
 
 def ask_for_targets(build_folder: Path) -> None:
@@ -82,5 +86,6 @@ def _link_target(
     target: dict[str, Any], projects: list[Any], project: int, build_folder: Path
 ) -> LinkTarget:
     artifacts = [build_folder / artifact["path"] for artifact in target.get("artifacts", [])]
-    built = bool(artifacts) and artifacts[0].is_file()
-    return LinkTarget(target["name"], projects[project]["name"], built)
+    artifact = artifacts[0] if artifacts else None
+    built = artifact is not None and artifact.is_file()
+    return LinkTarget(target["name"], projects[project]["name"], built, artifact)

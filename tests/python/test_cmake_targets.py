@@ -28,9 +28,9 @@ def test_linked_targets_are_told_from_others(tmp_path: Path) -> None:
         ],
     )
     assert link_targets(tmp_path) == [
-        LinkTarget("a_plugin", "inner", built=False),
-        LinkTarget("common", "face", built=False),
-        LinkTarget("detector", "face", built=True),
+        LinkTarget("a_plugin", "inner", built=False, artifact=tmp_path / "devel/a_plugin"),
+        LinkTarget("common", "face", built=False, artifact=tmp_path / "devel/common"),
+        LinkTarget("detector", "face", built=True, artifact=tmp_path / "devel/detector"),
     ]
 
 
@@ -64,6 +64,6 @@ def test_cmake_itself_answers(tmp_path: Path) -> None:
     subprocess.run(["cmake", "-S", source, "-B", binary], check=True, capture_output=True)
     subprocess.run(["cmake", "--build", binary], check=True, capture_output=True)
     assert link_targets(binary) == [
-        LinkTarget("later", "tiny", built=False),
-        LinkTarget("node", "tiny", built=True),
+        LinkTarget("later", "tiny", built=False, artifact=binary / "later"),
+        LinkTarget("node", "tiny", built=True, artifact=binary / "node"),
     ]
