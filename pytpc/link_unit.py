@@ -41,6 +41,14 @@ class Transform:
     text: str = ""
     tree: Tree | None = None
 
+    def to_json(self) -> dict[str, object]:
+        """The fields that its kind has."""
+        if self.kind == "affine":
+            names = ["kind", "scale", "offset", "text"]
+        else:
+            names = ["kind", "text"] if self.tree is None else ["kind", "text", "tree"]
+        return {name: _plain(getattr(self, name)) for name in names}
+
 
 @dataclass(frozen=True, slots=True)
 class ParameterRead:
@@ -250,11 +258,7 @@ def _fields(value: DataclassInstance) -> dict[str, object]:
 def _plain(value: object) -> object:
     """Dataclasses as dicts and tuples as lists; of a transform what its kind has."""
     if isinstance(value, Transform):
-        if value.kind == "affine":
-            names = ["kind", "scale", "offset", "text"]
-        else:
-            names = ["kind", "text"] if value.tree is None else ["kind", "text", "tree"]
-        return {name: _plain(getattr(value, name)) for name in names}
+        return value.to_json()
     if is_dataclass(value) and not isinstance(value, type):
         return _fields(value)
     if isinstance(value, tuple):

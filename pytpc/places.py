@@ -7,8 +7,9 @@ in each. ``merge_places`` puts the keys of one place together.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import PurePosixPath
+from typing import Any
 
 from pytpc.link_unit import Comparison, LinkUnit
 
@@ -54,6 +55,10 @@ class Tpc:
     def link_units(self) -> tuple[str, ...]:
         """``package/link_unit`` of each unit that holds it, once, sorted."""
         return tuple(sorted({f"{each.package}/{each.link_unit}" for each in self.keys}))
+
+    def to_json(self) -> dict[str, Any]:
+        """The JSON object of docs/formats.md."""
+        return {**asdict(self), "keys": [asdict(each) for each in self.keys]}
 
 
 Identity = tuple[str, int, int, str, str, str, str]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
@@ -151,9 +151,7 @@ class StaticInfo:
             "schema": SCHEMA_VERSION,
             "units": [unit.to_json() for unit in self.units],
             "copies": dict(self.copies),
-            "tpcs": [
-                {**asdict(tpc), "keys": [asdict(each) for each in tpc.keys]} for tpc in self.tpcs
-            ],
+            "tpcs": [tpc.to_json() for tpc in self.tpcs],
         }
 
     @classmethod

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import sys
 from collections import Counter
 from dataclasses import asdict
 from pathlib import Path
@@ -14,13 +13,13 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
+from pytpc.cli.console import console
 from pytpc.explain import Explanation, Found, look_up, where, why_no_comparison
 from pytpc.ranking import parameter_name
 from pytpc.static_info import LinkUnit, PathStep, StaticInfo, read_static
 from pytpc.words import many, plain
 
 _SOURCE = click.Path(path_type=Path)
-_PIPED_WIDTH = 160
 
 _KINDS = {
     "lost_value": "value lost",
@@ -50,17 +49,17 @@ def explain_command(source: Path, question: str, show_all: bool, as_json: bool) 
     if as_json:
         click.echo(json.dumps(_json(explanation), indent=1, ensure_ascii=False))
         return
-    console = _console()
+    out = console()
     shown = explanation.comparisons if show_all else explanation.comparisons[:1]
     for found in shown:
-        _print_way(console, found)
+        _print_way(out, found)
     rest = explanation.comparisons[len(shown) :]
     if rest:
-        console.print(Text(f"{many(len(rest), 'more comparison')} (--all shows the ways):"))
+        out.print(Text(f"{many(len(rest), 'more comparison')} (--all shows the ways):"))
         for found in rest:
-            console.print(Padding(_heading(found), (0, 0, 0, 2), expand=False))
+            out.print(Padding(_heading(found), (0, 0, 0, 2), expand=False))
     if not explanation.comparisons:
-        _print_why_not(console, explanation)
+        print_why_not(out, explanation)
 
 
 @click.command("blind-spots")
@@ -77,11 +76,11 @@ def blind_spots_command(source: Path, as_json: bool) -> None:
         ]
         click.echo(json.dumps(spots, indent=1, ensure_ascii=False))
         return
-    console = _console()
+    out = console()
     for unit in static.units:
         if unit.blind_spots:
-            console.print(Text(plain(f"{unit.package}/{unit.link_unit}"), style="bold"))
-            console.print(_spots_table(unit), highlight=False)
+            out.print(Text(plain(f"{unit.package}/{unit.link_unit}"), style="bold"))
+            out.print(_spots_table(unit), highlight=False)
     click.echo(_spots_summary(static))
 
 
@@ -124,7 +123,8 @@ def _cells(step: PathStep) -> tuple[Text, Text, Text]:
     return Text(step.step, style=strong), place, what
 
 
-def _print_why_not(console: Console, explanation: Explanation) -> None:
+def print_why_not(console: Console, explanation: Explanation) -> None:
+    """Say what became of a parameter that no reported comparison is about."""
     for unit, read in explanation.reads:
         text = Text(plain(read.name), style="bold")
         text.append(
@@ -187,7 +187,3 @@ def _spots_summary(static: StaticInfo) -> str:
     if too_large:
         text += f"; too large to tell which reads see a write: {', '.join(map(plain, too_large))}"
     return text
-
-
-def _console() -> Console:
-    return Console(width=None if sys.stdout.isatty() else _PIPED_WIDTH)
