@@ -34,6 +34,8 @@ _JOINING = frozenset(
         CursorKind.UNARY_OPERATOR,
         CursorKind.PAREN_EXPR,
         CursorKind.UNEXPOSED_EXPR,
+        CursorKind.MEMBER_REF_EXPR,
+        CursorKind.ARRAY_SUBSCRIPT_EXPR,
     }
 )
 _OPERATORS = ("<", "<=", ">", ">=", "==", "!=", "&&", "||", "!")
@@ -149,15 +151,11 @@ class _Source:
                 if node.kind != CursorKind.CONDITIONAL_OPERATOR:
                     break
                 joined = False
-            elif node.kind in _BORDERS or not _is_expression(node):
-                if node.kind in _BORDERS:
-                    break
-                joined = False
-            elif joined and (child is None or _joins(node)):
+            elif node.kind in _BORDERS:
+                break
+            elif node.kind.is_expression() and joined and (child is None or _joins(node, child)):
                 top = node
-            else:
-                # What std::min and its kind compare inside has the place of their call.
-                top = node if top is None and node.kind == CursorKind.CALL_EXPR else top
+            elif not node.kind.is_reference():
                 joined = False
         return None if top is None else self._made("expression", top, macro)
 
@@ -236,14 +234,13 @@ def _length(cursor: Cursor) -> int:
     return int(cursor.extent.end.offset - cursor.extent.start.offset)
 
 
-def _is_expression(cursor: Cursor) -> bool:
-    return bool(cursor.kind.is_expression())
-
-
-def _joins(cursor: Cursor) -> bool:
-    """Whether the outcome of an operand is a part of this one's; classes have own operators."""
+def _joins(cursor: Cursor, part: Cursor) -> bool:
+    """Whether ``part``, which is meant, is meant as a part of ``cursor``."""
     if cursor.kind == CursorKind.CALL_EXPR:
-        return cursor.spelling in _OWN_OPERATORS
+        # Classes have operators of their own. Of a call whose function is pointed at the outcome
+        # is meant; what std::min and its kind compare inside has the place of their call, too.
+        called = next(iter(cursor.get_children()), None)
+        return cursor.spelling in _OWN_OPERATORS or bool(part == called)
     return cursor.kind in _JOINING and cursor.spelling != "="
 
 

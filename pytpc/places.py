@@ -125,6 +125,7 @@ def _tpc(identity: Identity, keys: list[KeyIn], packages: Mapping[str, set[str]]
     )
 
 
-def _order(tpc: Tpc) -> tuple[str, str, int, int, str, str, str]:
-    threshold = tpc.parameter or tpc.name or ""
-    return tpc.package, tpc.file, tpc.lineno, tpc.column, threshold, tpc.type, tpc.relation
+def _order(tpc: Tpc) -> tuple[str, str, int, int, bool, str, str, str]:
+    is_constant, threshold = tpc.parameter is None, tpc.parameter or tpc.name or ""
+    place = (tpc.package, tpc.file, tpc.lineno, tpc.column)
+    return *place, is_constant, threshold, tpc.type, tpc.relation

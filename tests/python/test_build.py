@@ -226,7 +226,8 @@ def test_a_build_gives_units_and_what_was_missed(workspace: Path, colcon: FakeCo
     result = build_workspace(workspace, on_output=said.append)
     assert said == ["Starting >>> face", "Finished <<< face [1s]"]
     assert [found.link_unit for found in result.units] == ["broken", "detector"]
-    assert result.missing == (LinkTarget("thin", "face", built=True),)
+    thin = LinkTarget("thin", "face", built=True, artifact=face / "devel/thin")
+    assert result.missing == (thin,)
     assert [package.name for package in result.packages] == ["arm", "face"]
     assert not stale.exists()
     assert result.bases.install == workspace / ".tpc/install"
