@@ -19,6 +19,7 @@ from pathlib import Path
 
 from pytpc.atomic import write_atomic
 from pytpc.cmake_targets import LinkTarget, ask_for_targets, link_targets
+from pytpc.collecting import find_copies
 from pytpc.errors import RunError, WorkspaceError
 from pytpc.paths import (
     MERGED_FILE,
@@ -241,8 +242,8 @@ def build_workspace(
     _run_colcon(command, workspace, place, on_output)
     missing = _reconcile(place, found)
     folders = (place.build / package.name for package in found)
-    units = (unit for folder in folders if folder.is_dir() for unit in collect(folder).units)
-    static = StaticInfo.of(units, place.build)
+    units = [unit for folder in folders if folder.is_dir() for unit in collect(folder).units]
+    static = StaticInfo.of(units, place.build, find_copies(units))
     static.save(place.static_info)
     return BuildResult(place, tuple(chosen), static, missing, time.monotonic() - began)
 

@@ -14,12 +14,11 @@ from rich.table import Table
 from rich.text import Text
 
 from pytpc.cli.console import console
+from pytpc.cli.sources import SOURCES, static_of
 from pytpc.explain import Explanation, Found, look_up, where, why_no_comparison
 from pytpc.ranking import parameter_name
-from pytpc.static_info import LinkUnit, PathStep, StaticInfo, read_static
+from pytpc.static_info import LinkUnit, PathStep, StaticInfo
 from pytpc.words import many, plain
-
-_SOURCE = click.Path(path_type=Path)
 
 _KINDS = {
     "lost_value": "value lost",
@@ -35,17 +34,20 @@ _KINDS = {
 
 
 @click.command("explain")
-@click.argument("source", type=_SOURCE)
+@SOURCES
 @click.argument("question", metavar="KEY|PARAMETER|FILE:LINE")
 @click.option("--all", "show_all", is_flag=True, help="The way of every comparison that fits.")
 @click.option("--json", "as_json", is_flag=True, help="Print a JSON object.")
-def explain_command(source: Path, question: str, show_all: bool, as_json: bool) -> None:
+def explain_command(
+    sources: tuple[Path, ...], question: str, show_all: bool, as_json: bool
+) -> None:
     """Show the way from a parameter's read over the comparison to what is exposed.
 
-    SOURCE is a static.json, a build base or a workspace. Without --all the comparison nearest to
+    SOURCE is a static.json, a build base or a workspace; without it, what is in this folder.
+    Without --all the comparison nearest to
     an exposing statement is shown with its way, and the others in a line each.
     """
-    explanation = look_up(read_static(source), question)
+    explanation = look_up(static_of(sources), question)
     if as_json:
         click.echo(json.dumps(_json(explanation), indent=1, ensure_ascii=False))
         return
@@ -63,11 +65,11 @@ def explain_command(source: Path, question: str, show_all: bool, as_json: bool) 
 
 
 @click.command("blind-spots")
-@click.argument("source", type=_SOURCE)
+@SOURCES
 @click.option("--json", "as_json", is_flag=True, help="Print a JSON list.")
-def blind_spots_command(source: Path, as_json: bool) -> None:
+def blind_spots_command(sources: tuple[Path, ...], as_json: bool) -> None:
     """List the places in SOURCE behind which the analysis does not see."""
-    static = read_static(source)
+    static = static_of(sources)
     if as_json:
         spots = [
             {"package": unit.package, "link_unit": unit.link_unit, **asdict(spot)}

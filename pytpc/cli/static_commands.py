@@ -20,10 +20,10 @@ from pytpc.cli.console import (
     found_text,
     progress,
     show_units,
-    warn,
     warn_of_failed,
 )
 from pytpc.cli.explain_commands import print_why_not
+from pytpc.cli.sources import PATH, SOURCES, static_of, tell_dropped
 from pytpc.collecting import collect_sources
 from pytpc.condition_lookup import look_up_conditions
 from pytpc.conditions import lines_of
@@ -33,13 +33,10 @@ from pytpc.places import Tpc
 from pytpc.report.catalogue import write_catalogue
 from pytpc.sarif import sarif_log
 from pytpc.selection import ORDERS, Selection, select
-from pytpc.stale import Stale
-from pytpc.static_info import StaticInfo, read_static
+from pytpc.static_info import StaticInfo
 from pytpc.static_json import dump_json
 from pytpc.words import many, plain
 
-_PATH = click.Path(path_type=Path)
-_SOURCES = click.argument("sources", type=_PATH, nargs=-1, metavar="[SOURCE]...")
 _TYPES = ("parameter", "flag", "derived", "constant")
 
 
@@ -82,8 +79,8 @@ def _selecting(command: Callable[..., None]) -> Callable[..., None]:
 
 
 @click.command("collect")
-@click.argument("sources", type=_PATH, nargs=-1, required=True, metavar="SOURCE...")
-@click.option("-o", "--output", type=_PATH, default=Path("static.json"), show_default=True)
+@click.argument("sources", type=PATH, nargs=-1, required=True, metavar="SOURCE...")
+@click.option("-o", "--output", type=PATH, default=Path("static.json"), show_default=True)
 def collect_command(sources: tuple[Path, ...], output: Path) -> None:
     """Merge the static information of all link units below each SOURCE into one file.
 
@@ -93,12 +90,12 @@ def collect_command(sources: tuple[Path, ...], output: Path) -> None:
         collected = collect_sources(sources, advance)
     collected.static.save(output)
     show_units(collected.static)
-    _tell_dropped(collected.dropped)
+    tell_dropped(collected.dropped)
     click.echo(f"{found_text(collected.static)}: {output}")
 
 
 @click.command("list")
-@_SOURCES
+@SOURCES
 @click.option("--json", "as_json", is_flag=True, help="Print a JSON list.")
 @_selecting
 @click.option(
@@ -112,7 +109,7 @@ def list_command(
     A place in the source is one row, however many link units hold it. Without SOURCE: static.json
     in this folder, else what `pytpc build` left below it.
     """
-    static = _static(sources)
+    static = static_of(sources)
     found = select(static, replace(wanted, order=order))
     if as_json:
         listed = [_listed(static, tpc) for tpc in found]
@@ -126,7 +123,7 @@ def list_command(
 
 
 @click.command("show")
-@_SOURCES
+@SOURCES
 @click.argument("question", metavar="KEY|PARAMETER|FILE:LINE")
 @click.option("--json", "as_json", is_flag=True, help="Print a JSON object.")
 def show_command(sources: tuple[Path, ...], question: str, as_json: bool) -> None:
@@ -135,7 +132,7 @@ def show_command(sources: tuple[Path, ...], question: str, as_json: bool) -> Non
     SOURCE is as for `list`. The whole condition is read from the source as it is compiled, which
     takes some seconds for each file the first time.
     """
-    static = _static(sources)
+    static = static_of(sources)
     explanation = look_up(static, question)
     keys = {each.comparison.key for each in explanation.comparisons}
     tpcs = [tpc for tpc in static.tpcs if not keys.isdisjoint(each.key for each in tpc.keys)]
@@ -152,9 +149,9 @@ def show_command(sources: tuple[Path, ...], question: str, as_json: bool) -> Non
 
 
 @click.command("export")
-@_SOURCES
-@click.option("--sarif", type=_PATH, metavar="FILE", help="SARIF 2.1.0, for code review tools.")
-@click.option("--html", type=_PATH, metavar="FILE", help="A page that needs no network.")
+@SOURCES
+@click.option("--sarif", type=PATH, metavar="FILE", help="SARIF 2.1.0, for code review tools.")
+@click.option("--html", type=PATH, metavar="FILE", help="A page that needs no network.")
 @click.option("--title", default="Threshold comparisons", show_default=True, help="Of the page.")
 @click.option(
     "--srcroot",
@@ -174,7 +171,7 @@ def export_command(
     """Write what was found in SOURCE for other tools and people: SARIF, HTML."""
     if sarif is None and html is None:
         raise click.UsageError("say what to write: --sarif FILE, --html FILE or both")
-    static = _static(sources)
+    static = static_of(sources)
     found = _details(static, select(static, wanted))
     if sarif is not None:
         write_atomic(sarif, dump_json(sarif_log(static, found, srcroot)))
@@ -188,33 +185,10 @@ def export_command(
 COMMANDS: list[click.Command] = [collect_command, list_command, show_command, export_command]
 
 
-def _static(sources: Sequence[Path]) -> StaticInfo:
-    """What the SOURCE arguments of a command stand for."""
-    here = Path("static.json")
-    with progress("reading static information") as advance:
-        if len(sources) > 1:
-            collected = collect_sources(sources, advance)
-        else:
-            default = here if here.is_file() else Path()
-            return read_static(sources[0] if sources else default, advance)
-    _tell_dropped(collected.dropped)
-    return collected.static
-
-
 def _details(static: StaticInfo, tpcs: Sequence[Tpc]) -> list[Details]:
     with progress("parsing sources") as advance:
         answers = look_up_conditions(static, tpcs, advance)
     return [details(static, tpc, answers[tpc.key]) for tpc in tpcs]
-
-
-def _tell_dropped(dropped: Sequence[Stale]) -> None:
-    for stale in dropped:
-        unit = stale.file.unit
-        keys = many(len(unit.comparisons), "key")
-        warn(
-            f"{unit.package}/{unit.link_unit} with {keys} left out:"
-            f" {stale.reason} ({stale.file.path})"
-        )
 
 
 def _listed(static: StaticInfo, tpc: Tpc) -> dict[str, object]:
