@@ -8,13 +8,14 @@ from pathlib import Path
 import click
 
 from pytpc.cli.console import console, progress, warn
+from pytpc.cli.sources import static_of
 from pytpc.complaints import complaints
 from pytpc.errors import InputError
 from pytpc.ingest import Recording, load_recording, read_bag, save_recording
 from pytpc.marks import MARK_TYPES
 from pytpc.ranking import MarkRanking, rank_marks, unknown_keys
 from pytpc.report import MissionReport, write_report
-from pytpc.static_info import StaticInfo, read_static
+from pytpc.static_info import StaticInfo
 from pytpc.terminal import Row, print_rankings, rows_of
 from pytpc.words import many, plain
 
@@ -58,7 +59,7 @@ def ingest_command(bag: Path, output: Path) -> None:
 @_UNTYPED
 def rank_command(bag: Path, static_source: Path, top: int, as_json: bool, untyped: bool) -> None:
     """Name the suspected parameters at each mark in BAG (a bag, or a folder from `ingest`)."""
-    static = _static(static_source)
+    static = static_of([static_source])
     recording = _recording(bag)
     if not recording.marks:
         raise InputError("no marks: nobody said on /mark_action or /mark_no_action what", bag)
@@ -84,7 +85,7 @@ def report_command(
     bags: tuple[Path, ...], static_source: Path, output: Path, untyped: bool
 ) -> None:
     """Write a page with the suspects at each mark of each BAG, and the evidence."""
-    static = _static(static_source)
+    static = static_of([static_source])
     missions = []
     for bag in bags:
         recording = _recording(bag)
@@ -99,11 +100,6 @@ def report_command(
 
 
 COMMANDS: list[click.Command] = [ingest_command, rank_command, report_command]
-
-
-def _static(source: Path) -> StaticInfo:
-    with progress("reading static information") as advance:
-        return read_static(source, advance)
 
 
 def _recording(source: Path) -> Recording:

@@ -9,6 +9,7 @@ import click
 
 from pytpc.cli.console import progress, warn
 from pytpc.collecting import collect_sources
+from pytpc.paths import MERGED_FILE, OWN_FOLDER
 from pytpc.stale import Stale
 from pytpc.static_info import StaticInfo, read_static
 from pytpc.words import many
@@ -23,13 +24,17 @@ def static_of(sources: Sequence[Path]) -> StaticInfo:
     Without any: static.json in this folder, else what ``pytpc build`` left below it.
     """
     here = Path("static.json")
-    default = here if here.is_file() else Path()
+    chosen = list(sources) or [here if here.is_file() else Path()]
     with progress("reading static information") as advance:
-        if len(sources) <= 1:
-            return read_static(sources[0] if sources else default, advance)
-        collected = collect_sources(sources, advance)
+        if len(chosen) == 1 and _is_merged(chosen[0]):
+            return read_static(chosen[0], advance)
+        collected = collect_sources(chosen, advance)
     tell_dropped(collected.dropped)
     return collected.static
+
+
+def _is_merged(source: Path) -> bool:
+    return not source.is_dir() or (source / OWN_FOLDER / MERGED_FILE).is_file()
 
 
 def tell_dropped(dropped: Sequence[Stale]) -> None:

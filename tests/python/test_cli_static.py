@@ -157,6 +157,13 @@ def test_collect_says_what_it_left_out(build_base: Path, tmp_path: Path) -> None
     assert result.stdout.splitlines()[-1].startswith("1 comparison in 2 link units: ")
 
 
+def test_list_leaves_out_what_is_no_longer_built_too(build_base: Path) -> None:
+    reply(build_base / "face", [target("other", "EXECUTABLE"), target("more", "EXECUTABLE")])
+    result = run("list", build_base)
+    assert "its target is no more" in result.stderr
+    assert result.stdout.splitlines()[-1] == "1 comparison in 2 link units"
+
+
 @pytest.fixture
 def shared(tmp_path: Path) -> Path:
     """Two nodes of one package with a file in common, which is there, and one of their own."""
