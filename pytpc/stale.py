@@ -25,7 +25,8 @@ class UnitFile:
     @property
     def build_folder(self) -> Path:
         """CMake's build folder."""
-        return self.path.parent.parent
+        own = self.unit.build_folder
+        return self.path.parent.parent if own is None else Path(own)
 
 
 @dataclass(frozen=True, slots=True)

@@ -209,7 +209,13 @@ def load_link_unit(path: Path) -> LinkUnit:
     unit = LinkUnit.from_json(parse_json(path), path)
     if path.parent.name != "tpc":
         return unit
-    return replace(unit, build_folder=os.path.normpath(path.absolute().parent.parent))
+    return replace(unit, build_folder=str(_build_folder(path.absolute().parent.parent)))
+
+
+def _build_folder(folder: Path) -> Path:
+    """CMake's build folder: under catkin_make it is above that of the package."""
+    above = (up for up in (folder, *folder.parents) if (up / "CMakeCache.txt").is_file())
+    return next(above, folder)
 
 
 def unit_files(build_base: Path) -> list[Path]:

@@ -295,6 +295,9 @@ def test_a_unit_knows_its_build_folder_and_the_merged_document_keeps_it(tmp_path
     collect(tmp_path / "build").save(tmp_path / "static.json")
     (loaded,) = StaticInfo.load(tmp_path / "static.json").units
     assert loaded.build_folder == str(tmp_path / "build/face")
+    # Under catkin_make one CMake builds all packages.
+    (tmp_path / "build/CMakeCache.txt").touch()
+    assert load_link_unit(path).build_folder == str(tmp_path / "build")
 
 
 @pytest.mark.parametrize(
