@@ -34,23 +34,30 @@ def collect_sources(
     """Read, sort out and merge the files of all link units below ``sources``.
 
     Args:
-        sources: workspaces, build bases or build folders. Of a workspace both ``.tpc/build`` and
-            its own ``build`` are read; of a unit that was built in both, the later one counts.
+        sources: workspaces, build bases, build folders, or files with static information. Of a
+            workspace both ``.tpc/build`` and its own ``build`` are read; of a unit that was built
+            in both, the later one counts.
         on_progress: called with (files read, files in all).
 
     Raises:
         InputError: no such folder, a file that is broken, or a key that occurs twice.
         WorkspaceError: there is no static information in one of them.
     """
-    paths: list[Path] = []
+    copies: dict[str, str] = {}
+    files: list[UnitFile] = []
+    paths: set[Path] = set()
     for source in sources:
-        below = [path for base in _build_bases(source) for path in unit_files(base)]
+        if source.is_file():
+            document = StaticInfo.load(source)
+            copies.update(document.copies)
+            written = source.stat().st_mtime_ns
+            files += [UnitFile(source.absolute(), unit, written) for unit in document.units]
+            continue
+        below = [path.absolute() for base in _build_bases(source) for path in unit_files(base)]
         if not below:
             raise WorkspaceError("no static information here; build with `pytpc build`", source)
-        paths += below
-    paths = sorted({path.absolute() for path in paths})
-    files = []
-    for number, path in enumerate(paths, start=1):
+        paths.update(below)
+    for number, path in enumerate(sorted(paths), start=1):
         files.append(UnitFile(path, load_link_unit(path), path.stat().st_mtime_ns))
         if on_progress is not None:
             on_progress(number, len(paths))
@@ -58,7 +65,8 @@ def collect_sources(
     kept, stale = drop_stale(files, {folder: _built_targets(folder) for folder in folders})
     kept, repeated = drop_repeated(kept)
     units = [file.unit for file in kept]
-    static = StaticInfo.of(units, sources[0] if len(sources) == 1 else None, find_copies(units))
+    copies.update(find_copies(units))
+    static = StaticInfo.of(units, sources[0] if len(sources) == 1 else None, copies)
     return Collected(static, (*stale, *repeated))
 
 

@@ -7,7 +7,7 @@ import json
 import os
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor, as_completed
+from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -20,6 +20,8 @@ from pytpc.places import Tpc
 from pytpc.static_info import StaticInfo
 
 _FORMAT = 1
+# How often progress is told while nothing is finished.
+_TICK_S = 1.0
 # A parsed file takes a quarter of a GiB.
 _AT_ONCE = 4
 _SYSTEM = "/usr/"
@@ -75,7 +77,7 @@ def look_up_conditions(
     Args:
         static: where the TPCs are from.
         tpcs: any of its TPCs.
-        on_progress: called with (files parsed, files to parse).
+        on_progress: called with (files parsed, files to parse), at least each second.
         cache: folder of the answers; ``pytpc`` in the user's cache by default.
     """
     answers: dict[str, Answer] = {}
@@ -148,15 +150,18 @@ def _solve(
     todo = [number for number, known in enumerate(solved) if known is None]
     with ThreadPoolExecutor(min(_AT_ONCE, os.cpu_count() or 1)) as pool:
         running = {pool.submit(_parse, jobs[number]): number for number in todo}
+        pending = set(running)
         try:
-            for done, future in enumerate(as_completed(running), start=1):
-                job, parsed = jobs[running[future]], future.result()
-                found = parsed.conditions if parsed is not None else (None,) * len(job.places)
-                solved[running[future]] = dict(zip(job.places, found, strict=True))
-                if parsed is not None:
-                    _keep(cache / f"{job.digest}.json", job, parsed)
+            while pending:
+                finished, pending = wait(pending, _TICK_S, FIRST_COMPLETED)
+                for future in finished:
+                    job, parsed = jobs[running[future]], future.result()
+                    found = parsed.conditions if parsed is not None else (None,) * len(job.places)
+                    solved[running[future]] = dict(zip(job.places, found, strict=True))
+                    if parsed is not None:
+                        _keep(cache / f"{job.digest}.json", job, parsed)
                 if on_progress is not None:
-                    on_progress(done, len(running))
+                    on_progress(len(running) - len(pending), len(running))
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             raise

@@ -6,7 +6,7 @@ Each TPC is a note: nothing is wrong with it, a reviewer should know that a para
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from importlib.metadata import version
 from pathlib import Path, PurePosixPath
@@ -64,7 +64,7 @@ def sarif_log(
     """
     roots = [unit.source_root for unit in static.units]
     root = os.path.normpath(srcroot.absolute()) if srcroot is not None else _common(roots)
-    places = _Places(root)
+    places = _Places(root, dict(static.copies))
     kinds = list(_RULES)
     return {
         "$schema": SCHEMA,
@@ -89,14 +89,19 @@ def sarif_log(
 class _Places:
     """Places in files as SARIF has them."""
 
-    def __init__(self, root: str) -> None:
+    def __init__(self, root: str, copies: Mapping[str, str]) -> None:
         self._root = PurePosixPath(root)
+        self._copies = copies
         self._lines = lru_cache(maxsize=256)(_read_lines)
 
     def location(
         self, file: str, lineno: int, column: int, snippet: str | None = None
     ) -> dict[str, Any]:
-        """A physical location; ``column`` counts bytes, and 0 stands for an unknown one."""
+        """A physical location; ``column`` counts bytes, and 0 stands for an unknown one.
+
+        An installed header is the file that it is a copy of.
+        """
+        file = self._copies.get(file, file)
         place: dict[str, Any] = {"artifactLocation": self._artifact(file)}
         if lineno > 0:
             place["region"] = {"startLine": lineno}

@@ -97,6 +97,17 @@ def test_several_sources_are_merged_and_each_file_is_read_once(tmp_path: Path) -
     assert found.dropped == ()
 
 
+def test_documents_are_sources_too(tmp_path: Path) -> None:
+    write(tmp_path / "a/tpc/detector.json", unit(counts=counts(functions=1)))
+    collect_sources([tmp_path / "a"]).static.save(tmp_path / "a.json")
+    os.utime(tmp_path / "a.json", (2, 2))
+    write(tmp_path / "b/tpc/broken.json", failed_unit())
+    # Of the unit that is in both, what the document says was written later.
+    found = collect_sources([tmp_path / "a", tmp_path / "a.json", tmp_path / "b"])
+    assert [each.link_unit for each in found.static.units] == ["broken", "detector"]
+    assert [stale.file.path for stale in found.dropped] == [tmp_path / "a/tpc/detector.json"]
+
+
 def test_a_source_without_any_is_named(tmp_path: Path) -> None:
     write(tmp_path / "a/tpc/detector.json", unit())
     (tmp_path / "b").mkdir()

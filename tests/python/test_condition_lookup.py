@@ -165,6 +165,9 @@ def test_progress_counts_the_files_that_are_parsed(root: Path) -> None:
     static = static_of(root, comparison(**PLACE), other)
     seen: list[tuple[int, int]] = []
     look_up(static, static.tpcs, lambda *at: seen.append(at), root / "cache")
-    assert seen == [(1, 2), (2, 2)]
+    # Both may be finished at once, and a slow one is told of before it is.
+    assert seen[-1] == (2, 2)
+    assert seen == sorted(seen)
+    seen.clear()
     look_up(static, static.tpcs, lambda *at: seen.append(at), root / "cache")
-    assert len(seen) == 2
+    assert seen == []

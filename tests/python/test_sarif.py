@@ -141,6 +141,19 @@ def test_paths_are_relative_to_what_the_packages_have_in_common() -> None:
     ]
 
 
+def test_steps_in_an_installed_header_are_in_the_header() -> None:
+    way = [step("read", 3, "read", file="/ws/install/a.h")]
+    static = StaticInfo.of(
+        [LinkUnit.from_json(unit(comparisons=[comparison(path=way)]), Path("x.json"))],
+        copies={"/ws/install/a.h": "/ws/src/face/include/a.h"},
+    )
+    found = [details(static, tpc, Answer(None)) for tpc in static.tpcs]
+    (result,) = sarif_log(static, found)["runs"][0]["results"]
+    (flow,) = result["codeFlows"][0]["threadFlows"]
+    place = flow["locations"][0]["location"]["physicalLocation"]
+    assert place["artifactLocation"]["uri"] == "include/a.h"
+
+
 def test_the_root_can_be_chosen() -> None:
     run = log_of(unit(), srcroot=Path("/ws"))["runs"][0]
     artifact = run["results"][0]["locations"][0]["physicalLocation"]["artifactLocation"]
