@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from static_units import KEYS, comparison, unit
 
-from pytpc import condition_lookup
+from pytpc import condition_lookup, conditions
 from pytpc.condition_lookup import CHANGED, GONE, NO_LIBCLANG, NOT_FOUND, WITHOUT_FLAGS, Answer
 from pytpc.condition_lookup import look_up_conditions as look_up
 from pytpc.conditions import libclang
@@ -171,3 +171,59 @@ def test_progress_counts_the_files_that_are_parsed(root: Path) -> None:
     seen.clear()
     look_up(static, static.tpcs, lambda *at: seen.append(at), root / "cache")
     assert seen == []
+
+
+@pytest.fixture
+def precompiled(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The ends of the argument lists with which files are parsed."""
+    ends: list[str] = []
+    parse = condition_lookup.parse_conditions
+
+    def noted(file: str, data: bytes, arguments: Any, places: Any) -> Any:
+        ends.append(arguments[-2])
+        return parse(file, data, arguments, places)
+
+    monkeypatch.setattr(condition_lookup, "parse_conditions", noted)
+    return ends
+
+
+def three_files(root: Path) -> StaticInfo:
+    """Three files that are compiled alike, each with the comparison of TEXT."""
+    found = []
+    for number, key in enumerate(KEYS):
+        name = f"src/file{number}.cpp"
+        (root / name).write_text(TEXT, encoding="utf-8")
+        found.append(comparison(key=key, file=name, **PLACE))
+    return static_of(root, *found)
+
+
+def texts_of(static: StaticInfo, root: Path) -> list[str | None]:
+    answers = look_up(static, static.tpcs, cache=root / "cache").values()
+    return [answer.condition and answer.condition.text for answer in answers]
+
+
+def test_files_that_are_compiled_alike_share_what_is_precompiled(
+    root: Path, precompiled: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    same = condition_lookup.Flags(("-x", "c++", "-std=c++17", "-DNAME=1"), True)
+    monkeypatch.setattr(condition_lookup, "flags_for", lambda *_: same)
+    # Something smaller than ROS, without which the files do not have their macro.
+    monkeypatch.setattr(conditions, "_PREFIX", "#define LIMIT 3.0\n")
+    (root / "src/limits.h").write_text("#ifndef LIMIT\n#error\n#endif\n", encoding="utf-8")
+    assert texts_of(three_files(root), root) == [WHOLE] * 3
+    assert precompiled == ["-include-pch"] * 3
+
+
+def test_what_is_not_found_so_is_sought_without(
+    root: Path, precompiled: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    same = condition_lookup.Flags(("-x", "c++", "-std=c++17", "-DNAME=1"), True)
+    monkeypatch.setattr(condition_lookup, "flags_for", lambda *_: same)
+
+    def broken(_: Any, target: Path) -> bool:
+        target.write_bytes(b"no precompiled header")
+        return True
+
+    monkeypatch.setattr(condition_lookup, "precompile", broken)
+    assert texts_of(three_files(root), root) == [WHOLE] * 3
+    assert sorted(precompiled) == [*["-include-pch"] * 3, *["-std=c++17"] * 3]
