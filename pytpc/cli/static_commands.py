@@ -117,9 +117,11 @@ def list_command(
         return
     console().print(_table(static, found), highlight=False)
     warn_of_failed(static)
-    everything = select(static, Selection(constants=wanted.constants))
-    some = f"{len(found)} shown of " if len(found) != len(everything) else ""
-    click.echo(some + found_text(static))
+    constants = sum(1 for tpc in found if tpc.type == "constant")
+    shown, there = len(found) - constants, len(select(static, Selection()))
+    some = f"{shown:,} shown of " if shown != there else ""
+    more = f"; and {constants:,} with constants" if constants else ""
+    click.echo(some + found_text(static) + more)
 
 
 @click.command("show")

@@ -117,7 +117,13 @@ def test_constants_are_listed_where_that_is_asked_for(tmp_path: Path) -> None:
     source.write_text(json.dumps(unit(comparisons=[comparison(), CONSTANT])), encoding="utf-8")
     assert run("list", source).stdout.splitlines()[-1] == "1 comparison in 1 link unit"
     assert "constant" not in run("list", source).stdout
-    assert "constant" in run("list", source, "--constants").stdout
+    with_constants = run("list", source, "--constants").stdout
+    assert [row[1] for row in rows(run("list", source, "--constants"))] == ["parameter", "constant"]
+    assert with_constants.splitlines()[-1] == "1 comparison in 1 link unit; and 1 with constants"
+    alone = run("list", source, "--type", "constant").stdout
+    assert alone.splitlines()[-1] == (
+        "0 shown of 1 comparison in 1 link unit; and 1 with constants"
+    )
     assert len(json.loads(run("list", source, "--json").stdout)) == 1
     assert json.loads(run("list", source, "--json", "--constants").stdout)[1]["name"] == "7"
 
