@@ -1,6 +1,6 @@
 """Building a workspace with TPC: colcon, with tpc.cmake as the toolchain, in bases of its own.
 
-``build_workspace`` does it all; ``pytpc.colcon`` runs the tool, ``pytpc.link_units`` says what of
+``build_workspace`` does it all; ``pytpc.colcon`` runs the tool, ``pytpc.reconcile`` says what of
 the build was analysed.
 """
 
@@ -9,16 +9,16 @@ from __future__ import annotations
 import os
 import subprocess
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pytpc.atomic import write_atomic
 from pytpc.cmake_targets import ask_for_targets
 from pytpc.colcon import Bases, BuildError, colcon_command, run_colcon
+from pytpc.collecting import find_copies
 from pytpc.errors import RunError, WorkspaceError
 from pytpc.left_alone import LeftAlone
-from pytpc.link_units import UnitState, stale_files, unit_states
 from pytpc.paths import (
     SYSTEM_PATH,
     cmake_file,
@@ -27,8 +27,9 @@ from pytpc.paths import (
     require_ros,
     require_tools,
 )
+from pytpc.reconcile import left_out_units, stale_files
 from pytpc.rules import check_rules
-from pytpc.static_info import LinkUnit, StaticInfo, collect, unit_files
+from pytpc.static_info import LeftOut, LinkUnit, StaticInfo, collect, unit_files
 from pytpc.workspace import Package, find_packages, read_cmakelists, select_packages
 
 
@@ -36,14 +37,13 @@ from pytpc.workspace import Package, find_packages, read_cmakelists, select_pack
 class BuildResult:
     """A build that succeeded.
 
-    ``left_out`` are link units that were linked and not analysed, ``left_alone`` packages that
-    build only without TPC, each with the reason; ``seconds`` is wall time.
+    ``left_alone`` are packages that build only without TPC, each with the reason; ``seconds`` is
+    wall time.
     """
 
     bases: Bases
     packages: tuple[Package, ...]
     static: StaticInfo
-    left_out: tuple[UnitState, ...]
     left_alone: dict[str, str]
     seconds: float
 
@@ -135,13 +135,15 @@ def build_workspace(
         else:
             alone.keep()
             break
-    left_out = _reconcile(place, found, alone.reasons)
-    folders = (place.build / package.name for package in found)
-    units = (unit for folder in folders if folder.is_dir() for unit in collect(folder).units)
-    static = StaticInfo.of(units, place.build)
+    folders = [folder for folder in (place.build / one.name for one in found) if folder.is_dir()]
+    _drop_stale(folders)
+    units = [unit for folder in folders for unit in collect(folder).units]
+    static = StaticInfo.of(
+        units, place.build, find_copies(units), _left_out(folders, alone.reasons)
+    )
     static.save(place.static_info)
     seconds = time.monotonic() - began
-    return BuildResult(place, tuple(chosen), static, left_out, alone.reasons, seconds)
+    return BuildResult(place, tuple(chosen), static, alone.reasons, seconds)
 
 
 def workspace_env(install_base: Path) -> dict[str, str]:
@@ -219,20 +221,17 @@ def _ask(bases: Bases, packages: Sequence[Package]) -> None:
             ask_for_targets(bases.build / package.name)
 
 
-def _reconcile(
-    bases: Bases, packages: Sequence[Package], left_alone: Mapping[str, str]
-) -> tuple[UnitState, ...]:
-    """Drop files of targets that are no more; return the link units that have no file."""
-    left_out: list[UnitState] = []
-    for package in packages:
-        folder = bases.build / package.name
-        if not folder.is_dir():
-            continue
+def _drop_stale(folders: Iterable[Path]) -> None:
+    for folder in folders:
         for stale in stale_files(folder, unit_files(folder)):
             stale.unlink()
-        states = (state for state in unit_states(folder) if state.reason is not None)
-        if package.name in left_alone:
-            why = "its package does not build with TPC"
-            states = (replace(state, reason=why) for state in states)
-        left_out += states
-    return tuple(left_out)
+
+
+def _left_out(folders: Iterable[Path], left_alone: Mapping[str, str]) -> Iterator[LeftOut]:
+    """The link units without static information; those of a package left alone for that reason."""
+    for folder in folders:
+        for unit in left_out_units(folder):
+            if folder.name in left_alone:
+                yield replace(unit, reason="its package does not build with TPC")
+            else:
+                yield unit

@@ -123,7 +123,7 @@ def _nothing_like(static: StaticInfo, name: str) -> str:
 
 def _at(static: StaticInfo, question: str, file: str, line: int) -> Explanation:
     def here(place: Comparison | ParameterRead | NotExposed | BlindSpot | PathStep) -> bool:
-        return place.lineno == line and _same_file(place.file, file)
+        return place.lineno == line and same_file(place.file, file)
 
     own = [each for each in _all(static) if here(each.comparison)]
     explanation = Explanation(
@@ -146,7 +146,7 @@ def _at(static: StaticInfo, question: str, file: str, line: int) -> Explanation:
     return explanation
 
 
-def _same_file(known: str, asked: str) -> bool:
+def same_file(known: str, asked: str) -> bool:
     """Whether ``known`` is ``asked``, or ends with it, a folder at a time; either may be longer."""
     known_parts, asked_parts = known.split("/"), asked.removeprefix("./").split("/")
     shared = min(len(known_parts), len(asked_parts))
@@ -155,7 +155,7 @@ def _same_file(known: str, asked: str) -> bool:
 
 def _nothing_at(static: StaticInfo, file: str, line: int) -> str:
     lines = {
-        each.comparison.lineno for each in _all(static) if _same_file(each.comparison.file, file)
+        each.comparison.lineno for each in _all(static) if same_file(each.comparison.file, file)
     }
     if not lines:
         return f"nothing was found in a file {file}"

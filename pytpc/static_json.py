@@ -10,11 +10,14 @@ from typing import Any, NoReturn
 
 from jsonschema import Draft202012Validator, ValidationError
 from jsonschema.exceptions import best_match
+from referencing import Registry, Resource
+from referencing.jsonschema import DRAFT202012
 
 from pytpc.errors import InputError
 
 SCHEMA_VERSION = 1
 UNIT_SCHEMA = "static_info.schema.json"
+MERGED_SCHEMA = "merged.schema.json"
 RULES_SCHEMA = "rules.schema.json"
 _LONGEST_MESSAGE = 160
 
@@ -83,10 +86,16 @@ def check_schema(data: object, path: Path, name: str, pointer: str = "") -> None
 
 @cache
 def _validator(name: str) -> Draft202012Validator:
-    text = files("pytpc").joinpath("schema", name).read_text("utf-8")
-    schema = json.loads(text)
+    schema = _schema(name)
     Draft202012Validator.check_schema(schema)
-    return Draft202012Validator(schema)
+    # The one schema that another one names.
+    units: Resource[dict[str, Any]] = DRAFT202012.create_resource(_schema(UNIT_SCHEMA))
+    return Draft202012Validator(schema, registry=Registry().with_resource(UNIT_SCHEMA, units))
+
+
+def _schema(name: str) -> dict[str, Any]:
+    schema: dict[str, Any] = json.loads(files("pytpc").joinpath("schema", name).read_text("utf-8"))
+    return schema
 
 
 def _pointer(fault: ValidationError) -> str:

@@ -3,32 +3,23 @@
 from __future__ import annotations
 
 import json
-import sys
-import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 import click
-from rich.console import Console
-from rich.markup import escape
-from rich.progress import Progress
 
+from pytpc.cli.console import console, progress, warn
+from pytpc.cli.sources import static_of
 from pytpc.complaints import complaints
 from pytpc.errors import InputError
 from pytpc.ingest import Recording, load_recording, read_bag, save_recording
 from pytpc.marks import MARK_TYPES
 from pytpc.ranking import MarkRanking, rank_marks, unknown_keys
 from pytpc.report import MissionReport, write_report
-from pytpc.static_info import StaticInfo, read_static
+from pytpc.static_info import StaticInfo
 from pytpc.terminal import Row, print_rankings, rows_of
 from pytpc.words import many, plain
 
-Advance = Callable[[int, int], None]
-
 _PATH = click.Path(path_type=Path)
-_PIPED_WIDTH = 160
-_SILENT_S = 2.0
 _STATIC = click.option(
     "--static",
     "static_source",
@@ -68,7 +59,7 @@ def ingest_command(bag: Path, output: Path) -> None:
 @_UNTYPED
 def rank_command(bag: Path, static_source: Path, top: int, as_json: bool, untyped: bool) -> None:
     """Name the suspected parameters at each mark in BAG (a bag, or a folder from `ingest`)."""
-    static = _static(static_source)
+    static = static_of([static_source])
     recording = _recording(bag)
     if not recording.marks:
         raise InputError("no marks: nobody said on /mark_action or /mark_no_action what", bag)
@@ -82,8 +73,7 @@ def rank_command(bag: Path, static_source: Path, top: int, as_json: bool, untype
         ]
         click.echo(json.dumps(items, indent=1, ensure_ascii=False))
         return
-    console = Console(width=None if sys.stdout.isatty() else _PIPED_WIDTH)
-    print_rankings(console, recording, static, rankings, top)
+    print_rankings(console(), recording, static, rankings, top)
 
 
 @click.command("report")
@@ -95,7 +85,7 @@ def report_command(
     bags: tuple[Path, ...], static_source: Path, output: Path, untyped: bool
 ) -> None:
     """Write a page with the suspects at each mark of each BAG, and the evidence."""
-    static = _static(static_source)
+    static = static_of([static_source])
     missions = []
     for bag in bags:
         recording = _recording(bag)
@@ -110,37 +100,6 @@ def report_command(
 
 
 COMMANDS: list[click.Command] = [ingest_command, rank_command, report_command]
-
-
-@contextmanager
-def progress(what: str) -> Iterator[Advance]:
-    """Show how far something is once it has taken two seconds: a bar, or lines where piped."""
-    console = Console(stderr=True)
-    bar = Progress(console=console, transient=True)
-    task = bar.add_task(escape(plain(what)), total=None)
-    told = time.monotonic()
-
-    def advance(done: int, total: int) -> None:
-        nonlocal told
-        bar.update(task, completed=done, total=total)
-        if time.monotonic() - told < _SILENT_S:
-            return
-        if console.is_terminal:
-            bar.start()
-        else:
-            click.echo(f"{plain(what)}: {done:,} of {total:,}", err=True)
-            told = time.monotonic()
-
-    try:
-        yield advance
-    finally:
-        if bar.live.is_started:
-            bar.stop()
-
-
-def _static(source: Path) -> StaticInfo:
-    with progress("reading static information") as advance:
-        return read_static(source, advance)
 
 
 def _recording(source: Path) -> Recording:
@@ -165,7 +124,7 @@ def _check_reports(recording: Recording, static: StaticInfo, source: Path) -> No
 
 def _warn_about(recording: Recording, static: StaticInfo | None) -> None:
     for complaint in complaints(recording, static):
-        click.echo(f"pytpc: warning: {plain(recording.name)}: {plain(complaint)}", err=True)
+        warn(f"{plain(recording.name)}: {plain(complaint)}")
 
 
 def _json_of(ranking: MarkRanking, recording: Recording, rows: list[Row]) -> dict[str, object]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import sys
 from collections import Counter
 from dataclasses import asdict
 from pathlib import Path
@@ -14,13 +13,12 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
+from pytpc.cli.console import console
+from pytpc.cli.sources import SOURCES, static_of
 from pytpc.explain import Explanation, Found, look_up, where, why_no_comparison
 from pytpc.ranking import parameter_name
-from pytpc.static_info import LinkUnit, PathStep, StaticInfo, read_static
+from pytpc.static_info import LinkUnit, PathStep, StaticInfo
 from pytpc.words import many, plain
-
-_SOURCE = click.Path(path_type=Path)
-_PIPED_WIDTH = 160
 
 _KINDS = {
     "lost_value": "value lost",
@@ -36,39 +34,42 @@ _KINDS = {
 
 
 @click.command("explain")
-@click.argument("source", type=_SOURCE)
+@SOURCES
 @click.argument("question", metavar="KEY|PARAMETER|FILE:LINE")
 @click.option("--all", "show_all", is_flag=True, help="The way of every comparison that fits.")
 @click.option("--json", "as_json", is_flag=True, help="Print a JSON object.")
-def explain_command(source: Path, question: str, show_all: bool, as_json: bool) -> None:
+def explain_command(
+    sources: tuple[Path, ...], question: str, show_all: bool, as_json: bool
+) -> None:
     """Show the way from a parameter's read over the comparison to what is exposed.
 
-    SOURCE is a static.json, a build base or a workspace. Without --all the comparison nearest to
+    SOURCE is a static.json, a build base or a workspace; without it, what is in this folder.
+    Without --all the comparison nearest to
     an exposing statement is shown with its way, and the others in a line each.
     """
-    explanation = look_up(read_static(source), question)
+    explanation = look_up(static_of(sources), question)
     if as_json:
         click.echo(json.dumps(_json(explanation), indent=1, ensure_ascii=False))
         return
-    console = _console()
+    out = console()
     shown = explanation.comparisons if show_all else explanation.comparisons[:1]
     for found in shown:
-        _print_way(console, found)
+        _print_way(out, found)
     rest = explanation.comparisons[len(shown) :]
     if rest:
-        console.print(Text(f"{many(len(rest), 'more comparison')} (--all shows the ways):"))
+        out.print(Text(f"{many(len(rest), 'more comparison')} (--all shows the ways):"))
         for found in rest:
-            console.print(Padding(_heading(found), (0, 0, 0, 2), expand=False))
+            out.print(Padding(_heading(found), (0, 0, 0, 2), expand=False))
     if not explanation.comparisons:
-        _print_why_not(console, explanation)
+        print_why_not(out, explanation)
 
 
 @click.command("blind-spots")
-@click.argument("source", type=_SOURCE)
+@SOURCES
 @click.option("--json", "as_json", is_flag=True, help="Print a JSON list.")
-def blind_spots_command(source: Path, as_json: bool) -> None:
+def blind_spots_command(sources: tuple[Path, ...], as_json: bool) -> None:
     """List the places in SOURCE behind which the analysis does not see."""
-    static = read_static(source)
+    static = static_of(sources)
     if as_json:
         spots = [
             {"package": unit.package, "link_unit": unit.link_unit, **asdict(spot)}
@@ -77,11 +78,11 @@ def blind_spots_command(source: Path, as_json: bool) -> None:
         ]
         click.echo(json.dumps(spots, indent=1, ensure_ascii=False))
         return
-    console = _console()
+    out = console()
     for unit in static.units:
         if unit.blind_spots:
-            console.print(Text(plain(f"{unit.package}/{unit.link_unit}"), style="bold"))
-            console.print(_spots_table(unit), highlight=False)
+            out.print(Text(plain(f"{unit.package}/{unit.link_unit}"), style="bold"))
+            out.print(_spots_table(unit), highlight=False)
     click.echo(_spots_summary(static))
 
 
@@ -124,7 +125,8 @@ def _cells(step: PathStep) -> tuple[Text, Text, Text]:
     return Text(step.step, style=strong), place, what
 
 
-def _print_why_not(console: Console, explanation: Explanation) -> None:
+def print_why_not(console: Console, explanation: Explanation) -> None:
+    """Say what became of a parameter that no reported comparison is about."""
     for unit, read in explanation.reads:
         text = Text(plain(read.name), style="bold")
         text.append(
@@ -187,7 +189,3 @@ def _spots_summary(static: StaticInfo) -> str:
     if too_large:
         text += f"; too large to tell which reads see a write: {', '.join(map(plain, too_large))}"
     return text
-
-
-def _console() -> Console:
-    return Console(width=None if sys.stdout.isatty() else _PIPED_WIDTH)

@@ -9,6 +9,7 @@ from pytpc.cli import (
     explain_commands,
     machine_commands,
     mission_commands,
+    static_commands,
     workspace_commands,
 )
 from pytpc.errors import TpcError
@@ -46,6 +47,7 @@ def main() -> None:
 for command in (
     *workspace_commands.COMMANDS,
     *machine_commands.COMMANDS,
+    *static_commands.COMMANDS,
     *explain_commands.COMMANDS,
     *event_commands.COMMANDS,
     *mission_commands.COMMANDS,

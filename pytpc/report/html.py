@@ -6,9 +6,8 @@ from collections.abc import Callable, Sequence
 from itertools import count
 from pathlib import Path
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
-
 from pytpc.atomic import write_atomic
+from pytpc.report.environment import environment
 from pytpc.report.view import MissionReport, figures, mission_view
 
 __all__ = ["MissionReport", "render", "write_report"]
@@ -50,12 +49,4 @@ def render(
             on_progress(number, total)
 
     views = [mission_view(mission, n, figure_made) for n, mission in enumerate(missions, start=1)]
-    environment = Environment(
-        loader=PackageLoader("pytpc.report"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-    )
-    return environment.get_template("report.html.j2").render(title=title, missions=views)
+    return environment().get_template("report.html.j2").render(title=title, missions=views)

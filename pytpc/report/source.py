@@ -1,10 +1,11 @@
-"""The source text around a comparison."""
+"""The source text around a comparison, and its way from the read to what is exposed."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
 
+from pytpc.explain import where
 from pytpc.static_info import Comparison, StaticInfo
 
 LONGEST_LINE = 160
@@ -21,6 +22,29 @@ class Line:
     number: int
     text: str
     here: bool
+
+
+@dataclass(frozen=True)
+class StepView:
+    """A line of the source on the way from the parameter's read to what is exposed."""
+
+    place: str
+    what: str
+    code: str
+    here: bool
+
+
+def way_of(found: Comparison) -> list[StepView]:
+    """The steps of a comparison's way; empty where the static information has none."""
+    return [
+        StepView(
+            place=where(step) if step.file else "",
+            what=step.what,
+            code=(step.source_code or "")[:LONGEST_LINE],
+            here=(step.file, step.lineno) == (found.file, found.lineno),
+        )
+        for step in found.path
+    ]
 
 
 def source_lines(static_info: StaticInfo, found: Comparison) -> tuple[list[Line], str]:
@@ -49,11 +73,18 @@ def source_lines(static_info: StaticInfo, found: Comparison) -> tuple[list[Line]
     ], ""
 
 
-def _read_lines(path: Path) -> list[str] | None:
+def read_lines(path: Path) -> list[bytes] | None:
+    """The lines of a file; None where it is not there, or too large to be anyone's source."""
     try:
         if path.stat().st_size > _LARGEST_SOURCE:
             return None
-        text = path.read_bytes().decode("utf-8", "replace")
+        return [line.rstrip(b"\r") for line in path.read_bytes().split(b"\n")]
     except OSError:
         return None
-    return [line.rstrip().expandtabs(4) for line in text.split("\n")]
+
+
+def _read_lines(path: Path) -> list[str] | None:
+    lines = read_lines(path)
+    if lines is None:
+        return None
+    return [line.decode("utf-8", "replace").rstrip().expandtabs(4) for line in lines]

@@ -14,14 +14,13 @@ from markupsafe import Markup
 
 from pytpc.arithmetic import evaluate
 from pytpc.complaints import complaints
-from pytpc.explain import where
 from pytpc.ingest.recording import Recording
 from pytpc.marks import Mark, MarkType
 from pytpc.parameters import same_parameter
 from pytpc.ranking import MarkRanking, Suspect
 from pytpc.report.plots import EvidenceStyle, Lane, evidence_svg, timeline_svg
 from pytpc.report.series import evidence, lane
-from pytpc.report.source import LONGEST_LINE, Line, source_lines
+from pytpc.report.source import LONGEST_LINE, Line, StepView, source_lines, way_of
 from pytpc.scores import WINDOW_S
 from pytpc.static_info import Comparison, StaticInfo
 from pytpc.suggest import Suggestion, exact, show, suggest
@@ -61,16 +60,6 @@ class MissionReport:
         """True where ``parameter``, as in the source, is the one that was changed."""
         changed = self.changed_parameter
         return changed is not None and same_parameter(changed, parameter)
-
-
-@dataclass(frozen=True)
-class StepView:
-    """A line of the source on the way from the parameter's read to what is exposed."""
-
-    place: str
-    what: str
-    code: str
-    here: bool
 
 
 @dataclass(frozen=True)
@@ -244,20 +233,8 @@ def _suspect_view(
         plot=plot,
         source=lines,
         source_note=note,
-        way=_way(found) if ident else [],
+        way=way_of(found) if ident else [],
     )
-
-
-def _way(found: Comparison) -> list[StepView]:
-    return [
-        StepView(
-            place=where(step) if step.file else "",
-            what=step.what,
-            code=(step.source_code or "")[:LONGEST_LINE],
-            here=(step.file, step.lineno) == (found.file, found.lineno),
-        )
-        for step in found.path
-    ]
 
 
 def _evidence(

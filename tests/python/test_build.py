@@ -24,6 +24,7 @@ from pytpc.colcon import (
     ended_jobs,
 )
 from pytpc.errors import InputError, MissingToolError, RunError, TpcError, WorkspaceError
+from pytpc.static_info import LeftOut
 from pytpc.workspace import Package
 
 TOOLCHAIN = Path("/opt/tpc/share/tpc/cmake/tpc.cmake")
@@ -232,9 +233,8 @@ def test_a_build_gives_units_and_what_was_missed(workspace: Path, colcon: FakeCo
     result = build_workspace(workspace, on_output=said.append)
     assert said == ["Starting >>> face", "Finished <<< face [1s]"]
     assert [found.link_unit for found in result.units] == ["broken", "detector"]
-    (left_out,) = result.left_out
-    assert (left_out.package, left_out.name) == ("face", "thin")
-    assert left_out.reason == "its package was configured without TPC"
+    missing = LeftOut("face", "thin", "its package was configured without TPC")
+    assert result.static.left_out == (missing,)
     assert [package.name for package in result.packages] == ["arm", "face"]
     assert not stale.exists()
     assert result.bases.install == workspace / ".tpc/install"

@@ -1,6 +1,5 @@
 """The commands about a workspace, as a user meets them."""
 
-import json
 import os
 import subprocess
 import sys
@@ -11,139 +10,18 @@ import click
 import pytest
 from click.testing import CliRunner, Result
 from packages import add_package, install_prefix
-from static_units import KEYS, comparison, failed_unit, unit
+from static_units import failed_unit, unit
 
 from pytpc.build import BuildResult
 from pytpc.cli import workspace_commands
 from pytpc.cli.main import main
 from pytpc.colcon import Bases, BuildError
 from pytpc.errors import InputError
-from pytpc.link_units import UnitState
-from pytpc.static_info import LinkUnit, StaticInfo
+from pytpc.static_info import LeftOut, LinkUnit, StaticInfo
 
 
 def run(*arguments: str | Path) -> Result:
     return CliRunner().invoke(main, [str(argument) for argument in arguments])
-
-
-@pytest.fixture
-def build_base(tmp_path: Path) -> Path:
-    base = tmp_path / "build"
-    units = {
-        "face/tpc/detector.json": unit(
-            comparisons=[comparison(source_code="if (x[red] > limit_)  // [/red]")]
-        ),
-        "arm/tpc/mover.json": unit(
-            package="arm",
-            link_unit="mover",
-            comparisons=[
-                comparison(key=KEYS[1], source_code=None, topic=None, source="min_height")
-            ],
-        ),
-        "arm/tpc/broken.json": failed_unit(package="arm"),
-    }
-    for place, data in units.items():
-        (base / place).parent.mkdir(parents=True, exist_ok=True)
-        (base / place).write_text(json.dumps(data), encoding="utf-8")
-    return base
-
-
-def test_collect_writes_one_file_and_warns(build_base: Path, tmp_path: Path) -> None:
-    output = tmp_path / "out/static.json"
-    result = run("collect", build_base, "-o", output)
-    assert (result.exit_code, result.stderr) == (
-        0,
-        "pytpc: warning: broken of package arm was left as it was and reports nothing:"
-        " the instrumented module does not verify\n",
-    )
-    assert result.stdout.splitlines()[-1] == f"2 comparisons in 3 link units: {output}"
-    assert len(json.loads(output.read_text(encoding="utf-8"))["units"]) == 3
-
-
-def test_collect_shows_the_numbers_of_each_unit(build_base: Path, tmp_path: Path) -> None:
-    data = unit()
-    data["counts"].update(comparisons=31, parameter_reads=47, exposing_statements=59)
-    (build_base / "face/tpc/detector.json").write_text(json.dumps(data), encoding="utf-8")
-    result = run("collect", build_base, "-o", tmp_path / "static.json")
-    (row,) = (line for line in result.stdout.splitlines() if "detector" in line)
-    assert [cell.strip() for cell in row.strip("│").split("│")] == [
-        "face", "detector", "31", "47", "59", "ok",
-    ]  # fmt: skip
-
-
-def test_collect_of_a_folder_without_any_writes_nothing(tmp_path: Path) -> None:
-    result = run("collect", tmp_path, "-o", tmp_path / "static.json")
-    assert result.exit_code == 1
-    assert result.stderr == (
-        f"pytpc: error: {tmp_path}: no static information here; build with `pytpc build`\n"
-    )
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_list_shows_source_lines_as_they_are(build_base: Path) -> None:
-    result = run("list", build_base)
-    assert result.exit_code == 0
-    assert "if (x[red] > limit_)  // [/red]" in result.stdout
-    assert "face/src/detector.cpp:40" in result.stdout
-    assert "> min_coverage_limit_" in result.stdout
-    assert result.stdout.splitlines()[-1] == "2 comparisons in 3 link units"
-
-
-def test_list_as_json_holds_every_field(build_base: Path) -> None:
-    listed = json.loads(run("list", build_base, "--json").stdout)
-    expected: list[dict[str, Any]] = [
-        {
-            "package": "arm",
-            "link_unit": "mover",
-            **comparison(key=KEYS[1], source_code=None, topic=None, source="min_height"),
-        },
-        {
-            "package": "face",
-            "link_unit": "detector",
-            **comparison(source_code="if (x[red] > limit_)  // [/red]"),
-        },
-    ]
-    assert listed == expected
-
-
-CONSTANT = comparison(
-    key=KEYS[2], type="constant", source=None, name="7", read_at=None, param_reads=[], default=None
-)
-
-
-def test_constants_are_listed_where_that_is_asked_for(tmp_path: Path) -> None:
-    source = tmp_path / "static.json"
-    source.write_text(json.dumps(unit(comparisons=[comparison(), CONSTANT])), encoding="utf-8")
-    assert run("list", source).stdout.splitlines()[-1] == "1 comparison in 1 link unit"
-    assert "constant" not in run("list", source).stdout
-    assert "constant" in run("list", source, "--constants").stdout
-    assert len(json.loads(run("list", source, "--json").stdout)) == 1
-    assert json.loads(run("list", source, "--json", "--constants").stdout)[1]["name"] == "7"
-
-
-def test_list_finds_what_is_here(
-    build_base: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    assert run("list").stdout.splitlines()[-1] == "2 comparisons in 3 link units"
-    StaticInfo.of([LinkUnit.from_json(unit(), tmp_path)]).save(tmp_path / "static.json")
-    assert run("list").stdout.splitlines()[-1] == "1 comparison in 1 link unit"
-
-
-def test_a_broken_file_is_one_line_with_its_place(tmp_path: Path) -> None:
-    path = tmp_path / "static.json"
-    path.write_text('{"schema": 1,\n"units": [', encoding="utf-8")
-    result = run("list", path)
-    assert result.exit_code == 1
-    assert result.stdout == ""
-    assert result.stderr == f"pytpc: error: {path}:2: not JSON: Expecting value, column 11\n"
-
-
-def test_an_output_that_cannot_be_written_is_one_line(build_base: Path) -> None:
-    result = run("collect", build_base, "-o", build_base / "face/tpc/detector.json/static.json")
-    assert result.exit_code == 1
-    assert result.stderr.startswith(f"pytpc: error: {build_base}/face/tpc/detector.json/static")
-    assert result.stderr.count("\n") == 1
 
 
 def test_patch_goes_there_and_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -175,14 +53,11 @@ def test_build_hands_over_its_options_and_shows_the_result(
         options["on_output"]("Starting >>> face")
         options["on_output"]("[ 50%] Building CXX object")
         static = StaticInfo.of(
-            LinkUnit.from_json(data, tmp_path) for data in (unit(), failed_unit())
-        )
-        left_out = (
-            UnitState("face", "thin", tmp_path / "thin", "it is a test"),
-            UnitState("leg", "node", tmp_path / "node", "its package does not build with TPC"),
+            [LinkUnit.from_json(data, tmp_path) for data in (unit(), failed_unit())],
+            left_out=[LeftOut("face", "thin", "it is a test")],
         )
         alone = {"leg": "a.cpp:1: error: no"}
-        return BuildResult(options["bases"], (), static, left_out, alone, 12.34)
+        return BuildResult(options["bases"], (), static, alone, 12.34)
 
     monkeypatch.setattr(workspace_commands, "build_workspace", fake)
     result = run(
@@ -205,9 +80,9 @@ def test_build_hands_over_its_options_and_shows_the_result(
         "Starting >>> face",
         "pytpc: warning: broken of package face was left as it was and reports nothing:"
         " the instrumented module does not verify",
+        "face/thin reports nothing: it is a test",
         "pytpc: warning: package leg is built without TPC, with which it does not build:"
         " a.cpp:1: error: no",
-        "face/thin reports nothing: it is a test",
         "pytpc build --retry tries again with TPC",
     ]
 
@@ -269,7 +144,7 @@ def test_the_module_runs_and_knows_its_version() -> None:
 
 
 def test_every_command_has_help() -> None:
-    for name in ("patch", "build", "collect", "list"):
+    for name in ("patch", "build"):
         result = run(name, "--help")
         assert result.exit_code == 0
         assert result.stdout.startswith(f"Usage: main {name} ")

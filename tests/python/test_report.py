@@ -400,4 +400,7 @@ def test_odd_values_are_drawn_without_a_word(tmp_path, rows):
 
 def test_the_package_brings_its_templates():
     folder = Path(__file__).parents[2] / "pytpc" / "report" / "templates"
-    assert {p.name for p in folder.iterdir()} == {"report.html.j2", "report.css"}
+    assert {p.name for p in folder.iterdir()} == {
+        *("report.html.j2", "report.css"),
+        *("tpcs.html.j2", "tpcs.css", "tpcs.js"),
+    }

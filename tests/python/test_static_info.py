@@ -18,6 +18,7 @@ from pytpc.static_info import (
     read_static,
     unit_files,
 )
+from pytpc.static_json import MERGED_SCHEMA, check_schema
 
 AFFINE = {"kind": "affine", "scale": 0.0174, "offset": 0.0, "text": "x * 0.0174"}
 EXPRESSION = {"kind": "expression", "text": "x^2 + 1", "tree": ["+", ["pow", "x", 2.0], 1.0]}
@@ -261,7 +262,42 @@ def test_the_merged_document_goes_there_and_back(tmp_path: Path) -> None:
 
 def test_the_merged_document_is_that_of_the_contract(tmp_path: Path) -> None:
     static = StaticInfo.of([LinkUnit.from_json(unit(), tmp_path)])
-    assert static.to_json() == {"schema": 1, "units": [unit()]}
+    tpc = {
+        "file": "/ws/src/face/src/detector.cpp",
+        "lineno": 40,
+        "column": 16,
+        "parameter": "min_coverage_limit",
+        "name": None,
+        "type": "parameter",
+        "relation": ">",
+        "distance": 1,
+        "package": "face",
+        "place": "src/detector.cpp",
+        "keys": [{"key": KEYS[0], "package": "face", "link_unit": "detector", "distance": 1}],
+    }
+    document = static.to_json()
+    assert document == {"schema": 1, "units": [unit()], "copies": {}, "tpcs": [tpc], "left_out": []}
+    # The whole document, the units among it, is what the schema of its own says.
+    check_schema(document, tmp_path, MERGED_SCHEMA)
+    with pytest.raises(InputError, match="/units/0/link_unit"):
+        check_schema({**document, "units": [unit(link_unit="")]}, tmp_path, MERGED_SCHEMA)
+
+
+def test_a_document_of_before_has_its_tpcs_as_well(tmp_path: Path) -> None:
+    static = StaticInfo.load(write(tmp_path / "old.json", {"schema": 1, "units": [unit()]}))
+    assert [tpc.key for tpc in static.tpcs] == [KEYS[0]]
+    assert static.units[0].build_folder is None
+
+
+def test_a_unit_knows_its_build_folder_and_the_merged_document_keeps_it(tmp_path: Path) -> None:
+    path = write(tmp_path / "build/face/tpc/detector.json", unit())
+    assert load_link_unit(path).build_folder == str(tmp_path / "build/face")
+    collect(tmp_path / "build").save(tmp_path / "static.json")
+    (loaded,) = StaticInfo.load(tmp_path / "static.json").units
+    assert loaded.build_folder == str(tmp_path / "build/face")
+    # Under catkin_make one CMake builds all packages.
+    (tmp_path / "build/CMakeCache.txt").touch()
+    assert load_link_unit(path).build_folder == str(tmp_path / "build")
 
 
 @pytest.mark.parametrize(
@@ -271,6 +307,8 @@ def test_the_merged_document_is_that_of_the_contract(tmp_path: Path) -> None:
         ({"schema": 7, "units": []}, "/schema: 7 where 1 is read"),
         ({"schema": 1, "units": [unit(), unit(link_unit="")]}, "/units/1/link_unit: "),
         ({"schema": 1, "units": [3]}, "/units/0: 3 is not of type 'object'"),
+        ({"schema": 1, "units": [], "tpcs": [3], "copies": {}}, "/tpcs/0: 3 is not of type"),
+        ({"schema": 1, "units": [], "more": 1}, "/: "),
     ],
 )
 def test_a_broken_merged_document_is_located(

@@ -128,7 +128,7 @@ def test_a_second_build_finds_the_same_and_removes_what_is_gone(built: Path) -> 
     shutil.copy(built / ".tpc/build/tiny/tpc/tiny_node.json", stale)
     result = build_workspace(built)
     assert (built / ".tpc/static.json").read_bytes() == first
-    assert result.missing == ()
+    assert result.static.left_out == ()
     assert not stale.exists()
     assert (built / "src/tiny/CMakeLists.txt").read_text(encoding="utf-8") == text
 
@@ -144,7 +144,9 @@ def test_a_unit_without_analysis_is_noticed(tmp_path: Path) -> None:
     (package / "src/native.c").write_text("int main(void) { return 0; }\n", encoding="utf-8")
     result = build_workspace(tmp_path)
     assert [unit.link_unit for unit in result.units] == ["tiny_node"]
-    assert [(target.package, target.name) for target in result.missing] == [("tiny", "native")]
+    assert [(unit.package, unit.link_unit) for unit in result.static.left_out] == [
+        ("tiny", "native")
+    ]
 
 
 def test_the_findings_follow_a_changed_file(tmp_path: Path) -> None:
@@ -198,7 +200,7 @@ def test_a_package_that_clang_does_not_take_is_built_without_tpc(tmp_path: Path)
     assert list(result.left_alone) == ["nested"]
     assert "function definition is not allowed here" in result.left_alone["nested"]
     assert [unit.package for unit in result.units] == ["tiny"]
-    (left_out,) = result.left_out
+    (left_out,) = result.static.left_out
     assert left_out.reason == "its package does not build with TPC"
     comment = (tmp_path / ".tpc/install/nested/lib/nested/nested_node").read_bytes()
     assert b"GCC: (" in comment
@@ -207,7 +209,7 @@ def test_a_package_that_clang_does_not_take_is_built_without_tpc(tmp_path: Path)
     (other / "src/nested.c").write_text("int twice;\n", encoding="utf-8")
     assert list(build_workspace(tmp_path).left_alone) == ["nested"]
     again = build_workspace(tmp_path, retry=True)
-    assert (again.left_alone, again.left_out) == ({}, ())
+    assert (again.left_alone, again.static.left_out) == ({}, ())
     assert [unit.package for unit in again.units] == ["nested", "tiny"]
 
 

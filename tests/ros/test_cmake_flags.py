@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from pytpc.errors import MissingToolError
-from pytpc.link_units import recorded_units
 from pytpc.paths import SYSTEM_PATH, cmake_file, log_library, plugin
+from pytpc.reconcile import recorded_units
 
 try:
     for half in (cmake_file, plugin, log_library):

@@ -15,11 +15,11 @@ import pytest
 from pytpc import patch
 from pytpc.build import build_workspace, workspace_env
 from pytpc.colcon import Bases, build_environment
+from pytpc.collecting import collect_sources
 from pytpc.errors import MissingToolError
 from pytpc.graph import RosGraph
-from pytpc.link_units import build_folders, unit_states
 from pytpc.paths import cmake_file, log_library, plugin
-from pytpc.static_info import StaticInfo, collect
+from pytpc.static_info import LeftOut, StaticInfo
 
 try:
     for half in (cmake_file, plugin, log_library):
@@ -82,9 +82,8 @@ def own_keys(static: StaticInfo) -> set[str]:
     return {key for key, one in static.thresholds.items() if not Path(one.file).is_absolute()}
 
 
-def left_out(folders: Iterable[Path]) -> dict[tuple[str, str], str]:
-    states = (state for folder in folders for state in unit_states(folder))
-    return {(state.package, state.name): state.reason for state in states if state.reason}
+def left_out(units: Iterable[LeftOut]) -> dict[tuple[str, str], str]:
+    return {(unit.package, unit.link_unit): unit.reason for unit in units}
 
 
 @pytest.fixture(scope="module")
@@ -144,8 +143,7 @@ def by_colcon(
         result = build_workspace(sources.parent, bases=Bases(base))
     assert contents(sources) == before
     assert sorted(path.name for path in sources.parent.iterdir()) == ["src"]
-    reasons = {(unit.package, unit.name): unit.reason for unit in result.left_out}
-    assert (reasons, result.left_alone) == (LEFT_OUT, {})
+    assert (left_out(result.static.left_out), result.left_alone) == (LEFT_OUT, {})
     filters_run(base / "install", base / "graph")
     return result.static
 
@@ -187,10 +185,9 @@ def test_catkin_make_on_a_patched_workspace_does_the_same(
     patch.run(workspace)
     try:
         run(["catkin_make"], workspace, variables)
-        check(collect(workspace / "build"), sources, by_colcon)
-        assert left_out(build_folders(workspace / "build")).keys() <= LEFT_OUT.keys()
+        check(collect_sources([workspace]).static, sources, by_colcon)
         results = results_of(workspace, variables)
-        assert left_out(build_folders(workspace / "build")) == LEFT_OUT
+        assert left_out(collect_sources([workspace]).static.left_out) == LEFT_OUT
         filters_run(workspace / "devel", tmp_path / "graph")
     finally:
         patch.run(workspace, restore=True)
@@ -242,7 +239,7 @@ def test_plain_cmake_does_the_same(
         configure += [f"-DCMAKE_INSTALL_PREFIX={tmp_path}/i", f"-DCMAKE_PREFIX_PATH={tmp_path}/i"]
         run([*configure, "-DPYTHON_EXECUTABLE=/usr/bin/python3"], tmp_path, variables)
         run(["cmake", "--build", folder, "--target", "install"], tmp_path, variables)
-    check(collect(tmp_path / "build"), sources, by_colcon)
+    check(collect_sources([tmp_path]).static, sources, by_colcon)
 
 
 def test_a_second_workspace_lies_over_the_first(

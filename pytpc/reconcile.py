@@ -12,7 +12,7 @@ from pathlib import Path
 
 from pytpc.cmake_targets import LinkTarget, link_targets
 from pytpc.errors import InputError
-from pytpc.static_info import LinkUnit
+from pytpc.link_unit import LeftOut, LinkUnit
 
 _RECORD = Path("tpc/targets.tsv")
 _FIELDS = 5
@@ -29,16 +29,6 @@ class Recorded:
     artifact: Path
     static_info: Path
     left_out: str
-
-
-@dataclass(frozen=True, slots=True)
-class UnitState:
-    """A link unit that is there; ``reason`` says why it was not analysed, None where it was."""
-
-    package: str
-    name: str
-    artifact: Path
-    reason: str | None
 
 
 def build_folders(base: Path) -> list[Path]:
@@ -79,17 +69,35 @@ def recorded_units(build_folder: Path) -> list[Recorded] | None:
     return units
 
 
-def unit_states(build_folder: Path) -> list[UnitState]:
-    """Every link unit whose file is there, sorted by package and name.
+def known_targets(build_folder: Path) -> list[LinkTarget] | None:
+    """The link units that CMake told of; before it was asked, those that tpc.cmake noted.
+
+    Returns:
+        None where neither left anything.
+
+    Raises:
+        InputError: an answer of CMake, or the record, is broken.
+    """
+    targets = link_targets(build_folder)
+    if targets is not None:
+        return targets
+    recorded = recorded_units(build_folder)
+    if recorded is None:
+        return None
+    return [LinkTarget(unit.name, unit.package, unit.artifact) for unit in recorded]
+
+
+def left_out_units(build_folder: Path) -> list[LeftOut]:
+    """The link units whose file is there and that were not analysed, sorted by package and name.
 
     Raises:
         InputError: an answer of CMake, or the record, is broken.
     """
     recorded = recorded_units(build_folder)
     by_name = {unit.name: unit for unit in recorded or ()}
-    states = []
-    for target in _known_targets(build_folder, by_name):
-        if target.artifact is None or not target.built:
+    left_out = []
+    for target in known_targets(build_folder) or ():
+        if not target.built:
             continue
         unit = by_name.get(target.name)
         here = build_folder / _RECORD.parent / f"{target.name}.json"
@@ -100,9 +108,10 @@ def unit_states(build_folder: Path) -> list[UnitState]:
             reason = "it was made in a part of the build that tpc.cmake does not see"
         elif not here.is_file():
             reason = "its package was configured without TPC"
-        package = unit.package if unit is not None else target.package
-        states.append(UnitState(package, target.name, target.artifact, reason))
-    return sorted(states, key=lambda state: (state.package, state.name))
+        if reason is not None:
+            package = unit.package if unit is not None else target.package
+            left_out.append(LeftOut(package, target.name, reason))
+    return sorted(left_out, key=lambda unit: (unit.package, unit.link_unit))
 
 
 def stale_files(build_folder: Path, files: list[Path]) -> Iterator[Path]:
@@ -128,14 +137,6 @@ def remark(unit: LinkUnit) -> str:
     if not counts.comparisons and counts.without_debug_info:
         return "no debug information"
     return "ok"
-
-
-def _known_targets(build_folder: Path, recorded: dict[str, Recorded]) -> list[LinkTarget]:
-    """Those that CMake told of; before it was asked, those that tpc.cmake noted."""
-    targets = link_targets(build_folder)
-    if targets is not None:
-        return targets
-    return [LinkTarget(unit.name, unit.package, unit.artifact) for unit in recorded.values()]
 
 
 def _why(unit: Recorded, target: LinkTarget) -> str:

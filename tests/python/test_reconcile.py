@@ -7,7 +7,7 @@ from file_api import reply, target
 from static_units import failed_unit, unit
 
 from pytpc.errors import InputError
-from pytpc.link_units import build_folders, remark, stale_files, unit_states
+from pytpc.reconcile import build_folders, left_out_units, remark, stale_files
 from pytpc.static_info import LinkUnit
 
 NATIVE = b"\x7fELF rest"
@@ -39,8 +39,8 @@ def objects(folder: Path, name: str, *contents: bytes) -> None:
         (place / f"{number}.cpp.o").write_bytes(content)
 
 
-def reasons(folder: Path) -> dict[str, str | None]:
-    return {state.name: state.reason for state in unit_states(folder)}
+def reasons(folder: Path) -> dict[str, str]:
+    return {unit.link_unit: unit.reason for unit in left_out_units(folder)}
 
 
 def test_each_unit_has_its_reason(tmp_path: Path) -> None:
@@ -54,7 +54,6 @@ def test_each_unit_has_its_reason(tmp_path: Path) -> None:
     objects(tmp_path, "removed", FULL, NATIVE)
     removed = f"remove {tmp_path}/devel/removed and build again"
     assert reasons(tmp_path) == {
-        "analysed": None,
         "hidden": "it was made in a part of the build that tpc.cmake does not see",
         "left": "it is a test",
         "native": "its objects are native code, not compiled with -flto",
@@ -64,7 +63,7 @@ def test_each_unit_has_its_reason(tmp_path: Path) -> None:
 
 
 def test_what_was_not_built_is_no_link_unit(tmp_path: Path) -> None:
-    record(tmp_path, ("node", ""))
+    record(tmp_path, ("node", "it is a test"))
     answer(tmp_path, "node", "later")
     assert list(reasons(tmp_path)) == ["node"]
 
@@ -79,7 +78,7 @@ def test_without_a_record_there_was_no_tpc(tmp_path: Path) -> None:
     (tmp_path / "devel").mkdir()
     (tmp_path / "devel/node").touch()
     assert reasons(tmp_path) == {"node": "its package was configured without TPC"}
-    assert unit_states(tmp_path / "nowhere") == []
+    assert left_out_units(tmp_path / "nowhere") == []
 
 
 def test_a_broken_record_is_named_with_its_line(tmp_path: Path) -> None:
@@ -87,7 +86,7 @@ def test_a_broken_record_is_named_with_its_line(tmp_path: Path) -> None:
     with (tmp_path / "tpc/targets.tsv").open("a", encoding="utf-8") as stream:
         stream.write("two\tfields\n")
     with pytest.raises(InputError, match=r"targets\.tsv:2: 2 fields where 5 are"):
-        unit_states(tmp_path)
+        left_out_units(tmp_path)
 
 
 def test_files_of_no_target_and_of_one_that_is_left_out_are_stale(tmp_path: Path) -> None:

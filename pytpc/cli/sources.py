@@ -1,0 +1,48 @@
+"""The SOURCE arguments of commands, and what they stand for."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import click
+
+from pytpc.cli.console import progress, warn
+from pytpc.collecting import collect_sources
+from pytpc.paths import MERGED_FILE, OWN_FOLDER
+from pytpc.stale import Stale
+from pytpc.static_info import StaticInfo, read_static
+from pytpc.words import many
+
+PATH = click.Path(path_type=Path)
+SOURCES = click.argument("sources", type=PATH, nargs=-1, metavar="[SOURCE]...")
+
+
+def static_of(sources: Sequence[Path]) -> StaticInfo:
+    """The static information of a static.json, a build base or a workspace, or of several folders.
+
+    Without any: static.json in this folder, else what ``pytpc build`` left below it.
+    """
+    here = Path("static.json")
+    chosen = list(sources) or [here if here.is_file() else Path()]
+    with progress("reading static information") as advance:
+        if len(chosen) == 1 and _is_merged(chosen[0]):
+            return read_static(chosen[0], advance)
+        collected = collect_sources(chosen, advance)
+    tell_dropped(collected.dropped)
+    return collected.static
+
+
+def _is_merged(source: Path) -> bool:
+    return not source.is_dir() or (source / OWN_FOLDER / MERGED_FILE).is_file()
+
+
+def tell_dropped(dropped: Sequence[Stale]) -> None:
+    """A line for each file that was left out; nothing is dropped silently."""
+    for stale in dropped:
+        unit = stale.file.unit
+        keys = many(len(unit.comparisons), "key")
+        warn(
+            f"{unit.package}/{unit.link_unit} with {keys} left out:"
+            f" {stale.reason} ({stale.file.path})"
+        )

@@ -1,0 +1,298 @@
+"""Commands about what was found: ``collect``, ``list``, ``show`` and ``export``."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import wraps
+from pathlib import Path
+
+import click
+from rich.console import Console, Group, RenderableType
+from rich.padding import Padding
+from rich.table import Table
+from rich.text import Text
+
+from pytpc.atomic import write_atomic
+from pytpc.cli.console import (
+    console,
+    found_text,
+    progress,
+    show_units,
+    warn_of_failed,
+)
+from pytpc.cli.explain_commands import print_why_not
+from pytpc.cli.sources import PATH, SOURCES, static_of, tell_dropped
+from pytpc.collecting import collect_sources
+from pytpc.condition_lookup import look_up_conditions
+from pytpc.conditions import lines_of
+from pytpc.details import Details, details, shown_default
+from pytpc.explain import Explanation, look_up, why_no_comparison
+from pytpc.places import Tpc
+from pytpc.report.catalogue import write_catalogue
+from pytpc.sarif import sarif_log
+from pytpc.selection import ORDERS, Selection, select
+from pytpc.static_info import StaticInfo
+from pytpc.static_json import dump_json
+from pytpc.words import many, plain
+
+_TYPES = ("parameter", "flag", "derived", "constant")
+
+
+def _selecting(command: Callable[..., None]) -> Callable[..., None]:
+    """Add the options that say which comparisons are meant; the command gets a ``Selection``."""
+
+    @wraps(command)
+    def with_selection(
+        *,
+        packages: tuple[str, ...],
+        parameters: tuple[str, ...],
+        types: tuple[str, ...],
+        files: tuple[str, ...],
+        constants: bool,
+        **others: object,
+    ) -> None:
+        wanted = Selection(packages, parameters, types, files, constants)
+        command(wanted=wanted, **others)
+
+    options = (
+        click.option("--package", "packages", multiple=True, metavar="NAME", help="Only of it."),
+        click.option(
+            "--parameter",
+            "parameters",
+            multiple=True,
+            metavar="GLOB",
+            help="Only these, as 'max_*'; the namespace may be left out.",
+        ),
+        click.option(
+            "--type", "types", multiple=True, type=click.Choice(_TYPES), help="Only of this type."
+        ),
+        click.option(
+            "--file", "files", multiple=True, metavar="FILE", help="Only in it; or a pattern."
+        ),
+        click.option("--constants", is_flag=True, help="Those with constants, too."),
+    )
+    for option in reversed(options):
+        with_selection = option(with_selection)
+    return with_selection
+
+
+@click.command("collect")
+@click.argument("sources", type=PATH, nargs=-1, required=True, metavar="SOURCE...")
+@click.option("-o", "--output", type=PATH, default=Path("static.json"), show_default=True)
+def collect_command(sources: tuple[Path, ...], output: Path) -> None:
+    """Merge the static information of all link units below each SOURCE into one file.
+
+    SOURCE is a workspace, a build base or a build folder. What is no longer built is left out.
+    """
+    with progress("reading static information") as advance:
+        collected = collect_sources(sources, advance)
+    collected.static.save(output)
+    show_units(collected.static)
+    tell_dropped(collected.dropped)
+    click.echo(f"{found_text(collected.static)}: {output}")
+
+
+@click.command("list")
+@SOURCES
+@click.option("--json", "as_json", is_flag=True, help="Print a JSON list.")
+@_selecting
+@click.option(
+    "--sort", "order", type=click.Choice(list(ORDERS)), default="place", show_default=True
+)
+def list_command(
+    sources: tuple[Path, ...], *, as_json: bool, order: str, wanted: Selection
+) -> None:
+    """List the comparisons in SOURCE: a static.json, a build base or a workspace.
+
+    A place in the source is one row, however many link units hold it. Without SOURCE: static.json
+    in this folder, else what `pytpc build` left below it.
+    """
+    static = static_of(sources)
+    found = select(static, replace(wanted, order=order))
+    if as_json:
+        listed = [_listed(static, tpc) for tpc in found]
+        click.echo(json.dumps(listed, indent=1, ensure_ascii=False))
+        return
+    console().print(_table(static, found), highlight=False)
+    warn_of_failed(static)
+    constants = sum(1 for tpc in found if tpc.type == "constant")
+    shown, there = len(found) - constants, len(select(static, Selection()))
+    some = f"{shown:,} shown of " if shown != there else ""
+    more = f"; and {constants:,} with constants" if constants else ""
+    click.echo(some + found_text(static) + more)
+
+
+@click.command("show")
+@SOURCES
+@click.argument("question", metavar="KEY|PARAMETER|FILE:LINE")
+@click.option("--json", "as_json", is_flag=True, help="Print a JSON object.")
+def show_command(sources: tuple[Path, ...], question: str, as_json: bool) -> None:
+    """Show all that is known about a comparison: a key's beginning, a parameter, or a line.
+
+    SOURCE is as for `list`. The whole condition is read from the source as it is compiled, which
+    takes some seconds for each file the first time.
+    """
+    static = static_of(sources)
+    explanation = look_up(static, question)
+    keys = {each.comparison.key for each in explanation.comparisons}
+    tpcs = [tpc for tpc in static.tpcs if not keys.isdisjoint(each.key for each in tpc.keys)]
+    found = _details(static, sorted(tpcs, key=ORDERS["distance"]))
+    if as_json:
+        answer = {
+            "question": question,
+            "comparisons": [each.to_json() for each in found],
+            "why_no_comparison": why_no_comparison(explanation),
+        }
+        click.echo(json.dumps(answer, indent=1, ensure_ascii=False))
+        return
+    _print_all(console(), found, explanation)
+
+
+@click.command("export")
+@SOURCES
+@click.option("--sarif", type=PATH, metavar="FILE", help="SARIF 2.1.0, for code review tools.")
+@click.option("--html", type=PATH, metavar="FILE", help="A page that needs no network.")
+@click.option("--title", default="Threshold comparisons", show_default=True, help="Of the page.")
+@click.option(
+    "--srcroot",
+    type=click.Path(path_type=Path, exists=True, file_okay=False),
+    help="Folder that SARIF's paths are relative to; what all packages have in common by default.",
+)
+@_selecting
+def export_command(
+    sources: tuple[Path, ...],
+    *,
+    sarif: Path | None,
+    html: Path | None,
+    title: str,
+    srcroot: Path | None,
+    wanted: Selection,
+) -> None:
+    """Write what was found in SOURCE for other tools and people: SARIF, HTML."""
+    if sarif is None and html is None:
+        raise click.UsageError("say what to write: --sarif FILE, --html FILE or both")
+    static = static_of(sources)
+    found = _details(static, select(static, wanted))
+    if sarif is not None:
+        write_atomic(sarif, dump_json(sarif_log(static, found, srcroot)))
+        click.echo(f"{many(len(found), 'comparison')}: {sarif}")
+    if html is not None:
+        write_catalogue(html, static, found, title)
+        click.echo(f"{many(len(found), 'comparison')}: {html}")
+    warn_of_failed(static)
+
+
+COMMANDS: list[click.Command] = [collect_command, list_command, show_command, export_command]
+
+
+def _details(static: StaticInfo, tpcs: Sequence[Tpc]) -> list[Details]:
+    with progress("parsing sources") as advance:
+        answers = look_up_conditions(static, tpcs, advance)
+    return [details(static, tpc, answers[tpc.key]) for tpc in tpcs]
+
+
+def _listed(static: StaticInfo, tpc: Tpc) -> dict[str, object]:
+    """The comparison with the nearest exposing statement, and the keys of all."""
+    unit = static.unit_of(tpc.key).to_json()
+    found = next(each for each in unit["comparisons"] if each["key"] == tpc.key)
+    return {
+        "package": unit["package"],
+        "link_unit": unit["link_unit"],
+        **found,
+        "absolute_file": tpc.file,
+        "keys": tpc.to_json()["keys"],
+    }
+
+
+def _table(static: StaticInfo, tpcs: Sequence[Tpc]) -> Table:
+    table = Table()
+    for heading in ("Parameter", "Type", "Place"):
+        table.add_column(heading, overflow="fold")
+    table.add_column("Distance", justify="right")
+    several = any(len(tpc.keys) > 1 for tpc in tpcs)
+    if several:
+        table.add_column("Units", justify="right")
+    for heading in ("Exposed as", "Source line"):
+        table.add_column(heading, overflow="fold")
+    for tpc in tpcs:
+        found = static.comparisons[tpc.key]
+        line = found.source_code or f"{found.relation} {found.name or found.source}"
+        cells = [tpc.parameter or "", tpc.type, _place(tpc), str(tpc.distance)]
+        if several:
+            cells.append(str(len(tpc.link_units)) if len(tpc.keys) > 1 else "")
+        cells += [found.topic or "?", line]
+        table.add_row(*(Text(plain(cell)) for cell in cells))
+    return table
+
+
+def _place(tpc: Tpc) -> str:
+    return f"{tpc.file if tpc.place == tpc.file else f'{tpc.package}/{tpc.place}'}:{tpc.lineno}"
+
+
+def _print_all(out: Console, found: Sequence[Details], explanation: Explanation) -> None:
+    for each in found:
+        out.print(_card(each), highlight=False)
+    if not found:
+        print_why_not(out, explanation)
+
+
+def _card(each: Details) -> RenderableType:
+    heading = Text(plain(each.title), style="bold")
+    heading.append(f"  {plain(_place(each.tpc))}:{each.tpc.column}", style="default not bold")
+    table = Table(box=None, show_header=False, pad_edge=False, padding=(0, 2, 0, 0))
+    table.add_column(no_wrap=True, style="dim")
+    table.add_column(overflow="fold")
+    for name, cell in _facts(each):
+        table.add_row(Text(name), cell)
+    code = Text("\n".join(map(plain, _code(each))))
+    return Group(
+        heading,
+        Padding(code, (0, 0, 0, 4), expand=False),
+        Padding(table, (0, 0, 1, 2), expand=False),
+    )
+
+
+def _code(each: Details) -> list[str]:
+    return list(lines_of(each.condition)) if each.condition is not None else [each.source_text]
+
+
+def _facts(each: Details) -> list[tuple[str, Text]]:
+    tpc = each.tpc
+    facts = [
+        ("Condition", _origin(each)),
+        ("Compared", f"{tpc.relation} {each.nearest.name or each.title}, {each.meaning}"),
+        ("Type", tpc.type),
+        ("Default", ", ".join(map(shown_default, each.defaults))),
+        ("Read at", ", ".join(each.reads) or "nowhere: it is a constant"),
+        (
+            "Exposed at",
+            ", ".join(f"{at.place} ({at.topic or 'unknown topic'})" for at in each.exposed),
+        ),
+        ("Function", each.nearest.function),
+        ("Distance", str(tpc.distance)),
+    ]
+    if each.nearest.other_thresholds:
+        others = many(each.nearest.other_thresholds, "other comparison")
+        facts.append(("Beside it", f"{others} with parameters in this condition"))
+    lines = [(name, Text(plain(text))) for name, text in facts]
+    keys = [f"{k.key}  {k.package}/{k.link_unit}, distance {k.distance}" for k in tpc.keys]
+    lines.append((many(len(keys), "key"), Text("\n".join(map(plain, keys)))))
+    return lines
+
+
+def _origin(each: Details) -> str:
+    """Where the text above comes from."""
+    found = each.condition
+    if found is None:
+        return f"the line alone: {each.note}"
+    lines = f"line {found.lineno}"
+    if found.end_lineno != found.lineno:
+        lines = f"lines {found.lineno} to {found.end_lineno}"
+    text = f"of {found.kind}, {lines}" if found.kind != "expression" else f"an expression, {lines}"
+    if found.macro is not None:
+        macro = found.macro
+        text += f", expanded from macro {macro.name} ({macro.file}:{macro.lineno})"
+        text += f": {' '.join(macro.text.replace(chr(92), ' ').split())}"
+    return f"{text}; {each.note}" if each.note else text

@@ -1,0 +1,275 @@
+"""One link unit as the static analysis saw it: its file's contents as dataclasses, and back.
+
+Field names of the classes are the names in the JSON (docs/formats.md).
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, fields, is_dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+from pytpc.arithmetic import Tree, from_json
+from pytpc.static_json import SCHEMA_VERSION, check_unit
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+Default = int | float | bool | str | None
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A line of a source file; ``file`` is relative to the unit's ``source_root`` or absolute."""
+
+    file: str
+    lineno: int
+
+
+@dataclass(frozen=True, slots=True)
+class Transform:
+    """How a derived threshold comes from its parameter.
+
+    ``affine``: threshold = scale * parameter + offset. ``expression``: ``tree`` says it (see
+    ``pytpc.arithmetic``; None in files of before), and ``scale`` and ``offset`` are None.
+    """
+
+    kind: Literal["affine", "expression"]
+    scale: float | None = None
+    offset: float | None = None
+    text: str = ""
+    tree: Tree | None = None
+
+    def to_json(self) -> dict[str, object]:
+        """The fields that its kind has."""
+        if self.kind == "affine":
+            names = ["kind", "scale", "offset", "text"]
+        else:
+            names = ["kind", "text"] if self.tree is None else ["kind", "text", "tree"]
+        return {name: _plain(getattr(self, name)) for name in names}
+
+
+@dataclass(frozen=True, slots=True)
+class ParameterRead:
+    """A call that reads a parameter; ``name`` has ``<dynamic>`` for what no constant gives."""
+
+    name: str
+    api: str
+    type: str
+    default: Default
+    file: str
+    lineno: int
+    column: int
+    function: str
+
+
+@dataclass(frozen=True, slots=True)
+class Exposing:
+    """An exposing statement; ``topic`` is None where no constant names it."""
+
+    api: str
+    topic: str | None
+    file: str
+    lineno: int
+    column: int
+    function: str
+
+
+@dataclass(frozen=True, slots=True)
+class PathStep:
+    """What happens on one line on the way from a parameter's read to what exposes it.
+
+    ``step`` is the most telling thing that happens there, ``what`` says all of it. A place is
+    empty and 0 where steps were left out or no debug information names it.
+    """
+
+    step: str
+    file: str
+    lineno: int
+    column: int
+    function: str
+    what: str
+    source_code: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class LeftOut:
+    """A link unit that is there and was not analysed, so it reports nothing; and why."""
+
+    package: str
+    link_unit: str
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class NotExposed:
+    """A comparison with a parameter (``source``) on which nothing exposed depends."""
+
+    source: str
+    file: str
+    lineno: int
+    column: int
+    function: str
+    source_code: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class BlindSpot:
+    """A place behind which the analysis does not see; ``parameter`` is None where none is meant."""
+
+    kind: str
+    parameter: str | None
+    file: str
+    lineno: int
+    column: int
+    function: str
+    what: str
+    source_code: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """One threshold predicate comparison; the fields are those of docs/formats.md."""
+
+    key: str
+    type: Literal["parameter", "flag", "derived", "constant"]
+    name: str | None
+    source: str | None
+    file: str
+    lineno: int
+    column: int
+    function: str
+    distance: int
+    relation: str
+    topic: str | None
+    source_code: str | None
+    other_thresholds: int
+    param_reads: tuple[Place, ...]
+    publishes: tuple[Place, ...]
+    transform: Transform | None
+    default: Default
+    read_at: Place | None
+    exposed_at: Place
+    path: tuple[PathStep, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Tool:
+    """What made the file."""
+
+    name: str
+    version: str
+    llvm: str
+    profile: str
+
+
+@dataclass(frozen=True, slots=True)
+class Counts:
+    """How much of a link unit there is of each thing, and how much could not be resolved."""
+
+    functions: int
+    predicates: int
+    predicates_in_slice: int
+    parameter_reads: int
+    exposing_statements: int
+    comparisons: int
+    dynamic_names: int
+    indirect_calls: int
+    without_debug_info: int
+    outside_sources: int
+    lost_values: int
+    not_instrumented: int
+    not_exposed: int = 0
+    blind_spots: int = 0
+    constants: int = 0
+    given_up: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class LinkUnit:
+    """One executable or shared library as the analysis saw it.
+
+    ``status`` is ``failed``, ``failure`` says why and the lists are empty where the analysis or
+    the instrumentation broke down; such a unit runs as its author wrote it and reports nothing.
+    ``build_folder`` is CMake's, absolute; None where the unit was not read from its place there.
+    """
+
+    link_unit: str
+    package: str
+    source_root: str
+    tool: Tool
+    status: Literal["ok", "failed"]
+    failure: str | None
+    counts: Counts
+    parameters: tuple[ParameterRead, ...]
+    exposing: tuple[Exposing, ...]
+    comparisons: tuple[Comparison, ...]
+    not_exposed: tuple[NotExposed, ...] = ()
+    blind_spots: tuple[BlindSpot, ...] = ()
+    build_folder: str | None = None
+
+    def to_json(self) -> dict[str, Any]:
+        """The unit as the JSON object of docs/formats.md."""
+        data = {"schema": SCHEMA_VERSION, **_fields(self)}
+        if self.build_folder is None:
+            del data["build_folder"]
+        return data
+
+    def absolute(self, file: str) -> str:
+        """A ``file`` field of this unit as an absolute path without ``.`` and ``..``."""
+        return os.path.normpath(Path(self.source_root) / file)
+
+    @classmethod
+    def from_json(cls, data: object, path: Path, pointer: str = "") -> LinkUnit:
+        """Build a unit from parsed JSON.
+
+        Args:
+            data: the parsed object.
+            path: the file it came from, for messages.
+            pointer: JSON pointer of the unit within that file.
+
+        Raises:
+            InputError: the object breaks the schema; the message has the JSON pointer.
+        """
+        unit = dict(check_unit(data, path, pointer))
+        del unit["schema"]
+        unit["tool"] = Tool(**unit["tool"])
+        unit["counts"] = Counts(**unit["counts"])
+        unit["parameters"] = tuple(ParameterRead(**read) for read in unit["parameters"])
+        unit["exposing"] = tuple(Exposing(**statement) for statement in unit["exposing"])
+        unit["comparisons"] = tuple(_comparison(found) for found in unit["comparisons"])
+        unit["not_exposed"] = tuple(NotExposed(**found) for found in unit.get("not_exposed", ()))
+        unit["blind_spots"] = tuple(BlindSpot(**spot) for spot in unit.get("blind_spots", ()))
+        return cls(**unit)
+
+
+def _comparison(data: dict[str, Any]) -> Comparison:
+    found = dict(data)
+    found["param_reads"] = tuple(Place(**place) for place in found["param_reads"])
+    found["publishes"] = tuple(Place(**place) for place in found["publishes"])
+    if found["transform"] is not None:
+        how = found["transform"]
+        found["transform"] = Transform(**how)
+        if "tree" in how:
+            found["transform"] = replace(found["transform"], tree=from_json(how["tree"]))
+    if found["read_at"] is not None:
+        found["read_at"] = Place(**found["read_at"])
+    found["exposed_at"] = Place(**found["exposed_at"])
+    found["path"] = tuple(PathStep(**step) for step in found.get("path", ()))
+    return Comparison(**found)
+
+
+def _fields(value: DataclassInstance) -> dict[str, object]:
+    return {field.name: _plain(getattr(value, field.name)) for field in fields(value)}
+
+
+def _plain(value: object) -> object:
+    """Dataclasses as dicts and tuples as lists; of a transform what its kind has."""
+    if isinstance(value, Transform):
+        return value.to_json()
+    if is_dataclass(value) and not isinstance(value, type):
+        return _fields(value)
+    if isinstance(value, tuple):
+        return [_plain(item) for item in value]
+    return value

@@ -1,0 +1,242 @@
+"""The TPCs as SARIF 2.1.0 (OASIS), for code review tools.
+
+Each TPC is a note: nothing is wrong with it, a reviewer should know that a parameter decides there.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+from importlib.metadata import version
+from pathlib import Path, PurePosixPath
+from typing import Any
+from urllib.parse import quote
+
+from pytpc.details import Details, shown_default
+from pytpc.link_unit import LinkUnit, PathStep
+from pytpc.static_info import StaticInfo
+
+SCHEMA = (
+    "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
+)
+_ROOT = "%SRCROOT%"
+_RULES = {
+    "parameter": (
+        "ComparisonWithParameter",
+        "A value is compared with a configuration parameter.",
+        "What the robot can see of this node depends on the outcome of a comparison with a"
+        " configuration parameter.",
+    ),
+    "flag": (
+        "DecisionByParameter",
+        "A configuration parameter decides by itself.",
+        "What the robot can see of this node depends on a configuration parameter that is the"
+        " condition itself.",
+    ),
+    "derived": (
+        "ComparisonWithDerivedParameter",
+        "A value is compared with what is computed from a configuration parameter.",
+        "What the robot can see of this node depends on the outcome of a comparison with a"
+        " threshold that comes from a configuration parameter through arithmetic.",
+    ),
+    "constant": (
+        "ComparisonWithConstant",
+        "A value is compared with a constant of the source.",
+        "What the robot can see of this node depends on the outcome of a comparison with a number"
+        " that stands in the source.",
+    ),
+}
+# What a reader wants of a way that is folded together.
+_ESSENTIAL = frozenset({"read", "compare", "expose"})
+
+
+def sarif_log(
+    static: StaticInfo, found: Sequence[Details], srcroot: Path | None = None
+) -> dict[str, Any]:
+    """A SARIF log with one run.
+
+    Args:
+        static: where ``found`` is from; its failed link units become notifications.
+        found: the results, in this order.
+        srcroot: folder that paths are relative to; by default what the folders of all packages have
+            in common. Files elsewhere have absolute URIs.
+    """
+    roots = [unit.source_root for unit in static.units]
+    root = os.path.normpath(srcroot.absolute()) if srcroot is not None else _common(roots)
+    places = _Places(root, dict(static.copies))
+    kinds = list(_RULES)
+    return {
+        "$schema": SCHEMA,
+        "version": "2.1.0",
+        "runs": [
+            {
+                "tool": {"driver": _driver()},
+                "invocations": [
+                    {
+                        "executionSuccessful": True,
+                        "toolExecutionNotifications": [_failure(unit) for unit in static.failed],
+                    }
+                ],
+                "originalUriBaseIds": {_ROOT: {"uri": _uri(root.rstrip("/") + "/")}},
+                "columnKind": "unicodeCodePoints",
+                "results": [_result(each, kinds.index(each.tpc.type), places) for each in found],
+            }
+        ],
+    }
+
+
+class _Places:
+    """Places in files as SARIF has them."""
+
+    def __init__(self, root: str, copies: Mapping[str, str]) -> None:
+        self._root = PurePosixPath(root)
+        self._copies = copies
+        self._lines = lru_cache(maxsize=256)(_read_lines)
+
+    def location(
+        self, file: str, lineno: int, column: int, snippet: str | None = None
+    ) -> dict[str, Any]:
+        """A physical location; ``column`` counts bytes, and 0 stands for an unknown one.
+
+        An installed header is the file that it is a copy of.
+        """
+        file = self._copies.get(file, file)
+        place: dict[str, Any] = {"artifactLocation": self._artifact(file)}
+        if lineno > 0:
+            place["region"] = {"startLine": lineno}
+            if column > 0:
+                place["region"]["startColumn"] = self.column(file, lineno, column)
+            if snippet:
+                place["region"]["snippet"] = {"text": snippet}
+        return place
+
+    def column(self, file: str, lineno: int, column: int) -> int:
+        """A byte's column as that of a character, where the file is there."""
+        lines = self._lines(file)
+        line = lines[lineno - 1] if lineno <= len(lines) else b""
+        return len(line[: column - 1].decode("utf-8", "replace")) + 1 if line else column
+
+    def _artifact(self, file: str) -> dict[str, str]:
+        path = PurePosixPath(file)
+        if path.is_relative_to(self._root):
+            return {"uri": quote(str(path.relative_to(self._root))), "uriBaseId": _ROOT}
+        return {"uri": _uri(file)}
+
+
+def _driver() -> dict[str, Any]:
+    return {
+        "name": "TPC",
+        "version": version("pytpc"),
+        "rules": [
+            {
+                "id": f"tpc/{kind}",
+                "name": name,
+                "shortDescription": {"text": short},
+                "fullDescription": {"text": full},
+                "help": {
+                    "text": "Ask `pytpc show KEY` for all that is known, with the key of the"
+                    " result's fingerprints."
+                },
+                "defaultConfiguration": {"level": "note"},
+            }
+            for kind, (name, short, full) in _RULES.items()
+        ],
+    }
+
+
+def _result(each: Details, rule: int, places: _Places) -> dict[str, Any]:
+    tpc, nearest = each.tpc, each.nearest
+    location: dict[str, Any] = {
+        "physicalLocation": places.location(tpc.file, tpc.lineno, tpc.column, nearest.source_code),
+    }
+    if nearest.function:
+        location["logicalLocations"] = [
+            {"fullyQualifiedName": nearest.function, "kind": "function"}
+        ]
+    if each.condition is not None:
+        context = each.condition
+        location["physicalLocation"]["contextRegion"] = {
+            "startLine": context.lineno,
+            "startColumn": places.column(tpc.file, context.lineno, context.column),
+            "endLine": context.end_lineno,
+            "endColumn": places.column(tpc.file, context.end_lineno, context.end_column),
+            "snippet": {"text": context.text},
+        }
+    result: dict[str, Any] = {
+        "ruleId": f"tpc/{tpc.type}",
+        "ruleIndex": rule,
+        "level": "note",
+        "message": {"text": _message(each)},
+        "locations": [location],
+        "partialFingerprints": {
+            f"tpcKey/{key.package}/{key.link_unit}/v1": key.key for key in tpc.keys
+        },
+        "properties": {
+            "parameter": tpc.parameter,
+            "constant": tpc.name,
+            "type": tpc.type,
+            "relation": tpc.relation,
+            "distance": tpc.distance,
+            "transform": None if nearest.transform is None else nearest.transform.text,
+            "defaults": list(each.defaults),
+            "topics": sorted({at.topic for at in each.exposed if at.topic}),
+            "keys": [key.key for key in tpc.keys],
+            "linkUnits": list(tpc.link_units),
+        },
+    }
+    if nearest.path:
+        steps = [_step(step, each.unit, places) for step in nearest.path]
+        result["codeFlows"] = [{"threadFlows": [{"locations": steps}]}]
+    return result
+
+
+def _message(each: Details) -> str:
+    topics = list(dict.fromkeys(at.topic for at in each.exposed if at.topic))
+    what = f"what is sent on {', '.join(topics)}" if topics else "what the robot sees of this node"
+    by = f"on constant {each.title}" if each.tpc.type == "constant" else f"on {each.title}"
+    defaults = [shown_default(default) for default in each.defaults if default is not None]
+    default = f" (default {', '.join(defaults)})" if defaults else ""
+    text = " ".join(each.source_text.split())
+    return f"{text}: {what} depends {by}{default}."
+
+
+def _step(step: PathStep, unit: LinkUnit, places: _Places) -> dict[str, Any]:
+    location: dict[str, Any] = {"message": {"text": step.what or step.step}}
+    if step.file:
+        location["physicalLocation"] = places.location(
+            unit.absolute(step.file), step.lineno, step.column, step.source_code
+        )
+        if step.function:
+            location["logicalLocations"] = [
+                {"fullyQualifiedName": step.function, "kind": "function"}
+            ]
+    return {
+        "location": location,
+        "kinds": [step.step],
+        "importance": "essential" if step.step in _ESSENTIAL else "important",
+    }
+
+
+def _failure(unit: LinkUnit) -> dict[str, Any]:
+    return {
+        "level": "warning",
+        "message": {
+            "text": f"{unit.package}/{unit.link_unit} was not analysed: {unit.failure}",
+        },
+    }
+
+
+def _common(roots: Sequence[str]) -> str:
+    return os.path.commonpath(roots) if roots else "/"
+
+
+def _uri(path: str) -> str:
+    return "file://" + quote(path)
+
+
+def _read_lines(file: str) -> list[bytes]:
+    try:
+        return Path(file).read_bytes().split(b"\n")
+    except OSError:
+        return []

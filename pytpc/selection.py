@@ -1,0 +1,88 @@
+"""Which TPCs are shown, and in which order."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+
+from pytpc.errors import InputError
+from pytpc.explain import same_file
+from pytpc.places import Tpc
+from pytpc.static_info import StaticInfo
+
+_WILD = frozenset("*?[")
+
+ORDERS: dict[str, Callable[[Tpc], tuple[object, ...]]] = {
+    "place": lambda tpc: (tpc.package, tpc.place, tpc.lineno, tpc.column),
+    "parameter": lambda tpc: ((tpc.parameter or tpc.name or "").lstrip("~/"), tpc.distance),
+    "distance": lambda tpc: (tpc.distance,),
+    "type": lambda tpc: (tpc.type, (tpc.parameter or "").lstrip("~/")),
+    "units": lambda tpc: (-len(tpc.keys),),
+}
+"""How TPCs can be sorted; those that are equal stay in the order of their places."""
+
+
+@dataclass(frozen=True, slots=True)
+class Selection:
+    """What is wanted; an empty field leaves nothing out.
+
+    ``packages``: the one in whose folder the source is, or whose program it is in. ``parameters``
+    and ``files`` may have wildcards; a name's namespace and a path's first folders may be left out.
+    """
+
+    packages: tuple[str, ...] = ()
+    parameters: tuple[str, ...] = ()
+    types: tuple[str, ...] = ()
+    files: tuple[str, ...] = ()
+    constants: bool = False
+    order: str = "place"
+
+
+def select(static: StaticInfo, wanted: Selection) -> list[Tpc]:
+    """The TPCs that are wanted, sorted.
+
+    Raises:
+        InputError: no package has one of the names.
+    """
+    _check_packages(static, wanted.packages)
+    found = [tpc for tpc in static.tpcs if _is_wanted(tpc, wanted)]
+    return sorted(found, key=ORDERS[wanted.order])
+
+
+def _check_packages(static: StaticInfo, names: Sequence[str]) -> None:
+    known = {unit.package for unit in static.units}
+    for name in names:
+        if name not in known:
+            there = ", ".join(sorted(known)) or "none"
+            raise InputError(f"no package {name} in this static information; there are: {there}")
+
+
+def _is_wanted(tpc: Tpc, wanted: Selection) -> bool:
+    if tpc.type == "constant" and not (wanted.constants or "constant" in wanted.types):
+        return False
+    packages = {tpc.package, *(each.package for each in tpc.keys)}
+    return (
+        (not wanted.packages or not packages.isdisjoint(wanted.packages))
+        and (not wanted.types or tpc.type in wanted.types)
+        and (not wanted.parameters or any(_is_named(tpc, each) for each in wanted.parameters))
+        and (not wanted.files or any(_is_in(tpc, each) for each in wanted.files))
+    )
+
+
+def _is_named(tpc: Tpc, pattern: str) -> bool:
+    name = tpc.parameter
+    if name is None:
+        return False
+    return any(fnmatchcase(each, pattern) for each in (name, name.lstrip("~/"), _last(name)))
+
+
+def _last(name: str) -> str:
+    return name.replace("~", "/").rpartition("/")[2]
+
+
+def _is_in(tpc: Tpc, pattern: str) -> bool:
+    if _WILD.isdisjoint(pattern):
+        return same_file(tpc.file, pattern)
+    known = (tpc.file, tpc.place, f"{tpc.package}/{tpc.place}", _last(tpc.place))
+    return any(fnmatchcase(each, pattern) for each in known)

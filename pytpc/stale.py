@@ -1,0 +1,98 @@
+"""Files of link units that describe nothing which is built any more.
+
+A target may have been renamed or removed, or linked again without TPC; its file stays behind, and
+its keys would be listed and never be reported.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from mmap import mmap
+from pathlib import Path
+
+from pytpc.link_unit import LinkUnit
+
+
+@dataclass(frozen=True, slots=True)
+class UnitFile:
+    """The file of a link unit, ``<build folder>/tpc/<target>.json``; ``written_ns`` its time."""
+
+    path: Path
+    unit: LinkUnit
+    written_ns: int = 0
+
+    @property
+    def build_folder(self) -> Path:
+        """CMake's build folder."""
+        own = self.unit.build_folder
+        return self.path.parent.parent if own is None else Path(own)
+
+
+@dataclass(frozen=True, slots=True)
+class BuiltTarget:
+    """A target that CMake knows; ``content`` is that of its file, None where it is not built."""
+
+    name: str
+    content: bytes | mmap | None
+
+
+@dataclass(frozen=True, slots=True)
+class Stale:
+    """A file that was left out, and why."""
+
+    file: UnitFile
+    reason: str
+
+
+def drop_stale(
+    files: Iterable[UnitFile], targets: Mapping[Path, Sequence[BuiltTarget] | None]
+) -> tuple[list[UnitFile], list[Stale]]:
+    """What is still built, and what is not.
+
+    A unit is left out where CMake knows no such target any more, and where the target's file has
+    none of the keys that were put into it. It stays where CMake was not asked, where the target is
+    not built at present, and where nothing was put into it that could be looked for.
+
+    Args:
+        files: of any number of build folders.
+        targets: build folder -> its targets; None where CMake left no answer.
+    """
+    kept: list[UnitFile] = []
+    dropped: list[Stale] = []
+    for file in files:
+        known = targets.get(file.build_folder)
+        reason = None if known is None else _why_stale(file, known)
+        if reason is None:
+            kept.append(file)
+        else:
+            dropped.append(Stale(file, reason))
+    return kept, dropped
+
+
+def drop_repeated(files: Iterable[UnitFile]) -> tuple[list[UnitFile], list[Stale]]:
+    """Of each link unit the file that was written last; of two of one time the first by path."""
+    newest: dict[tuple[str, str], UnitFile] = {}
+    ordered = sorted(files, key=lambda file: (-file.written_ns, file.path))
+    for file in ordered:
+        newest.setdefault((file.unit.package, file.unit.link_unit), file)
+    kept = sorted(newest.values(), key=lambda file: file.path)
+    dropped = []
+    for file in ordered:
+        last = newest[file.unit.package, file.unit.link_unit]
+        if last is not file:
+            dropped.append(Stale(file, f"built later in {last.build_folder}"))
+    return kept, dropped
+
+
+def _why_stale(file: UnitFile, targets: Sequence[BuiltTarget]) -> str | None:
+    target = next((each for each in targets if each.name == file.unit.link_unit), None)
+    if target is None:
+        return "its target is no more"
+    unit, content = file.unit, target.content
+    keys = [found.key for found in unit.comparisons if found.type != "constant"]
+    if content is None or len(keys) <= unit.counts.not_instrumented:
+        return None
+    if any(content.find(key.encode()) >= 0 for key in keys):
+        return None
+    return "it was linked again without TPC"
