@@ -31,6 +31,7 @@ from pytpc.paths import cmake_file
 from pytpc.workspace import (
     IGNORE_MARKERS,
     MANIFEST,
+    PRODUCT_MARKERS,
     check_syntax,
     find_packages,
     read_cmakelists,
@@ -331,7 +332,7 @@ def _plan_files(files: Iterable[tuple[Path, bytes]], *, restore: bool) -> tuple[
 def _list_files(folder: Path) -> Iterator[Path]:
     """The files CMakeLists.txt below a folder, sorted, without those of build folders."""
     for here, below, files in os.walk(folder):
-        if "CMakeCache.txt" in files or not IGNORE_MARKERS.isdisjoint(files):
+        if "CMakeCache.txt" in files or not (IGNORE_MARKERS | PRODUCT_MARKERS).isdisjoint(files):
             below.clear()
             continue
         below[:] = sorted(name for name in below if not name.startswith("."))

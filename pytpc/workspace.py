@@ -16,6 +16,8 @@ from pytpc.errors import InputError, MissingToolError, WorkspaceError
 MANIFEST = "package.xml"
 IGNORE_MARKERS = frozenset({"COLCON_IGNORE", "CATKIN_IGNORE", "AMENT_IGNORE"})
 PRODUCTS = frozenset({"build", "install", "log", "devel"})
+# What catkin_make, catkin_tools and colcon leave in build, devel and install spaces of any name.
+PRODUCT_MARKERS = frozenset({".built_by", ".catkin", ".colcon_install_layout"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +52,8 @@ def find_packages(workspace: Path) -> list[Package]:
 
     Symbolic links are followed, each folder once. Folders with a file ``COLCON_IGNORE``,
     ``CATKIN_IGNORE`` or ``AMENT_IGNORE`` and hidden folders are skipped, and so are folders called
-    build, install, log or devel, unless such a folder is a package itself. Packages do not nest.
+    build, install, log or devel, unless such a folder is a package itself, and the build, devel
+    and install spaces that tools have marked as such. Packages do not nest.
 
     Raises:
         WorkspaceError: no such folder, no package in it, or two packages with one name.
@@ -122,7 +125,8 @@ def package_folders(workspace: Path) -> Iterator[Path]:
     seen: set[str] = set()
     for folder, below, files in os.walk(workspace, followlinks=True):
         real = os.path.realpath(folder)
-        if real in seen or not IGNORE_MARKERS.isdisjoint([*files, *below]):
+        is_product = not PRODUCT_MARKERS.isdisjoint(files)
+        if real in seen or is_product or not IGNORE_MARKERS.isdisjoint([*files, *below]):
             below.clear()
             continue
         seen.add(real)

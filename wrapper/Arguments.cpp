@@ -151,6 +151,16 @@ static Language languageOf(std::string_view Name) {
   return Language::Other;
 }
 
+/// True where clang makes a precompiled header of an input, and links nothing.
+static bool isHeader(std::string_view Forced, std::string_view Path) {
+  if (!Forced.empty())
+    return Forced.find("header") != Forced.npos;
+  const size_t Dot = Path.rfind('.');
+  return Dot != Path.npos &&
+         isOneOf(Path.substr(Dot + 1),
+                 {"h", "H", "hh", "hp", "hpp", "hxx", "h++"});
+}
+
 static Language languageOfFile(std::string_view Path) {
   if (Path == "-")
     return Language::CFamily;
@@ -259,8 +269,10 @@ public:
     Found.AsksLinker &= !HasInput;
     if (IsQuestion || !(HasInput || Found.AsksLinker))
       Found.Goal = Step::Answer;
+    else if (CompilesOnly || (HasOnlyHeaders && !Found.Inputs.empty()))
+      Found.Goal = Step::Compile;
     else
-      Found.Goal = CompilesOnly ? Step::Compile : Step::Link;
+      Found.Goal = Step::Link;
     return std::move(Found);
   }
 
@@ -296,6 +308,7 @@ private:
   }
 
   void input(const std::string &Path) {
+    HasOnlyHeaders &= isHeader(Forced, Path);
     Found.Inputs.push_back(
         {Path, Forced.empty() ? languageOfFile(Path) : languageOf(Forced)});
   }
@@ -361,6 +374,7 @@ private:
   bool IsBehindFlags = false;
   bool IsQuestion = false;
   bool CompilesOnly = false;
+  bool HasOnlyHeaders = true;
   bool HasLinkerInput = false;
 };
 } // namespace

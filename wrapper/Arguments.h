@@ -15,7 +15,7 @@ namespace tpc {
 /// How far the compiler goes.
 enum class Step {
   Answer,  ///< no object is made: a question, -E, -S, -fsyntax-only, no input
-  Compile, ///< -c
+  Compile, ///< -c, or a header is compiled in advance
   Link     ///< what is no source is linked, what is one is compiled before
 };
 

@@ -279,6 +279,8 @@ def tree(tmp_path: Path) -> Path:
         "build/CMakeCache.txt": b"",
         "build/generated/CMakeLists.txt": b"project(generated)\n",
         ".hidden/CMakeLists.txt": b"project(hidden)\n",
+        "build_tpc/.built_by": b"catkin build",
+        "build_tpc/prebuild/CMakeLists.txt": b"project(prebuild)\n",
         "ignored/COLCON_IGNORE": b"",
         "ignored/CMakeLists.txt": b"project(ignored)\n",
     }

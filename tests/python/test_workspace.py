@@ -227,3 +227,11 @@ def test_ros_is_looked_for_in_every_prefix(tmp_path: Path, monkeypatch: pytest.M
     header.parent.mkdir(parents=True)
     header.touch()
     paths.require_ros()
+
+
+@pytest.mark.parametrize("marker", [".built_by", ".catkin", ".colcon_install_layout"])
+def test_spaces_of_any_name_that_a_tool_has_marked_are_skipped(tmp_path: Path, marker: str) -> None:
+    add_package(tmp_path / "src/arm")
+    add_package(tmp_path / "space/share/arm")
+    (tmp_path / "space" / marker).touch()
+    assert [package.path for package in find_packages(tmp_path)] == [tmp_path / "src/arm"]
