@@ -277,6 +277,16 @@ macro(_tpc_replace_gcc)
   endforeach()
 endmacro()
 
+# Takes -ffat-lto-objects, which Linux distributions have among their flags, out of those
+# for all targets: native code would stand beside the bitcode, and be what is linked. No
+# flag behind it undoes it.
+macro(_tpc_want_bitcode_alone)
+  foreach(_tpc_language C CXX)
+    string(REPLACE "-ffat-lto-objects" "" CMAKE_${_tpc_language}_FLAGS
+      "${CMAKE_${_tpc_language}_FLAGS}")
+  endforeach()
+endmacro()
+
 # Gives a language that the package enables later, by enable_language(), the
 # rules of the other one: CMake keeps rules that are there.
 macro(_tpc_prepare_language language other)
@@ -297,6 +307,7 @@ macro(_tpc_instrument)
     set(_tpc_languages C CXX)
   endif()
   _tpc_replace_gcc(${_tpc_languages})
+  _tpc_want_bitcode_alone()
   _tpc_link_with_lld(${_tpc_languages})
   foreach(_tpc_language IN LISTS _tpc_languages)
     # Behind the flags of the target, whose -fno-lto, -flto=thin or -Werror

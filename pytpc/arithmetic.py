@@ -284,7 +284,10 @@ def _power_piece(value: float, exponent: float) -> Piece:
 
 def _period(value: float, begin: float, length: float) -> Piece:
     """That one of the intervals ``begin + k * length`` which ``value`` is in, without its end."""
-    low = begin + math.floor((value - begin) / length) * length
+    periods = (value - begin) / length
+    if not math.isfinite(periods):
+        return Piece(value, value)
+    low = begin + math.floor(periods) * length
     return Piece(low, math.nextafter(low + length, -math.inf))
 
 

@@ -150,10 +150,7 @@ Plan planFor(const Arguments &Asked, const Environment &Around) {
     return Out;
   }
   addPassOptions(Out.Added, passOptions(Around, Output));
-  // The caller's last word on libraries may have been -Bstatic.
-  addForLinker(Out.Added, {"--push-state", "-Bdynamic"});
   addForLinker(Out.Added, Around.Added.Last);
-  addForLinker(Out.Added, {"--pop-state"});
   return Out;
 }
 

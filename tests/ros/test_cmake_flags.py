@@ -84,7 +84,7 @@ def build(root: Path, cmakelists: str, *arguments: str, name: str = "p", **varia
 # --- flags of the package
 
 
-@pytest.mark.parametrize("flag", ["-fno-lto", "-flto=thin", "-g0"])
+@pytest.mark.parametrize("flag", ["-fno-lto", "-flto=thin", "-g0", "-ffat-lto-objects"])
 def test_a_targets_own_flag_does_not_undo_the_build(tmp_path: Path, flag: str) -> None:
     lists = HEAD + "add_executable(x main.cpp other.cpp)\n"
     result = build(tmp_path, f"{lists}target_compile_options(x PRIVATE {flag})\n")
@@ -395,6 +395,14 @@ def test_a_target_can_be_left_out_and_a_test_is(tmp_path: Path) -> None:
     assert "_ZNSt7__cxx1112basic_string" not in run(["nm", "-C", result.folder / "quiet"]).stdout
     result = build(tmp_path, lists, toolchain(), "-DTPC_TESTS=ON")
     assert result.analysed() == ["t", "u", "x"]
+
+
+def test_a_distributions_flags_for_lto_do_not_make_native_objects(tmp_path: Path) -> None:
+    lists = HEAD + "add_executable(x main.cpp)\n"
+    result = build(tmp_path, lists, CXXFLAGS="-O2 -flto=auto -ffat-lto-objects")
+    assert result.analysed() == []
+    result = build(tmp_path, include() + lists, CXXFLAGS="-O2 -flto=auto -ffat-lto-objects")
+    assert result.analysed() == ["x"]
 
 
 def test_a_static_program_is_linked_without_the_log(tmp_path: Path) -> None:
