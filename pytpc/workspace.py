@@ -45,7 +45,7 @@ def find_packages(workspace: Path) -> list[Package]:
     """
     if not workspace.is_dir():
         raise WorkspaceError("no such folder", workspace)
-    packages = [_read_package(folder) for folder in _package_folders(workspace)]
+    packages = [_read_package(folder) for folder in package_folders(workspace)]
     if not packages:
         raise WorkspaceError(f"no packages here: no {MANIFEST} in this folder or below", workspace)
     by_name: dict[str, Package] = {}
@@ -94,7 +94,8 @@ def read_cmakelists(package: Package) -> bytes | None:
     return data
 
 
-def _package_folders(workspace: Path) -> Iterator[Path]:
+def package_folders(workspace: Path) -> Iterator[Path]:
+    """The folders of the packages that ``find_packages`` reads, sorted by path."""
     seen: set[str] = set()
     for folder, below, files in os.walk(workspace, followlinks=True):
         real = os.path.realpath(folder)

@@ -4,7 +4,13 @@ from __future__ import annotations
 
 import click
 
-from pytpc.cli import event_commands, explain_commands, mission_commands, workspace_commands
+from pytpc.cli import (
+    event_commands,
+    explain_commands,
+    mission_commands,
+    survey_commands,
+    workspace_commands,
+)
 from pytpc.errors import TpcError
 
 INTERRUPTED = 130
@@ -40,6 +46,7 @@ def main() -> None:
 for command in (
     *workspace_commands.COMMANDS,
     *explain_commands.COMMANDS,
+    *survey_commands.COMMANDS,
     *event_commands.COMMANDS,
     *mission_commands.COMMANDS,
 ):
