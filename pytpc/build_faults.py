@@ -34,6 +34,7 @@ _ERRORS = tuple(
         r"^g?make(?:\[\d+\])?: \*\*\* .*",
     )
 )
+_WARNING = ": warning: "
 _LONGEST = 300
 
 
@@ -67,7 +68,7 @@ def first_error(output: str) -> str:
             said = _indented(lines[at + 1 :])
             where = f"{cmake['place']}: " if cmake["place"] else ""
             return _shortened(f"CMake: {where}{said or line}")
-        if any(pattern.match(line) for pattern in _ERRORS[:-1]):
+        if _WARNING not in line and any(pattern.match(line) for pattern in _ERRORS[:-1]):
             return _shortened(line)
     for line in lines:
         if _ERRORS[-1].match(line):

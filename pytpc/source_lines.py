@@ -163,7 +163,7 @@ def _count_text(text: str, lexer: Lexer | None) -> LineCount:
         lines.pop()
     code: set[int] = set()
     number = 0
-    for kind, piece in lexer.get_tokens("\n".join(lines)) if lexer is not None else ():
+    for kind, piece in lexer.get_tokens("\n".join([*lines, ""])) if lexer is not None else ():
         parts = piece.split("\n")
         if not _is_comment(kind):
             code.update(number + at for at, part in enumerate(parts) if part.strip())

@@ -447,7 +447,7 @@ _TIMES = (
     Column("Processor", 1, _time("plain", "processor")),
     Column("with TPC", 1, _time("tpc", "processor")),
     _factor("Factor", "processor"),
-    Column("Compile, link", 1, _time("plain", "compile")),
+    Column("Compile", 1, _time("plain", "compile")),
     Column("with TPC", 1, _time("tpc", "compile")),
     _factor("Factor", "compile"),
     Column("Wall", 1, _time("plain", "wall")),
