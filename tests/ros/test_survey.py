@@ -73,7 +73,7 @@ def test_two_trees_interrupted_and_resumed(tmp_path: Path) -> None:
         assert "use of undeclared identifier 'limits_'" in reasons["bad"]
         assert reasons["after"].startswith("skipped")
     for tree in (user, tiny):
-        # One comparison, on line 10, with one parameter; NODE has 25 lines of code, no other.
+        # One comparison, on line 10, with one parameter; NODE has 26 lines, all of code.
         assert tree["found"]["comparisons"] == 1
         assert (tree["found"]["parameters"], tree["found"]["files"]) == (1, 1)
         assert tree["found"]["without"] == tree["found"]["failed"] == []
@@ -85,7 +85,7 @@ def test_two_trees_interrupted_and_resumed(tmp_path: Path) -> None:
     assert user["tpc"]["not_built"] == []
     assert user["lines"]["languages"]["C++"] == {
         "files": 1,
-        "code": 25,
+        "code": 26,
         "comment": 0,
         "blank": 0,
     }
