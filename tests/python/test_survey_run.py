@@ -234,6 +234,13 @@ def test_what_is_no_tree_is_refused(tmp_path: Path, there: bool) -> None:
         read_tree(folder)
 
 
+def test_flags_of_the_caller_stand_behind_ours(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("CXXFLAGS", "-Werror -DX=1")
+    flags = underlaid([], 1)["CXXFLAGS"].split()
+    assert "-Wno-error=register" in flags
+    assert flags[-2:] == ["-Werror", "-DX=1"]
+
+
 def test_set_up_scripts_are_sourced_in_order(tmp_path: Path) -> None:
     setups = [tmp_path / "a.bash", tmp_path / "b.bash"]
     setups[0].write_text("export ONE=1\necho noise\n", encoding="utf-8")
