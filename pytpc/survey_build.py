@@ -65,11 +65,15 @@ TIMEFORMAT='%U %S'
 
 @dataclass(frozen=True, slots=True)
 class Measured:
-    """A build that was measured, and the static information that it left."""
+    """A build that was measured, and the static information that it left.
+
+    ``without`` are link units that have none, ``unreadable`` what is there and cannot be read.
+    """
 
     build: Build
-    units: tuple[LinkUnit, ...]
-    without: tuple[str, ...]
+    units: tuple[LinkUnit, ...] = ()
+    without: tuple[str, ...] = ()
+    unreadable: tuple[str, ...] = ()
 
 
 def read_tree(folder: Path, name: str | None = None) -> Tree:
@@ -163,13 +167,12 @@ def measure(
 
     Raises:
         MissingToolError: a compiler, colcon or TPC's C++ half is absent.
-        RunError: colcon fails without saying which package.
         TpcError: the folder cannot be written.
     """
     require_tools(BUILD_TOOLS)
     packages = [Package(one.name, one.path, one.build_type) for one in tree.packages]
     if not packages:
-        return Measured(Build(0.0, 0.0, 0.0, tree.unreadable), (), ())
+        return Measured(Build(0.0, 0.0, 0.0, tree.unreadable))
     try:
         if bases.root.exists():
             shutil.rmtree(bases.root)
@@ -190,14 +193,11 @@ def measure(
         colcon_args=["--continue-on-error", "--parallel-workers", str(jobs)],
     )
     wall, processor, last = _run(command, tree.path, environment, on_output)
-    log = bases.log / "latest_build"
-    if not (log / "events.log").is_file():
-        raise RunError(f"colcon builds nothing: {last or 'it says nothing'}", tree.path)
-    faults = (*tree.unreadable, *_not_built(packages, log))
+    faults = (*tree.unreadable, *_not_built(packages, bases.log / "latest_build", last))
     build = Build(wall, processor, _noted(launcher.with_name("seconds")), faults)
     if not instrumented:
-        return Measured(build, (), ())
-    return Measured(build, *_static_information(packages, bases))
+        return Measured(build)
+    return _static_information(build, packages, bases)
 
 
 def _for_builds(environment: Mapping[str, str], jobs: int) -> dict[str, str]:
@@ -262,8 +262,12 @@ def _run(
     environment: Mapping[str, str],
     on_output: Callable[[str], None] | None,
 ) -> tuple[float, float, str]:
-    """Run colcon; returns wall and processor seconds, and the last line that it wrote."""
-    used, began, last = _children(), time.monotonic(), ""
+    """Run colcon; returns wall and processor seconds, and what it says of itself at the end.
+
+    That is all from the first line on that it calls an error, or else its last line.
+    """
+    used, began = _children(), time.monotonic()
+    said: list[str] = []
     with subprocess.Popen(
         command,
         cwd=folder,
@@ -277,13 +281,16 @@ def _run(
     ) as process:
         try:
             for line in process.stdout or ():
-                last = line.strip() or last
+                if said and "] ERROR:" in said[0]:
+                    said.append(line)
+                elif line.strip():
+                    said = [line]
                 if on_output is not None:
                     on_output(line.rstrip())
         except BaseException:
             end_group(process)
             raise
-    return time.monotonic() - began, _children() - used, last
+    return time.monotonic() - began, _children() - used, " ".join(" ".join(said).split())
 
 
 def _children() -> float:
@@ -314,8 +321,13 @@ def ended_jobs(events: str) -> dict[str, str]:
     return statuses
 
 
-def _not_built(packages: Sequence[Package], log: Path) -> list[NotBuilt]:
-    statuses = ended_jobs((log / "events.log").read_text("utf-8", "replace"))
+def _not_built(packages: Sequence[Package], log: Path, last: str) -> list[NotBuilt]:
+    """The packages that were not built; ``last`` is colcon's last word where it built none."""
+    events = log / "events.log"
+    statuses = ended_jobs(events.read_text("utf-8", "replace")) if events.is_file() else {}
+    if not statuses:
+        reason = f"colcon builds nothing: {last or 'it says nothing'}"
+        return [NotBuilt(package.name, reason) for package in packages]
     faults: list[NotBuilt] = []
     for package in packages:
         status = statuses.get(package.name, "skipped")
@@ -328,20 +340,28 @@ def _not_built(packages: Sequence[Package], log: Path) -> list[NotBuilt]:
     return faults
 
 
-def _static_information(
-    packages: Sequence[Package], bases: Bases
-) -> tuple[tuple[LinkUnit, ...], tuple[str, ...]]:
-    """The link units of the packages, and the targets that were linked without the analysis."""
+def _static_information(build: Build, packages: Sequence[Package], bases: Bases) -> Measured:
+    """The build with the link units of its packages."""
     units: list[LinkUnit] = []
     without: list[str] = []
+    unreadable: list[str] = []
     for package in packages:
         folder = bases.build / package.name
         files = unit_files(folder) if folder.is_dir() else []
-        units += [load_link_unit(path) for path in files]
         analysed = {path.stem for path in files}
+        for path in files:
+            try:
+                units.append(load_link_unit(path))
+            except InputError as error:
+                unreadable.append(f"{package.name}/{path.stem}: {error}")
+        try:
+            targets = link_targets(folder) or []
+        except InputError as error:
+            unreadable.append(f"{package.name}/: {error}")
+            continue
         without += [
             f"{package.name}/{target.name}"
-            for target in link_targets(folder) or ()
+            for target in targets
             if target.built and target.name not in analysed
         ]
-    return tuple(units), tuple(without)
+    return Measured(build, tuple(units), tuple(without), tuple(unreadable))

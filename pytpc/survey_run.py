@@ -168,7 +168,7 @@ def _measure_both(
         first=ways[0],
         plain=measured[PLAIN].build if PLAIN in measured else None,
         tpc=with_tpc.build,
-        found=found_in(with_tpc.units, tree.path, with_tpc.without),
+        found=found_in(with_tpc.units, tree.path, with_tpc.without, with_tpc.unreadable),
         python=python_tpcs(tree.path, lines),
         lines=lines,
     )

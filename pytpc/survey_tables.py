@@ -7,7 +7,8 @@ import io
 import re
 from collections.abc import Sequence
 
-from pytpc.survey import Cell, Table, TreeResult, tables
+from pytpc.survey import TreeResult
+from pytpc.survey_rows import Cell, Table, tables
 from pytpc.words import many, plain
 
 FORMATS = ("csv", "markdown", "latex")

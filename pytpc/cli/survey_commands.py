@@ -17,7 +17,8 @@ from rich.text import Text
 from pytpc.atomic import write_atomic
 from pytpc.errors import WorkspaceError
 from pytpc.static_json import dump_json
-from pytpc.survey import Table, TreeResult, tables
+from pytpc.survey import TreeResult
+from pytpc.survey_rows import Table, tables
 from pytpc.survey_run import Options, Step, survey
 from pytpc.survey_tables import FORMATS, documents, faults, shown
 from pytpc.words import many, plain

@@ -20,9 +20,8 @@ from pytpc.survey import (
     found_in,
     needed_trees,
     python_tpcs,
-    statistics,
-    tables,
 )
+from pytpc.survey_rows import statistics, tables
 
 
 def tree(name: str, **packages: str) -> Tree:
@@ -143,8 +142,11 @@ def test_columns_and_parameters_tell_comparisons_apart(tmp_path: Path) -> None:
 
 
 def test_units_that_were_left_as_they_were_are_named(tmp_path: Path) -> None:
-    counted = found_in(units(failed_unit(package="arm")), tmp_path)
-    assert counted.failed == ("arm/broken: the instrumented module does not verify",)
+    counted = found_in(units(failed_unit(package="arm")), tmp_path, (), ["arm/a: a.json: torn"])
+    assert counted.failed == (
+        "arm/a: a.json: torn",
+        "arm/broken: the instrumented module does not verify",
+    )
 
 
 def test_python_is_not_a_zero_that_nobody_counted() -> None:

@@ -45,7 +45,7 @@ def built(prefix: Path, below: Below, monkeypatch: pytest.MonkeyPatch) -> Log:
         setup = bases.install / "local_setup.bash"
         setup.write_text(f'export BELOW="$BELOW {tree.name}/{bases.root.name}"\n', encoding="utf-8")
         below[log[-1]] = environment.get("BELOW", "")
-        return Measured(build(2.0), (), ())
+        return Measured(build(2.0))
 
     monkeypatch.setattr(survey_run, "measure", measure)
     return log

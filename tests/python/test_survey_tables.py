@@ -5,7 +5,7 @@ import io
 
 from survey_samples import AFTER, BAD, build, found, result
 
-from pytpc.survey import tables
+from pytpc.survey_rows import tables
 from pytpc.survey_tables import as_csv, as_latex, as_markdown, documents, faults, latex
 
 

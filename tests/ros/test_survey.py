@@ -122,6 +122,17 @@ def test_the_plain_build_is_plain_and_a_cmake_project_is_surveyed(tmp_path: Path
         assert ("tpc.cmake" in cache) == (way == "tpc")
 
 
+def test_packages_that_need_each_other_are_said_to_be_the_reason(tmp_path: Path) -> None:
+    ring, output = tmp_path / "ring", tmp_path / "out"
+    add(ring, "one", needs="two")
+    add(ring, "two", needs="one")
+    (tree,) = surveyed(output, ring)
+    assert tree["processor_factor"] is None
+    reasons = {fault["package"]: fault["reason"] for fault in tree["tpc"]["not_built"]}
+    assert list(reasons) == ["one", "two"]
+    assert "topological" in reasons["one"]
+
+
 def left_running(output: Path) -> list[str]:
     """Command lines of processes that work in the output folder."""
     found: list[str] = []
