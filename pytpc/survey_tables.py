@@ -74,9 +74,11 @@ def faults(results: Sequence[TreeResult]) -> list[tuple[str, str, str, str]]:
             (result.name, "not analysed", unit, "linked without the analysis")
             for unit in result.found.without
         ]
-        if result.plain is None:
+        if len(result.tpc.not_built) >= result.packages:
+            rows.append((result.name, "no factor", "", "no package was built"))
+        elif result.plain is None:
             rows.append((result.name, "no factor", "", "no plain build was asked for"))
-        elif not result.comparable and result.packages:
+        elif not result.comparable:
             rows.append(
                 (result.name, "no factor", "", "the two builds did not build the same packages")
             )
@@ -109,9 +111,12 @@ def as_markdown(table: Table) -> str:
 
 def as_latex(table: Table) -> str:
     """A table for a LaTeX document that uses the packages booktabs and longtable."""
-    heading = _latex_row(["Name", *(column.heading for column in table.columns)])
+    heading = (
+        f"{' & '.join(['Name', *(_stacked(column.heading) for column in table.columns)])} \\\\"
+    )
     width = len(table.columns) + 1
     lines = [
+        r"{\footnotesize\setlength{\tabcolsep}{4pt}",
         rf"\begin{{longtable}}{{l{'r' * len(table.columns)}}}",
         rf"\caption{{{latex(table.title)}}}\label{{tab:{table.label}}}\\",
         r"\toprule",
@@ -132,7 +137,7 @@ def as_latex(table: Table) -> str:
     lines += [
         _latex_row([name, *shown(table, cells, statistic=True)]) for name, cells in table.summary
     ]
-    return "\n".join([*lines, r"\end{longtable}", ""])
+    return "\n".join([*lines, r"\end{longtable}", "}", ""])
 
 
 def latex(text: str) -> str:
@@ -198,6 +203,12 @@ def _markdown_row(cells: Sequence[str]) -> str:
 
 def _escaped(text: str) -> str:
     return _MARKDOWN.sub(r"\\\1", plain(text))
+
+
+def _stacked(heading: str) -> str:
+    """A heading of several words, one below the other: ten columns have to stand on a page."""
+    words = [latex(word) for word in heading.split()]
+    return words[0] if len(words) == 1 else r"\shortstack[r]{" + r"\\".join(words) + "}"
 
 
 def _latex_row(cells: Sequence[str]) -> str:

@@ -46,12 +46,14 @@ def test_a_mean_of_counts_has_a_decimal_place() -> None:
 
 def test_latex() -> None:
     text = as_latex(tables([result("nav_core & 50%", 10.0, 12.5)])[0])
-    assert text.startswith("\\begin{longtable}{lrrrrrrrrr}\n\\caption{Comparisons with parameters}")
-    assert "Name & Time & Time Factor & TPCs & C++ & Python & Unique & Files" in text
+    assert "\n\\begin{longtable}{lrrrrrrrrr}\n\\caption{Comparisons with parameters}" in text
+    heading = r"Name & Time & \shortstack[r]{Time\\Factor} & TPCs & C++ & Python & Unique & Files"
+    # On the first page and on those that follow.
+    assert text.count(heading) == 2
     assert r"nav\_core \& 50\% & 10.0 & 1.25 & not analysed & 0" in text
     for rule in (r"\toprule", r"\midrule", r"\bottomrule", r"\endfirsthead", r"\endlastfoot"):
         assert rule in text
-    assert text.endswith("\\end{longtable}\n")
+    assert text.endswith("\\end{longtable}\n}\n")
 
 
 def test_latex_prints_its_own_characters() -> None:
@@ -71,9 +73,11 @@ def test_faults_of_tpc_come_first() -> None:
         ),
         result("gcc", build(1.0, BAD), 1.0),
         result("fast", None, 1.0),
+        result("none", 1.0, build(1.0, BAD), packages=1),
     ]
     assert faults(results) == [
         ("leg", "not built with TPC", "bad", BAD.reason),
+        ("none", "not built with TPC", "bad", BAD.reason),
         ("arm", "not built", "bad", f"{BAD.reason} (missing: Eigen3)"),
         ("arm", "not built", "after", AFTER.reason),
         ("arm", "partial", "", "figures of 1 of 3 packages"),
@@ -83,6 +87,7 @@ def test_faults_of_tpc_come_first() -> None:
         ("gcc", "built only with TPC", "bad", f"{BAD.reason} (missing: Eigen3)"),
         ("gcc", "no factor", "", "the two builds did not build the same packages"),
         ("fast", "no factor", "", "no plain build was asked for"),
+        ("none", "no factor", "", "no package was built"),
     ]
 
 
