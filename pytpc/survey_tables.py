@@ -57,12 +57,8 @@ def faults(results: Sequence[TreeResult]) -> list[tuple[str, str, str, str]]:
             for fault in result.broken
         ]
     for result in results:
-        plain_faults = result.plain.not_built if result.plain is not None else ()
         with_tpc = {fault.package for fault in result.tpc.not_built}
-        broken = {fault.package for fault in result.broken}
-        for fault in (*plain_faults, *(() if plain_faults else result.tpc.not_built)):
-            if fault.package in broken:
-                continue
+        for fault in (result.plain or result.tpc).not_built:
             lacks = f" (missing: {', '.join(fault.missing)})" if fault.missing else ""
             what = "not built" if fault.package in with_tpc else "built only with TPC"
             rows.append((result.name, what, fault.package, f"{fault.reason}{lacks}"))
