@@ -37,6 +37,7 @@ _GENERATED = re.compile(
     re.IGNORECASE,
 )
 _FIRST_LINES = 15
+_PRODUCT_MARKS = frozenset({"CMakeCache.txt", ".colcon_install_layout", ".built_by", ".catkin"})
 _LEFT_OUT = frozenset({"__pycache__", "node_modules"})
 
 
@@ -74,17 +75,21 @@ class SourceLines:
 def source_files(folder: Path) -> Iterator[Path]:
     """The files of a source tree, sorted folder by folder, each file once.
 
-    Symbolic links are followed. Hidden files and folders are left out, build folders (those called
-    build, install, log or devel that are no package, and any with a CMakeCache.txt) and caches.
+    Symbolic links are followed. Left out are hidden files and folders, caches, and what is built:
+    folders called build, install, log or devel beside packages (in a package they may have
+    sources), and all with a file that CMake or colcon leaves in such folders.
     """
     seen: set[str] = set()
+    in_package = {os.fspath(folder): False}
     for here, below, files in os.walk(folder, followlinks=True):
         real = os.path.realpath(here)
-        if real in seen or "CMakeCache.txt" in files:
+        inside = in_package.pop(here) or MANIFEST in files
+        if real in seen or (Path(here) != folder and not _PRODUCT_MARKS.isdisjoint(files)):
             below.clear()
             continue
         seen.add(real)
-        below[:] = sorted(name for name in below if _is_source_folder(Path(here, name)))
+        below[:] = sorted(name for name in below if _is_source_folder(Path(here, name), inside))
+        in_package |= {os.path.join(here, name): inside for name in below}  # noqa: PTH118
         for name in sorted(files):
             path = Path(here, name)
             real = os.path.realpath(path)
@@ -121,10 +126,10 @@ def count_lines(folder: Path, on_file: Callable[[Path], None] | None = None) -> 
     return SourceLines(dict(sorted(languages.items())), dict(sorted(left_out.items())))
 
 
-def _is_source_folder(folder: Path) -> bool:
+def _is_source_folder(folder: Path, in_package: bool) -> bool:
     if folder.name.startswith(".") or folder.name in _LEFT_OUT:
         return False
-    return folder.name not in PRODUCTS or (folder / MANIFEST).is_file()
+    return in_package or folder.name not in PRODUCTS or (folder / MANIFEST).is_file()
 
 
 def _count_file(path: Path) -> tuple[str, LineCount | None]:

@@ -90,10 +90,21 @@ def test_products_and_hidden_folders_are_no_sources(tmp_path: Path) -> None:
     (tmp_path / "out/CMakeCache.txt").touch()
     write(tmp_path / ".hidden.cpp", "int x;\n")
     write(tmp_path / "src/a.cpp", "int x;\n")
-    # A package may have such a name.
+    # A package may have folders of such names, and such a name itself.
+    write(tmp_path / "src/arm/package.xml", "<package/>\n")
+    write(tmp_path / "src/arm/src/log/a.cpp", "int x;\n")
+    write(tmp_path / "src/arm/build/a.cpp", "int x;\n")
+    (tmp_path / "src/arm/build/CMakeCache.txt").touch()
+    write(tmp_path / "src/arm/install/a.cpp", "int x;\n")
+    (tmp_path / "src/arm/install/.colcon_install_layout").touch()
     write(tmp_path / "src/build/package.xml", "<package/>\n")
     names = [str(path.relative_to(tmp_path)) for path in source_files(tmp_path)]
-    assert names == ["src/a.cpp", "src/build/package.xml"]
+    assert names == [
+        "src/a.cpp",
+        "src/arm/package.xml",
+        "src/arm/src/log/a.cpp",
+        "src/build/package.xml",
+    ]
 
 
 def test_links_are_followed_once(tmp_path: Path) -> None:
