@@ -153,6 +153,7 @@ def measure(
     *,
     instrumented: bool,
     jobs: int,
+    cmake_args: Sequence[str] = (),
     on_output: Callable[[str], None] | None = None,
 ) -> Measured:
     """Build a tree from nothing, with TPC or without, and measure it.
@@ -163,6 +164,7 @@ def measure(
         environment: of the build; see ``underlaid``.
         instrumented: with ``tpc.cmake``; else with the same compilers and nothing else.
         jobs: packages, and compilers in each, that run at a time.
+        cmake_args: further arguments for each package's CMake.
         on_output: called with each line that colcon writes.
 
     Raises:
@@ -189,7 +191,7 @@ def measure(
         packages,
         toolchain,
         build_type=BUILD_TYPE,
-        cmake_args=[f"-DCMAKE_{kind}_LAUNCHER={launcher}" for kind in kinds],
+        cmake_args=[*(f"-DCMAKE_{kind}_LAUNCHER={launcher}" for kind in kinds), *cmake_args],
         colcon_args=["--continue-on-error", "--parallel-workers", str(jobs)],
     )
     wall, processor, last = _run(command, tree.path, environment, on_output)

@@ -32,13 +32,15 @@ PLAIN, TPC = "plain", "tpc"
 class Options:
     """What a survey is asked for.
 
-    ``underlay`` are set-up scripts that every build sources first; ``plain`` whether each tree is
+    ``underlay`` are set-up scripts that every build sources first, ``cmake_args`` arguments for
+    each package's CMake; ``plain`` whether each tree is
     built without TPC, too; ``rerun`` whether results that are there are measured again.
     """
 
     output: Path
     jobs: int
     underlay: tuple[Path, ...] = ()
+    cmake_args: tuple[str, ...] = ()
     plain: bool = True
     rerun: bool = False
 
@@ -157,6 +159,7 @@ def _measure_both(
             environment,
             instrumented=way == TPC,
             jobs=options.jobs,
+            cmake_args=options.cmake_args,
             on_output=partial(say, what),
         )
     with_tpc = measured[TPC]
@@ -197,6 +200,7 @@ def _key(tree: Tree, options: Options, tools: str, before: Sequence[str]) -> str
         _digest_of_files(list(source_files(tree.path)), tree.path),
         tools,
         *(str(setup.absolute()) for setup in options.underlay),
+        *options.cmake_args,
         str(options.plain),
         *before,
     ]

@@ -70,6 +70,13 @@ def _formats(_context: click.Context, _option: click.Parameter, value: str) -> t
     metavar="SETUP",
     help="A set-up script to source before each build; again for more.",
 )
+@click.option(
+    "--cmake-arg",
+    "cmake_args",
+    multiple=True,
+    metavar="ARG",
+    help="An argument for each package's CMake, as -DNAME=VALUE; again for more.",
+)
 @click.option("--no-plain", is_flag=True, help="No builds without TPC, so no time factors.")
 @click.option("--rerun", is_flag=True, help="Measure again what is known from an earlier run.")
 def survey_command(
@@ -80,6 +87,7 @@ def survey_command(
     as_json: bool,
     jobs: int,
     underlay: tuple[Path, ...],
+    cmake_args: tuple[str, ...],
     no_plain: bool,
     rerun: bool,
 ) -> None:
@@ -91,7 +99,7 @@ def survey_command(
     for folder in trees:
         if not folder.is_dir():
             raise WorkspaceError("no such folder", folder)
-    options = Options(output, jobs, underlay, not no_plain, rerun)
+    options = Options(output, jobs, underlay, cmake_args, plain=not no_plain, rerun=rerun)
     with _Progress() as progress:
         results = survey(trees, options, progress.show)
     written = documents(results, formats)

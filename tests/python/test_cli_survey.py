@@ -69,9 +69,9 @@ def test_json(tmp_path: Path, asked: list[Options]) -> None:
 
 def test_options(tmp_path: Path, asked: list[Options]) -> None:
     setup = tmp_path / "setup.bash"
-    more = ("--jobs", "3", "--underlay", setup, "--no-plain", "--rerun")
+    more = ("--jobs", "3", "--underlay", setup, "--no-plain", "--rerun", "--cmake-arg", "-DX=1")
     assert run(tmp_path, "-o", tmp_path / "out", *more).exit_code == 0
-    assert asked == [Options(tmp_path / "out", 3, (setup,), plain=False, rerun=True)]
+    assert asked == [Options(tmp_path / "out", 3, (setup,), ("-DX=1",), plain=False, rerun=True)]
 
 
 def test_an_unknown_format_is_refused(tmp_path: Path, asked: list[Options]) -> None:

@@ -116,6 +116,16 @@ def test_another_plugin_has_everything_built_again(
     assert len(built) == 4
 
 
+def test_other_arguments_for_cmake_have_everything_built_again(
+    tmp_path: Path, trees: tuple[Path, Path], built: Log
+) -> None:
+    output = tmp_path / "out"
+    run(output, *trees)
+    built.clear()
+    run(output, *trees, cmake_args=("-DPYVER=3.11",))
+    assert len(built) == 4
+
+
 def test_without_plain_builds_there_is_one_of_each(
     tmp_path: Path, trees: tuple[Path, Path], built: Log
 ) -> None:

@@ -106,7 +106,7 @@ def test_the_plain_build_is_plain_and_a_cmake_project_is_surveyed(tmp_path: Path
     (tree / "count.cpp").write_text(
         'extern "C" int sum(int);\nint main() { return sum(-1); }\n', encoding="utf-8"
     )
-    (counter,) = surveyed(output, tree)
+    (counter,) = surveyed(output, tree, "--cmake-arg", "-DCOUNTED_BY=survey")
     assert (counter["found"]["units"], counter["tpc"]["not_built"]) == (1, [])
     assert counter["lines"]["languages"]["C++"]["files"] == 2
     (folder,) = (output / "builds").iterdir()
@@ -120,6 +120,7 @@ def test_the_plain_build_is_plain_and_a_cmake_project_is_surveyed(tmp_path: Path
         assert obj.read_bytes().startswith(b"\x7fELF") == (way == "plain")
         cache = (built / "CMakeCache.txt").read_text("utf-8")
         assert ("tpc.cmake" in cache) == (way == "tpc")
+        assert "COUNTED_BY:UNINITIALIZED=survey" in cache
 
 
 def test_packages_that_need_each_other_are_said_to_be_the_reason(tmp_path: Path) -> None:
