@@ -11,7 +11,7 @@ from pathlib import Path
 from pytpc.atomic import write_atomic
 from pytpc.build import Bases
 from pytpc.errors import InputError, WorkspaceError
-from pytpc.paths import cmake_file, defer_plugin, log_library, plugin
+from pytpc.paths import cmake_file, defer_plugin, log_library, plugin, prefix
 from pytpc.source_lines import count_lines, source_files
 from pytpc.static_json import dump_json, parse_json
 from pytpc.survey import (
@@ -33,8 +33,8 @@ class Options:
     """What a survey is asked for.
 
     ``underlay`` are set-up scripts that every build sources first, ``cmake_args`` arguments for
-    each package's CMake; ``plain`` whether each tree is
-    built without TPC, too; ``rerun`` whether results that are there are measured again.
+    each package's CMake; ``plain`` whether each tree is built without TPC, too; ``rerun`` whether
+    results that are there are measured again.
     """
 
     output: Path
@@ -81,7 +81,7 @@ def survey(
     for tree in trees:
         if output.is_relative_to(tree.path):
             raise WorkspaceError(f"is in the tree {tree.path}; choose another folder", output)
-    tools = _digest_of_files([plugin(), defer_plugin(), log_library(), cmake_file()], Path("/"))
+    tools = _digest_of_tpc()
     needed = needed_trees(trees)
     order = build_order(trees)
     results: dict[str, TreeResult] = {}
@@ -94,6 +94,8 @@ def survey(
         key = _key(tree, options, tools, keys)
         result = None if options.rerun else _known(tree, options, key)
         if result is None:
+            # Its builds go first: what is interrupted now must not pass for what was there.
+            _result_file(tree, options).unlink(missing_ok=True)
             result = _measure_both(tree, options, key=key, number=number, before=before, say=say)
             write_atomic(_result_file(tree, options), dump_json(result.to_json()))
         else:
@@ -205,6 +207,15 @@ def _key(tree: Tree, options: Options, tools: str, before: Sequence[str]) -> str
         *before,
     ]
     return hashlib.sha256("\0".join(said).encode("utf-8", "surrogateescape")).hexdigest()
+
+
+def _digest_of_tpc() -> str:
+    """Stands for the installed half: passes, log library, tpc.cmake and rules."""
+    files = [log_library(), plugin(), defer_plugin(), cmake_file()]
+    root = prefix()
+    for part in ("lib/tpc", "share/tpc"):
+        files += [path for path in (root / part).rglob("*") if path.is_file()]
+    return _digest_of_files(sorted(set(files)), root)
 
 
 def _digest_of_files(files: Sequence[Path], root: Path) -> str:

@@ -104,13 +104,22 @@ def test_a_changed_tree_is_built_again_with_what_stands_on_it(
     assert {name for name, _ in built} == {"upper", "lower"}
 
 
-@pytest.mark.parametrize("part", ["lib/tpc/TpcPasses.so", "share/tpc/cmake/tpc.cmake"])
+@pytest.mark.parametrize(
+    "part",
+    [
+        "lib/tpc/TpcPasses.so",
+        "lib/libtpc_log.so",
+        "share/tpc/cmake/tpc.cmake",
+        "share/tpc/rules/ros1.json",
+    ],
+)
 def test_another_plugin_has_everything_built_again(
     tmp_path: Path, trees: tuple[Path, Path], built: Log, prefix: Path, part: str
 ) -> None:
     output = tmp_path / "out"
     run(output, *trees)
     built.clear()
+    (prefix / part).parent.mkdir(exist_ok=True)
     (prefix / part).write_text("new", encoding="utf-8")
     run(output, *trees)
     assert len(built) == 4
@@ -144,9 +153,11 @@ def test_an_interrupted_survey_goes_on(
             raise KeyboardInterrupt
         return pretended(tree, *arguments, **named)
 
+    run(output, *trees)
+    # Measuring again is interrupted, too: the old result of that tree has gone with its builds.
     with monkeypatch.context() as context, pytest.raises(KeyboardInterrupt):
         context.setattr(survey_run, "measure", interrupted)
-        run(output, *trees)
+        run(output, *trees, rerun=True)
     assert [path.stem.split("-")[0] for path in (output / "results").iterdir()] == ["lower"]
     built.clear()
     run(output, *trees)
