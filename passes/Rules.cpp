@@ -7,6 +7,7 @@
 #include "RuleFile.h"
 
 #include "llvm/ADT/SetVector.h"
+#include "llvm/IR/DebugInfoMetadata.h"
 #include "llvm/IR/Module.h"
 #include "llvm/Support/MemoryBuffer.h"
 
@@ -155,6 +156,16 @@ const Rules::Match &Rules::match(const Function &F) const {
   return M;
 }
 
+/// True for a method without an object. Where no debug information tells, it is
+/// one that is handed nothing.
+static bool isStaticMethod(const Function &F) {
+  const DISubprogram *SP = F.getSubprogram();
+  if (!SP || !SP->getType())
+    return F.arg_size() == (F.hasStructRetAttr() ? 1 : 0);
+  DITypeRefArray Types = SP->getType()->getTypeArray();
+  return Types.size() < 2 || !Types[1] || !Types[1]->isArtificial();
+}
+
 RuleMatches::RuleMatches(const Rules &Tables, Module &M) {
   std::vector<std::string> Classes; // whose fields are parameters
   for (const Function &F : M) {
@@ -165,7 +176,7 @@ RuleMatches::RuleMatches(const Rules &Tables, Module &M) {
         Classes.push_back(classArgument(F));
     } else if (Found.Opaque) {
       Opaque.insert(&F);
-    } else if (Found.Container) {
+    } else if (Found.Container && !isStaticMethod(F)) {
       Containers.insert({&F, *Found.Container});
     }
     if (Found.Kept)

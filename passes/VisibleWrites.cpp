@@ -368,6 +368,9 @@ AccessResult::replacedParts(const Location &L, const Instruction &At,
   for (const Instruction *Write :
        Flow->replacingFrom(*At.getFunction(), Object->Where.first)) {
     auto It = Replaced.find(Write);
+    // What a call replaces is known where it is among these, or not at all.
+    if (It == Replaced.end() && !isa<StoreInst>(Write))
+      continue;
     const Locations Own =
         It == Replaced.end() ? touched(*Write) : Locations{It->second};
     if (auto Way = Own.size() == 1 ? partOf(L, Own.front()) : std::nullopt;

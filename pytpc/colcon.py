@@ -187,7 +187,7 @@ def run_colcon(
                 if on_output is not None:
                     on_output(line.rstrip())
         except BaseException:
-            _end_group(process)
+            end_group(process)
             raise
     latest = _latest_log(bases)
     if latest is not None and latest != before:
@@ -197,7 +197,7 @@ def run_colcon(
         raise RunError(f"colcon ends with status {process.returncode}: {end}")
 
 
-def _end_group(process: subprocess.Popen[str]) -> None:
+def end_group(process: subprocess.Popen[str]) -> None:
     """End colcon and the compilers below it, gently first: colcon then records what it left."""
     for end, patience in ((signal.SIGINT, 10), (signal.SIGTERM, 5), (signal.SIGKILL, None)):
         with contextlib.suppress(ProcessLookupError):

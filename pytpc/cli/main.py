@@ -10,6 +10,7 @@ from pytpc.cli import (
     machine_commands,
     mission_commands,
     static_commands,
+    survey_commands,
     workspace_commands,
 )
 from pytpc.errors import TpcError
@@ -49,6 +50,7 @@ for command in (
     *machine_commands.COMMANDS,
     *static_commands.COMMANDS,
     *explain_commands.COMMANDS,
+    *survey_commands.COMMANDS,
     *event_commands.COMMANDS,
     *mission_commands.COMMANDS,
 ):

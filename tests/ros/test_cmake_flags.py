@@ -104,6 +104,34 @@ def test_a_warning_that_only_gcc_knows_is_no_error(tmp_path: Path) -> None:
     assert build(tmp_path, HEAD + options + unused).analysed() == ["x"]
 
 
+# A constant in braces of a narrower type, a template without its arguments, a register variable.
+ACCEPTED = """#include <string>
+struct Inner { template <class T> int get() { return sizeof(T); } };
+template <class T> int size(T inner) { return inner.template get<int>(); }
+int wide(double value) { int narrow[] = {value}; return narrow[0]; }
+int main(int n, char **v) {
+  register int one = 1;
+  return std::string(v[0]).size() < 1u + size(Inner()) * 0 + wide(n) * 0 + n * one;
+}
+"""
+
+
+@pytest.mark.parametrize("disable", ["OFF", "ON"])
+def test_what_gcc_accepts_and_clang_does_not_is_no_error(tmp_path: Path, disable: str) -> None:
+    (tmp_path / "p").mkdir()
+    (tmp_path / "p/accepted.cpp").write_text(ACCEPTED, encoding="utf-8")
+    (tmp_path / "p/implicit.c").write_text("int twice(n) { return later(n); }\n", encoding="ascii")
+    lists = (
+        "cmake_minimum_required(VERSION 3.16)\nproject(p LANGUAGES C CXX)\n"
+        "include(CheckCSourceCompiles)\n"
+        'check_c_source_compiles("int main(void) { return later(1); } int later(int n) '
+        '{ return n; }" HAS)\nif(NOT HAS)\n  message(FATAL_ERROR no)\nendif()\n'
+        "add_executable(x accepted.cpp)\nadd_library(c STATIC implicit.c)\n"
+    )
+    result = build(tmp_path, lists, toolchain(), f"-DTPC_DISABLE={disable}")
+    assert result.analysed() == (["x"] if disable == "OFF" else [])
+
+
 def test_the_level_and_the_macros_of_the_package_are_kept(tmp_path: Path) -> None:
     lists = (
         HEAD + "add_executable(x main.cpp)\ntarget_compile_options(x PRIVATE -g3 -fdebug-macro)\n"
@@ -400,8 +428,6 @@ def test_a_target_can_be_left_out_and_a_test_is(tmp_path: Path) -> None:
 def test_a_distributions_flags_for_lto_do_not_make_native_objects(tmp_path: Path) -> None:
     lists = HEAD + "add_executable(x main.cpp)\n"
     result = build(tmp_path, lists, CXXFLAGS="-O2 -flto=auto -ffat-lto-objects")
-    assert result.analysed() == []
-    result = build(tmp_path, include() + lists, CXXFLAGS="-O2 -flto=auto -ffat-lto-objects")
     assert result.analysed() == ["x"]
 
 
