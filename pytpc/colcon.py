@@ -22,10 +22,12 @@ from pytpc.workspace import Package
 _TAIL_LINES = 25
 _OWN_OPTIONS = ("--build-base", "--install-base", "--log-base", "--paths", "--base-paths")
 _HANDLERS = ("console_direct+", "console_cohesion-", "console_stderr-", "summary-")
-_JOB_ENDED = re.compile(
-    r"^\[[0-9.]+\] \([^)]*\) JobEnded: \{'identifier': '(?P<name>[^']+)', 'rc': (?P<rc>.+)\}$",
-    re.MULTILINE,
+_EVENT = re.compile(
+    r"^\[[0-9.]+\] \((?P<name>[^)]*)\) Job(?P<what>Ended|Skipped): (?P<data>\{.*\})$"
 )
+_STATUS = re.compile(r"'rc': (?P<rc>[^}]+)\}$")
+# Done, interrupted because another one failed, or never begun for that reason.
+_NO_FAULT = ("0", "'SIGINT'", "skipped")
 
 
 @dataclass(frozen=True, slots=True)
@@ -213,19 +215,25 @@ def _latest_log(bases: Bases) -> Path | None:
 
 
 def ended_jobs(events: str) -> dict[str, str]:
-    """The status with which each package ended, from colcon's events.log.
+    """Each package that ended or was skipped, with its status, from colcon's events.log.
 
-    Packages that were interrupted because another one failed are left out.
+    A status is a number as text, ``'SIGINT'`` in quotes, or ``skipped``.
     """
-    ended = ((match["name"], match["rc"]) for match in _JOB_ENDED.finditer(events))
-    return {name: status for name, status in ended if status != "'SIGINT'"}
+    statuses: dict[str, str] = {}
+    for line in events.splitlines():
+        event = _EVENT.match(line)
+        if event is None:
+            continue
+        status = _STATUS.search(event["data"])
+        statuses[event["name"]] = status["rc"] if status is not None else "skipped"
+    return statuses
 
 
 def _raise_for_failed_package(log: Path) -> None:
     jobs = ended_jobs((log / "events.log").read_text("utf-8", "replace"))
     finished = frozenset(name for name, status in jobs.items() if status == "0")
     for name, status in jobs.items():
-        if status == "0":
+        if status in _NO_FAULT:
             continue
         folder = log / name
         tail = _tail(folder / "stderr.log") or _tail(folder / "stdout.log")

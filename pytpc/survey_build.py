@@ -22,7 +22,7 @@ from xml.parsers import expat
 from pytpc.build_faults import first_error, missing_names
 from pytpc.cmake_syntax import find_fault
 from pytpc.cmake_targets import ask_for_targets, link_targets
-from pytpc.colcon import Bases, build_environment, colcon_command, end_group
+from pytpc.colcon import Bases, build_environment, colcon_command, end_group, ended_jobs
 from pytpc.errors import InputError, MissingToolError, RunError, TpcError, WorkspaceError
 from pytpc.paths import BUILD_TOOLS, accepting_flags, cmake_file, require_tools
 from pytpc.static_info import LinkUnit, load_link_unit, unit_files
@@ -31,10 +31,6 @@ from pytpc.workspace import MANIFEST, Package, package_folders
 
 BUILD_TYPE = "RelWithDebInfo"
 _PROJECT = re.compile(r"^[ \t]*project[ \t]*\(\s*\"?(?P<name>[^\s\"()$]+)", re.I | re.M)
-_EVENT = re.compile(
-    r"^\[[0-9.]+\] \((?P<name>[^)]*)\) Job(?P<what>Ended|Skipped): (?P<data>\{.*\})$"
-)
-_STATUS = re.compile(r"'rc': (?P<rc>[^}]+)\}$")
 # Bash knows its own children's times to the millisecond; where a comma is the decimal point it
 # writes one.
 _LAUNCHER = """#!/bin/bash
@@ -288,21 +284,6 @@ def _noted(seconds: Path) -> float:
         return 0.0
     text = seconds.read_text("ascii", "replace").replace(",", ".")
     return sum(float(number) for number in text.split())
-
-
-def ended_jobs(events: str) -> dict[str, str]:
-    """Each package that ended or was skipped, with its status, from colcon's events.log.
-
-    A status is a number as text, ``'SIGINT'`` in quotes, or ``skipped``.
-    """
-    statuses: dict[str, str] = {}
-    for line in events.splitlines():
-        event = _EVENT.match(line)
-        if event is None:
-            continue
-        status = _STATUS.search(event["data"])
-        statuses[event["name"]] = status["rc"] if status is not None else "skipped"
-    return statuses
 
 
 def _not_built(packages: Sequence[Package], log: Path, last: str) -> list[NotBuilt]:

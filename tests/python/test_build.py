@@ -141,17 +141,17 @@ def test_the_environment_is_free_of_the_callers_python_and_make(
     assert build_environment()["MAKEFLAGS"] == "-j1"
 
 
-EVENTS = r"""[0.1] (arm) JobQueued: {'identifier': 'arm', 'dependencies': OrderedDict()}
-[0.2] (arm) StdoutLine: {'line': b"[9.9] (x) JobEnded: {'identifier': 'x', 'rc': 1}\n"}
-[1.0] (arm) JobEnded: {'identifier': 'arm', 'rc': 0}
-[1.1] (leg) JobEnded: {'identifier': 'leg', 'rc': 'SIGINT'}
-[1.2] (face) JobEnded: {'identifier': 'face', 'rc': 2}
-[1.3] (-) EventReactorShutdown: {}
-"""
-
-
-def test_a_package_that_was_interrupted_did_not_end() -> None:
-    assert ended_jobs(EVENTS) == {"arm": "0", "face": "2"}
+def test_how_packages_ended() -> None:
+    events: Sequence[str] = (
+        "[0.1] (a) JobStarted: {'identifier': 'a'}",
+        "[1.5] (a) JobEnded: {'identifier': 'a', 'rc': 0}",
+        "[2.0] (b) JobEnded: {'identifier': 'b', 'rc': 2}",
+        "[2.1] (c) JobSkipped: {'identifier': 'c'}",
+        "[2.2] (d) JobEnded: {'identifier': 'd', 'rc': 'SIGINT'}",
+        "[2.3] (-) EventReactorShutdown: {}",
+        r"""[9.0] (e) StdoutLine: {'line': b"[9.9] (x) JobEnded: {'identifier': 'x', 'rc': 1}\n"}""",
+    )
+    assert ended_jobs("\n".join(events)) == {"a": "0", "b": "2", "c": "skipped", "d": "'SIGINT'"}
     assert ended_jobs("") == {}
 
 

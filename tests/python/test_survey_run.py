@@ -1,7 +1,7 @@
 """A survey from tree to tree, with builds that are only pretended: tests/ros has real ones."""
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -12,7 +12,7 @@ from pytpc import survey_run
 from pytpc.colcon import Bases
 from pytpc.errors import RunError, WorkspaceError
 from pytpc.survey import Tree
-from pytpc.survey_build import Measured, ended_jobs, read_tree, underlaid
+from pytpc.survey_build import Measured, read_tree, underlaid
 from pytpc.survey_run import Options, Step, survey
 
 Log = list[tuple[str, str]]
@@ -274,15 +274,3 @@ def test_set_up_scripts_are_sourced_in_order(tmp_path: Path) -> None:
         underlaid(setups, 3)
     with pytest.raises(WorkspaceError, match="no such set-up script"):
         underlaid([tmp_path / "c.bash"], 3)
-
-
-def test_how_packages_ended() -> None:
-    events: Sequence[str] = (
-        "[0.1] (a) JobStarted: {'identifier': 'a'}",
-        "[1.5] (a) JobEnded: {'identifier': 'a', 'rc': 0}",
-        "[2.0] (b) JobEnded: {'identifier': 'b', 'rc': 2}",
-        "[2.1] (c) JobSkipped: {'identifier': 'c'}",
-        "[2.2] (d) JobEnded: {'identifier': 'd', 'rc': 'SIGINT'}",
-        "[2.3] (-) EventReactorShutdown: {}",
-    )
-    assert ended_jobs("\n".join(events)) == {"a": "0", "b": "2", "c": "skipped", "d": "'SIGINT'"}
