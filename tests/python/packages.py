@@ -28,7 +28,8 @@ def add_package(
 
 def install_prefix(folder: Path) -> Path:
     """Make ``folder`` look like the installed C++ half; returns tpc.cmake."""
-    for place in ("lib/tpc/TpcPasses.so", "lib/libtpc_log.so", "share/tpc/cmake/tpc.cmake"):
+    places = ("lib/tpc/TpcPasses.so", "lib/libtpc_log.so", "share/tpc/flags")
+    for place in (*places, "share/tpc/cmake/tpc.cmake"):
         (folder / place).parent.mkdir(parents=True, exist_ok=True)
         (folder / place).touch()
     return folder / "share/tpc/cmake/tpc.cmake"

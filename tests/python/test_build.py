@@ -142,14 +142,14 @@ def test_the_environment_is_free_of_the_callers_python_and_make(
 
 
 def test_how_packages_ended() -> None:
-    events: Sequence[str] = (
+    events = (
         "[0.1] (a) JobStarted: {'identifier': 'a'}",
         "[1.5] (a) JobEnded: {'identifier': 'a', 'rc': 0}",
         "[2.0] (b) JobEnded: {'identifier': 'b', 'rc': 2}",
         "[2.1] (c) JobSkipped: {'identifier': 'c'}",
         "[2.2] (d) JobEnded: {'identifier': 'd', 'rc': 'SIGINT'}",
         "[2.3] (-) EventReactorShutdown: {}",
-        r"""[9.0] (e) StdoutLine: {'line': b"[9.9] (x) JobEnded: {'identifier': 'x', 'rc': 1}\n"}""",
+        r"""[9.0] (e) StdoutLine: {'line': b"[9] (x) JobEnded: {'identifier': 'x', 'rc': 1}\n"}""",
     )
     assert ended_jobs("\n".join(events)) == {"a": "0", "b": "2", "c": "skipped", "d": "'SIGINT'"}
     assert ended_jobs("") == {}
