@@ -6,6 +6,8 @@ the build was analysed.
 
 from __future__ import annotations
 
+import contextlib
+import fcntl
 import os
 import subprocess
 import time
@@ -85,14 +87,17 @@ def build_workspace(
         on_output: called with each line that colcon writes.
 
     Raises:
-        WorkspaceError: no packages, an unknown name, a folder that cannot be written, or a build
-            folder that was configured without TPC.
+        WorkspaceError: no packages, an unknown name, a folder that cannot be written or that
+            another build is at work in, or a build folder that was configured without TPC.
         InputError: a broken package.xml, CMakeLists.txt, file of rules or static information.
         MissingToolError: TPC's C++ half, a compiler, colcon or ROS is absent.
         BuildError: a package does not build.
         RunError: colcon itself fails.
     """
     began = time.monotonic()
+    if ".." in workspace.parts:
+        # colcon and CMake take that out of a path, and the names of folders have to be theirs.
+        workspace = workspace.resolve()
     found = find_packages(workspace)
     chosen = select_packages(found, packages)
     for package in chosen:
@@ -104,44 +109,47 @@ def build_workspace(
     with_ours = not any("CMAKE_TOOLCHAIN_FILE" in one for one in (*cmake_args, *colcon_args))
     if with_ours:
         _require_toolchain(place, chosen, toolchain)
-    alone = _prepare(place, found, retry=retry)
-    while True:
-        command = colcon_command(
-            place,
-            found,
-            toolchain,
-            only=packages,
-            build_type=build_type,
-            rules=rules,
-            # Said both ways: a build folder keeps what it was told last.
-            cmake_args=(
-                f"-DTPC_CONSTANTS={'ON' if constants else 'OFF'}",
-                f"-DTPC_TESTS={'ON' if tests else 'OFF'}",
-                f"-DTPC_LEFT_ALONE={';'.join(map(str, alone.folders))}",
-                *cmake_args,
-            ),
-            colcon_args=colcon_args,
+    with _alone_in(place):
+        alone = _prepare(place, found, retry=retry)
+        while True:
+            command = colcon_command(
+                place,
+                found,
+                toolchain,
+                only=packages,
+                build_type=build_type,
+                rules=rules,
+                # Said both ways: a build folder keeps what it was told last.
+                cmake_args=(
+                    f"-DTPC_CONSTANTS={'ON' if constants else 'OFF'}",
+                    f"-DTPC_TESTS={'ON' if tests else 'OFF'}",
+                    f"-DTPC_LEFT_ALONE={';'.join(map(str, alone.folders))}",
+                    *cmake_args,
+                ),
+                colcon_args=colcon_args,
+            )
+            try:
+                run_colcon(command, workspace, place, on_output)
+            except BuildError as error:
+                if not (fallback and with_ours and alone.can_try(error)):
+                    alone.give_up(error)
+                    raise
+                if on_output is not None:
+                    on_output(f"{error.package} does not build with TPC; building it without")
+                alone.begin(error)
+                _ask(place, found)
+            else:
+                alone.keep()
+                break
+        folders = [
+            folder for folder in (place.build / one.name for one in found) if folder.is_dir()
+        ]
+        _drop_stale(folders)
+        units = [unit for folder in folders for unit in collect(folder).units]
+        static = StaticInfo.of(
+            units, place.build, find_copies(units), _left_out(folders, alone.reasons)
         )
-        try:
-            run_colcon(command, workspace, place, on_output)
-        except BuildError as error:
-            if not (fallback and with_ours and alone.can_try(error)):
-                alone.give_up(error)
-                raise
-            if on_output is not None:
-                on_output(f"{error.package} does not build with TPC; building it without")
-            alone.begin(error)
-            _ask(place, found)
-        else:
-            alone.keep()
-            break
-    folders = [folder for folder in (place.build / one.name for one in found) if folder.is_dir()]
-    _drop_stale(folders)
-    units = [unit for folder in folders for unit in collect(folder).units]
-    static = StaticInfo.of(
-        units, place.build, find_copies(units), _left_out(folders, alone.reasons)
-    )
-    static.save(place.static_info)
+        static.save(place.static_info)
     seconds = time.monotonic() - began
     return BuildResult(place, tuple(chosen), static, alone.reasons, seconds)
 
@@ -201,6 +209,28 @@ def _require_toolchain(bases: Bases, packages: Sequence[Package], toolchain: Pat
                     " the compiler of a build folder; remove this folder",
                     folder,
                 )
+
+
+@contextlib.contextmanager
+def _alone_in(bases: Bases) -> Iterator[None]:
+    """See that no other build is at work in the bases: two would take each other's folders away.
+
+    Where the folder cannot be locked, as on some network drives, nothing is seen to.
+    """
+    with contextlib.ExitStack() as stack:
+        with contextlib.suppress(OSError):
+            bases.root.mkdir(parents=True, exist_ok=True)
+            descriptor = os.open(bases.root, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+            stack.callback(os.close, descriptor)
+            try:
+                fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                raise WorkspaceError(
+                    "another pytpc build is at work in this folder; wait for its end, or give"
+                    " this one a folder of its own with --base",
+                    bases.root,
+                ) from None
+        yield
 
 
 def _prepare(bases: Bases, packages: Sequence[Package], *, retry: bool) -> LeftAlone:

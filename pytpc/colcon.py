@@ -17,6 +17,7 @@ from pathlib import Path
 
 from pytpc.errors import RunError, WorkspaceError
 from pytpc.paths import MERGED_FILE, OWN_FOLDER, search_path
+from pytpc.signals import signals_end
 from pytpc.workspace import Package
 
 _TAIL_LINES = 25
@@ -172,17 +173,20 @@ def run_colcon(
     """
     before = _latest_log(bases)
     said: list[str] = []
-    with subprocess.Popen(
-        command,
-        cwd=workspace,
-        env=build_environment(),
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        errors="replace",
-        start_new_session=True,
-    ) as process:
+    with (
+        signals_end(),
+        subprocess.Popen(
+            command,
+            cwd=workspace,
+            env=build_environment(),
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            errors="replace",
+            start_new_session=True,
+        ) as process,
+    ):
         try:
             for line in process.stdout or ():
                 said = [*said[-_TAIL_LINES:], line.rstrip()]

@@ -13,17 +13,17 @@ import secrets
 import signal
 import socket
 import subprocess
-import threading
 import time
 import xmlrpc.client
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from http.client import HTTPException
 from pathlib import Path
-from types import FrameType, TracebackType
+from types import TracebackType
 from typing import Self
 
 from pytpc.errors import MissingToolError, RunError
+from pytpc.signals import signals_end
 
 GRAPH_WORD = "TPC_GRAPH"
 _CALLER = "/tpc_graph"
@@ -101,7 +101,7 @@ class RosGraph:
         for name in ("home", "log", "out"):
             (self.folder / name).mkdir(parents=True, exist_ok=True)
         with contextlib.ExitStack() as exits:
-            exits.enter_context(_signals())
+            exits.enter_context(signals_end())
             exits.callback(self._end)
             self._start_master()
             if self._use_sim_time:
@@ -265,30 +265,3 @@ def _free_port() -> int:
         probe.bind(("127.0.0.1", 0))
         port: int = probe.getsockname()[1]
         return port
-
-
-@contextlib.contextmanager
-def _signals() -> Iterator[None]:
-    """Within it SIGTERM and SIGHUP raise SystemExit, so that what was started is ended.
-
-    Where SIGINT is ignored, as in a job in the background, it stays so for this process, but not
-    for those that it starts: they are to end by it.
-    """
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-
-    def leave(number: int, _frame: FrameType | None) -> None:
-        raise SystemExit(128 + number)
-
-    def ignore(_number: int, _frame: FrameType | None) -> None:
-        pass
-
-    before = {number: signal.signal(number, leave) for number in (signal.SIGTERM, signal.SIGHUP)}
-    if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
-        before[signal.SIGINT] = signal.signal(signal.SIGINT, ignore)
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)

@@ -7,16 +7,21 @@ until the user asks for another try.
 
 from __future__ import annotations
 
+import re
 import shutil
 from collections.abc import Sequence
 from pathlib import Path
 
 from pytpc.atomic import write_atomic
+from pytpc.build_faults import first_error
 from pytpc.colcon import Bases, BuildError
 from pytpc.errors import InputError
 from pytpc.static_json import dump_json, parse_json
 from pytpc.workspace import Package
 
+# gcc brings its own OpenMP; that of clang is a package which clang does not need.
+OPENMP_MEND = "clang's OpenMP may be what is missing: apt-get install libomp-19-dev"
+_OPENMP = re.compile(r"Could NOT find OpenMP|'omp\.h' file not found|unable to find library -lomp")
 _FILE = "left-alone.json"
 _ASIDE = "set-aside"
 
@@ -112,8 +117,9 @@ class LeftAlone:
 
 
 def _reason(error: BuildError) -> str:
-    """The first line of its output that has an error in it."""
-    for line in error.tail:
-        if "error:" in line.lower() or "CMake Error" in line:
-            return " ".join(line.split())
-    return " ".join(error.tail[-1].split()) if error.tail else error.message
+    """The first error in the output, with what clang lacks where gcc does not."""
+    text = "\n".join(error.tail)
+    why = first_error(text) if text else error.message
+    if _OPENMP.search(text):
+        why += f"; {OPENMP_MEND}"
+    return why

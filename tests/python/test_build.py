@@ -3,8 +3,10 @@
 Here colcon is a script of ours; tests/ros builds with the real one.
 """
 
+import fcntl
 import json
 import os
+import signal
 import sys
 import time
 from pathlib import Path
@@ -24,6 +26,7 @@ from pytpc.colcon import (
     ended_jobs,
 )
 from pytpc.errors import InputError, MissingToolError, RunError, TpcError, WorkspaceError
+from pytpc.left_alone import LeftAlone
 from pytpc.static_info import LeftOut
 from pytpc.workspace import Package
 
@@ -462,3 +465,66 @@ def test_a_broken_list_of_packages_left_alone_is_named(
     (workspace / ".tpc/left-alone.json").write_text(text)
     with pytest.raises(InputError, match=r"left-alone\.json: not a list of packages"):
         build_workspace(workspace)
+
+
+def test_a_path_with_dots_is_left_alone_by_the_name_that_cmake_gives_it(
+    workspace: Path, colcon: FakeColcon
+) -> None:
+    fails_with_tpc(colcon)
+    (workspace / "src/deep").mkdir()
+    colcon.lines[0:0] = ["assert not [one for one in cmake_args if '..' in one], cmake_args"]
+    result = build_workspace(workspace / "src/deep/../..")
+    assert result.left_alone == {"face": "error: 2"}
+    assert result.bases.root == workspace / ".tpc"
+
+
+def test_the_reason_says_what_clang_lacks(tmp_path: Path) -> None:
+    tail = (
+        "CMake Error at /usr/share/Modules/FindPackageHandleStandardArgs.cmake:230 (message):",
+        "  Could NOT find OpenMP_CXX (missing: OpenMP_CXX_FLAGS OpenMP_CXX_LIB_NAMES)",
+        "Call Stack (most recent call first):",
+    )
+    alone = LeftAlone(Bases(tmp_path), [Package("face", tmp_path / "face", "cmake")])
+    (tmp_path / "build/face").mkdir(parents=True)
+    alone.begin(BuildError("does not build", tmp_path / "log", "face", tail))
+    why = alone.reasons["face"]
+    assert "Could NOT find OpenMP_CXX" in why
+    assert why.endswith("apt-get install libomp-19-dev")
+
+
+def test_two_builds_at_once_are_one_line(workspace: Path, colcon: FakeColcon) -> None:
+    own = workspace / ".tpc"
+    own.mkdir()
+    descriptor = os.open(own, os.O_RDONLY)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX)
+        with pytest.raises(WorkspaceError, match="another pytpc build is at work"):
+            build_workspace(workspace)
+    finally:
+        os.close(descriptor)
+    build_workspace(workspace)
+
+
+def test_a_signal_to_end_ends_everything_below(workspace: Path, colcon: FakeColcon) -> None:
+    colcon.writes("pid", "")
+    colcon.lines += [
+        "(base / 'pid').write_text(str(os.getpid()))",
+        "print('begun', flush=True)",
+        "time.sleep(60)",
+    ]
+
+    def end(line: str) -> None:
+        if line == "begun":
+            os.kill(os.getpid(), signal.SIGTERM)
+
+    before = signal.getsignal(signal.SIGTERM)
+    signal.signal(signal.SIGTERM, lambda *_: None)
+    try:
+        with pytest.raises(SystemExit) as caught:
+            build_workspace(workspace, on_output=end)
+    finally:
+        signal.signal(signal.SIGTERM, before)
+    assert caught.value.code == 128 + signal.SIGTERM
+    pid = int((workspace / ".tpc/pid").read_text())
+    with pytest.raises(ProcessLookupError):
+        os.kill(pid, 0)
