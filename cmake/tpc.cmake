@@ -123,6 +123,31 @@ function(_tpc_try_clang flags links)
   endif()
 endfunction()
 
+# Sets `lacks` to whether the list files of a folder speak of OpenMP and clang has none: gcc
+# brings its own, clang's is a package by itself. Of a folder of packages it is its own file
+# that counts: each package is asked for when it is entered.
+function(_tpc_lacks_openmp folder lacks)
+  set(${lacks} FALSE PARENT_SCOPE)
+  set(files "${folder}/CMakeLists.txt")
+  file(GLOB packages "${folder}/*/package.xml" "${folder}/*/*/package.xml")
+  if(NOT packages)
+    file(GLOB below "${folder}/*/CMakeLists.txt" "${folder}/cmake/*.cmake")
+    list(APPEND files ${below})
+  endif()
+  foreach(file IN LISTS files)
+    if(EXISTS "${file}")
+      file(STRINGS "${file}" speaks REGEX "^[^#]*(OpenMP|-fopenmp)")
+      if(speaks)
+        _tpc_try_clang("-fopenmp" links)
+        if(NOT links)
+          set(${lacks} TRUE PARENT_SCOPE)
+        endif()
+        return()
+      endif()
+    endif()
+  endforeach()
+endfunction()
+
 macro(_tpc_find_compilers)
   find_program(TPC_CLANG clang-${TPC_CLANG_VERSION})
   find_program(TPC_CLANGXX clang++-${TPC_CLANG_VERSION})
@@ -132,13 +157,18 @@ macro(_tpc_find_compilers)
 endmacro()
 
 # Chooses clang and LLVM's archiver, where nobody has chosen another compiler. A
-# package with a sanitizer that clang cannot link keeps the compiler it had.
+# package with a sanitizer or OpenMP that clang cannot link keeps the compiler it had.
 macro(_tpc_choose_compilers)
   _tpc_find_compilers()
   set(_tpc_clang_links TRUE)
   _tpc_find_sanitizer_of_package()
   if(TPC_CLANG AND _tpc_sanitizer AND NOT _tpc_probe)
     _tpc_try_clang("${_tpc_sanitizer_flags}" _tpc_clang_links)
+  elseif(TPC_CLANG AND NOT _tpc_probe)
+    _tpc_lacks_openmp("${CMAKE_SOURCE_DIR}" _tpc_openmp)
+    if(_tpc_openmp)
+      set(_tpc_clang_links FALSE)
+    endif()
   endif()
   if(NOT _tpc_clang_links)
     # _tpc_find_obstacle says why.
@@ -153,8 +183,11 @@ macro(_tpc_choose_compilers)
     set(CMAKE_AR "${TPC_AR}" CACHE FILEPATH "archiver")
     set(CMAKE_RANLIB "${TPC_RANLIB}" CACHE FILEPATH "ranlib")
     foreach(_tpc_language C CXX)
-      set(CMAKE_${_tpc_language}_COMPILER_AR "${TPC_AR}")
-      set(CMAKE_${_tpc_language}_COMPILER_RANLIB "${TPC_RANLIB}")
+      # Objects of gcc's own -flto want gcc's.
+      if(CMAKE_${_tpc_language}_COMPILER MATCHES "clang")
+        set(CMAKE_${_tpc_language}_COMPILER_AR "${TPC_AR}")
+        set(CMAKE_${_tpc_language}_COMPILER_RANLIB "${TPC_RANLIB}")
+      endif()
     endforeach()
   else()
     message(WARNING "TPC: clang ${TPC_CLANG_VERSION} is not here; this package is built without it "
@@ -175,6 +208,19 @@ function(_tpc_is_chosen_by_hand language result)
   endif()
 endfunction()
 
+# With gcc the package is built as ever. Where the compiler is clang already, chosen for all
+# packages of a workspace together, there is nothing but to say so.
+macro(_tpc_find_openmp_obstacle)
+  _tpc_lacks_openmp("${CMAKE_CURRENT_SOURCE_DIR}" _tpc_openmp)
+  set(_tpc_openmp_mend "apt-get install libomp-${TPC_CLANG_VERSION}-dev, and remove the build folder")
+  if(_tpc_openmp AND (CMAKE_C_COMPILER_ID STREQUAL "Clang" OR CMAKE_CXX_COMPILER_ID STREQUAL "Clang"))
+    message(WARNING "TPC: ${_tpc_name} uses OpenMP, and clang's is not here, so that it is built "
+      "without, or not at all (${_tpc_openmp_mend})")
+  elseif(_tpc_openmp)
+    set(_tpc_obstacle "it uses OpenMP, and clang's is not here (${_tpc_openmp_mend})")
+  endif()
+endmacro()
+
 # Sets _tpc_obstacle to why the package cannot be instrumented; empty where it can.
 macro(_tpc_find_obstacle)
   set(_tpc_obstacle "")
@@ -190,13 +236,16 @@ macro(_tpc_find_obstacle)
     _tpc_is_chosen_by_hand(${_tpc_language} _tpc_by_hand)
     if(CMAKE_${_tpc_language}_COMPILER_ID STREQUAL "GNU" AND NOT _tpc_by_hand
         AND TPC_CLANG AND TPC_CLANGXX AND TPC_AR AND TPC_RANLIB)
-      # Nobody's choice but CMake's: clang can take its place, see _tpc_replace_gcc.
+      # Nobody's choice but CMake's: clang can take its place, see _tpc_replace_compilers.
     elseif(NOT CMAKE_${_tpc_language}_COMPILER_ID STREQUAL "Clang")
       set(_tpc_obstacle "the compiler is ${CMAKE_${_tpc_language}_COMPILER_ID}, not clang")
     elseif(NOT CMAKE_${_tpc_language}_COMPILER_VERSION MATCHES "^${TPC_CLANG_VERSION}\\.")
       set(_tpc_obstacle "the compiler is clang ${CMAKE_${_tpc_language}_COMPILER_VERSION}, the passes are for ${TPC_CLANG_VERSION}")
     endif()
   endforeach()
+  if(TPC_CLANG)
+    _tpc_find_openmp_obstacle()
+  endif()
   _tpc_find_sanitizer_of_package()
   if(_tpc_sanitizer)
     set(_tpc_obstacle "${_tpc_sanitizer} in ${_tpc_sanitizer_place} does not go together with it")
@@ -231,7 +280,10 @@ endmacro()
 # no use for would make every answer a no.
 macro(_tpc_tolerate_flags_in_probes)
   foreach(_tpc_language C CXX)
-    if(CMAKE_${_tpc_language}_COMPILER_ID STREQUAL "Clang")
+    if(_tpc_instead_of_${_tpc_language})
+      _tpc_name_compiler(${_tpc_language})
+    endif()
+    if(CMAKE_${_tpc_language}_COMPILER_ID STREQUAL "Clang" OR _tpc_instead_of_${_tpc_language})
       _tpc_add_compile_flags(${_tpc_language} "-Qunused-arguments${_tpc_accept_flags}")
     endif()
   endforeach()
@@ -258,25 +310,42 @@ macro(_tpc_tolerate_flags_of_assembler)
   endif()
 endmacro()
 
-# Has clang compile and link where CMake found gcc before this file was read: in a
-# build folder of before, or in a CMakeLists.txt above, as catkin_make's. What the
-# package asked of gcc stays true of its flags, which clang takes as well.
-macro(_tpc_replace_gcc)
+# Has clang compile and link, whatever CMAKE_<LANG>_COMPILER becomes after project(), and
+# where CMake found gcc before this file was read: in a build folder of before, or in a
+# CMakeLists.txt above, as catkin_make's. There the package is told that it is clang, and its
+# probes ask clang: flags that only gcc knows end clang's work.
+macro(_tpc_replace_compilers)
   set(_tpc_instead_of_C "${TPC_CLANG}")
   set(_tpc_instead_of_CXX "${TPC_CLANGXX}")
   foreach(_tpc_language ${ARGN})
+    _tpc_name_compiler(${_tpc_language})
     if(CMAKE_${_tpc_language}_COMPILER_ID STREQUAL "GNU")
-      foreach(_tpc_rule COMPILE_OBJECT LINK_EXECUTABLE CREATE_SHARED_LIBRARY CREATE_SHARED_MODULE)
-        string(REPLACE "<CMAKE_${_tpc_language}_COMPILER>"
-          "\"${_tpc_instead_of_${_tpc_language}}\""
-          CMAKE_${_tpc_language}_${_tpc_rule} "${CMAKE_${_tpc_language}_${_tpc_rule}}")
-      endforeach()
+      set(CMAKE_${_tpc_language}_COMPILER_ID "Clang")
+      set(CMAKE_${_tpc_language}_COMPILER_VERSION "${TPC_CLANG_VERSION}")
+      unset(CMAKE_COMPILER_IS_GNU${_tpc_language})
       set(CMAKE_AR "${TPC_AR}")
       set(CMAKE_RANLIB "${TPC_RANLIB}")
       set(CMAKE_${_tpc_language}_COMPILER_AR "${TPC_AR}")
       set(CMAKE_${_tpc_language}_COMPILER_RANLIB "${TPC_RANLIB}")
+      # Every probe is a project of this name.
+      set(CMAKE_PROJECT_CMAKE_TRY_COMPILE_INCLUDE "${_tpc_file}")
+      list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES
+        CMAKE_PROJECT_CMAKE_TRY_COMPILE_INCLUDE _tpc_instead_of_${_tpc_language})
     endif()
   endforeach()
+  unset(CMAKE_COMPILER_IS_GNUCC)
+endmacro()
+
+# Has the rules of a language say clang where they say the language's compiler.
+macro(_tpc_name_compiler language)
+  # What CMake would add to the compiler's name for another machine is kept.
+  if(NOT CMAKE_SYSROOT AND NOT CMAKE_${language}_COMPILER_TARGET
+      AND NOT CMAKE_${language}_COMPILER_ARG1)
+    foreach(_tpc_rule COMPILE_OBJECT LINK_EXECUTABLE CREATE_SHARED_LIBRARY CREATE_SHARED_MODULE)
+      string(REPLACE "<CMAKE_${language}_COMPILER>" "\"${_tpc_instead_of_${language}}\""
+        CMAKE_${language}_${_tpc_rule} "${CMAKE_${language}_${_tpc_rule}}")
+    endforeach()
+  endif()
 endmacro()
 
 # Takes -ffat-lto-objects, which Linux distributions have among their flags, out of those
@@ -287,6 +356,25 @@ macro(_tpc_want_bitcode_alone)
     string(REPLACE "-ffat-lto-objects" "" CMAKE_${_tpc_language}_FLAGS
       "${CMAKE_${_tpc_language}_FLAGS}")
   endforeach()
+endmacro()
+
+# Has a package that another compiler builds link the static libraries of the others, which
+# hold bitcode: GNU's linkers read it by a plugin of LLVM's. What they make of it reports
+# nothing.
+macro(_tpc_link_bitcode)
+  find_file(TPC_GOLD_PLUGIN LLVMgold.so PATHS "/usr/lib/llvm-${TPC_CLANG_VERSION}/lib"
+    NO_DEFAULT_PATH)
+  if(TPC_GOLD_PLUGIN)
+    foreach(_tpc_language ${ARGN})
+      if(CMAKE_${_tpc_language}_COMPILER_ID STREQUAL "GNU")
+        foreach(_tpc_rule LINK_EXECUTABLE CREATE_SHARED_LIBRARY CREATE_SHARED_MODULE)
+          string(REPLACE "<LINK_FLAGS>" "<LINK_FLAGS> \"-Wl,-plugin,${TPC_GOLD_PLUGIN}\""
+            CMAKE_${_tpc_language}_${_tpc_rule} "${CMAKE_${_tpc_language}_${_tpc_rule}}")
+        endforeach()
+        list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES CMAKE_${_tpc_language}_LINK_EXECUTABLE)
+      endif()
+    endforeach()
+  endif()
 endmacro()
 
 # Gives a language that the package enables later, by enable_language(), the
@@ -308,7 +396,7 @@ macro(_tpc_instrument)
     _tpc_prepare_language(C CXX)
     set(_tpc_languages C CXX)
   endif()
-  _tpc_replace_gcc(${_tpc_languages})
+  _tpc_replace_compilers(${_tpc_languages})
   _tpc_want_bitcode_alone()
   _tpc_link_with_lld(${_tpc_languages})
   foreach(_tpc_language IN LISTS _tpc_languages)
@@ -372,6 +460,11 @@ macro(_tpc_enter_project)
       list(REMOVE_ITEM _tpc_languages ${_tpc_language})
     endif()
   endforeach()
+  # In a patched package below another project() its own one is yet to come.
+  set(_tpc_name "${PROJECT_NAME}")
+  if(NOT PROJECT_SOURCE_DIR STREQUAL CMAKE_CURRENT_SOURCE_DIR)
+    get_filename_component(_tpc_name "${CMAKE_CURRENT_SOURCE_DIR}" NAME)
+  endif()
   _tpc_find_compilers()
   _tpc_find_obstacle()
   set(_tpc_entered TRUE)
@@ -383,7 +476,7 @@ macro(_tpc_enter_project)
   else()
     set(_tpc_done TRUE)
     if(NOT TPC_DISABLE)
-      message(WARNING "TPC: ${PROJECT_NAME} is built without instrumentation: ${_tpc_obstacle}")
+      message(WARNING "TPC: ${_tpc_name} is built without instrumentation: ${_tpc_obstacle}")
     endif()
     # It may use the libraries of instrumented packages all the same, if the
     # compilers are those that we chose; and what they warn of ends no build.
@@ -395,6 +488,8 @@ macro(_tpc_enter_project)
         if(TPC_LLD)
           _tpc_link_with_lld(${_tpc_language})
         endif()
+      else()
+        _tpc_link_bitcode(${_tpc_language})
       endif()
     endforeach()
   endif()
@@ -407,6 +502,15 @@ macro(_tpc_enter_project)
   endif()
 endmacro()
 
+# One file only can be included after project(): ours, which then includes the one that was
+# asked for.
+macro(_tpc_be_next_include)
+  if(NOT CMAKE_PROJECT_INCLUDE STREQUAL _tpc_file)
+    set(_tpc_next_include "${CMAKE_PROJECT_INCLUDE}")
+    set(CMAKE_PROJECT_INCLUDE "${_tpc_file}")
+  endif()
+endmacro()
+
 get_property(_tpc_probe GLOBAL PROPERTY IN_TRY_COMPILE)
 get_property(_tpc_enabled GLOBAL PROPERTY ENABLED_LANGUAGES)
 if("${CMAKE_SOURCE_DIR}" IN_LIST TPC_LEFT_ALONE)
@@ -416,6 +520,17 @@ if("${CMAKE_SOURCE_DIR}" IN_LIST TPC_LEFT_ALONE)
 endif()
 if(_tpc_left_alone)
   # Not even another compiler.
+  if(NOT _tpc_probe)
+    if(NOT _tpc_enabled)
+      _tpc_be_next_include()
+    elseif(NOT _tpc_done)
+      set(_tpc_done TRUE)
+      _tpc_link_bitcode(C CXX)
+      if(_tpc_next_include)
+        include("${_tpc_next_include}")
+      endif()
+    endif()
+  endif()
 elseif(_tpc_probe)
   # Probes of the compiler are nobody's program; they only need the compiler.
   if(NOT _tpc_enabled)
@@ -425,12 +540,7 @@ elseif(_tpc_probe)
   endif()
 elseif(NOT _tpc_enabled)
   _tpc_choose_compilers()
-  # One file only can be included after project(): ours, which then includes
-  # the one that was asked for.
-  if(NOT CMAKE_PROJECT_INCLUDE STREQUAL CMAKE_CURRENT_LIST_FILE)
-    set(_tpc_next_include "${CMAKE_PROJECT_INCLUDE}")
-    set(CMAKE_PROJECT_INCLUDE "${CMAKE_CURRENT_LIST_FILE}")
-  endif()
+  _tpc_be_next_include()
   list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES CMAKE_PROJECT_INCLUDE)
 elseif(NOT _tpc_done)
   # Otherwise a project() inside the package, which has inherited the rules.

@@ -1,6 +1,7 @@
 """tpc.cmake on small CMake projects without ROS: flags and languages of the package."""
 
 import os
+import shutil
 import subprocess
 from dataclasses import dataclass
 from pathlib import Path
@@ -497,3 +498,90 @@ def test_another_compiler_is_one_warning(tmp_path: Path) -> None:
     (warning,) = result.warnings()
     assert "the compiler is GNU, not clang" in warning
     assert result.runs("x").returncode in (0, 1)
+
+
+BITCODE_LIBRARY = "add_library(l STATIC other.cpp)\n"
+USER_OF_IT = (
+    "add_executable(x user.cpp)\n"
+    "target_link_libraries(x ${CMAKE_CURRENT_SOURCE_DIR}/../libl.a)\n"
+    "add_executable(y main.cpp)\n"
+)
+USER = "#include <string>\nstd::string other(int);\nint main() { return other(3).size() != 3; }\n"
+
+
+@pytest.mark.parametrize("how", ["left alone", "another compiler"])
+def test_what_gcc_builds_links_the_bitcode_of_others(tmp_path: Path, how: str) -> None:
+    library = build(tmp_path, HEAD + BITCODE_LIBRARY, name="q").folder / "libl.a"
+    (tmp_path / "p").mkdir()
+    shutil.copy(library, tmp_path)
+    (tmp_path / "p/user.cpp").write_text(USER, encoding="utf-8")
+    alone = f"-DTPC_LEFT_ALONE={tmp_path}/p"
+    option = alone if how == "left alone" else "-DCMAKE_CXX_COMPILER=g++"
+    result = build(tmp_path, HEAD + USER_OF_IT, toolchain(), option)
+    assert result.analysed() == []
+    assert result.runs("x").returncode == 0
+
+
+def test_flags_that_only_gcc_knows_are_not_taken_where_clang_replaces_it(tmp_path: Path) -> None:
+    lists = HEAD + (
+        "include(CheckCXXCompilerFlag)\ncheck_cxx_compiler_flag(-fno-gnu-unique HAS)\n"
+        "if(HAS)\n  add_compile_options(-fno-gnu-unique)\nendif()\n"
+        "if(CMAKE_COMPILER_IS_GNUCXX)\n  add_compile_options(-fconcepts)\nendif()\n"
+        "add_compile_options($<$<CXX_COMPILER_ID:GNU>:-fno-gnu-unique>)\n"
+        "add_executable(x main.cpp)\n"
+    )
+    result = build(tmp_path, include() + lists, f"-DCMAKE_PROJECT_INCLUDE={cmake_file()}")
+    assert (result.analysed(), result.warnings()) == (["x"], [])
+
+
+def test_a_compiler_that_is_named_after_project_changes_nothing(tmp_path: Path) -> None:
+    lists = HEAD + "set(CMAKE_CXX_COMPILER g++)\nadd_executable(x main.cpp)\n"
+    assert build(tmp_path, lists).analysed() == ["x"]
+
+
+def test_the_archives_of_gccs_own_lto_stay_gccs(tmp_path: Path) -> None:
+    lists = (
+        "cmake_minimum_required(VERSION 3.16)\nset(CMAKE_CXX_COMPILER g++)\nproject(p CXX)\n"
+        "set(CMAKE_INTERPROCEDURAL_OPTIMIZATION ON)\nadd_library(l STATIC other.cpp)\n"
+        "add_executable(x user.cpp)\ntarget_link_libraries(x l)\n"
+    )
+    (tmp_path / "p").mkdir()
+    (tmp_path / "p/user.cpp").write_text(USER, encoding="utf-8")
+    assert build(tmp_path, lists).runs("x").returncode == 0
+
+
+PARALLEL = """#include <omp.h>
+int main() {
+  int sum = 0;
+#pragma omp parallel for reduction(+ : sum)
+  for (int i = 0; i < 100; ++i)
+    sum += i;
+  return sum != 4950 || omp_get_max_threads() < 1;
+}
+"""
+
+
+@pytest.mark.parametrize("way", ["toolchain", "patched", "below"])
+def test_openmp_works_whether_clang_has_it_or_not(tmp_path: Path, way: str) -> None:
+    targets = (
+        "find_package(OpenMP REQUIRED)\nadd_executable(x par.cpp)\n"
+        "target_link_libraries(x OpenMP::OpenMP_CXX)\n"
+    )
+    package = tmp_path / "p" / ("below" if way == "below" else "")
+    package.mkdir(parents=True)
+    (package / "par.cpp").write_text(PARALLEL, encoding="utf-8")
+    if way == "below":
+        (package / "package.xml").touch()
+        (package / "CMakeLists.txt").write_text(include() + "project(b)\n" + targets, "utf-8")
+        lists = HEAD + "add_subdirectory(below)\n"
+    else:
+        lists = (include() if way == "patched" else "") + HEAD + targets
+    arguments = () if way == "toolchain" else ("-DCMAKE_BUILD_TYPE=Release",)
+    result = build(tmp_path, lists, *arguments)
+    assert result.runs("below/x" if way == "below" else "x").returncode == 0
+    (tmp_path / "one.c").write_text("int main(void) { return 0; }\n", encoding="ascii")
+    has_it = run(["clang-19", "-fopenmp", tmp_path / "one.c", "-o", tmp_path / "one"])
+    if has_it.returncode != 0:
+        (warning,) = result.warnings()
+        assert f"TPC: {'below' if way == 'below' else 'p'} is built without" in warning
+        assert "apt-get install libomp-19-dev" in warning
