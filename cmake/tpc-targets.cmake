@@ -16,7 +16,15 @@ function(_tpc_finish)
   set_property(GLOBAL PROPERTY _tpc_listed "")
   _tpc_finish_folder("${CMAKE_SOURCE_DIR}")
   get_property(listed GLOBAL PROPERTY _tpc_listed)
-  file(GENERATE OUTPUT "${CMAKE_BINARY_DIR}/tpc/targets.tsv" CONTENT "${listed}")
+  # Of several configurations the first one's files stand for all, as in CMake's answer.
+  set(condition 1)
+  get_property(several GLOBAL PROPERTY GENERATOR_IS_MULTI_CONFIG)
+  if(several)
+    list(GET CMAKE_CONFIGURATION_TYPES 0 first)
+    set(condition "$<CONFIG:${first}>")
+  endif()
+  file(GENERATE OUTPUT "${CMAKE_BINARY_DIR}/tpc/targets.tsv" CONTENT "${listed}"
+    CONDITION "${condition}")
   # CMake answers in the configuration after this one.
   if(NOT EXISTS "${CMAKE_BINARY_DIR}/.cmake/api/v1/query/codemodel-v2")
     file(WRITE "${CMAKE_BINARY_DIR}/.cmake/api/v1/query/codemodel-v2" "")

@@ -530,7 +530,7 @@ def test_flags_that_only_gcc_knows_are_not_taken_where_clang_replaces_it(tmp_pat
         "add_compile_options($<$<CXX_COMPILER_ID:GNU>:-fno-gnu-unique>)\n"
         "add_executable(x main.cpp)\n"
     )
-    result = build(tmp_path, include() + lists, f"-DCMAKE_PROJECT_INCLUDE={cmake_file()}")
+    result = build(tmp_path, lists, f"-DCMAKE_PROJECT_INCLUDE={cmake_file()}")
     assert (result.analysed(), result.warnings()) == (["x"], [])
 
 
@@ -585,3 +585,13 @@ def test_openmp_works_whether_clang_has_it_or_not(tmp_path: Path, way: str) -> N
         (warning,) = result.warnings()
         assert f"TPC: {'below' if way == 'below' else 'p'} is built without" in warning
         assert "apt-get install libomp-19-dev" in warning
+
+
+def test_several_configurations_in_one_folder(tmp_path: Path) -> None:
+    lists = HEAD + "add_executable(x main.cpp)\nadd_library(s SHARED other.cpp)\n"
+    result = build(tmp_path, lists, toolchain(), "-G", "Ninja Multi-Config")
+    assert result.analysed() == ["s", "x"]
+    units = {unit.name: unit.artifact for unit in recorded_units(result.folder) or ()}
+    assert units["x"] == result.folder / "Debug/x"
+    assert run(["cmake", "--build", result.folder, "--config", "Release"]).returncode == 0
+    assert result.runs("Release/x").returncode in (0, 1)
