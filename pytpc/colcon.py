@@ -200,6 +200,8 @@ def run_colcon(
         _raise_for_failed_package(latest)
     if process.returncode != 0:
         end = next((line for line in reversed(said) if line), "it says nothing")
+        if any("Unable to order packages" in line for line in said):
+            end = "packages need one another; `pytpc doctor` says which"
         raise RunError(f"colcon ends with status {process.returncode}: {end}")
 
 
@@ -234,7 +236,11 @@ def ended_jobs(events: str) -> dict[str, str]:
 
 
 def _raise_for_failed_package(log: Path) -> None:
-    jobs = ended_jobs((log / "events.log").read_text("utf-8", "replace"))
+    events = log / "events.log"
+    if not events.is_file():
+        # colcon ended before the first package, and says itself why.
+        return
+    jobs = ended_jobs(events.read_text("utf-8", "replace"))
     finished = frozenset(name for name, status in jobs.items() if status == "0")
     for name, status in jobs.items():
         if status in _NO_FAULT:

@@ -528,3 +528,20 @@ def test_a_signal_to_end_ends_everything_below(workspace: Path, colcon: FakeColc
     pid = int((workspace / ".tpc/pid").read_text())
     with pytest.raises(ProcessLookupError):
         os.kill(pid, 0)
+
+
+def test_what_colcon_says_before_the_first_package_is_shown(
+    workspace: Path, colcon: FakeColcon
+) -> None:
+    colcon.writes("log/build_1/logger_all.log", "")
+    colcon.link_log("'build_1'")
+    colcon.lines.append("sys.exit('the install layout is merged')")
+    with pytest.raises(RunError, match="colcon ends with status 1: the install layout is merged"):
+        build_workspace(workspace)
+
+
+def test_packages_that_need_one_another_are_one_line(workspace: Path, colcon: FakeColcon) -> None:
+    ordered = "Unable to order packages topologically:\\na: ['b']\\nb: ['a']"
+    colcon.lines.append(f'sys.exit("ERROR:colcon: {ordered}")')
+    with pytest.raises(RunError, match="packages need one another; `pytpc doctor` says which"):
+        build_workspace(workspace)
