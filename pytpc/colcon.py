@@ -8,6 +8,7 @@ from __future__ import annotations
 import contextlib
 import os
 import re
+import shutil
 import signal
 import subprocess
 from collections.abc import Callable, Iterable, Sequence
@@ -21,6 +22,8 @@ from pytpc.signals import signals_end
 from pytpc.workspace import Package
 
 _TAIL_LINES = 25
+# A disk with fewer free bytes is full: there is no room for one more block of a log.
+_FULL = 64 * 1024
 _OWN_OPTIONS = ("--build-base", "--install-base", "--log-base", "--paths", "--base-paths")
 _HANDLERS = ("console_direct+", "console_cohesion-", "console_stderr-", "summary-")
 _EVENT = re.compile(
@@ -169,7 +172,7 @@ def run_colcon(
 
     Raises:
         BuildError: a package does not build.
-        RunError: colcon itself fails.
+        RunError: colcon itself fails, or the disk is full.
     """
     before = _latest_log(bases)
     said: list[str] = []
@@ -195,6 +198,9 @@ def run_colcon(
         except BaseException:
             end_group(process)
             raise
+    if process.returncode != 0 and shutil.disk_usage(bases.root).free < _FULL:
+        # No fault of a package, and colcon stumbles over it in many ways.
+        raise RunError("the disk is full; make room and build again", bases.root)
     latest = _latest_log(bases)
     if latest is not None and latest != before:
         _raise_for_failed_package(latest)

@@ -6,10 +6,12 @@ Here colcon is a script of ours; tests/ros builds with the real one.
 import fcntl
 import json
 import os
+import shutil
 import signal
 import sys
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from file_api import reply, target
@@ -545,3 +547,14 @@ def test_packages_that_need_one_another_are_one_line(workspace: Path, colcon: Fa
     colcon.lines.append(f'sys.exit("ERROR:colcon: {ordered}")')
     with pytest.raises(RunError, match="packages need one another; `pytpc doctor` says which"):
         build_workspace(workspace)
+
+
+def test_a_full_disk_is_no_fault_of_the_package(
+    workspace: Path, colcon: FakeColcon, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fails_with_tpc(colcon)
+    full = SimpleNamespace(total=1, used=1, free=0)
+    monkeypatch.setattr(shutil, "disk_usage", lambda _path: full)
+    with pytest.raises(RunError, match="the disk is full"):
+        build_workspace(workspace)
+    assert not (workspace / ".tpc/left-alone.json").exists()
