@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from pytpc.build import build_environment
+from pytpc.colcon import build_environment
 from pytpc.errors import MissingToolError
 from pytpc.graph import RosGraph
 from pytpc.paths import compiler_wrapper, log_library, plugin, prefix
