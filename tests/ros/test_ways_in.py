@@ -1,4 +1,4 @@
-"""A workspace of a dozen packages, built in every way in; and its tests, with TPC and without.
+"""A workspace of a dozen packages, built every way in; and its tests, with TPC and without.
 
 What has to be found stands in the sources, as ``TPC`` and the parameters behind a comparison.
 """
@@ -18,11 +18,11 @@ from pytpc.colcon import Bases, build_environment
 from pytpc.collecting import collect_sources
 from pytpc.errors import MissingToolError
 from pytpc.graph import RosGraph
-from pytpc.paths import cmake_file, log_library, plugin
+from pytpc.paths import cmake_file, compiler_wrapper, log_library, plugin
 from pytpc.static_info import LeftOut, StaticInfo
 
 try:
-    for half in (cmake_file, plugin, log_library):
+    for half in (cmake_file, compiler_wrapper, plugin, log_library):
         half()
 except MissingToolError as error:
     pytest.skip(f"the C++ half is not installed: {error}", allow_module_level=True)
@@ -119,7 +119,8 @@ def run(command: list[str | Path], folder: Path, variables: dict[str, str]) -> s
     ran = subprocess.run(
         command,
         cwd=folder,
-        env=variables,
+        # catkin_make believes this one.
+        env={**variables, "PWD": str(folder)},
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
@@ -240,6 +241,26 @@ def test_plain_cmake_does_the_same(
         run([*configure, "-DPYTHON_EXECUTABLE=/usr/bin/python3"], tmp_path, variables)
         run(["cmake", "--build", folder, "--target", "install"], tmp_path, variables)
     check(collect_sources([tmp_path]).static, sources, by_colcon)
+
+
+def test_the_compiler_wrappers_find_the_same(
+    by_colcon: StaticInfo, sources: Path, variables: dict[str, str], tmp_path: Path
+) -> None:
+    """CC and CXX alone: nothing is patched, and CMake knows nothing of TPC."""
+    wrapper = compiler_wrapper()
+    environment = {
+        **variables,
+        "CC": str(wrapper.with_name("tpc-clang")),
+        "CXX": str(wrapper),
+        "TPC_SOURCE_ROOT": str(sources),
+    }
+    command: list[str | Path] = ["catkin_make", "-C", sources.parent, "--build", tmp_path / "b"]
+    run([*command, f"-DCATKIN_DEVEL_PREFIX={tmp_path}/devel"], tmp_path, environment)
+    (sources / "CMakeLists.txt").unlink()
+    static = collect_sources([tmp_path / "devel"]).static
+    assert found(static) == expected(sources)
+    # What CMake knows of its targets is not known here: the one that is to be quiet reports.
+    assert {unit.link_unit for unit in static.units} == UNITS | {"quiet_node"}
 
 
 def test_a_second_workspace_lies_over_the_first(
