@@ -38,13 +38,15 @@ class Package:
 class Manifest:
     """What a package.xml says: names of other packages, in its order, conditions evaluated.
 
-    ``build_depends`` are needed to build the package, ``run_depends`` to run it.
+    ``build_depends`` are needed to build the package, ``run_depends`` to run it, ``test_depends``
+    for its tests.
     """
 
     name: str
     build_type: str
     build_depends: tuple[str, ...]
     run_depends: tuple[str, ...]
+    test_depends: tuple[str, ...] = ()
 
 
 def find_packages(workspace: Path) -> list[Package]:
@@ -181,8 +183,14 @@ def read_manifest(folder: Path) -> Manifest:
     return Manifest(
         manifest.name,
         build_type,
-        _names(manifest.build_depends, manifest.buildtool_depends, manifest.build_export_depends),
+        _names(
+            manifest.build_depends,
+            manifest.buildtool_depends,
+            manifest.build_export_depends,
+            manifest.buildtool_export_depends,
+        ),
         _names(manifest.exec_depends),
+        _names(manifest.test_depends),
     )
 
 
