@@ -102,7 +102,7 @@ def variables(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
 @pytest.fixture(scope="module")
 def sources(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The packages, one of them with a file that cannot be written."""
-    folder = tmp_path_factory.mktemp("a workspace") / "src"
+    folder = tmp_path_factory.mktemp("workspace") / "src"
     shutil.copytree(WORKSPACES / "dozen/src", folder)
     (folder / "mit Abstand/größe/CMakeLists.txt").chmod(0o444)
     return folder
