@@ -13,8 +13,8 @@ import pytest
 from click.testing import CliRunner
 from test_build_workspace import make_package
 
-from pytpc.build import build_environment
 from pytpc.cli.main import main
+from pytpc.colcon import build_environment
 from pytpc.errors import MissingToolError
 from pytpc.paths import cmake_file, log_library, mixin_index, plugin
 from pytpc.static_info import collect
