@@ -133,9 +133,13 @@ Plan planFor(const Arguments &Asked, const Environment &Around) {
   if (Asked.hasSource(Language::CFamily))
     add(Out.Added, Around.Added.Accept);
   // With -Werror among its flags, one that clang has no use for would make
-  // every answer a no.
-  if (Probe)
+  // every answer of a probe a no; and flags for C and C++ are of no use to
+  // assembler sources, of which gcc does not warn.
+  const bool IsAssembler = Asked.hasSource(Language::Assembler);
+  if (Probe || IsAssembler)
     Out.Added.push_back("-Qunused-arguments");
+  if (IsAssembler)
+    Out.Added.push_back("-Wno-error");
   if (CompilesForUs) {
     add(Out.Added, Around.Added.Compile);
     // Native code beside the bitcode would be what is linked.
