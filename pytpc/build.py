@@ -30,7 +30,13 @@ from pytpc.paths import (
 from pytpc.reconcile import left_out_units, stale_files
 from pytpc.rules import check_rules
 from pytpc.static_info import LeftOut, LinkUnit, StaticInfo, collect, unit_files
-from pytpc.workspace import Package, find_packages, read_cmakelists, select_packages
+from pytpc.workspace import (
+    Package,
+    find_packages,
+    read_cmakelists,
+    refuse_cycles,
+    select_packages,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,6 +100,7 @@ def build_workspace(
     """
     began = time.monotonic()
     found = find_packages(workspace)
+    refuse_cycles(found, workspace)
     chosen = select_packages(found, packages)
     for package in chosen:
         read_cmakelists(package)

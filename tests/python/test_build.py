@@ -462,3 +462,15 @@ def test_a_broken_list_of_packages_left_alone_is_named(
     (workspace / ".tpc/left-alone.json").write_text(text)
     with pytest.raises(InputError, match=r"left-alone\.json: not a list of packages"):
         build_workspace(workspace)
+
+
+def test_packages_that_need_one_another_are_named_before_anything_is_written(
+    workspace: Path,
+) -> None:
+    for name, other in (("arm", "face"), ("face", "arm")):
+        kind = "build_depend" if name == "arm" else "exec_depend"
+        add_package(workspace / "src" / name, more=f"<{kind}>{other}</{kind}>")
+    with pytest.raises(WorkspaceError) as caught:
+        build_workspace(workspace)
+    assert str(caught.value) == f"{workspace}: packages need one another: arm -> face -> arm"
+    assert sorted(path.name for path in workspace.iterdir()) == ["src"]

@@ -15,7 +15,8 @@ from pytpc.cmake_block import patch_text
 from pytpc.doctor.finding import Finding, Severity
 from pytpc.doctor.look_workspace import look_at_known, look_at_workspace, read_cache
 from pytpc.doctor.machine import Machine
-from pytpc.doctor.workspace import Known, check_workspace, debian_names, find_cycle, unsuited_flags
+from pytpc.doctor.workspace import Known, check_workspace, debian_names, unsuited_flags
+from pytpc.workspace import find_cycle
 
 CMAKE_FILE = "/opt/tpc/share/tpc/cmake/tpc.cmake"
 LISTS = b"cmake_minimum_required(VERSION 3.16)\nproject(p)\n"
