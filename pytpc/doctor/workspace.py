@@ -18,6 +18,9 @@ from pytpc.workspace import MANIFEST, Manifest, find_cycle
 _COMMENTS = (Kind.LINE_COMMENT, Kind.BRACKET_COMMENT)
 _CMAKE_BUILD_TYPES = ("catkin", "cmake", "ament_cmake")
 
+# Clang itself, or what CMake takes of itself: there tpc.cmake puts clang in its place.
+_REPLACED = re.compile(r"clang(\+\+)?-19$|(^|/)c(c|\+\+)$")
+
 
 @dataclass(frozen=True, slots=True)
 class SeenPackage:
@@ -230,14 +233,12 @@ def _builds(seen: SeenWorkspace, known: Known) -> Iterator[Finding]:
                     build.folder,
                     f"rm -r {build.folder}",
                 )
-        elif build.toolchain != known.cmake_file and not re.search(
-            r"clang(\+\+)?-19$", build.compiler
-        ):
+        elif build.toolchain != known.cmake_file and not re.search(_REPLACED, build.compiler):
             source = build.source.resolve()
             if any(folder == source or folder.is_relative_to(source) for folder in patched):
                 yield warning(
-                    f"CMake keeps the compiler of a build folder, here {build.compiler}, so that"
-                    " the patched package is not instrumented",
+                    f"CMake keeps the compiler of a build folder, here {build.compiler}, which"
+                    " somebody named, so that the patched package is not instrumented",
                     build.folder,
                     f"rm -r {build.folder}",
                 )
@@ -245,7 +246,8 @@ def _builds(seen: SeenWorkspace, known: Known) -> Iterator[Finding]:
                 plain[build.folder.parent].append(build)
     for base, builds in plain.items():
         yield note(
-            f"built with {builds[0].compiler}: a patched package needs another build folder",
+            f"built with {builds[0].compiler}, which somebody named: a patched package needs"
+            " another build folder",
             builds[0].folder if len(builds) == 1 else base,
         )
 
