@@ -268,15 +268,23 @@ def test_the_compiler_wrappers_find_the_same(
 
 
 def test_a_second_workspace_lies_over_the_first(
-    by_colcon: StaticInfo, variables: dict[str, str], tmp_path: Path
+    by_colcon: StaticInfo, sources: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """ament and plain CMake beside a package that overlays one of the first; merged install."""
+    """ament and plain CMake, beside a package that needs those of the first; merged install."""
+    built = by_colcon.units[0].build_folder
+    assert built is not None
+    for name, value in workspace_env(Path(built).parents[1] / "install").items():
+        monkeypatch.setenv(name, value)
     (tmp_path / "src").mkdir()
+    shutil.copytree(sources / "dozen_user", tmp_path / "src/dozen_user")
     for place in (WORKSPACES / "others/src").iterdir():
         (tmp_path / "src" / place.name).symlink_to(place)
     result = build_workspace(tmp_path, colcon_args=["--merge-install"])
-    assert found(result.static) == expected(WORKSPACES / "others/src")
-    assert [unit.link_unit for unit in result.units] == ["ament_node"]
+    # From below come the counter's header and the gate's static library.
+    below = {("counter.h", 13, "count/every"), ("gate.cpp", 9, "gate/level")}
+    own = expected(tmp_path / "src/dozen_user") | expected(WORKSPACES / "others/src")
+    assert found(result.static) == own | below
+    assert [unit.link_unit for unit in result.units] == ["user_node", "ament_node"]
     node = tmp_path / ".tpc/install/lib/others_ament/ament_node"
     needed = subprocess.run(
         ["ldd", node], env={"PATH": os.defpath}, capture_output=True, text=True, check=True
