@@ -32,7 +32,13 @@ from pytpc.paths import (
 from pytpc.reconcile import left_out_units, stale_files
 from pytpc.rules import check_rules
 from pytpc.static_info import LeftOut, LinkUnit, StaticInfo, collect, unit_files
-from pytpc.workspace import Package, find_packages, read_cmakelists, select_packages
+from pytpc.workspace import (
+    Package,
+    find_packages,
+    read_cmakelists,
+    refuse_cycles,
+    select_packages,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,6 +105,7 @@ def build_workspace(
         # colcon and CMake take that out of a path, and the names of folders have to be theirs.
         workspace = workspace.resolve()
     found = find_packages(workspace)
+    refuse_cycles(found, workspace)
     chosen = select_packages(found, packages)
     for package in chosen:
         read_cmakelists(package)

@@ -11,7 +11,7 @@ import re
 import shutil
 import signal
 import subprocess
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from glob import escape
 from pathlib import Path
@@ -176,12 +176,44 @@ def run_colcon(
     """
     before = _latest_log(bases)
     said: list[str] = []
+
+    def hear(line: str) -> None:
+        said[:] = [*said[-_TAIL_LINES:], line]
+        if on_output is not None:
+            on_output(line)
+
+    status = run_lines(command, workspace, build_environment(), hear)
+    if status != 0 and shutil.disk_usage(bases.root).free < _FULL:
+        # No fault of a package, and colcon stumbles over it in many ways.
+        raise RunError("the disk is full; make room and build again", bases.root)
+    latest = _latest_log(bases)
+    if latest is not None and latest != before:
+        _raise_for_failed_package(latest)
+    if status != 0:
+        end = next((line for line in reversed(said) if line), "it says nothing")
+        raise RunError(f"colcon ends with status {status}: {end}")
+
+
+def run_lines(
+    command: Sequence[str],
+    folder: Path,
+    environment: Mapping[str, str],
+    on_line: Callable[[str], None],
+) -> int:
+    """Run a program and all below it, which end with us; returns its status.
+
+    Args:
+        command: the program and its arguments.
+        folder: where it runs.
+        environment: all of it.
+        on_line: called with each line of both its outputs, without white space at the end.
+    """
     with (
         signals_end(),
         subprocess.Popen(
             command,
-            cwd=workspace,
-            env=build_environment(),
+            cwd=folder,
+            env=dict(environment),
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
@@ -192,26 +224,14 @@ def run_colcon(
     ):
         try:
             for line in process.stdout or ():
-                said = [*said[-_TAIL_LINES:], line.rstrip()]
-                if on_output is not None:
-                    on_output(line.rstrip())
+                on_line(line.rstrip())
         except BaseException:
-            end_group(process)
+            _end_group(process)
             raise
-    if process.returncode != 0 and shutil.disk_usage(bases.root).free < _FULL:
-        # No fault of a package, and colcon stumbles over it in many ways.
-        raise RunError("the disk is full; make room and build again", bases.root)
-    latest = _latest_log(bases)
-    if latest is not None and latest != before:
-        _raise_for_failed_package(latest)
-    if process.returncode != 0:
-        end = next((line for line in reversed(said) if line), "it says nothing")
-        if any("Unable to order packages" in line for line in said):
-            end = "packages need one another; `pytpc doctor` says which"
-        raise RunError(f"colcon ends with status {process.returncode}: {end}")
+    return process.returncode
 
 
-def end_group(process: subprocess.Popen[str]) -> None:
+def _end_group(process: subprocess.Popen[str]) -> None:
     """End colcon and the compilers below it, gently first: colcon then records what it left."""
     for end, patience in ((signal.SIGINT, 10), (signal.SIGTERM, 5), (signal.SIGKILL, None)):
         with contextlib.suppress(ProcessLookupError):

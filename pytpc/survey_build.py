@@ -17,17 +17,16 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from xml.parsers import expat
 
 from pytpc.build_faults import first_error, missing_names
 from pytpc.cmake_syntax import find_fault
 from pytpc.cmake_targets import ask_for_targets, link_targets
-from pytpc.colcon import Bases, build_environment, colcon_command, end_group, ended_jobs
-from pytpc.errors import InputError, MissingToolError, RunError, TpcError, WorkspaceError
+from pytpc.colcon import Bases, build_environment, colcon_command, ended_jobs, run_lines
+from pytpc.errors import InputError, RunError, TpcError, WorkspaceError
 from pytpc.paths import BUILD_TOOLS, accepting_flags, cmake_file, require_tools
 from pytpc.static_info import LinkUnit, load_link_unit, unit_files
 from pytpc.survey import Build, NotBuilt, Tree, TreePackage
-from pytpc.workspace import MANIFEST, Package, package_folders
+from pytpc.workspace import MANIFEST, Package, package_folders, read_manifest
 
 BUILD_TYPE = "RelWithDebInfo"
 _PROJECT = re.compile(r"^[ \t]*project[ \t]*\(\s*\"?(?P<name>[^\s\"()$]+)", re.I | re.M)
@@ -190,31 +189,9 @@ def _for_builds(environment: Mapping[str, str], jobs: int) -> dict[str, str]:
 
 
 def _read_package(folder: Path) -> TreePackage:
-    try:
-        from catkin_pkg.package import InvalidPackage, parse_package_string  # noqa: PLC0415
-    except ImportError as error:
-        raise MissingToolError(
-            "catkin_pkg not found; mend it with: apt-get install python3-catkin-pkg"
-        ) from error
-    path = folder / MANIFEST
-    try:
-        raw = path.read_bytes()
-        expat.ParserCreate().Parse(raw, True)
-        manifest = parse_package_string(raw, filename=str(path), warnings=[])
-        manifest.evaluate_conditions({"ROS_VERSION": "1", **os.environ})
-        kinds = ("buildtool", "buildtool_export", "build", "build_export", "exec", "test")
-        needs = {
-            dependency.name
-            for kind in kinds
-            for dependency in getattr(manifest, f"{kind}_depends")
-            if dependency.evaluated_condition is not False
-        }
-        return TreePackage(manifest.name, folder, manifest.get_build_type(), frozenset(needs))
-    except expat.ExpatError as error:
-        raise InputError(f"not XML: {expat.ErrorString(error.code)}", path, error.lineno) from error
-    except (InvalidPackage, ValueError, AssertionError, LookupError) as error:
-        what = getattr(error, "msg", None) or str(error)
-        raise InputError(f"not a package manifest: {what}", path) from error
+    manifest = read_manifest(folder)
+    needs = {*manifest.build_depends, *manifest.run_depends, *manifest.test_depends}
+    return TreePackage(manifest.name, folder, manifest.build_type, frozenset(needs))
 
 
 def _write_launcher(root: Path) -> Path:
@@ -248,28 +225,16 @@ def _run(
     """
     used, began = _children(), time.monotonic()
     said: list[str] = []
-    with subprocess.Popen(
-        command,
-        cwd=folder,
-        env=dict(environment),
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        errors="replace",
-        start_new_session=True,
-    ) as process:
-        try:
-            for line in process.stdout or ():
-                if said and "] ERROR:" in said[0]:
-                    said.append(line)
-                elif line.strip():
-                    said = [line]
-                if on_output is not None:
-                    on_output(line.rstrip())
-        except BaseException:
-            end_group(process)
-            raise
+
+    def hear(line: str) -> None:
+        if said and "] ERROR:" in said[0]:
+            said.append(line)
+        elif line:
+            said[:] = [line]
+        if on_output is not None:
+            on_output(line)
+
+    run_lines(command, folder, environment, hear)
     return time.monotonic() - began, _children() - used, " ".join(" ".join(said).split())
 
 

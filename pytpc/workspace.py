@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
@@ -22,11 +22,15 @@ PRODUCT_MARKERS = frozenset({".built_by", ".catkin", ".colcon_install_layout"})
 
 @dataclass(frozen=True, slots=True)
 class Package:
-    """A package: its name, its folder, and the build type of its manifest (``catkin``, ...)."""
+    """A package: its name, its folder, and the build type of its manifest (``catkin``, ...).
+
+    ``needs`` are the names of the packages without which it is neither built nor run.
+    """
 
     name: str
     path: Path
     build_type: str
+    needs: tuple[str, ...] = ()
 
     @property
     def cmakelists(self) -> Path:
@@ -38,13 +42,20 @@ class Package:
 class Manifest:
     """What a package.xml says: names of other packages, in its order, conditions evaluated.
 
-    ``build_depends`` are needed to build the package, ``run_depends`` to run it.
+    ``build_depends`` are needed to build the package, ``run_depends`` to run it, ``test_depends``
+    for its tests.
     """
 
     name: str
     build_type: str
     build_depends: tuple[str, ...]
     run_depends: tuple[str, ...]
+    test_depends: tuple[str, ...] = ()
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """What has to be built before it, as colcon and catkin order packages."""
+        return tuple(dict.fromkeys((*self.build_depends, *self.run_depends)))
 
 
 def find_packages(workspace: Path) -> list[Package]:
@@ -88,6 +99,41 @@ def select_packages(packages: Sequence[Package], names: Iterable[str]) -> list[P
         hint = f"; did you mean {close[0]}?" if close else f"; there are: {', '.join(known)}"
         raise WorkspaceError(f"no package {name} in this workspace{hint}")
     return [package for package in packages if not wanted or package.name in wanted]
+
+
+def refuse_cycles(packages: Sequence[Package], workspace: Path) -> None:
+    """See that the packages can be ordered.
+
+    Raises:
+        WorkspaceError: some need one another, with their names in a circle.
+    """
+    cycle = find_cycle({package.name: package.needs for package in packages})
+    if cycle:
+        raise WorkspaceError(f"packages need one another: {' -> '.join(cycle)}", workspace)
+
+
+def find_cycle(needs: Mapping[str, Sequence[str]]) -> list[str]:
+    """Names that need one another in a circle, the first one again at the end; none: empty.
+
+    Args:
+        needs: for each name the names that it needs; those without a row of their own need none.
+    """
+    done: set[str] = set()
+    for start in sorted(needs):
+        way: list[str] = []
+        rest = [iter([start])]
+        while rest:
+            name = next(rest[-1], None)
+            if name is None:
+                rest.pop()
+                if way:
+                    done.add(way.pop())
+            elif name in way:
+                return [*way[way.index(name) :], name]
+            elif name not in done:
+                way.append(name)
+                rest.append(iter(sorted(set(needs.get(name, ())))))
+    return []
 
 
 def read_cmakelists(package: Package) -> bytes | None:
@@ -145,7 +191,7 @@ def _is_searched(folder: Path) -> bool:
 
 def _read_package(folder: Path) -> Package:
     manifest = read_manifest(folder)
-    return Package(manifest.name, folder, manifest.build_type)
+    return Package(manifest.name, folder, manifest.build_type, manifest.needs)
 
 
 def read_manifest(folder: Path) -> Manifest:
@@ -181,8 +227,14 @@ def read_manifest(folder: Path) -> Manifest:
     return Manifest(
         manifest.name,
         build_type,
-        _names(manifest.build_depends, manifest.buildtool_depends, manifest.build_export_depends),
+        _names(
+            manifest.build_depends,
+            manifest.buildtool_depends,
+            manifest.build_export_depends,
+            manifest.buildtool_export_depends,
+        ),
         _names(manifest.exec_depends),
+        _names(manifest.test_depends),
     )
 
 

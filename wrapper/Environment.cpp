@@ -118,8 +118,8 @@ static bool readFlags(const fs::path &File, Environment &E) {
     std::istringstream Words(Line);
     std::string Kind;
     Words >> Kind;
-    std::vector<std::string> *List = Kind == "compile" || Kind == "accept"
-                                         ? &E.Added.Compile
+    std::vector<std::string> *List = Kind == "compile"  ? &E.Added.Compile
+                                     : Kind == "accept" ? &E.Added.Accept
                                      : Kind == "link"   ? &E.Added.Link
                                      : Kind == "linker" ? &E.Added.Linker
                                      : Kind == "last"   ? &E.Added.Last

@@ -17,6 +17,7 @@ namespace tpc {
 /// where it belongs, with the places filled in.
 struct Flags {
   std::vector<std::string> Compile;
+  std::vector<std::string> Accept; ///< clang takes what gcc does
   std::vector<std::string> Link;
   std::vector<std::string> Linker; ///< to the linker
   std::vector<std::string> Last;   ///< to the linker, at the end

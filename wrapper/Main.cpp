@@ -88,7 +88,8 @@ int main(int Count, char **Values) {
   const std::string Name = fs::path(Values[0]).filename();
   std::vector<std::string> Words(Values + 1, Values + Count);
   for (const char *Tool : {"ar", "ranlib", "nm"})
-    if (Name == std::string("tpc-") + Tool)
+    if (Name == std::string("tpc-") + Tool ||
+        Name == std::string("llvm-") + Tool)
       return runTool(Tool, Self, Words);
   const bool IsCxx = Name.size() > 2 && Name.substr(Name.size() - 2) == "++";
   return runCompiler(IsCxx, Self, std::move(Words));

@@ -130,6 +130,16 @@ Plan planFor(const Arguments &Asked, const Environment &Around) {
     Out.Warning = linkUnitName(Output) + " is linked without reports: " + Why;
   const bool CompilesForUs =
       !IsPlain && Asked.hasSource(Language::CFamily) && (!Links || Why.empty());
+  if (Asked.hasSource(Language::CFamily))
+    add(Out.Added, Around.Added.Accept);
+  // With -Werror among its flags, one that clang has no use for would make
+  // every answer of a probe a no; and flags for C and C++ are of no use to
+  // assembler sources, of which gcc does not warn.
+  const bool IsAssembler = Asked.hasSource(Language::Assembler);
+  if (Probe || IsAssembler)
+    Out.Added.push_back("-Qunused-arguments");
+  if (IsAssembler)
+    Out.Added.push_back("-Wno-error");
   if (CompilesForUs) {
     add(Out.Added, Around.Added.Compile);
     // Native code beside the bitcode would be what is linked.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,10 +13,13 @@ from pytpc.cmake_syntax import UTF8_BOM, Kind, command_names, find_fault, tokens
 from pytpc.doctor.finding import Finding, error, note, warning
 from pytpc.doctor.machine import UNSUITED
 from pytpc.errors import InputError, WorkspaceError
-from pytpc.workspace import MANIFEST, Manifest
+from pytpc.workspace import MANIFEST, Manifest, find_cycle
 
 _COMMENTS = (Kind.LINE_COMMENT, Kind.BRACKET_COMMENT)
 _CMAKE_BUILD_TYPES = ("catkin", "cmake", "ament_cmake")
+
+# Clang itself, or what CMake takes of itself: there tpc.cmake puts clang in its place.
+_REPLACED = re.compile(r"clang(\+\+)?-19$|(^|/)c(c|\+\+)$")
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,30 +92,6 @@ def check_workspace(seen: SeenWorkspace, known: Known) -> list[Finding]:
         for name in seen.odd_names
     ]
     return findings
-
-
-def find_cycle(needs: Mapping[str, Sequence[str]]) -> list[str]:
-    """Names that need one another in a circle, the first one again at the end; none: empty.
-
-    Args:
-        needs: for each name the names that it needs; those without a row of their own need none.
-    """
-    done: set[str] = set()
-    for start in sorted(needs):
-        way: list[str] = []
-        rest = [iter([start])]
-        while rest:
-            name = next(rest[-1], None)
-            if name is None:
-                rest.pop()
-                if way:
-                    done.add(way.pop())
-            elif name in way:
-                return [*way[way.index(name) :], name]
-            elif name not in done:
-                way.append(name)
-                rest.append(iter(sorted(set(needs.get(name, ())))))
-    return []
 
 
 def debian_names(name: str, *, distribution: str | None = None) -> list[str]:
@@ -203,9 +182,7 @@ def _names(seen: SeenWorkspace) -> Iterator[Finding]:
 
 
 def _cycles(seen: SeenWorkspace) -> Iterator[Finding]:
-    needs = {manifest.name: manifest.build_depends for manifest in _manifests(seen)}
-    within = {name: [one for one in needed if one in needs] for name, needed in needs.items()}
-    cycle = find_cycle(within)
+    cycle = find_cycle({manifest.name: manifest.needs for manifest in _manifests(seen)})
     if cycle:
         yield error(
             f"packages need one another: {' -> '.join(cycle)}",
@@ -256,14 +233,12 @@ def _builds(seen: SeenWorkspace, known: Known) -> Iterator[Finding]:
                     build.folder,
                     f"rm -r {build.folder}",
                 )
-        elif build.toolchain != known.cmake_file and not re.search(
-            r"clang(\+\+)?-19$", build.compiler
-        ):
+        elif build.toolchain != known.cmake_file and not re.search(_REPLACED, build.compiler):
             source = build.source.resolve()
             if any(folder == source or folder.is_relative_to(source) for folder in patched):
                 yield warning(
-                    f"CMake keeps the compiler of a build folder, here {build.compiler}, so that"
-                    " the patched package is not instrumented",
+                    f"CMake keeps the compiler of a build folder, here {build.compiler}, which"
+                    " somebody named, so that the patched package is not instrumented",
                     build.folder,
                     f"rm -r {build.folder}",
                 )
@@ -271,7 +246,8 @@ def _builds(seen: SeenWorkspace, known: Known) -> Iterator[Finding]:
                 plain[build.folder.parent].append(build)
     for base, builds in plain.items():
         yield note(
-            f"built with {builds[0].compiler}: a patched package needs another build folder",
+            f"built with {builds[0].compiler}, which somebody named: a patched package needs"
+            " another build folder",
             builds[0].folder if len(builds) == 1 else base,
         )
 

@@ -15,7 +15,8 @@ from pytpc.cmake_block import patch_text
 from pytpc.doctor.finding import Finding, Severity
 from pytpc.doctor.look_workspace import look_at_known, look_at_workspace, read_cache
 from pytpc.doctor.machine import Machine
-from pytpc.doctor.workspace import Known, check_workspace, debian_names, find_cycle, unsuited_flags
+from pytpc.doctor.workspace import Known, check_workspace, debian_names, unsuited_flags
+from pytpc.workspace import find_cycle
 
 CMAKE_FILE = "/opt/tpc/share/tpc/cmake/tpc.cmake"
 LISTS = b"cmake_minimum_required(VERSION 3.16)\nproject(p)\n"
@@ -212,20 +213,26 @@ def test_build_folders_keep_their_compiler(workspace: Path) -> None:
     cache(own, arm, "/usr/bin/clang++-19", CMAKE_FILE)
     assert check(workspace) == []
     plain = workspace / "build/arm"
+    # Where nobody named a compiler, clang takes its place.
     cache(plain, arm, "/usr/bin/c++")
+    assert check(workspace) == []
+    (plain / "CMakeCache.txt").unlink()
+    plain.rmdir()
+    cache(plain, arm, "/usr/bin/g++")
     assert only(check(workspace))[:3] == (
         "note",
-        "built with /usr/bin/c++: a patched package needs another build folder",
+        "built with /usr/bin/g++, which somebody named: a patched package needs another build"
+        " folder",
         str(plain),
     )
     (arm / "CMakeLists.txt").write_bytes(patch_text(LISTS, CMAKE_FILE))
     severity, what, where, mend = only(check(workspace))
     assert (severity, where, mend) == ("warning", str(plain), f"rm -r {plain}")
-    assert "here /usr/bin/c++" in what
+    assert "here /usr/bin/g++" in what
 
 
 def test_the_one_build_folder_of_catkin_make(workspace: Path) -> None:
-    cache(workspace / "build", workspace / "src", "/usr/bin/c++")
+    cache(workspace / "build", workspace / "src", "/usr/bin/g++")
     assert only(check(workspace))[0] == "note"
     (workspace / "src/arm/CMakeLists.txt").write_bytes(patch_text(LISTS, CMAKE_FILE))
     assert only(check(workspace))[0] == "warning"

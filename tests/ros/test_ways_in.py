@@ -1,4 +1,4 @@
-"""A workspace of a dozen packages, built in every way in; and its tests, with TPC and without.
+"""A workspace of a dozen packages, built every way in; and its tests, with TPC and without.
 
 What has to be found stands in the sources, as ``TPC`` and the parameters behind a comparison.
 """
@@ -18,11 +18,11 @@ from pytpc.colcon import Bases, build_environment
 from pytpc.collecting import collect_sources
 from pytpc.errors import MissingToolError
 from pytpc.graph import RosGraph
-from pytpc.paths import cmake_file, log_library, plugin
+from pytpc.paths import cmake_file, compiler_wrapper, log_library, plugin
 from pytpc.static_info import LeftOut, StaticInfo
 
 try:
-    for half in (cmake_file, plugin, log_library):
+    for half in (cmake_file, compiler_wrapper, plugin, log_library):
         half()
 except MissingToolError as error:
     pytest.skip(f"the C++ half is not installed: {error}", allow_module_level=True)
@@ -102,7 +102,7 @@ def variables(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
 @pytest.fixture(scope="module")
 def sources(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The packages, one of them with a file that cannot be written."""
-    folder = tmp_path_factory.mktemp("a workspace") / "src"
+    folder = tmp_path_factory.mktemp("workspace") / "src"
     shutil.copytree(WORKSPACES / "dozen/src", folder)
     (folder / "mit Abstand/größe/CMakeLists.txt").chmod(0o444)
     return folder
@@ -119,7 +119,8 @@ def run(command: list[str | Path], folder: Path, variables: dict[str, str]) -> s
     ran = subprocess.run(
         command,
         cwd=folder,
-        env=variables,
+        # catkin_make believes this one.
+        env={**variables, "PWD": str(folder)},
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
@@ -196,7 +197,11 @@ def test_catkin_make_on_a_patched_workspace_does_the_same(
     for folder in ("build", "devel"):
         shutil.rmtree(workspace / folder)
     # gtest's two tests, rostest's one, each with none that failed; without TPC just the same.
-    assert results == ["gtest-test_doubler.xml: 2 0 0", "rostest-test_node.xml: 1 0 0"]
+    assert results == [
+        "gtest-test_doubler.xml: 2 0 0",
+        "rostest-test_node.xml: 1 0 0",
+        "rosunit-node.xml: 1 0 0",
+    ]
     run(["catkin_make", "--pkg", "dozen_tested"], workspace, variables)
     assert results_of(workspace, variables) == results
     assert [*(workspace / "build").rglob("tpc/*.json")] == []
@@ -220,7 +225,7 @@ def results_of(workspace: Path, variables: dict[str, str]) -> list[str]:
             sum(int(number) for number in re.findall(rf'<testsuite [^>]*\b{what}="(\d+)"', text))
             for what in ("errors", "failures")
         ]
-        if tests and "gtest-test_node" not in path.name:
+        if tests:
             lines.append(f"{path.name}: {tests[1]} {bad[0]} {bad[1]}")
     return lines
 
@@ -242,16 +247,44 @@ def test_plain_cmake_does_the_same(
     check(collect_sources([tmp_path]).static, sources, by_colcon)
 
 
-def test_a_second_workspace_lies_over_the_first(
-    by_colcon: StaticInfo, variables: dict[str, str], tmp_path: Path
+def test_the_compiler_wrappers_find_the_same(
+    by_colcon: StaticInfo, sources: Path, variables: dict[str, str], tmp_path: Path
 ) -> None:
-    """ament and plain CMake beside a package that overlays one of the first; merged install."""
+    """CC and CXX alone: nothing is patched, and CMake knows nothing of TPC."""
+    wrapper = compiler_wrapper()
+    environment = {
+        **variables,
+        "CC": str(wrapper.with_name("tpc-clang")),
+        "CXX": str(wrapper),
+        "TPC_SOURCE_ROOT": str(sources),
+    }
+    command: list[str | Path] = ["catkin_make", "-C", sources.parent, "--build", tmp_path / "b"]
+    run([*command, f"-DCATKIN_DEVEL_PREFIX={tmp_path}/devel"], tmp_path, environment)
+    (sources / "CMakeLists.txt").unlink()
+    static = collect_sources([tmp_path / "devel"]).static
+    assert found(static) == expected(sources)
+    # What CMake knows of its targets is not known here: the one that is to be quiet reports.
+    assert {unit.link_unit for unit in static.units} == UNITS | {"quiet_node"}
+
+
+def test_a_second_workspace_lies_over_the_first(
+    by_colcon: StaticInfo, sources: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """ament and plain CMake, beside a package that needs those of the first; merged install."""
+    built = by_colcon.units[0].build_folder
+    assert built is not None
+    for name, value in workspace_env(Path(built).parents[1] / "install").items():
+        monkeypatch.setenv(name, value)
     (tmp_path / "src").mkdir()
+    shutil.copytree(sources / "dozen_user", tmp_path / "src/dozen_user")
     for place in (WORKSPACES / "others/src").iterdir():
         (tmp_path / "src" / place.name).symlink_to(place)
     result = build_workspace(tmp_path, colcon_args=["--merge-install"])
-    assert found(result.static) == expected(WORKSPACES / "others/src")
-    assert [unit.link_unit for unit in result.units] == ["ament_node"]
+    # From below come the counter's header and the gate's static library.
+    below = {("counter.h", 13, "count/every"), ("gate.cpp", 9, "gate/level")}
+    own = expected(tmp_path / "src/dozen_user") | expected(WORKSPACES / "others/src")
+    assert found(result.static) == own | below
+    assert [unit.link_unit for unit in result.units] == ["user_node", "ament_node"]
     node = tmp_path / ".tpc/install/lib/others_ament/ament_node"
     needed = subprocess.run(
         ["ldd", node], env={"PATH": os.defpath}, capture_output=True, text=True, check=True
