@@ -58,7 +58,7 @@ function(_tpc_read_flags kind text)
   set(${text} "${read}" PARENT_SCOPE)
 endfunction()
 
-# What another plugin made is compiled again, and not taken from a cache.
+# See _tpc_instrument.
 set(_tpc_defer_hash "")
 if(EXISTS "${_tpc_defer}")
   file(SHA256 "${_tpc_defer}" _tpc_defer_hash)
@@ -66,7 +66,6 @@ if(EXISTS "${_tpc_defer}")
 endif()
 _tpc_read_flags(compile _tpc_compile_flags)
 _tpc_read_flags(accept _tpc_accept_flags)
-string(PREPEND _tpc_compile_flags "-DTPC_DEFER=0x${_tpc_defer_hash}")
 string(APPEND _tpc_compile_flags "${_tpc_accept_flags}")
 
 # Sets `found` to the first flag in `text` that has the compiler instrument the
@@ -405,6 +404,9 @@ macro(_tpc_instrument)
     _tpc_add_compile_flags(${_tpc_language} "${_tpc_compile_flags}")
   endforeach()
   _tpc_tolerate_flags_of_assembler()
+  # What was made without the plugin, or by another one, is compiled again, and not taken from a
+  # cache: make looks at the flags and definitions of a target, and not at its rules.
+  add_compile_definitions("TPC_DEFER=0x${_tpc_defer_hash}")
   string(REPLACE ";" "," _tpc_linked "${_tpc_languages}")
   # In every program and library, because the optimisation that the compiler left
   # out is the plugin's to make up for.

@@ -595,3 +595,25 @@ def test_several_configurations_in_one_folder(tmp_path: Path) -> None:
     assert units["x"] == result.folder / "Debug/x"
     assert run(["cmake", "--build", result.folder, "--config", "Release"]).returncode == 0
     assert result.runs("Release/x").returncode in (0, 1)
+
+
+@pytest.mark.parametrize("generator", ["Ninja", "Unix Makefiles"])
+def test_a_build_folder_goes_on_when_it_is_patched_and_restored(
+    tmp_path: Path, generator: str
+) -> None:
+    lists = HEAD + (
+        "add_library(l STATIC other.cpp)\nadd_executable(x user.cpp)\n"
+        "target_link_libraries(x PRIVATE l)\n"
+    )
+    (tmp_path / "p").mkdir()
+    (tmp_path / "p/user.cpp").write_text(USER, encoding="utf-8")
+    folder = build(tmp_path, lists, "-G", generator).folder
+    for text, analysed in ((include() + lists, True), (lists, False)):
+        # The sources stay as they are, times and all.
+        (tmp_path / "p/CMakeLists.txt").write_text(text, encoding="utf-8")
+        made = run(["cmake", "--build", folder])
+        assert made.returncode == 0, made.stdout + made.stderr
+        (one,) = folder.rglob("other.cpp.o")
+        assert (one.read_bytes()[:4] != b"\x7fELF") is analysed
+        assert run([folder / "x"]).returncode == 0
+        assert not analysed or (folder / "tpc/x.json").is_file()
