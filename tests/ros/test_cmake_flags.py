@@ -506,7 +506,7 @@ USER_OF_IT = (
     "target_link_libraries(x ${CMAKE_CURRENT_SOURCE_DIR}/../libl.a)\n"
     "add_executable(y main.cpp)\n"
 )
-USER = "#include <string>\nstd::string other(int);\nint main() { return other(3).size() != 3; }\n"
+READER = "#include <string>\nstd::string other(int);\nint main() { return other(3).size() != 3; }\n"
 
 
 @pytest.mark.parametrize("how", ["left alone", "another compiler"])
@@ -514,7 +514,7 @@ def test_what_gcc_builds_links_the_bitcode_of_others(tmp_path: Path, how: str) -
     library = build(tmp_path, HEAD + BITCODE_LIBRARY, name="q").folder / "libl.a"
     (tmp_path / "p").mkdir()
     shutil.copy(library, tmp_path)
-    (tmp_path / "p/user.cpp").write_text(USER, encoding="utf-8")
+    (tmp_path / "p/user.cpp").write_text(READER, encoding="utf-8")
     alone = f"-DTPC_LEFT_ALONE={tmp_path}/p"
     option = alone if how == "left alone" else "-DCMAKE_CXX_COMPILER=g++"
     result = build(tmp_path, HEAD + USER_OF_IT, toolchain(), option)
@@ -546,7 +546,7 @@ def test_the_archives_of_gccs_own_lto_stay_gccs(tmp_path: Path) -> None:
         "add_executable(x user.cpp)\ntarget_link_libraries(x l)\n"
     )
     (tmp_path / "p").mkdir()
-    (tmp_path / "p/user.cpp").write_text(USER, encoding="utf-8")
+    (tmp_path / "p/user.cpp").write_text(READER, encoding="utf-8")
     assert build(tmp_path, lists).runs("x").returncode == 0
 
 
@@ -606,7 +606,7 @@ def test_a_build_folder_goes_on_when_it_is_patched_and_restored(
         "target_link_libraries(x PRIVATE l)\n"
     )
     (tmp_path / "p").mkdir()
-    (tmp_path / "p/user.cpp").write_text(USER, encoding="utf-8")
+    (tmp_path / "p/user.cpp").write_text(READER, encoding="utf-8")
     folder = build(tmp_path, lists, "-G", generator).folder
     for text, analysed in ((include() + lists, True), (lists, False)):
         # The sources stay as they are, times and all.
