@@ -23,7 +23,7 @@ MERGED_SCHEMA = "merged.schema.json"
 RULES_SCHEMA = "rules.schema.json"
 _LONGEST_MESSAGE = 160
 # The standard takes 5.0 for an integer; a line or a column must be one that can be counted with.
-_Validator = validators.extend(
+_Validator = validators.extend(  # type: ignore[no-untyped-call]
     Draft202012Validator,
     type_checker=Draft202012Validator.TYPE_CHECKER.redefine(
         "integer", lambda _, value: isinstance(value, int) and not isinstance(value, bool)
