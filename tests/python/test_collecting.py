@@ -57,6 +57,21 @@ def test_what_cannot_be_looked_for_stays() -> None:
     assert drop_stale([unit_file(unit())], {FOLDER: None})[1] == []
 
 
+def test_what_was_built_of_a_package_that_was_removed_is_stale(tmp_path: Path) -> None:
+    for name, key in (("face", KEYS[0]), ("arm", KEYS[1]), ("other", KEYS[2])):
+        root = "/elsewhere/other" if name == "other" else str(tmp_path / "src" / name)
+        data = unit(package=name, source_root=root, comparisons=[comparison(key=key)])
+        write(tmp_path / "build" / name / "tpc/detector.json", data)
+    # Built here, and the sources are on another machine.
+    assert collect_sources([tmp_path]).dropped == ()
+    (tmp_path / "src/face").mkdir(parents=True)
+    found = collect_sources([tmp_path])
+    assert [each.package for each in found.static.units] == ["face", "other"]
+    assert [each.reason for each in found.dropped] == [
+        f"its sources, {tmp_path}/src/arm, are no more"
+    ]
+
+
 def test_of_a_unit_in_two_places_the_later_one_counts() -> None:
     old = unit_file(unit(), Path("/a/face"), written_ns=1)
     new = unit_file(unit(), Path("/b/face"), written_ns=2)
