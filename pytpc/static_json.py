@@ -16,6 +16,7 @@ from referencing import Registry, Resource
 from referencing.jsonschema import DRAFT202012
 
 from pytpc.errors import InputError
+from pytpc.words import plain
 
 SCHEMA_VERSION = 1
 UNIT_SCHEMA = "static_info.schema.json"
@@ -65,8 +66,17 @@ def parse_json(path: Path) -> object:
 
 
 def dump_json(data: object) -> bytes:
-    """``data`` as indented UTF-8 JSON with a final newline; the same data gives the same bytes."""
-    return (json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode()
+    """``data`` as indented UTF-8 JSON with a final newline; the same data gives the same bytes.
+
+    Raises:
+        InputError: there is a file name in it that is not UTF-8.
+    """
+    text = json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+    try:
+        return text.encode()
+    except UnicodeEncodeError as error:
+        line = text[text.rfind("\n", 0, error.start) : text.find("\n", error.start)]
+        raise InputError(f"not UTF-8, so no JSON can have it: {plain(line.strip())}") from error
 
 
 def check_unit(data: object, path: Path, pointer: str = "") -> dict[str, Any]:

@@ -11,7 +11,7 @@ from file_api import reply, target
 from static_units import KEYS, comparison, counts, failed_unit, unit
 
 from pytpc.collecting import collect_sources, find_copies
-from pytpc.errors import WorkspaceError
+from pytpc.errors import InputError, WorkspaceError
 from pytpc.stale import BuiltTarget, UnitFile, drop_repeated, drop_stale
 from pytpc.static_info import LinkUnit
 
@@ -121,6 +121,13 @@ def test_documents_are_sources_too(tmp_path: Path) -> None:
     found = collect_sources([tmp_path / "a", tmp_path / "a.json", tmp_path / "b"])
     assert [each.link_unit for each in found.static.units] == ["broken", "detector"]
     assert [stale.file.path for stale in found.dropped] == [tmp_path / "a/tpc/detector.json"]
+
+
+def test_a_folder_whose_name_is_not_utf_8_is_named(tmp_path: Path) -> None:
+    base = tmp_path / os.fsdecode(b"a\xff")
+    write(base / "face/tpc/detector.json", unit())
+    with pytest.raises(InputError, match=r'not UTF-8, .*"build_folder": ".*/a\ufffd/face"'):
+        collect_sources([base]).static.save(tmp_path / "static.json")
 
 
 def test_a_source_without_any_is_named(tmp_path: Path) -> None:
