@@ -150,7 +150,7 @@ def test_two_packages_whose_projects_are_called_alike_are_two(tmp_path: Path) ->
     assert [(unit.package, unit.link_unit) for unit in static.units] == [
         ("left", "tiny_node"), ("right", "tiny_node"),
     ]  # fmt: skip
-    assert len(static.tpcs) == len(static.comparisons) == 2
+    assert len(static.thresholds) == 2
 
 
 def test_a_unit_without_analysis_is_noticed(tmp_path: Path) -> None:
