@@ -14,7 +14,14 @@ from pytpc.errors import WorkspaceError
 from pytpc.link_unit import LeftOut, LinkUnit
 from pytpc.paths import OWN_FOLDER
 from pytpc.reconcile import build_folders, known_targets, left_out_units
-from pytpc.stale import BuiltTarget, Stale, UnitFile, drop_repeated, drop_stale
+from pytpc.stale import (
+    BuiltTarget,
+    Stale,
+    UnitFile,
+    drop_repeated,
+    drop_stale,
+    drop_without_sources,
+)
 from pytpc.static_info import StaticInfo, load_link_unit, unit_files
 
 _NOT_SOURCES = frozenset({".git", ".hg", ".svn", OWN_FOLDER})
@@ -63,6 +70,8 @@ def collect_sources(
             on_progress(number, len(paths))
     folders = sorted({file.build_folder for file in files})
     kept, stale = drop_stale(files, {folder: _built_targets(folder) for folder in folders})
+    workspaces = [os.path.abspath(source) for source in sources if source.is_dir()]  # noqa: PTH100
+    kept, orphans = drop_without_sources(kept, workspaces, _is_gone)
     kept, repeated = drop_repeated(kept)
     units = [file.unit for file in kept]
     copies.update(find_copies(units))
@@ -72,7 +81,7 @@ def collect_sources(
         copies,
         _left_out(sources, folders, units),
     )
-    return Collected(static, (*stale, *repeated))
+    return Collected(static, (*stale, *orphans, *repeated))
 
 
 def _left_out(
@@ -147,6 +156,17 @@ def _build_bases(source: Path) -> list[Path]:
     """Where the build folders of a workspace are; any other folder is one itself."""
     bases = [source / OWN_FOLDER / "build", source / "build"]
     return [base for base in bases if base.is_dir()] or [source]
+
+
+def _is_gone(folder: str) -> bool:
+    """Whether a folder is not there; one that may not be looked at is."""
+    try:
+        Path(folder).stat()
+    except (FileNotFoundError, NotADirectoryError):
+        return True
+    except OSError:
+        return False
+    return False
 
 
 def _built_targets(build_folder: Path) -> list[BuiltTarget] | None:

@@ -16,8 +16,10 @@ from typing import Any
 from pytpc.atomic import write_atomic
 from pytpc.compile_flags import Flags, flags_for
 from pytpc.conditions import Condition, Macro, Parsed, libclang, parse_conditions, precompile
-from pytpc.errors import TpcError
+from pytpc.errors import InputError, TpcError
+from pytpc.link_unit import LinkUnit
 from pytpc.places import Tpc
+from pytpc.reconcile import recorded_units
 from pytpc.static_info import StaticInfo
 
 _FORMAT = 1
@@ -33,6 +35,7 @@ GONE = "the source file is not on this machine"
 CHANGED = "the source file has changed since the build"
 NO_LIBCLANG = "libclang 19 is not on this machine (apt-get install libclang1-19)"
 NOT_FOUND = "clang finds no condition here"
+NEWER = "the source file is newer than the build; of these lines only the comparison's is as built"
 WITHOUT_FLAGS = "parsed without the flags of the build"
 
 Place = tuple[int, int]
@@ -103,11 +106,16 @@ def look_up_conditions(
         for (file, flags), found in wanted.items()
     ]
     solved = _solve(jobs, cache if cache is not None else _default_cache(), on_progress)
-    for (_, flags), conditions, found in zip(wanted, solved, wanted.values(), strict=True):
+    built = {(unit.package, unit.link_unit): _built_ns(unit) for unit in static.units}
+    for (file, flags), conditions, found in zip(wanted, solved, wanted.values(), strict=True):
         for tpc in found:
             condition = conditions[_place(tpc)]
             notes = [] if condition is not None else [NOT_FOUND]
             notes += [] if flags.of_build else [WITHOUT_FLAGS]
+            # The analysis keeps a comparison's own line, which has been looked at already.
+            if condition is not None and condition.lineno != condition.end_lineno:
+                at = built[tpc.keys[0].package, tpc.keys[0].link_unit]
+                notes += [NEWER] if at is not None and _changed_ns(file) > at else []
             answers[tpc.key] = Answer(condition, "; ".join(notes))
     return answers
 
@@ -235,6 +243,24 @@ def _condition(data: dict[str, Any] | None) -> Condition | None:
         return None
     macro = Macro(**data["macro"]) if data["macro"] is not None else None
     return Condition(**{**data, "macro": macro})
+
+
+def _built_ns(unit: LinkUnit) -> int | None:
+    """When a link unit was linked last; None where nothing says so."""
+    if unit.build_folder is None:
+        return None
+    folder = Path(unit.build_folder)
+    try:
+        recorded = {each.name: each.static_info for each in recorded_units(folder) or ()}
+    except InputError:
+        recorded = {}
+    path = recorded.get(unit.link_unit, folder / "tpc" / f"{unit.link_unit}.json")
+    return _changed_ns(str(path)) or None
+
+
+def _changed_ns(file: str) -> int:
+    """When a file was written last; 0 where it is not there."""
+    return next(iter(_stamp(file)), 0)
 
 
 def _stamp(file: str) -> list[int]:

@@ -20,7 +20,7 @@ from pytpc.ingest.recording import EVENTS_FILE, MARKS_FILE
 from pytpc.marks import Mark
 from pytpc.mission import MissionRun, Progress, run_mission
 from pytpc.ranking import MarkRanking, rank_marks
-from pytpc.report import MissionReport
+from pytpc.report.html import MissionReport
 from pytpc.static_info import StaticInfo
 from pytpc.suggest import suggest
 from pytpc.treatment import Treatment

@@ -10,7 +10,7 @@ from pytpc.condition_lookup import Answer
 from pytpc.conditions import Condition
 from pytpc.places import Tpc
 from pytpc.static_info import Comparison, Default, LinkUnit, StaticInfo, Transform
-from pytpc.suggest import exact
+from pytpc.words import exact
 
 _Item = TypeVar("_Item")
 

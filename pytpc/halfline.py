@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from pytpc.events import Bools, Floats
+if TYPE_CHECKING:
+    from pytpc.events import Bools, Floats
 
 _RELATIONS: dict[str, np.ufunc] = {
     "<": np.less,

@@ -153,6 +153,10 @@ class Comparison:
     exposed_at: Place
     path: tuple[PathStep, ...] = ()
 
+    def to_json(self) -> dict[str, Any]:
+        """The comparison as the JSON object of docs/formats.md."""
+        return _fields(self)
+
 
 @dataclass(frozen=True, slots=True)
 class Tool:

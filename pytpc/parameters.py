@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 
+from pytpc.link_unit import Comparison
+
 DYNAMIC = "<dynamic>"
 """What stands in a name for a part that only the running node knows."""
 
@@ -21,6 +23,18 @@ def same_parameter(given: str, source: str) -> bool:
     pattern = ".+".join(re.escape(part) for part in known.split(DYNAMIC))
     before = "(?:.*/)?" if given.startswith("/") and not source.startswith("/") else ""
     return re.fullmatch(before + pattern, _relative(given)) is not None
+
+
+def parameter_name(comparison: Comparison) -> str:
+    """The parameter's name in the source, or where it is read, if only the running node knows.
+
+    A constant has its own name, and its place.
+    """
+    if comparison.source is None or comparison.read_at is None:
+        return f"constant {comparison.name} at {comparison.file}:{comparison.lineno}"
+    if comparison.source != DYNAMIC:
+        return comparison.source
+    return f"{DYNAMIC} at {comparison.read_at.file}:{comparison.read_at.lineno}"
 
 
 def _relative(name: str) -> str:

@@ -16,7 +16,7 @@ import numpy as np
 from pytpc.events import Events, Floats, Int64s
 from pytpc.ingest.recording import Recording
 from pytpc.marks import Mark, MarkType
-from pytpc.parameters import DYNAMIC, same_parameter
+from pytpc.parameters import parameter_name, same_parameter
 from pytpc.scores import (
     NONE,
     WINDOW_S,
@@ -147,18 +147,6 @@ def unknown_keys(events: Events, static_info: StaticInfo) -> dict[str, int]:
         for code, key in enumerate(events.keys)
         if counts[code] and key not in static_info.comparisons
     }
-
-
-def parameter_name(comparison: Comparison) -> str:
-    """The parameter's name in the source, or where it is read, if only the running node knows.
-
-    A constant has its own name, and its place.
-    """
-    if comparison.source is None or comparison.read_at is None:
-        return f"constant {comparison.name} at {comparison.file}:{comparison.lineno}"
-    if comparison.source != DYNAMIC:
-        return comparison.source
-    return f"{DYNAMIC} at {comparison.read_at.file}:{comparison.read_at.lineno}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ its keys would be listed and never be reported.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from mmap import mmap
 from pathlib import Path
@@ -67,6 +67,35 @@ def drop_stale(
             kept.append(file)
         else:
             dropped.append(Stale(file, reason))
+    return kept, dropped
+
+
+def drop_without_sources(
+    files: Iterable[UnitFile], workspaces: Iterable[str], gone: Callable[[str], bool]
+) -> tuple[list[UnitFile], list[Stale]]:
+    """What is of a package that is still there, and what is of one that was removed.
+
+    Only packages inside one of ``workspaces`` are looked for, and only where another one there is
+    found: a robot may have what was built without the sources.
+
+    Args:
+        files: of any number of build folders.
+        workspaces: absolute folders.
+        gone: whether a folder, a unit's ``source_root``, is not there.
+    """
+    files = list(files)
+    roots = {file.unit.source_root for file in files}
+    removed: set[str] = set()
+    for workspace in workspaces:
+        inside = {root for root in roots if Path(root).is_relative_to(workspace)}
+        missing = {root for root in inside if gone(root)}
+        removed |= missing if missing != inside else set()
+    kept = [file for file in files if file.unit.source_root not in removed]
+    dropped = [
+        Stale(file, f"its sources, {file.unit.source_root}, are no more")
+        for file in files
+        if file.unit.source_root in removed
+    ]
     return kept, dropped
 
 

@@ -3,23 +3,35 @@
 from __future__ import annotations
 
 import json
+import math
+import re
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
 from typing import Any, NoReturn
 
-from jsonschema import Draft202012Validator, ValidationError
+from jsonschema import Draft202012Validator, ValidationError, validators
 from jsonschema.exceptions import best_match
 from referencing import Registry, Resource
 from referencing.jsonschema import DRAFT202012
 
 from pytpc.errors import InputError
+from pytpc.words import plain
 
 SCHEMA_VERSION = 1
 UNIT_SCHEMA = "static_info.schema.json"
 MERGED_SCHEMA = "merged.schema.json"
+SURVEY_SCHEMA = "survey_result.schema.json"
 RULES_SCHEMA = "rules.schema.json"
 _LONGEST_MESSAGE = 160
+# The standard takes 5.0 for an integer; a line or a column must be one that can be counted with.
+_Validator = validators.extend(  # type: ignore[no-untyped-call]
+    Draft202012Validator,
+    type_checker=Draft202012Validator.TYPE_CHECKER.redefine(
+        "integer", lambda _, value: isinstance(value, int) and not isinstance(value, bool)
+    ),
+)
+_SURROGATE = re.compile(rb"\\u[dD][89a-fA-F]")
 
 
 def parse_json(path: Path) -> object:
@@ -33,20 +45,38 @@ def parse_json(path: Path) -> object:
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror or error}", path) from error
     try:
-        return json.loads(raw.decode("utf-8"), parse_constant=_refuse_constant)
+        data: object = json.loads(
+            raw.decode("utf-8"), parse_constant=_refuse_constant, parse_float=_finite
+        )
+        if _SURROGATE.search(raw) is not None:
+            # Half of a pair can be escaped in JSON, and written nowhere.
+            json.dumps(data, ensure_ascii=False).encode()
     except UnicodeDecodeError as error:
         line = raw.count(b"\n", 0, error.start) + 1
         raise InputError(f"not JSON: byte {error.start} is not UTF-8", path, line) from error
+    except UnicodeEncodeError as error:
+        half = f"\\u{ord(error.object[error.start]):04x}"
+        raise InputError(f"not JSON that can be read: {half} is half a character", path) from error
     except json.JSONDecodeError as error:
         what = "the file is empty" if not raw.strip() else f"{error.msg}, column {error.colno}"
         raise InputError(f"not JSON: {what}", path, error.lineno) from error
     except (RecursionError, ValueError) as error:
         raise InputError(f"not JSON that can be read: {error}", path) from error
+    return data
 
 
 def dump_json(data: object) -> bytes:
-    """``data`` as indented UTF-8 JSON with a final newline; the same data gives the same bytes."""
-    return (json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode()
+    """``data`` as indented UTF-8 JSON with a final newline; the same data gives the same bytes.
+
+    Raises:
+        InputError: there is a file name in it that is not UTF-8.
+    """
+    text = json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+    try:
+        return text.encode()
+    except UnicodeEncodeError as error:
+        line = text[text.rfind("\n", 0, error.start) : text.find("\n", error.start)]
+        raise InputError(f"not UTF-8, so no JSON can have it: {plain(line.strip())}") from error
 
 
 def check_unit(data: object, path: Path, pointer: str = "") -> dict[str, Any]:
@@ -90,7 +120,10 @@ def _validator(name: str) -> Draft202012Validator:
     Draft202012Validator.check_schema(schema)
     # The one schema that another one names.
     units: Resource[dict[str, Any]] = DRAFT202012.create_resource(_schema(UNIT_SCHEMA))
-    return Draft202012Validator(schema, registry=Registry().with_resource(UNIT_SCHEMA, units))
+    validator: Draft202012Validator = _Validator(
+        schema, registry=Registry().with_resource(UNIT_SCHEMA, units)
+    )
+    return validator
 
 
 def _schema(name: str) -> dict[str, Any]:
@@ -109,6 +142,13 @@ def _shortened(message: str) -> str:
     if len(message) <= _LONGEST_MESSAGE:
         return message
     return message[:40] + " ... " + message[-(_LONGEST_MESSAGE - 45) :]
+
+
+def _finite(text: str) -> float:
+    number = float(text)
+    if math.isinf(number):
+        raise ValueError(f"{text} is beyond all numbers")
+    return number
 
 
 def _refuse_constant(name: str) -> NoReturn:

@@ -27,18 +27,16 @@ from pytpc.halfline import (
     thresholds_for,
 )
 from pytpc.marks import MarkType
-from pytpc.ranking import parameter_name
+from pytpc.parameters import parameter_name
 from pytpc.scores import WINDOW_S
 from pytpc.static_info import Comparison, LinkUnit
-
-Number = float | int | bool
+from pytpc.words import Number, exact, show
 
 _WHOLE_TYPES = frozenset(
     f"{sign}{name}"
     for sign in ("", "unsigned ", "signed ")
     for name in ("char", "short", "int", "long", "long long")
 )
-_LONG = 10**15
 _FLOAT_TYPES = frozenset({"float", "double", "long double"})
 
 
@@ -348,24 +346,3 @@ def _sentence(
 
 def _number(value: float, whole: bool) -> Number:
     return round(value) if whole else value
-
-
-def show(value: Number | None) -> str:
-    """A number as the user would write it: six digits of a float, true and false, ``?`` for None.
-
-    >>> show(0.6000000238418579), show(3), show(True)
-    ('0.6', '3', 'true')
-    """
-    if value is None:
-        return "?"
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    short = isinstance(value, int) and abs(value) < _LONG
-    return str(value) if short else f"{value:.6g}"
-
-
-def exact(value: Number | None) -> str:
-    """Like ``show``, but with all the digits that the number needs."""
-    if isinstance(value, float) and float(f"{value:.6g}") != value:
-        return repr(value)
-    return show(value)

@@ -15,6 +15,7 @@ from typing import Any
 from pytpc.errors import InputError
 from pytpc.source_lines import PYTHON, LineCount, SourceLines
 from pytpc.static_info import LinkUnit
+from pytpc.static_json import SURVEY_SCHEMA, check_schema
 
 RESULT_VERSION = 1
 
@@ -150,32 +151,29 @@ class TreeResult:
         """
         if not isinstance(data, dict) or data.get("version") != RESULT_VERSION:
             raise InputError("not a survey's result of this version", path)
-        try:
-            found = data["found"]
-            lines = data["lines"]
-            return cls(
-                name=data["name"],
-                path=data["path"],
-                key=data["key"],
-                packages=data["packages"],
-                first=data["first"],
-                plain=None if data["plain"] is None else _build(data["plain"]),
-                tpc=_build(data["tpc"]),
-                found=Found(
-                    **{
-                        **found,
-                        "failed": tuple(found["failed"]),
-                        "without": tuple(found["without"]),
-                    }
-                ),
-                python=data["python"],
-                lines=SourceLines(
-                    {name: LineCount(**count) for name, count in lines["languages"].items()},
-                    dict(lines["left_out"]),
-                ),
-            )
-        except (KeyError, TypeError, AttributeError) as error:
-            raise InputError(f"not a survey's result: {error!r}", path) from error
+        check_schema(data, path, SURVEY_SCHEMA)
+        found, lines = data["found"], data["lines"]
+        return cls(
+            name=data["name"],
+            path=data["path"],
+            key=data["key"],
+            packages=data["packages"],
+            first=data["first"],
+            plain=None if data["plain"] is None else _build(data["plain"]),
+            tpc=_build(data["tpc"]),
+            found=Found(
+                **{
+                    **found,
+                    "failed": tuple(found["failed"]),
+                    "without": tuple(found["without"]),
+                }
+            ),
+            python=data["python"],
+            lines=SourceLines(
+                {name: LineCount(**count) for name, count in lines["languages"].items()},
+                dict(lines["left_out"]),
+            ),
+        )
 
 
 def _build(data: Mapping[str, Any]) -> Build:

@@ -26,6 +26,7 @@ from pytpc.errors import InputError, RunError, TpcError, WorkspaceError
 from pytpc.paths import BUILD_TOOLS, accepting_flags, cmake_file, require_tools
 from pytpc.static_info import LinkUnit, load_link_unit, unit_files
 from pytpc.survey import Build, NotBuilt, Tree, TreePackage
+from pytpc.words import plain
 from pytpc.workspace import MANIFEST, Package, package_folders, read_manifest
 
 BUILD_TYPE = "RelWithDebInfo"
@@ -64,6 +65,8 @@ def read_tree(folder: Path, name: str | None = None) -> Tree:
     if not folder.is_dir():
         raise WorkspaceError("no such folder", folder)
     folder = Path(os.path.normpath(folder.absolute()))
+    if any("\ud800" <= character <= "\udfff" for character in str(folder)):
+        raise WorkspaceError("the path is not UTF-8, so it stands in no table", plain(str(folder)))
     packages: dict[str, TreePackage] = {}
     unreadable: list[NotBuilt] = []
     for place in package_folders(folder):
@@ -73,7 +76,7 @@ def read_tree(folder: Path, name: str | None = None) -> Tree:
             if lists.is_file() and (fault := find_fault(lists.read_bytes())) is not None:
                 raise InputError(f"CMake cannot parse this: {fault.message}", lists, fault.line)
         except (InputError, OSError) as error:
-            unreadable.append(NotBuilt(place.name, str(error)))
+            unreadable.append(NotBuilt(plain(place.name), plain(str(error))))
             continue
         first = packages.setdefault(package.name, package)
         if first is not package:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import fcntl
 import hashlib
-from collections.abc import Callable, Sequence
+import os
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -72,7 +75,8 @@ def survey(
         The results in the order in which the trees were given.
 
     Raises:
-        WorkspaceError: a folder is no tree, or the output folder is in one.
+        WorkspaceError: a folder is no tree, the output folder is in one, or another survey writes
+            there.
         MissingToolError: something that builds need is not here.
         TpcError: the output folder cannot be written.
     """
@@ -81,6 +85,30 @@ def survey(
     for tree in trees:
         if output.is_relative_to(tree.path):
             raise WorkspaceError(f"is in the tree {tree.path}; choose another folder", output)
+    with _alone(output):
+        return _survey(trees, options, on_step)
+
+
+@contextmanager
+def _alone(output: Path) -> Iterator[None]:
+    """Nobody else's survey writes into the same folder meanwhile; a killed one is no hindrance."""
+    try:
+        output.mkdir(parents=True, exist_ok=True)
+        descriptor = os.open(output / ".lock", os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
+    except OSError as error:
+        raise WorkspaceError(f"cannot be written: {error.strerror}", output) from error
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        yield
+    except BlockingIOError as error:
+        raise WorkspaceError("another survey is at work here", output) from error
+    finally:
+        os.close(descriptor)
+
+
+def _survey(
+    trees: Sequence[Tree], options: Options, on_step: Callable[[Step], None]
+) -> list[TreeResult]:
     tools = _digest_of_tpc()
     needed = needed_trees(trees)
     order = build_order(trees)

@@ -12,8 +12,8 @@ from rich.text import Text
 from pytpc.ingest.recording import Recording
 from pytpc.ranking import MarkRanking, Suspect
 from pytpc.static_info import StaticInfo
-from pytpc.suggest import Suggestion, exact, show, suggest
-from pytpc.words import plain
+from pytpc.suggest import Suggestion, suggest
+from pytpc.words import exact, plain, show
 
 _WHAT = {
     "I": "type I, did what it should not",

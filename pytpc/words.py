@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+Number = float | int | bool
+_LONG = 10**15
+
 
 def many(count: int, noun: str) -> str:
     """``1 report``, ``1,000 reports``."""
@@ -11,3 +14,24 @@ def many(count: int, noun: str) -> str:
 def plain(text: str) -> str:
     """``text`` without control characters: a log must not steer the terminal."""
     return "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in text)
+
+
+def show(value: Number | None) -> str:
+    """A number as the user would write it: six digits of a float, true and false, ``?`` for None.
+
+    >>> show(0.6000000238418579), show(3), show(True)
+    ('0.6', '3', 'true')
+    """
+    if value is None:
+        return "?"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    short = isinstance(value, int) and abs(value) < _LONG
+    return str(value) if short else f"{value:.6g}"
+
+
+def exact(value: Number | None) -> str:
+    """Like ``show``, but with all the digits that the number needs."""
+    if isinstance(value, float) and float(f"{value:.6g}") != value:
+        return repr(value)
+    return show(value)

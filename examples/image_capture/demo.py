@@ -25,7 +25,7 @@ from pytpc.cli.mission_commands import mission_progress
 from pytpc.colcon import Bases, BuildError
 from pytpc.demo import TreatedMission, failures, result_table, run_treatment
 from pytpc.errors import TpcError, WorkspaceError
-from pytpc.report import write_report
+from pytpc.report.html import write_report
 from pytpc.treatment import Treatment, load_treatment
 from pytpc.words import many
 

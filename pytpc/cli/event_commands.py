@@ -14,7 +14,7 @@ from pytpc.errors import InputError
 from pytpc.ingest import Recording, load_recording, read_bag, save_recording
 from pytpc.marks import MARK_TYPES
 from pytpc.ranking import MarkRanking, rank_marks, unknown_keys
-from pytpc.report import MissionReport, write_report
+from pytpc.report.html import MissionReport, write_report
 from pytpc.static_info import StaticInfo
 from pytpc.terminal import Row, print_rankings, rows_of
 from pytpc.words import many, plain

@@ -16,7 +16,7 @@ from rich.text import Text
 from pytpc.cli.console import console
 from pytpc.cli.sources import SOURCES, static_of
 from pytpc.explain import Explanation, Found, look_up, where, why_no_comparison
-from pytpc.ranking import parameter_name
+from pytpc.parameters import parameter_name
 from pytpc.static_info import LinkUnit, PathStep, StaticInfo
 from pytpc.words import many, plain
 

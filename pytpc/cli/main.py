@@ -2,24 +2,54 @@
 
 from __future__ import annotations
 
+from importlib import import_module
+
 import click
 
-from pytpc.cli import (
-    event_commands,
-    explain_commands,
-    machine_commands,
-    mission_commands,
-    static_commands,
-    survey_commands,
-    workspace_commands,
-)
 from pytpc.errors import TpcError
 
 INTERRUPTED = 130
+# Where each command is and what the list of commands says of it: what draws, builds or reads bags
+# takes a second to import, which asking for help, or another command, must not wait for.
+SUMMARIES = {
+    "blind-spots": ("explain_commands", "List the places behind which the analysis does not see."),
+    "build": ("workspace_commands", "Build a workspace with analysis and instrumentation."),
+    "collect": ("static_commands", "Merge the static information of link units into one file."),
+    "doctor": ("machine_commands", "Say what is wrong with this machine, or with a workspace."),
+    "explain": ("explain_commands", "Show the way from a parameter to what is exposed."),
+    "export": ("static_commands", "Write what was found as SARIF or as an HTML page."),
+    "ingest": ("event_commands", "Read a ROS 1 bag into events.parquet and marks.json."),
+    "list": ("static_commands", "List the comparisons that were found."),
+    "patch": ("workspace_commands", "Put TPC's three lines into each CMakeLists.txt."),
+    "rank": ("event_commands", "Name the suspected parameters at each mark in a bag."),
+    "record": ("mission_commands", "Run a launch file and record the mission."),
+    "report": ("event_commands", "Write a page with the suspects at each mark, and why."),
+    "show": ("static_commands", "Show all that is known about a comparison."),
+    "survey": ("survey_commands", "Build source trees with and without TPC; tables."),
+    "toolchain": ("machine_commands", "Print what to type to build with TPC by another tool."),
+}
 
 
 class _Commands(click.Group):
-    """A group that ends with status 1 and one line after an error, 130 when interrupted."""
+    """A group that ends with status 1 and one line after an error, 130 when interrupted.
+
+    A command is imported when it is asked for.
+    """
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(SUMMARIES)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name not in SUMMARIES:
+            return super().get_command(ctx, cmd_name)
+        commands: list[click.Command] = import_module(
+            f"pytpc.cli.{SUMMARIES[cmd_name][0]}"
+        ).COMMANDS
+        return next(command for command in commands if command.name == cmd_name)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, summary) for name, (_, summary) in SUMMARIES.items()])
 
     def invoke(self, ctx: click.Context) -> object:
         try:
@@ -43,15 +73,3 @@ class _Commands(click.Group):
 @click.version_option(package_name="pytpc", prog_name="pytpc")
 def main() -> None:
     """Find the parameter that makes a robot misbehave."""
-
-
-for command in (
-    *workspace_commands.COMMANDS,
-    *machine_commands.COMMANDS,
-    *static_commands.COMMANDS,
-    *explain_commands.COMMANDS,
-    *survey_commands.COMMANDS,
-    *event_commands.COMMANDS,
-    *mission_commands.COMMANDS,
-):
-    main.add_command(command)

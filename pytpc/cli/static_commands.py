@@ -195,12 +195,11 @@ def _details(static: StaticInfo, tpcs: Sequence[Tpc]) -> list[Details]:
 
 def _listed(static: StaticInfo, tpc: Tpc) -> dict[str, object]:
     """The comparison with the nearest exposing statement, and the keys of all."""
-    unit = static.unit_of(tpc.key).to_json()
-    found = next(each for each in unit["comparisons"] if each["key"] == tpc.key)
+    unit = static.unit_of(tpc.key)
     return {
-        "package": unit["package"],
-        "link_unit": unit["link_unit"],
-        **found,
+        "package": unit.package,
+        "link_unit": unit.link_unit,
+        **static.comparisons[tpc.key].to_json(),
         "absolute_file": tpc.file,
         "keys": tpc.to_json()["keys"],
     }

@@ -1,5 +1,1 @@
-"""The report page: ``write_report(path, [MissionReport(...)])`` makes one self-contained file."""
-
-from pytpc.report.html import MissionReport, write_report
-
-__all__ = ["MissionReport", "write_report"]
+"""Pages for people: ``html`` has the suspects of missions, ``catalogue`` the TPCs."""

@@ -23,7 +23,8 @@ from pytpc.report.series import evidence, lane
 from pytpc.report.source import LONGEST_LINE, Line, StepView, source_lines, way_of
 from pytpc.scores import WINDOW_S
 from pytpc.static_info import Comparison, StaticInfo
-from pytpc.suggest import Suggestion, exact, show, suggest
+from pytpc.suggest import Suggestion, suggest
+from pytpc.words import exact, show
 
 CARDS = 3
 """Suspects of a mark that are shown with their evidence."""

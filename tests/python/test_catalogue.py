@@ -127,6 +127,15 @@ def source(tmp_path: Path) -> Path:
     return tmp_path
 
 
+def test_what_cannot_be_seen_is_a_sign_and_turns_no_text_around() -> None:
+    page = page_of(
+        unit(comparisons=[comparison(source="a\u202eb\x1b\0", source_code="\tif\u2066;")])
+    )
+    assert Page(page).texts["span"].count("a\ufffdb\ufffd\ufffd") == 1
+    assert "\tif\ufffd;" in page
+    assert not set("\u202e\u2066\x1b\0").intersection(page)
+
+
 def test_the_condition_is_marked_in_its_lines(source: Path) -> None:
     found = comparison(lineno=3, column=9, source_code="if (a >")
     condition = Condition("if", "a >\r\n\t  b", 3, 7, 4, 5)

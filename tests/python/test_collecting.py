@@ -11,7 +11,7 @@ from file_api import reply, target
 from static_units import KEYS, comparison, counts, failed_unit, unit
 
 from pytpc.collecting import collect_sources, find_copies
-from pytpc.errors import WorkspaceError
+from pytpc.errors import InputError, WorkspaceError
 from pytpc.stale import BuiltTarget, UnitFile, drop_repeated, drop_stale
 from pytpc.static_info import LinkUnit
 
@@ -55,6 +55,21 @@ def test_what_cannot_be_looked_for_stays() -> None:
     assert reasons(unit(comparisons=[constant]), BuiltTarget("detector", b"")) == []
     assert reasons(unit(counts=counts(not_instrumented=1)), BuiltTarget("detector", b"")) == []
     assert drop_stale([unit_file(unit())], {FOLDER: None})[1] == []
+
+
+def test_what_was_built_of_a_package_that_was_removed_is_stale(tmp_path: Path) -> None:
+    for name, key in (("face", KEYS[0]), ("arm", KEYS[1]), ("other", KEYS[2])):
+        root = "/elsewhere/other" if name == "other" else str(tmp_path / "src" / name)
+        data = unit(package=name, source_root=root, comparisons=[comparison(key=key)])
+        write(tmp_path / "build" / name / "tpc/detector.json", data)
+    # Built here, and the sources are on another machine.
+    assert collect_sources([tmp_path]).dropped == ()
+    (tmp_path / "src/face").mkdir(parents=True)
+    found = collect_sources([tmp_path])
+    assert [each.package for each in found.static.units] == ["face", "other"]
+    assert [each.reason for each in found.dropped] == [
+        f"its sources, {tmp_path}/src/arm, are no more"
+    ]
 
 
 def test_of_a_unit_in_two_places_the_later_one_counts() -> None:
@@ -106,6 +121,13 @@ def test_documents_are_sources_too(tmp_path: Path) -> None:
     found = collect_sources([tmp_path / "a", tmp_path / "a.json", tmp_path / "b"])
     assert [each.link_unit for each in found.static.units] == ["broken", "detector"]
     assert [stale.file.path for stale in found.dropped] == [tmp_path / "a/tpc/detector.json"]
+
+
+def test_a_folder_whose_name_is_not_utf_8_is_named(tmp_path: Path) -> None:
+    base = tmp_path / os.fsdecode(b"a\xff")
+    write(base / "face/tpc/detector.json", unit())
+    with pytest.raises(InputError, match=r'not UTF-8, .*"build_folder": ".*/a\ufffd/face"'):
+        collect_sources([base]).static.save(tmp_path / "static.json")
 
 
 def test_a_source_without_any_is_named(tmp_path: Path) -> None:

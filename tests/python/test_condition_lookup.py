@@ -10,7 +10,15 @@ import pytest
 from static_units import KEYS, comparison, unit
 
 from pytpc import condition_lookup, conditions
-from pytpc.condition_lookup import CHANGED, GONE, NO_LIBCLANG, NOT_FOUND, WITHOUT_FLAGS, Answer
+from pytpc.condition_lookup import (
+    CHANGED,
+    GONE,
+    NEWER,
+    NO_LIBCLANG,
+    NOT_FOUND,
+    WITHOUT_FLAGS,
+    Answer,
+)
 from pytpc.condition_lookup import look_up_conditions as look_up
 from pytpc.conditions import libclang
 from pytpc.static_info import LinkUnit, StaticInfo
@@ -76,6 +84,24 @@ def test_why_only_the_line_is_known(root: Path, monkeypatch: pytest.MonkeyPatch)
     )
     monkeypatch.setattr(condition_lookup, "libclang", lambda: False)
     assert note() == NO_LIBCLANG
+
+
+def test_a_condition_whose_other_lines_may_be_new_is_said_to_be_so(root: Path) -> None:
+    json, source = root / "b/tpc/detector.json", root / "src/detector.cpp"
+    json.parent.mkdir(parents=True)
+    json.touch()
+    static = static_of(root, build_folder=str(root / "b"))
+    os.utime(json, (5, 5))
+    os.utime(source, (4, 4))
+    assert answer_of(static, root).note == WITHOUT_FLAGS
+    source.write_text(TEXT.replace("coverage < 0", "coverage < 9"), encoding="utf-8")
+    answer = answer_of(static, root)
+    assert answer.condition is not None
+    assert answer.condition.text == WHOLE.replace("< 0", "< 9")
+    assert answer.note == f"{WITHOUT_FLAGS}; {NEWER}"
+    # What it was built into says nothing more.
+    json.unlink()
+    assert answer_of(static, root).note == WITHOUT_FLAGS
 
 
 def test_each_tpc_has_the_flags_of_a_unit_that_has_it(

@@ -123,6 +123,11 @@ def test_a_mistyped_parameter_is_answered_with_the_closest(static: StaticInfo) -
     )
 
 
+def test_a_line_that_no_file_has_is_no_line(static: StaticInfo) -> None:
+    with pytest.raises(InputError, match="key or FILE:LINE 'a"):
+        look_up(static, f"a.cpp:{'9' * 5000}")
+
+
 def test_a_line_on_which_nothing_is_says_where_something_is(static: StaticInfo) -> None:
     with pytest.raises(InputError, match=r"line 59 of detector\.cpp; .* on line 40, 60$"):
         look_up(static, "detector.cpp:59")

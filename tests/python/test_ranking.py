@@ -5,7 +5,8 @@ from mission_samples import comparison, events, key, ns, static_info
 from pytpc.events import Events
 from pytpc.ingest import Recording
 from pytpc.marks import Mark
-from pytpc.ranking import parameter_name, rank_marks, unknown_keys
+from pytpc.parameters import parameter_name
+from pytpc.ranking import rank_marks, unknown_keys
 from pytpc.static_info import Place
 
 # Comparisons 0 and 1 are of coverage, 2 of faces, 3 of idle, 4 is a constant, 5 of never (which is

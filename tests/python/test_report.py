@@ -17,7 +17,7 @@ from pytpc.errors import TpcError
 from pytpc.ingest import MalformedRecord, Recording
 from pytpc.marks import Mark
 from pytpc.ranking import rank_marks
-from pytpc.report import MissionReport, write_report
+from pytpc.report.html import MissionReport, write_report
 from pytpc.report.series import (
     BINS,
     BOTH,

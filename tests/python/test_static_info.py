@@ -141,6 +141,9 @@ def test_a_key_without_a_field_is_a_fault(tmp_path: Path) -> None:
         (b'{"schema": 1,\n\n "package": tru}', ":3: not JSON: Expecting value, column 13"),
         (b'{"a": 1,\n "b": "\xff"}', ":2: not JSON: byte 16 is not UTF-8"),
         (b'{"schema": NaN}', ": not JSON that can be read: NaN"),
+        (b'{"default": -1e999}', ": not JSON that can be read: -1e999"),
+        # Written nowhere: neither to a terminal nor to a file.
+        (b'["\\ud83d\\ude00", "\\uD800"]', ": not JSON that can be read: \\ud800 is half"),
         (b"[" * 100_000, ": not JSON that can be read: "),
         (b"[]", ": /: [] is not of type 'object'"),
         (b"null", ": /: None is not of type 'object'"),
@@ -158,6 +161,20 @@ def test_every_truncation_of_a_file_is_one_clear_error(tmp_path: Path) -> None:
     for length in range(0, len(whole), 97):
         path.write_bytes(whole[:length])
         assert ": not JSON" in message(path)
+
+
+@pytest.mark.parametrize(
+    ("change", "fault"),
+    [
+        ({"column": 16.0}, "/column: 16.0 is not of type"),
+        ({"file": "a\0b"}, "/file: 'a\\x00b' does"),
+    ],
+)
+def test_a_place_is_one_that_can_be_looked_up(
+    tmp_path: Path, change: dict[str, object], fault: str
+) -> None:
+    text = message(write(tmp_path / "u.json", unit(comparisons=[comparison(**change)])))
+    assert text.startswith(f": /comparisons/0{fault}")
 
 
 def test_a_message_stays_short_when_the_value_is_long(tmp_path: Path) -> None:

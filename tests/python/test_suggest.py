@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from mission_samples import comparison, events, link_unit, ns
 
 from pytpc.static_info import ParameterRead, Transform
-from pytpc.suggest import exact, show, suggest
+from pytpc.suggest import suggest
+from pytpc.words import exact, show
 
 OPERATORS = {
     "<": operator.lt,

@@ -197,8 +197,16 @@ def test_a_result_is_read_as_it_was_written() -> None:
     assert TreeResult.from_json(json.loads(json.dumps(without.to_json())), Path()) == without
 
 
-@pytest.mark.parametrize("change", [{"version": 0}, {"lines": 1}, {"tpc": None}])
-def test_what_is_no_result_is_refused(change: dict[str, Any]) -> None:
-    data = {**result("arm", 1.0, 1.0).to_json(), **change}
-    with pytest.raises(InputError, match="survey's result"):
+@pytest.mark.parametrize(
+    ("change", "fault"),
+    [
+        ({"version": 0}, ": not a survey's result of this version"),
+        ({"lines": 1}, ": /lines: 1 is not"),
+        ({"tpc": None}, ": /tpc: None is not"),
+        ({"packages": "x"}, ": /packages: 'x' is not"),
+    ],
+)
+def test_what_is_no_result_is_refused(change: dict[str, Any], fault: str) -> None:
+    data = {**json.loads(json.dumps(result("arm", 1.0, 1.0).to_json())), **change}
+    with pytest.raises(InputError, match=f"x.json{fault}"):
         TreeResult.from_json(data, Path("x.json"))

@@ -1,6 +1,7 @@
 """A survey from tree to tree, with builds that are only pretended: tests/ros has real ones."""
 
 import json
+import os
 from collections.abc import Callable
 from pathlib import Path
 
@@ -170,7 +171,9 @@ def test_a_result_that_cannot_be_read_is_measured_again(
     output = tmp_path / "out"
     run(output, trees[1])
     (file,) = (output / "results").iterdir()
-    for text in ("{", json.dumps({"version": 99})):
+    known = json.loads(file.read_text(encoding="utf-8"))
+    by_hand = {**known, "plain": {**known["plain"], "processor": "2.0"}}
+    for text in ("{", json.dumps({"version": 99}), json.dumps(by_hand)):
         built.clear()
         file.write_text(text, encoding="utf-8")
         run(output, trees[1])
@@ -183,6 +186,26 @@ def test_trees_of_one_name_are_told_apart(tmp_path: Path, built: Log) -> None:
     names = run(tmp_path / "out", tmp_path / "old/nav", tmp_path / "new/nav", tmp_path / "old/nav")
     assert names == ["old/nav", "new/nav"]
     assert len(list((tmp_path / "out/results").iterdir())) == 2
+
+
+def test_two_surveys_do_not_write_into_one_folder(
+    tmp_path: Path, trees: tuple[Path, Path], built: Log
+) -> None:
+    def second(step: Step) -> None:
+        with pytest.raises(WorkspaceError, match="out: another survey is at work here"):
+            run(tmp_path / "out", trees[1])
+        assert run(tmp_path / "elsewhere", trees[1]) == ["lower"]
+
+    survey([trees[1]], Options(tmp_path / "out", 2), second)
+    # Nothing is left of the first one that would be in the way.
+    assert run(tmp_path / "out", trees[1]) == ["lower"]
+
+
+def test_a_tree_whose_path_is_not_utf_8_is_refused(tmp_path: Path) -> None:
+    folder = tmp_path / os.fsdecode(b"a\xff")
+    add_package(folder / "base")
+    with pytest.raises(WorkspaceError, match="the path is not UTF-8"):
+        read_tree(folder)
 
 
 def test_the_output_is_not_put_into_a_tree(tmp_path: Path, built: Log) -> None:

@@ -133,6 +133,26 @@ def test_a_second_build_finds_the_same_and_removes_what_is_gone(built: Path) -> 
     assert (built / "src/tiny/CMakeLists.txt").read_text(encoding="utf-8") == text
 
 
+def test_two_packages_whose_projects_are_called_alike_are_two(tmp_path: Path) -> None:
+    """Catkin wants a project to be called as its package is; plain CMake does not."""
+    plain = "<export><build_type>cmake</build_type></export></package>"
+    for name in ("left", "right"):
+        package = make_package(tmp_path / name)
+        manifest = MANIFEST.replace("<name>tiny", f"<!-- once <name>old</name> --><name>{name}")
+        (package / "package.xml").write_text(
+            manifest.replace("</package>", plain), encoding="utf-8"
+        )
+        lists = CMAKELISTS.replace("catkin_package()\n", "").replace(
+            "${CATKIN_PACKAGE_BIN_DESTINATION}", "lib/tiny"
+        )
+        (package / "CMakeLists.txt").write_text(lists, encoding="utf-8")
+    static = build_workspace(tmp_path).static
+    assert [(unit.package, unit.link_unit) for unit in static.units] == [
+        ("left", "tiny_node"), ("right", "tiny_node"),
+    ]  # fmt: skip
+    assert len(static.thresholds) == 2
+
+
 def test_a_unit_without_analysis_is_noticed(tmp_path: Path) -> None:
     package = make_package(tmp_path)
     # A compile rule of the package's own, which TPC's flags are not in.
