@@ -159,8 +159,8 @@ macro(_tpc_name_compiler language)
       set(_tpc_compiler "\"${_tpc_instead_of_${language}}\"")
       # A compiler's launcher CMake puts before the rule, a linker's before the name.
       if(NOT _tpc_rule STREQUAL "COMPILE_OBJECT" AND CMAKE_${language}_LINKER_LAUNCHER)
-        string(REPLACE ";" " " _tpc_launcher "${CMAKE_${language}_LINKER_LAUNCHER}")
-        string(PREPEND _tpc_compiler "${_tpc_launcher} ")
+        string(REPLACE ";" "\" \"" _tpc_launcher "${CMAKE_${language}_LINKER_LAUNCHER}")
+        string(PREPEND _tpc_compiler "\"${_tpc_launcher}\" ")
       endif()
       string(REPLACE "<CMAKE_${language}_COMPILER>" "${_tpc_compiler}"
         CMAKE_${language}_${_tpc_rule} "${CMAKE_${language}_${_tpc_rule}}")
