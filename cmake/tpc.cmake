@@ -76,12 +76,17 @@ string(APPEND _tpc_compile_flags "${_tpc_accept_flags}")
 macro(_tpc_link_with_lld)
   _tpc_read_flags(link _tpc_link_flags)
   foreach(_tpc_language ${ARGN})
-    foreach(_tpc_rule LINK_EXECUTABLE CREATE_SHARED_LIBRARY CREATE_SHARED_MODULE)
-      string(REPLACE "<LINK_FLAGS>" "<LINK_FLAGS>${_tpc_link_flags}"
-        CMAKE_${_tpc_language}_${_tpc_rule} "${CMAKE_${_tpc_language}_${_tpc_rule}}")
-    endforeach()
-    list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES CMAKE_${_tpc_language}_LINK_EXECUTABLE)
+    _tpc_add_link_flags(${_tpc_language} "${_tpc_link_flags}")
   endforeach()
+endmacro()
+
+# Adds flags to the link rules of a language, behind those of the target, in probes too.
+macro(_tpc_add_link_flags language flags)
+  foreach(_tpc_rule LINK_EXECUTABLE CREATE_SHARED_LIBRARY CREATE_SHARED_MODULE)
+    string(REPLACE "<LINK_FLAGS>" "<LINK_FLAGS> ${flags}"
+      CMAKE_${language}_${_tpc_rule} "${CMAKE_${language}_${_tpc_rule}}")
+  endforeach()
+  list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES CMAKE_${language}_LINK_EXECUTABLE)
 endmacro()
 
 # Adds flags to the compile rule of a language, behind those of the target.
@@ -187,11 +192,7 @@ macro(_tpc_link_bitcode)
   if(TPC_GOLD_PLUGIN)
     foreach(_tpc_language ${ARGN})
       if(CMAKE_${_tpc_language}_COMPILER_ID STREQUAL "GNU")
-        foreach(_tpc_rule LINK_EXECUTABLE CREATE_SHARED_LIBRARY CREATE_SHARED_MODULE)
-          string(REPLACE "<LINK_FLAGS>" "<LINK_FLAGS> \"-Wl,-plugin,${TPC_GOLD_PLUGIN}\""
-            CMAKE_${_tpc_language}_${_tpc_rule} "${CMAKE_${_tpc_language}_${_tpc_rule}}")
-        endforeach()
-        list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES CMAKE_${_tpc_language}_LINK_EXECUTABLE)
+        _tpc_add_link_flags(${_tpc_language} "\"-Wl,-plugin,${TPC_GOLD_PLUGIN}\"")
       endif()
     endforeach()
   endif()

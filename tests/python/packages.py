@@ -33,3 +33,19 @@ def install_prefix(folder: Path) -> Path:
         (folder / place).parent.mkdir(parents=True, exist_ok=True)
         (folder / place).touch()
     return folder / "share/tpc/cmake/tpc.cmake"
+
+
+def make_workspace(folder: Path) -> Path:
+    """Two packages, one with CRLF and one without a final newline; returns ``folder``."""
+    add_package(folder / "src/arm", cmakelists=b"project(arm)\r\n")
+    add_package(folder / "src/face", cmakelists=b"project(face)")
+    return folder
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    """Every file with its bytes, the hidden ones too."""
+    return {
+        str(path.relative_to(folder)): path.read_bytes()
+        for path in sorted(folder.rglob("*"))
+        if path.is_file()
+    }

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from packages import add_package, install_prefix
+from packages import add_package, contents, install_prefix, make_workspace
 
 from pytpc import patch
 from pytpc.errors import InputError, MissingToolError, WorkspaceError
@@ -124,18 +124,7 @@ def prefix(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.fixture
 def workspace(tmp_path: Path) -> Path:
-    folder = tmp_path / "ws"
-    add_package(folder / "src/arm", cmakelists=b"project(arm)\r\n")
-    add_package(folder / "src/face", cmakelists=b"project(face)")
-    return folder
-
-
-def contents(folder: Path) -> dict[str, bytes]:
-    return {
-        str(path.relative_to(folder)): path.read_bytes()
-        for path in sorted(folder.rglob("*"))
-        if path.is_file()
-    }
+    return make_workspace(tmp_path / "ws")
 
 
 def test_a_workspace_is_patched_and_restored(workspace: Path, prefix: Path) -> None:

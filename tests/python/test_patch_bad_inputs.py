@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from packages import add_package, install_prefix
+from packages import add_package, contents, install_prefix, make_workspace
 
 from pytpc import patch
 from pytpc.errors import InputError, WorkspaceError
@@ -32,21 +32,6 @@ def prefix(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 @pytest.fixture
 def workspace(tmp_path: Path) -> Path:
     return make_workspace(tmp_path / "ws")
-
-
-def make_workspace(folder: Path) -> Path:
-    add_package(folder / "src/arm", cmakelists=b"project(arm)\r\n")
-    add_package(folder / "src/face", cmakelists=b"project(face)")
-    return folder
-
-
-def contents(folder: Path) -> dict[str, bytes]:
-    """Every file with its bytes, the hidden ones too."""
-    return {
-        str(path.relative_to(folder)): path.read_bytes()
-        for path in sorted(folder.rglob("*"))
-        if path.is_file()
-    }
 
 
 def run_script(*arguments: str | Path, user: int | None = None) -> subprocess.CompletedProcess[str]:
