@@ -48,6 +48,12 @@ class Outcome:
         self.gathering.flush()
         self.keys, self._key_places = sorted_words(self.gathering.keys.codes)
         self.nodes, self._node_places = sorted_words(self.gathering.nodes.codes)
+        self._seen = np.zeros(len(self.keys), np.bool_)
+
+    @property
+    def comparisons(self) -> int:
+        """How many keys the events have that were given."""
+        return int(np.count_nonzero(self._seen))
 
     def event_blocks(self) -> Iterator[Rows]:
         """The events in order of time; codes are those of the sorted words."""
@@ -58,7 +64,9 @@ class Outcome:
                 self.events += rows.size
                 self.first_ns = min(self.first_ns, int(rows["time_ns"][0]))
                 self.last_ns = max(self.last_ns, int(rows["time_ns"][-1]))
-                yield self._recoded(rows)
+                recoded = self._recoded(rows)
+                self._seen[recoded["key"]] = True
+                yield recoded
 
     def summary_blocks(self) -> Iterator[Rows]:
         """The summaries in order of their begin; the same one twice is given once."""
