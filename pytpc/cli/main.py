@@ -23,7 +23,7 @@ SUMMARIES = {
     "list": ("static_commands", "List the comparisons that were found."),
     "patch": ("workspace_commands", "Put TPC's three lines into each CMakeLists.txt."),
     "rank": ("event_commands", "Name the suspected parameters at each mark in a bag."),
-    "record": ("mission_commands", "Run a launch file and record the mission."),
+    "record": ("mission_commands", "Record the running graph, or a launch file's mission."),
     "report": ("event_commands", "Write a page with the suspects at each mark, and why."),
     "show": ("static_commands", "Show all that is known about a comparison."),
     "survey": ("survey_commands", "Build source trees with and without TPC; tables."),
