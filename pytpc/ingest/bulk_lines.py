@@ -165,5 +165,8 @@ def _times(column: pa.ChunkedArray) -> Int64s:
         decimals = pa.concat_arrays(decimals.chunks)
     # A decimal of nine places is stored as a whole number of nanoseconds, in 128 bits.
     raw = np.frombuffer(decimals.buffers()[1], np.int64)
-    first = 2 * decimals.offset
-    return raw[first : first + 2 * len(decimals) : 2]
+    raw = raw[2 * decimals.offset : 2 * (decimals.offset + len(decimals))]
+    times: Int64s = raw[::2]
+    if bool((times < 0).any()) or bool(raw[1::2].any()):
+        raise _Odd
+    return times

@@ -21,6 +21,7 @@ PREFIX = "threshold_information:"
 SUMMARY_PREFIX = "threshold_summary:"
 DROPPED_PREFIX = "threshold_dropped:"
 BATCH_PREFIX = "#seq:"
+LATEST_NS = 2**63 - 1
 
 _TIME = r"[0-9]{1,10}\.[0-9]{1,9}"
 _KEY = r"[0-9a-fA-F]{8}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{12}"
@@ -114,6 +115,8 @@ def parse_stamped(text: str) -> StampedReport | Malformed:
     stamp = _STAMPED.match(text)
     if stamp is None:
         return Malformed("a time in seconds is expected", 1)
+    if nanoseconds(stamp[1]) > LATEST_NS:
+        return Malformed("a time beyond the year 2262", 1)
     report = _read(text, stamp.end())
     if isinstance(report, Malformed):
         return report
@@ -174,7 +177,7 @@ def _summary(found: re.Match[str], node: str) -> Summary | Malformed:
             return Malformed("a number is beyond the range of a double", place)
     count, flops, far, odd = (int(found[group]) for group in (6, 7, 14, 15))
     begin_ns, end_ns = nanoseconds(found[16]), nanoseconds(found[17])
-    if max(flops, far, odd) > count or count == 0 or end_ns < begin_ns:
+    if not begin_ns <= end_ns <= LATEST_NS or max(flops, far, odd) > count or count == 0:
         return Malformed("the counts or times of a summary contradict one another", found.start())
     return Summary(
         key=found[1].lower(),

@@ -14,6 +14,7 @@ from pathlib import Path
 from pytpc.errors import InputError
 from pytpc.ingest.gathering import Batches, Gathering, Lines, Progress
 from pytpc.ingest.rosout_line import (
+    LATEST_NS,
     PREFIX,
     Batch,
     Drop,
@@ -116,8 +117,11 @@ class _Log(_Taker):
         found = _BEGIN.search(line)
         front = line if found is None else line[: found.start()]
         stamp = _TIME.search(front)
-        if stamp is not None:
-            self._last_ns = nanoseconds((stamp[2] or stamp[1]).decode())
+        time_ns = -1 if stamp is None else nanoseconds((stamp[2] or stamp[1]).decode())
+        if 0 <= time_ns <= LATEST_NS:
+            self._last_ns = time_ns
+        else:
+            stamp = None
         if found is None:
             return
         self._without_time += stamp is None

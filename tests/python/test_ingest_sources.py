@@ -143,6 +143,20 @@ def test_csv(tmp_path, headline, end):
     assert recording.dropped == (Dropped(key(2), "reports", 12, 3, "site"),)
 
 
+# Found by fuzzing: 2^63 ns is 9,223,372,036.854775808 s.
+@pytest.mark.parametrize("text", ["9223372036.854775808", "9999999999.999999999"])
+def test_times_that_no_table_holds(tmp_path, text):
+    good = [stamped("9223372036.854775807", 1, 0, 1, 2), stamped("1.0", 1, 0, 1, 2)]
+    path = tmp_path / "x.csv"
+    path.write_text("\n".join([*good, stamped(text, 1, 0, 1, 2)]))
+    recording = read(path)
+    assert [time for time, *_ in found(recording)] == [10**9, 2**63 - 1]
+    assert recording.malformed_first[0].what == "line 3: a time beyond the year 2262, column 1"
+    log = tmp_path / "x.log"
+    log.write_text(f"[ INFO] [7.5]: up\n[ INFO] [{text}]: {line(1, 0, 1, 2)}\n")
+    assert [time for time, *_ in found(read(log))] == [7_500_000_000]
+
+
 def test_a_line_without_end(tmp_path):
     path = tmp_path / "x.log"
     report_text = f"[1700000000.5]: {line(1, 1, 2, 1)}"
