@@ -264,9 +264,9 @@ class Lines:
     """
 
     def __init__(
-        self, gathering: Gathering, channel: Channel, *, stamped: bool, prefix: int = 0
+        self, gathering: Gathering, channel: Channel, *, stamped: bool, prefix: str = ""
     ) -> None:
-        """``prefix`` is how many bytes stand before the key, or the time, in what ``add`` gets."""
+        """``prefix`` stood before what ``add`` gets, and stands there in complaints."""
         self.gathering = gathering
         self.channel = channel
         self._stamped = stamped
@@ -288,13 +288,19 @@ class Lines:
         if len(self._lines) >= LINES:
             self.flush()
 
-    def extend(self, lines: list[bytes], times_ns: list[int], nodes: list[int]) -> None:
-        """The same of many lines that have no numbers."""
+    def extend(
+        self,
+        lines: list[bytes],
+        times_ns: list[int],
+        nodes: list[int],
+        numbers: list[int] | None = None,
+    ) -> None:
+        """The same of many lines."""
         self._lines += lines
         self._times += times_ns
         self._nodes += nodes
         self._turns += self.gathering.turns(len(lines))
-        self._places += [0] * len(lines)
+        self._places += numbers or [0] * len(lines)
         if len(self._lines) >= LINES:
             self.flush()
 
@@ -302,10 +308,9 @@ class Lines:
         """Hand in all that was taken in."""
         if not self._lines:
             return
-        texts = [line[self._prefix :] for line in self._lines] if self._prefix else self._lines
         times = np.array(self._times, np.int64)
         nodes = np.array(self._nodes, np.int32)
-        for part in read_lines(texts, stamped=self._stamped):
+        for part in read_lines(self._lines, stamped=self._stamped):
             if isinstance(part, int):
                 self._alone(part)
                 continue
@@ -335,7 +340,7 @@ class Lines:
                 self.unstamped += not stamped.time_ns
                 time_ns = stamped.time_ns or time_ns
         else:
-            found = parse_report(text if self._prefix else PREFIX + text)
+            found = parse_report(PREFIX + text)
         if isinstance(found, Report):
             reports = Reports(
                 np.array([time_ns], np.int64),
@@ -350,7 +355,9 @@ class Lines:
         what = "no report" if found is None else f"{found.what}, column {found.column}"
         if self._places[number]:
             what = f"line {self._places[number]}: {what}"
-        self.gathering.skip(self.channel.topic, time_ns, what, text, self._turns[number])
+        self.gathering.skip(
+            self.channel.topic, time_ns, what, self._prefix + text, self._turns[number]
+        )
 
 
 @dataclass

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pytpc.columns import Bools, Int64s
+from pytpc.columns import Bools, Int32s, Int64s
 from pytpc.ingest.bag_chunks import Messages as Chunk
 from pytpc.ingest.gathering import Batches, Channel, Gathering, Lines, Way
 from pytpc.ingest.recording import Dropped
@@ -107,7 +107,7 @@ class Messages:
             return False
         places = zip(logs.node_begin.tolist(), logs.node_end.tolist(), strict=True)
         names = [chunk.data[begin:end] for begin, end in places]
-        self._count_all_lost(names, logs.seq)
+        nodes = self._count_all_lost(names, logs.seq)
         # The first bytes of each text; what is too short for them is of no interest.
         long = logs.msg_end - logs.msg_begin >= len(_PREFIX)
         rows = np.flatnonzero(long)
@@ -123,19 +123,19 @@ class Messages:
         stamps = logs.stamp_ns[rows]
         self._unstamped += int(np.count_nonzero(stamps == 0))
         stamps = np.where(stamps == 0, chunk.time_ns[which][rows], stamps)
-        places = zip(logs.msg_begin[rows].tolist(), logs.msg_end[rows].tolist(), strict=True)
+        begins = logs.msg_begin[rows] + len(_PREFIX)
+        places = zip(begins.tolist(), logs.msg_end[rows].tolist(), strict=True)
         texts = [chunk.data[begin:end] for begin, end in places]
-        nodes = [self._node(names[row]) for row in rows.tolist()]
-        lines = self._lines_of("log", ROSOUT, stamped=False, prefix=len(_PREFIX))
-        lines.extend(texts, stamps.tolist(), nodes)
+        lines = self._lines_of("log", ROSOUT, stamped=False, prefix=PREFIX)
+        lines.extend(texts, stamps.tolist(), nodes[rows].tolist())
         return True
 
-    def _count_all_lost(self, names: list[bytes], seq: Int64s) -> None:
-        """As ``_count_lost``, of many messages."""
-        codes: dict[bytes, int] = {}
-        of = np.array([codes.setdefault(name, len(codes)) for name in names], np.int64)
+    def _count_all_lost(self, names: list[bytes], seq: Int64s) -> Int32s:
+        """As ``_count_lost``, of many messages; the codes of their nodes."""
+        codes = {name: self._node(name) for name in set(names)}
+        nodes = np.array([codes[name] for name in names], np.int32)
         for name, code in codes.items():
-            own = seq[of == code]
+            own = seq[nodes == code]
             last = self._last_seq.get(name)
             if last is not None:
                 own = np.concatenate([[last], own])
@@ -144,6 +144,7 @@ class Messages:
             if lost:
                 self._gathering.lost[_plain(name)] += lost
             self._last_seq[name] = int(own[-1])
+        return nodes
 
     def close(self) -> None:
         """Hand in what is still held."""
@@ -168,8 +169,8 @@ class Messages:
         way: Way = "log" if topic == ROSOUT else "aggregate"
         if log.msg.startswith(_PREFIX):
             stamp_ns = log.stamp_ns or self._from_bag(time_ns)
-            lines = self._lines_of(way, topic, stamped=False, prefix=len(_PREFIX))
-            lines.add(log.msg, stamp_ns, self._node(log.node))
+            lines = self._lines_of(way, topic, stamped=False, prefix=PREFIX)
+            lines.add(log.msg[len(_PREFIX) :], stamp_ns, self._node(log.node))
         elif log.msg.startswith(_OTHERS) and topic == ROSOUT:
             # What the rosout node passes on is the same once more.
             node, text = _plain(log.node), _plain(log.msg)
@@ -249,7 +250,7 @@ class Messages:
             self._channels[way] = self._gathering.channel(self._source, way, topic)
         return self._channels[way]
 
-    def _lines_of(self, way: Way, topic: str, *, stamped: bool, prefix: int = 0) -> Lines:
+    def _lines_of(self, way: Way, topic: str, *, stamped: bool, prefix: str = "") -> Lines:
         lines = self._lines.get(way)
         if lines is None:
             channel = self._channel(way, topic)
