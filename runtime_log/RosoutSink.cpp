@@ -5,8 +5,26 @@
 
 namespace tpc {
 
-void logToRosout(const Report &R) {
-  ROS_INFO("threshold_information:%s", format(R).c_str());
+namespace {
+
+class RosoutSink final : public Sink {
+public:
+  void take(const Report &R) override {
+    ROS_INFO("threshold_information:%s", format(R).c_str());
+  }
+  void take(const Summary &S) override {
+    ROS_INFO("threshold_summary:%s", format(S).c_str());
+  }
+  void take(const Dropped &D) override {
+    ROS_INFO("threshold_dropped:%s", format(D).c_str());
+  }
+};
+
+} // namespace
+
+Sink &rosoutSink() {
+  static auto *S = new RosoutSink;
+  return *S;
 }
 
 } // namespace tpc
