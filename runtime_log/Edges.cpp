@@ -17,8 +17,6 @@ namespace tpc {
 
 using layout::Slot;
 
-/// |compared - threshold| above which an evaluation is far (SPEC 7).
-static constexpr double FarFrom = 1e-4;
 static constexpr int64_t Patience = 100'000'000;
 
 namespace {
@@ -31,7 +29,7 @@ struct Beginning {
 } // namespace
 
 std::atomic<LogFile *> SlotsHome{nullptr};
-static std::atomic<uint32_t> Period{1};
+std::atomic<uint32_t> NowPeriod{1};
 static Beginning Beginnings[4];
 static std::mutex Flushing;
 static bool HasBarrier = false;
@@ -47,7 +45,7 @@ static int64_t rosTime() {
 
 /// Two slots for a site that is new to the thread, or after the sink was
 /// changed: in the file, where they are read even if the process is killed.
-[[gnu::noinline]] static void makePair(Thread &T, const Site &S) {
+static void makePair(Thread &T, const Site &S) {
   LogFile *File = SlotsHome.load(std::memory_order_acquire);
   if (T.PairsHome != File) {
     // What is in the old ones is taken by the helper thread.
@@ -107,7 +105,7 @@ static void take(Slot &From, Sink &To, int64_t EndSteady, int64_t EndRos) {
 }
 
 /// The slot is empty, or of a period that is over.
-[[gnu::noinline]] static void beginSlot(Thread &T, const Site &S, Slot &In,
+static void beginSlot(Thread &T, const Site &S, Slot &In,
                                         uint32_t Now) {
   std::lock_guard<std::mutex> Guard(T.Lock);
   layout::Summary &K = In.Kept;
@@ -128,7 +126,7 @@ static void take(Slot &From, Sink &To, int64_t EndSteady, int64_t EndRos) {
 }
 
 /// The predicate may have come to something else than the last time.
-[[gnu::noinline]] static void edge(Thread &T, Site &S, Slot &In,
+static void edge(Thread &T, Site &S, Slot &In,
                                    const Report &R) {
   std::lock_guard<std::mutex> Guard(S.Lock);
   int8_t Last = S.Last.load(std::memory_order_relaxed);
@@ -155,43 +153,28 @@ static void take(Slot &From, Sink &To, int64_t EndSteady, int64_t EndRos) {
 }
 
 void edges(Thread &T, Site &S, const Report &R) {
-  if (__builtin_expect(
-          S.Number > T.PairCount || !T.Pairs[S.Number - 1] ||
-              T.PairsHome != SlotsHome.load(std::memory_order_relaxed),
-          0))
+  if (S.Number > T.PairCount || !T.Pairs[S.Number - 1] ||
+      T.PairsHome != SlotsHome.load(std::memory_order_relaxed))
     makePair(T, S);
-  uint32_t Now = Period.load(std::memory_order_acquire);
+  uint32_t Now = NowPeriod.load(std::memory_order_acquire);
   Slot &In = T.Pairs[S.Number - 1]->Of[Now & 1];
   layout::Summary &K = In.Kept;
-  if (__builtin_expect(!K.Count || K.Period != Now, 0))
+  if (!K.Count || K.Period != Now)
     beginSlot(T, S, In, Now);
-  // Begun and Count tell a reader of the file whether the process ended in
-  // between.
-  In.Begun += 1;
-  std::atomic_signal_fence(std::memory_order_release);
-  double Diff = R.Compared - R.Threshold;
-  double Size = std::fabs(Diff);
-  if (__builtin_expect(Size <= 1.7976931348623157e308, 1)) {
-    K.DiffMin = Diff < K.DiffMin ? Diff : K.DiffMin;
-    K.DiffMax = Diff > K.DiffMax ? Diff : K.DiffMax;
-    K.DiffSum += Diff;
-    K.AbsSum += Size;
-    double Low = Diff < 0 ? R.Compared : R.Threshold;
-    double High = Diff < 0 ? R.Threshold : R.Compared;
-    K.Low = Low < K.Low ? Low : K.Low;
-    K.High = High > K.High ? High : K.High;
-    K.Far += Size > FarFrom;
-  } else {
-    ++K.Odd;
+  if (S.Last.load(std::memory_order_relaxed) != R.Result)
+    edge(T, S, In, R);
+  uint32_t Bits = layout::bits(R.Result, R.Outcome);
+  if (std::isfinite(R.Compared - R.Threshold)) {
+    add(In, Bits, R.Compared, R.Threshold);
+    return;
   }
+  ++In.Begun;
+  ++K.Odd;
   K.Compared = R.Compared;
   K.Threshold = R.Threshold;
-  if (__builtin_expect(S.Last.load(std::memory_order_relaxed) != R.Result, 0))
-    edge(T, S, In, R);
+  K.What = layout::SummaryRecord | Bits;
   std::atomic_signal_fence(std::memory_order_release);
-  K.What = layout::SummaryRecord | (R.Result ? layout::ResultBit : 0) |
-           (R.Outcome ? layout::OutcomeBit : 0);
-  K.Count += 1;
+  ++K.Count;
 }
 
 //===----------------------------------------------------------------------===//
@@ -201,7 +184,7 @@ void edges(Thread &T, Site &S, const Report &R) {
 void prepareEdges() {
   HasBarrier = !syscall(SYS_membarrier,
                         MEMBARRIER_CMD_REGISTER_PRIVATE_EXPEDITED, 0, 0);
-  Beginning &B = Beginnings[Period.load() & 3];
+  Beginning &B = Beginnings[NowPeriod.load() & 3];
   if (!B.Steady)
     B = {Clock::steady(), rosTime()};
 }
@@ -240,9 +223,9 @@ static std::vector<Thread *> withoutLate(std::vector<Thread *> Threads) {
 }
 
 static void flushPeriod(Sink &S) {
-  uint32_t Old = Period.load(std::memory_order_relaxed);
+  uint32_t Old = NowPeriod.load(std::memory_order_relaxed);
   Beginnings[(Old + 1) & 3] = {Clock::now(), rosTime()};
-  Period.store(Old + 1, std::memory_order_seq_cst);
+  NowPeriod.store(Old + 1, std::memory_order_seq_cst);
   std::vector<Thread *> Threads = withoutLate(allThreads());
   int64_t EndSteady = Clock::now(), EndRos = rosTime();
   std::vector<Slot *> Touched;

@@ -64,6 +64,10 @@ constexpr uint32_t OutcomeBit = 1U << 9;
 constexpr uint32_t EdgeBit = 1U << 10;
 constexpr uint32_t ReasonShift = 16;
 
+constexpr uint32_t bits(bool Result, bool Outcome) {
+  return (Result ? ResultBit : 0) | (Outcome ? OutcomeBit : 0);
+}
+
 struct Record {
   uint32_t What;
   uint32_t Site;

@@ -446,8 +446,7 @@ void LogFile::write(const tpc::Summary &S) {
   Kept->BeginRos = S.BeginRos;
   Kept->EndRos = S.EndRos;
   __atomic_store_n(&Kept->What,
-                   SummaryRecord | (S.Result ? ResultBit : 0) |
-                       (S.Outcome ? OutcomeBit : 0),
+                   SummaryRecord | bits(S.Result, S.Outcome),
                    __ATOMIC_RELEASE);
 }
 

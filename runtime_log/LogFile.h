@@ -31,20 +31,30 @@ public:
   /// be. A file is never deleted: threads may write to it at any time.
   static LogFile *open(const Config &C, std::string &Why);
 
+  /// The same as write() where nothing stands in the way; else does nothing and
+  /// returns false.
+  bool writeAtOnce(Thread &T, const Site &S, uint32_t Bits, double Compared,
+                   double Threshold) {
+    if (T.File != this || T.Next == T.End || T.Simulated != -1 ||
+        S.WrittenTo.load(std::memory_order_relaxed) != this ||
+        TimeIsSimulated.load(std::memory_order_relaxed))
+      return false;
+    put(*T.Next++, layout::ReportRecord | Bits, S.Number, Clock::now(),
+        Compared, Threshold);
+    return true;
+  }
+
   /// Writes one report of the calling thread; false where the file takes no
   /// more.
   bool write(Thread &T, Site &S, uint32_t Bits, double Compared,
              double Threshold) {
-    if (__builtin_expect(T.File != this || T.Next == T.End, 0) &&
-        !nextChunk(T))
+    if ((T.File != this || T.Next == T.End) && !nextChunk(T))
       return false;
-    if (__builtin_expect(S.WrittenTo.load(std::memory_order_relaxed) != this,
-                         0))
+    if (S.WrittenTo.load(std::memory_order_relaxed) != this)
       announce(S);
     int64_t Now = Clock::now();
-    if (__builtin_expect(TimeIsSimulated.load(std::memory_order_relaxed) ||
-                             T.Simulated != -1,
-                         0) &&
+    if ((TimeIsSimulated.load(std::memory_order_relaxed) ||
+         T.Simulated != -1) &&
         !simulated(T, Now))
       return false;
     put(*T.Next++, layout::ReportRecord | Bits, S.Number, Now, Compared,

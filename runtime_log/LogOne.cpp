@@ -9,16 +9,11 @@ char tpc_reporting = 1;
 
 namespace tpc {
 
-static uint32_t bits(const Report &R) {
-  return (R.Result ? layout::ResultBit : 0) |
-         (R.Outcome ? layout::OutcomeBit : 0);
-}
-
 void emit(Thread &T, Site &S, const Report &R, uint32_t Bits) {
   if (!ReportsToFile.load(std::memory_order_acquire))
     NowSink.load(std::memory_order_acquire)->take(R);
   else if (LogFile *File = NowFile.load(std::memory_order_acquire))
-    File->write(T, S, Bits | bits(R), R.Compared, R.Threshold);
+    File->write(T, S, Bits | layout::bits(R.Result, R.Outcome), R.Compared, R.Threshold);
 }
 
 /// One report under caps.
@@ -35,36 +30,51 @@ static void capped(Thread &T, Site &S, const Report &R) {
                         std::memory_order_relaxed);
 }
 
-/// What is not on the shortest way.
-[[gnu::noinline]] static void slowly(Thread *T, const Report &R) {
+/// Says that the thread is inside of a report: a signal's handler, or code that
+/// is called from here, may report as well.
+static void enter(Thread &T, uint32_t Inside) {
+  T.Inside.store(Inside + 1, std::memory_order_relaxed);
+  std::atomic_signal_fence(std::memory_order_seq_cst);
+}
+
+static void leave(Thread &T, uint32_t Inside) {
+  T.Inside.store(Inside, std::memory_order_release);
+}
+
+static void report(Thread &T, const Report &R) {
+  if (NowMode.load(std::memory_order_acquire) == Mode::NotStarted)
+    startRuntime();
+  Mode M = NowMode.load(std::memory_order_acquire);
+  Site *S = M == Mode::Off ? nullptr : sites().find(R.Key);
+  if (!S)
+    return;
+  if (M == Mode::Edges)
+    edges(T, *S, R);
+  else if (M == Mode::Capped)
+    capped(T, *S, R);
+  else
+    emit(T, *S, R, 0);
+}
+
+/// Everything that may come in the way of the short way below.
+[[gnu::noinline]] static void slowly(const char *Key, bool Result, double Cmp,
+                                     double Thresh, bool Res) {
   try {
-    if (!T && !(T = makeThread()))
-      return;
-    if (T->Inside.load(std::memory_order_relaxed) & 1) {
+    Thread *T = ThisThread ? ThisThread : makeThread();
+    uint32_t Inside = T->Inside.load(std::memory_order_relaxed);
+    if (Inside & 1) {
       T->Nested.fetch_add(1, std::memory_order_relaxed);
       return;
     }
-    T->Inside.store(T->Inside.load(std::memory_order_relaxed) + 1,
-                    std::memory_order_relaxed);
-    std::atomic_signal_fence(std::memory_order_seq_cst);
-    if (NowMode.load(std::memory_order_acquire) == Mode::NotStarted)
-      startRuntime();
-    Mode M = NowMode.load(std::memory_order_acquire);
-    if (M != Mode::Off)
-      if (Site *S = sites().find(R.Key)) {
-        if (M == Mode::Edges)
-          edges(*T, *S, R);
-        else if (M == Mode::Capped)
-          capped(*T, *S, R);
-        else
-          emit(*T, *S, R, 0);
-      }
+    enter(*T, Inside);
+    try {
+      report(*T, {Key, Result, Cmp, Thresh, Res});
+    } catch (...) {
+      // A report that cannot be made is not worth a node.
+    }
+    leave(*T, Inside + 2);
   } catch (...) {
-    // A report that cannot be made is not worth a node.
   }
-  if (T)
-    T->Inside.store(T->Inside.load(std::memory_order_relaxed) + 1,
-                    std::memory_order_release);
 }
 
 } // namespace tpc
@@ -76,25 +86,22 @@ void log_one(char *key, bool result, double cmp, double thresh, bool res) {
   if (M == Mode::Off)
     return;
   Thread *T = ThisThread;
-  Report R{key, result, cmp, thresh, res};
-  uint32_t Inside;
-  if (__builtin_expect((M != Mode::FileEvery && M != Mode::Edges) || !T ||
-                           (Inside = T->Inside.load(
-                                std::memory_order_relaxed)) & 1,
-                       0))
-    return slowly(T, R);
-  // A signal's handler, or code that is called from here, may report as well.
-  T->Inside.store(Inside + 1, std::memory_order_relaxed);
-  std::atomic_signal_fence(std::memory_order_seq_cst);
-  try {
-    if (Site *S = sites().find(key)) {
-      if (M == Mode::Edges)
-        edges(*T, *S, R);
-      else if (LogFile *File = NowFile.load(std::memory_order_acquire))
-        File->write(*T, *S, bits(R), cmp, thresh);
+  if (T && (M == Mode::FileEvery || M == Mode::Edges)) {
+    uint32_t Inside = T->Inside.load(std::memory_order_relaxed);
+    if (!(Inside & 1)) {
+      enter(*T, Inside);
+      if (const Site *S = sites().known(key)) {
+        uint32_t Bits = layout::bits(result, res);
+        if (M == Mode::Edges
+                ? edgesAtOnce(*T, *S, result, Bits, cmp, thresh)
+                : NowFile.load(std::memory_order_acquire)
+                      ->writeAtOnce(*T, *S, Bits, cmp, thresh)) {
+          leave(*T, Inside + 2);
+          return;
+        }
+      }
+      leave(*T, Inside);
     }
-  } catch (...) {
-    // A report that cannot be made is not worth a node.
   }
-  T->Inside.store(Inside + 2, std::memory_order_release);
+  slowly(key, result, cmp, thresh, res);
 }

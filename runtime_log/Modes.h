@@ -11,7 +11,7 @@
 /// Whether reports are wanted: instrumented code looks at it before it calls
 /// log_one. Each program may have one of its own, weakly, that takes the place
 /// of the library's.
-extern "C" char tpc_reporting;
+extern "C" __attribute__((visibility("default"))) char tpc_reporting;
 
 namespace tpc {
 

@@ -65,6 +65,12 @@ public:
 
   /// The site of \p Key, made where it is new; null beyond Most sites.
   Site *find(const char *Key) {
+    Site *S = known(Key);
+    return S ? S : make(Key);
+  }
+
+  /// The site of \p Key where it was found at this address before, else null.
+  Site *known(const char *Key) const {
     if (const Table *T = Current.load(std::memory_order_acquire))
       for (uint64_t I = hash(Key);; ++I) {
         const Entry &E = T->Entries[I & T->Mask];
@@ -79,7 +85,7 @@ public:
         if (!There)
           break;
       }
-    return make(Key);
+    return nullptr;
   }
 
   Site &operator[](uint32_t Number) const {

@@ -8,7 +8,7 @@
 
 namespace tpc {
 
-thread_local Thread *ThisThread = nullptr;
+__thread Thread *ThisThread = nullptr;
 
 namespace {
 

@@ -47,8 +47,9 @@ struct Thread {
 /// is inside of this function already.
 Thread *makeThread();
 
-extern thread_local Thread *ThisThread
-    __attribute__((tls_model("initial-exec")));
+/// Of the calling thread; null before its first report. (`__thread`: no
+/// initialisation is looked for at each access.)
+extern __thread Thread *ThisThread __attribute__((tls_model("initial-exec")));
 
 /// Calls \p Do with every thread there ever was.
 std::vector<Thread *> allThreads();
