@@ -84,7 +84,7 @@ inline bool edgesAtOnce(Thread &T, const Site &S, bool Result, uint32_t Bits,
   return true;
 }
 
-/// Once in each helper thread, before the first flush.
+/// Once in each process, before the first evaluation.
 void prepareEdges();
 
 /// Begins a new period and gives the summaries of the old one to \p S; with

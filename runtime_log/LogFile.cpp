@@ -88,22 +88,29 @@ LogFile *LogFile::open(const Config &C, std::string &Why) {
   for (int Try = 1;; ++Try) {
     std::string Path =
         Stem + (Try > 1 ? "-" + std::to_string(Try) : "") + ".tpc";
+    if (!access(Path.c_str(), F_OK) && Try < 1000)
+      continue;
+    // It gets its name when it can be read.
+    std::string New = Path + ".new";
     int Descriptor =
-        ::open(Path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        ::open(New.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     if (Descriptor < 0) {
-      if (errno == EEXIST && Try < 1000)
-        continue;
       Why = Path + ": " + reason(errno);
       return nullptr;
     }
     auto *File = new LogFile(C, Path, Descriptor);
-    if (File->grow(Why)) {
+    bool IsThere = File->grow(Why);
+    if (IsThere && rename(New.c_str(), Path.c_str())) {
+      IsThere = false;
+      Why = reason(errno);
+    }
+    if (IsThere) {
       File->touch();
       File->sync();
       return File;
     }
     Why = Path + ": " + Why;
-    unlink(Path.c_str());
+    unlink(New.c_str());
     ::close(Descriptor);
     delete File;
     return nullptr;

@@ -138,6 +138,7 @@ void Runtime::start() {
     return;
   IsStarted = true;
   TimeIsSimulated = rosTimeIsSimulated();
+  prepareEdges();
   Held = configOfEnvironment();
   if (!choose(Held)) {
     // Its warning was given; a ROS parameter may say another folder.
@@ -256,7 +257,6 @@ void Runtime::wake() {
 }
 
 void Runtime::help() {
-  prepareEdges();
   NextRos = NextTurn = NextPeriod = NextSecond = 0;
   Clock::adjust();
   int64_t Next = Clock::steady() + FirstAdjustNs;

@@ -38,10 +38,14 @@ def killed_run(
     finally:
         process.send_signal(signal.SIGKILL)
         process.communicate()
-    (path,) = folder.glob("*.tpc")
     done = struct.unpack_from(f"<{threads}Q", counts.read_bytes())
-    file = log_file.read(path)
-    path.unlink()
+    paths = list(folder.glob("*.tpc"))
+    if not paths:
+        # It was killed before its first report.
+        assert sum(done) == 0
+        return log_file.LogFile(0, "", 0, 0), list(done)
+    file = log_file.read(paths[0])
+    paths[0].unlink()
     return file, list(done)
 
 
