@@ -16,6 +16,9 @@ int64_t rosTurn();
 /// The process ends: withdraws the service.
 void rosEnd();
 
+/// Whether ros::init was called.
+bool rosIsInitialized();
+
 /// The name of this process's node, empty where it is not known (yet).
 const char *rosNodeName();
 
