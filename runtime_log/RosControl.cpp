@@ -250,7 +250,7 @@ static bool timeIsKnown() {
   try {
     ros::Time::now();
     Known = true;
-  } catch (const ros::TimeNotInitializedException &) {
+  } catch (const std::exception &) {
     return false;
   }
   return true;
