@@ -14,6 +14,7 @@
 #include <mutex>
 #include <pthread.h>
 #include <thread>
+#include <unistd.h>
 
 namespace tpc {
 
@@ -51,6 +52,14 @@ RosUse::~RosUse() {
 }
 
 bool forkedFromNode() { return Forked; }
+
+void warnOfFork(const char *Topic) {
+  static std::atomic<bool> Said{false};
+  if (!Said.exchange(true))
+    warn("process " + std::to_string(getpid()) +
+         " was forked from a node: its reports are not on " + Topic +
+         "; the sink file has them");
+}
 
 bool rosIsUp() {
   if (!ros::isStarted() || ros::isShuttingDown()) {

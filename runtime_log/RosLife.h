@@ -37,6 +37,10 @@ bool rosIsUp();
 /// its threads are not here, and their locks may never be opened.
 bool forkedFromNode();
 
+/// Says, once in a process, that for this reason its reports are not on \p
+/// Topic. Not at its end: such a process has to leave by _exit.
+void warnOfFork(const char *Topic);
+
 /// Runs what talks to the master, which may take for ever, in a thread of its
 /// own with a RosUse held; one job at a time.
 ///

@@ -31,10 +31,8 @@ public:
 
   void end() override {
     if (const uint64_t Count = Lost.exchange(0))
-      warn(std::to_string(Count) + " evaluations came " +
-           (forkedFromNode() ? "in a process forked from a node"
-                             : "after ros::shutdown") +
-           ": they are not on /rosout");
+      warn(std::to_string(Count) +
+           " evaluations came after ros::shutdown: they are not on /rosout");
   }
 
   std::string status() const override {
@@ -47,7 +45,11 @@ private:
   /// counted. In a child that was forked from a node the thread that empties
   /// its queue is missing: messages would pile up until the memory is full.
   bool reaches(uint64_t Evaluations) {
-    if (!ros::isShuttingDown() && !forkedFromNode())
+    if (forkedFromNode()) {
+      warnOfFork("/rosout");
+      return false;
+    }
+    if (!ros::isShuttingDown())
       return true;
     Lost += Evaluations;
     return false;

@@ -31,6 +31,7 @@
 namespace tpc {
 namespace {
 
+constexpr const char *Topic = "/threshold_information";
 constexpr size_t MessageBytes = 64 * 1024;
 /// Messages that wait for a slow subscriber: at least ten seconds at 20 ms
 /// each, and at most 32 MiB.
@@ -97,7 +98,6 @@ private:
   std::atomic<bool> Advertised{false}; ///< or never will be
   std::atomic<bool> Subscribed{false};
   std::atomic<bool> Something{false}; ///< waits
-  std::atomic<uint64_t> Late{0};      ///< after which nothing is sent any more
   Doorbell Bell{Subscribed};
 };
 
@@ -118,7 +118,6 @@ void TopicSink::afterFork(bool InChild) {
     // What waits is the parent's to send.
     Store = TopicStore();
     Something = false;
-    Late = 0;
   }
   StoreLock.unlock();
 }
@@ -139,11 +138,8 @@ template <typename F> void TopicSink::keep(F Add) {
 }
 
 void TopicSink::take(const Report &R) {
-  // Nothing of a forked child can be sent; that it is not is said at its end.
-  if (forkedFromNode()) {
-    ++Late;
-    return;
-  }
+  if (forkedFromNode())
+    return warnOfFork(Topic);
   TopicStore::Time When{rosNow(), false};
   if (When.Ns == 0 && !rosTimeIsSimulated()) {
     const auto Wall = std::chrono::system_clock::now().time_since_epoch();
@@ -155,9 +151,8 @@ void TopicSink::take(const Report &R) {
 
 void TopicSink::take(const Summary &S) {
   if (forkedFromNode())
-    Late += S.Count;
-  else
-    keep([&] { Store.add({S.EndRos, false}, S); });
+    return warnOfFork(Topic);
+  keep([&] { Store.add({S.EndRos, false}, S); });
 }
 
 void TopicSink::take(const Dropped &D) {
@@ -176,8 +171,7 @@ void TopicSink::advertise() {
     return;
   }
   ros::AdvertiseOptions Options;
-  Options.init<std_msgs::String>(ros::names::resolve("/threshold_information"),
-                                 QueueMessages);
+  Options.init<std_msgs::String>(ros::names::resolve(Topic), QueueMessages);
   const auto Callbacks = boost::make_shared<ros::SubscriberCallbacks>(
       [](const ros::SingleSubscriberPublisher &) {},
       ros::SubscriberStatusCallback(), ros::VoidConstPtr(), &Bell);
@@ -258,19 +252,17 @@ void TopicSink::end() {
     if (Use && sendWaiting(true))
       std::this_thread::sleep_for(LastMoment);
   }
-  uint64_t Unsent = Late.exchange(0);
-  if (!forkedFromNode()) {
+  if (forkedFromNode())
+    return;
+  uint64_t Unsent;
+  {
     std::lock_guard<std::mutex> Guard(StoreLock);
-    Unsent += Store.giveUp();
+    Unsent = Store.giveUp();
     Something = false;
   }
   if (Unsent)
-    warn(std::to_string(Unsent) +
-         (forkedFromNode()
-              ? " evaluations came in a process forked from a node: they are "
-                "not on /threshold_information"
-              : " evaluations were not sent on /threshold_information: nobody "
-                "listened, or the node was shut down"));
+    warn(std::to_string(Unsent) + " evaluations were not sent on " + Topic +
+         ": nobody listened, or the node was shut down");
 }
 
 std::string TopicSink::status() const {

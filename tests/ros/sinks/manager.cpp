@@ -12,7 +12,8 @@ namespace {
 
 class Reporting : public nodelet::Nodelet {
   void onInit() override {
-    Key = getName();
+    Key = "00000000-0000-4000-8000-00000000000";
+    Key += getName() == "/first" ? "1" : "2";
     Timer = getNodeHandle().createWallTimer(
         ros::WallDuration(0.01), [this](const ros::WallTimerEvent &) {
           log_one(const_cast<char *>(Key.c_str()), true, ++Count, 0.5, true);

@@ -3,7 +3,7 @@
 // `made before=N running=N after=N`.
 //
 // reporter --before=N --rate=N --seconds=S --threads=N --after=N --fork=N
-//          --shutdown=0|1 --flops=0|1
+//          --stay=S --shutdown=0|1 --flops=0|1
 
 #include <ros/ros.h>
 #include <tpc/LogOne.h>
@@ -28,6 +28,14 @@ static double option(int Count, char **Words, const char *Name,
     if (!std::strncmp(Words[I], Start.c_str(), Start.size()))
       return std::atof(Words[I] + Start.size());
   return Otherwise;
+}
+
+/// Keys are UUIDs: 1 before ros::init, 2 after ros::shutdown, 3 in a child, 4
+/// before the fork, 100 and more for the threads.
+static std::string key(int Number) {
+  char Text[40];
+  std::snprintf(Text, sizeof(Text), "00000000-0000-4000-8000-%012d", Number);
+  return Text;
 }
 
 /// The I-th report of a key: its number is the compared value.
@@ -64,19 +72,19 @@ int main(int Count, char **Words) {
   const bool Flops = Option("flops", 0) != 0;
   const long Before = Option("before", 0), After = Option("after", 0);
   for (long I = 0; I < Before; ++I)
-    report("before", I, Flops);
+    report(key(1), I, Flops);
   ros::init(Count, Words, "reporter");
   {
     ros::NodeHandle Node;
     ros::AsyncSpinner Spinner(1);
     Spinner.start();
     if (const long Children = Option("fork", 0); Children > 0) {
-      // The child reports a while and ends as a program ends.
-      report("parent", 0, Flops);
+      // roscpp hangs in a child that ends otherwise than by _exit.
+      report(key(4), 0, Flops);
       if (const pid_t Child = fork(); Child == 0) {
         for (long I = 0; I < Children; ++I)
-          report("child", I, Flops);
-        std::exit(0);
+          report(key(3), I, Flops);
+        _exit(0);
       } else {
         int Status = -1;
         waitpid(Child, &Status, 0);
@@ -86,16 +94,20 @@ int main(int Count, char **Words) {
     std::vector<std::thread> Threads;
     const int Number = static_cast<int>(Option("threads", 1));
     for (int I = 0; I < Number; ++I)
-      Threads.emplace_back(run, "key" + std::to_string(I),
-                           Option("rate", 100) / Number, Option("seconds", 1),
-                           Flops);
+      Threads.emplace_back(run, key(100 + I), Option("rate", 100) / Number,
+                           Option("seconds", 1), Flops);
     for (std::thread &T : Threads)
       T.join();
+    const auto Leave =
+        Clock::now() +
+        std::chrono::milliseconds(static_cast<long>(1e3 * Option("stay", 0)));
+    while (ros::ok() && Clock::now() < Leave)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
     Spinner.stop();
     if (Option("shutdown", 1) != 0)
       ros::shutdown();
     for (long I = 0; I < After; ++I)
-      report("after", I, Flops);
+      report(key(2), I, Flops);
     std::printf("made before=%ld running=%ld after=%ld\n", Before, Made.load(),
                 After);
     std::fflush(stdout);
