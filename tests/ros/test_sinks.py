@@ -130,7 +130,11 @@ def read_on(subscriber: RawSubscriber, take, seconds: float = 0.3) -> None:
 
 
 def start(graph: RosGraph, nodes: Path, *options: str, **env: str) -> GraphProcess:
-    command = [str(nodes / "reporter"), *options]
+    """The reporter; after its reports it stays a moment, so that a node's end is no part of a test.
+
+    What is made in the last 20 ms before ros::shutdown may not be sent any more.
+    """
+    command = [str(nodes / "reporter"), *options, "--stay=0.2"]
     return graph.start("reporter", command, env={"TPC_SINK": "topic", **env})
 
 
@@ -226,6 +230,19 @@ def test_loss_towards_a_stopped_subscriber_is_seen_in_the_numbers(graph, nodes):
     assert made(process)["running"] == 480_000
     assert reader.missing > 10_000
     assert reader.reports[key(THREAD)] + reader.missing + reader.dropped == 480_000
+
+
+def test_what_a_node_cannot_send_at_its_end_is_said(graph, nodes):
+    # 100,000 a second: what is made after the last turn before ros::shutdown is not sent.
+    reader = Reader()
+    with subscribed(graph) as subscriber:
+        process = start(graph, nodes, "--rate=100000", "--stay=0", "--after=3")
+        until(lambda: ended(process), subscriber, reader.take)
+        read_on(subscriber, reader.take)
+    total = sum(made(process).values())
+    unsent = int(re.search(r"tpc: (\d+) evaluations were not sent", process.log.read_text())[1])
+    assert unsent >= 3
+    assert total - 10_000 < reader.reports.total() + reader.dropped + unsent <= total
 
 
 @pytest.mark.parametrize("sink", ["topic", "rosout"])
