@@ -24,6 +24,7 @@ from click.testing import CliRunner
 from pytpc.cli.main import main
 from pytpc.errors import MissingToolError
 from pytpc.graph import GraphProcess, RosGraph
+from pytpc.ingest import read_bag
 from pytpc.ingest.ros1 import decode_log, decode_string
 from pytpc.paths import log_library, prefix, project_root
 from pytpc.tcpros import RawSubscriber
@@ -434,3 +435,52 @@ def test_clock_that_jumps_back_is_written_as_it_is(tmp_path, nodes):
     known = [t for t in reader.times if t]
     assert known == sorted(known, key=lambda t: t < 200) and max(known) > 500
     assert min(known) >= 100.0 and known[-1] == pytest.approx(100.99, abs=0.02)
+
+
+def relay(graph: RosGraph) -> GraphProcess:
+    """The relay, started by a launch file as docs/running.md says."""
+    launch = graph.folder / "relay.launch"
+    launch.write_text(
+        "<launch><node pkg='rosout' type='rosout' name='passer' output='screen'"
+        f" launch-prefix='{sys.executable} -m pytpc relay'/></launch>"
+    )
+    path = ":".join(part for part in (str(project_root()), os.environ.get("PYTHONPATH")) if part)
+    process = graph.start("roslaunch", ["roslaunch", str(launch)], env={"PYTHONPATH": path})
+    until(lambda: "passing on" in process.log.read_text())
+    return process
+
+
+def test_relay_passes_on_and_a_bag_of_both_topics_has_each_report_once(graph, nodes, tmp_path):
+    passer = relay(graph)
+    bag, status = tmp_path / "both.bag", tmp_path / "status.json"
+    command = [sys.executable, "-m", "pytpc.recorder", "--bag", str(bag), "--status", str(status)]
+    path = {"PYTHONPATH": str(project_root())}
+    recorder = graph.start("recorder", [*command, "/rosout", TOPIC], env=path, patience_s=15.0)
+    until(lambda: status.exists() and json.loads(status.read_text())["ready"])
+    process = start(graph, nodes, "--rate=2000", "--wait=1", "--stay=1", TPC_SINK="rosout")
+    until(lambda: ended(process))
+    time.sleep(0.5)
+    assert graph.stop(recorder) == 0, recorder.log.read_text()
+    graph.stop(passer)
+    assert "2,000 reports passed on\n" in passer.log.read_text()
+    assert json.loads(status.read_text())["messages"][TOPIC] == 2000
+    recording = read_bag(bag)
+    assert len(recording.events) == made(process)["running"] == 2000
+    assert recording.events.cmp.tolist() == [float(i) for i in range(2000)]
+    assert recording.malformed == 0 and recording.lost == {}
+    assert "2,000 reports on /threshold_information with keys" in " ".join(recording.notes)
+
+
+def test_relay_registers_again_with_a_master_that_was_started_again(graph, nodes):
+    passer = relay(graph)
+    os.kill(master_of(graph), signal.SIGKILL)
+    until(lambda: "what is connected goes on" in passer.log.read_text())
+    graph.start("master2", ["rosmaster", "--core", "-p", graph.uri.rsplit(":", 1)[1]])
+    until(lambda: "registered with it" in passer.log.read_text())
+    lines: list[str] = []
+    with subscribed(graph) as subscriber:
+        process = start(graph, nodes, "--rate=100", "--stay=1", TPC_SINK="rosout")
+        until(lambda: ended(process), subscriber, lines.append)
+    assert len(lines) > 50
+    last = re.escape(f",{key(THREAD)},0,cmp:99,thresh:0.5,res:0")
+    assert re.fullmatch(rf"\d{{10}}\.\d{{7}}{last}", lines[-1])

@@ -3,7 +3,7 @@
 // `made before=N running=N after=N`.
 //
 // reporter --before=N --rate=N --seconds=S --threads=N --after=N --fork=N
-//          --stay=S --shutdown=0|1 --flops=0|1
+//          --wait=S --stay=S --shutdown=0|1 --flops=0|1
 
 #include <ros/ros.h>
 #include <tpc/LogOne.h>
@@ -91,6 +91,9 @@ int main(int Count, char **Words) {
         std::printf("child ended with %d\n", Status);
       }
     }
+    // For subscribers to come: /rosout loses what is said before.
+    std::this_thread::sleep_for(
+        std::chrono::duration<double>(Option("wait", 0)));
     std::vector<std::thread> Threads;
     const int Number = static_cast<int>(Option("threads", 1));
     for (int I = 0; I < Number; ++I)
