@@ -65,7 +65,8 @@ void Clock::adjust() {
   auto Rate = static_cast<int64_t>(
       (static_cast<__int128>(Now.Ns - Previous.Ns) << 32) /
       static_cast<__int128>(Now.Ticks - Previous.Ticks));
-  int64_t Error = 0;
+  // The first one is a little ahead: no thread sees time go back for it.
+  int64_t Error = 300;
   if (const Line *Last = Current.load(std::memory_order_relaxed)) {
     Error = at(*Last, Now.Ticks) - Now.Ns;
     // A machine that slept: the clock is right, the line is not.

@@ -147,7 +147,7 @@ bool LogFile::grow(std::string &Why) {
     return false;
   }
   struct statvfs Disk;
-  if (!fstatvfs(Descriptor, &Disk) &&
+  if (ReserveBytes && !fstatvfs(Descriptor, &Disk) &&
       static_cast<uint64_t>(Disk.f_bavail) * Disk.f_frsize <
           ReserveBytes + ExtentBytes) {
     Why = "the disk has less than " + std::to_string(ReserveBytes >> 20) +

@@ -168,10 +168,13 @@ int ends(const Arguments &) {
     }).join();
   static auto *K = new Keys(1); // outlives main
   std::thread([] {
-    for (uint64_t I = 0;; ++I)
+    for (uint64_t I = 0;; ++I) {
       report((*K)[0], I, 9);
+      if (I % 100 == 0)
+        std::this_thread::yield();
+    }
   }).detach();
-  waitMs(20);
+  waitMs(5);
   return 0;
 }
 
@@ -195,7 +198,7 @@ int signals(const Arguments &A) {
                std::chrono::milliseconds(std::stol(A[0]));
   uint64_t I = 0;
   while (std::chrono::steady_clock::now() < Until)
-    for (int More = 0; More < 1000; ++More)
+    for (int More = 0; More < 100; ++More)
       report((*SignalKeys)[0], I++, 0);
   itimerval Never{};
   setitimer(ITIMER_PROF, &Never, nullptr);
