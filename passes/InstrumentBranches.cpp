@@ -185,8 +185,8 @@ static FunctionCallee logFunction(Module &M) {
 /// weak one takes; without that library reports are always made.
 static Function *reportFunction(Module &M, FunctionCallee Log) {
   LLVMContext &Ctx = M.getContext();
-  auto *F = Function::Create(Log.getFunctionType(), GlobalValue::InternalLinkage,
-                             "tpc.report", M);
+  auto *F = Function::Create(Log.getFunctionType(),
+                             GlobalValue::InternalLinkage, "tpc.report", M);
   F->addFnAttr(Attribute::AlwaysInline);
   F->setDoesNotThrow();
   Type *Byte = Type::getInt8Ty(Ctx);

@@ -62,9 +62,9 @@ void Clock::adjust() {
     return;
   // The rate is that since the reading before; the line goes on from where the
   // last one is now and comes back to the clock within a second.
-  auto Rate = static_cast<int64_t>(
-      (static_cast<__int128>(Now.Ns - Previous.Ns) << 32) /
-      static_cast<__int128>(Now.Ticks - Previous.Ticks));
+  auto Rate =
+      static_cast<int64_t>((static_cast<__int128>(Now.Ns - Previous.Ns) << 32) /
+                           static_cast<__int128>(Now.Ticks - Previous.Ticks));
   // The first one is a little ahead: no thread sees time go back for it.
   int64_t Error = 300;
   if (const Line *Last = Current.load(std::memory_order_relaxed)) {
@@ -77,8 +77,8 @@ void Clock::adjust() {
   Line &L = Lines[Next++ % 1024];
   L.Ticks = Now.Ticks;
   L.Ns = Now.Ns + Error;
-  L.Mult = Rate - static_cast<int64_t>(
-                      (static_cast<__int128>(Rate) * Error) / 1'000'000'000);
+  L.Mult = Rate - static_cast<int64_t>((static_cast<__int128>(Rate) * Error) /
+                                       1'000'000'000);
   Current.store(&L, std::memory_order_release);
 }
 

@@ -9,9 +9,9 @@
 
 namespace tpc {
 
-const char *const ConfigNames[8] = {
-    "sink",        "policy", "period",     "site_cap",
-    "process_cap", "folder", "file_limit", "file_reserve"};
+const char *const ConfigNames[8] = {"sink",       "policy",      "period",
+                                    "site_cap",   "process_cap", "folder",
+                                    "file_limit", "file_reserve"};
 
 static constexpr const char *SinkNames[] = {"rosout", "topic", "file", "off"};
 static constexpr const char *PolicyNames[] = {"every", "edges"};

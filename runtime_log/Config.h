@@ -18,10 +18,10 @@ struct Config {
   SinkKind Sink = SinkKind::Rosout;
   tpc::Policy Policy = Policy::Every;
   int64_t PeriodNs = 100'000'000;
-  uint64_t SiteCap = 0;    ///< reports a second; 0: no cap
-  uint64_t ProcessCap = 0; ///< reports a second; 0: no cap
-  std::string Folder;      ///< empty: $ROS_HOME/tpc, else ~/.ros/tpc
-  uint64_t FileLimitMiB = 4096; ///< of one file; 0: none
+  uint64_t SiteCap = 0;          ///< reports a second; 0: no cap
+  uint64_t ProcessCap = 0;       ///< reports a second; 0: no cap
+  std::string Folder;            ///< empty: $ROS_HOME/tpc, else ~/.ros/tpc
+  uint64_t FileLimitMiB = 4096;  ///< of one file; 0: none
   uint64_t FileReserveMiB = 256; ///< left free on the disk
 
   bool operator==(const Config &Other) const;

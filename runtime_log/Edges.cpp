@@ -105,8 +105,7 @@ static void take(Slot &From, Sink &To, int64_t EndSteady, int64_t EndRos) {
 }
 
 /// The slot is empty, or of a period that is over.
-static void beginSlot(Thread &T, const Site &S, Slot &In,
-                                        uint32_t Now) {
+static void beginSlot(Thread &T, const Site &S, Slot &In, uint32_t Now) {
   std::lock_guard<std::mutex> Guard(T.Lock);
   layout::Summary &K = In.Kept;
   // This thread was held up inside of an old period for so long that the
@@ -126,8 +125,7 @@ static void beginSlot(Thread &T, const Site &S, Slot &In,
 }
 
 /// The predicate may have come to something else than the last time.
-static void edge(Thread &T, Site &S, Slot &In,
-                                   const Report &R) {
+static void edge(Thread &T, Site &S, Slot &In, const Report &R) {
   std::lock_guard<std::mutex> Guard(S.Lock);
   int8_t Last = S.Last.load(std::memory_order_relaxed);
   if (Last == R.Result)
@@ -138,10 +136,9 @@ static void edge(Thread &T, Site &S, Slot &In,
   if (SiteCap.load(std::memory_order_relaxed) ||
       ProcessCap.load(std::memory_order_relaxed)) {
     int64_t Now = Clock::now();
-    DropCount *Over = !S.Used.takes(SiteCap, Now) ? &S.OverSiteCap
-                      : !ProcessMeter.takes(ProcessCap, Now)
-                          ? &S.OverProcessCap
-                          : nullptr;
+    DropCount *Over = !S.Used.takes(SiteCap, Now)            ? &S.OverSiteCap
+                      : !ProcessMeter.takes(ProcessCap, Now) ? &S.OverProcessCap
+                                                             : nullptr;
     if (Over) {
       Over->Count.fetch_add(1, std::memory_order_relaxed);
       Over->Flops.fetch_add(IsFlop, std::memory_order_relaxed);
@@ -182,8 +179,8 @@ void edges(Thread &T, Site &S, const Report &R) {
 //===----------------------------------------------------------------------===//
 
 void prepareEdges() {
-  HasBarrier = !syscall(SYS_membarrier,
-                        MEMBARRIER_CMD_REGISTER_PRIVATE_EXPEDITED, 0, 0);
+  HasBarrier =
+      !syscall(SYS_membarrier, MEMBARRIER_CMD_REGISTER_PRIVATE_EXPEDITED, 0, 0);
   Beginning &B = Beginnings[NowPeriod.load() & 3];
   if (!B.Steady)
     B = {Clock::steady(), rosTime()};
@@ -207,7 +204,8 @@ static std::vector<Thread *> withoutLate(std::vector<Thread *> Threads) {
     uint32_t Seen = T->Inside.load(std::memory_order_acquire);
     if (!(Seen & 1) || T == ThisThread)
       return false;
-    for (int Try = 0; T->Inside.load(std::memory_order_acquire) == Seen; ++Try) {
+    for (int Try = 0; T->Inside.load(std::memory_order_acquire) == Seen;
+         ++Try) {
       if (Clock::steady() > Until)
         return true;
       if (Try < 100)

@@ -205,8 +205,7 @@ char *LogFile::newChunk(uint32_t Kind, uint32_t Thread, uint64_t First,
       std::lock_guard<std::mutex> Guard(Chunks);
       if (IsClosed || Stopped.load(std::memory_order_relaxed))
         return nullptr;
-      uint32_t Mapped =
-          static_cast<uint32_t>(Extents.size()) * ChunksOfExtent;
+      uint32_t Mapped = static_cast<uint32_t>(Extents.size()) * ChunksOfExtent;
       if (Used < Mapped) {
         Extent &E = Extents[Used / ChunksOfExtent];
         char *Chunk = E.Base + (Used % ChunksOfExtent) * ChunkBytes;
@@ -313,7 +312,8 @@ void LogFile::close() {
     return;
   IsClosed = true;
   // Nobody writes behind the chunks that were given out.
-  if (ftruncate(Descriptor, HeaderBytes + static_cast<off_t>(Used) * ChunkBytes))
+  if (ftruncate(Descriptor,
+                HeaderBytes + static_cast<off_t>(Used) * ChunkBytes))
     warn(Path + ": " + reason(errno));
   if (!isStopped())
     Header->State = layout::Closed;
@@ -389,8 +389,8 @@ void LogFile::announceLocked(Site &S) {
     return;
   size_t Length = std::min(S.Key.size(), LongestKey);
   size_t InHead = std::min(Length, sizeof(Record::Text));
-  auto Blocks = static_cast<uint32_t>((Length - InHead + RecordBytes - 1) /
-                                      RecordBytes);
+  auto Blocks =
+      static_cast<uint32_t>((Length - InHead + RecordBytes - 1) / RecordBytes);
   Record *R = systemRecords(1 + Blocks);
   if (!R)
     return;
@@ -452,14 +452,14 @@ void LogFile::write(const tpc::Summary &S) {
   Kept->Flops = S.Flops;
   Kept->BeginRos = S.BeginRos;
   Kept->EndRos = S.EndRos;
-  __atomic_store_n(&Kept->What,
-                   SummaryRecord | bits(S.Result, S.Outcome),
+  __atomic_store_n(&Kept->What, SummaryRecord | bits(S.Result, S.Outcome),
                    __ATOMIC_RELEASE);
 }
 
 SlotPair *LogFile::newPair(Thread &T) {
   std::lock_guard<std::mutex> Guard(SystemLock);
-  if (!LiveNext || LiveEnd - LiveNext < static_cast<ptrdiff_t>(sizeof(SlotPair))) {
+  if (!LiveNext ||
+      LiveEnd - LiveNext < static_cast<ptrdiff_t>(sizeof(SlotPair))) {
     char *Chunk = newChunk(Live, T.Number, 0, 0);
     if (!Chunk)
       return nullptr;

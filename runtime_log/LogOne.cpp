@@ -13,14 +13,15 @@ void emit(Thread &T, Site &S, const Report &R, uint32_t Bits) {
   if (!ReportsToFile.load(std::memory_order_acquire))
     NowSink.load(std::memory_order_acquire)->take(R);
   else if (LogFile *File = NowFile.load(std::memory_order_acquire))
-    File->write(T, S, Bits | layout::bits(R.Result, R.Outcome), R.Compared, R.Threshold);
+    File->write(T, S, Bits | layout::bits(R.Result, R.Outcome), R.Compared,
+                R.Threshold);
 }
 
 /// One report under caps.
 static void capped(Thread &T, Site &S, const Report &R) {
   int8_t Last = S.Last.exchange(R.Result, std::memory_order_relaxed);
   int64_t Now = Clock::now();
-  DropCount *Over = !S.Used.takes(SiteCap, Now)              ? &S.OverSiteCap
+  DropCount *Over = !S.Used.takes(SiteCap, Now)            ? &S.OverSiteCap
                     : !ProcessMeter.takes(ProcessCap, Now) ? &S.OverProcessCap
                                                            : nullptr;
   if (!Over)
@@ -92,10 +93,9 @@ void log_one(char *key, bool result, double cmp, double thresh, bool res) {
       enter(*T, Inside);
       if (const Site *S = sites().known(key)) {
         uint32_t Bits = layout::bits(result, res);
-        if (M == Mode::Edges
-                ? edgesAtOnce(*T, *S, result, Bits, cmp, thresh)
-                : NowFile.load(std::memory_order_acquire)
-                      ->writeAtOnce(*T, *S, Bits, cmp, thresh)) {
+        if (M == Mode::Edges ? edgesAtOnce(*T, *S, result, Bits, cmp, thresh)
+                             : NowFile.load(std::memory_order_acquire)
+                                   ->writeAtOnce(*T, *S, Bits, cmp, thresh)) {
           leave(*T, Inside + 2);
           return;
         }

@@ -34,7 +34,6 @@ Sites *TheSites = nullptr;
 std::atomic<uint64_t> SiteCap{0}, ProcessCap{0};
 Meter ProcessMeter;
 
-
 namespace {
 
 /// The file's place among the sinks.
@@ -175,12 +174,12 @@ bool Runtime::choose(const Config &C) {
   SlotsHome = ReportsToFile ? NowFile.load() : nullptr;
   Sink *Old = NowSink.exchange(&sinkOf(C.Sink));
   bool IsCapped = C.SiteCap || C.ProcessCap;
-  NowMode = C.Sink == SinkKind::Off        ? Mode::Off
-            : C.Policy == Policy::Edges    ? Mode::Edges
-            : C.Sink == SinkKind::File     ? (IsCapped ? Mode::Capped
-                                                       : Mode::FileEvery)
-            : IsCapped                     ? Mode::Capped
-                                           : Mode::SinkEvery;
+  NowMode = C.Sink == SinkKind::Off     ? Mode::Off
+            : C.Policy == Policy::Edges ? Mode::Edges
+            : C.Sink == SinkKind::File
+                ? (IsCapped ? Mode::Capped : Mode::FileEvery)
+            : IsCapped ? Mode::Capped
+                       : Mode::SinkEvery;
   tpc_reporting = C.Sink != SinkKind::Off;
   if (Old && Old != NowSink.load())
     Old->end();
@@ -209,8 +208,8 @@ Config Runtime::current() {
 
 std::string Runtime::status() {
   std::lock_guard<std::mutex> Guard(Changing);
-  std::string Text = std::string("sink=") + text(Held.Sink) +
-                     " policy=" + text(Held.Policy);
+  std::string Text =
+      std::string("sink=") + text(Held.Sink) + " policy=" + text(Held.Policy);
   if (Held.Policy == Policy::Edges)
     Text += " period=" + std::to_string(Held.PeriodNs / 1e9);
   if (Held.SiteCap)
@@ -292,8 +291,7 @@ int64_t Runtime::turn(int64_t Now) {
   }
   std::lock_guard<std::mutex> Guard(Changing);
   LogFile *File = Held.Sink == SinkKind::File ? NowFile.load() : nullptr;
-  bool IsEdges =
-      Held.Policy == Policy::Edges && Held.Sink != SinkKind::Off;
+  bool IsEdges = Held.Policy == Policy::Edges && Held.Sink != SinkKind::Off;
   if (File) {
     File->lookAhead();
     File->setNode(rosNodeName());

@@ -28,9 +28,9 @@ struct Thread {
   LogFile *File = nullptr;
   /// Odd while it reports.
   std::atomic<uint32_t> Inside{0};
-  uint32_t Number = 0;          ///< from 1
-  int64_t Simulated = -1;       ///< the last simulated time in the file
-  uint64_t Written = 0;         ///< records in the chunks before this one
+  uint32_t Number = 0;    ///< from 1
+  int64_t Simulated = -1; ///< the last simulated time in the file
+  uint64_t Written = 0;   ///< records in the chunks before this one
   std::atomic<uint64_t> Nested{0};
 
   /// By the site's number; what `edges` keeps.

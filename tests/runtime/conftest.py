@@ -8,27 +8,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-
-from pytpc.paths import prefix
+from compiling import compile_program
 
 HERE = Path(__file__).parent
 Drive = Callable[..., "subprocess.CompletedProcess[str]"]
-
-
-def compile_program(source: Path, output: Path, *flags: str) -> Path:
-    """Build one C++ file with the log library and its header."""
-    folder = prefix()
-    subprocess.run(
-        [
-            "clang++-19",
-            *["-std=c++17", "-O2", "-Wall", "-Werror", "-pthread"],
-            *[f"-I{folder}/include/tpc", str(source), "-o", str(output)],
-            *[f"-L{folder}/lib", "-ltpc_log", f"-Wl,-rpath,{folder}/lib", *flags],
-        ],
-        check=True,
-        timeout=120,
-    )
-    return output
 
 
 @pytest.fixture(scope="session")

@@ -185,7 +185,7 @@ std::atomic<uint64_t> InHandler{0};
 int signals(const Arguments &A) {
   SignalKeys = new Keys(2);
   (*SignalKeys)[0];
-  struct sigaction Action {};
+  struct sigaction Action{};
   Action.sa_handler = [](int) {
     log_one((*SignalKeys)[1], true, static_cast<double>(InHandler++), 0, true);
   };
@@ -217,8 +217,8 @@ int paced(const Arguments &A) {
   for (uint64_t I = 0; std::chrono::steady_clock::now() < End; ++I) {
     report(K[I], I, 0);
     std::this_thread::sleep_until(
-        Begin + std::chrono::nanoseconds(
-                    static_cast<int64_t>(1e9 * static_cast<double>(I + 1) / Rate)));
+        Begin + std::chrono::nanoseconds(static_cast<int64_t>(
+                    1e9 * static_cast<double>(I + 1) / Rate)));
   }
   return 0;
 }

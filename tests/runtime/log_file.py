@@ -12,10 +12,28 @@ from pathlib import Path
 
 HEADER, CHUNK, RECORD = 4096, 65536, 32
 SUMMARY = struct.Struct("<IIqddqIIQQQddddddQqq")
-NAMES = (
-    "what site begin cmp thresh end period thread count odd far"
-    " diff_min diff_max diff_sum abs_sum low high flops begin_ros end_ros"
-).split()
+NAMES = [
+    "what",
+    "site",
+    "begin",
+    "cmp",
+    "thresh",
+    "end",
+    "period",
+    "thread",
+    "count",
+    "odd",
+    "far",
+    "diff_min",
+    "diff_max",
+    "diff_sum",
+    "abs_sum",
+    "low",
+    "high",
+    "flops",
+    "begin_ros",
+    "end_ros",
+]
 
 
 @dataclass
@@ -88,9 +106,7 @@ def _records(file: LogFile, thread: int, chunk: bytes) -> None:
         if kind == 1:
             cmp, thresh = struct.unpack_from("<dd", chunk, place + 16)
             bits = (bool(what & 0x100), bool(what & 0x200))
-            file.reports[thread].append(
-                (steady, site, *bits, cmp, thresh, bool(what & 0x400))
-            )
+            file.reports[thread].append((steady, site, *bits, cmp, thresh, bool(what & 0x400)))
         elif kind == 2:
             blocks = max(0, -(-(steady - 16) // RECORD))
             text = chunk[place + 16 : place + RECORD * (1 + blocks)]

@@ -6,11 +6,12 @@ import os
 import shutil
 import subprocess
 from collections import Counter
+from itertools import pairwise
 from pathlib import Path
 
 import log_file
 import pytest
-from conftest import compile_program
+from compiling import compile_program
 
 
 def report(number: int, thread: int) -> tuple:
@@ -119,7 +120,7 @@ def test_clocks(drive, files):
     assert max(offsets) - min(offsets) < 1_000_000
     steady = [r[0] for r in file.all_reports]
     assert 1.2e9 < steady[-1] - steady[0] < 3e9
-    gaps = sorted(b - a for a, b in zip(steady, steady[1:], strict=False))
+    gaps = sorted(b - a for a, b in pairwise(steady))
     assert 4e6 < gaps[len(gaps) // 2] < 6e6
 
 

@@ -21,7 +21,12 @@ RUNS = 12
 
 
 def killed_run(
-    program: Path, settings: dict[str, str], folder: Path, threads: int, pause_us: int, after_s: float
+    program: Path,
+    settings: dict[str, str],
+    folder: Path,
+    threads: int,
+    pause_us: int,
+    after_s: float,
 ) -> tuple[log_file.LogFile, list[int]]:
     """Start, kill after a while; the file, and how many reports each thread had made."""
     folder.mkdir()
