@@ -21,12 +21,7 @@ RUNS = 12
 
 
 def killed_run(
-    program: Path,
-    settings: dict[str, str],
-    folder: Path,
-    threads: int,
-    pause_us: int,
-    after_s: float,
+    program: Path, settings: dict[str, str], folder: Path, *, threads: int, pause_us: int, s: float
 ) -> tuple[log_file.LogFile, list[int]]:
     """Start, kill after a while; the file, and how many reports each thread had made."""
     folder.mkdir()
@@ -39,7 +34,7 @@ def killed_run(
     try:
         assert process.stdout is not None
         process.stdout.readline()
-        time.sleep(after_s)
+        time.sleep(s)
     finally:
         process.send_signal(signal.SIGKILL)
         process.communicate()
@@ -86,9 +81,9 @@ def kill(program, settings, tmp_path, seed: int) -> int:
         program,
         {**settings, "TPC_POLICY": policy, "TPC_PERIOD": "0.01"},
         tmp_path / str(seed),
-        threads,
-        pause_us,
-        randomly.uniform(0, 0.06),
+        threads=threads,
+        pause_us=pause_us,
+        s=randomly.uniform(0, 0.06),
     )
     return (check_edges if policy == "edges" else check_every)(file, done)
 
