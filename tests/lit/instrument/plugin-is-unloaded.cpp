@@ -2,7 +2,7 @@
 // RUN: %native -fPIC -Dlog_one=none -c %inputs/ros.cpp -o %t.ros.o
 // RUN: %compile -O2 -fPIC %s -o %t.o
 // RUN: echo "{ global: run; tpc_reporting; local: *; };" > %t.map
-// RUN: %link -shared -Wl,--version-script=%t.map %t.o %t.ros.o %log-library -Wl,-rpath,%{log-folder} -o %t.so
+// RUN: %link -shared -Wl,--version-script=%t.map -Wl,--undefined-version %t.o %t.ros.o %log-library -Wl,-rpath,%{log-folder} -o %t.so
 // RUN: env TPC_SINK=file TPC_POLICY=edges TPC_FOLDER=%t.folder %t.host %t.so | FileCheck %s
 // RUN: env TPC_SINK=off %t.host %t.so | FileCheck %s
 //
