@@ -100,6 +100,9 @@ bool askMaster(std::function<void()> Job) {
           Job();
       } catch (const std::exception &Error) {
         warn(std::string("talking to the ROS master failed: ") + Error.what());
+      } catch (...) {
+        // What xmlrpcpp throws is no std::exception.
+        warn("talking to the ROS master failed");
       }
       Asking = false;
       wakeHelper();

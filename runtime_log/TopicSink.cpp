@@ -18,8 +18,10 @@
 #include <ros/names.h>
 #include <ros/poll_manager.h>
 #include <ros/publication.h>
+#include <ros/this_node.h>
 #include <ros/topic_manager.h>
 #include <std_msgs/String.h>
+#include <xmlrpcpp/XmlRpcException.h>
 
 #include <atomic>
 #include <chrono>
@@ -40,6 +42,9 @@ constexpr uint32_t QueueMessages = 512;
 constexpr int64_t BatchNs = 15'000'000;
 /// What roscpp's thread gets to write the last messages.
 constexpr std::chrono::milliseconds LastMoment{50};
+/// How long the first message waits for all subscribers that the master knows:
+/// each takes another time to connect, and all are to have everything.
+constexpr int64_t GatherNs = 1'000'000'000;
 constexpr int64_t RetryNs = 2'000'000'000;
 
 int64_t steadyNow() {
@@ -90,8 +95,11 @@ private:
   TopicStore Store;
   int64_t OldestAt = 0; ///< since when something waits
 
-  std::mutex SendLock; ///< of the next; never held while the master is asked
+  std::mutex
+      SendLock; ///< of the next three; never held while the master is asked
   boost::weak_ptr<ros::Publication> Publication;
+  uint32_t Expected = 0; ///< subscribers, until GatherUntil
+  int64_t GatherUntil = 0;
 
   std::atomic<uint64_t> Sent{0};
   std::atomic<int64_t> RetryAt{0};
@@ -164,6 +172,23 @@ bool TopicSink::wantsTurns() const {
   return !Advertised || (Subscribed && Something);
 }
 
+/// How many subscribers of a topic the master knows.
+uint32_t subscribersOf(const std::string &Topic) {
+  XmlRpc::XmlRpcValue Arguments, Result, State;
+  Arguments[0] = ros::this_node::getName();
+  if (!ros::master::execute("getSystemState", Arguments, Result, State, false))
+    return 0;
+  try {
+    XmlRpc::XmlRpcValue &Subscribed = State[1];
+    for (int I = 0; I < Subscribed.size(); ++I)
+      if (static_cast<std::string &>(Subscribed[I][0]) == Topic)
+        return static_cast<uint32_t>(Subscribed[I][1].size());
+  } catch (const XmlRpc::XmlRpcException &) {
+    // A master that tells of its graph in another form.
+  }
+  return 0;
+}
+
 /// Registers the topic; where the master does not answer, later.
 void TopicSink::advertise() {
   if (!ros::master::check()) {
@@ -177,8 +202,11 @@ void TopicSink::advertise() {
       ros::SubscriberStatusCallback(), ros::VoidConstPtr(), &Bell);
   const ros::TopicManagerPtr &Topics = ros::TopicManager::instance();
   if (Topics->advertise(Options, Callbacks)) {
+    const uint32_t Known = subscribersOf(Options.topic);
     std::lock_guard<std::mutex> Guard(SendLock);
     Publication = Topics->lookupPublication(Options.topic);
+    Expected = Known;
+    GatherUntil = steadyNow() + GatherNs;
   } else if (!ros::isShuttingDown()) {
     warn("nothing is sent on " + Options.topic +
          ": this process has it with another type");
@@ -198,6 +226,9 @@ bool TopicSink::sendWaiting(bool AtOnce) {
   if (!To || To->isDropped() || !To->hasSubscribers())
     return false;
   Subscribed = true;
+  if (!AtOnce && To->getNumSubscribers() < Expected &&
+      steadyNow() < GatherUntil)
+    return false;
   TopicStore::Batch Batch;
   {
     std::lock_guard<std::mutex> Guard(StoreLock);

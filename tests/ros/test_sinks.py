@@ -211,9 +211,9 @@ def test_slow_killed_and_new_subscribers_do_not_hold_a_node_up(graph, nodes):
         until(lambda: ended(process), subscriber, reader.take)
         read_on(subscriber, reader.take)
         slow.popen.send_signal(signal.SIGCONT)
-    # The reader that is neither slow nor killed has everything since it was connected.
-    assert made(process)["running"] == reader.before + reader.reports[key(THREAD)] == 15_000
-    assert reader.missing == 0 and reader.before < 5000
+    # The reader that is neither slow nor killed has everything, whoever was connected first.
+    assert made(process)["running"] == reader.reports[key(THREAD)] == 15_000
+    assert reader.before == reader.missing == 0
 
 
 def test_loss_towards_a_stopped_subscriber_is_seen_in_the_numbers(graph, nodes):
