@@ -125,9 +125,24 @@ def test_type2_from_summaries():
     builder = SummaryBuilder()
     builder.add(
         Summary(
-            **dict(key=key(0), node="/node", begin_ns=ns(10), end_ns=ns(12), count=3, odd=0),
-            **dict(flops=0, far=3, result=True, res=True, cmp=7.0, thresh=4.0, low=0.0, high=8.0),
-            **dict(diff_min=-4.0, diff_max=3.0, diff_mean=1 / 3, abs_mean=3.0),
+            key=key(0),
+            node="/node",
+            begin_ns=ns(10),
+            end_ns=ns(12),
+            count=3,
+            flops=0,
+            far=3,
+            odd=0,
+            result=True,
+            res=True,
+            cmp=7.0,
+            thresh=4.0,
+            diff_min=-4.0,
+            diff_max=3.0,
+            diff_mean=1 / 3,
+            abs_mean=3.0,
+            low=0.0,
+            high=8.0,
         )
     )
     marks = [Mark(ns(10.5), "II"), Mark(ns(13), "II")]
