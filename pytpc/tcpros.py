@@ -156,7 +156,7 @@ class RawSubscriber:
             RunError: the master does not answer or refuses.
         """
         try:
-            return _call(self._master, method, self._name, *arguments)
+            return call(self._master, method, self._name, *arguments)
         except (OSError, HTTPException, xmlrpc.client.Error) as error:
             raise RunError(f"the ROS master at {self._master}: {method}: {error}") from error
 
@@ -248,7 +248,7 @@ class RawSubscriber:
         threading.Thread(target=self._connect, args=(link.key,), daemon=True).start()
 
 
-class _Handler(SimpleXMLRPCRequestHandler):
+class Handler(SimpleXMLRPCRequestHandler):
     """ROS posts to any path."""
 
     rpc_paths = ()
@@ -274,12 +274,18 @@ class _SlaveApi:
 
 
 def _slave_server(host: str, on_publishers: Callable[[str, list[str]], None]) -> SimpleXMLRPCServer:
-    server = SimpleXMLRPCServer((host, 0), _Handler, logRequests=False, allow_none=True)
+    server = SimpleXMLRPCServer((host, 0), Handler, logRequests=False, allow_none=True)
     server.register_instance(_SlaveApi(on_publishers))
     return server
 
 
-def _call(uri: str, method: str, *arguments: object) -> object:
+def call(uri: str, method: str, *arguments: object) -> object:
+    """Call a method of a master or node; the value of its answer.
+
+    Raises:
+        OSError, HTTPException, xmlrpc.client.Error: it does not answer in time; a Fault where it
+            says no.
+    """
     proxy = xmlrpc.client.ServerProxy(uri, transport=_PatientTransport())
     try:
         answer = getattr(proxy, method)(*arguments)
@@ -301,17 +307,17 @@ class _PatientTransport(xmlrpc.client.Transport):
 
 def _open(topic: str, publisher: str, name: str) -> tuple[socket.socket, Source]:
     """Connect to a publisher of a topic and shake hands."""
-    protocol = _call(publisher, "requestTopic", name, topic, [["TCPROS"]])
+    protocol = call(publisher, "requestTopic", name, topic, [["TCPROS"]])
     if not isinstance(protocol, list) or len(protocol) != 3:
         raise ValueError(f"no TCPROS: {protocol}")
     connection = socket.create_connection((str(protocol[1]), int(protocol[2])), _PATIENCE_S)
     try:
         wanted = {"callerid": name, "topic": topic, "type": "*", "md5sum": "*", "tcp_nodelay": "1"}
         connection.sendall(encode_header(wanted))
-        (length,) = _LENGTH.unpack(_receive(connection, _LENGTH.size))
+        (length,) = _LENGTH.unpack(receive(connection, _LENGTH.size))
         if length > _LARGEST:
             raise ValueError(f"a header of {length:,} bytes")
-        fields = decode_header(_receive(connection, length))
+        fields = decode_header(receive(connection, length))
         if "error" in fields or not {"type", "md5sum"} <= fields.keys():
             raise ValueError(fields.get("error", "no type in the header"))
         connection.setblocking(False)
@@ -323,7 +329,12 @@ def _open(topic: str, publisher: str, name: str) -> tuple[socket.socket, Source]
     return connection, Source(topic, node, fields["type"], fields["md5sum"], definition)
 
 
-def _receive(connection: socket.socket, count: int) -> bytes:
+def receive(connection: socket.socket, count: int) -> bytes:
+    """Exactly ``count`` bytes.
+
+    Raises:
+        OSError: the connection ends or is too slow.
+    """
     data = b""
     while len(data) < count:
         part = connection.recv(count - len(data))
