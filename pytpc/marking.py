@@ -11,6 +11,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
+from rich.cells import cell_len, set_cell_size
+
 from pytpc.marks import Mark, MarkType
 from pytpc.words import plain
 
@@ -164,6 +166,8 @@ class Player:
         return None
 
 
+_NO_BREAK = "\N{NO-BREAK SPACE}"
+_OTHER_KEYS = ("n note", "u undo", "q quit")
 PLAYER_HELP = ("space go or stop", "arrows 5 s, 60 s", ", . 1 s", "+ - speed")
 
 
@@ -181,17 +185,19 @@ class View(NamedTuple):
 def screen(session: Session, view: View, width: int, height: int) -> list[str]:
     """The lines to show, none wider than ``width``, at most ``height``: the newest marks last."""
     keys = [f"{key} {MEANINGS[kind]}" for key, kind in _KEYS.items()]
-    lines = [view.title, *view.status, *keys]
-    lines += textwrap.wrap("  ".join(("n note", "u undo", "q quit", *view.help)), max(10, width))
-    foot = session.said
+    more = "  ".join(key.replace(" ", _NO_BREAK) for key in (*_OTHER_KEYS, *view.help))
+    above = [view.title, *view.status, *keys, more]
+    lines = [part for line in above for part in _folded(line, width)]
+    foot = [session.said]
     if session.typing is not None:
-        room = max(1, width - len("note: _"))
-        foot = f"note: {session.typing[-room:]}_"
-    room = max(1, height - len(lines) - 2)
+        foot = [f"note: {session.typing}_"]
+    foot = [part for line in foot for part in _folded(line, width)]
+    room = max(1, height - len(lines) - len(foot) - 1)
     shown = session.marks[-room:]
     of_all = f"{len(session.marks)} marks" if len(session.marks) != 1 else "1 mark"
-    lines += [of_all + (":" if shown else ""), *(_line(mark, view) for mark in shown), foot]
-    return [_cut(plain(line), width) for line in lines][:height]
+    lines.append(of_all + (":" if shown else ""))
+    lines += [_cut(_line(mark, view), width) for mark in shown]
+    return (lines + foot)[:height]
 
 
 def clock_text(time_ns: int) -> str:
@@ -209,5 +215,13 @@ def _line(mark: Mark, view: View) -> str:
     return f"{clock_text(mark.time_ns - view.start_ns):>9}  {kind:2}  {mark.note}".rstrip()
 
 
+def _folded(line: str, width: int) -> list[str]:
+    """The line in pieces that fit, what belongs together if possible in one piece."""
+    parts = textwrap.wrap(line, max(1, width), subsequent_indent="  " if width > 10 else "")
+    return [_cut(part.replace(_NO_BREAK, " "), width) for part in parts or [""]]
+
+
 def _cut(line: str, width: int) -> str:
-    return line if len(line) <= width else line[: max(0, width - 1)] + "~"
+    """``width`` columns of it; some characters take two."""
+    line = plain(line)
+    return line if cell_len(line) <= width else set_cell_size(line, max(0, width - 1)) + "~"
