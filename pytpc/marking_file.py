@@ -25,7 +25,12 @@ class MarksFile:
 
         Raises:
             InputError: it is no file of marks, and is not going to be overwritten.
+            TpcError: its folder cannot be made.
         """
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise TpcError(f"cannot be made: {error.strerror}", path.parent) from error
         self.path = path
         self.pending: list[Change] = []
         self.fault: str | None = None

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import select
 import socket
 import struct
 import threading
@@ -225,8 +226,7 @@ class RawPublisher:
 def _is_closed(connection: socket.socket) -> bool:
     """Whether the other side has left; a subscriber sends nothing after its header."""
     try:
-        return not connection.recv(1, socket.MSG_PEEK | socket.MSG_DONTWAIT)
-    except BlockingIOError:
-        return False
+        ready, _, _ = select.select([connection], [], [], 0)
+        return bool(ready) and not connection.recv(1, socket.MSG_PEEK)
     except OSError:
         return True

@@ -119,6 +119,51 @@ def parse_note(text: str) -> tuple[int, str] | None:
     return int(digits), note
 
 
+class MarkMessages:
+    """Gathers the marks of a graph from the messages of all their topics, in any order."""
+
+    def __init__(self) -> None:
+        """No message yet."""
+        self._marks: list[Mark] = []
+        self._undone: list[tuple[str, int]] = []
+        self._notes: list[tuple[str, int, str]] = []
+
+    @staticmethod
+    def message_type(topic: str) -> str | None:
+        """The type that messages of ``topic`` must have, ``std_msgs/Time`` or ``std_msgs/String``;
+        None where it has nothing to do with marks."""
+        last = topic.rpartition("/")[2]
+        if last == NOTE_TOPIC:
+            return "std_msgs/String"
+        return "std_msgs/Time" if last in {*_TOPICS, UNDO_TOPIC} else None
+
+    def add_time(self, topic: str, time_ns: int) -> None:
+        """A std_msgs/Time of a topic that ``message_type`` knows."""
+        named = topic_of_marks(topic)
+        if named is not None:
+            self._marks.append(Mark(time_ns, *named))
+        else:
+            self._undone.append((observer_of(topic, UNDO_TOPIC) or "", time_ns))
+
+    def add_text(self, topic: str, text: str) -> None:
+        """A std_msgs/String likewise.
+
+        Raises:
+            ValueError: it is no note.
+        """
+        found = parse_note(text)
+        if found is None:
+            raise ValueError("no note: SECONDS.NANOSECONDS,NOTE is expected")
+        self._notes.append((observer_of(topic, NOTE_TOPIC) or "", *found))
+
+    def marks(self) -> tuple[Mark, ...]:
+        """The marks that were not taken back, with their last notes, sorted."""
+        marks = without_undone(sorted(self._marks, key=Mark.order), self._undone)
+        for note in self._notes:
+            marks = with_note(marks, *note)
+        return marks
+
+
 def marks_beside(recording: Path) -> Path:
     """Where the marks of a recording are that were made after it: ``BAG.marks.csv``."""
     return recording.with_name(f"{recording.name}.marks.csv")

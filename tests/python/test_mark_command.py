@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import subprocess
 import termios
@@ -41,7 +42,7 @@ def test_marks_are_beside_the_bag_at_every_key(bag: Path, tmp_path: Path):
         terminal.wait_for("taken back: type II")
         terminal.press("\x1b[D3n")
         terminal.wait_for("note: _")
-        terminal.press("1 dröhnt, \"laut\"x\x7f\r")
+        terminal.press('1 dröhnt, "laut"x\x7f\r')
         terminal.wait_for("noted")
         terminal.press("q")
         assert terminal.wait() == 0
@@ -73,6 +74,18 @@ def test_a_signal_ends_it_cleanly(bag: Path, tmp_path: Path, number: signal.Sign
         assert terminal.end(number) == 128 + number
         assert termios.tcgetattr(terminal.child) == terminal.before
         assert "\x1b[?25h" in terminal.output.decode()
+    assert read_marks(marks_beside(bag)) == (Mark(ns(100), "II"),)
+
+
+# The terminal is gone, as when an SSH connection breaks: the kernel says so by SIGHUP.
+def test_a_terminal_that_is_gone(bag: Path, tmp_path: Path):
+    with Terminal(pytpc("mark", str(bag)), tmp_path) as terminal:
+        terminal.wait_for("stopped")
+        terminal.press("2")
+        terminal.wait_for("marked")
+        os.close(terminal.child)
+        os.close(terminal.master)
+        assert terminal.process.wait(10) != 0
     assert read_marks(marks_beside(bag)) == (Mark(ns(100), "II"),)
 
 
@@ -125,7 +138,11 @@ def test_a_terminal_that_cannot_move_its_cursor(bag: Path, tmp_path: Path):
 
 def test_without_a_terminal_it_says_so(bag: Path, tmp_path: Path):
     done = subprocess.run(
-        pytpc("mark", str(bag)), stdin=subprocess.DEVNULL, capture_output=True, text=True
+        pytpc("mark", str(bag)),
+        stdin=subprocess.DEVNULL,
+        check=False,
+        capture_output=True,
+        text=True,
     )
     assert done.returncode == 1
     assert done.stderr.splitlines()[-1] == (
@@ -163,7 +180,11 @@ def test_a_mark_that_cannot_be_saved_is_kept(bag: Path, tmp_path: Path):
 
 def test_a_namespace_that_ros_has_not(tmp_path: Path):
     done = subprocess.run(
-        pytpc("mark", "--observer", "no good"), capture_output=True, text=True, cwd=tmp_path
+        pytpc("mark", "--observer", "no good"),
+        check=False,
+        capture_output=True,
+        text=True,
+        cwd=tmp_path,
     )
     assert done.returncode == 2
     assert "'no good' is no namespace of ROS" in done.stderr

@@ -41,14 +41,13 @@ class Terminal:
         for name in ("COLUMNS", "LINES"):
             environment.pop(name, None)
         self.process = subprocess.Popen(
-            argv,
+            # setsid, so that this is the terminal whose end the kernel tells of.
+            ["setsid", "--ctty", *argv],
             cwd=folder,
             env=environment,
             stdin=child,
             stdout=child,
             stderr=child,
-            start_new_session=True,
-            preexec_fn=lambda: fcntl.ioctl(0, termios.TIOCSCTTY, 0),
         )
 
     def __enter__(self) -> Terminal:
