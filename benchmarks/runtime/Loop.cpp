@@ -80,6 +80,19 @@ public:
     }
   }
 
+  void steps(const double *Values, size_t Count) {
+    for (size_t I = 0; I < Count; ++I)
+      step(Values[I]);
+  }
+
+  __attribute__((noinline)) void step(double Value) {
+    Trend += 0.25 * (Value - Trend);
+    const double Bound = limit();
+    REPORT(Value, Bound);
+    if (Value > Bound)
+      ++Hits;
+  }
+
   void publish() {
     std_msgs::UInt64 Message;
     Message.data = Hits;
@@ -143,8 +156,10 @@ int main(int Argc, char **Argv) {
     return 2;
   }
   const std::string Mode = Argv[3];
-  const Work Run =
-      std::string(Argv[2]) == "filter" ? &Monitor::filter : &Monitor::bare;
+  const std::string Name = Argv[2];
+  const Work Run = Name == "filter" ? &Monitor::filter
+                   : Name == "step" ? &Monitor::steps
+                                    : &Monitor::bare;
   const size_t Blocks = std::strtoul(Argv[4], nullptr, 10);
   const size_t Count = std::strtoul(Argv[5], nullptr, 10);
   const int64_t Gap = std::strtol(Argv[6], nullptr, 10) * 1000;
@@ -161,8 +176,16 @@ int main(int Argc, char **Argv) {
   }
   pinToLastProcessor();
 
+  if (Mode == "single") {
+    const sched_param Priority{sched_get_priority_min(SCHED_FIFO)};
+    sched_setscheduler(0, SCHED_FIFO, &Priority);
+  }
+
   std::vector<double> Taken;
   Taken.reserve(Mode == "block" ? Blocks : Blocks * Count);
+  // Its pages are touched ahead: a fault would be taken for a report's.
+  Taken.assign(Taken.capacity(), 0.0);
+  Taken.clear();
   for (size_t Block = 0; Block < Blocks; ++Block) {
     if (Mode == "block") {
       if (Gap)
