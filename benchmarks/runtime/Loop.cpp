@@ -12,9 +12,10 @@
 // WORK is bare (the comparison alone) or filter (with a low-pass filter, the
 // least that a control loop does). FLOPS is how many of a million comparisons
 // flop. MODE `block` times COUNT comparisons together, BLOCKS times, with
-// GAP_US between them; `single` times each of them alone, and `paced` waits
-// GAP_US before each. OUTPUT gets nanoseconds of one comparison as native
-// doubles.
+// GAP_US before each block; `single` times each of them alone, as a thread of
+// real-time priority where that is allowed, with GAP_US before each block, too;
+// `paced` waits GAP_US before each comparison. OUTPUT gets nanoseconds of one
+// comparison as native doubles.
 //
 //===----------------------------------------------------------------------===//
 #include <ros/ros.h>
@@ -187,9 +188,9 @@ int main(int Argc, char **Argv) {
   Taken.assign(Taken.capacity(), 0.0);
   Taken.clear();
   for (size_t Block = 0; Block < Blocks; ++Block) {
+    if (Gap && Mode != "paced")
+      sleepUntil(now() + Gap);
     if (Mode == "block") {
-      if (Gap)
-        sleepUntil(now() + Gap);
       const int64_t Begin = now();
       (M.*Run)(Values.data(), Count);
       Taken.push_back(double(now() - Begin) / double(Count));
