@@ -275,7 +275,7 @@ class RawSubscriber:
         threading.Thread(target=self._connect, args=(link.key,), daemon=True).start()
 
 
-class _Handler(SimpleXMLRPCRequestHandler):
+class Handler(SimpleXMLRPCRequestHandler):
     """ROS posts to any path."""
 
     rpc_paths = ()
@@ -301,7 +301,7 @@ class _SlaveApi:
 
 
 def _slave_server(host: str, on_publishers: Callable[[str, list[str]], None]) -> SimpleXMLRPCServer:
-    server = SimpleXMLRPCServer((host, 0), _Handler, logRequests=False, allow_none=True)
+    server = SimpleXMLRPCServer((host, 0), Handler, logRequests=False, allow_none=True)
     server.register_instance(_SlaveApi(on_publishers))
     return server
 

@@ -21,6 +21,7 @@ SUMMARIES = {
     "export": ("static_commands", "Write what was found as SARIF or as an HTML page."),
     "ingest": ("event_commands", "The same as convert (its older name)."),
     "list": ("static_commands", "List the comparisons that were found."),
+    "mark": ("mark_commands", "Mark by one key each when the robot does wrong."),
     "patch": ("workspace_commands", "Put TPC's three lines into each CMakeLists.txt."),
     "rank": ("event_commands", "Name the suspected parameters at each mark in a bag."),
     "record": ("mission_commands", "Record the running graph, or a launch file's mission."),
