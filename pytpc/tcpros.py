@@ -159,14 +159,31 @@ class RawSubscriber:
         publishers = self.call_master("registerSubscriber", topic, "*", self._uri)
         self._on_publishers(topic, cast(list[str], publishers))
 
+    def register(self) -> None:
+        """Register all topics once more: the master was started again.
+
+        Raises:
+            RunError: the master does not answer or refuses.
+        """
+        for topic in list(self._wanted):
+            self.subscribe(topic)
+
     def call_master(self, method: str, *arguments: object) -> object:
         """Call a method of the master API.
 
         Raises:
             RunError: the master does not answer or refuses.
         """
+        return self.call_master_as(self.name, method, *arguments)
+
+    def call_master_as(self, name: str, method: str, *arguments: object) -> object:
+        """The same in the name of another node of this process.
+
+        Raises:
+            RunError: the master does not answer or refuses.
+        """
         try:
-            return _call(self._master, method, self.name, *arguments)
+            return call(self._master, method, name, *arguments)
         except (OSError, HTTPException, xmlrpc.client.Error) as error:
             raise RunError(f"the ROS master at {self._master}: {method}: {error}") from error
 
@@ -258,7 +275,7 @@ class RawSubscriber:
         threading.Thread(target=self._connect, args=(link.key,), daemon=True).start()
 
 
-class _Handler(SimpleXMLRPCRequestHandler):
+class Handler(SimpleXMLRPCRequestHandler):
     """ROS posts to any path."""
 
     rpc_paths = ()
@@ -284,12 +301,20 @@ class _SlaveApi:
 
 
 def _slave_server(host: str, on_publishers: Callable[[str, list[str]], None]) -> SimpleXMLRPCServer:
-    server = SimpleXMLRPCServer((host, 0), _Handler, logRequests=False, allow_none=True)
+    server = SimpleXMLRPCServer((host, 0), Handler, logRequests=False, allow_none=True)
     server.register_instance(_SlaveApi(on_publishers))
     return server
 
 
-def _call(uri: str, method: str, *arguments: object) -> object:
+def call(uri: str, method: str, *arguments: object) -> object:
+    """Call a method of ROS's master or slave API, which answers code, message and value.
+
+    Returns:
+        The value.
+
+    Raises:
+        OSError, HTTPException, xmlrpc.client.Error: nobody answers, or with another code than 1.
+    """
     proxy = xmlrpc.client.ServerProxy(uri, transport=_PatientTransport())
     try:
         answer = getattr(proxy, method)(*arguments)
@@ -311,17 +336,17 @@ class _PatientTransport(xmlrpc.client.Transport):
 
 def _open(topic: str, publisher: str, name: str) -> tuple[socket.socket, Source]:
     """Connect to a publisher of a topic and shake hands."""
-    protocol = _call(publisher, "requestTopic", name, topic, [["TCPROS"]])
+    protocol = call(publisher, "requestTopic", name, topic, [["TCPROS"]])
     if not isinstance(protocol, list) or len(protocol) != 3:
         raise ValueError(f"no TCPROS: {protocol}")
     connection = socket.create_connection((str(protocol[1]), int(protocol[2])), _PATIENCE_S)
     try:
         wanted = {"callerid": name, "topic": topic, "type": "*", "md5sum": "*", "tcp_nodelay": "1"}
         connection.sendall(encode_header(wanted))
-        (length,) = _LENGTH.unpack(_receive(connection, _LENGTH.size))
+        (length,) = _LENGTH.unpack(receive(connection, _LENGTH.size))
         if length > _LARGEST:
             raise ValueError(f"a header of {length:,} bytes")
-        fields = decode_header(_receive(connection, length))
+        fields = decode_header(receive(connection, length))
         if "error" in fields or not {"type", "md5sum"} <= fields.keys():
             raise ValueError(fields.get("error", "no type in the header"))
         connection.setblocking(False)
@@ -333,11 +358,16 @@ def _open(topic: str, publisher: str, name: str) -> tuple[socket.socket, Source]
     return connection, Source(topic, node, fields["type"], fields["md5sum"], definition)
 
 
-def _receive(connection: socket.socket, count: int) -> bytes:
+def receive(connection: socket.socket, count: int) -> bytes:
+    """Exactly so many bytes.
+
+    Raises:
+        OSError: the other side closes the connection before, or is too slow.
+    """
     data = b""
     while len(data) < count:
         part = connection.recv(count - len(data))
         if not part:
-            raise ConnectionResetError("closed in the middle of the header")
+            raise ConnectionResetError("closed before the end")
         data += part
     return data
