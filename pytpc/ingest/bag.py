@@ -12,11 +12,11 @@ from pytpc.ingest.bag_chunks import BagConnection, BagIndex, BrokenBagError, mes
 from pytpc.ingest.bag_damage import describe_damage
 from pytpc.ingest.gathering import Gathering, Progress
 from pytpc.ingest.messages import REPORTS, ROSOUT, ROSOUT_AGG, Decoders, Messages
-from pytpc.marks import topic_of_marks
+from pytpc.marks import MarkMessages
 
 _LOG = "rosgraph_msgs/msg/Log"
 _STRING = "std_msgs/msg/String"
-_TIME = "std_msgs/msg/Time"
+_MARKS: dict[str | None, str] = {"std_msgs/Time": "std_msgs/msg/Time", "std_msgs/String": _STRING}
 _DECODERS = Decoders(ros1.decode_raw_log, ros1.decode_raw_string, ros1.decode_time)
 
 
@@ -86,8 +86,8 @@ def _wanted(index: BagIndex) -> tuple[dict[int, BagConnection], list[str]]:
     notes = set()
     for number, connection in index.connections.items():
         expected = {ROSOUT: _LOG, ROSOUT_AGG: _LOG, REPORTS: _STRING}.get(connection.topic)
-        if expected is None and topic_of_marks(connection.topic) is not None:
-            expected = _TIME
+        if expected is None:
+            expected = _MARKS.get(MarkMessages.message_type(connection.topic))
         if expected == connection.type:
             wanted[number] = connection
         elif expected is not None:

@@ -25,7 +25,7 @@ from pytpc.ingest.rosout_line import (
     parse_other,
     parse_stamped_other,
 )
-from pytpc.marks import Mark, topic_of_marks
+from pytpc.marks import MarkMessages
 from pytpc.summaries import Summary
 from pytpc.words import many
 
@@ -83,6 +83,7 @@ class Messages:
         self._lines: dict[Way, Lines] = {}
         self._channels: dict[Way, Channel] = {}
         self._nodes: dict[bytes, int] = {}
+        self._marks = MarkMessages()
         self._unstamped = 0
 
     def take(self, topic: str, caller: str, time_ns: int, raw: bytes) -> None:
@@ -152,6 +153,7 @@ class Messages:
             lines.flush()
             self._unstamped += lines.unstamped
         self._batches.close()
+        self._gathering.marks += self._marks.marks()
         if self._unstamped:
             self._gathering.late_notes.append(
                 f"{many(self._unstamped, 'record')} without a stamp got the bag's time"
@@ -223,10 +225,10 @@ class Messages:
             self._gathering.skip(line.topic, line.time_ns, what, line.text)
 
     def _mark(self, topic: str, time_ns: int, raw: bytes) -> None:
-        named = topic_of_marks(topic)
-        if named is not None:
-            marked_ns = self._decoders.time(raw) or self._from_bag(time_ns)
-            self._gathering.marks.append(Mark(marked_ns, *named))
+        if MarkMessages.message_type(topic) == "std_msgs/String":
+            self._marks.add_text(topic, _plain(self._decoders.text(raw)))
+        else:
+            self._marks.add_time(topic, self._decoders.time(raw) or self._from_bag(time_ns))
 
     def _from_bag(self, time_ns: int) -> int:
         self._unstamped += 1

@@ -20,10 +20,12 @@ from pytpc.ingest.outcome import Outcome
 from pytpc.ingest.recording import EVENTS_FILE, MARKS_FILE, Recording, load_recording
 from pytpc.ingest.ros2_bag import MCAP_MAGIC, SQLITE_MAGIC, read_ros2_into
 from pytpc.ingest.text import read_text_into
+from pytpc.marks import marks_beside, read_marks
 
 Reader = Callable[[Path, Gathering, Progress | None], None]
 ROS2_FILE = "metadata.yaml"
 _FIRST = 4096
+_MARKS_BEGIN = b"time_ns,type,observer"
 
 
 def read(
@@ -35,8 +37,9 @@ def read(
     """Read recordings of one mission into memory, in order of time and every report once.
 
     Args:
-        paths: bags (ROS 1, .mcap, .db3), binary files, logs, console text, CSV, folders of such
-            files, and folders that ``pytpc convert`` wrote.
+        paths: bags (ROS 1, .mcap, .db3), binary files, logs, console text, CSV (reports or marks),
+            folders of such files, and folders that ``pytpc convert`` wrote. Marks in a file
+            ``NAME.marks.csv`` beside one of them are read with it.
         on_progress: called with (done, total) every now and then, of one file after another.
         tolerance_ns: how far apart in time the same report may be in two files.
 
@@ -44,7 +47,7 @@ def read(
         InputError: a file is not there, is none of these, or is broken; one line.
     """
     given = [paths] if isinstance(paths, Path) else list(paths)
-    if len(given) == 1 and is_ingested(given[0]):
+    if len(given) == 1 and is_ingested(given[0]) and not marks_beside(given[0]).is_file():
         return load_recording(given[0])
     gathering = Gathering()
     gather(given, gathering, on_progress)
@@ -98,7 +101,9 @@ def opened(
 def gather(
     paths: Sequence[Path], gathering: Gathering, on_progress: Progress | None = None
 ) -> None:
-    """Read all of ``paths`` into ``gathering``; a folder stands for the recordings in it.
+    """Read all of ``paths`` into ``gathering``, and the marks beside them.
+
+    A folder stands for the recordings in it.
 
     Raises:
         InputError: see ``read``.
@@ -112,6 +117,9 @@ def gather(
             if real not in seen:
                 seen.add(real)
                 reader_of(source)(source, gathering, on_progress)
+                beside = marks_beside(source)
+                if beside.is_file():
+                    gathering.marks += read_marks(beside)
 
 
 def sources(path: Path) -> list[Path]:
@@ -172,10 +180,20 @@ def reader_of(path: Path) -> Reader:
         return read_bag_into
     if b"\0" in first:
         raise InputError("neither a bag, nor a .tpc file, nor text", path)
-    return read_text_into
+    return _read_marks_into if first.startswith(_MARKS_BEGIN) else read_text_into
+
+
+def _read_marks_into(path: Path, gathering: Gathering, _: Progress | None = None) -> None:
+    gathering.marks += read_marks(path)
 
 
 def _is_recording(path: Path) -> bool:
     if path.is_dir():
         return is_ingested(path) or (path / ROS2_FILE).is_file()
+    if (
+        path.name.endswith(".marks.csv")
+        and path.with_name(path.name[: -len(".marks.csv")]).exists()
+    ):
+        # Read with the recording beside which it is.
+        return False
     return path.suffix in {".bag", ".mcap", ".db3", ".tpc", ".log", ".csv", ".txt"}

@@ -19,13 +19,16 @@ from pytpc.errors import InputError
 from pytpc.ingest import ros2
 from pytpc.ingest.gathering import Gathering, Progress
 from pytpc.ingest.messages import REPORTS, ROSOUT, Decoders, Messages
-from pytpc.marks import topic_of_marks
+from pytpc.marks import MarkMessages
 
 MCAP_MAGIC = b"\x89MCAP0\r\n"
 SQLITE_MAGIC = b"SQLite format 3\0"
 
 _TYPES = {ROSOUT: {"rcl_interfaces/msg/Log"}, REPORTS: {"std_msgs/msg/String"}}
-_TIMES = {"builtin_interfaces/msg/Time", "std_msgs/msg/Time"}
+_MARKS: dict[str | None, set[str]] = {
+    "std_msgs/Time": {"builtin_interfaces/msg/Time", "std_msgs/msg/Time"},
+    "std_msgs/String": {"std_msgs/msg/String"},
+}
 _DECODERS = Decoders(ros2.decode_raw_log, ros2.decode_raw_string, ros2.decode_time)
 _STEP = 4096
 _Reader = Reader | McapReader | Sqlite3Reader
@@ -126,8 +129,8 @@ def _wanted(connections: list[Connection]) -> tuple[list[Connection], list[str]]
     notes = set()
     for connection in connections:
         expected = _TYPES.get(connection.topic)
-        if expected is None and topic_of_marks(connection.topic) is not None:
-            expected = _TIMES
+        if expected is None:
+            expected = _MARKS.get(MarkMessages.message_type(connection.topic))
         if expected is None:
             continue
         if connection.msgtype in expected:

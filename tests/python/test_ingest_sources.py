@@ -355,3 +355,30 @@ def test_an_ingested_folder_beside_others(tmp_path):
     recording = read([tmp_path / "a", tpc_of(tmp_path / "b.tpc", values=range(8, 12))])
     assert [cmp for *_, cmp in found(recording)] == list(range(12))
     assert recording.marks == first.marks
+
+
+# One mark is taken back, one gets a note; two more stand beside the bag.
+def test_marks_of_all_kinds(tmp_path):
+    path = tmp_path / "a.bag"
+    with BagFile(path) as bag:
+        bag.log(10, "/uav", line(1, 0, 1, 2))
+        bag.mark(11, "/mark_wrong", 10.5)
+        bag.mark(12, "/m/mark_action", 11.5)
+        bag.mark(13, "/m/mark_undo", 11.5)
+        bag.text(14, "/mark_note", "/x", "10.500000000,it hovers")
+        bag.text(15, "/mark_note", "/x", "soon")
+    (tmp_path / "a.bag.marks.csv").write_text(
+        "time_ns,type,observer,note\n12000000000,II,later,\n10500000000,,,it hovers\n"
+    )
+    recording = read(path)
+    expected = (
+        Mark(ns(10.5), None, "", "it hovers"),
+        Mark(ns(12), "II", "later"),
+    )
+    assert recording.marks == expected
+    assert recording.malformed_first[0].what.startswith("no note")
+    assert read(tmp_path).marks == expected
+    save_recording(recording, tmp_path / "m")
+    (tmp_path / "m.marks.csv").write_text("time_ns,type,observer,note\n13000000000,I\n")
+    assert read(tmp_path / "m").marks == (*expected, Mark(ns(13), "I"))
+    assert read([tmp_path / "m.marks.csv"]).marks == (Mark(ns(13), "I"),)
