@@ -100,12 +100,14 @@ class Channel:
 
     ``source`` is the file or folder as it was named, ``way`` which kind of channel of it this is,
     ``topic`` its name for messages. ``pairs`` has what was seen on it, as (key, node) codes.
+    ``process`` tells the process from all others where all reports are of one.
     """
 
     code: int
     source: str
     way: Way
     topic: str
+    process: str = ""
     first_ns: int = 2**63 - 1
     last_ns: int = -(2**63)
     count: int = 0

@@ -324,6 +324,23 @@ def test_equal_reports_in_a_burst_are_matched_one_to_one(tmp_path):
     assert len(read([bag, file]).events) == 3
 
 
+# A node that was started twice at once, and a forked child: equal reports at the same times. Each
+# of them is one of its own; only a copy of a file is the same again.
+def test_files_of_two_processes_share_nothing(tmp_path):
+    paths = []
+    for number, changes in enumerate(({"pid": 1}, {"pid": 2}, {"pid": 3, "parent": 1})):
+        made = TpcFile(tpc_file.header(node="/uav", real=ns(1_700_000_000), **changes))
+        made.system(site(1, key(1)), sync(0, ns(1_700_000_000)))
+        made.thread(1, *(report(1, ns(n), 1, 5) for n in range(5)))
+        paths.append(made.write(tmp_path / f"{number}.tpc"))
+    copy = tmp_path / "copy.tpc"
+    shutil.copy(paths[0], copy)
+    recording = read([*paths, copy])
+    assert len(recording.events) == 15
+    assert recording.events.nodes == ("/uav", "/uav (3)")
+    assert recording.notes == (f"5 reports in {copy} that came another way too: counted once",)
+
+
 def test_sources_that_lie_apart_are_told(tmp_path):
     bag = bag_of(tmp_path / "a.bag")
     made = TpcFile(tpc_file.header(node="/sim"))
