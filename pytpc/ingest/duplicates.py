@@ -6,8 +6,7 @@ its /threshold_information, unless the publisher there reports on /rosout itself
 messages (a sink of TPC's own, not a converter). Everything else that could be twice is compared
 report by report: two are the same where node, key, values and results are equal and their times
 are within the tolerance, one to one; never those of two processes' files. The node does not count
-where a way does not tell it
-(converters, console text).
+where a way does not tell it (converters, console text).
 """
 
 from __future__ import annotations

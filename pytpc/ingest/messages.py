@@ -12,7 +12,8 @@ import numpy as np
 
 from pytpc.columns import Bools, Int32s, Int64s
 from pytpc.ingest.bag_chunks import Messages as Chunk
-from pytpc.ingest.gathering import Batches, Channel, Gathering, Lines, Way
+from pytpc.ingest.gathering import Channel, Gathering, Way
+from pytpc.ingest.lines import Batches, Lines
 from pytpc.ingest.recording import Dropped
 from pytpc.ingest.ros1 import RawLog, decode_logs
 from pytpc.ingest.rosout_line import (
