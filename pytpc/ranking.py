@@ -235,7 +235,7 @@ def _last(events: Events, summaries: Summaries, key: str, mark_ns: int) -> Evalu
     if key in summaries.keys:
         own = np.flatnonzero(summaries.key == summaries.keys.index(key))
         own = own[np.argsort(summaries.end_ns[own], kind="stable")]
-        found.append(_at(summaries, summaries.end_ns, own, mark_ns))
+        found += [_at(summaries, summaries.end_ns, own, mark_ns)] if own.size else []
     before = [evaluation for evaluation in found if evaluation.time_ns <= mark_ns]
     return max(before) if before else min(found)
 
