@@ -179,28 +179,44 @@ static FunctionCallee logFunction(Module &M) {
   return Callee;
 }
 
+/// The log library's word on whether reports are wanted. A program has it
+/// itself, weakly, where the library finds it, so that it takes one look and
+/// works without that library. A shared library asks the log library's, if it
+/// is there: nothing may point into what can be unloaded.
+static GlobalVariable *wantedFlag(Module &M) {
+  if (GlobalVariable *Wanted = M.getNamedGlobal("tpc_reporting"))
+    return Wanted;
+  Type *Byte = Type::getInt8Ty(M.getContext());
+  bool IsProgram = M.getPIELevel() != PIELevel::Default ||
+                   M.getPICLevel() == PICLevel::NotPIC;
+  return new GlobalVariable(M, Byte, /*isConstant=*/false,
+                            IsProgram ? GlobalValue::WeakAnyLinkage
+                                      : GlobalValue::ExternalWeakLinkage,
+                            IsProgram ? ConstantInt::get(Byte, 1) : nullptr,
+                            "tpc_reporting");
+}
+
 /// `if (tpc_reporting) log_one(...)`, a function that the optimiser puts in the
-/// place of its calls: a program whose reports are off pays for a branch. The
-/// log library says what it wants in its own tpc_reporting, whose place this
-/// weak one takes; without that library reports are always made.
+/// place of its calls: a program whose reports are off pays for a branch.
 static Function *reportFunction(Module &M, FunctionCallee Log) {
   LLVMContext &Ctx = M.getContext();
   auto *F = Function::Create(Log.getFunctionType(),
                              GlobalValue::InternalLinkage, "tpc.report", M);
   F->addFnAttr(Attribute::AlwaysInline);
   F->setDoesNotThrow();
-  Type *Byte = Type::getInt8Ty(Ctx);
-  GlobalVariable *Wanted = M.getNamedGlobal("tpc_reporting");
-  if (!Wanted)
-    Wanted = new GlobalVariable(M, Byte, /*isConstant=*/false,
-                                GlobalValue::WeakAnyLinkage,
-                                ConstantInt::get(Byte, 1), "tpc_reporting");
+  GlobalVariable *Wanted = wantedFlag(M);
+  auto *Find = BasicBlock::Create(Ctx, "", F);
   auto *Look = BasicBlock::Create(Ctx, "", F);
   auto *Report = BasicBlock::Create(Ctx, "", F);
   auto *Done = BasicBlock::Create(Ctx, "", F);
-  IRBuilder<> B(Look);
+  IRBuilder<> B(Find);
+  if (Wanted->hasExternalWeakLinkage())
+    B.CreateCondBr(B.CreateIsNull(Wanted), Report, Look);
+  else
+    B.CreateBr(Look);
+  B.SetInsertPoint(Look);
   // It may change at any time.
-  LoadInst *Now = B.CreateAlignedLoad(Byte, Wanted, Align(1));
+  LoadInst *Now = B.CreateAlignedLoad(B.getInt8Ty(), Wanted, Align(1));
   Now->setAtomic(AtomicOrdering::Monotonic);
   B.CreateCondBr(B.CreateIsNull(Now), Done, Report);
   B.SetInsertPoint(Report);
