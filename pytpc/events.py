@@ -11,32 +11,28 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 import pyarrow as pa
-import pyarrow.parquet as pq
 
-from pytpc.atomic import write_atomic
+from pytpc import columns as tables
+from pytpc.columns import Bools, Columns, Floats, Int32s, Int64s, frozen, sorted_words
 from pytpc.errors import InputError
 
-Int64s = npt.NDArray[np.int64]
-Int32s = npt.NDArray[np.int32]
-Floats = npt.NDArray[np.float64]
-Bools = npt.NDArray[np.bool_]
-Scalar = TypeVar("Scalar", bound=np.generic)
+__all__ = ["SCHEMA", "Bools", "EventBuilder", "Events", "Floats", "Int32s", "Int64s", "KeyIndex"]
+__all__ += ["Report", "concat", "read_parquet", "write_parquet"]
 
-_WORDS = pa.dictionary(pa.int32(), pa.string())
 SCHEMA = pa.schema(
     [
         pa.field("time_ns", pa.int64(), nullable=False),
-        pa.field("key", _WORDS, nullable=False),
+        pa.field("key", tables.WORDS, nullable=False),
         pa.field("result", pa.bool_(), nullable=False),
         pa.field("cmp", pa.float64(), nullable=False),
         pa.field("thresh", pa.float64(), nullable=False),
         pa.field("res", pa.bool_(), nullable=False),
-        pa.field("node", _WORDS, nullable=False),
+        pa.field("node", tables.WORDS, nullable=False),
     ]
 )
 """SPEC 6. Parquet keeps it; a file with other columns or types is refused."""
@@ -107,23 +103,19 @@ class Events:
             ValueError: columns of different lengths, a code without a word, or a word twice.
         """
         table = cls(
-            _frozen(np.asarray(time_ns, dtype=np.int64)),
-            _frozen(np.asarray(key, dtype=np.int32)),
-            _frozen(np.asarray(result, dtype=np.bool_)),
-            _frozen(np.asarray(cmp, dtype=np.float64)),
-            _frozen(np.asarray(thresh, dtype=np.float64)),
-            _frozen(np.asarray(res, dtype=np.bool_)),
-            _frozen(np.asarray(node, dtype=np.int32)),
+            frozen(np.asarray(time_ns, dtype=np.int64)),
+            frozen(np.asarray(key, dtype=np.int32)),
+            frozen(np.asarray(result, dtype=np.bool_)),
+            frozen(np.asarray(cmp, dtype=np.float64)),
+            frozen(np.asarray(thresh, dtype=np.float64)),
+            frozen(np.asarray(res, dtype=np.bool_)),
+            frozen(np.asarray(node, dtype=np.int32)),
             tuple(keys),
             tuple(nodes),
         )
-        if any(column.shape != (len(table),) for column in table._columns().values()):
-            raise ValueError("columns of different lengths")
-        for codes, words in ((table.key, table.keys), (table.node, table.nodes)):
-            if len(set(words)) != len(words):
-                raise ValueError("a key or node is named twice")
-            if codes.size and (int(codes.min()) < 0 or int(codes.max()) >= len(words)):
-                raise ValueError("a code has no key or node")
+        tables.check_columns(table._columns(), len(table))
+        tables.check_words(table.key, table.keys)
+        tables.check_words(table.node, table.nodes)
         if bool(np.any(table.time_ns[1:] < table.time_ns[:-1])):
             return table.take(np.argsort(table.time_ns, kind="stable"))
         return table
@@ -153,7 +145,7 @@ class Events:
         order = np.argsort(self.key, kind="stable").astype(np.int64)
         counts = np.bincount(self.key, minlength=len(self.keys))
         offsets = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
-        return KeyIndex(_frozen(order), _frozen(offsets))
+        return KeyIndex(frozen(order), frozen(offsets))
 
     @cached_property
     def previous(self) -> Int64s:
@@ -168,13 +160,13 @@ class Events:
             self.node[order[1:]] == self.node[order[:-1]]
         )
         before[order[1:][same]] = order[:-1][same]
-        return _frozen(before)
+        return frozen(before)
 
     @cached_property
     def flop(self) -> Bools:
         """bool[n]: evaluations whose ``result`` differs from that of the evaluation before."""
         known = self.previous >= 0
-        return _frozen(known & (self.result != self.result[self.previous]))
+        return frozen(known & (self.result != self.result[self.previous]))
 
     def between(self, start_ns: int, end_ns: int) -> Events:
         """The evaluations of the closed span ``[start_ns, end_ns]``."""
@@ -189,9 +181,7 @@ class Events:
 
     def with_keys(self, keys: Sequence[str]) -> Events:
         """The same table with ``keys`` as its keys; evaluations of other keys are left out."""
-        places = {key: place for place, key in enumerate(keys)}
-        recode = np.array([places.get(key, -1) for key in self.keys] or [-1], dtype=np.int32)
-        codes = recode[self.key]
+        codes = tables.recode(self.key, self.keys, keys)
         kept = codes >= 0
         columns = {name: column[kept] for name, column in self._columns().items()}
         columns["key"] = codes[kept]
@@ -199,14 +189,7 @@ class Events:
 
     def to_arrow(self) -> pa.Table:
         """The table in the schema ``SCHEMA``."""
-        columns: dict[str, object] = dict(self._columns())
-        for name, words in (("key", self.keys), ("node", self.nodes)):
-            columns[name] = pa.DictionaryArray.from_arrays(
-                columns[name], pa.array(words, pa.string())
-            )
-        return pa.Table.from_arrays(
-            [pa.array(columns[field.name], type=field.type) for field in SCHEMA], schema=SCHEMA
-        )
+        return tables.to_arrow(self._columns(), {"key": self.keys, "node": self.nodes}, SCHEMA)
 
     @classmethod
     def from_arrow(cls, table: pa.Table) -> Events:
@@ -215,24 +198,10 @@ class Events:
         Raises:
             InputError: a column is missing, is of another type or has empty places.
         """
-        columns: dict[str, npt.ArrayLike] = {}
-        words: dict[str, list[str]] = {}
-        for field in SCHEMA:
-            found = table.schema.get_all_field_indices(field.name)
-            if len(found) != 1:
-                raise InputError(f"column {field.name} occurs {len(found)} times, not once")
-            column = table.column(found[0])
-            if column.type != field.type:
-                raise InputError(f"column {field.name} is {column.type}, not {field.type}")
-            if column.null_count:
-                raise InputError(f"column {field.name} has {column.null_count} empty places")
-            if field.type == _WORDS:
-                columns[field.name], words[field.name] = _codes(column)
-            else:
-                columns[field.name] = column.to_numpy()
+        columns, words = tables.from_arrow(table, SCHEMA)
         return cls.of(**columns, keys=words["key"], nodes=words["node"])
 
-    def _columns(self) -> dict[str, npt.NDArray[np.generic]]:
+    def _columns(self) -> Columns:
         return {
             "time_ns": self.time_ns,
             "key": self.key,
@@ -272,8 +241,8 @@ class EventBuilder:
 
     def build(self) -> Events:
         """The table; its keys and nodes are sorted, so that they depend on nothing else."""
-        keys, key_places = _sorted_words(self._key_codes)
-        nodes, node_places = _sorted_words(self._node_codes)
+        keys, key_places = sorted_words(self._key_codes)
+        nodes, node_places = sorted_words(self._node_codes)
         return Events.of(
             time_ns=np.array(self._times, dtype=np.int64),
             key=key_places[np.array(self._keys, dtype=np.int32)],
@@ -287,23 +256,14 @@ class EventBuilder:
         )
 
 
-def concat(tables: Sequence[Events]) -> Events:
-    """All evaluations of ``tables``; equal times keep the order of the tables.
+def concat(parts: Sequence[Events]) -> Events:
+    """All evaluations of ``parts``; equal times keep the order of the parts.
 
     The keys and nodes of the result are sorted.
     """
-    keys = sorted({key for table in tables for key in table.keys})
-    nodes = sorted({node for table in tables for node in table.nodes})
-    if not tables:
+    if not parts:
         return Events.empty()
-    node_places = {node: place for place, node in enumerate(nodes)}
-    recoded = []
-    for table in tables:
-        columns = table.with_keys(keys)._columns()
-        places = np.array([node_places[node] for node in table.nodes] or [-1], dtype=np.int32)
-        columns["node"] = places[table.node]
-        recoded.append(columns)
-    joined = {name: np.concatenate([part[name] for part in recoded]) for name in recoded[0]}
+    joined, keys, nodes = tables.join([(part._columns(), part.keys, part.nodes) for part in parts])
     return Events.of(**joined, keys=keys, nodes=nodes)
 
 
@@ -313,9 +273,7 @@ def write_parquet(events: Events, path: Path) -> None:
     Raises:
         TpcError: the file cannot be written; what stood there before is untouched.
     """
-    sink = pa.BufferOutputStream()
-    pq.write_table(events.to_arrow(), sink, compression="zstd")
-    write_atomic(path, sink.getvalue().to_pybytes())
+    tables.write_table(events.to_arrow(), path)
 
 
 def read_parquet(path: Path) -> Events:
@@ -324,38 +282,10 @@ def read_parquet(path: Path) -> Events:
     Raises:
         InputError: the file cannot be read, is no Parquet, or has other columns.
     """
+    table = tables.read_table(path, "events")
     try:
-        table = pq.read_table(pa.BufferReader(path.read_bytes()))
         return Events.from_arrow(table)
-    except OSError as error:
-        raise InputError(f"cannot be read: {error.strerror or error}", path) from error
-    except (pa.ArrowException, ValueError) as error:
-        raise InputError(f"not a file of events: {error}", path) from error
     except InputError as error:
         raise InputError(error.message, path) from error
-
-
-def _frozen(values: npt.NDArray[Scalar]) -> npt.NDArray[Scalar]:
-    view = values.view()
-    view.flags.writeable = False
-    return view
-
-
-def _sorted_words(codes: dict[str, int]) -> tuple[list[str], Int32s]:
-    """The words in order, and for each old code its place in that order."""
-    words = sorted(codes)
-    places = np.empty(max(1, len(words)), dtype=np.int32)
-    for place, word in enumerate(words):
-        places[codes[word]] = place
-    return words, places
-
-
-def _codes(column: pa.ChunkedArray) -> tuple[Int32s, list[str]]:
-    """Codes and words of a dictionary column, whatever dictionary each of its chunks has."""
-    if column.num_chunks == 0:
-        return np.empty(0, dtype=np.int32), []
-    whole = column.unify_dictionaries().combine_chunks()
-    if isinstance(whole, pa.ChunkedArray):
-        whole = pa.concat_arrays(whole.chunks)
-    words = whole.dictionary.to_pylist()
-    return whole.indices.to_numpy(zero_copy_only=False), words
+    except ValueError as error:
+        raise InputError(f"not a file of events: {error}", path) from error

@@ -1,16 +1,35 @@
-"""Marks: the times at which an observer says that the robot does wrong."""
+"""Marks: the times at which an observer says that the robot does wrong.
+
+On a graph they are messages (``topic_of_marks``), beside a bag a CSV file (``read_marks``). What
+the columns and topics are stands in docs/formats.md.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import csv
+import io
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Literal, get_args
+
+from pytpc.atomic import write_atomic
+from pytpc.errors import InputError
 
 MarkType = Literal["I", "II"]
 """``I``: the robot did something that it should not have; ``II``: it should do something and does
 not (SPEC 1)."""
 
 MARK_TYPES: tuple[MarkType, ...] = get_args(MarkType)
-_TOPICS: dict[str, MarkType] = {"mark_action": "I", "mark_no_action": "II"}
+UNDO_TOPIC = "mark_undo"
+NOTE_TOPIC = "mark_note"
+_TOPICS: dict[str, MarkType | None] = {
+    "mark_action": "I",
+    "mark_no_action": "II",
+    "mark_wrong": None,
+}
+_HEADER = ["time_ns", "type", "observer", "note"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,23 +37,189 @@ class Mark:
     """One mark.
 
     ``time_ns`` is the marked time, ``type`` is None where the observer only says "wrong", and
-    ``observer`` is the namespace of the topic (``marks0``), empty where there is none.
+    ``observer`` is the namespace of the topic (``marks0``), empty where there is none. ``note`` is
+    what the observer wrote about it.
     """
 
     time_ns: int
     type: MarkType | None
     observer: str = ""
+    note: str = ""
 
     def order(self) -> tuple[int, str, str]:
         """Sorting marks by this is deterministic."""
         return (self.time_ns, self.observer, self.type or "")
 
 
-def topic_of_marks(topic: str) -> tuple[MarkType, str] | None:
+def topic_of_marks(topic: str) -> tuple[MarkType | None, str] | None:
     """Type and observer of the marks on ``topic``, or None where it carries none.
 
-    ``/mark_action`` -> ``("I", "")``, ``/marks0/mark_no_action`` -> ``("II", "marks0")``.
+    ``/mark_action`` -> ``("I", "")``, ``/marks0/mark_no_action`` -> ``("II", "marks0")``,
+    ``/mark_wrong`` -> ``(None, "")``.
     """
     observer, _, last = topic.rpartition("/")
-    kind = _TOPICS.get(last)
-    return None if kind is None else (kind, observer.strip("/"))
+    return (_TOPICS[last], observer.strip("/")) if last in _TOPICS else None
+
+
+def topic_for(mark: Mark) -> str:
+    """The reverse of ``topic_of_marks``."""
+    (last,) = (name for name, kind in _TOPICS.items() if kind == mark.type)
+    return topic_of_observer(mark.observer, last)
+
+
+def topic_of_observer(observer: str, last: str) -> str:
+    """The topic called ``last`` in an observer's namespace."""
+    return f"/{observer}/{last}" if observer else f"/{last}"
+
+
+def observer_of(topic: str, last: str) -> str | None:
+    """The observer whose topic ``last`` (``UNDO_TOPIC``, ``NOTE_TOPIC``) this is, or None."""
+    observer, _, name = topic.rpartition("/")
+    return observer.strip("/") if name == last else None
+
+
+def without_undone(marks: Iterable[Mark], undone: Iterable[tuple[str, int]]) -> tuple[Mark, ...]:
+    """``marks`` without those that were taken back, in their order.
+
+    ``undone`` has observer and time of each mark that was: one mark goes for each, the last of
+    that observer at exactly that time.
+    """
+    left = Counter(undone)
+    kept = []
+    for mark in reversed(list(marks)):
+        if left[mark.observer, mark.time_ns] > 0:
+            left[mark.observer, mark.time_ns] -= 1
+        else:
+            kept.append(mark)
+    return tuple(reversed(kept))
+
+
+def with_note(marks: Iterable[Mark], observer: str, time_ns: int, note: str) -> tuple[Mark, ...]:
+    """``marks`` with ``note`` at those of ``observer`` at that time."""
+    return tuple(
+        replace(mark, note=note) if (mark.observer, mark.time_ns) == (observer, time_ns) else mark
+        for mark in marks
+    )
+
+
+def note_text(time_ns: int, note: str) -> str:
+    """A note as it stands on ``mark_note``: ``SECONDS.NANOSECONDS,NOTE``."""
+    return f"{time_ns // 10**9}.{time_ns % 10**9:09d},{note}"
+
+
+def parse_note(text: str) -> tuple[int, str] | None:
+    """The reverse of ``note_text``; None where it is no note."""
+    time, comma, note = text.partition(",")
+    seconds, dot, nanoseconds = time.partition(".")
+    if not comma or not dot or len(nanoseconds) != 9:
+        return None
+    digits = seconds + nanoseconds
+    if not (digits.isascii() and digits.isdigit()) or len(digits) > 20:
+        return None
+    return int(digits), note
+
+
+class MarkMessages:
+    """Gathers the marks of a graph from the messages of all their topics, in any order."""
+
+    def __init__(self) -> None:
+        """No message yet."""
+        self._marks: list[Mark] = []
+        self._undone: list[tuple[str, int]] = []
+        self._notes: list[tuple[str, int, str]] = []
+
+    @staticmethod
+    def message_type(topic: str) -> str | None:
+        """The type that messages of ``topic`` must have, ``std_msgs/Time`` or ``std_msgs/String``;
+        None where it has nothing to do with marks."""
+        last = topic.rpartition("/")[2]
+        if last == NOTE_TOPIC:
+            return "std_msgs/String"
+        return "std_msgs/Time" if last in {*_TOPICS, UNDO_TOPIC} else None
+
+    def add_time(self, topic: str, time_ns: int) -> None:
+        """A std_msgs/Time of a topic that ``message_type`` knows."""
+        named = topic_of_marks(topic)
+        if named is not None:
+            self._marks.append(Mark(time_ns, *named))
+        else:
+            self._undone.append((observer_of(topic, UNDO_TOPIC) or "", time_ns))
+
+    def add_text(self, topic: str, text: str) -> None:
+        """A std_msgs/String likewise.
+
+        Raises:
+            ValueError: it is no note.
+        """
+        found = parse_note(text)
+        if found is None:
+            raise ValueError("no note: SECONDS.NANOSECONDS,NOTE is expected")
+        self._notes.append((observer_of(topic, NOTE_TOPIC) or "", *found))
+
+    def marks(self) -> tuple[Mark, ...]:
+        """The marks that were not taken back, with their last notes, sorted."""
+        marks = without_undone(sorted(self._marks, key=Mark.order), self._undone)
+        for note in self._notes:
+            marks = with_note(marks, *note)
+        return marks
+
+
+def marks_beside(recording: Path) -> Path:
+    """Where the marks of a recording are that were made after it: ``BAG.marks.csv``."""
+    return recording.with_name(f"{recording.name}.marks.csv")
+
+
+def marks_text(marks: Sequence[Mark]) -> str:
+    """The CSV file of ``marks``, sorted."""
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(_HEADER)
+    for mark in sorted(marks, key=Mark.order):
+        writer.writerow([mark.time_ns, mark.type or "", mark.observer, mark.note])
+    return stream.getvalue()
+
+
+def write_marks(marks: Sequence[Mark], path: Path) -> None:
+    """Write the CSV file, atomically.
+
+    Raises:
+        TpcError: it cannot be written; what stood there before is untouched.
+    """
+    write_atomic(path, marks_text(marks).encode("utf-8", "backslashreplace"))
+
+
+def read_marks(path: Path) -> tuple[Mark, ...]:
+    """Read what ``write_marks`` wrote, or somebody by hand; columns may be missing at the end.
+
+    Raises:
+        InputError: it cannot be read, or a line is no mark.
+    """
+    try:
+        text = path.read_bytes().decode("utf-8-sig")
+    except OSError as error:
+        raise InputError(f"cannot be read: {error.strerror or error}", path) from error
+    except UnicodeDecodeError as error:
+        raise InputError(f"not CSV: byte {error.start} is not UTF-8", path) from error
+    reader = csv.reader(io.StringIO(text, newline=""))
+    marks = []
+    try:
+        if next(reader, None) != _HEADER:
+            raise InputError(f"the first line is not {','.join(_HEADER)}", path, 1)
+        for row in reader:
+            if row:
+                marks.append(_mark(row))
+    except (ValueError, csv.Error) as error:
+        raise InputError(str(error), path, reader.line_num) from error
+    return tuple(sorted(marks, key=Mark.order))
+
+
+def _mark(row: list[str]) -> Mark:
+    time, kind, observer, note = (row + [""] * len(_HEADER))[: len(_HEADER)]
+    if len(row) > len(_HEADER):
+        raise ValueError(f"{len(row)} columns, not {len(_HEADER)}")
+    if not (time.isascii() and time.isdigit() and len(time) < 20) or int(time) >= 2**63:
+        raise ValueError(f"{time!r} is no time in nanoseconds")
+    if kind and kind not in MARK_TYPES:
+        raise ValueError(f"{kind!r} is no type of mark: I, II or nothing")
+    mark_type = next((known for known in MARK_TYPES if known == kind), None)
+    return Mark(int(time), mark_type, observer, note)

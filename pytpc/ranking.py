@@ -17,6 +17,7 @@ from pytpc.events import Events, Floats, Int64s
 from pytpc.ingest.recording import Recording
 from pytpc.marks import Mark, MarkType
 from pytpc.parameters import parameter_name, same_parameter
+from pytpc.score_bounds import type2_bounds
 from pytpc.scores import (
     NONE,
     WINDOW_S,
@@ -26,13 +27,13 @@ from pytpc.scores import (
     ordering,
     ranks,
     type1,
-    type2,
 )
 from pytpc.static_info import Comparison, StaticInfo
+from pytpc.summaries import Summaries
 
 
 class Evaluation(NamedTuple):
-    """One evaluation, as it was reported."""
+    """One evaluation, as it was reported, or the last of a summary."""
 
     time_ns: int
     result: bool
@@ -108,9 +109,12 @@ def rank_marks(
     tpcs = _Tpcs.of(static_info)
     events = recording.events.with_keys(tpcs.keys)
     marks_ns = np.array([mark.time_ns for mark in recording.marks], dtype=np.int64)
+    second = type2_bounds(
+        events, recording.summaries, marks_ns, tpcs.distance, window_s=window_s
+    ).value
     tables = _Tables(
         _by_parameter(tpcs, type1(events, marks_ns, tpcs.distance)),
-        _by_parameter(tpcs, type2(events, marks_ns, tpcs.distance, window_s=window_s)),
+        _by_parameter(tpcs, second),
     )
     rankings = []
     for row, mark in enumerate(recording.marks):
@@ -128,8 +132,8 @@ def rank_marks(
                     type=kind,
                     score=float(table.scores[row, number]),
                     rank=rank,
-                    keys=tpcs.seen(events, table.names[number]),
-                    last=_last(events, key, mark.time_ns),
+                    keys=tpcs.seen(events, recording.summaries, table.names[number]),
+                    last=_last(events, recording.summaries, key, mark.time_ns),
                 )
             )
         rankings.append(MarkRanking(mark, tuple(suspects), len(tables.first.names)))
@@ -167,12 +171,13 @@ class _Tpcs:
             tuple(parameter_name(found[key]) for key in keys),
         )
 
-    def seen(self, events: Events, parameter: str) -> tuple[str, ...]:
-        """The keys of a parameter that have events."""
+    def seen(self, events: Events, summaries: Summaries, parameter: str) -> tuple[str, ...]:
+        """The keys of a parameter that have events or summaries."""
         return tuple(
             key
             for code, key in enumerate(self.keys)
-            if self.parameters[code] == parameter and events.by_key.rows(code).size
+            if self.parameters[code] == parameter
+            and (events.by_key.rows(code).size or key in summaries.keys)
         )
 
 
@@ -220,14 +225,30 @@ def _order(tables: _Tables, row: int, kind: MarkType | None) -> list[tuple[int, 
     ]
 
 
-def _last(events: Events, key: str, mark_ns: int) -> Evaluation:
+def _last(events: Events, summaries: Summaries, key: str, mark_ns: int) -> Evaluation:
+    """The last evaluation up to the mark that is known: a report, or the last of a summary.
+
+    Where the mark is within the first period, it is the first of these.
+    """
     rows = events.by_key.rows(events.keys.index(key))
-    row = rows[int(np.searchsorted(events.time_ns[rows], mark_ns, side="right")) - 1]
+    found = [_at(events, events.time_ns, rows, mark_ns)] if rows.size else []
+    if key in summaries.keys:
+        own = np.flatnonzero(summaries.key == summaries.keys.index(key))
+        own = own[np.argsort(summaries.end_ns[own], kind="stable")]
+        found.append(_at(summaries, summaries.end_ns, own, mark_ns))
+    before = [evaluation for evaluation in found if evaluation.time_ns <= mark_ns]
+    return max(before) if before else min(found)
+
+
+def _at(table: Events | Summaries, times: Int64s, rows: Int64s, mark_ns: int) -> Evaluation:
+    """The last of ``rows`` up to the mark, else the first; they are in the order of ``times``."""
+    place = int(np.searchsorted(times[rows], mark_ns, side="right")) - 1
+    row = int(rows[max(0, place)])
     return Evaluation(
-        int(events.time_ns[row]),
-        bool(events.result[row]),
-        float(events.cmp[row]),
-        float(events.thresh[row]),
-        bool(events.res[row]),
-        events.nodes[events.node[row]],
+        int(times[row]),
+        bool(table.result[row]),
+        float(table.cmp[row]),
+        float(table.thresh[row]),
+        bool(table.res[row]),
+        table.nodes[table.node[row]],
     )

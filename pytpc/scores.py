@@ -12,6 +12,10 @@ after the mission is the score that an observer would have got during it. Where 
 last flop, S1 is 0.
 
 The cost is O(log n) for a key at a time, whatever the length of the window.
+
+Where the policy ``edges`` kept summaries instead of every evaluation, type I is the same number,
+because the first evaluation and all flops are among the events; for type II see
+`pytpc.score_bounds`.
 """
 
 from __future__ import annotations
@@ -30,7 +34,9 @@ NONE = 9999.9
 WINDOW_S = 12.0
 """The window of type II, in seconds."""
 
-_EQUAL = 1e-4
+EQUAL = 1e-4
+"""Up to this difference a value counts as the threshold itself (n_i of type II)."""
+
 _LARGE = 2.0**960
 _SCALE = 2.0**-64
 
@@ -60,8 +66,8 @@ def type1(
     Raises:
         ValueError: ``distance`` is not one number for each key, or ``alpha`` is negative.
     """
-    marks, distances = _inputs(events, marks_ns, distance)
-    _not_negative(alpha=alpha)
+    marks, distances = checked(events, marks_ns, distance)
+    not_negative(alpha=alpha)
     scores = np.full((marks.size, len(events.keys)), NONE)
     for code in range(len(events.keys)):
         rows = events.by_key.rows(code)
@@ -70,7 +76,7 @@ def type1(
         some = count > 0
         seconds = (marks[some] - flops[count[some] - 1]) / 1e9
         value = seconds**alpha * (1.0 + count[some]) ** beta * distances[code] ** gamma
-        scores[some, code] = _beside_none(value)
+        scores[some, code] = beside_none(value)
     return scores
 
 
@@ -107,15 +113,15 @@ def type2(
     Raises:
         ValueError: ``distance`` is not one number for each key, or an argument is negative.
     """
-    marks, distances = _inputs(events, marks_ns, distance)
-    _not_negative(window_s=window_s, alpha=alpha, gamma=gamma)
+    marks, distances = checked(events, marks_ns, distance)
+    not_negative(window_s=window_s, alpha=alpha, gamma=gamma)
     begins = marks - round(window_s * 1e9)
     scores = np.full((marks.size, len(events.keys)), NONE)
     nearness = distances / distances.max(initial=1.0)
     for code in range(len(events.keys)):
         rows = events.by_key.rows(code)
         flops = events.time_ns[rows[events.flop[rows]]]
-        flop_count = _count(flops, begins, marks)
+        flop_count = count_within(flops, begins, marks)
         window = _Differences(events, rows).over(begins, marks)
         some = window.usable
         value = (
@@ -124,7 +130,7 @@ def type2(
             * window.unequal[some] ** gamma
             * nearness[code] ** delta
         )
-        scores[some, code] = _beside_none(value)
+        scores[some, code] = beside_none(value)
     return scores
 
 
@@ -223,7 +229,7 @@ class _Differences:
         cmp, thresh = events.cmp[rows], events.thresh[rows]
         self.times = events.time_ns[rows]
         with np.errstate(over="ignore"):
-            self.unequal = np.concatenate([[0], np.cumsum(np.abs(cmp - thresh) > _EQUAL)])
+            self.unequal = np.concatenate([[0], np.cumsum(np.abs(cmp - thresh) > EQUAL)])
         self.ratios = [_Ratio(cmp, thresh)]
         if np.abs([cmp, thresh]).max(initial=0.0) > _LARGE:
             # Differences and sums of the largest doubles overflow; a power of two changes no ratio.
@@ -248,7 +254,7 @@ class _Ratio:
 
     def __init__(self, cmp: Floats, thresh: Floats) -> None:
         with np.errstate(over="ignore"):
-            self.sums = _RangeSums(np.abs(cmp - thresh))
+            self.sums = RangeSums(np.abs(cmp - thresh))
         self.highest = np.maximum.accumulate(np.maximum(cmp, thresh))
         self.lowest = np.minimum.accumulate(np.minimum(cmp, thresh))
 
@@ -264,7 +270,7 @@ class _Ratio:
             return np.where(np.isfinite(spread), mean, np.nan)
 
 
-class _RangeSums:
+class RangeSums:
     """Sums of any span of non-negative numbers, each from at most 2 log2(n) sums of blocks.
 
     A difference of two prefix sums would cost the same, but loses all digits of a window of small
@@ -273,6 +279,7 @@ class _RangeSums:
     """
 
     def __init__(self, values: Floats) -> None:
+        """``values`` float64[n], none of them negative."""
         self.levels = [values]
         while self.levels[-1].size > 1:
             below = self.levels[-1]
@@ -295,26 +302,37 @@ class _RangeSums:
         return total
 
 
-def _inputs(
+def checked(
     events: Events, marks_ns: npt.ArrayLike, distance: npt.ArrayLike
 ) -> tuple[Int64s, Floats]:
+    """The marks and distances as columns.
+
+    Raises:
+        ValueError: ``distance`` is not one number for each key.
+    """
     distances = np.asarray(distance, dtype=np.float64)
     if distances.shape != (len(events.keys),):
         raise ValueError("one distance for each key is needed")
     return np.atleast_1d(np.asarray(marks_ns, dtype=np.int64)), distances
 
 
-def _not_negative(**arguments: float) -> None:
+def not_negative(**arguments: float) -> None:
+    """Refuse a negative argument by its name.
+
+    Raises:
+        ValueError: there is one.
+    """
     for name, value in arguments.items():
         if not value >= 0:
             raise ValueError(f"{name} is negative")
 
 
-def _count(times: Int64s, begins: Int64s, ends: Int64s) -> Int64s:
+def count_within(times: Int64s, begins: Int64s, ends: Int64s) -> Int64s:
+    """int64[spans]: how many of the sorted ``times`` lie in each closed span."""
     return np.searchsorted(times, ends, side="right") - np.searchsorted(times, begins, side="left")
 
 
-def _beside_none(values: Floats) -> Floats:
+def beside_none(values: Floats) -> Floats:
     """A score that happens to be 9999.9 must not read as none."""
     return np.where(values == NONE, np.nextafter(NONE, np.inf), values)
 

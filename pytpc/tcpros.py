@@ -128,7 +128,7 @@ class RawSubscriber:
 
     def __init__(self, master: str, name: str, host: str, topics: Sequence[str]) -> None:
         """See the class; on return all topics are registered."""
-        self._name = name
+        self.name = name
         self._master = master
         self._lock = threading.Lock()
         self._wanted: dict[str, set[str]] = {topic: set() for topic in topics}
@@ -142,20 +142,31 @@ class RawSubscriber:
         self._uri = f"http://{host}:{self._server.server_address[1]}/"
         threading.Thread(target=self._server.serve_forever, args=(0.05,), daemon=True).start()
         try:
-            self.register()
+            for topic in topics:
+                self.subscribe(topic)
         except BaseException:
             self.close()
             raise
 
-    def register(self) -> None:
-        """Register all topics; once more where the master was started again.
+    def subscribe(self, topic: str) -> None:
+        """Subscribe to a further topic; or to one again, of which the master does not know.
 
         Raises:
             RunError: the master does not answer or refuses.
         """
-        for topic in self._wanted:
-            publishers = self.call_master("registerSubscriber", topic, "*", self._uri)
-            self._on_publishers(topic, cast(list[str], publishers))
+        with self._lock:
+            self._wanted.setdefault(topic, set())
+        publishers = self.call_master("registerSubscriber", topic, "*", self._uri)
+        self._on_publishers(topic, cast(list[str], publishers))
+
+    def register(self) -> None:
+        """Register all topics once more: the master was started again.
+
+        Raises:
+            RunError: the master does not answer or refuses.
+        """
+        for topic in list(self._wanted):
+            self.subscribe(topic)
 
     def call_master(self, method: str, *arguments: object) -> object:
         """Call a method of the master API.
@@ -163,7 +174,7 @@ class RawSubscriber:
         Raises:
             RunError: the master does not answer or refuses.
         """
-        return self.call_master_as(self._name, method, *arguments)
+        return self.call_master_as(self.name, method, *arguments)
 
     def call_master_as(self, name: str, method: str, *arguments: object) -> object:
         """The same in the name of another node of this process.
@@ -208,7 +219,7 @@ class RawSubscriber:
     def close(self) -> None:
         """Leave the graph. A master that is gone already is no error."""
         self._closed.set()
-        for topic in self._wanted:
+        for topic in list(self._wanted):
             with contextlib.suppress(RunError):
                 self.call_master("unregisterSubscriber", topic, self._uri)
         self._server.shutdown()
@@ -235,7 +246,7 @@ class RawSubscriber:
             if self._closed.is_set() or not self._is_wanted(key):
                 break
             try:
-                connection, source = _open(key[0], key[1], self._name)
+                connection, source = _open(key[0], key[1], self.name)
             except (OSError, HTTPException, xmlrpc.client.Error, ValueError):
                 # A node that is just starting or just ending; it is tried again while it is listed.
                 time.sleep(_RETRY_S)
@@ -264,7 +275,7 @@ class RawSubscriber:
         threading.Thread(target=self._connect, args=(link.key,), daemon=True).start()
 
 
-class _Handler(SimpleXMLRPCRequestHandler):
+class Handler(SimpleXMLRPCRequestHandler):
     """ROS posts to any path."""
 
     rpc_paths = ()
@@ -290,7 +301,7 @@ class _SlaveApi:
 
 
 def _slave_server(host: str, on_publishers: Callable[[str, list[str]], None]) -> SimpleXMLRPCServer:
-    server = SimpleXMLRPCServer((host, 0), _Handler, logRequests=False, allow_none=True)
+    server = SimpleXMLRPCServer((host, 0), Handler, logRequests=False, allow_none=True)
     server.register_instance(_SlaveApi(on_publishers))
     return server
 

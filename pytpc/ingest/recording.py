@@ -1,20 +1,23 @@
 """A mission as it was recorded: its events, its marks, and what could not be read of it.
 
-On disk it is a folder with ``events.parquet`` and ``marks.json`` (docs/formats.md).
+On disk it is a folder with ``events.parquet``, ``marks.json`` and, where there are summaries,
+``summaries.parquet`` (docs/formats.md).
 """
 
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
 from pytpc.atomic import write_atomic
 from pytpc.errors import InputError
 from pytpc.events import Events, read_parquet, write_parquet
 from pytpc.marks import MARK_TYPES, Mark
+from pytpc.summaries import Summaries, read_summaries, write_summaries
 
 EVENTS_FILE = "events.parquet"
+SUMMARIES_FILE = "summaries.parquet"
 MARKS_FILE = "marks.json"
 _SCHEMA = 1
 
@@ -29,14 +32,36 @@ class MalformedRecord:
     text: str
 
 
+@dataclass(frozen=True, slots=True)
+class Dropped:
+    """Reports that the instrumented process itself left out, and why.
+
+    ``key`` is empty where it is not known of which comparison; ``flops`` of the ``count`` were
+    flops; ``why`` is ``site`` or ``process`` (a cap on reports per second), ``nested`` (made while
+    another report was) or ``stopped`` (the sink could not go on).
+    """
+
+    key: str
+    node: str
+    count: int
+    flops: int
+    why: str
+
+    def order(self) -> tuple[str, str, str]:
+        """Sorting by this is deterministic."""
+        return (self.node, self.key, self.why)
+
+
 @dataclass(frozen=True)
 class Recording:
     """One mission.
 
+    ``summaries`` is what the policy ``edges`` keeps of the evaluations that are not in ``events``.
+
     ``malformed`` counts the records that were skipped, ``malformed_first`` has the first 20.
     ``lost`` has for each node how many of its log messages never reached the recorder.
     ``start_ns`` and ``end_ns`` are on the clock of the events. ``notes`` are sentences for the user
-    about what was read and what was left out.
+    about what was read and what was left out. ``dropped`` is what the processes themselves counted.
     """
 
     name: str
@@ -48,6 +73,8 @@ class Recording:
     malformed_first: tuple[MalformedRecord, ...] = ()
     lost: dict[str, int] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
+    summaries: Summaries = field(default_factory=Summaries.empty)
+    dropped: tuple[Dropped, ...] = ()
 
     @property
     def seconds(self) -> float:
@@ -56,33 +83,64 @@ class Recording:
 
 
 def save_recording(recording: Recording, folder: Path) -> None:
-    """Write the two files of a recording, each atomically; ``marks.json`` last.
+    """Write the files of a recording, each atomically; ``marks.json`` last.
 
     Raises:
         TpcError: a file cannot be written.
     """
     write_parquet(recording.events, folder / EVENTS_FILE)
+    if len(recording.summaries):
+        write_summaries(recording.summaries, folder / SUMMARIES_FILE)
+    write_marks(recording, folder, len(recording.events), len(recording.summaries))
+
+
+def write_marks(recording: Recording, folder: Path, events: int, summaries: int) -> None:
+    """Write ``marks.json`` beside tables of so many rows; a file of summaries of before is deleted.
+
+    Raises:
+        TpcError: the file cannot be written.
+    """
     document = {
         "schema": _SCHEMA,
         "name": recording.name,
         "start_ns": recording.start_ns,
         "end_ns": recording.end_ns,
-        "events": len(recording.events),
+        "events": events,
+        "summaries": summaries,
         "marks": [asdict(mark) for mark in recording.marks],
         "malformed": recording.malformed,
         "malformed_first": [asdict(record) for record in recording.malformed_first],
         "lost": recording.lost,
+        "dropped": [asdict(dropped) for dropped in recording.dropped],
         "notes": list(recording.notes),
     }
     text = json.dumps(document, indent=1, sort_keys=True, ensure_ascii=False)
     write_atomic(folder / MARKS_FILE, text.encode("utf-8", "backslashreplace") + b"\n")
+    if not summaries:
+        (folder / SUMMARIES_FILE).unlink(missing_ok=True)
 
 
 def load_recording(folder: Path) -> Recording:
     """Read the folder that ``save_recording`` wrote.
 
     Raises:
-        InputError: a file is missing or broken, or the two files are not of one recording.
+        InputError: a file is missing or broken, or the files are not of one recording.
+    """
+    recording, event_count, summary_count = read_marks(folder)
+    path = folder / MARKS_FILE
+    events = read_parquet(folder / EVENTS_FILE)
+    _check_rows(path, event_count, EVENTS_FILE, len(events))
+    # A file of summaries that nothing tells of was left there.
+    summaries = read_summaries(folder / SUMMARIES_FILE) if summary_count else Summaries.empty()
+    _check_rows(path, summary_count, SUMMARIES_FILE, len(summaries))
+    return replace(recording, events=events, summaries=summaries)
+
+
+def read_marks(folder: Path) -> tuple[Recording, int, int]:
+    """Read ``marks.json`` alone: a recording with empty tables, and how many rows they have.
+
+    Raises:
+        InputError: the file is missing or broken.
     """
     path = folder / MARKS_FILE
     try:
@@ -94,21 +152,23 @@ def load_recording(folder: Path) -> Recording:
         raise InputError(f"not JSON: {error.msg}", path, error.lineno) from error
     except UnicodeDecodeError as error:
         raise InputError(f"not JSON: byte {error.start} is not UTF-8", path) from error
-    events = read_parquet(folder / EVENTS_FILE)
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"not JSON: {error}", path) from error
     try:
-        recording = _recording(document, events)
-    except (AttributeError, KeyError, TypeError, ValueError) as error:
+        # Files of older versions say nothing of summaries.
+        counts = int(document["events"]), int(document.get("summaries", 0))
+        return _recording(document), *counts
+    except (AttributeError, KeyError, TypeError, ValueError, OverflowError) as error:
         raise InputError(f"not the marks of a recording: {_why(error)}", path) from error
-    if document["events"] != len(events):
-        raise InputError(
-            f"is of a recording with {document['events']} events, but {EVENTS_FILE} has"
-            f" {len(events)}",
-            path,
-        )
-    return recording
 
 
-def _recording(document: object, events: Events) -> Recording:
+def _check_rows(path: Path, said: int, name: str, found: int) -> None:
+    if said != found:
+        what = name.removesuffix(".parquet")
+        raise InputError(f"is of a recording with {said} {what}, but {name} has {found}", path)
+
+
+def _recording(document: object) -> Recording:
     if not isinstance(document, dict) or document.get("schema") != _SCHEMA:
         raise ValueError(f"schema {_SCHEMA} is read")
     marks = [Mark(**mark) for mark in document["marks"]]
@@ -119,7 +179,7 @@ def _recording(document: object, events: Events) -> Recording:
             raise ValueError(f"a mark of type {mark.type!r}")
     return Recording(
         name=str(document["name"]),
-        events=events,
+        events=Events.empty(),
         marks=tuple(sorted(marks, key=Mark.order)),
         start_ns=int(document["start_ns"]),
         end_ns=int(document["end_ns"]),
@@ -127,6 +187,7 @@ def _recording(document: object, events: Events) -> Recording:
         malformed_first=tuple(MalformedRecord(**item) for item in document["malformed_first"]),
         lost={str(node): int(count) for node, count in document["lost"].items()},
         notes=tuple(str(note) for note in document["notes"]),
+        dropped=tuple(Dropped(**item) for item in document.get("dropped", [])),
     )
 
 

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 from mission_samples import comparison, events, key, ns, static_info
 
 from pytpc.events import Events
@@ -8,6 +10,7 @@ from pytpc.marks import Mark
 from pytpc.parameters import parameter_name
 from pytpc.ranking import rank_marks, unknown_keys
 from pytpc.static_info import Place
+from pytpc.summaries import Summary, SummaryBuilder
 
 # Comparisons 0 and 1 are of coverage, 2 of faces, 3 of idle, 4 is a constant, 5 of never (which is
 # never evaluated), 6 of faces too.
@@ -113,3 +116,40 @@ def test_nothing_to_rank():
     mission = Recording("m", Events.empty(), (Mark(5, "I"), Mark(6, None)), 0, 10)
     assert [r.suspects for r in rank_marks(mission, STATIC)] == [(), ()]
     assert [r.suspects for r in rank_marks(mission, static_info())] == [(), ()]
+
+
+# Under `edges` the log has the first evaluation of comparison 0 alone, and a summary of 2 s whose
+# last evaluation was 7 against 4. Its window holds differences 4, 2 and 3 of a spread of 8:
+# (4 + 2 + 3) / 3 / 8. At 10.5 s all that is known to be before the mark is the first evaluation.
+def test_type2_from_summaries():
+    builder = SummaryBuilder()
+    builder.add(
+        Summary(
+            key=key(0),
+            node="/node",
+            begin_ns=ns(10),
+            end_ns=ns(12),
+            count=3,
+            flops=0,
+            far=3,
+            odd=0,
+            result=True,
+            res=True,
+            cmp=7.0,
+            thresh=4.0,
+            diff_min=-4.0,
+            diff_max=3.0,
+            diff_mean=1 / 3,
+            abs_mean=3.0,
+            low=0.0,
+            high=8.0,
+        )
+    )
+    marks = [Mark(ns(10.5), "II"), Mark(ns(13), "II")]
+    mission = replace(recording([(10, 0, 0, 0, 4)], marks), summaries=builder.build())
+    early, late = rank_marks(mission, STATIC)
+    (suspect,) = late.suspects
+    assert (suspect.parameter, suspect.score) == ("coverage", 0.375)
+    assert (suspect.last.time_ns, suspect.last.cmp, suspect.last.result) == (ns(12), 7.0, True)
+    assert suspect.keys == (key(0),)
+    assert [(s.last.time_ns, s.last.cmp) for s in early.suspects] == [(ns(10), 0.0)]

@@ -1,0 +1,178 @@
+"""What the tables of events and of summaries share: columns of numpy, with words as codes.
+
+A word column (keys, nodes) is int32 codes into a tuple of words; in Arrow it is a dictionary.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import TypeVar
+
+import numpy as np
+import numpy.typing as npt
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from pytpc.atomic import write_atomic
+from pytpc.errors import InputError
+
+Int64s = npt.NDArray[np.int64]
+Int32s = npt.NDArray[np.int32]
+Floats = npt.NDArray[np.float64]
+Bools = npt.NDArray[np.bool_]
+Scalar = TypeVar("Scalar", bound=np.generic)
+Columns = dict[str, npt.NDArray[np.generic]]
+
+WORDS = pa.dictionary(pa.int32(), pa.string())
+
+
+def frozen(values: npt.NDArray[Scalar]) -> npt.NDArray[Scalar]:
+    """A view of ``values`` that cannot be written through."""
+    view = values.view()
+    view.flags.writeable = False
+    return view
+
+
+def check_columns(columns: Mapping[str, npt.NDArray[np.generic]], rows: int) -> None:
+    """See that all columns have as many rows.
+
+    Raises:
+        ValueError: one has not.
+    """
+    if any(column.shape != (rows,) for column in columns.values()):
+        raise ValueError("columns of different lengths")
+
+
+def check_words(codes: Int32s, words: Sequence[str]) -> None:
+    """See that ``words`` are distinct and every code has one.
+
+    Raises:
+        ValueError: a word occurs twice, or a code has none.
+    """
+    if len(set(words)) != len(words):
+        raise ValueError("a key or node is named twice")
+    if codes.size and (int(codes.min()) < 0 or int(codes.max()) >= len(words)):
+        raise ValueError("a code has no key or node")
+
+
+def sorted_words(codes: Mapping[str, int]) -> tuple[list[str], Int32s]:
+    """The words in order, and for each old code its place in that order."""
+    words = sorted(codes)
+    places = np.empty(max(1, len(words)), dtype=np.int32)
+    for place, word in enumerate(words):
+        places[codes[word]] = place
+    return words, places
+
+
+def recode(codes: Int32s, words: Sequence[str], among: Sequence[str]) -> Int32s:
+    """``codes`` into ``words`` as codes into ``among``; -1 for a word that is not there."""
+    places = {word: place for place, word in enumerate(among)}
+    table = np.array([places.get(word, -1) for word in words] or [-1], dtype=np.int32)
+    return table[codes]
+
+
+def join(
+    tables: Sequence[tuple[Columns, Sequence[str], Sequence[str]]],
+) -> tuple[Columns, list[str], list[str]]:
+    """The columns of all ``tables`` (columns, keys, nodes) behind one another; words sorted.
+
+    There must be at least one table.
+    """
+    keys = sorted({key for _, keys, _ in tables for key in keys})
+    nodes = sorted({node for _, _, nodes in tables for node in nodes})
+    recoded = []
+    for columns, own_keys, own_nodes in tables:
+        part = dict(columns)
+        part["key"] = recode(np.asarray(part["key"], np.int32), own_keys, keys)
+        part["node"] = recode(np.asarray(part["node"], np.int32), own_nodes, nodes)
+        recoded.append(part)
+    joined = {name: np.concatenate([part[name] for part in recoded]) for name in recoded[0]}
+    return joined, keys, nodes
+
+
+def to_arrow(
+    columns: Mapping[str, npt.NDArray[np.generic]],
+    words: Mapping[str, Iterable[str]],
+    schema: pa.Schema,
+) -> pa.Table:
+    """The columns as a table of ``schema``; ``words`` has those of each word column."""
+    arrays: dict[str, object] = dict(columns)
+    for name, own in words.items():
+        arrays[name] = pa.DictionaryArray.from_arrays(arrays[name], pa.array(own, pa.string()))
+    return pa.Table.from_arrays(
+        [pa.array(arrays[field.name], type=field.type) for field in schema], schema=schema
+    )
+
+
+def check_schema(found: pa.Schema, expected: pa.Schema) -> None:
+    """See that ``found`` has all columns of ``expected``, whatever else it has.
+
+    Raises:
+        InputError: a column is missing or is of another type.
+    """
+    for field in expected:
+        places = found.get_all_field_indices(field.name)
+        if len(places) != 1:
+            raise InputError(f"column {field.name} occurs {len(places)} times, not once")
+        kind = found.field(places[0]).type
+        if kind != field.type:
+            raise InputError(f"column {field.name} is {kind}, not {field.type}")
+
+
+def from_arrow(
+    table: pa.Table, schema: pa.Schema
+) -> tuple[dict[str, npt.ArrayLike], dict[str, list[str]]]:
+    """The reverse of ``to_arrow``; the columns may be in chunks.
+
+    Raises:
+        InputError: a column is missing, is of another type or has empty places.
+    """
+    check_schema(table.schema, schema)
+    columns: dict[str, npt.ArrayLike] = {}
+    words: dict[str, list[str]] = {}
+    for field in schema:
+        column = table.column(field.name)
+        if column.null_count:
+            raise InputError(f"column {field.name} has {column.null_count} empty places")
+        if field.type == WORDS:
+            columns[field.name], words[field.name] = _codes(column)
+        else:
+            columns[field.name] = column.to_numpy()
+    return columns, words
+
+
+def write_table(table: pa.Table, path: Path) -> None:
+    """Write Parquet, atomically.
+
+    Raises:
+        TpcError: the file cannot be written; what stood there before is untouched.
+    """
+    sink = pa.BufferOutputStream()
+    pq.write_table(table, sink, compression="zstd")
+    write_atomic(path, sink.getvalue().to_pybytes())
+
+
+def read_table(path: Path, what: str) -> pa.Table:
+    """Read a Parquet file; ``what`` says in the message what it should be.
+
+    Raises:
+        InputError: the file cannot be read or is no Parquet.
+    """
+    try:
+        return pq.read_table(pa.BufferReader(path.read_bytes()))
+    except OSError as error:
+        raise InputError(f"cannot be read: {error.strerror or error}", path) from error
+    except (pa.ArrowException, ValueError) as error:
+        raise InputError(f"not a file of {what}: {error}", path) from error
+
+
+def _codes(column: pa.ChunkedArray) -> tuple[Int32s, list[str]]:
+    """Codes and words of a dictionary column, whatever dictionary each of its chunks has."""
+    if column.num_chunks == 0:
+        return np.empty(0, dtype=np.int32), []
+    whole = column.unify_dictionaries().combine_chunks()
+    if isinstance(whole, pa.ChunkedArray):
+        whole = pa.concat_arrays(whole.chunks)
+    words = whole.dictionary.to_pylist()
+    return whole.indices.to_numpy(zero_copy_only=False), words

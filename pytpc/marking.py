@@ -1,0 +1,227 @@
+"""A session in which an observer marks: keys and times in, marks and lines of text out.
+
+Nothing here touches a terminal, a clock, a file or a graph; those are in ``marking_terminal``,
+``marking_file`` and ``marking_graph``.
+"""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+from rich.cells import cell_len, set_cell_size
+
+from pytpc.marks import Mark, MarkType
+from pytpc.words import plain
+
+MEANINGS: dict[MarkType | None, str] = {
+    "I": "it did something it should not have",
+    "II": "it should be doing something",
+    None: "something is wrong",
+}
+_KEYS: dict[str, MarkType | None] = {"1": "I", "2": "II", "3": None}
+_LONGEST_NOTE = 500
+SPEEDS = (0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
+_STEPS_NS = {"left": -5, "right": 5, "down": -60, "up": 60, ",": -1, ".": 1}
+
+
+class Change(NamedTuple):
+    """What a key did to the marks: one was made (``before`` is None), taken back (``after`` is
+    None) or got a note."""
+
+    before: Mark | None
+    after: Mark | None
+
+    def apply(self, marks: Sequence[Mark]) -> tuple[Mark, ...]:
+        """``marks`` with the change; a note brings its mark with it where that is gone."""
+        result = list(marks)
+        if self.before in result:
+            place = len(result) - 1 - result[::-1].index(self.before)
+            del result[place]
+        if self.after is not None:
+            result.append(self.after)
+        return tuple(result)
+
+
+@dataclass(frozen=True, slots=True)
+class Session:
+    """One observer's marks, in the order in which they were made.
+
+    ``typing`` is the note that is being written, None where none is. ``said`` is what is to be told
+    the observer, empty where nothing.
+    """
+
+    observer: str
+    marks: tuple[Mark, ...] = ()
+    typing: str | None = None
+    said: str = ""
+    ended: bool = False
+
+
+def press(session: Session, key: str, now_ns: int | None) -> tuple[Session, Change | None]:
+    """What a key does.
+
+    Args:
+        session: what was before.
+        key: a character, or ``enter``, ``backspace``, ``escape``, ``left``, ``right``, ``up``,
+            ``down``, ``end`` (Ctrl-C, Ctrl-D).
+        now_ns: the time to mark; None where it is not known.
+
+    Returns:
+        What is after, and what happened to the marks.
+    """
+    if key == "end" or (key == "q" and session.typing is None):
+        return replace(session, typing=None, ended=True), None
+    if session.typing is not None:
+        return _type(session, session.typing, key)
+    if key in _KEYS:
+        return _mark(session, _KEYS[key], now_ns)
+    if key not in {"n", "u"}:
+        return session, None
+    return _look_back(session, key)
+
+
+def _look_back(session: Session, key: str) -> tuple[Session, Change | None]:
+    """Keys about the last mark: a note to it, or take it back."""
+    if not session.marks:
+        return replace(session, said="no mark yet"), None
+    last = session.marks[-1]
+    if key == "n":
+        return replace(session, typing=last.note, said=""), None
+    said = f"taken back: {_named(last)}"
+    return replace(session, marks=session.marks[:-1], said=said), Change(last, None)
+
+
+def _mark(
+    session: Session, kind: MarkType | None, now_ns: int | None
+) -> tuple[Session, Change | None]:
+    if now_ns is None:
+        return replace(session, said="not marked: the graph has no time yet (no /clock)"), None
+    # While a clock stands still two marks would have one time, and what is taken back or noted is
+    # told by its time.
+    while any(mark.time_ns == now_ns for mark in session.marks):
+        now_ns += 1
+    mark = Mark(now_ns, kind, session.observer)
+    said = f"marked: {_named(mark)}"
+    return replace(session, marks=(*session.marks, mark), said=said), Change(None, mark)
+
+
+def _type(session: Session, text: str, key: str) -> tuple[Session, Change | None]:
+    if key == "enter":
+        last = session.marks[-1]
+        noted = replace(last, note=text.strip())
+        after = replace(session, marks=(*session.marks[:-1], noted), typing=None, said="noted")
+        return after, Change(last, noted)
+    if key == "escape":
+        return replace(session, typing=None, said=""), None
+    if key == "backspace":
+        return replace(session, typing=text[:-1]), None
+    if len(key) == 1 and key.isprintable() and len(text) < _LONGEST_NOTE:
+        return replace(session, typing=text + key), None
+    return session, None
+
+
+def _named(mark: Mark) -> str:
+    return f"type {mark.type}" if mark.type else "wrong"
+
+
+@dataclass(frozen=True, slots=True)
+class Player:
+    """A clock that goes through what was recorded; times in nanoseconds.
+
+    It stood at ``at_ns`` when the machine's steady clock was at ``since_ns``.
+    """
+
+    start_ns: int
+    end_ns: int
+    at_ns: int
+    since_ns: int
+    speed: float = 1.0
+    playing: bool = False
+
+    @classmethod
+    def of(cls, start_ns: int, end_ns: int) -> Player:
+        """A clock that stands at the beginning."""
+        return cls(start_ns, max(start_ns, end_ns), start_ns, 0)
+
+    def time_ns(self, steady_ns: int) -> int:
+        """Where it is; it stops at the end."""
+        run = int((steady_ns - self.since_ns) * self.speed) if self.playing else 0
+        return min(self.end_ns, self.at_ns + max(0, run))
+
+    def press(self, key: str, steady_ns: int) -> Player | None:
+        """The clock after a key, None where the key is not for it."""
+        at_ns = self.time_ns(steady_ns)
+        here = replace(self, at_ns=at_ns, since_ns=steady_ns)
+        if key == " ":
+            return replace(here, playing=not self.playing)
+        if key in _STEPS_NS:
+            wanted = at_ns + _STEPS_NS[key] * 10**9
+            return replace(here, at_ns=min(self.end_ns, max(self.start_ns, wanted)))
+        if key in {"+", "=", "-"}:
+            place = SPEEDS.index(self.speed) + (-1 if key == "-" else 1)
+            return replace(here, speed=SPEEDS[min(len(SPEEDS) - 1, max(0, place))])
+        return None
+
+
+_NO_BREAK = "\N{NO-BREAK SPACE}"
+_OTHER_KEYS = ("n note", "u undo", "q quit")
+PLAYER_HELP = ("space go or stop", "arrows 5 s, 60 s", ", . 1 s", "+ - speed")
+
+
+class View(NamedTuple):
+    """What is shown beside the session: ``title`` and ``status`` lines, the time at which the
+    mission began, the time now (None where unknown), further keys."""
+
+    title: str
+    status: tuple[str, ...]
+    start_ns: int
+    now_ns: int | None
+    help: tuple[str, ...] = ()
+
+
+def screen(session: Session, view: View, width: int, height: int) -> list[str]:
+    """The lines to show, none wider than ``width``, at most ``height``: the newest marks last."""
+    keys = [f"{key} {MEANINGS[kind]}" for key, kind in _KEYS.items()]
+    more = "  ".join(key.replace(" ", _NO_BREAK) for key in (*_OTHER_KEYS, *view.help))
+    above = [view.title, *view.status, *keys, more]
+    lines = [part for line in above for part in _folded(line, width)]
+    foot = [session.said]
+    if session.typing is not None:
+        foot = [f"note: {session.typing}_"]
+    foot = [part for line in foot for part in _folded(line, width)]
+    room = max(1, height - len(lines) - len(foot) - 1)
+    shown = session.marks[-room:]
+    of_all = f"{len(session.marks)} marks" if len(session.marks) != 1 else "1 mark"
+    lines.append(of_all + (":" if shown else ""))
+    lines += [_cut(_line(mark, view), width) for mark in shown]
+    return (lines + foot)[:height]
+
+
+def clock_text(time_ns: int) -> str:
+    """``M:SS.T`` or ``H:MM:SS.T``, the tenths cut off."""
+    sign = "-" if time_ns < 0 else ""
+    tenths = abs(time_ns) // 10**8
+    minutes, tenths = divmod(tenths, 600)
+    hours, minutes = divmod(minutes, 60)
+    text = f"{minutes:02d}:" if hours else f"{minutes}:"
+    return f"{sign}{f'{hours}:' if hours else ''}{text}{tenths // 10:02d}.{tenths % 10}"
+
+
+def _line(mark: Mark, view: View) -> str:
+    kind = mark.type or "-"
+    return f"{clock_text(mark.time_ns - view.start_ns):>9}  {kind:2}  {mark.note}".rstrip()
+
+
+def _folded(line: str, width: int) -> list[str]:
+    """The line in pieces that fit, what belongs together if possible in one piece."""
+    parts = textwrap.wrap(line, max(1, width), subsequent_indent="  " if width > 10 else "")
+    return [_cut(part.replace(_NO_BREAK, " "), width) for part in parts or [""]]
+
+
+def _cut(line: str, width: int) -> str:
+    """``width`` columns of it; some characters take two."""
+    line = plain(line)
+    return line if cell_len(line) <= width else set_cell_size(line, max(0, width - 1)) + "~"

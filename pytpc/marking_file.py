@@ -1,0 +1,78 @@
+"""The CSV file of a marking session: each change is in it, on the disk, before the next key."""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+from pytpc.errors import TpcError
+from pytpc.marking import Change
+from pytpc.marks import Mark, read_marks, write_marks
+
+
+class MarksFile:
+    """A file that several observers may write at once: each applies only its own changes.
+
+    What cannot be written (a full disk) is kept, and tried again with the next change and at the
+    end.
+    """
+
+    def __init__(self, path: Path) -> None:
+        """Read what is there already.
+
+        Raises:
+            InputError: it is no file of marks, and is not going to be overwritten.
+            TpcError: its folder cannot be made.
+        """
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise TpcError(f"cannot be made: {error.strerror}", path.parent) from error
+        self.path = path
+        self.pending: list[Change] = []
+        self.fault: str | None = None
+        self.before: tuple[Mark, ...] = read_marks(path) if path.exists() else ()
+
+    def take(self, change: Change) -> None:
+        """A change that is to be written by the next ``flush``."""
+        self.pending.append(change)
+
+    def flush(self) -> str:
+        """Write what is not written yet; what is wrong in one line, empty where nothing is.
+
+        ``fault`` is what was wrong last.
+        """
+        if not self.pending:
+            return ""
+        try:
+            with _locked(self.path.parent):
+                marks = read_marks(self.path) if self.path.exists() else ()
+                for change in self.pending:
+                    marks = change.apply(marks)
+                write_marks(marks, self.path)
+        except BlockingIOError:
+            self.fault = f"not saved yet: another observer is writing {self.path.name}"
+        except (OSError, TpcError) as error:
+            self.fault = f"NOT SAVED: {error}"
+        else:
+            self.pending.clear()
+            return ""
+        return self.fault
+
+
+@contextlib.contextmanager
+def _locked(folder: Path) -> Iterator[None]:
+    """Nobody else who asks for this has the folder.
+
+    Raises:
+        OSError: somebody has, or there is no such folder.
+    """
+    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        yield
+    finally:
+        os.close(descriptor)

@@ -1,0 +1,232 @@
+"""A publisher of ROS 1 topics that needs no ROS: master and slave API, and TCPROS.
+
+An observer's laptop need not have ROS. Unlike rospy's publisher it registers again at a master
+that was restarted, and it says how many listen.
+
+The protocols: http://wiki.ros.org/ROS/Master_API, http://wiki.ros.org/ROS/TCPROS.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import select
+import socket
+import struct
+import threading
+import xmlrpc.client
+from collections.abc import Mapping
+from dataclasses import dataclass
+from http.client import HTTPException
+from urllib.parse import urlsplit
+from xmlrpc.server import SimpleXMLRPCServer
+
+from pytpc.errors import RunError
+from pytpc.tcpros import Handler, call, decode_header, encode_header, receive
+
+_LENGTH = struct.Struct("<I")
+_LARGEST_HEADER = 1 << 20
+_PATIENCE_S = 2.0
+
+
+@dataclass(frozen=True, slots=True)
+class MessageType:
+    """What a subscriber wants to know of a topic's messages."""
+
+    name: str
+    md5sum: str
+    definition: str
+
+
+TIME = MessageType("std_msgs/Time", "cd7166c74c552c311fbcc2fe5a7bc289", "time data\n")
+STRING = MessageType("std_msgs/String", "992ce8a1687cec8c8bd883ec73ca41d1", "string data\n")
+
+
+def encode_time(time_ns: int) -> bytes:
+    """A std_msgs/Time; times that it cannot hold are its nearest."""
+    seconds, nanoseconds = divmod(max(0, time_ns), 10**9)
+    return struct.pack("<II", min(seconds, 2**32 - 1), nanoseconds)
+
+
+def encode_string(text: str) -> bytes:
+    """A std_msgs/String."""
+    data = text.encode("utf-8", "backslashreplace")
+    return _LENGTH.pack(len(data)) + data
+
+
+def own_address(master: str) -> str:
+    """The address at which the graph of ``master`` reaches this machine, as ROS chooses it:
+    ``ROS_HOSTNAME``, ``ROS_IP``, else the one from which the master is reached."""
+    chosen = os.environ.get("ROS_HOSTNAME") or os.environ.get("ROS_IP")
+    if chosen:
+        return chosen
+    parts = urlsplit(master)
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            probe.connect((parts.hostname or "127.0.0.1", parts.port or 11311))
+            address: str = probe.getsockname()[0]
+        except OSError:
+            return "127.0.0.1"
+        return address
+
+
+class RawPublisher:
+    """Publishes messages that are bytes already. Registers only when told to (``register``).
+
+    Args:
+        master: URI of the ROS master.
+        name: of the node that this is.
+        topics: with the type of their messages.
+    """
+
+    def __init__(self, master: str, name: str, topics: Mapping[str, MessageType]) -> None:
+        """See the class; on return subscribers are served, though none knows of it yet."""
+        self._master = master
+        self._name = name
+        self._topics = dict(topics)
+        self._lock = threading.Lock()
+        self._links: dict[str, list[tuple[str, socket.socket]]] = {topic: [] for topic in topics}
+        self._host = own_address(master)
+        self._listener = socket.create_server(("", 0))
+        self._server = SimpleXMLRPCServer(("", 0), Handler, logRequests=False, allow_none=True)
+        self._server.register_instance(self)
+        self._uri = f"http://{self._host}:{self._server.server_address[1]}/"
+        for work in (self._accept, self._serve):
+            threading.Thread(target=work, daemon=True).start()
+
+    def register(self) -> None:
+        """Tell the master of all topics; it does no harm to tell it again.
+
+        Raises:
+            RunError: the master does not answer or refuses.
+        """
+        for topic, kind in self._topics.items():
+            self.call_master("registerPublisher", topic, kind.name, self._uri)
+
+    def is_registered(self) -> bool:
+        """Whether the master still knows this node.
+
+        Raises:
+            RunError: the master does not answer.
+        """
+        try:
+            return call(self._master, "lookupNode", self._name, self._name) == self._uri
+        except xmlrpc.client.Fault:
+            return False
+        except (OSError, HTTPException, xmlrpc.client.Error) as error:
+            raise RunError(f"the ROS master at {self._master}: {error}") from error
+
+    def call_master(self, method: str, *arguments: object) -> object:
+        """Call a method of the master API.
+
+        Raises:
+            RunError: the master does not answer or refuses.
+        """
+        try:
+            return call(self._master, method, self._name, *arguments)
+        except (OSError, HTTPException, xmlrpc.client.Error) as error:
+            raise RunError(f"the ROS master at {self._master}: {method}: {error}") from error
+
+    def publish(self, topic: str, message: bytes) -> int:
+        """Send to all who listen now; their number. One who does not take it is left out."""
+        sent = 0
+        data = _LENGTH.pack(len(message)) + message
+        with self._lock:
+            for link in list(self._links[topic]):
+                try:
+                    link[1].sendall(data)
+                    sent += 1
+                except OSError:
+                    self._drop(topic, link)
+        return sent
+
+    def listeners(self) -> set[str]:
+        """The names of the nodes that listen to any topic."""
+        with self._lock:
+            for topic, links in self._links.items():
+                for link in list(links):
+                    if _is_closed(link[1]):
+                        self._drop(topic, link)
+            return {node for links in self._links.values() for node, _ in links}
+
+    def close(self) -> None:
+        """Leave the graph. A master that is gone already is no error."""
+        for topic in self._topics:
+            try:
+                self.call_master("unregisterPublisher", topic, self._uri)
+            except RunError:
+                break
+        self._server.shutdown()
+        self._server.server_close()
+        self._listener.close()
+        with self._lock:
+            for topic, links in self._links.items():
+                for link in list(links):
+                    self._drop(topic, link)
+
+    def _dispatch(self, method: str, arguments: tuple[object, ...]) -> list[object]:
+        """The slave API, as far as one that only publishes is asked."""
+        if method == "requestTopic" and len(arguments) == 3:
+            if arguments[1] not in self._topics:
+                return [0, f"{arguments[1]} is not published here", 0]
+            return [1, "", ["TCPROS", self._host, self._listener.getsockname()[1]]]
+        answers: dict[str, object] = {
+            "getPid": os.getpid(),
+            "getPublications": [[topic, kind.name] for topic, kind in self._topics.items()],
+            "getBusStats": [],
+            "getBusInfo": [],
+            "getSubscriptions": [],
+            "paramUpdate": 0,
+            "publisherUpdate": 0,
+        }
+        if method not in answers:
+            return [0, f"{method} is not for this node", 0]
+        return [1, "", answers[method]]
+
+    def _serve(self) -> None:
+        self._server.serve_forever(0.05)
+
+    def _accept(self) -> None:
+        while True:
+            try:
+                connection, _ = self._listener.accept()
+            except OSError:
+                return  # closed
+            threading.Thread(target=self._welcome, args=(connection,), daemon=True).start()
+
+    def _welcome(self, connection: socket.socket) -> None:
+        """Shake hands with a subscriber; whoever is none is sent away."""
+        try:
+            connection.settimeout(_PATIENCE_S)
+            connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+            (length,) = _LENGTH.unpack(receive(connection, _LENGTH.size))
+            if length > _LARGEST_HEADER:
+                raise ValueError(f"a header of {length:,} bytes")
+            fields = decode_header(receive(connection, length))
+            topic = fields.get("topic", "")
+            kind = self._topics.get(topic)
+            if kind is None or fields.get("md5sum") not in ("*", kind.md5sum):
+                connection.sendall(encode_header({"error": f"{topic} is not of that type here"}))
+                raise ValueError("not a subscriber")
+            answer = {"callerid": self._name, "topic": topic, "type": kind.name}
+            answer |= {"md5sum": kind.md5sum, "message_definition": kind.definition}
+            connection.sendall(encode_header(answer | {"latching": "0"}))
+        except (OSError, ValueError):
+            connection.close()
+            return
+        with self._lock:
+            self._links[topic].append((fields.get("callerid", ""), connection))
+
+    def _drop(self, topic: str, link: tuple[str, socket.socket]) -> None:
+        self._links[topic].remove(link)
+        with contextlib.suppress(OSError):
+            link[1].close()
+
+
+def _is_closed(connection: socket.socket) -> bool:
+    """Whether the other side has left; a subscriber sends nothing after its header."""
+    try:
+        ready, _, _ = select.select([connection], [], [], 0)
+        return bool(ready) and not connection.recv(1, socket.MSG_PEEK)
+    except OSError:
+        return True

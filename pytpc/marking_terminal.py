@@ -1,0 +1,204 @@
+"""A marking session in a terminal: keys in, a few lines out, whatever the terminal can do."""
+
+from __future__ import annotations
+
+import select
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from typing import Protocol
+
+from prompt_toolkit.input import Input, create_input
+from prompt_toolkit.key_binding import KeyPress
+from prompt_toolkit.keys import Keys
+from rich.console import Console
+from rich.live import Live
+from rich.text import Text
+
+from pytpc.errors import RunError
+from pytpc.marking import PLAYER_HELP, Change, Player, Session, View, clock_text, press, screen
+from pytpc.marking_file import MarksFile
+from pytpc.signals import signals_end
+
+_TURN_S = 0.2
+_ESCAPE_S = 0.05
+_DUMB_WIDTH, _DUMB_HEIGHT = 200, 40
+_NAMES = {
+    Keys.Enter: "enter",
+    Keys.ControlJ: "enter",
+    Keys.Backspace: "backspace",
+    Keys.Delete: "backspace",
+    Keys.Escape: "escape",
+    Keys.Left: "left",
+    Keys.Right: "right",
+    Keys.Up: "up",
+    Keys.Down: "down",
+    Keys.ControlC: "end",
+    Keys.ControlD: "end",
+}
+"""What ``marking.press`` calls a key; all others are characters or nothing."""
+
+
+class Mission(Protocol):
+    """What is marked: a graph, or a clock that goes through a recording."""
+
+    def now_ns(self) -> int | None:
+        """The time that a mark would have now."""
+
+    def press(self, key: str) -> bool:
+        """Take a key, if it is for the mission."""
+
+    def view(self) -> View:
+        """What is to be shown of it."""
+
+    def send(self, change: Change) -> None:
+        """Something happened to the marks."""
+
+    def tick(self) -> None:
+        """Called several times a second."""
+
+    def close(self) -> None:
+        """The session has ended."""
+
+
+class RecordedMission:
+    """A recording, gone through by a ``Player``."""
+
+    def __init__(self, title: str, start_ns: int, end_ns: int) -> None:
+        """The clock stands at the beginning."""
+        self._title = title
+        self._player = Player.of(start_ns, end_ns)
+
+    def now_ns(self) -> int | None:
+        """Where the clock is."""
+        return self._player.time_ns(time.monotonic_ns())
+
+    def press(self, key: str) -> bool:
+        """Go, stop, seek, change the speed."""
+        after = self._player.press(key, time.monotonic_ns())
+        if after is None:
+            return False
+        self._player = after
+        return True
+
+    def view(self) -> View:
+        """Where the clock is, and of how much."""
+        player = self._player
+        at = clock_text((self.now_ns() or 0) - player.start_ns)
+        whole = clock_text(player.end_ns - player.start_ns)
+        state = "going" if player.playing else "stopped"
+        status = f"{at} of {whole}, {state}, speed {player.speed:g}"
+        return View(self._title, (status,), player.start_ns, self.now_ns(), PLAYER_HELP)
+
+    def send(self, change: Change) -> None:
+        """Nobody else is to know."""
+
+    def tick(self) -> None:
+        """The clock goes by itself."""
+
+    def close(self) -> None:
+        """There is nothing to end."""
+
+
+def run(session: Session, mission: Mission, file: MarksFile) -> Session:
+    """Mark until the observer ends it, or a signal does; the marks are in the file then.
+
+    Raises:
+        RunError: standard input is no terminal.
+        SystemExit: SIGTERM or SIGHUP.
+    """
+    if not sys.stdin.isatty():
+        raise RunError("the keys are read from a terminal, and standard input is none")
+    console = Console()
+    try:
+        with signals_end(), _keys() as read, _shown(console) as show:
+            while not session.ended:
+                show(session, mission.view())
+                for key in read():
+                    if session.typing is None and mission.press(key):
+                        continue
+                    session, change = press(session, key, mission.now_ns())
+                    if change is not None:
+                        file.take(change)
+                        mission.send(change)
+                        session = _saved(session, file)
+                mission.tick()
+                session = _saved(session, file)
+    finally:
+        wrong = file.flush()
+        mission.close()
+        if wrong:
+            raise RunError(wrong)
+    return session
+
+
+def _saved(session: Session, file: MarksFile) -> Session:
+    """The session that says whether all is in the file."""
+    wrong = file.flush()
+    if wrong:
+        return replace(session, said=wrong)
+    return replace(session, said="saved now") if session.said == file.fault else session
+
+
+@contextmanager
+def _keys() -> Iterator[Callable[[], list[str]]]:
+    """A function that waits a little for keys."""
+    source: Input = create_input()
+    with source.raw_mode():
+
+        def read() -> list[str]:
+            if not _is_ready(source, _TURN_S):
+                return []
+            pressed = source.read_keys()
+            # A lone Escape may be the beginning of an arrow; and a terminal that is gone is always
+            # ready to be read, until the signal comes.
+            if not pressed:
+                time.sleep(_ESCAPE_S)
+                pressed = source.read_keys() if _is_ready(source) else source.flush_keys()
+            found = [key for one in pressed for key in _named(one)]
+            return [*found, "end"] if source.closed else found
+
+        yield read
+    source.close()
+
+
+def _is_ready(source: Input, patience_s: float = 0.0) -> bool:
+    return bool(select.select([source.fileno()], [], [], patience_s)[0])
+
+
+def _named(pressed: KeyPress) -> list[str]:
+    if pressed.key == Keys.BracketedPaste:
+        return list(pressed.data)
+    if not isinstance(pressed.key, Keys):
+        return [pressed.key]
+    return [_NAMES[pressed.key]] if pressed.key in _NAMES else []
+
+
+@contextmanager
+def _shown(console: Console) -> Iterator[Callable[[Session, View], None]]:
+    """A function that shows the session: in place, or where that is not possible, line by line
+    what is new."""
+    if console.is_terminal and not console.is_dumb_terminal:
+        with Live(console=console, auto_refresh=False, transient=True) as live:
+
+            def draw(session: Session, view: View) -> None:
+                lines = screen(session, view, console.width, console.height)
+                text = Text("\n".join(lines), no_wrap=True, overflow="crop")
+                live.update(text, refresh=True)
+
+            yield draw
+        return
+    told: tuple[int, str] | None = None
+
+    def tell(session: Session, view: View) -> None:
+        nonlocal told
+        said = session.said if session.typing is None else "note (Enter ends it):"
+        if told is None:
+            print("\n".join(screen(session, view, _DUMB_WIDTH, _DUMB_HEIGHT)), flush=True)
+        elif said and told != (len(session.marks), said):
+            print(said, flush=True)
+        told = len(session.marks), said
+
+    yield tell

@@ -1,0 +1,149 @@
+"""A marking session by itself: keys and times in, marks and lines out."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from mission_samples import ns
+from rich.cells import cell_len
+
+from pytpc.marking import Change, Player, Session, View, clock_text, press, screen
+from pytpc.marks import Mark
+
+
+def pressed(keys: list[tuple[str, float | None]]) -> tuple[Session, list[Change]]:
+    """A session of ``ana`` after ``keys``, each at its second, and what it changed."""
+    session, changes = Session("ana"), []
+    for key, seconds in keys:
+        session, change = press(session, key, None if seconds is None else ns(seconds))
+        changes += [] if change is None else [change]
+    return session, changes
+
+
+def at(seconds: float, kind, note: str = "") -> Mark:
+    return Mark(ns(seconds), kind, "ana", note)
+
+
+def test_one_key_each():
+    session, changes = pressed([("1", 1), ("2", 2), ("3", 3)])
+    assert session.marks == (at(1, "I"), at(2, "II"), at(3, None))
+    assert changes == [Change(None, mark) for mark in session.marks]
+    assert (session.said, session.ended) == ("marked: wrong", False)
+
+
+def test_undo_takes_back_the_last_one_made():
+    session, changes = pressed([("1", 5), ("2", 3), ("u", 9), ("u", 9), ("u", 9)])
+    assert session.marks == ()
+    assert changes[2:] == [Change(at(3, "II"), None), Change(at(5, "I"), None)]
+    assert session.said == "no mark yet"
+
+
+# While a note is written the keys of marks are text: "1q" here.
+def test_a_note_goes_to_the_last_mark():
+    keys = ["1", "n", "1", "q", "ä", "left", "x", "backspace", " ", "enter", "n", "z", "escape"]
+    session, changes = pressed([(key, 1) for key in keys])
+    assert session.marks == (at(1, "I", "1qä"),)
+    assert changes == [Change(None, at(1, "I")), Change(at(1, "I"), at(1, "I", "1qä"))]
+    assert session.typing is None
+
+
+def test_the_end_is_q_or_control_c_and_within_a_note_control_c():
+    assert pressed([("q", 1)])[0].ended
+    session, _ = pressed([("1", 1), ("n", 1), ("q", 1)])
+    assert (session.ended, session.typing) == (False, "q")
+    assert press(session, "end", 0)[0].ended
+
+
+def test_without_a_time_there_is_no_mark():
+    session, changes = pressed([("1", None)])
+    assert (session.marks, changes) == ((), [])
+    assert "no /clock" in session.said
+
+
+def test_marks_of_one_time_are_told_apart():
+    session, _ = pressed([("1", 1), ("1", 1), ("2", 1)])
+    assert [mark.time_ns - ns(1) for mark in session.marks] == [0, 1, 2]
+
+
+def test_other_keys_do_nothing():
+    session, changes = pressed([(key, 1) for key in ("x", "left", "enter", "escape", "é")])
+    assert (session, changes) == (Session("ana"), [])
+
+
+@given(st.lists(st.sampled_from(["1", "2", "3", "n", "u", "enter", "escape", "a", "backspace"])))
+def test_the_changes_make_the_marks(keys: list[str]):
+    session, changes = pressed([(key, 1) for key in keys])
+    marks: tuple[Mark, ...] = ()
+    for change in changes:
+        marks = change.apply(marks)
+    assert sorted(marks, key=Mark.order) == sorted(session.marks, key=Mark.order)
+
+
+# From 100 to 160 s. At steady 10 s it begins to go, at 12 s it is at 102 s; twice as fast for 3 s
+# makes 108 s; 5 s back is 103 s; it stands, and an hour later it still does.
+def test_the_player_by_hand():
+    player = Player.of(ns(100), ns(160))
+    assert player.time_ns(ns(7)) == ns(100)
+    for seconds, key in [(10, " "), (12, "+"), (15, "left"), (15, " ")]:
+        player = player.press(key, ns(seconds))
+        assert player is not None
+    assert player.time_ns(ns(3600)) == ns(103)
+    assert player.press("1", 0) is None
+
+
+def test_the_player_stays_within_the_recording():
+    player = Player.of(ns(100), ns(160))
+    assert player.press("left", 0).time_ns(0) == ns(100)
+    assert player.press("up", 0).time_ns(0) == ns(160)
+    assert player.press(" ", 0).time_ns(ns(1000)) == ns(160)
+    for _ in range(9):
+        player = player.press("-", 0)
+    assert player.speed == 0.125
+    for _ in range(20):
+        player = player.press("=", 0)
+    assert player.speed == 16
+
+
+@pytest.mark.parametrize(
+    ("seconds", "text"),
+    [(0, "0:00.0"), (59.99, "0:59.9"), (60, "1:00.0"), (3725.5, "1:02:05.5"), (-1.5, "-0:01.5")],
+)
+def test_clock_text(seconds: float, text: str):
+    assert clock_text(ns(seconds)) == text
+
+
+VIEW = View("mission.bag", ("0:01.0 of 1:00.0",), ns(100), ns(101), ("space go or stop",))
+
+
+def test_the_screen():
+    session = Session("ana", (at(101, "I"), at(103.25, None, "it \x1b[31mturned")), said="noted")
+    assert screen(session, VIEW, 80, 24) == [
+        "mission.bag",
+        "0:01.0 of 1:00.0",
+        "1 it did something it should not have",
+        "2 it should be doing something",
+        "3 something is wrong",
+        "n note  u undo  q quit  space go or stop",
+        "2 marks:",
+        "   0:01.0  I",
+        "   0:03.2  -   it \N{REPLACEMENT CHARACTER}[31mturned",
+        "noted",
+    ]
+
+
+# 24 lines hold 16 marks besides the other eight.
+def test_the_newest_marks_are_shown():
+    session = Session("ana", tuple(at(100 + n, "I") for n in range(30)))
+    lines = screen(session, VIEW, 80, 24)
+    assert len(lines) == 24
+    assert lines[7:-1] == [f"   0:{n:02d}.0  I" for n in range(14, 30)]
+
+
+@given(st.integers(1, 60), st.integers(1, 30), st.text(max_size=40), st.booleans())
+def test_the_screen_fits(width: int, height: int, text: str, typing: bool):
+    session = Session("ana", (at(101, "II", text),), typing=text if typing else None, said=text)
+    lines = screen(session, VIEW._replace(title=text), width, height)
+    assert len(lines) <= height
+    assert all(character.isprintable() for line in lines for character in line)
+    assert all(cell_len(line) <= width for line in lines)

@@ -1,0 +1,149 @@
+"""Marks on topics and in CSV."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from mission_samples import ns
+
+from pytpc.errors import InputError
+from pytpc.marks import (
+    MARK_TYPES,
+    Mark,
+    MarkMessages,
+    marks_text,
+    note_text,
+    parse_note,
+    read_marks,
+    topic_for,
+    topic_of_marks,
+    write_marks,
+)
+
+MARKS = st.builds(
+    Mark,
+    st.integers(0, 2**63 - 1),
+    st.sampled_from([*MARK_TYPES, None]),
+    st.sampled_from(["", "marks0", "lab/ben"]),
+    st.text(st.characters(exclude_categories=["Cs", "Cc"])),
+)
+
+
+@pytest.mark.parametrize(
+    ("topic", "mark"),
+    [
+        ("/mark_wrong", (None, "")),
+        ("/lab/ben/mark_wrong", (None, "lab/ben")),
+        ("/mark_action", ("I", "")),
+        ("/marks0/mark_no_action", ("II", "marks0")),
+        ("/mark_undo", None),
+        ("/mark_note", None),
+    ],
+)
+def test_topics(topic: str, mark: tuple[str | None, str] | None):
+    assert topic_of_marks(topic) == mark
+    if mark is not None:
+        assert topic_for(Mark(1, *mark)) == topic
+
+
+# ana marks at 1, 2 and 3 s and takes back that of 2 s; ben's of the same time stays. The messages
+# of different topics come in any order.
+def test_what_was_taken_back_is_no_mark():
+    found = MarkMessages()
+    found.add_time("/ana/mark_undo", ns(2))
+    found.add_text("/ana/mark_note", "3.000000000,too fast, again")
+    for topic, seconds in [
+        ("/ana/mark_action", 3),
+        ("/ana/mark_action", 1),
+        ("/ana/mark_wrong", 2),
+        ("/ben/mark_no_action", 2),
+    ]:
+        found.add_time(topic, ns(seconds))
+    assert found.marks() == (
+        Mark(ns(1), "I", "ana"),
+        Mark(ns(2), "II", "ben"),
+        Mark(ns(3), "I", "ana", "too fast, again"),
+    )
+
+
+def test_only_as_many_as_were_taken_back():
+    found = MarkMessages()
+    for _ in range(2):
+        found.add_time("/mark_action", ns(1))
+    found.add_time("/mark_undo", ns(1))
+    assert found.marks() == (Mark(ns(1), "I"),)
+
+
+def test_types_of_messages():
+    topics = ["/mark_action", "/a/mark_wrong", "/a/mark_undo", "/mark_note", "/mark", "/rosout"]
+    assert [MarkMessages.message_type(topic) for topic in topics] == [
+        *["std_msgs/Time"] * 3,
+        "std_msgs/String",
+        None,
+        None,
+    ]
+
+
+@pytest.mark.parametrize(
+    "text", ["", "1.5,x", "1,x", "1.000000000", "-1.000000000,x", "1.00000000x,"]
+)
+def test_no_note(text: str):
+    assert parse_note(text) is None
+    with pytest.raises(ValueError, match="no note"):
+        MarkMessages().add_text("/mark_note", text)
+
+
+@given(st.integers(0, 2**62), st.text())
+def test_notes_come_back(time_ns: int, note: str):
+    assert parse_note(note_text(time_ns, note)) == (time_ns, note)
+
+
+def test_the_file_by_hand():
+    marks = [Mark(ns(2), None, "ana", 'a "b", c'), Mark(ns(1), "II")]
+    assert marks_text(marks) == (
+        'time_ns,type,observer,note\n1000000000,II,,\n2000000000,,ana,"a ""b"", c"\n'
+    )
+
+
+@given(st.lists(MARKS, max_size=8))
+def test_files_come_back(tmp_path_factory: pytest.TempPathFactory, marks: list[Mark]):
+    path = tmp_path_factory.mktemp("marks") / "a.csv"
+    write_marks(marks, path)
+    assert read_marks(path) == tuple(sorted(marks, key=Mark.order))
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", ":1: the first line is not time_ns,type,observer,note"),
+        ("time,type\n", ":1: the first line is not"),
+        ("time_ns,type,observer,note\n1,I,,\nx,I,,\n", ":3: 'x' is no time in nanoseconds"),
+        ("time_ns,type,observer,note\n9223372036854775808,I,,\n", ":2: '92233720368547758"),
+        ("time_ns,type,observer,note\n1,III,,\n", ":2: 'III' is no type of mark"),
+        ("time_ns,type,observer,note\n1,I,,,more\n", ":2: 5 columns, not 4"),
+    ],
+)
+def test_no_file_of_marks(tmp_path: Path, text: str, message: str):
+    path = tmp_path / "a.csv"
+    path.write_text(text)
+    with pytest.raises(InputError) as caught:
+        read_marks(path)
+    assert str(caught.value).startswith(f"{path}{message}")
+
+
+def test_a_file_by_hand_may_leave_out_what_is_empty(tmp_path: Path):
+    path = tmp_path / "a.csv"
+    path.write_bytes("\ufefftime_ns,type,observer,note\r\n5,I\r\n\r\n3\r\n".encode())
+    assert read_marks(path) == (Mark(3, None), Mark(5, "I"))
+
+
+def test_a_file_that_is_not_text(tmp_path: Path):
+    path = tmp_path / "a.csv"
+    path.write_bytes(b"time_ns\xff")
+    with pytest.raises(InputError, match="byte 7 is not UTF-8"):
+        read_marks(path)
+    with pytest.raises(InputError, match="cannot be read"):
+        read_marks(tmp_path / "none.csv")
