@@ -121,14 +121,14 @@ def until(
             time.sleep(0.02)
         else:
             for _, data in subscriber.poll(0.05):
-                take(decode_string(data))
+                take(decode_string(data).decode())
 
 
 def read_on(subscriber: RawSubscriber, take, seconds: float = 0.3) -> None:
     end = time.monotonic() + seconds
     while time.monotonic() < end:
         for _, data in subscriber.poll(0.05):
-            take(decode_string(data))
+            take(decode_string(data).decode())
 
 
 def start(graph: RosGraph, nodes: Path, *options: str, **env: str) -> GraphProcess:
@@ -264,8 +264,8 @@ def rosout(graph: RosGraph, texts: list[str], process: GraphProcess, subscriber)
     def take_all() -> None:
         for _, data in subscriber.poll(0.05):
             log = decode_log(data)
-            if log.node == "/reporter" and log.msg.startswith("threshold_"):
-                texts.append(log.msg)
+            if log.node == b"/reporter" and log.msg.startswith(b"threshold_"):
+                texts.append(log.msg.decode())
 
     while not ended(process):
         take_all()
