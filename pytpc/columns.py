@@ -105,6 +105,21 @@ def to_arrow(
     )
 
 
+def check_schema(found: pa.Schema, expected: pa.Schema) -> None:
+    """See that ``found`` has all columns of ``expected``, whatever else it has.
+
+    Raises:
+        InputError: a column is missing or is of another type.
+    """
+    for field in expected:
+        places = found.get_all_field_indices(field.name)
+        if len(places) != 1:
+            raise InputError(f"column {field.name} occurs {len(places)} times, not once")
+        kind = found.field(places[0]).type
+        if kind != field.type:
+            raise InputError(f"column {field.name} is {kind}, not {field.type}")
+
+
 def from_arrow(
     table: pa.Table, schema: pa.Schema
 ) -> tuple[dict[str, npt.ArrayLike], dict[str, list[str]]]:
@@ -113,15 +128,11 @@ def from_arrow(
     Raises:
         InputError: a column is missing, is of another type or has empty places.
     """
+    check_schema(table.schema, schema)
     columns: dict[str, npt.ArrayLike] = {}
     words: dict[str, list[str]] = {}
     for field in schema:
-        found = table.schema.get_all_field_indices(field.name)
-        if len(found) != 1:
-            raise InputError(f"column {field.name} occurs {len(found)} times, not once")
-        column = table.column(found[0])
-        if column.type != field.type:
-            raise InputError(f"column {field.name} is {column.type}, not {field.type}")
+        column = table.column(field.name)
         if column.null_count:
             raise InputError(f"column {field.name} has {column.null_count} empty places")
         if field.type == WORDS:

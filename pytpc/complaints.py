@@ -31,11 +31,17 @@ def complaints(recording: Recording, static_info: StaticInfo | None = None) -> I
         )
     if recording.malformed:
         first = recording.malformed_first[0]
-        at = (first.time_ns - recording.start_ns) / 1e9
+        # Records of files say at which byte or line they stand.
+        at = f" at {(first.time_ns - recording.start_ns) / 1e9:.3f} s" if first.time_ns else ""
+        text = f": {first.text!r}" if first.text else ""
         yield (
-            f"{many(recording.malformed, 'broken report')} left out, the first on {first.topic} at"
-            f" {at:.3f} s: {first.what}: {first.text!r}"
+            f"{many(recording.malformed, 'broken report')} left out, the first on"
+            f" {first.topic}{at}: {first.what}{text}"
         )
+    if recording.dropped:
+        count = sum(dropped.count for dropped in recording.dropped)
+        reasons = ", ".join(sorted({dropped.why for dropped in recording.dropped}))
+        yield f"{many(count, 'report')} left out by the nodes themselves ({reasons})"
     for unit in static_info.failed if static_info is not None else ():
         yield f"{unit.package}/{unit.link_unit} was not analysed: {unit.failure}"
     yield from recording.notes

@@ -18,6 +18,7 @@ from pytpc import recorder
 from pytpc.atomic import write_atomic
 from pytpc.errors import RunError
 from pytpc.graph import GraphProcess, RosGraph
+from pytpc.marks import topic_of_marks
 from pytpc.paths import project_root
 
 BAG_FILE = "mission.bag"
@@ -47,8 +48,8 @@ class Progress:
 class MissionRun:
     """A mission that was recorded.
 
-    ``ended`` is ``done`` or ``timeout``. ``sim_s`` is how long it took on the graph's clock,
-    ``wall_s`` on the wall's. ``lost`` has for each node the messages on /rosout that
+    ``ended`` is ``done``, ``timeout`` or ``interrupted``. ``sim_s`` is how long it took on the
+    graph's clock, ``wall_s`` on the wall's. ``lost`` has for each node the messages on /rosout that
     did not reach the bag, ``missed_before`` those from before the recorder was connected to it.
     """
 
@@ -64,8 +65,13 @@ class MissionRun:
 
     @property
     def marks(self) -> int:
-        """Marks on the two topics without a namespace."""
-        return sum(self.messages.get(topic, 0) for topic in MARK_TOPICS)
+        """Marks of all observers."""
+        return marks_of(self.messages)
+
+
+def marks_of(messages: Mapping[str, int]) -> int:
+    """How many of the messages by topic are marks."""
+    return sum(count for topic, count in messages.items() if topic_of_marks(topic) is not None)
 
 
 def launch_command(launch: Path, args: Mapping[str, str]) -> list[str]:
@@ -127,7 +133,7 @@ def run_mission(
         if use_sim_time:
             watch.wait_for_clock()
         ended = watch.wait_for_end(timeout_s, settle_s if use_sim_time else 0.0)
-        _dump_params(graph, out_dir / PARAMS_FILE)
+        dump_params(graph.env, out_dir / PARAMS_FILE)
         graph.stop(started)
         graph.stop(recording)
     status = read_status(_status_file(out_dir))
@@ -149,15 +155,15 @@ def run_mission(
     return run
 
 
-def save_run(run: MissionRun, launch: Path, args: Mapping[str, str], path: Path) -> None:
-    """Write run.json: the fields of ``run``, the launch file and its arguments.
+def save_run(run: MissionRun, launch: Path | None, args: Mapping[str, str], path: Path) -> None:
+    """Write run.json: the fields of ``run``, the launch file, if any, and its arguments.
 
     Raises:
         TpcError: the file cannot be written.
     """
     document = {
         "schema": 1,
-        "launch": str(launch.absolute()),
+        "launch": None if launch is None else str(launch.absolute()),
         "args": dict(sorted(args.items())),
         **asdict(run),
         "bag": run.bag.name,
@@ -224,7 +230,7 @@ class _Watch:
         self._graph.check()
         status = read_status(self._status_path) or recorder.Status()
         if self._on_progress is not None:
-            marks = sum(status.messages.get(topic, 0) for topic in MARK_TOPICS)
+            marks = marks_of(status.messages)
             wall_s = time.monotonic() - self._began
             sim_s = (status.now_ns - status.began_ns) / 1e9
             self._on_progress(Progress(sim_s, wall_s, status.reports, marks))
@@ -252,12 +258,17 @@ class _Watch:
         return "done"
 
 
-def _dump_params(graph: RosGraph, path: Path) -> None:
+def dump_params(env: Mapping[str, str], path: Path) -> None:
+    """Write what stands on the parameter server.
+
+    Raises:
+        RunError: rosparam is not there, or fails.
+    """
     beside = path.absolute().with_name(f".{path.name}.new")
     try:
         subprocess.run(
             ["rosparam", "dump", str(beside)],
-            env=graph.env,
+            env=dict(env),
             check=True,
             capture_output=True,
             timeout=_DUMP_PATIENCE_S,

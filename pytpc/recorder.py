@@ -25,6 +25,8 @@ from rosbags.interfaces import Connection
 from rosbags.rosbag1 import Writer
 
 from pytpc.errors import RunError
+from pytpc.ingest.rosout_line import Batch, parse_batch
+from pytpc.marks import MarkMessages
 from pytpc.tcpros import RawSubscriber, Source
 
 REPORT = b"threshold_information:"
@@ -33,6 +35,8 @@ STATUS_PERIOD_S = 0.2
 DRAIN_S = 2.0
 _CLOCK = "/clock"
 _ROSOUT = "/rosout"
+_REPORTS = "/threshold_information"
+LOOK_PERIOD_S = 1.0
 _LOG_HEAD = struct.Struct("<IIII")
 _LENGTH = struct.Struct("<I")
 _TIME = struct.Struct("<II")
@@ -99,6 +103,39 @@ def _text(data: bytes, at: int) -> tuple[bytes, int]:
     return data[start : start + length], start + length
 
 
+class BatchCounter:
+    """The same for numbered messages on /threshold_information (docs/formats.md)."""
+
+    def __init__(self, counter: LossCounter) -> None:
+        """Losses are added to those of ``counter``."""
+        self._counter = counter
+        self._next: dict[tuple[str, int], int] = {}
+
+    def see(self, node: str, data: bytes) -> int:
+        """Take in one serialized std_msgs/String; return how many reports it has.
+
+        Raises:
+            ValueError: the bytes are shorter than such a message.
+        """
+        try:
+            text, _ = _text(data, 0)
+        except struct.error as error:
+            raise ValueError(f"no std_msgs/String: {error}") from error
+        if not text.startswith(b"#"):
+            return 1
+        batch = parse_batch(text.partition(b"\n")[0].decode("utf-8", "replace"))
+        if not isinstance(batch, Batch):
+            return 0
+        process = (node, batch.pid)
+        expected = self._next.get(process)
+        if expected is None and batch.seq:
+            self._counter.missed_before[node] += batch.seq
+        elif expected is not None and batch.seq > expected:
+            self._counter.lost[node] += batch.seq - expected
+        self._next[process] = max(expected or 0, batch.seq + batch.count)
+        return batch.count
+
+
 class BagFile:
     """A bag that gets its name only when it is complete."""
 
@@ -109,12 +146,12 @@ class BagFile:
         self._active.unlink(missing_ok=True)
         self._writer = Writer(self._active)
         self._writer.open()
-        self._connections: dict[tuple[str, str], Connection] = {}
+        self._connections: dict[tuple[str, str, str], Connection] = {}
         self.messages: Counter[str] = Counter()
 
     def write(self, source: Source, time_ns: int, data: bytes) -> None:
         """Add one message."""
-        key = (source.topic, source.md5sum)
+        key = (source.topic, source.md5sum, source.node)
         connection = self._connections.get(key)
         if connection is None:
             # rosbags names types in the way of ROS 2 and writes them in that of ROS 1.
@@ -124,6 +161,8 @@ class BagFile:
                 f"{package}/msg/{name}",
                 msgdef=source.definition,
                 md5sum=source.md5sum,
+                # On /threshold_information nothing else says whose reports these are.
+                callerid=source.node,
             )
             self._connections[key] = connection
         self._writer.write(connection, time_ns, data)
@@ -146,14 +185,19 @@ class Recorder:
     ) -> None:
         """See the class."""
         self._bag = bag
-        self._topics = frozenset(topics)
+        self._topics = set(topics)
         self._until = until
         self._sim_time = sim_time
         self._clock_ns = 0
         self._counter = LossCounter()
+        self._batches = BatchCounter(self._counter)
         self._reports = 0
         self._done = False
         self._began_ns = self.now_ns()
+
+    def add_topic(self, topic: str) -> None:
+        """From now on this topic is put into the bag, too."""
+        self._topics.add(topic)
 
     def now_ns(self) -> int:
         """The graph's time; 0 until the first /clock."""
@@ -163,17 +207,19 @@ class Recorder:
         """Put one message into the bag.
 
         Raises:
-            ValueError: a message that is not of the type of its topic.
+            ValueError: a message that is not of the type of its topic; it is in the bag.
         """
-        if source.topic == _CLOCK and self._sim_time:
+        if source.topic == _CLOCK and self._sim_time and len(data) >= _TIME.size:
             seconds, nanoseconds = _TIME.unpack_from(data)
             self._clock_ns = seconds * 1_000_000_000 + nanoseconds
-        elif source.topic == _ROSOUT:
-            self._reports += self._counter.see(data).startswith(REPORT)
-        elif source.topic == self._until and any(data):
-            self._done = True
         if source.topic in self._topics:
             self._bag.write(source, self.now_ns(), data)
+        if source.topic == _ROSOUT:
+            self._reports += self._counter.see(data).startswith(REPORT)
+        elif source.topic == _REPORTS:
+            self._reports += self._batches.see(source.node, data)
+        elif source.topic == self._until and any(data):
+            self._done = True
 
     def status(self, *, closed: bool = False) -> Status:
         """The account until now."""
@@ -188,6 +234,61 @@ class Recorder:
             lost=dict(sorted(self._counter.lost.items())),
             missed_before=dict(sorted(self._counter.missed_before.items())),
         )
+
+
+class Discovery:
+    """Finds the topics of observers as they appear, and a master that has forgotten this node.
+
+    The master is asked once a second. One that does not answer is waited for: what is connected
+    goes on without it.
+    """
+
+    def __init__(
+        self, subscriber: RawSubscriber, recorder: Recorder, topics: Sequence[str]
+    ) -> None:
+        """``topics`` are those that are subscribed to already."""
+        self._subscriber = subscriber
+        self._recorder = recorder
+        self._topics = dict.fromkeys(topics)
+        self._looked = 0.0
+
+    def look(self) -> None:
+        """Look, where the last time is long enough ago."""
+        if time.monotonic() - self._looked < LOOK_PERIOD_S:
+            return
+        self._looked = time.monotonic()
+        try:
+            state = self._subscriber.call_master("getSystemState")
+        except RunError:
+            return
+        publishers, subscribers = _topics_of(state, 0), _topics_of(state, 1)
+        try:
+            for topic in publishers:
+                if MarkMessages.message_type(topic) and topic not in self._topics:
+                    self._recorder.add_topic(topic)
+                    self._subscriber.subscribe(topic)
+                    self._topics[topic] = None
+            for topic in self._topics:
+                # A master that was started anew knows nobody.
+                if self._subscriber.name not in subscribers.get(topic, ()):
+                    self._subscriber.subscribe(topic)
+        except RunError:
+            return
+
+
+def _topics_of(state: object, part: int) -> dict[str, list[str]]:
+    """Topic -> nodes of a part of the master's answer; nothing where it is of another form."""
+    try:
+        return {str(topic): [str(node) for node in nodes] for topic, nodes in state[part]}  # type: ignore[index]
+    except (TypeError, ValueError, IndexError, KeyError):
+        return {}
+
+
+def graph_has_sim_time(subscriber: RawSubscriber) -> bool:
+    """Whether /clock is the graph's clock."""
+    return subscriber.call_master("hasParam", "/use_sim_time") is True and (
+        subscriber.call_master("getParam", "/use_sim_time") is True
+    )
 
 
 def save_status(status: Status, path: Path) -> None:
@@ -214,25 +315,24 @@ def record(bag_path: Path, status_path: Path, topics: Sequence[str], until: str 
         os.environ.get("ROS_IP", "127.0.0.1"),
         list(dict.fromkeys([*recorded, _CLOCK])),
     )
-    sim_time = subscriber.call_master("hasParam", "/use_sim_time") is True and (
-        subscriber.call_master("getParam", "/use_sim_time") is True
-    )
     bag = BagFile(bag_path)
-    recorder = Recorder(bag, recorded, until, sim_time)
+    recorder = Recorder(bag, recorded, until, graph_has_sim_time(subscriber))
+    discovery = Discovery(subscriber, recorder, [*recorded, _CLOCK])
     told = 0.0
     while not stop.is_set():
         if time.monotonic() - told > STATUS_PERIOD_S:
             told = time.monotonic()
             save_status(recorder.status(), status_path)
+        discovery.look()
         for source, data in subscriber.poll(0.05):
             recorder.take(source, data)
-    _drain(subscriber, recorder)
+    drain(subscriber, recorder)
     subscriber.close()
     bag.close()
     save_status(recorder.status(closed=True), status_path)
 
 
-def _drain(subscriber: RawSubscriber, recorder: Recorder) -> None:
+def drain(subscriber: RawSubscriber, recorder: Recorder) -> None:
     """Take what is still on the way."""
     limit = time.monotonic() + DRAIN_S
     while time.monotonic() < limit:

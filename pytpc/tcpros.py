@@ -128,7 +128,7 @@ class RawSubscriber:
 
     def __init__(self, master: str, name: str, host: str, topics: Sequence[str]) -> None:
         """See the class; on return all topics are registered."""
-        self._name = name
+        self.name = name
         self._master = master
         self._lock = threading.Lock()
         self._wanted: dict[str, set[str]] = {topic: set() for topic in topics}
@@ -142,12 +142,22 @@ class RawSubscriber:
         self._uri = f"http://{host}:{self._server.server_address[1]}/"
         threading.Thread(target=self._server.serve_forever, args=(0.05,), daemon=True).start()
         try:
-            for topic in self._wanted:
-                publishers = self.call_master("registerSubscriber", topic, "*", self._uri)
-                self._on_publishers(topic, cast(list[str], publishers))
+            for topic in topics:
+                self.subscribe(topic)
         except BaseException:
             self.close()
             raise
+
+    def subscribe(self, topic: str) -> None:
+        """Subscribe to a further topic; or to one again, of which the master does not know.
+
+        Raises:
+            RunError: the master does not answer or refuses.
+        """
+        with self._lock:
+            self._wanted.setdefault(topic, set())
+        publishers = self.call_master("registerSubscriber", topic, "*", self._uri)
+        self._on_publishers(topic, cast(list[str], publishers))
 
     def call_master(self, method: str, *arguments: object) -> object:
         """Call a method of the master API.
@@ -156,7 +166,7 @@ class RawSubscriber:
             RunError: the master does not answer or refuses.
         """
         try:
-            return call(self._master, method, self._name, *arguments)
+            return call(self._master, method, self.name, *arguments)
         except (OSError, HTTPException, xmlrpc.client.Error) as error:
             raise RunError(f"the ROS master at {self._master}: {method}: {error}") from error
 
@@ -192,7 +202,7 @@ class RawSubscriber:
     def close(self) -> None:
         """Leave the graph. A master that is gone already is no error."""
         self._closed.set()
-        for topic in self._wanted:
+        for topic in list(self._wanted):
             with contextlib.suppress(RunError):
                 self.call_master("unregisterSubscriber", topic, self._uri)
         self._server.shutdown()
@@ -219,7 +229,7 @@ class RawSubscriber:
             if self._closed.is_set() or not self._is_wanted(key):
                 break
             try:
-                connection, source = _open(key[0], key[1], self._name)
+                connection, source = _open(key[0], key[1], self.name)
             except (OSError, HTTPException, xmlrpc.client.Error, ValueError):
                 # A node that is just starting or just ending; it is tried again while it is listed.
                 time.sleep(_RETRY_S)

@@ -1,8 +1,10 @@
-"""Commands about what was recorded: ``ingest``, ``rank`` and ``report``."""
+"""Commands about what was recorded: ``convert`` (``ingest``), ``rank`` and ``report``."""
 
 from __future__ import annotations
 
 import json
+from copy import copy
+from dataclasses import asdict
 from pathlib import Path
 
 import click
@@ -11,7 +13,10 @@ from pytpc.cli.console import console, progress, warn
 from pytpc.cli.sources import static_of
 from pytpc.complaints import complaints
 from pytpc.errors import InputError
-from pytpc.ingest import Recording, load_recording, read_bag, save_recording
+from pytpc.ingest import Recording, read
+from pytpc.ingest.duplicates import TOLERANCE_NS
+from pytpc.ingest.outcome import Outcome
+from pytpc.ingest.reading import opened
 from pytpc.marks import MARK_TYPES
 from pytpc.ranking import MarkRanking, rank_marks, unknown_keys
 from pytpc.report.html import MissionReport, write_report
@@ -33,22 +38,63 @@ _UNTYPED = click.option(
 )
 
 
-@click.command("ingest")
-@click.argument("bag", type=_PATH)
-@click.option("-o", "--output", type=_PATH, required=True, help="Folder for the two files.")
-def ingest_command(bag: Path, output: Path) -> None:
-    """Read a ROS 1 bag into events.parquet and marks.json."""
-    with progress(f"reading {bag.name}") as advance:
-        recording = read_bag(bag, advance)
-    save_recording(recording, output)
+@click.command("convert")
+@click.argument("inputs", type=_PATH, nargs=-1, required=True, metavar="INPUT...")
+@click.option(
+    "-o",
+    "--output",
+    type=_PATH,
+    required=True,
+    metavar="OUT",
+    help="A folder, or a file: .parquet (the events), .csv (the events in the thesis's form).",
+)
+@click.option(
+    "--tolerance",
+    "tolerance_s",
+    type=click.FloatRange(min=0.0, max=60.0),
+    default=TOLERANCE_NS / 1e9,
+    show_default=True,
+    metavar="SECONDS",
+    help="How far apart in time one report may be in two inputs.",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print the summary as JSON.")
+def convert_command(
+    inputs: tuple[Path, ...], output: Path, tolerance_s: float, as_json: bool
+) -> None:
+    """Read recordings of one mission into a folder of Parquet, each report once.
+
+    An INPUT is a bag (ROS 1, .mcap, .db3), a binary file (.tpc), a log, console output, CSV, a
+    folder of such files, or a folder that this command wrote; what it is, its content tells. Memory
+    stays small however long the mission is; the folder above OUT needs room for 35 bytes a report.
+    """
+    suffix = output.suffix if not output.is_dir() else ""
+    with progress(f"reading {inputs[0].name}") as advance:
+        exits = opened(inputs, _standing(output), advance, tolerance_ns=round(tolerance_s * 1e9))
+        with exits as outcome, progress(f"writing {output.name}") as written:
+            if suffix == ".parquet":
+                recording = outcome.save_parquet(output, written)
+            elif suffix == ".csv":
+                recording = outcome.save_csv(output, written)
+            else:
+                recording = outcome.save(output, written)
     _warn_about(recording, None)
     kinds = [mark.type for mark in recording.marks]
+    if as_json:
+        click.echo(json.dumps(_summary_of(recording, outcome, output), ensure_ascii=False))
+        return
     marks = ", ".join(f"{kinds.count(kind)} of type {kind}" for kind in MARK_TYPES)
+    if None in kinds:
+        marks += f", {kinds.count(None)} without a type"
+    summaries = f", {outcome.summaries:,} summaries" if outcome.summaries else ""
     click.echo(
-        f"{many(len(recording.events), 'report')} of"
-        f" {many(len(recording.events.keys), 'comparison')}, {many(len(kinds), 'mark')} ({marks})"
-        f" in {recording.seconds:.1f} s: {output}"
+        f"{many(outcome.events, 'report')} of {many(outcome.comparisons, 'comparison')}{summaries},"
+        f" {many(len(kinds), 'mark')} ({marks}) in {recording.seconds:.1f} s: {output}"
     )
+
+
+# Its name from when it read bags of ROS 1 alone.
+ingest_command = copy(convert_command)
+ingest_command.name = "ingest"
 
 
 @click.command("rank")
@@ -58,7 +104,7 @@ def ingest_command(bag: Path, output: Path) -> None:
 @click.option("--json", "as_json", is_flag=True, help="Print a JSON list with one item a mark.")
 @_UNTYPED
 def rank_command(bag: Path, static_source: Path, top: int, as_json: bool, untyped: bool) -> None:
-    """Name the suspected parameters at each mark in BAG (a bag, or a folder from `ingest`)."""
+    """Name the suspected parameters at each mark in BAG (any INPUT of `convert`)."""
     static = static_of([static_source])
     recording = _recording(bag)
     if not recording.marks:
@@ -99,14 +145,34 @@ def report_command(
     click.echo(f"{many(len(missions), 'mission')} with {many(marks, 'mark')}: {output}")
 
 
-COMMANDS: list[click.Command] = [ingest_command, rank_command, report_command]
+COMMANDS: list[click.Command] = [convert_command, ingest_command, rank_command, report_command]
 
 
 def _recording(source: Path) -> Recording:
-    if source.is_dir():
-        return load_recording(source)
     with progress(f"reading {source.name}") as advance:
-        return read_bag(source, advance)
+        return read(source, advance)
+
+
+def _standing(path: Path) -> Path:
+    """The nearest folder above ``path`` that is there."""
+    return next((folder for folder in path.absolute().parents if folder.is_dir()), Path("/"))
+
+
+def _summary_of(recording: Recording, outcome: Outcome, output: Path) -> dict[str, object]:
+    return {
+        "output": str(output),
+        "name": recording.name,
+        "reports": outcome.events,
+        "comparisons": outcome.comparisons,
+        "summaries": outcome.summaries,
+        "marks": len(recording.marks),
+        "start_ns": recording.start_ns,
+        "end_ns": recording.end_ns,
+        "malformed": recording.malformed,
+        "lost": recording.lost,
+        "dropped": [asdict(dropped) for dropped in recording.dropped],
+        "notes": list(recording.notes),
+    }
 
 
 def _check_reports(recording: Recording, static: StaticInfo, source: Path) -> None:

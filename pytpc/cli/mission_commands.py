@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -10,58 +11,102 @@ from pathlib import Path
 import click
 from rich.console import Console
 
+from pytpc.attached import master_of, record_graph, stop_on_signals
 from pytpc.build import workspace_env
 from pytpc.colcon import Bases
-from pytpc.mission import DEFAULT_TOPICS, Progress, run_mission
+from pytpc.ingest.reading import opened
+from pytpc.mission import DEFAULT_TOPICS, MissionRun, Progress, run_mission
 from pytpc.words import many
 
 _PATH = click.Path(path_type=Path)
 _SILENT_S = 5.0
+_LAUNCH_TIMEOUT_S = 300.0
 
 
 @click.command("record")
-@click.argument("workspace", type=_PATH)
-@click.argument("launch", type=_PATH)
+@click.argument("workspace", type=_PATH, required=False)
+@click.argument("launch", type=_PATH, required=False)
 @click.argument("args", nargs=-1, metavar="[NAME:=VALUE]...")
 @click.option("-o", "--output", type=_PATH, required=True, help="Folder for bag and run.json.")
-@click.option("--timeout", "timeout_s", type=click.FloatRange(min=1.0), default=300.0)
+@click.option(
+    "--timeout",
+    "timeout_s",
+    type=click.FloatRange(min=1.0),
+    metavar="SECONDS",
+    help="End after this time. [default: 300 with LAUNCH, else none]",
+)
 @click.option("--until", metavar="TOPIC", help="std_msgs/Bool that says when the mission is done.")
 @click.option(
     "--topic", "topics", multiple=True, help=f"Record it besides {', '.join(DEFAULT_TOPICS)}."
 )
 @click.option("--wall-time", is_flag=True, help="There is no /clock: the nodes run in real time.")
+@click.option("--parquet", is_flag=True, help="Convert the bag too, as `convert` does.")
 def record_command(
     *,
-    workspace: Path,
-    launch: Path,
+    workspace: Path | None,
+    launch: Path | None,
     args: tuple[str, ...],
     output: Path,
-    timeout_s: float,
+    timeout_s: float | None,
     until: str | None,
     topics: tuple[str, ...],
     wall_time: bool,
+    parquet: bool,
 ) -> None:
-    """Run LAUNCH of a built WORKSPACE on a ROS graph of its own, and record it."""
-    launch_arguments = _launch_arguments(args)
-    with mission_progress(launch.stem) as advance:
-        run = run_mission(
-            workspace_env(Bases.of(workspace).install),
-            launch,
-            launch_arguments,
-            output,
-            timeout_s,
-            until=until,
-            topics=topics,
-            use_sim_time=not wall_time,
-            on_progress=advance,
-        )
+    """Record a mission: of the running graph, or of LAUNCH.
+
+    Without WORKSPACE and LAUNCH the graph at ROS_MASTER_URI is recorded until Ctrl-C. With them the
+    launch file of the built workspace is run on a ROS graph of its own, and recorded. The marks of
+    all observers are recorded as they appear.
+    """
+    if workspace is None:
+        run = _record_graph(output, until, timeout_s, topics)
+    elif launch is None:
+        raise click.UsageError("give both WORKSPACE and LAUNCH, or neither of them")
+    else:
+        launch_arguments = _launch_arguments(args)
+        with mission_progress(launch.stem) as advance:
+            run = run_mission(
+                workspace_env(Bases.of(workspace).install),
+                launch,
+                launch_arguments,
+                output,
+                timeout_s or _LAUNCH_TIMEOUT_S,
+                until=until,
+                topics=topics,
+                use_sim_time=not wall_time,
+                on_progress=advance,
+            )
     lost = sum(run.lost.values())
     if lost:
         click.echo(f"warning: {many(lost, 'log message')} lost by the recorder", err=True)
+    before = sum(run.missed_before.values())
+    if before and workspace is None:
+        click.echo(f"{many(before, 'log message')} from before the recording", err=True)
     click.echo(
         f"{many(run.reports, 'report')} and {many(run.marks, 'mark')} in {run.sim_s:.1f} s"
         f" ({run.ended}): {run.bag}"
     )
+    if parquet:
+        with opened([run.bag], output) as outcome:
+            outcome.save(output)
+        click.echo(f"{many(outcome.events, 'report')} in Parquet: {output}")
+
+
+def _record_graph(
+    output: Path, until: str | None, timeout_s: float | None, topics: tuple[str, ...]
+) -> MissionRun:
+    stop = stop_on_signals()
+    click.echo(f"recording {master_of(os.environ)}; Ctrl-C ends it", err=True)
+    with mission_progress("recording", "s of it") as advance:
+        return record_graph(
+            output,
+            stop=stop,
+            until=until,
+            timeout_s=timeout_s,
+            topics=topics,
+            on_progress=advance,
+        )
 
 
 def _launch_arguments(texts: tuple[str, ...]) -> dict[str, str]:
@@ -76,7 +121,7 @@ COMMANDS: list[click.Command] = [record_command]
 
 
 @contextmanager
-def mission_progress(what: str) -> Iterator[Callable[[Progress], None]]:
+def mission_progress(what: str, unit: str = "s simulated") -> Iterator[Callable[[Progress], None]]:
     """Show how far a mission is: one moving line on a terminal, a line every 5 s where piped."""
     console = Console(stderr=True)
     status = console.status(what)
@@ -85,7 +130,7 @@ def mission_progress(what: str) -> Iterator[Callable[[Progress], None]]:
     def advance(progress: Progress) -> None:
         nonlocal told
         line = (
-            f"{what}: {progress.sim_s:.0f} s simulated, {progress.reports:,} reports,"
+            f"{what}: {progress.sim_s:.0f} {unit}, {progress.reports:,} reports,"
             f" {many(progress.marks, 'mark')}"
         )
         status.update(line)

@@ -1,6 +1,6 @@
-"""Recordings of a mission become events and marks: ``read_bag``, ``load_recording``."""
+"""Recordings of a mission become events, summaries and marks: ``read``, ``load_recording``."""
 
-from pytpc.ingest.bag import read_bag
+from pytpc.ingest.reading import read, read_bag
 from pytpc.ingest.recording import (
     Dropped,
     MalformedRecord,
@@ -14,6 +14,7 @@ __all__ = [
     "MalformedRecord",
     "Recording",
     "load_recording",
+    "read",
     "read_bag",
     "save_recording",
 ]

@@ -91,13 +91,22 @@ def save_recording(recording: Recording, folder: Path) -> None:
     write_parquet(recording.events, folder / EVENTS_FILE)
     if len(recording.summaries):
         write_summaries(recording.summaries, folder / SUMMARIES_FILE)
+    write_marks(recording, folder, len(recording.events), len(recording.summaries))
+
+
+def write_marks(recording: Recording, folder: Path, events: int, summaries: int) -> None:
+    """Write ``marks.json`` beside tables of so many rows; a file of summaries of before is deleted.
+
+    Raises:
+        TpcError: the file cannot be written.
+    """
     document = {
         "schema": _SCHEMA,
         "name": recording.name,
         "start_ns": recording.start_ns,
         "end_ns": recording.end_ns,
-        "events": len(recording.events),
-        "summaries": len(recording.summaries),
+        "events": events,
+        "summaries": summaries,
         "marks": [asdict(mark) for mark in recording.marks],
         "malformed": recording.malformed,
         "malformed_first": [asdict(record) for record in recording.malformed_first],
@@ -107,7 +116,7 @@ def save_recording(recording: Recording, folder: Path) -> None:
     }
     text = json.dumps(document, indent=1, sort_keys=True, ensure_ascii=False)
     write_atomic(folder / MARKS_FILE, text.encode("utf-8", "backslashreplace") + b"\n")
-    if not len(recording.summaries):
+    if not summaries:
         (folder / SUMMARIES_FILE).unlink(missing_ok=True)
 
 
@@ -116,6 +125,22 @@ def load_recording(folder: Path) -> Recording:
 
     Raises:
         InputError: a file is missing or broken, or the files are not of one recording.
+    """
+    recording, event_count, summary_count = read_marks(folder)
+    path = folder / MARKS_FILE
+    events = read_parquet(folder / EVENTS_FILE)
+    _check_rows(path, event_count, EVENTS_FILE, len(events))
+    # A file of summaries that nothing tells of was left there.
+    summaries = read_summaries(folder / SUMMARIES_FILE) if summary_count else Summaries.empty()
+    _check_rows(path, summary_count, SUMMARIES_FILE, len(summaries))
+    return replace(recording, events=events, summaries=summaries)
+
+
+def read_marks(folder: Path) -> tuple[Recording, int, int]:
+    """Read ``marks.json`` alone: a recording with empty tables, and how many rows they have.
+
+    Raises:
+        InputError: the file is missing or broken.
     """
     path = folder / MARKS_FILE
     try:
@@ -127,38 +152,36 @@ def load_recording(folder: Path) -> Recording:
         raise InputError(f"not JSON: {error.msg}", path, error.lineno) from error
     except UnicodeDecodeError as error:
         raise InputError(f"not JSON: byte {error.start} is not UTF-8", path) from error
-    events = read_parquet(folder / EVENTS_FILE)
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"not JSON: {error}", path) from error
     try:
-        recording = _recording(document, events)
-    except (AttributeError, KeyError, TypeError, ValueError) as error:
+        # Files of older versions say nothing of summaries.
+        counts = int(document["events"]), int(document.get("summaries", 0))
+        return _recording(document), *counts
+    except (AttributeError, KeyError, TypeError, ValueError, OverflowError) as error:
         raise InputError(f"not the marks of a recording: {_why(error)}", path) from error
-    _check_rows(path, document["events"], EVENTS_FILE, len(events))
-    # Files of older versions say nothing of summaries; a file that was left there is not read.
-    if document.get("summaries", 0):
-        summaries = read_summaries(folder / SUMMARIES_FILE)
-        _check_rows(path, document["summaries"], SUMMARIES_FILE, len(summaries))
-        recording = replace(recording, summaries=summaries)
-    return recording
 
 
-def _check_rows(path: Path, said: object, name: str, found: int) -> None:
+def _check_rows(path: Path, said: int, name: str, found: int) -> None:
     if said != found:
         what = name.removesuffix(".parquet")
         raise InputError(f"is of a recording with {said} {what}, but {name} has {found}", path)
 
 
-def _recording(document: object, events: Events) -> Recording:
+def _recording(document: object) -> Recording:
     if not isinstance(document, dict) or document.get("schema") != _SCHEMA:
         raise ValueError(f"schema {_SCHEMA} is read")
     marks = [Mark(**mark) for mark in document["marks"]]
     for mark in marks:
         if type(mark.time_ns) is not int or not isinstance(mark.observer, str):
             raise ValueError("a mark without a time in ns or an observer")
+        if not isinstance(mark.note, str):
+            raise ValueError("a mark whose note is no text")
         if mark.type is not None and mark.type not in MARK_TYPES:
             raise ValueError(f"a mark of type {mark.type!r}")
     return Recording(
         name=str(document["name"]),
-        events=events,
+        events=Events.empty(),
         marks=tuple(sorted(marks, key=Mark.order)),
         start_ns=int(document["start_ns"]),
         end_ns=int(document["end_ns"]),

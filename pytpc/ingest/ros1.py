@@ -12,7 +12,7 @@ import struct
 from typing import NamedTuple
 
 _LENGTH = struct.Struct("<I")
-_HEADER = struct.Struct("<III")
+_HEADER = struct.Struct("<IIII")
 _TIME = struct.Struct("<II")
 
 
@@ -21,8 +21,8 @@ class Log(NamedTuple):
 
     seq: int
     stamp_ns: int
-    node: str
-    msg: str
+    node: bytes
+    msg: bytes
 
 
 def decode_log(raw: bytes) -> Log:
@@ -32,25 +32,31 @@ def decode_log(raw: bytes) -> Log:
         ValueError: the bytes end too early.
     """
     try:
-        seq, seconds, nanoseconds = _HEADER.unpack_from(raw)
-        _, place = _string(raw, _HEADER.size)
-        node, place = _string(raw, place + 1)
-        msg, _ = _string(raw, place)
+        seq, seconds, nanoseconds, frame = _HEADER.unpack_from(raw)
+        node_at = _HEADER.size + frame + 1 + _LENGTH.size
+        msg_at = node_at + _LENGTH.unpack_from(raw, node_at - _LENGTH.size)[0] + _LENGTH.size
+        end = msg_at + _LENGTH.unpack_from(raw, msg_at - _LENGTH.size)[0]
+        if end > len(raw):
+            raise struct.error
     except struct.error as error:
         raise ValueError(f"a log message of {len(raw)} bytes ends too early") from error
-    return Log(seq, seconds * 10**9 + nanoseconds, node, msg)
+    stamp_ns = seconds * 10**9 + nanoseconds
+    return Log(seq, stamp_ns, raw[node_at : msg_at - _LENGTH.size], raw[msg_at:end])
 
 
-def decode_string(raw: bytes) -> str:
-    """Read a std_msgs/String.
+def decode_string(raw: bytes) -> bytes:
+    """Read a std_msgs/String; its text as it was sent.
 
     Raises:
         ValueError: the bytes end too early.
     """
     try:
-        return _string(raw, 0)[0]
-    except struct.error as error:
-        raise ValueError(f"a string message of {len(raw)} bytes ends too early") from error
+        end = _LENGTH.size + _LENGTH.unpack_from(raw)[0]
+    except struct.error:
+        end = len(raw) + 1
+    if end > len(raw):
+        raise ValueError(f"a string message of {len(raw)} bytes ends too early")
+    return raw[_LENGTH.size : end]
 
 
 def decode_time(raw: bytes) -> int:
@@ -64,12 +70,3 @@ def decode_time(raw: bytes) -> int:
     except struct.error as error:
         raise ValueError(f"a time message of {len(raw)} bytes ends too early") from error
     return int(seconds) * 10**9 + int(nanoseconds)
-
-
-def _string(raw: bytes, place: int) -> tuple[str, int]:
-    (length,) = _LENGTH.unpack_from(raw, place)
-    start = place + _LENGTH.size
-    end = start + length
-    if end > len(raw):
-        raise struct.error
-    return raw[start:end].decode("utf-8", "replace"), end

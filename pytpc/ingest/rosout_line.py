@@ -1,20 +1,27 @@
 """The text of one report (SPEC 5), read strictly: pure functions from a line to a record.
 
-``parse_report`` reads what is in the ``msg`` of a /rosout message, ``parse_stamped`` what is in the
-``data`` of a /threshold_information message. A number is what the sinks write: decimal or
-scientific notation of a finite double, ``nan``, ``inf`` or ``-inf`` (and ``-nan``, the text that
-the C library gives the NaN of 0.0/0.0).
+``parse_report`` and ``parse_other`` read what is in the ``msg`` of a /rosout message,
+``parse_stamped``, ``parse_stamped_other`` and ``parse_batch`` a line of the ``data`` of a
+/threshold_information message. A number is what the sinks write: decimal or scientific notation of
+a finite double, ``nan``, ``inf`` or ``-inf`` (and ``-nan``, the text that the C library gives the
+NaN of 0.0/0.0).
 """
 
 from __future__ import annotations
 
 import math
 import re
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from pytpc.events import Report
+from pytpc.summaries import Summary
 
 PREFIX = "threshold_information:"
+SUMMARY_PREFIX = "threshold_summary:"
+DROPPED_PREFIX = "threshold_dropped:"
+BATCH_PREFIX = "#seq:"
+LATEST_NS = 2**63 - 1
 
 _TIME = r"[0-9]{1,10}\.[0-9]{1,9}"
 _KEY = r"[0-9a-fA-F]{8}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{12}"
@@ -23,8 +30,23 @@ _DOUBLE = r"[-+]?(?:[0-9]+(?:\.[0-9]*)?(?:[eE][-+]?[0-9]+)?|\.[0-9]+(?:[eE][-+]?
 _END = r"[ \t\r\n]*"
 
 _REPORT = re.compile(rf"({_KEY}),({_BOOL}),cmp:({_DOUBLE}),thresh:({_DOUBLE}),res:({_BOOL}){_END}")
+_COUNT = r"[0-9]{1,18}"
+_SUMMARY = re.compile(
+    rf"({_KEY}),({_BOOL}),cmp:({_DOUBLE}),thresh:({_DOUBLE}),res:({_BOOL}),count:({_COUNT}),"
+    rf"flops:({_COUNT}),diff:({_DOUBLE});({_DOUBLE});({_DOUBLE}),abs:({_DOUBLE}),"
+    rf"range:({_DOUBLE});({_DOUBLE}),far:({_COUNT}),odd:({_COUNT}),span:({_TIME});({_TIME}){_END}"
+)
+_DROPPED = re.compile(
+    rf"({_KEY})?,count:({_COUNT}),flops:({_COUNT}),why:(site|process|nested|stopped){_END}"
+)
+_BATCH = re.compile(
+    rf"#seq:({_COUNT}),count:({_COUNT}),dropped:({_COUNT}),pid:({_COUNT}),steady:({_TIME}){_END}"
+)
 _STAMPED = re.compile(rf"({_TIME}),")
 _BOOLS = {"0": False, "1": True, "False": False, "True": True}
+
+_SUMMARY_NUMBERS = {"cmp": 3, "thresh": 4, "diff_min": 8, "diff_max": 9, "diff_mean": 10}
+_SUMMARY_NUMBERS |= {"abs_mean": 11, "low": 12, "high": 13}
 
 _FIELDS = (
     ("a key (a UUID)", re.compile(_KEY), ","),
@@ -40,6 +62,30 @@ class StampedReport(NamedTuple):
 
     time_ns: int
     report: Report
+
+
+@dataclass(frozen=True, slots=True)
+class Drop:
+    """Reports that the process left out; ``key`` is empty where it is not known of which site."""
+
+    key: str
+    count: int
+    flops: int
+    why: str
+
+
+@dataclass(frozen=True, slots=True)
+class Batch:
+    """The first line of a message of several lines.
+
+    ``seq`` is the number, in its process, of the first of the ``count`` reports that follow;
+    ``dropped`` is how many the process had left out when it was sent.
+    """
+
+    seq: int
+    count: int
+    dropped: int
+    pid: int
 
 
 class Malformed(NamedTuple):
@@ -69,11 +115,83 @@ def parse_stamped(text: str) -> StampedReport | Malformed:
     stamp = _STAMPED.match(text)
     if stamp is None:
         return Malformed("a time in seconds is expected", 1)
+    if nanoseconds(stamp[1]) > LATEST_NS:
+        return Malformed("a time beyond the year 2262", 1)
     report = _read(text, stamp.end())
     if isinstance(report, Malformed):
         return report
-    seconds, _, fraction = stamp[1].partition(".")
-    return StampedReport(int(seconds) * 10**9 + int(fraction.ljust(9, "0")), report)
+    return StampedReport(nanoseconds(stamp[1]), report)
+
+
+def parse_other(text: str, node: str) -> Summary | Drop | Malformed | None:
+    """Read ``threshold_summary:...`` or ``threshold_dropped:...`` (docs/formats.md).
+
+    Returns:
+        What it says; ``Malformed`` where the text only begins like one; None for anything else.
+    """
+    return _other(text, 0, node)
+
+
+def parse_stamped_other(text: str, node: str) -> Summary | Drop | Malformed | None:
+    """The same behind a time in seconds and a comma."""
+    stamp = _STAMPED.match(text)
+    return None if stamp is None else _other(text, stamp.end(), node)
+
+
+def parse_batch(text: str) -> Batch | Malformed:
+    """Read ``#seq:N,count:N,dropped:N,pid:P,steady:S``."""
+    found = _BATCH.fullmatch(text)
+    if found is None:
+        return Malformed("a line that begins with # is #seq:N,count:N,dropped:N,pid:P,steady:S", 1)
+    return Batch(*(int(number) for number in found.groups()[:4]))
+
+
+def nanoseconds(text: str) -> int:
+    """The time of a text that matches ``_TIME``."""
+    seconds, _, fraction = text.partition(".")
+    return int(seconds) * 10**9 + int(fraction.ljust(9, "0"))
+
+
+def _other(text: str, start: int, node: str) -> Summary | Drop | Malformed | None:
+    if text.startswith(SUMMARY_PREFIX, start):
+        place = start + len(SUMMARY_PREFIX)
+        found = _SUMMARY.fullmatch(text, place)
+        if found is None:
+            return Malformed("a summary's fields are expected", place + 1)
+        return _summary(found, node)
+    if text.startswith(DROPPED_PREFIX, start):
+        place = start + len(DROPPED_PREFIX)
+        found = _DROPPED.fullmatch(text, place)
+        if found is None:
+            return Malformed("KEY,count:N,flops:F,why:W is expected", place + 1)
+        key, count, flops, why = found.groups()
+        return Drop((key or "").lower(), int(count), int(flops), why)
+    return None
+
+
+def _summary(found: re.Match[str], node: str) -> Summary | Malformed:
+    numbers = {name: float(found[group]) for name, group in _SUMMARY_NUMBERS.items()}
+    for name, value in numbers.items():
+        if math.isinf(value) and "inf" not in found[_SUMMARY_NUMBERS[name]]:
+            place = found.start(_SUMMARY_NUMBERS[name]) + 1
+            return Malformed("a number is beyond the range of a double", place)
+    count, flops, far, odd = (int(found[group]) for group in (6, 7, 14, 15))
+    begin_ns, end_ns = nanoseconds(found[16]), nanoseconds(found[17])
+    if not begin_ns <= end_ns <= LATEST_NS or max(flops, far, odd) > count or count == 0:
+        return Malformed("the counts or times of a summary contradict one another", found.start())
+    return Summary(
+        key=found[1].lower(),
+        node=node,
+        begin_ns=begin_ns,
+        end_ns=end_ns,
+        count=count,
+        flops=flops,
+        far=far,
+        odd=odd,
+        result=_BOOLS[found[2]],
+        res=_BOOLS[found[5]],
+        **numbers,
+    )
 
 
 def _read(text: str, start: int) -> Report | Malformed:

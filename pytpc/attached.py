@@ -1,0 +1,151 @@
+"""Records a graph that runs already: ``pytpc record`` without a launch file."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import socket
+import threading
+import time
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from urllib.parse import urlsplit
+
+from pytpc.errors import MissingToolError, RunError
+from pytpc.mission import (
+    BAG_FILE,
+    DEFAULT_TOPICS,
+    PARAMS_FILE,
+    RUN_FILE,
+    MissionRun,
+    Progress,
+    dump_params,
+    marks_of,
+    save_run,
+)
+from pytpc.recorder import (
+    NODE_NAME,
+    BagFile,
+    Discovery,
+    Recorder,
+    drain,
+    graph_has_sim_time,
+)
+from pytpc.tcpros import RawSubscriber
+
+MASTER = "http://localhost:11311"
+_CLOCK = "/clock"
+_TOLD_S = 0.2
+
+
+def master_of(env: Mapping[str, str]) -> str:
+    """URI of the ROS master."""
+    return env.get("ROS_MASTER_URI", MASTER)
+
+
+def own_host(env: Mapping[str, str], master: str) -> str:
+    """The address at which the graph reaches this machine, as ROS finds it: what ROS_HOSTNAME or
+    ROS_IP say, else the address from which the master is reached."""
+    for name in ("ROS_HOSTNAME", "ROS_IP"):
+        if env.get(name):
+            return env[name]
+    host = urlsplit(master).hostname or "localhost"
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            # No packet is sent: this only asks which way one would go.
+            probe.connect((host, 11311))
+            address: str = probe.getsockname()[0]
+        except OSError:
+            return "127.0.0.1"
+    return address
+
+
+def record_graph(
+    out_dir: Path,
+    *,
+    stop: threading.Event,
+    env: Mapping[str, str] | None = None,
+    until: str | None = None,
+    timeout_s: float | None = None,
+    topics: Sequence[str] = (),
+    on_progress: Callable[[Progress], None] | None = None,
+) -> MissionRun:
+    """Record /rosout, /threshold_information, all observers' marks and ``topics``.
+
+    Args:
+        out_dir: gets mission.bag, params.yaml where rosparam is there, and run.json.
+        stop: ends the recording.
+        env: says where the master is and what this machine is called; None: that of this process.
+        until: a topic of type std_msgs/Bool; when it says true the recording ends.
+        timeout_s: the longest that it lasts; None: until ``stop``.
+        topics: recorded besides.
+        on_progress: called about five times a second.
+
+    Raises:
+        RunError: the master does not answer.
+        OSError: the bag cannot be written; what was recorded is in ``mission.bag.active``.
+    """
+    env = os.environ if env is None else env
+    out_dir.mkdir(parents=True, exist_ok=True)
+    began = time.monotonic()
+    recorded = list(dict.fromkeys([*DEFAULT_TOPICS, *topics, *([until] if until else [])]))
+    master = master_of(env)
+    name = f"{NODE_NAME}_{os.getpid()}"
+    subscribed = list(dict.fromkeys([*recorded, _CLOCK]))
+    subscriber = RawSubscriber(master, name, own_host(env, master), subscribed)
+    try:
+        bag = BagFile(out_dir / BAG_FILE)
+        recorder = Recorder(bag, recorded, until, graph_has_sim_time(subscriber))
+        discovery = Discovery(subscriber, recorder, subscribed)
+        ended, told = "", 0.0
+        while not ended:
+            discovery.look()
+            for source, data in subscriber.poll(0.05):
+                # What is of another type is in the bag, and said when that is read.
+                with contextlib.suppress(ValueError):
+                    recorder.take(source, data)
+            status = recorder.status()
+            wall_s = time.monotonic() - began
+            if on_progress is not None and time.monotonic() - told > _TOLD_S:
+                told = time.monotonic()
+                sim_s = (status.now_ns - status.began_ns) / 1e9 if status.began_ns else 0.0
+                on_progress(Progress(sim_s, wall_s, status.reports, marks_of(status.messages)))
+            if stop.is_set():
+                ended = "interrupted"
+            elif status.done:
+                ended = "done"
+            elif timeout_s is not None and wall_s > timeout_s:
+                ended = "timeout"
+        with contextlib.suppress(ValueError):
+            drain(subscriber, recorder)
+    finally:
+        subscriber.close()
+    bag.close()
+    status = recorder.status(closed=True)
+    try:
+        dump_params(env, out_dir / PARAMS_FILE)
+    except (RunError, MissingToolError):
+        # The master may be gone, and the bag is what matters.
+        (out_dir / PARAMS_FILE).unlink(missing_ok=True)
+    run = MissionRun(
+        bag=out_dir / BAG_FILE,
+        params=out_dir / PARAMS_FILE,
+        ended=ended,
+        sim_s=(status.now_ns - status.began_ns) / 1e9,
+        wall_s=time.monotonic() - began,
+        reports=status.reports,
+        messages=status.messages,
+        lost=status.lost,
+        missed_before=status.missed_before,
+    )
+    save_run(run, None, {}, out_dir / RUN_FILE)
+    return run
+
+
+def stop_on_signals() -> threading.Event:
+    """An event that SIGINT and SIGTERM set, instead of ending the process."""
+    stop = threading.Event()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: stop.set())
+    return stop

@@ -1,0 +1,469 @@
+"""The binary file that the file sink writes (``.tpc``): fixed-size records, read as columns.
+
+First all chunk headers and the system's records are read (what the sites are called, how the clocks
+go), then the threads' chunks, several at once, and brought together in the order of the steady
+clock. The file may be of a process that was killed, or that still runs. It is read, not mapped: a
+mapped file that is shortened meanwhile ends the reader with SIGBUS, and from memory that is used
+again and again the columns are made just as quickly.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import Any, BinaryIO, cast
+
+import numpy as np
+import numpy.typing as npt
+
+from pytpc.columns import Bools, Int32s, Int64s
+from pytpc.errors import InputError
+from pytpc.ingest import binary_layout as layout
+from pytpc.ingest.binary_clock import Clock
+from pytpc.ingest.binary_system import (
+    System,
+    open_summaries,
+    read_system,
+    summary_rows,
+    written_summaries,
+)
+from pytpc.ingest.gathering import Channel, Gathering, Progress, Reports
+from pytpc.ingest.recording import Dropped
+from pytpc.ingest.spool import Rows
+from pytpc.words import many
+
+Bytes = npt.NDArray[np.uint8]
+
+_GROUP = 16
+_IDENTITY = np.dtype([("thread", "<u4"), ("site", "<u4"), ("period", "<u4")])
+
+
+@dataclass
+class Block(Reports):
+    """Reports of one thread, or of several in order; ``steady`` does not fall."""
+
+    steady: Int64s
+
+    def __len__(self) -> int:
+        """How many reports."""
+        return int(self.steady.size)
+
+    def part(self, rows: slice | Int64s | Bools) -> Block:
+        """Some of them."""
+        return Block(**{field.name: getattr(self, field.name)[rows] for field in fields(self)})
+
+    @classmethod
+    def joined(cls, blocks: list[Block]) -> Block:
+        """All of ``blocks`` behind one another."""
+        names = [field.name for field in fields(cls)]
+        columns: dict[str, Any] = {
+            name: np.concatenate([getattr(block, name) for block in blocks]) for name in names
+        }
+        return cls(**columns)
+
+
+@dataclass
+class _Thread:
+    """The chunks of one thread, in the order of the file, and how far they were read."""
+
+    number: int
+    chunks: list[int] = field(default_factory=list)
+    firsts: list[int] = field(default_factory=list)
+    first_steady: int = 0
+    read: int = 0
+    expected: int = 0
+    simulated_ns: int = -1
+    steady: int = -(2**63)
+    block: Block | None = None
+
+
+def read_binary(path: Path, gathering: Gathering, on_progress: Progress | None = None) -> None:
+    """Read a .tpc file.
+
+    Raises:
+        InputError: it is none, or of another version.
+    """
+    try:
+        with path.open("rb", buffering=0) as stream:
+            reader = _Reader(path, cast(BinaryIO, stream), gathering, on_progress)
+            reader.read()
+    except OSError as error:
+        raise InputError(f"cannot be read: {error.strerror or error}", path) from error
+    except ValueError as error:
+        raise InputError(f"not a file of reports: {error}", path) from error
+
+
+class _Reader:
+    def __init__(
+        self, path: Path, stream: BinaryIO, gathering: Gathering, on_progress: Progress | None
+    ) -> None:
+        self._path = path
+        self._stream = stream
+        self._gathering = gathering
+        self._on_progress = on_progress
+        self.header = layout.FileHeader.of(stream.read(layout.HEADER_BYTES))
+        self._node = self.header.node or _program(self.header, path)
+        self._node_code = gathering.nodes.code(self._node)
+        self._channel: Channel = gathering.channel(str(path), "file")
+        self._size = os.fstat(stream.fileno()).st_size
+        self._buffer = np.empty((_GROUP, layout.CHUNK_BYTES), np.uint8)
+        self._done = 0
+        self._torn = 0
+        self._torn_slots = 0
+        self._chunk_count = 0
+        self._last_ns = -(2**63)
+        self._clock = Clock.of([(0, 0)])
+        self._key_of_site: Int32s = np.full(1, -1, np.int32)
+
+    def read(self) -> None:
+        threads, system_chunks, live_chunks = self._chunks()
+        system = self._system(system_chunks)
+        syncs = [(self.header.steady_ns, self.header.real_ns), *system.syncs]
+        self._clock = Clock.of(syncs)
+        self._key_of_site = system.key_codes(self._gathering)
+        for block in self._merged(threads):
+            self._hand_in(block)
+        self._summaries(system_chunks, live_chunks)
+        self._complaints(system)
+        self._progress(self._chunk_count)
+
+    # --- the file
+
+    def _chunks(self) -> tuple[list[_Thread], list[int], list[int]]:
+        """The headers of all chunks; holes in the file are jumped over."""
+        threads: dict[int, _Thread] = {}
+        system: list[int] = []
+        live: list[int] = []
+        descriptor = self._stream.fileno()
+        place = layout.HEADER_BYTES
+        while place + layout.CHUNK_HEADER_BYTES <= self._size:
+            head = os.pread(descriptor, layout.CHUNK_HEADER_BYTES + layout.RECORD_BYTES, place)
+            kind = int.from_bytes(head[:4], "little")
+            if kind == 0 and (next_data := _data_after(descriptor, place)) != place:
+                if next_data is None:
+                    break
+                behind = (next_data - layout.HEADER_BYTES) // layout.CHUNK_BYTES
+                place = max(
+                    place + layout.CHUNK_BYTES, layout.HEADER_BYTES + behind * layout.CHUNK_BYTES
+                )
+                continue
+            if kind == layout.THREAD_CHUNK:
+                number = int.from_bytes(head[4:8], "little")
+                thread = threads.setdefault(number, _Thread(number))
+                if not thread.chunks:
+                    thread.first_steady = int.from_bytes(head[72:80], "little", signed=True)
+                thread.chunks.append(place)
+                thread.firsts.append(int.from_bytes(head[8:16], "little"))
+            elif kind == layout.SYSTEM_CHUNK:
+                system.append(place)
+            elif kind == layout.LIVE_CHUNK:
+                live.append(place)
+            elif kind:
+                self._skip(f"a chunk of the unknown kind {kind} at byte {place}")
+            place += layout.CHUNK_BYTES
+        self._chunk_count = sum(len(thread.chunks) for thread in threads.values())
+        return list(threads.values()), system, live
+
+    def _load(self, places: list[int]) -> Bytes:
+        """uint8[n, 65536]: some chunks; what the file does not have of them is zero."""
+        buffer = self._buffer[: len(places)]
+        for row, place in enumerate(places):
+            if row and place == places[row - 1] + layout.CHUNK_BYTES:
+                continue
+            last = row
+            while last + 1 < len(places) and places[last + 1] == places[last] + layout.CHUNK_BYTES:
+                last += 1
+            flat = buffer[row : last + 1].reshape(-1)
+            count = os.preadv(self._stream.fileno(), [flat.data], place)
+            flat[count:] = 0
+            whole = layout.whole_bytes(count % layout.CHUNK_BYTES)
+            if count < flat.size and whole < count % layout.CHUNK_BYTES:
+                # The record at which the file ends is not whole, whatever its first word says.
+                begin = count - count % layout.CHUNK_BYTES + whole
+                flat[begin : begin + 4] = 0
+        return buffer
+
+    def _load_one(self, place: int) -> Bytes:
+        """uint8[n], n at most 65536: what there is of one chunk, in whole records."""
+        there = min(layout.CHUNK_BYTES, self._size - place)
+        chunk: Bytes = self._load([place])[0][: layout.whole_bytes(there)]
+        return chunk
+
+    def _system(self, places: list[int]) -> System:
+        system = System()
+        expected = 0
+        for place in places:
+            chunk = self._load_one(place)
+            first = int(chunk[: layout.CHUNK.itemsize].view(layout.CHUNK)["first"][0])
+            # A chunk that has no room for a long record counts as full.
+            if first > expected:
+                self._gathering.lost[self._node] += first - expected
+            expected = max(expected, first) + layout.RECORDS
+            read_system(chunk, place, system, self._skip)
+        self._torn += system.torn
+        return system
+
+    # --- reports
+
+    def _merged(self, threads: list[_Thread]) -> Iterator[Block]:
+        """All reports in the order of the steady clock; equal times by thread."""
+        waiting = sorted(threads, key=lambda thread: (thread.first_steady, thread.number))
+        active: list[_Thread] = []
+        while waiting or active:
+            if not active or (
+                waiting and waiting[0].first_steady <= min(_last(thread) for thread in active)
+            ):
+                thread = waiting.pop(0)
+                if self._next_block(thread):
+                    active.append(thread)
+                continue
+            if len(active) == 1 and not waiting:
+                assert active[0].block is not None
+                yield active[0].block
+            else:
+                yield self._up_to(active, min(_last(thread) for thread in active))
+                active = [t for t in active if (t.block and len(t.block)) or self._next_block(t)]
+                continue
+            active = [thread for thread in active if self._next_block(thread)]
+
+    def _up_to(self, active: list[_Thread], bound: int) -> Block:
+        parts = []
+        for thread in active:
+            assert thread.block is not None
+            cut = int(np.searchsorted(thread.block.steady, bound, "right"))
+            if cut:
+                parts.append(thread.block.part(slice(0, cut)))
+                thread.block = thread.block.part(slice(cut, None))
+        if len(parts) == 1:
+            return parts[0]
+        block = Block.joined(parts)
+        return block.part(np.argsort(block.steady, kind="stable"))
+
+    def _next_block(self, thread: _Thread) -> bool:
+        """Read on in a thread until there are reports; False at its end."""
+        thread.block = None
+        while thread.read < len(thread.chunks):
+            places = thread.chunks[thread.read : thread.read + _GROUP]
+            loaded = self._load(places)
+            records = loaded[:, layout.CHUNK_HEADER_BYTES :].view(layout.RECORD)
+            first = thread.firsts[thread.read]
+            is_last = thread.read + len(places) == len(thread.chunks)
+            whole = self._whole(thread, loaded, records, places)
+            if whole is not None:
+                thread.expected = first + layout.RECORDS * len(places)
+                thread.block = whole
+                thread.read += len(places)
+            else:
+                thread.block = self._one_by_one(thread, loaded, records, places, is_last)
+            self._progress(len(places))
+            if len(thread.block):
+                return True
+        return False
+
+    def _whole(
+        self,
+        thread: _Thread,
+        loaded: Bytes,
+        records: npt.NDArray[np.void],
+        places: list[int],
+    ) -> Block | None:
+        """The usual case: chunks full of reports of known sites, on the wall's clock."""
+        if thread.simulated_ns != -1:
+            return None
+        firsts = thread.firsts[thread.read : thread.read + len(places)]
+        expected = range(
+            thread.expected, thread.expected + layout.RECORDS * len(places), layout.RECORDS
+        )
+        kinds = loaded[:, layout.CHUNK_HEADER_BYTES :: layout.RECORD_BYTES]
+        if firsts != list(expected) or bool((kinds != layout.REPORT).any()):
+            return None
+        sites = np.ascontiguousarray(records["site"])
+        if int(sites.max()) >= self._key_of_site.size:
+            return None
+        keys = self._key_of_site[sites]
+        if int(keys.min()) < 0:
+            return None
+        steady = self._rising(thread, np.ascontiguousarray(records["steady"]))
+        times = self._clock.real(steady)
+        flags = loaded[:, layout.CHUNK_HEADER_BYTES + 1 :: layout.RECORD_BYTES]
+        return Block(
+            steady=steady.reshape(-1),
+            time_ns=times.reshape(-1),
+            key=keys.reshape(-1),
+            result=(flags & 1).view(np.bool_).reshape(-1),
+            cmp=records["cmp"].reshape(-1),
+            thresh=records["thresh"].reshape(-1),
+            res=((flags >> 1) & 1).view(np.bool_).reshape(-1),
+        )
+
+    def _one_by_one(
+        self,
+        thread: _Thread,
+        loaded: Bytes,
+        records: npt.NDArray[np.void],
+        places: list[int],
+        is_last: bool,
+    ) -> Block:
+        """Chunks of which one at least is not full, or has something else than reports."""
+        blocks = []
+        for row, place in enumerate(places):
+            first = thread.firsts[thread.read]
+            thread.read += 1
+            if first > thread.expected:
+                self._gathering.lost[self._node] += min(first - thread.expected, 2**62)
+            elif first < thread.expected:
+                self._skip(
+                    f"the chunk at byte {place} begins with record {first} of thread"
+                    f" {thread.number}, where {thread.expected} is expected"
+                )
+            chunk = records[row]
+            ends = np.flatnonzero(chunk["what"] == 0)
+            used = int(ends[0]) if ends.size else layout.RECORDS
+            if used < layout.RECORDS:
+                begin = layout.CHUNK_HEADER_BYTES + used * layout.RECORD_BYTES
+                self._torn += bool(loaded[row, begin : begin + layout.RECORD_BYTES].any())
+            thread.expected = first + used
+            blocks.append(self._chunk(thread, chunk[:used].copy(), place))
+        return Block.joined(blocks)
+
+    def _chunk(self, thread: _Thread, chunk: npt.NDArray[np.void], place: int) -> Block:
+        what = chunk["what"]
+        kinds = what & 0xFF
+        reports = kinds == layout.REPORT
+        simulated = kinds == layout.SIMULATED
+        for at in np.flatnonzero(~(reports | simulated)).tolist():
+            self._skip(f"a record of the unknown kind {kinds[at]} at byte {_byte(place, at)}")
+        keys = np.full(chunk.size, -1, np.int32)
+        sites = chunk["site"]
+        known = sites < self._key_of_site.size
+        keys[known] = self._key_of_site[sites[known]]
+        for at in np.flatnonzero(reports & (keys < 0)).tolist():
+            self._skip(f"a report of the unknown site {sites[at]} at byte {_byte(place, at)}")
+        steady = self._rising(thread, np.ascontiguousarray(chunk["steady"]))
+        times = self._clock.real(steady)
+        if thread.simulated_ns != -1 or bool(simulated.any()):
+            # cmp's place holds the simulated time, which stands until the next such record.
+            given = np.ascontiguousarray(chunk["cmp"]).view(np.int64)
+            since = np.maximum.accumulate(np.where(simulated, np.arange(chunk.size), -1))
+            sim_ns = np.where(since < 0, thread.simulated_ns, given[since])
+            times = np.where(sim_ns == -1, times, sim_ns)
+            if chunk.size:
+                thread.simulated_ns = int(sim_ns[-1])
+        kept = reports & (keys >= 0)
+        flags = what >> 8
+        return Block(
+            steady=steady,
+            time_ns=times,
+            key=keys,
+            result=(flags & 1).astype(np.bool_),
+            cmp=chunk["cmp"],
+            thresh=chunk["thresh"],
+            res=((flags >> 1) & 1).astype(np.bool_),
+        ).part(kept)
+
+    @staticmethod
+    def _rising(thread: _Thread, steady: Int64s) -> Int64s:
+        """Within a thread the order is that of the file, whatever its clock says."""
+        if not steady.size:
+            return steady
+        flat = steady.reshape(-1)
+        if flat[0] < thread.steady or bool(np.any(flat[1:] < flat[:-1])):
+            flat = np.maximum(np.maximum.accumulate(flat), thread.steady)
+        thread.steady = int(flat[-1])
+        return flat.reshape(steady.shape)
+
+    def _hand_in(self, block: Block) -> None:
+        self._last_ns = max(self._last_ns, int(block.time_ns.max()))
+        self._gathering.add_events(self._channel, self._node_code, block)
+
+    # --- the rest
+
+    def _summaries(self, system_chunks: list[int], live_chunks: list[int]) -> None:
+        """Those that were written, then those whose period is open, unless they were written."""
+        still_open = [open_summaries(self._load_one(place)) for place in live_chunks]
+        unwritten = np.concatenate([kept for kept, _ in still_open]) if still_open else None
+        self._torn_slots = sum(torn for _, torn in still_open)
+        for place in system_chunks:
+            kept = written_summaries(self._load_one(place))
+            if unwritten is not None and kept.size:
+                unwritten = unwritten[~np.isin(_identity(unwritten), _identity(kept))]
+            self._hand_in_summaries(kept)
+        if unwritten is not None:
+            self._hand_in_summaries(unwritten)
+
+    def _hand_in_summaries(self, kept: Rows) -> None:
+        rows = summary_rows(
+            kept,
+            clock=self._clock,
+            last_ns=self._last_ns,
+            key_of_site=self._key_of_site,
+            node=self._node_code,
+            channel=self._channel.code,
+            skip=self._skip,
+        )
+        self._gathering.add_summary_rows(rows)
+
+    def _complaints(self, system: System) -> None:
+        gathering, header, name = self._gathering, self.header, self._path.name
+        stopped = 0
+        for dropped in system.dropped(self._node):
+            gathering.add_dropped(dropped)
+            stopped += dropped.count if dropped.why == "stopped" else 0
+        if header.not_recorded > stopped:
+            gathering.add_dropped(
+                Dropped("", self._node, header.not_recorded - stopped, 0, "stopped")
+            )
+        if self._torn:
+            gathering.notes.append(
+                f"{name}: {many(self._torn, 'record')} half written when the process ended"
+            )
+        if self._torn_slots:
+            gathering.notes.append(
+                f"{name}: {many(self._torn_slots, 'open period')} may lack an evaluation"
+            )
+        if header.state == layout.STOPPED:
+            gathering.notes.append(
+                f"{name}: recording stopped before the process ended (disk full, or file_limit)"
+            )
+
+    def _skip(self, what: str) -> None:
+        self._gathering.skip(self._path.name, 0, what, "")
+
+    def _progress(self, chunks: int) -> None:
+        self._done += chunks
+        if self._on_progress is not None:
+            total = self._chunk_count * layout.CHUNK_BYTES
+            self._on_progress(min(self._done * layout.CHUNK_BYTES, total), total)
+
+
+def _last(thread: _Thread) -> int:
+    assert thread.block is not None
+    return int(thread.block.steady[-1])
+
+
+def _identity(kept: Rows) -> Rows:
+    """Thread, site and period of each summary, to be compared as one."""
+    named = np.empty(kept.size, _IDENTITY)
+    for name in _IDENTITY.names or ():
+        named[name] = kept[name]
+    return named
+
+
+def _byte(place: int, record: int) -> int:
+    return place + layout.CHUNK_HEADER_BYTES + record * layout.RECORD_BYTES
+
+
+def _program(header: layout.FileHeader, path: Path) -> str:
+    """What to call a process that never was a node."""
+    name = header.program.rpartition("/")[2]
+    return f"{name} ({header.pid})" if name else path.stem
+
+
+def _data_after(descriptor: int, place: int) -> int | None:
+    """The next byte of a sparse file that is not in a hole; None where there is none."""
+    try:
+        return os.lseek(descriptor, place, os.SEEK_DATA)
+    except OSError:
+        return None

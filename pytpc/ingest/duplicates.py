@@ -1,0 +1,228 @@
+"""The same report by more than one way: of each, one is counted.
+
+Two rules. What a node is known to pass on is left out whole: of a node that reports on /rosout
+nothing is taken from /rosout_agg, and of a key that is in the log messages of a file nothing from
+its /threshold_information, unless the publisher there reports on /rosout itself, or numbers its
+messages (a sink of TPC's own, not a converter). Everything else that could be twice is compared
+report by report: two are the same where node, key, values and results are equal and their times
+are within the tolerance, one to one. The node does not count where a way does not tell it
+(converters, console text).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from pytpc.columns import Bools
+from pytpc.ingest.gathering import Channel, Gathering, Way
+from pytpc.ingest.spool import Rows
+from pytpc.words import many
+
+TOLERANCE_NS = 10**6
+APART_NS = 60 * 10**9
+_MOST_HELD = 1 << 22
+# The way of which reports are kept comes first.
+_ORDER: tuple[Way, ...] = ("log", "file", "batch", "events", "aggregate", "text", "topic")
+_NAMELESS: frozenset[Way] = frozenset({"topic", "text"})
+
+
+@dataclass(frozen=True, slots=True)
+class _Step:
+    """Reports of channel ``later`` are compared with those of the channels ``earlier``."""
+
+    later: int
+    earlier: Bools
+    with_node: bool
+
+
+class Once:
+    """Filters the blocks of a gathering's events; ``notes`` says afterwards what was left out."""
+
+    def __init__(self, gathering: Gathering, tolerance_ns: int = TOLERANCE_NS) -> None:
+        """All must have been read by now."""
+        self._gathering = gathering
+        self._tolerance_ns = tolerance_ns
+        self._passed_on = [_left_out(gathering.channels, channel) for channel in gathering.channels]
+        self._steps = self._plan()
+        self._counted: dict[int, int] = {}
+        self._matched: dict[int, int] = {}
+
+    def blocks(self, blocks: Iterable[Rows]) -> Iterator[Rows]:
+        """The reports of ``blocks``, which are in order of time, each once."""
+        blocks = self._not_passed_on(blocks)
+        return self._compared(blocks) if self._steps else iter(blocks)
+
+    def notes(self) -> list[str]:
+        """A sentence for each channel of which something was left out."""
+        channels = self._gathering.channels
+        notes = []
+        for code, count in sorted(self._counted.items()):
+            channel = channels[code]
+            why = (
+                "of nodes that report on /rosout too"
+                if channel.way == "aggregate"
+                else "with keys that are in the log messages too"
+            )
+            notes.append(f"{many(count, 'report')} on {channel.topic} {why}: counted once")
+        for code, count in sorted(self._matched.items()):
+            channel = channels[code]
+            notes.append(
+                f"{many(count, 'report')} in {channel.name} that came another way too: counted once"
+            )
+        return notes
+
+    def _not_passed_on(self, blocks: Iterable[Rows]) -> Iterator[Rows]:
+        if not any(self._passed_on):
+            yield from blocks
+            return
+        width = len(self._gathering.nodes.codes)
+        for rows in blocks:
+            kept = np.ones(rows.size, np.bool_)
+            for code, pairs in enumerate(self._passed_on):
+                if not pairs:
+                    continue
+                words = np.array([key * width + node for key, node in pairs], np.int64)
+                here = rows["channel"] == code
+                both = rows["key"][here].astype(np.int64) * width + rows["node"][here]
+                twice = np.isin(both, words)
+                kept[np.flatnonzero(here)[twice]] = False
+                self._counted[code] = self._counted.get(code, 0) + int(np.count_nonzero(twice))
+            yield rows[kept]
+
+    def _plan(self) -> list[_Step]:
+        """Which channels share a key (and node), so that their reports must be compared."""
+        channels = sorted(self._gathering.channels, key=lambda c: (_ORDER.index(c.way), c.code))
+        pairs = {c.code: c.pairs - self._passed_on[c.code] for c in channels}
+        keys = {code: {key for key, _ in of} for code, of in pairs.items()}
+        steps = []
+        for place, later in enumerate(channels):
+            for with_node in (True, False):
+                earlier = np.zeros(len(channels), np.bool_)
+                for other in channels[:place]:
+                    if _near(other, later, self._tolerance_ns):
+                        earlier[other.code] = (
+                            bool(pairs[other.code] & pairs[later.code])
+                            if with_node
+                            else _nameless(other, later)
+                            and bool(keys[other.code] & keys[later.code])
+                        )
+                if earlier.any():
+                    steps.append(_Step(later.code, earlier, with_node))
+        return steps
+
+    def _compared(self, blocks: Iterable[Rows]) -> Iterator[Rows]:
+        held: Rows | None = None
+        twice = np.zeros(0, np.bool_)
+        used = np.zeros((0, len(self._steps)), np.bool_)
+        for block in blocks:
+            rows = block if held is None else np.concatenate([held, block])
+            if not rows.size:
+                continue
+            twice = np.concatenate([twice, np.zeros(block.size, np.bool_)])
+            used = np.concatenate([used, np.zeros((block.size, len(self._steps)), np.bool_)])
+            for number, step in enumerate(self._steps):
+                self._match(rows, twice, used[:, number], step)
+            times = rows["time_ns"]
+            cut = int(np.searchsorted(times, times[-1] - self._tolerance_ns, "left"))
+            cut = max(cut, rows.size - _MOST_HELD)
+            yield rows[:cut][~twice[:cut]]
+            held, twice, used = rows[cut:], twice[cut:], used[cut:]
+        if held is not None:
+            yield held[~twice]
+
+    def _match(self, rows: Rows, twice: Bools, used: Bools, step: _Step) -> None:
+        """Mark in ``twice`` the reports of ``step.later`` that have a partner; both in ``used``."""
+        channel = rows["channel"]
+        is_later = channel == step.later
+        among = np.flatnonzero((is_later | step.earlier[channel]) & ~twice & ~used)
+        signature = _signature(rows[among], with_node=step.with_node)
+        times = rows["time_ns"][among]
+        order = np.lexsort((is_later[among], times, signature))
+        among, signature, times = among[order], signature[order], times[order]
+        while among.size > 1:
+            # Neighbours of both sides; of a chain of such pairs every second one is taken.
+            near = times[1:] - times[:-1] <= self._tolerance_ns
+            pairs = np.flatnonzero(
+                near
+                & (signature[1:] == signature[:-1])
+                & (is_later[among[1:]] != is_later[among[:-1]])
+            )
+            if not pairs.size:
+                return
+            begins = np.concatenate([[True], pairs[1:] != pairs[:-1] + 1])
+            begin = np.maximum.accumulate(np.where(begins, np.arange(pairs.size), 0))
+            pairs = pairs[(np.arange(pairs.size) - begin) % 2 == 0]
+            both = np.concatenate([among[pairs], among[pairs + 1]])
+            used[both] = True
+            found = both[is_later[both]]
+            twice[found] = True
+            self._matched[step.later] = self._matched.get(step.later, 0) + found.size
+            left = np.ones(among.size, np.bool_)
+            left[pairs] = left[pairs + 1] = False
+            among, signature, times = among[left], signature[left], times[left]
+
+
+def clock_notes(channels: list[Channel]) -> Iterator[str]:
+    """What is to be said of sources that lie apart in time: nobody knows whether it is the clock's
+    doing."""
+    spans: dict[str, tuple[int, int]] = {}
+    for channel in channels:
+        if channel.count:
+            first, last = spans.get(channel.source, (channel.first_ns, channel.last_ns))
+            spans[channel.source] = (min(first, channel.first_ns), max(last, channel.last_ns))
+    ordered = sorted(spans.items(), key=lambda item: (item[1], item[0]))
+    end, before = 0, ""
+    for source, (first, last) in ordered:
+        if before and first - end > APART_NS:
+            yield (
+                f"{source} begins {(first - end) / 1e9:,.0f} s after {before} ends: on different"
+                " clocks, or one after the other? Their times are taken as they are"
+            )
+        if not before or last > end:
+            end, before = last, source
+
+
+def _left_out(channels: list[Channel], channel: Channel) -> set[tuple[int, int]]:
+    """The pairs of key and node on ``channel`` that are passed on from another of its source."""
+    own = [other for other in channels if other.source == channel.source]
+    logged = {pair for other in own if other.way == "log" for pair in other.pairs}
+    nodes = {node for _, node in logged}
+    if channel.way == "aggregate":
+        return {pair for pair in channel.pairs if pair[1] in nodes}
+    if channel.way == "topic":
+        aggregated = {pair for other in own if other.way == "aggregate" for pair in other.pairs}
+        keys = {key for key, _ in logged | aggregated}
+        return {pair for pair in channel.pairs if pair[0] in keys and pair[1] not in nodes}
+    return set()
+
+
+def _near(one: Channel, other: Channel, tolerance_ns: int) -> bool:
+    return (
+        one.first_ns <= other.last_ns + tolerance_ns
+        and other.first_ns <= one.last_ns + tolerance_ns
+    )
+
+
+def _nameless(one: Channel, other: Channel) -> bool:
+    ways = {one.way, other.way}
+    return one.source != other.source and bool(ways & _NAMELESS)
+
+
+def _signature(rows: Rows, *, with_node: bool) -> npt.NDArray[np.uint64]:
+    """uint64[n]: a hash of all that makes two reports the same but the time (Fibonacci hashing)."""
+    mixed = np.zeros(rows.size, np.uint64)
+    parts = [rows["key"].astype(np.uint64), rows["result"] + 2 * rows["res"].astype(np.uint64)]
+    if with_node:
+        parts.append(rows["node"].astype(np.uint64))
+    for name in ("cmp", "thresh"):
+        values = rows[name].copy()
+        values[np.isnan(values)] = np.nan
+        parts.append(values.view(np.uint64))
+    for part in parts:
+        mixed = (mixed ^ part) * np.uint64(0x9E3779B97F4A7C15)
+        mixed ^= mixed >> np.uint64(29)
+    return mixed

@@ -1,0 +1,381 @@
+"""What all readers hand in, of one source or of many, and what is kept of it.
+
+Events go into a spool, which may be on disk; marks, complaints and counters stay in memory. A
+``Channel`` is one way by which reports came: a topic of one file, or a file that has only one.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+
+from pytpc.columns import Bools, Floats, Int32s, Int64s
+from pytpc.events import Report
+from pytpc.ingest.bulk_lines import LINES, read_lines
+from pytpc.ingest.recording import Dropped, MalformedRecord
+from pytpc.ingest.rosout_line import (
+    PREFIX,
+    Batch,
+    Drop,
+    Malformed,
+    parse_report,
+    parse_stamped,
+)
+from pytpc.ingest.spool import RUN_ROWS, Rows, Spool
+from pytpc.marks import Mark, MarkMessages
+from pytpc.summaries import Summary
+
+Progress = Callable[[int, int], None]
+Way = Literal["log", "aggregate", "topic", "batch", "file", "text", "events"]
+
+EVENT_ROW = np.dtype(
+    [
+        ("time_ns", "<i8"),
+        ("cmp", "<f8"),
+        ("thresh", "<f8"),
+        ("key", "<i4"),
+        ("node", "<i4"),
+        ("channel", "<u2"),
+        ("result", "?"),
+        ("res", "?"),
+    ]
+)
+SUMMARY_ROW = np.dtype(
+    [
+        ("begin_ns", "<i8"),
+        ("end_ns", "<i8"),
+        *((name, "<i8") for name in ("count", "flops", "far", "odd")),
+        *((name, "<f8") for name in ("cmp", "thresh", "diff_min", "diff_max", "diff_mean")),
+        *((name, "<f8") for name in ("abs_mean", "low", "high")),
+        ("key", "<i4"),
+        ("node", "<i4"),
+        ("channel", "<u2"),
+        ("result", "?"),
+        ("res", "?"),
+    ]
+)
+_SHOWN = 20
+_SHOWN_TEXT = 200
+_HELD_SUMMARIES = 4096
+_LARGEST_TABLE = 1 << 20
+MOST_CHANNELS = 1 << 16
+
+
+class Words:
+    """Words and their codes, in the order in which they came."""
+
+    def __init__(self) -> None:
+        """None yet."""
+        self.codes: dict[str, int] = {}
+
+    def code(self, word: str) -> int:
+        """The code of ``word``, a new one where it is new."""
+        return self.codes.setdefault(word, len(self.codes))
+
+    def all(self, words: Sequence[str]) -> Int32s:
+        """The codes of ``words``."""
+        return np.array([self.code(word) for word in words], np.int32)
+
+
+@dataclass
+class Reports:
+    """Reports as columns of one length; ``key`` is codes of a gathering's words."""
+
+    time_ns: Int64s
+    key: Int32s
+    result: Bools
+    cmp: Floats
+    thresh: Floats
+    res: Bools
+
+
+@dataclass
+class Channel:
+    """One way by which reports came.
+
+    ``source`` is the file or folder as it was named, ``way`` which kind of channel of it this is,
+    ``topic`` its name for messages. ``pairs`` has what was seen on it, as (key, node) codes.
+    """
+
+    code: int
+    source: str
+    way: Way
+    topic: str
+    first_ns: int = 2**63 - 1
+    last_ns: int = -(2**63)
+    count: int = 0
+    pairs: set[tuple[int, int]] = field(default_factory=set)
+
+    @property
+    def name(self) -> str:
+        """For the user."""
+        return f"{self.source}: {self.topic}" if self.topic else self.source
+
+
+class Gathering:
+    """All that was read.
+
+    ``spans`` are the times of recordings on their own clock; ``notes`` and ``late_notes`` are for
+    the user, before and behind those about duplicates.
+
+    Args:
+        folder: where rows that are too many for memory are kept; None: all stays in memory.
+        run_rows: how many rows are held in memory before they go there.
+    """
+
+    def __init__(self, folder: Path | None = None, run_rows: int = RUN_ROWS) -> None:
+        """Nothing was read yet."""
+        self.keys = Words()
+        self.nodes = Words()
+        self.channels: list[Channel] = []
+        self.events = Spool(
+            EVENT_ROW, "time_ns", None if folder is None else folder / "events", run_rows
+        )
+        self.summaries = Spool(
+            SUMMARY_ROW,
+            "begin_ns",
+            None if folder is None else folder / "summaries",
+            run_rows // 4 + 1,
+        )
+        self.marks: list[Mark] = []
+        self.mark_messages = MarkMessages()
+        self.malformed = 0
+        self._first: list[tuple[int, MalformedRecord]] = []
+        self._turn = 0
+        self.lost: Counter[str] = Counter()
+        self.dropped: Counter[tuple[str, str, str]] = Counter()
+        self.dropped_flops: Counter[tuple[str, str, str]] = Counter()
+        self.notes: list[str] = []
+        self.late_notes: list[str] = []
+        self.spans: list[tuple[int, int]] = []
+        self._held: list[tuple[object, ...]] = []
+
+    def channel(self, source: str, way: Way, topic: str = "") -> Channel:
+        """A new channel.
+
+        Raises:
+            ValueError: there are 65,536 of them already.
+        """
+        if len(self.channels) == MOST_CHANNELS:
+            raise ValueError(f"more than {MOST_CHANNELS:,} sources")
+        self.channels.append(Channel(len(self.channels), source, way, topic))
+        return self.channels[-1]
+
+    def turn(self) -> int:
+        """A number for the order in which records came."""
+        self._turn += 1
+        return self._turn
+
+    def add_events(self, channel: Channel, node: Int32s | int, reports: Reports) -> None:
+        """Take in reports of one node, or of those of which ``node`` has the codes."""
+        time_ns = reports.time_ns
+        if not time_ns.size:
+            return
+        rows = np.empty(time_ns.size, EVENT_ROW)
+        rows["time_ns"] = time_ns
+        rows["cmp"] = reports.cmp
+        rows["thresh"] = reports.thresh
+        rows["key"] = reports.key
+        rows["node"] = node
+        rows["channel"] = channel.code
+        rows["result"] = reports.result
+        rows["res"] = reports.res
+        channel.first_ns = min(channel.first_ns, int(time_ns.min()))
+        channel.last_ns = max(channel.last_ns, int(time_ns.max()))
+        channel.count += time_ns.size
+        channel.pairs |= self._pairs(reports.key, node)
+        self.events.append(rows)
+
+    def _pairs(self, key: Int32s, node: Int32s | int) -> set[tuple[int, int]]:
+        shape = (len(self.keys.codes), len(self.nodes.codes))
+        if shape[0] * shape[1] > _LARGEST_TABLE:
+            found = np.unique(key.astype(np.int64) * shape[1] + node)
+            return set(zip((found // shape[1]).tolist(), (found % shape[1]).tolist(), strict=True))
+        seen = np.zeros(shape, np.bool_)
+        seen[key, node] = True
+        keys, nodes = np.nonzero(seen)
+        return set(zip(keys.tolist(), nodes.tolist(), strict=True))
+
+    def add_summary(self, channel: Channel, summary: Summary) -> None:
+        """Take in a summary."""
+        values = [getattr(summary, name) for name in SUMMARY_ROW.names or ()
+                  if name not in {"key", "node", "channel", "result", "res"}]  # fmt: skip
+        key, node = self.keys.code(summary.key), self.nodes.code(summary.node)
+        self._held.append((*values, key, node, channel.code, summary.result, summary.res))
+        if len(self._held) >= _HELD_SUMMARIES:
+            self.flush()
+
+    def add_summary_rows(self, rows: Rows) -> None:
+        """Take in summaries as rows of ``SUMMARY_ROW``."""
+        self.summaries.append(rows)
+
+    def add_dropped(self, dropped: Dropped) -> None:
+        """Count what a process left out."""
+        word = (dropped.key, dropped.node, dropped.why)
+        self.dropped[word] += dropped.count
+        self.dropped_flops[word] += dropped.flops
+
+    def skip(self, topic: str, time_ns: int, what: str, text: str, turn: int | None = None) -> None:
+        """Count a record that cannot be read; the first 20 are kept, in the order of ``turn``."""
+        self.malformed += 1
+        turn = self.turn() if turn is None else turn
+        if len(self._first) == _SHOWN and turn > self._first[-1][0]:
+            return
+        self._first.append((turn, MalformedRecord(topic, time_ns, what, text[:_SHOWN_TEXT])))
+        self._first.sort(key=lambda item: item[0])
+        del self._first[_SHOWN:]
+
+    def flush(self) -> None:
+        """Nothing is held back after this."""
+        if self._held:
+            self.summaries.append(np.array(self._held, SUMMARY_ROW))
+            self._held = []
+
+    @property
+    def malformed_first(self) -> tuple[MalformedRecord, ...]:
+        """The first 20 records that were skipped."""
+        return tuple(record for _, record in self._first)
+
+    @property
+    def dropped_list(self) -> tuple[Dropped, ...]:
+        """All that processes left out, by node, key and reason."""
+        found = [
+            Dropped(key, node, count, self.dropped_flops[key, node, why], why)
+            for (key, node, why), count in self.dropped.items()
+            if count
+        ]
+        return tuple(sorted(found, key=Dropped.order))
+
+
+class Lines:
+    """Reports that come as text on one channel; thousands of them are read at once.
+
+    ``stamped`` says that each line begins with its own time; that of ``add`` then counts only where
+    this is 0, or the line is broken.
+    """
+
+    def __init__(
+        self, gathering: Gathering, channel: Channel, *, stamped: bool, prefix: int = 0
+    ) -> None:
+        """``prefix`` is how many bytes stand before the key, or the time, in what ``add`` gets."""
+        self._gathering = gathering
+        self.channel = channel
+        self._stamped = stamped
+        self._prefix = prefix
+        self._lines: list[bytes] = []
+        self._times: list[int] = []
+        self._nodes: list[int] = []
+        self._turns: list[int] = []
+        self._places: list[int] = []
+        self.unstamped = 0
+
+    def add(self, line: bytes, time_ns: int, node: int, number: int = 0) -> None:
+        """Take in a line; ``number`` is that of the line in the file or message, if any."""
+        self._lines.append(line)
+        self._times.append(time_ns)
+        self._nodes.append(node)
+        self._turns.append(self._gathering.turn())
+        self._places.append(number)
+        if len(self._lines) >= LINES:
+            self.flush()
+
+    def flush(self) -> None:
+        """Hand in all that was taken in."""
+        if not self._lines:
+            return
+        texts = [line[self._prefix :] for line in self._lines] if self._prefix else self._lines
+        times = np.array(self._times, np.int64)
+        nodes = np.array(self._nodes, np.int32)
+        for part in read_lines(texts, stamped=self._stamped):
+            if isinstance(part, int):
+                self._alone(part)
+                continue
+            given = times[part.begin : part.end]
+            time_ns = given if part.time_ns is None else part.time_ns
+            if self._stamped:
+                zero = time_ns == 0
+                self.unstamped += int(np.count_nonzero(zero))
+                time_ns = np.where(zero, given, time_ns)
+            key = self._gathering.keys.all(part.keys)[part.key]
+            reports = Reports(time_ns, key, part.result, part.cmp, part.thresh, part.res)
+            self._gathering.add_events(self.channel, nodes[part.begin : part.end], reports)
+        self._lines, self._times, self._nodes = [], [], []
+        self._turns, self._places = [], []
+
+    def _alone(self, number: int) -> None:
+        """Read one line strictly."""
+        text = self._lines[number].decode("utf-8", "replace")
+        time_ns = self._times[number]
+        found: Report | Malformed | None
+        if self._stamped:
+            stamped = parse_stamped(text)
+            if isinstance(stamped, Malformed):
+                found = stamped
+            else:
+                found = stamped.report
+                self.unstamped += not stamped.time_ns
+                time_ns = stamped.time_ns or time_ns
+        else:
+            found = parse_report(text if self._prefix else PREFIX + text)
+        if isinstance(found, Report):
+            reports = Reports(
+                np.array([time_ns], np.int64),
+                np.array([self._gathering.keys.code(found.key)], np.int32),
+                np.array([found.result]),
+                np.array([found.cmp]),
+                np.array([found.thresh]),
+                np.array([found.res]),
+            )
+            self._gathering.add_events(self.channel, self._nodes[number], reports)
+            return
+        what = "no report" if found is None else f"{found.what}, column {found.column}"
+        if self._places[number]:
+            what = f"line {self._places[number]}: {what}"
+        self._gathering.skip(self.channel.topic, time_ns, what, text, self._turns[number])
+
+
+@dataclass
+class Batches:
+    """Keeps account of numbered messages of several lines: what is missing, what was dropped."""
+
+    gathering: Gathering
+    next_seq: dict[tuple[str, int], int] = field(default_factory=dict)
+    dropped: dict[tuple[str, int], int] = field(default_factory=dict)
+    told: Counter[str] = field(default_factory=Counter)
+    missed: Counter[str] = field(default_factory=Counter)
+
+    def see(self, node: str, batch: Batch) -> None:
+        """Take in the first line of a message."""
+        process = (node, batch.pid)
+        expected = self.next_seq.get(process)
+        if expected is None:
+            self.missed[node] += batch.seq
+        elif batch.seq > expected:
+            self.gathering.lost[node] += batch.seq - expected
+        self.next_seq[process] = max(expected or 0, batch.seq + batch.count)
+        self.dropped[process] = max(self.dropped.get(process, 0), batch.dropped)
+
+    def drop(self, node: str, drop: Drop) -> None:
+        """Take in a line that says what was left out."""
+        self.told[node] += drop.count
+        self.gathering.add_dropped(Dropped(drop.key, node, drop.count, drop.flops, drop.why))
+
+    def close(self) -> None:
+        """Hand in what was left out according to the totals, but that no line told of."""
+        totals: Counter[str] = Counter()
+        for (node, _), count in self.dropped.items():
+            totals[node] += count
+        for node, total in sorted(totals.items()):
+            if total > self.told[node]:
+                rest = total - self.told[node]
+                self.gathering.add_dropped(Dropped("", node, rest, 0, "unknown"))
+        for node, count in sorted(self.missed.items()):
+            if count:
+                self.gathering.late_notes.append(
+                    f"{count:,} reports of {node} were sent before its first one here"
+                )

@@ -1,0 +1,212 @@
+"""Messages of ROS, wherever they come from, become reports, summaries and marks.
+
+``Messages`` is fed by the readers of bags, one message at a time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from pytpc.ingest.gathering import Batches, Channel, Gathering, Lines, Way
+from pytpc.ingest.recording import Dropped
+from pytpc.ingest.ros1 import Log
+from pytpc.ingest.rosout_line import (
+    DROPPED_PREFIX,
+    PREFIX,
+    SUMMARY_PREFIX,
+    Drop,
+    Malformed,
+    parse_batch,
+    parse_other,
+    parse_stamped_other,
+)
+from pytpc.marks import MarkMessages
+from pytpc.summaries import Summary
+from pytpc.words import many
+
+ROSOUT = "/rosout"
+ROSOUT_AGG = "/rosout_agg"
+REPORTS = "/threshold_information"
+
+_PREFIX = PREFIX.encode()
+_OTHERS = (SUMMARY_PREFIX.encode(), DROPPED_PREFIX.encode())
+_WITH_TIME = tuple(f",{prefix}".encode() for prefix in (SUMMARY_PREFIX, DROPPED_PREFIX))
+
+
+@dataclass(frozen=True, slots=True)
+class Decoders:
+    """How the three kinds of messages are read; each raises ValueError where bytes are missing."""
+
+    log: Callable[[bytes], Log]
+    text: Callable[[bytes], bytes]
+    time: Callable[[bytes], int]
+
+
+@dataclass(frozen=True, slots=True)
+class _OtherLine:
+    """A summary or a count of what was dropped, as text, and where it stood."""
+
+    way: Way
+    topic: str
+    time_ns: int
+    node: str
+    text: str
+    number: int = 0
+
+
+class Messages:
+    """Takes in the messages of one source.
+
+    Args:
+        gathering: where it goes.
+        source: the file, for messages.
+        decoders: for its serialisation.
+        numbered: whether log messages have the publisher's own number (ROS 1).
+    """
+
+    def __init__(
+        self, gathering: Gathering, source: str, decoders: Decoders, *, numbered: bool = True
+    ) -> None:
+        """Nothing was taken in yet."""
+        self._gathering = gathering
+        self._source = source
+        self._decoders = decoders
+        self._numbered = numbered
+        self._batches = Batches(gathering)
+        self._last_seq: dict[bytes, int] = {}
+        self._lines: dict[Way, Lines] = {}
+        self._channels: dict[Way, Channel] = {}
+        self._nodes: dict[bytes, int] = {}
+        self._unstamped = 0
+
+    def take(self, topic: str, caller: str, time_ns: int, raw: bytes) -> None:
+        """Read one message; ``time_ns`` is when the recorder got it, ``caller`` who sent it."""
+        try:
+            if topic in {ROSOUT, ROSOUT_AGG}:
+                self._log(topic, time_ns, raw)
+            elif topic == REPORTS:
+                self._text(caller, time_ns, self._decoders.text(raw))
+            else:
+                self._mark(topic, time_ns, raw)
+        except ValueError as error:
+            self._gathering.skip(topic, time_ns, str(error), "")
+
+    def close(self) -> None:
+        """Hand in what is still held."""
+        for lines in self._lines.values():
+            lines.flush()
+            self._unstamped += lines.unstamped
+        self._batches.close()
+        if self._unstamped:
+            self._gathering.late_notes.append(
+                f"{many(self._unstamped, 'record')} without a stamp got the bag's time"
+            )
+
+    def _log(self, topic: str, time_ns: int, raw: bytes) -> None:
+        log = self._decoders.log(raw)
+        if topic == ROSOUT and self._numbered:
+            self._count_lost(log.node, log.seq)
+        if not log.msg.startswith(b"threshold_"):
+            return
+        way: Way = "log" if topic == ROSOUT else "aggregate"
+        if log.msg.startswith(_PREFIX):
+            stamp_ns = log.stamp_ns or self._from_bag(time_ns)
+            lines = self._lines_of(way, topic, stamped=False, prefix=len(_PREFIX))
+            lines.add(log.msg, stamp_ns, self._node(log.node))
+        elif log.msg.startswith(_OTHERS) and topic == ROSOUT:
+            # What the rosout node passes on is the same once more.
+            node, text = _plain(log.node), _plain(log.msg)
+            line = _OtherLine(way, topic, log.stamp_ns or time_ns, node, text)
+            self._other(line, parse_other(text, node))
+
+    def _text(self, caller: str, time_ns: int, text: bytes) -> None:
+        """A message on the topic: one line, or several of which the first is numbered."""
+        if not text.startswith(b"#"):
+            self._stamped("topic", caller, time_ns, text)
+            return
+        head, _, rest = text.partition(b"\n")
+        batch = parse_batch(_plain(head))
+        lines = [line for line in rest.split(b"\n") if line]
+        if isinstance(batch, Malformed):
+            self._gathering.skip(
+                REPORTS, time_ns, f"{batch.what}, column {batch.column}", _plain(head)
+            )
+        else:
+            self._batches.see(caller, batch)
+            said = sum(1 for line in lines if not _is_other(line))
+            if said != batch.count:
+                what = f"{batch.count} reports are announced, {said} are there"
+                self._gathering.skip(REPORTS, time_ns, what, _plain(head))
+        for number, line in enumerate(lines, start=2):
+            self._stamped("batch", caller, time_ns, line, number)
+
+    def _stamped(self, way: Way, caller: str, time_ns: int, line: bytes, number: int = 0) -> None:
+        if _is_other(line):
+            text = _plain(line)
+            other = _OtherLine(way, REPORTS, time_ns, caller, text, number)
+            self._other(other, parse_stamped_other(text, caller))
+        else:
+            lines = self._lines_of(way, REPORTS, stamped=True)
+            lines.add(line, time_ns, self._node(caller.encode()), number)
+
+    def _other(self, line: _OtherLine, found: Summary | Drop | Malformed | None) -> None:
+        if isinstance(found, Summary):
+            self._gathering.add_summary(self._channel(line.way, line.topic), found)
+        elif isinstance(found, Drop) and line.topic == REPORTS:
+            self._batches.drop(line.node, found)
+        elif isinstance(found, Drop):
+            self._gathering.add_dropped(
+                Dropped(found.key, line.node, found.count, found.flops, found.why)
+            )
+        else:
+            what = "no time in front" if found is None else f"{found.what}, column {found.column}"
+            if line.number:
+                what = f"line {line.number}: {what}"
+            self._gathering.skip(line.topic, line.time_ns, what, line.text)
+
+    def _mark(self, topic: str, time_ns: int, raw: bytes) -> None:
+        if MarkMessages.message_type(topic) == "String":
+            self._gathering.mark_messages.add_text(topic, _plain(self._decoders.text(raw)))
+        else:
+            marked_ns = self._decoders.time(raw) or self._from_bag(time_ns)
+            self._gathering.mark_messages.add_time(topic, marked_ns)
+
+    def _from_bag(self, time_ns: int) -> int:
+        self._unstamped += 1
+        return time_ns
+
+    def _count_lost(self, node: bytes, seq: int) -> None:
+        """roscpp and rospy number a node's log messages; a restarted node counts from the start."""
+        last = self._last_seq.get(node)
+        if last is not None and seq > last + 1:
+            self._gathering.lost[_plain(node)] += seq - last - 1
+        self._last_seq[node] = seq
+
+    def _node(self, name: bytes) -> int:
+        code = self._nodes.get(name)
+        if code is None:
+            code = self._nodes[name] = self._gathering.nodes.code(_plain(name))
+        return code
+
+    def _channel(self, way: Way, topic: str) -> Channel:
+        if way not in self._channels:
+            self._channels[way] = self._gathering.channel(self._source, way, topic)
+        return self._channels[way]
+
+    def _lines_of(self, way: Way, topic: str, *, stamped: bool, prefix: int = 0) -> Lines:
+        lines = self._lines.get(way)
+        if lines is None:
+            channel = self._channel(way, topic)
+            lines = Lines(self._gathering, channel, stamped=stamped, prefix=prefix)
+            self._lines[way] = lines
+        return lines
+
+
+def _is_other(line: bytes) -> bool:
+    comma = line.find(b",")
+    return line.startswith(_WITH_TIME, comma) or line.startswith(_OTHERS)
+
+
+def _plain(raw: bytes) -> str:
+    return raw.decode("utf-8", "replace")

@@ -1,0 +1,282 @@
+"""From all that was read to a recording, in memory or, block by block, on disk."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import secrets
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from pytpc import events as event_table
+from pytpc import summaries as summary_table
+from pytpc.columns import WORDS, recode, sorted_words
+from pytpc.errors import TpcError
+from pytpc.events import Events
+from pytpc.ingest.duplicates import APART_NS, TOLERANCE_NS, Once, clock_notes
+from pytpc.ingest.gathering import SUMMARY_ROW, Gathering
+from pytpc.ingest.recording import EVENTS_FILE, SUMMARIES_FILE, Recording, write_marks
+from pytpc.ingest.spool import Rows
+from pytpc.marks import Mark, joined
+from pytpc.summaries import Summaries
+
+Told = Callable[[int, int], None]
+
+
+@dataclass
+class Outcome:
+    """What was read, with sorted words and every report once; the events are still blocks."""
+
+    gathering: Gathering
+    name: str
+    tolerance_ns: int = TOLERANCE_NS
+    first_ns: int = 2**63 - 1
+    last_ns: int = -(2**63)
+    events: int = 0
+    summaries: int = 0
+    _once: Once = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Sort the words."""
+        self.gathering.flush()
+        self.keys, self._key_places = sorted_words(self.gathering.keys.codes)
+        self.nodes, self._node_places = sorted_words(self.gathering.nodes.codes)
+        self._seen = np.zeros(len(self.keys), np.bool_)
+
+    @property
+    def comparisons(self) -> int:
+        """How many keys the events have that were given."""
+        return int(np.count_nonzero(self._seen))
+
+    def event_blocks(self) -> Iterator[Rows]:
+        """The events in order of time; codes are those of the sorted words."""
+        self._once = Once(self.gathering, self.tolerance_ns)
+        self.events, self.first_ns, self.last_ns = 0, 2**63 - 1, -(2**63)
+        for rows in self._once.blocks(self.gathering.events.blocks()):
+            if rows.size:
+                self.events += rows.size
+                self.first_ns = min(self.first_ns, int(rows["time_ns"][0]))
+                self.last_ns = max(self.last_ns, int(rows["time_ns"][-1]))
+                recoded = self._recoded(rows)
+                self._seen[recoded["key"]] = True
+                yield recoded
+
+    def summary_blocks(self) -> Iterator[Rows]:
+        """The summaries in order of their begin; the same one twice is given once."""
+        self.summaries = 0
+        held: Rows | None = None
+        for block in self.gathering.summaries.blocks():
+            rows = block if held is None else np.concatenate([held, block])
+            cut = int(np.searchsorted(rows["begin_ns"], rows["begin_ns"][-1], "left"))
+            yield from self._each_once(rows[:cut])
+            held = rows[cut:]
+        if held is not None:
+            yield from self._each_once(held)
+
+    def _each_once(self, rows: Rows) -> Iterator[Rows]:
+        """Summaries that are equal in all fields came by two channels."""
+        if len(self.gathering.channels) > 1:
+            rest = [name for name in SUMMARY_ROW.names or () if name != "channel"]
+            _, first = np.unique(_packed(rows[rest]), return_index=True)
+            rows = rows[np.sort(first)]
+        if rows.size:
+            self.summaries += rows.size
+            yield self._recoded(rows)
+
+    def recording(self) -> Recording:
+        """All of it in memory."""
+        blocks = list(self.event_blocks())
+        events = Events.of(**_columns(blocks, event_table.SCHEMA, self._words()))
+        parts = list(self.summary_blocks())
+        summaries = Summaries.of(**_columns(parts, summary_table.SCHEMA, self._words()))
+        return self.rest(_used(events), summaries)
+
+    def rest(self, events: Events, summaries: Summaries) -> Recording:
+        """The recording with these tables; the blocks must have been taken."""
+        gathering = self.gathering
+        marks = joined([*gathering.marks, *gathering.mark_messages.marks()])
+        start_ns, end_ns = self._span(marks)
+        notes = [
+            *gathering.notes,
+            *self._once.notes(),
+            *gathering.late_notes,
+            *clock_notes(gathering.channels),
+            *self._clock_notes(marks),
+        ]
+        return Recording(
+            name=self.name,
+            events=events,
+            marks=marks,
+            start_ns=start_ns,
+            end_ns=end_ns,
+            malformed=gathering.malformed,
+            malformed_first=gathering.malformed_first,
+            lost={node: count for node, count in sorted(gathering.lost.items()) if count},
+            notes=tuple(notes),
+            summaries=summaries,
+            dropped=gathering.dropped_list,
+        )
+
+    def save(self, folder: Path, told: Told | None = None) -> Recording:
+        """Write an ingested folder without holding the events; the answer has empty tables.
+
+        Raises:
+            TpcError: a file cannot be written; ``marks.json`` is written last.
+        """
+        self._parquet(folder / EVENTS_FILE, event_table.SCHEMA, self.event_blocks(), told)
+        if len(self.gathering.summaries):
+            self._parquet(folder / SUMMARIES_FILE, summary_table.SCHEMA, self.summary_blocks())
+        rest = self.rest(Events.empty(), Summaries.empty())
+        write_marks(rest, folder, self.events, self.summaries)
+        return rest
+
+    def save_parquet(self, path: Path, told: Told | None = None) -> Recording:
+        """Write the events alone; see ``save``."""
+        self._parquet(path, event_table.SCHEMA, self.event_blocks(), told)
+        return self.rest(Events.empty(), Summaries.empty())
+
+    def save_csv(self, path: Path, told: Told | None = None) -> Recording:
+        """Write the events in the thesis's form (docs/formats.md), without nodes; see ``save``."""
+        total = max(1, len(self.gathering.events))
+        with replacing(path) as staged, staged.open("w", encoding="ascii") as stream:
+            for rows in self.event_blocks():
+                stream.writelines(self._lines(rows))
+                if told is not None:
+                    told(self.events, total)
+        return self.rest(Events.empty(), Summaries.empty())
+
+    def _lines(self, rows: Rows) -> Iterator[str]:
+        for time_ns, cmp, thresh, key, _, _, result, res in rows.tolist():
+            seconds, rest = divmod(time_ns, 10**9)
+            decimals = f"{rest:09d}".removesuffix("0").removesuffix("0")
+            yield (
+                f"{seconds}.{decimals},{self.keys[key]},{result:d},cmp:{_shortest(cmp)},"
+                f"thresh:{_shortest(thresh)},res:{res:d}\n"
+            )
+
+    def _parquet(
+        self, path: Path, schema: pa.Schema, blocks: Iterator[Rows], told: Told | None = None
+    ) -> None:
+        total = max(1, len(self.gathering.events))
+        with (
+            replacing(path) as staged,
+            pq.ParquetWriter(staged, schema, compression="zstd") as writer,
+        ):
+            for rows in blocks:
+                writer.write_table(_table(rows, schema, self._words()))
+                if told is not None:
+                    told(self.events, total)
+
+    def _words(self) -> dict[str, list[str]]:
+        return {"key": self.keys, "node": self.nodes}
+
+    def _recoded(self, rows: Rows) -> Rows:
+        rows = rows.copy()
+        rows["key"] = self._key_places[rows["key"]]
+        rows["node"] = self._node_places[rows["node"]]
+        return rows
+
+    def _times(self, marks: tuple[Mark, ...]) -> list[int]:
+        times = [mark.time_ns for mark in marks]
+        return times + ([self.first_ns, self.last_ns] if self.events else [])
+
+    def _span(self, marks: tuple[Mark, ...]) -> tuple[int, int]:
+        """First and last time, on the clock of the reports.
+
+        A bag that was recorded on another clock (wall time, the robot on simulated time) says
+        nothing about it.
+        """
+        times = self._times(marks)
+        spans = self.gathering.spans
+        if times:
+            spans = [span for span in spans if not _apart(times, span)]
+        every = times + [time for span in spans for time in span]
+        return (min(every), max(every)) if every else (0, 0)
+
+    def _clock_notes(self, marks: tuple[Mark, ...]) -> Iterator[str]:
+        times = self._times(marks)
+        if times and any(_apart(times, span) for span in self.gathering.spans):
+            yield "the bag was recorded on another clock than the reports'"
+
+
+@contextlib.contextmanager
+def replacing(path: Path) -> Iterator[Path]:
+    """A new file beside ``path`` that takes its place when all went well.
+
+    Raises:
+        TpcError: it cannot be written; what stood there before is untouched.
+    """
+    staged = path.with_name(f".{path.name}.tpc-{secrets.token_hex(4)}")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        yield staged
+        with staged.open("rb") as stream:
+            os.fsync(stream.fileno())
+        staged.replace(path)
+    except OSError as error:
+        raise TpcError(f"cannot be written: {error.strerror or error}", path) from error
+    finally:
+        with contextlib.suppress(OSError):
+            staged.unlink(missing_ok=True)
+
+
+def _apart(times: list[int], span: tuple[int, int]) -> bool:
+    return min(times) > span[1] + APART_NS or max(times) < span[0] - APART_NS
+
+
+def _columns(blocks: list[Rows], schema: pa.Schema, words: dict[str, list[str]]) -> dict[str, Any]:
+    columns: dict[str, Any] = {
+        name: np.concatenate([rows[name] for rows in blocks]) if blocks else []
+        for name in schema.names
+    }
+    return {**columns, "keys": words["key"], "nodes": words["node"]}
+
+
+def _used(events: Events) -> Events:
+    """The table without words that only occur in what was left out."""
+    keys = [events.keys[code] for code in np.unique(events.key).tolist()]
+    nodes = [events.nodes[code] for code in np.unique(events.node).tolist()]
+    return Events.of(
+        time_ns=events.time_ns,
+        key=recode(events.key, events.keys, keys),
+        result=events.result,
+        cmp=events.cmp,
+        thresh=events.thresh,
+        res=events.res,
+        node=recode(events.node, events.nodes, nodes),
+        keys=keys,
+        nodes=nodes,
+    )
+
+
+def _packed(rows: Rows) -> npt.NDArray[np.bytes_]:
+    """bytes[n]: all fields of each row, NaN and all."""
+    packed = np.empty(rows.size, [(name, rows.dtype[name]) for name in rows.dtype.names or ()])
+    for name in rows.dtype.names or ():
+        packed[name] = rows[name]
+    whole: npt.NDArray[np.bytes_] = packed.view(f"S{packed.dtype.itemsize}")
+    return whole
+
+
+def _table(rows: Rows, schema: pa.Schema, words: dict[str, list[str]]) -> pa.Table:
+    arrays = []
+    for column in schema:
+        values = np.ascontiguousarray(rows[column.name])
+        if column.type == WORDS:
+            arrays.append(
+                pa.DictionaryArray.from_arrays(values, pa.array(words[column.name], pa.string()))
+            )
+        else:
+            arrays.append(pa.array(values, column.type))
+    return pa.Table.from_arrays(arrays, schema=schema)
+
+
+def _shortest(value: float) -> str:
+    return repr(value).removesuffix(".0")

@@ -1,0 +1,198 @@
+"""One entrance to all recordings: what a file is, is seen from its content, not from its name."""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+
+from pytpc.errors import InputError, TpcError
+from pytpc.ingest.bag import read_bag_into
+from pytpc.ingest.bag_chunks import MAGIC as BAG_MAGIC
+from pytpc.ingest.binary import read_binary
+from pytpc.ingest.binary_layout import MAGIC as TPC_MAGIC
+from pytpc.ingest.duplicates import TOLERANCE_NS
+from pytpc.ingest.folder import read_folder_into
+from pytpc.ingest.gathering import Gathering, Progress
+from pytpc.ingest.outcome import Outcome
+from pytpc.ingest.recording import EVENTS_FILE, MARKS_FILE, Recording, load_recording
+from pytpc.ingest.ros2_bag import MCAP_MAGIC, SQLITE_MAGIC, read_ros2_into
+from pytpc.ingest.text import read_text_into
+from pytpc.marks import MARKS_HEADER, Mark, joined, marks_beside, read_marks
+
+Reader = Callable[[Path, Gathering, Progress | None], None]
+ROS2_FILE = "metadata.yaml"
+_FIRST = 4096
+
+
+def read(
+    paths: Path | Sequence[Path],
+    on_progress: Progress | None = None,
+    *,
+    tolerance_ns: int = TOLERANCE_NS,
+) -> Recording:
+    """Read recordings of one mission into memory, in order of time and every report once.
+
+    Args:
+        paths: bags (ROS 1, .mcap, .db3), binary files, logs, console text, CSV, folders of such
+            files, and folders that ``pytpc convert`` wrote.
+        on_progress: called with (done, total) every now and then, of one file after another.
+        tolerance_ns: how far apart in time the same report may be in two files.
+
+    Raises:
+        InputError: a file is not there, is none of these, or is broken; one line.
+    """
+    given = [paths] if isinstance(paths, Path) else list(paths)
+    if len(given) == 1 and is_ingested(given[0]):
+        recording = load_recording(given[0])
+        return replace(recording, marks=joined([*recording.marks, *_beside(given[0])]))
+    gathering = Gathering()
+    gather(given, gathering, on_progress)
+    return Outcome(gathering, name_of(given), tolerance_ns).recording()
+
+
+def read_bag(path: Path, on_progress: Progress | None = None) -> Recording:
+    """Read one ROS 1 bag; see ``read``.
+
+    Raises:
+        InputError: the file is no bag, is truncated, has no index or is damaged.
+    """
+    gathering = Gathering()
+    read_bag_into(path, gathering, on_progress)
+    gathering.marks += _beside(path)
+    return Outcome(gathering, path.stem).recording()
+
+
+@contextmanager
+def opened(
+    paths: Sequence[Path],
+    scratch: Path,
+    on_progress: Progress | None = None,
+    *,
+    tolerance_ns: int = TOLERANCE_NS,
+) -> Iterator[Outcome]:
+    """The same with little memory: what is too much for it goes to files in ``scratch``.
+
+    Args:
+        paths: as in ``read``.
+        scratch: a folder on a disk that has as much room as the reports need, 35 bytes each.
+        on_progress: as in ``read``.
+        tolerance_ns: as in ``read``.
+
+    Raises:
+        InputError: as in ``read``.
+        TpcError: ``scratch`` cannot be written.
+    """
+    try:
+        scratch.mkdir(parents=True, exist_ok=True)
+        folder = Path(tempfile.mkdtemp(prefix=".tpc-", dir=scratch))
+    except OSError as error:
+        raise TpcError(f"cannot be written: {error.strerror or error}", scratch) from error
+    try:
+        gathering = Gathering(folder)
+        gather(paths, gathering, on_progress)
+        yield Outcome(gathering, name_of(paths), tolerance_ns)
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def gather(
+    paths: Sequence[Path], gathering: Gathering, on_progress: Progress | None = None
+) -> None:
+    """Read all of ``paths`` into ``gathering``; a folder stands for the recordings in it.
+
+    Raises:
+        InputError: see ``read``.
+    """
+    seen: set[Path] = set()
+    for path in paths:
+        found = sources(path)
+        for source in found:
+            # The same file by two names is read once.
+            real = source.resolve()
+            if real not in seen:
+                seen.add(real)
+                reader_of(source)(source, gathering, on_progress)
+                gathering.marks += _beside(source)
+
+
+def sources(path: Path) -> list[Path]:
+    """The recordings that ``path`` stands for: itself, or those in a folder, by name.
+
+    Raises:
+        InputError: it is not there, or is a folder without recordings.
+    """
+    if not path.exists():
+        raise InputError("no such bag, file or folder", path)
+    if not path.is_dir() or is_ingested(path) or (path / ROS2_FILE).is_file():
+        return [path]
+    try:
+        entries = sorted(entry for entry in path.iterdir() if not entry.name.startswith("."))
+    except OSError as error:
+        raise InputError(f"cannot be read: {error.strerror or error}", path) from error
+    found = [entry for entry in entries if _is_recording(entry)]
+    if not found:
+        raise InputError("a folder without recordings", path)
+    return found
+
+
+def is_ingested(path: Path) -> bool:
+    """Whether this is a folder that ``pytpc convert`` wrote."""
+    return (path / MARKS_FILE).is_file() and (path / EVENTS_FILE).is_file()
+
+
+def name_of(paths: Sequence[Path]) -> str:
+    """What to call a mission that is in these files: after the first."""
+    path = paths[0]
+    return path.name if path.is_dir() else path.stem
+
+
+def reader_of(path: Path) -> Reader:
+    """What reads this, by its first bytes.
+
+    Raises:
+        InputError: it cannot be read, or nothing reads it.
+    """
+    if path.is_dir():
+        return read_folder_into if is_ingested(path) else read_ros2_into
+    try:
+        with path.open("rb") as stream:
+            first = stream.read(_FIRST)
+    except OSError as error:
+        raise InputError(f"cannot be read: {error.strerror or error}", path) from error
+    for magic, reader in (
+        (TPC_MAGIC, read_binary),
+        (BAG_MAGIC[:8], read_bag_into),
+        (MCAP_MAGIC, read_ros2_into),
+        (SQLITE_MAGIC, read_ros2_into),
+    ):
+        if first.startswith(magic):
+            return reader
+    if not first:
+        raise InputError("the file is empty", path)
+    if BAG_MAGIC.startswith(first) or path.suffix == ".bag":
+        return read_bag_into
+    if first.startswith(MARKS_HEADER):
+        return _read_marks_into
+    if b"\0" in first:
+        raise InputError("neither a bag, nor a .tpc file, nor text", path)
+    return read_text_into
+
+
+def _beside(path: Path) -> tuple[Mark, ...]:
+    """The marks that were made after the recording ``path``, by ``pytpc mark``."""
+    file = marks_beside(path)
+    return read_marks(file) if file.is_file() else ()
+
+
+def _read_marks_into(path: Path, gathering: Gathering, on_progress: Progress | None) -> None:
+    gathering.marks += read_marks(path)
+
+
+def _is_recording(path: Path) -> bool:
+    if path.is_dir():
+        return is_ingested(path) or (path / ROS2_FILE).is_file()
+    return path.suffix in {".bag", ".mcap", ".db3", ".tpc", ".log", ".csv", ".txt"}

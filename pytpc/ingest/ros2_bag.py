@@ -1,0 +1,147 @@
+"""ROS 2 recordings: ``.mcap`` and ``.db3`` files, and the folders in which rosbag2 keeps them.
+
+Read through rosbags, which reads the profile of ROS 2 alone.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+from rosbags.interfaces import Connection
+from rosbags.rosbag2 import Reader
+from rosbags.rosbag2.storage_mcap import McapReader
+from rosbags.rosbag2.storage_sqlite3 import Sqlite3Reader
+
+from pytpc.errors import InputError
+from pytpc.ingest import ros2
+from pytpc.ingest.gathering import Gathering, Progress
+from pytpc.ingest.messages import REPORTS, ROSOUT, Decoders, Messages
+from pytpc.marks import MarkMessages
+
+MCAP_MAGIC = b"\x89MCAP0\r\n"
+SQLITE_MAGIC = b"SQLite format 3\0"
+
+_TYPES = {ROSOUT: {"rcl_interfaces/msg/Log"}, REPORTS: {"std_msgs/msg/String"}}
+_TIMES = {"builtin_interfaces/msg/Time", "std_msgs/msg/Time"}
+_DECODERS = Decoders(ros2.decode_log, ros2.decode_string, ros2.decode_time)
+_STEP = 4096
+_Reader = Reader | McapReader | Sqlite3Reader
+_IN_A_URI = frozenset("?#%")
+
+
+def read_ros2_into(path: Path, gathering: Gathering, on_progress: Progress | None = None) -> None:
+    """Read a .mcap or .db3 file, or a folder of rosbag2.
+
+    Reports come from /rosout and /threshold_information, marks from docs/formats.md's topics.
+
+    Raises:
+        InputError: the file is truncated or damaged, or of ROS 1; one line.
+    """
+    with contextlib.ExitStack() as exits:
+        try:
+            reader = _open(path, exits)
+            connections = list(reader.connections)
+            wanted, notes = _wanted(connections)
+            gathering.notes += notes
+            whole = reader if isinstance(reader, Reader) else reader.metadata
+            if whole.message_count:
+                gathering.spans.append((whole.start_time, whole.end_time - 1))
+        except Exception as error:
+            raise _broken(path, error) from error
+        taken = Messages(gathering, str(path), _DECODERS, numbered=False)
+        total = sum(connection.msgcount for connection in wanted)
+        for turn, (connection, time_ns, raw) in enumerate(_messages(reader, wanted, path)):
+            taken.take(connection.topic, "", time_ns, bytes(raw))
+            if on_progress is not None and turn % _STEP == 0:
+                on_progress(turn, total)
+        taken.close()
+
+
+def _open(path: Path, exits: contextlib.ExitStack) -> _Reader:
+    """rosbags' reader of the file, by its content."""
+    reader: _Reader
+    if path.is_dir():
+        reader = Reader(path)
+    else:
+        with path.open("rb") as stream:
+            first = stream.read(len(SQLITE_MAGIC))
+        if first.startswith(MCAP_MAGIC):
+            reader = McapReader(path)
+        else:
+            if _IN_A_URI & set(str(path)):
+                # The path becomes a part of a URI there.
+                folder = exits.enter_context(tempfile.TemporaryDirectory())
+                link = Path(folder) / "bag.db3"
+                link.symlink_to(path.absolute())
+                path = link
+            reader = Sqlite3Reader(path)
+    reader.open()
+    exits.callback(_close, reader)
+    return reader
+
+
+def _close(reader: _Reader) -> None:
+    with contextlib.suppress(Exception):
+        reader.close()
+
+
+def _messages(
+    reader: _Reader, wanted: list[Connection], path: Path
+) -> Iterator[tuple[Connection, int, bytes]]:
+    """The messages of ``wanted``; whatever the reader dies of becomes one InputError."""
+    if not wanted:
+        return
+    messages = reader.messages(wanted)
+    while True:
+        try:
+            message = next(messages)
+        except StopIteration:
+            return
+        except Exception as error:
+            raise _broken(path, error) from error
+        yield message
+
+
+def _broken(path: Path, error: Exception) -> InputError:
+    if isinstance(error, OSError) and error.strerror:
+        return InputError(f"cannot be read: {error.strerror}", path)
+    said = " ".join(str(error).split()) or type(error).__name__
+    if "Profile is not ros2" in said:
+        return InputError("an .mcap file that is not of ROS 2: rosbags does not read it", path)
+    hint = f'; "mcap recover {path.name}" saves the rest'
+    if path.is_dir():
+        hint = ""
+    elif _first(path) != MCAP_MAGIC:
+        hint = f'; "sqlite3 {path.name} .recover" saves the rest'
+    size = "" if path.is_dir() else f" ({path.stat().st_size:,} bytes)"
+    return InputError(f"truncated or damaged{size}: {said}{hint}", path)
+
+
+def _wanted(connections: list[Connection]) -> tuple[list[Connection], list[str]]:
+    """The connections that carry reports or marks, and a note for each of another type."""
+    wanted = []
+    notes = set()
+    for connection in connections:
+        expected = _TYPES.get(connection.topic)
+        of_marks = MarkMessages.message_type(connection.topic)
+        if expected is None and of_marks is not None:
+            expected = _TIMES if of_marks == "Time" else _TYPES[REPORTS]
+        if expected is None:
+            continue
+        if connection.msgtype in expected:
+            wanted.append(connection)
+        else:
+            kinds = " or ".join(sorted(expected))
+            notes.add(f"{connection.topic} carries {connection.msgtype}, not {kinds}: not read")
+    return wanted, sorted(notes)
+
+
+def _first(path: Path) -> bytes:
+    try:
+        with path.open("rb") as stream:
+            return stream.read(len(MCAP_MAGIC))
+    except OSError:
+        return b""

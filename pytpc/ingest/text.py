@@ -1,0 +1,193 @@
+"""Reports in text: logs of roscpp and of the rosout node, console output, CSV.
+
+A line of a log may have anything in front of the report: what ROSCONSOLE_FORMAT says, colours, the
+name of a node. Of it the time is taken (of ``[wall, simulated]`` the simulated one) and, where it
+is there, the node's name. A report without a time gets that of the line before it that has one.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from pytpc.errors import InputError
+from pytpc.ingest.gathering import Batches, Gathering, Lines, Progress
+from pytpc.ingest.rosout_line import (
+    LATEST_NS,
+    PREFIX,
+    Batch,
+    Drop,
+    Malformed,
+    nanoseconds,
+    parse_batch,
+    parse_other,
+    parse_stamped_other,
+)
+from pytpc.summaries import Summary
+from pytpc.words import many
+
+_BLOCK = 1 << 20
+_LONGEST = 1 << 16
+_PREFIX = PREFIX.encode()
+_COLOUR = re.compile(rb"\x1b\[[0-9;]*[A-Za-z]")
+_TIME = re.compile(
+    rb"(?<![0-9.])([0-9]{1,10}\.[0-9]{1,9})(?:, *([0-9]{1,10}\.[0-9]{1,9}))?(?![0-9.])"
+)
+_NODE = re.compile(rb"(?:^|[\[\s(])(/[A-Za-z][A-Za-z0-9_/]*)(?=[\]\s:),])")
+_BEGIN = re.compile(rb"threshold_(?:information|summary|dropped):")
+_CSV = re.compile(rb"[0-9]{1,10}\.[0-9]{1,9},|#seq:")
+
+
+def read_text_into(path: Path, gathering: Gathering, on_progress: Progress | None = None) -> None:
+    """Read a log, console output, or CSV; which it is, the first two lines tell.
+
+    In CSV every line but the first must be a report; in a log only what begins like one.
+
+    Raises:
+        InputError: the file cannot be read.
+    """
+    try:
+        size = max(1, path.stat().st_size)
+        reader: _Taker | None = None
+        first: list[tuple[int, bytes]] = []
+        for number, line, done in _lines(path):
+            if reader is None:
+                first.append((number, line))
+                if len(first) < 2 and not _CSV.match(line):
+                    continue
+                is_csv = any(_CSV.match(text) for _, text in first)
+                reader = (_Csv if is_csv else _Log)(path, gathering)
+                for earlier in first:
+                    reader.take(*earlier)
+                continue
+            reader.take(number, line)
+            if on_progress is not None and number % 4096 == 0:
+                on_progress(done, size)
+        if reader is None:
+            reader = _Log(path, gathering)
+            for earlier in first:
+                reader.take(*earlier)
+        reader.close()
+    except OSError as error:
+        raise InputError(f"cannot be read: {error.strerror or error}", path) from error
+
+
+class _Taker:
+    """What both kinds of files have in common."""
+
+    def __init__(self, path: Path, gathering: Gathering, *, stamped: bool) -> None:
+        self.gathering = gathering
+        self.channel = gathering.channel(str(path), "text", path.name)
+        self.lines = Lines(gathering, self.channel, stamped=stamped)
+        self.node = path.stem
+        self.batches = Batches(gathering)
+
+    def take(self, number: int, line: bytes) -> None:
+        raise NotImplementedError
+
+    def other(
+        self, found: Summary | Drop | Malformed | None, node: str, number: int, text: str
+    ) -> None:
+        """A line that is no report."""
+        if isinstance(found, Summary):
+            self.gathering.add_summary(self.channel, found)
+        elif isinstance(found, Drop):
+            self.batches.drop(node, found)
+        else:
+            what = "no time in front" if found is None else f"{found.what}, column {found.column}"
+            self.gathering.skip(self.channel.topic, 0, f"line {number}: {what}", text)
+
+    def close(self) -> None:
+        self.lines.flush()
+        self.batches.close()
+
+
+class _Log(_Taker):
+    """Lines with anything in front of the report."""
+
+    def __init__(self, path: Path, gathering: Gathering) -> None:
+        super().__init__(path, gathering, stamped=False)
+        self._last_ns = 0
+        self._without_time = 0
+
+    def take(self, number: int, line: bytes) -> None:
+        if b"\x1b" in line:
+            line = _COLOUR.sub(b"", line)
+        found = _BEGIN.search(line)
+        front = line if found is None else line[: found.start()]
+        stamp = _TIME.search(front)
+        time_ns = -1 if stamp is None else nanoseconds((stamp[2] or stamp[1]).decode())
+        if 0 <= time_ns <= LATEST_NS:
+            self._last_ns = time_ns
+        else:
+            stamp = None
+        if found is None:
+            return
+        self._without_time += stamp is None
+        named = _NODE.search(front)
+        node = self.node if named is None else named[1].decode()
+        rest = line[found.start() :]
+        if rest.startswith(_PREFIX):
+            code = self.gathering.nodes.code(node)
+            self.lines.add(rest[len(_PREFIX) :], self._last_ns, code, number)
+        else:
+            self.other(parse_other(_plain(rest), node), node, number, _plain(rest))
+
+    def close(self) -> None:
+        super().close()
+        if self._without_time:
+            self.gathering.late_notes.append(
+                f"{self.channel.topic}: {many(self._without_time, 'line')} without a time got that"
+                " of the line before"
+            )
+
+
+class _Csv(_Taker):
+    """Lines of the form ``TIME,KEY,RESULT,cmp:C,thresh:T,res:R``, a headline above them."""
+
+    def __init__(self, path: Path, gathering: Gathering) -> None:
+        super().__init__(path, gathering, stamped=True)
+        self._code = gathering.nodes.code(self.node)
+
+    def take(self, number: int, line: bytes) -> None:
+        if not line.strip() or (number == 1 and not _CSV.match(line)):
+            return
+        if line.startswith(b"#"):
+            batch = parse_batch(_plain(line))
+            if isinstance(batch, Batch):
+                self.batches.see(self.node, batch)
+            else:
+                self.other(batch, self.node, number, _plain(line))
+        elif _BEGIN.search(line):
+            text = _plain(line)
+            self.other(parse_stamped_other(text, self.node), self.node, number, text)
+        else:
+            self.lines.add(line, 0, self._code, number)
+
+
+def _lines(path: Path) -> Iterator[tuple[int, bytes, int]]:
+    """Number from 1, text without its end, and bytes read so far; of endless lines the begin."""
+    rest, number, done, cut = b"", 0, 0, False
+    with path.open("rb") as stream:
+        while block := stream.read(_BLOCK):
+            done += len(block)
+            lines = (rest + block).split(b"\n")
+            rest = lines.pop()
+            for line in lines:
+                if cut:
+                    cut = False
+                    continue
+                number += 1
+                yield number, line[:_LONGEST].rstrip(b"\r"), done
+            if len(rest) > _LONGEST:
+                if not cut:
+                    number += 1
+                    yield number, rest[:_LONGEST], done
+                rest, cut = b"", True
+    if rest and not cut:
+        yield number + 1, rest.rstrip(b"\r"), done
+
+
+def _plain(raw: bytes) -> str:
+    return raw.decode("utf-8", "replace")
