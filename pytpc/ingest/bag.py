@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
+
 from pytpc.errors import InputError
 from pytpc.ingest import ros1
 from pytpc.ingest.bag_chunks import BagConnection, BagIndex, BrokenBagError, messages, read_index
@@ -15,7 +17,6 @@ from pytpc.marks import MarkMessages
 _LOG = "rosgraph_msgs/msg/Log"
 _STRING = "std_msgs/msg/String"
 _TIME = "std_msgs/msg/Time"
-_STEP = 4096
 _DECODERS = Decoders(ros1.decode_log, ros1.decode_string, ros1.decode_time)
 
 
@@ -45,13 +46,19 @@ def read_bag_into(path: Path, gathering: Gathering, on_progress: Progress | None
                 gathering.spans.append(index.span)
             taken = Messages(gathering, str(path), _DECODERS)
             total = index.index_pos
-            for turn, (number, time_ns, raw, behind) in enumerate(
-                messages(stream, index, wanted.keys()) if wanted else ()
-            ):
-                connection = wanted[number]
-                taken.take(connection.topic, connection.caller, time_ns, raw)
-                if on_progress is not None and turn % _STEP == 0:
-                    on_progress(min(behind, total), total)
+            logs = [n for n, connection in wanted.items() if connection.topic == ROSOUT]
+            for chunk in messages(stream, index, wanted.keys()) if wanted else ():
+                is_log = np.isin(chunk.connection, logs)
+                others = np.flatnonzero(~is_log)
+                if not taken.take_logs(chunk, is_log):
+                    others = np.arange(chunk.connection.size)
+                for row in others.tolist():
+                    connection = wanted[int(chunk.connection[row])]
+                    raw = chunk.data[chunk.begin[row] : chunk.end[row]]
+                    time_ns = int(chunk.time_ns[row])
+                    taken.take(connection.topic, connection.caller, time_ns, raw)
+                if on_progress is not None:
+                    on_progress(min(chunk.behind, total), total)
             taken.close()
             if on_progress is not None:
                 on_progress(total, total)
