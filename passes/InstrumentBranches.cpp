@@ -179,11 +179,66 @@ static FunctionCallee logFunction(Module &M) {
   return Callee;
 }
 
+/// The log library's word on whether reports are wanted. A program has it
+/// itself, weakly, where the library finds it, so that it takes one look and
+/// works without that library. A shared library asks the log library's, if it
+/// is there: nothing may point into what can be unloaded.
+static GlobalVariable *wantedFlag(Module &M) {
+  if (GlobalVariable *Wanted = M.getNamedGlobal("tpc_reporting"))
+    return Wanted;
+  Type *Byte = Type::getInt8Ty(M.getContext());
+  bool IsProgram = M.getPIELevel() != PIELevel::Default ||
+                   M.getPICLevel() == PICLevel::NotPIC;
+  return new GlobalVariable(M, Byte, /*isConstant=*/false,
+                            IsProgram ? GlobalValue::WeakAnyLinkage
+                                      : GlobalValue::ExternalWeakLinkage,
+                            IsProgram ? ConstantInt::get(Byte, 1) : nullptr,
+                            "tpc_reporting");
+}
+
+/// `if (tpc_reporting) log_one(...)`, a function that the optimiser puts in the
+/// place of its calls: a program whose reports are off pays for a branch.
+static Function *reportFunction(Module &M, FunctionCallee Log) {
+  LLVMContext &Ctx = M.getContext();
+  auto *F = Function::Create(Log.getFunctionType(),
+                             GlobalValue::InternalLinkage, "tpc.report", M);
+  F->addFnAttr(Attribute::AlwaysInline);
+  F->setDoesNotThrow();
+  GlobalVariable *Wanted = wantedFlag(M);
+  auto *Find = BasicBlock::Create(Ctx, "", F);
+  auto *Look = BasicBlock::Create(Ctx, "", F);
+  auto *Report = BasicBlock::Create(Ctx, "", F);
+  auto *Done = BasicBlock::Create(Ctx, "", F);
+  IRBuilder<> B(Find);
+  if (Wanted->hasExternalWeakLinkage())
+    B.CreateCondBr(B.CreateIsNull(Wanted), Report, Look);
+  else
+    B.CreateBr(Look);
+  B.SetInsertPoint(Look);
+  // It may change at any time.
+  LoadInst *Now = B.CreateAlignedLoad(B.getInt8Ty(), Wanted, Align(1));
+  Now->setAtomic(AtomicOrdering::Monotonic);
+  B.CreateCondBr(B.CreateIsNull(Now), Done, Report);
+  B.SetInsertPoint(Report);
+  SmallVector<Value *, 5> Arguments;
+  for (Argument &A : F->args())
+    Arguments.push_back(&A);
+  CallInst *Call = B.CreateCall(Log, Arguments);
+  Call->addParamAttr(1, Attribute::ZExt);
+  Call->addParamAttr(4, Attribute::ZExt);
+  B.CreateBr(Done);
+  B.SetInsertPoint(Done);
+  B.CreateRetVoid();
+  return F;
+}
+
 std::string insertReports(Module &M, ArrayRef<Report> Reports) {
   if (Reports.empty())
     return "";
   bool WasThere = M.getFunction("_Z7log_onePcbddb");
+  bool WasWanted = M.getNamedGlobal("tpc_reporting");
   FunctionCallee Log = logFunction(M);
+  Function *ReportTo = reportFunction(M, Log);
   SmallVector<Instruction *, 0> Inserted;
   StringMap<GlobalVariable *> Keys;
   Instruction *Above = nullptr, *Before = nullptr;
@@ -207,11 +262,8 @@ std::string insertReports(Module &M, ArrayRef<Report> Reports) {
     B.SetCurrentDebugLocation(R.Before->getDebugLoc());
     Value *Result = R.Switch ? takesCase(B, *R.Switch) : toBool(B, R.Result);
     Value *Outcome = R.Outcome == R.Result ? Result : toBool(B, R.Outcome);
-    CallInst *Call =
-        B.CreateCall(Log, {Key, Result, toDouble(B, R.Compared, R.Signed),
-                           toDouble(B, R.Threshold, R.Signed), Outcome});
-    Call->addParamAttr(1, Attribute::ZExt);
-    Call->addParamAttr(4, Attribute::ZExt);
+    B.CreateCall(ReportTo, {Key, Result, toDouble(B, R.Compared, R.Signed),
+                            toDouble(B, R.Threshold, R.Signed), Outcome});
     Collect();
   };
   std::string Why;
@@ -231,6 +283,10 @@ std::string insertReports(Module &M, ArrayRef<Report> Reports) {
     I->eraseFromParent();
   for (auto &[Text, Key] : Keys)
     Key->eraseFromParent();
+  ReportTo->eraseFromParent();
+  if (GlobalVariable *Wanted = M.getNamedGlobal("tpc_reporting");
+      Wanted && !WasWanted)
+    Wanted->eraseFromParent();
   if (auto *F = dyn_cast<Function>(Log.getCallee()); F && !WasThere)
     F->eraseFromParent();
   return Why;

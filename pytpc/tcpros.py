@@ -159,14 +159,31 @@ class RawSubscriber:
         publishers = self.call_master("registerSubscriber", topic, "*", self._uri)
         self._on_publishers(topic, cast(list[str], publishers))
 
+    def register(self) -> None:
+        """Register all topics once more: the master was started again.
+
+        Raises:
+            RunError: the master does not answer or refuses.
+        """
+        for topic in list(self._wanted):
+            self.subscribe(topic)
+
     def call_master(self, method: str, *arguments: object) -> object:
         """Call a method of the master API.
 
         Raises:
             RunError: the master does not answer or refuses.
         """
+        return self.call_master_as(self.name, method, *arguments)
+
+    def call_master_as(self, name: str, method: str, *arguments: object) -> object:
+        """The same in the name of another node of this process.
+
+        Raises:
+            RunError: the master does not answer or refuses.
+        """
         try:
-            return call(self._master, method, self.name, *arguments)
+            return call(self._master, method, name, *arguments)
         except (OSError, HTTPException, xmlrpc.client.Error) as error:
             raise RunError(f"the ROS master at {self._master}: {method}: {error}") from error
 
@@ -290,11 +307,13 @@ def _slave_server(host: str, on_publishers: Callable[[str, list[str]], None]) ->
 
 
 def call(uri: str, method: str, *arguments: object) -> object:
-    """Call a method of a master or node; the value of its answer.
+    """Call a method of ROS's master or slave API, which answers code, message and value.
+
+    Returns:
+        The value.
 
     Raises:
-        OSError, HTTPException, xmlrpc.client.Error: it does not answer in time; a Fault where it
-            says no.
+        OSError, HTTPException, xmlrpc.client.Error: nobody answers, or with another code than 1.
     """
     proxy = xmlrpc.client.ServerProxy(uri, transport=_PatientTransport())
     try:
@@ -340,15 +359,15 @@ def _open(topic: str, publisher: str, name: str) -> tuple[socket.socket, Source]
 
 
 def receive(connection: socket.socket, count: int) -> bytes:
-    """Exactly ``count`` bytes.
+    """Exactly so many bytes.
 
     Raises:
-        OSError: the connection ends or is too slow.
+        OSError: the other side closes the connection before, or is too slow.
     """
     data = b""
     while len(data) < count:
         part = connection.recv(count - len(data))
         if not part:
-            raise ConnectionResetError("closed in the middle of the header")
+            raise ConnectionResetError("closed before the end")
         data += part
     return data

@@ -1,34 +1,107 @@
-//===- LogOne.cpp ---------------------------------------------------------===//
+//===- LogOne.cpp - What instrumented code calls --------------------------===//
 #include "LogOne.h"
-#include "Sink.h"
 
-#include <cstdio>
-#include <cstdlib>
-#include <cstring>
+#include "Edges.h"
+#include "Modes.h"
+#include "Runtime.h"
+
+char tpc_reporting = 1;
 
 namespace tpc {
 
-/// The sink that TPC_SINK names, `rosout` where it names none. A name that is
-/// none gets a warning and the default: a node is never stopped for this.
-static Sink chosenSink() {
-  const char *Name = std::getenv("TPC_SINK");
-  if (!Name || !*Name || !std::strcmp(Name, "rosout"))
-    return logToRosout;
-  if (!std::strcmp(Name, "off"))
-    return logNowhere;
-  std::fprintf(stderr,
-               "tpc: TPC_SINK=%s is no sink (rosout, off); using rosout\n",
-               Name);
-  return logToRosout;
+void emit(Thread &T, Site &S, const Report &R, uint32_t Bits) {
+  if (!ReportsToFile.load(std::memory_order_acquire))
+    NowSink.load(std::memory_order_acquire)->take(R);
+  else if (LogFile *File = NowFile.load(std::memory_order_acquire))
+    File->write(T, S, Bits | layout::bits(R.Result, R.Outcome), R.Compared,
+                R.Threshold);
+}
+
+/// One report under caps.
+static void capped(Thread &T, Site &S, const Report &R) {
+  int8_t Last = S.Last.exchange(R.Result, std::memory_order_relaxed);
+  int64_t Now = Clock::now();
+  DropCount *Over = !S.Used.takes(SiteCap, Now)            ? &S.OverSiteCap
+                    : !ProcessMeter.takes(ProcessCap, Now) ? &S.OverProcessCap
+                                                           : nullptr;
+  if (!Over)
+    return emit(T, S, R, 0);
+  Over->Count.fetch_add(1, std::memory_order_relaxed);
+  Over->Flops.fetch_add(Last >= 0 && Last != R.Result,
+                        std::memory_order_relaxed);
+}
+
+/// Says that the thread is inside of a report: a signal's handler, or code that
+/// is called from here, may report as well.
+static void enter(Thread &T, uint32_t Inside) {
+  T.Inside.store(Inside + 1, std::memory_order_relaxed);
+  std::atomic_signal_fence(std::memory_order_seq_cst);
+}
+
+static void leave(Thread &T, uint32_t Inside) {
+  T.Inside.store(Inside, std::memory_order_release);
+}
+
+static void report(Thread &T, const Report &R) {
+  if (NowMode.load(std::memory_order_acquire) == Mode::NotStarted)
+    startRuntime();
+  Mode M = NowMode.load(std::memory_order_acquire);
+  Site *S = M == Mode::Off ? nullptr : sites().find(R.Key);
+  if (!S)
+    return;
+  if (M == Mode::Edges)
+    edges(T, *S, R);
+  else if (M == Mode::Capped)
+    capped(T, *S, R);
+  else
+    emit(T, *S, R, 0);
+}
+
+/// Everything that may come in the way of the short way below.
+[[gnu::noinline]] static void slowly(const char *Key, bool Result, double Cmp,
+                                     double Thresh, bool Res) {
+  try {
+    Thread *T = ThisThread ? ThisThread : makeThread();
+    uint32_t Inside = T->Inside.load(std::memory_order_relaxed);
+    if (Inside & 1) {
+      T->Nested.fetch_add(1, std::memory_order_relaxed);
+      return;
+    }
+    enter(*T, Inside);
+    try {
+      report(*T, {Key, Result, Cmp, Thresh, Res});
+    } catch (...) {
+      // A report that cannot be made is not worth a node.
+    }
+    leave(*T, Inside + 2);
+  } catch (...) {
+  }
 }
 
 } // namespace tpc
 
+using namespace tpc;
+
 void log_one(char *key, bool result, double cmp, double thresh, bool res) {
-  static const tpc::Sink Report = tpc::chosenSink();
-  try {
-    Report({key, result, cmp, thresh, res});
-  } catch (...) {
-    // A report that cannot be made is not worth a node.
+  Mode M = NowMode.load(std::memory_order_acquire);
+  if (M == Mode::Off)
+    return;
+  Thread *T = ThisThread;
+  if (T && (M == Mode::FileEvery || M == Mode::Edges)) {
+    uint32_t Inside = T->Inside.load(std::memory_order_relaxed);
+    if (!(Inside & 1)) {
+      enter(*T, Inside);
+      if (const Site *S = sites().known(key)) {
+        uint32_t Bits = layout::bits(result, res);
+        if (M == Mode::Edges ? edgesAtOnce(*T, *S, result, Bits, cmp, thresh)
+                             : NowFile.load(std::memory_order_acquire)
+                                   ->writeAtOnce(*T, *S, Bits, cmp, thresh)) {
+          leave(*T, Inside + 2);
+          return;
+        }
+      }
+      leave(*T, Inside);
+    }
   }
+  slowly(key, result, cmp, thresh, res);
 }

@@ -16,6 +16,7 @@
 /// \param res    what this comparison came to
 ///
 /// Safe in any thread and before ros::init; never throws.
-void log_one(char *key, bool result, double cmp, double thresh, bool res);
+__attribute__((visibility("default"))) void
+log_one(char *key, bool result, double cmp, double thresh, bool res);
 
 #endif // TPC_LOGONE_H

@@ -2,6 +2,7 @@
 #include "Report.h"
 
 #include <charconv>
+#include <cstdio>
 
 namespace tpc {
 
@@ -10,15 +11,78 @@ static void append(std::string &Text, double X) {
   Text.append(Buffer, std::to_chars(Buffer, Buffer + sizeof(Buffer), X).ptr);
 }
 
+static void append(std::string &Text, const char *Name, double X) {
+  Text += Name;
+  append(Text, X);
+}
+
+static void append(std::string &Text, const char *Name, uint64_t X) {
+  Text += Name;
+  Text += std::to_string(X);
+}
+
+static void appendSeconds(std::string &Text, int64_t Ns) {
+  char Buffer[40];
+  const char *Sign = Ns < 0 ? "-" : "";
+  uint64_t Size = Ns < 0 ? -static_cast<uint64_t>(Ns) : Ns;
+  std::snprintf(Buffer, sizeof(Buffer), "%s%llu.%09llu", Sign,
+                static_cast<unsigned long long>(Size / 1'000'000'000),
+                static_cast<unsigned long long>(Size % 1'000'000'000));
+  Text += Buffer;
+}
+
+const char *text(DropReason R) {
+  switch (R) {
+  case DropReason::SiteCap:
+    return "site";
+  case DropReason::ProcessCap:
+    return "process";
+  case DropReason::Nested:
+    return "nested";
+  case DropReason::Stopped:
+    return "stopped";
+  }
+  return "";
+}
+
 std::string format(const Report &R) {
   std::string Text;
   Text.reserve(128);
   Text += R.Key;
   Text += R.Result ? ",1,cmp:" : ",0,cmp:";
   append(Text, R.Compared);
-  Text += ",thresh:";
-  append(Text, R.Threshold);
+  append(Text, ",thresh:", R.Threshold);
   Text += R.Outcome ? ",res:1" : ",res:0";
+  return Text;
+}
+
+std::string format(const Summary &S) {
+  std::string Text =
+      format(Report{S.Key, S.Result, S.Compared, S.Threshold, S.Outcome});
+  double Usable = static_cast<double>(S.Count - S.Odd);
+  append(Text, ",count:", S.Count);
+  append(Text, ",flops:", S.Flops);
+  append(Text, ",diff:", S.DiffMin);
+  append(Text, ";", S.DiffMax);
+  append(Text, ";", S.DiffSum / Usable);
+  append(Text, ",abs:", S.AbsSum / Usable);
+  append(Text, ",range:", S.Low);
+  append(Text, ";", S.High);
+  append(Text, ",far:", S.Far);
+  append(Text, ",odd:", S.Odd);
+  Text += ",span:";
+  appendSeconds(Text, S.BeginRos);
+  Text += ';';
+  appendSeconds(Text, S.EndRos);
+  return Text;
+}
+
+std::string format(const Dropped &D) {
+  std::string Text = D.Key;
+  append(Text, ",count:", D.Count);
+  append(Text, ",flops:", D.Flops);
+  Text += ",why:";
+  Text += text(D.Why);
   return Text;
 }
 

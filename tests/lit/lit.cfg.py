@@ -52,6 +52,7 @@ config.substitutions += [
     ("%inputs", inputs),
     ("%python", config.tpc_python),
     ("%log-library", config.tpc_log),
+    ("%{log-folder}", os.path.dirname(config.tpc_log)),
 ]
 config.environment["PATH"] = os.pathsep.join(
     [config.tpc_tools, "/usr/bin", "/bin"]

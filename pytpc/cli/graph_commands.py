@@ -1,0 +1,114 @@
+"""Commands about a running graph: ``sink`` and ``relay``."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+
+import click
+from rich.table import Table
+from rich.text import Text
+
+from pytpc import relay
+from pytpc.cli.console import console, progress, warn
+from pytpc.errors import RunError
+from pytpc.runtime_control import POLICIES, SINKS, Graph, NodeStatus, Value, chosen
+from pytpc.words import many, plain
+
+_COUNT = click.IntRange(min=0, max=(1 << 31) - 1)
+_MASTER = "http://localhost:11311"
+
+
+@click.command("sink")
+@click.argument("nodes", nargs=-1, metavar="[NODE]...")
+@click.option("--sink", type=click.Choice(SINKS), help="Where reports go.")
+@click.option(
+    "--policy", type=click.Choice(POLICIES), help="Each evaluation, or flops and summaries."
+)
+@click.option(
+    "--period", type=click.FloatRange(0.001, 3600.0), help="Seconds of a summary (--policy edges)."
+)
+@click.option("--site-cap", type=_COUNT, help="Reports a second of one comparison; 0: no cap.")
+@click.option("--process-cap", type=_COUNT, help="Reports a second of one process; 0: no cap.")
+@click.option(
+    "--folder",
+    type=click.Path(path_type=Path),
+    help="Folder of the files (--sink file), on the node's machine.",
+)
+@click.option("--file-limit", type=_COUNT, help="MiB that a file may have; 0: no limit.")
+@click.option("--file-reserve", type=_COUNT, help="MiB that are left free on the disk.")
+@click.option("--clear", is_flag=True, help="First forget what was set so before.")
+@click.option("--json", "as_json", is_flag=True, help="Print a JSON list.")
+def sink_command(
+    *, nodes: tuple[str, ...], folder: Path | None, clear: bool, as_json: bool, **options: Value
+) -> None:
+    """Show what instrumented NODEs report and where to, and change it while they run.
+
+    Without a NODE: of all that run, and of those that are started later. Settings become ROS
+    parameters (NODE/tpc/sink, or /tpc/sink for all), so they hold until the master ends; one of a
+    node goes before one for all.
+    """
+    settings = {name: value for name, value in options.items() if value is not None}
+    if folder is not None:
+        settings["folder"] = str(folder)
+    graph = Graph(os.environ.get("ROS_MASTER_URI", _MASTER))
+    named = chosen(graph.nodes(), nodes)
+    for node in named if nodes else [None]:
+        if clear:
+            graph.clear(node)
+        graph.set(node, settings)
+    found = []
+    with progress("asking the nodes") as advance:
+        for node in named:
+            found.append(graph.reload(node))
+            advance(len(found), len(named))
+    if as_json:
+        click.echo(json.dumps([_as_json(status) for status in found], indent=1))
+    else:
+        console().print(_table(found), highlight=False)
+    failed = [status for status in found if not status.success]
+    for status in failed:
+        warn(f"{status.node}: {plain(status.message)}")
+    if failed:
+        raise RunError(f"{many(len(failed), 'node')} did not take over what is set")
+
+
+@click.command("relay", context_settings={"ignore_unknown_options": True})
+@click.argument("ros_arguments", nargs=-1, metavar="[NAME:=VALUE]...")
+def relay_command(*, ros_arguments: tuple[str, ...]) -> None:
+    """Pass reports on from /rosout to /threshold_information, as a ROS node, until it is ended.
+
+    One message for each report, in the form TIME,KEY,RESULT,cmp:C,thresh:T,res:R. In a launch
+    file: <node pkg="rosout" type="rosout" name="tpc_relay" launch-prefix="pytpc relay"/>.
+    """
+    relay.run(ros_arguments, lambda text: click.echo(f"pytpc relay: {plain(text)}", err=True))
+
+
+def _as_json(status: NodeStatus) -> dict[str, object]:
+    return {
+        "node": status.node,
+        "success": status.success,
+        "message": status.message,
+        "values": status.values,
+    }
+
+
+def _table(found: list[NodeStatus]) -> Table:
+    table = Table()
+    for heading in ("Node", "Sink", "Policy"):
+        table.add_column(heading, overflow="fold")
+    for heading in ("Sites", "Dropped"):
+        table.add_column(heading, justify="right")
+    table.add_column("More", overflow="fold")
+    shown = ("sink", "policy", "sites", "dropped")
+    for status in found:
+        rest = [f"{name}={value}" for name, value in status.values.items() if name not in shown]
+        if not status.values:
+            rest = [status.message]
+        cells = [status.values.get(name, "") for name in shown]
+        table.add_row(*(Text(plain(cell)) for cell in (status.node, *cells, " ".join(rest))))
+    return table
+
+
+COMMANDS: list[click.Command] = [sink_command, relay_command]

@@ -1,0 +1,222 @@
+"""The node that passes reports on from /rosout to /threshold_information (SPEC 5).
+
+For readers that know the topic only, and nodes that report by log messages. What comes is read by
+the raw subscriber, which loses nothing while nodes start; rospy publishes.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+import time
+from collections.abc import Callable, Sequence
+from typing import cast
+
+from pytpc.errors import MissingToolError, RunError
+from pytpc.ingest.ros1 import decode_log
+from pytpc.recorder import LossCounter
+from pytpc.tcpros import RawSubscriber
+from pytpc.words import many
+
+ROSOUT = "/rosout"
+TOPIC = "/threshold_information"
+
+_NODE = "tpc_relay"
+_REPORT = "threshold_information"
+_ACCOUNTS = ("threshold_summary", "threshold_dropped")
+_QUEUE = 65_536
+_WATCH_S = 2.0
+_POLL_S = 0.2
+
+Say = Callable[[str], None]
+
+
+def line_of(message: str, stamp_ns: int) -> str | None:
+    """The line on the topic for the text of a log message; None where it is no report.
+
+    >>> line_of("threshold_information:K,1,cmp:2,thresh:1,res:1", 1_500_000_000)
+    '1.5000000,K,1,cmp:2,thresh:1,res:1'
+    >>> line_of("threshold_dropped:K,count:2,flops:0,why:site", 0)
+    '0.0000000,threshold_dropped:K,count:2,flops:0,why:site'
+    """
+    word, separator, rest = message.partition(":")
+    if not separator or word not in (_REPORT, *_ACCOUNTS):
+        return None
+    seconds, nanoseconds = divmod(stamp_ns, 10**9)
+    return f"{seconds}.{nanoseconds // 100:07d},{rest if word == _REPORT else message}"
+
+
+class Relay:
+    """Takes log messages and publishes the reports among them.
+
+    Args:
+        publish: publishes one line.
+    """
+
+    def __init__(self, publish: Callable[[str], object]) -> None:
+        """See the class."""
+        self._publish = publish
+        self._counter = LossCounter()
+        self.passed_on = 0
+        self.malformed = 0
+
+    @property
+    def lost(self) -> int:
+        """Log messages that did not come, by their numbers."""
+        return sum(self._counter.lost.values())
+
+    def take(self, data: bytes) -> None:
+        """Take one serialized rosgraph_msgs/Log."""
+        try:
+            self._counter.see(data)
+            log = decode_log(data)
+        except ValueError:
+            self.malformed += 1
+            return
+        line = line_of(log.msg, log.stamp_ns)
+        if line is not None:
+            self._publish(line)
+            self.passed_on += 1
+
+    def account(self) -> str:
+        """What was done, in one sentence without a full stop."""
+        text = f"{many(self.passed_on, 'report')} passed on"
+        if self.lost:
+            text += f", {many(self.lost, 'log message')} never came"
+        if self.malformed:
+            text += f", {many(self.malformed, 'log message')} could not be read"
+        return text
+
+
+class MasterWatch:
+    """Sees that the master went and came back, and registers again then.
+
+    Args:
+        is_known: asks the master whether it knows this node; raises RunError where it does not
+            answer.
+        register: registers everything.
+        say: gets a sentence at each change.
+    """
+
+    def __init__(
+        self, is_known: Callable[[], bool], register: Callable[[], None], say: Say
+    ) -> None:
+        """See the class."""
+        self._is_known = is_known
+        self._register = register
+        self._say = say
+        self._gone = False
+
+    def look(self) -> None:
+        """Look once."""
+        try:
+            if not self._is_known():
+                self._register()
+                self._say("the ROS master was started again: registered with it")
+            elif self._gone:
+                self._say("the ROS master answers again")
+            self._gone = False
+        except RunError as error:
+            if not self._gone:
+                self._say(f"{error}; what is connected goes on, and the master is waited for")
+            self._gone = True
+
+
+def run(arguments: Sequence[str], say: Say) -> None:
+    """Be the node until SIGINT, SIGTERM or the graph ends it.
+
+    Args:
+        arguments: ROS's remappings, as ``__name:=other``; anything else is passed over.
+        say: gets what a user should know, a sentence each.
+
+    Raises:
+        RunError: the master does not answer at the start.
+        MissingToolError: rospy is not installed.
+    """
+    try:
+        import rospy  # noqa: PLC0415 (a second, and only with ROS)
+        from std_msgs.msg import String  # noqa: PLC0415
+    except ImportError as error:
+        raise MissingToolError(
+            "rospy is not installed; mend it with: apt-get install python3-rospy"
+        ) from error
+    stop = threading.Event()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: stop.set())
+    master = os.environ.get("ROS_MASTER_URI", "http://localhost:11311")
+    name = _name(arguments)
+    # First, because rospy waits for ever for a master.
+    subscriber = RawSubscriber(master, f"{name}_reader", _host(), [ROSOUT])
+    try:
+        rospy.init_node(
+            name.strip("/"),
+            argv=[_NODE, *(word for word in arguments if ":=" in word)],
+            disable_signals=True,
+            disable_rosout=True,
+        )
+        publisher = rospy.Publisher(TOPIC, String, queue_size=_QUEUE)
+        relay = Relay(lambda line: publisher.publish(String(line)))
+        node, uri = rospy.get_name(), rospy.get_node_uri()
+        watch = MasterWatch(
+            lambda: _knows(subscriber, node), lambda: _register(subscriber, node, uri), say
+        )
+        say(f"passing on reports from {ROSOUT} to {TOPIC}")
+        _serve(subscriber, relay, watch, lambda: stop.is_set() or rospy.is_shutdown())
+        say(relay.account())
+    finally:
+        subscriber.close()
+        rospy.signal_shutdown("the relay ends")
+
+
+def _serve(
+    subscriber: RawSubscriber, relay: Relay, watch: MasterWatch, ended: Callable[[], bool]
+) -> None:
+    """Pass on until ``ended``; the watch has a thread, because a dead host answers late."""
+
+    def look() -> None:
+        while not over.wait(_WATCH_S):
+            watch.look()
+
+    over = threading.Event()
+    thread = threading.Thread(target=look, daemon=True)
+    thread.start()
+    while not ended():
+        for _, data in subscriber.poll(_POLL_S):
+            relay.take(data)
+    over.set()
+    # What is still on the way.
+    until = time.monotonic() + 1.0
+    while time.monotonic() < until:
+        waiting = list(subscriber.poll(0.05))
+        if not waiting:
+            break
+        for _, data in waiting:
+            relay.take(data)
+
+
+def _knows(subscriber: RawSubscriber, node: str) -> bool:
+    """Whether the master lists this node among the publishers of the topic."""
+    state = cast(list[list[tuple[str, list[str]]]], subscriber.call_master("getSystemState"))
+    return any(topic == TOPIC and node in nodes for topic, nodes in state[0])
+
+
+def _register(subscriber: RawSubscriber, node: str, uri: str) -> None:
+    # rospy does not register again by itself; subscribers are told by the master.
+    subscriber.call_master_as(node, "registerPublisher", TOPIC, "std_msgs/String", uri)
+    subscriber.register()
+
+
+def _name(arguments: Sequence[str]) -> str:
+    """The node's full name: ``__name`` and ``__ns`` of roslaunch, else the usual one."""
+    given = dict(word.split(":=", 1) for word in arguments if ":=" in word)
+    namespace = given.get("__ns", os.environ.get("ROS_NAMESPACE", "")).strip("/")
+    name = given.get("__name", _NODE).strip("/")
+    return f"/{namespace}/{name}" if namespace else f"/{name}"
+
+
+def _host() -> str:
+    for variable in ("ROS_IP", "ROS_HOSTNAME"):
+        if os.environ.get(variable):
+            return os.environ[variable]
+    return "127.0.0.1"

@@ -1,0 +1,105 @@
+//===- Config.cpp ---------------------------------------------------------===//
+#include "Config.h"
+
+#include "Runtime.h"
+
+#include <cctype>
+#include <charconv>
+#include <cstdlib>
+
+namespace tpc {
+
+const char *const ConfigNames[8] = {"sink",       "policy",      "period",
+                                    "site_cap",   "process_cap", "folder",
+                                    "file_limit", "file_reserve"};
+
+static constexpr const char *SinkNames[] = {"rosout", "topic", "file", "off"};
+static constexpr const char *PolicyNames[] = {"every", "edges"};
+
+const char *text(SinkKind K) { return SinkNames[static_cast<int>(K)]; }
+const char *text(Policy P) { return PolicyNames[static_cast<int>(P)]; }
+
+bool Config::operator==(const Config &Other) const {
+  return Sink == Other.Sink && Policy == Other.Policy &&
+         PeriodNs == Other.PeriodNs && SiteCap == Other.SiteCap &&
+         ProcessCap == Other.ProcessCap && Folder == Other.Folder &&
+         FileLimitMiB == Other.FileLimitMiB &&
+         FileReserveMiB == Other.FileReserveMiB;
+}
+
+template <typename Enum, size_t N>
+static bool choose(Enum &E, const char *const (&Names)[N],
+                   const std::string &Value, std::string &Why) {
+  Why = "is none of";
+  for (size_t I = 0; I < N; ++I) {
+    if (Value == Names[I]) {
+      E = static_cast<Enum>(I);
+      return true;
+    }
+    Why += std::string(I ? ", " : " ") + Names[I];
+  }
+  return false;
+}
+
+template <typename Number>
+static bool read(Number &X, const std::string &Value, Number Least,
+                 Number Most) {
+  Number Read{};
+  const char *End = Value.data() + Value.size();
+  auto [Rest, Error] = std::from_chars(Value.data(), End, Read);
+  if (Error != std::errc() || Rest != End || !(Read >= Least && Read <= Most))
+    return false;
+  X = Read;
+  return true;
+}
+
+static bool count(uint64_t &X, const std::string &Value, std::string &Why) {
+  Why = "is no whole number";
+  return read<uint64_t>(X, Value, 0, uint64_t(1) << 40);
+}
+
+bool parse(Config &C, const std::string &Name, const std::string &Value,
+           std::string &Why) {
+  if (Name == "sink")
+    return choose(C.Sink, SinkNames, Value, Why);
+  if (Name == "policy")
+    return choose(C.Policy, PolicyNames, Value, Why);
+  if (Name == "period") {
+    double Seconds;
+    Why = "is no number of seconds from 0.001 to 3600";
+    if (!read<double>(Seconds, Value, 1e-3, 3600))
+      return false;
+    C.PeriodNs = static_cast<int64_t>(Seconds * 1e9);
+    return true;
+  }
+  if (Name == "site_cap")
+    return count(C.SiteCap, Value, Why);
+  if (Name == "process_cap")
+    return count(C.ProcessCap, Value, Why);
+  if (Name == "file_limit")
+    return count(C.FileLimitMiB, Value, Why);
+  if (Name == "file_reserve")
+    return count(C.FileReserveMiB, Value, Why);
+  if (Name == "folder") {
+    C.Folder = Value;
+    return true;
+  }
+  Why = "is no setting";
+  return false;
+}
+
+Config configOfEnvironment() {
+  Config C;
+  for (const char *Name : ConfigNames) {
+    std::string Variable = "TPC_";
+    for (const char *P = Name; *P; ++P)
+      Variable += static_cast<char>(std::toupper(*P));
+    const char *Value = std::getenv(Variable.c_str());
+    std::string Why;
+    if (Value && *Value && !parse(C, Name, Value, Why))
+      warn(Variable + "=" + Value + " " + Why + "; it is left as it was");
+  }
+  return C;
+}
+
+} // namespace tpc

@@ -1,0 +1,273 @@
+//===- RosControl.cpp -----------------------------------------------------===//
+#include "RosControl.h"
+#include "RosLife.h"
+#include "Runtime.h"
+
+#include <ros/advertise_service_options.h>
+#include <ros/init.h>
+#include <ros/master.h>
+#include <ros/names.h>
+#include <ros/param.h>
+#include <ros/service_manager.h>
+#include <ros/this_node.h>
+#include <ros/time.h>
+#include <std_srvs/Trigger.h>
+
+#include <algorithm>
+#include <atomic>
+#include <charconv>
+#include <chrono>
+#include <iterator>
+#include <vector>
+
+namespace tpc {
+
+static constexpr int64_t Ms = 1'000'000;
+static constexpr int64_t SoonNs = 20 * Ms;
+static constexpr int64_t LateNs = 250 * Ms;
+/// So many turns it is looked often whether roscpp is started; then seldom.
+static constexpr int SoonTurns = 500;
+static constexpr std::chrono::seconds FirstRetry{1}, LastRetry{60};
+static const char *const Service = "~tpc/reload";
+
+namespace {
+
+/// The settings of this process as ROS has them. Its members are used by the
+/// thread that asks the master, except where they are atomic.
+class Control {
+public:
+  static Control &instance() {
+    // Never destroyed: threads may look at it until the very end.
+    static Control &Only = *new Control;
+    return Only;
+  }
+
+  int64_t turn();
+
+private:
+  using Clock = std::chrono::steady_clock;
+  using Texts = std::vector<std::string>;
+
+  void begin();
+  void serve() { Queue.callAvailable(); }
+  bool reload(std_srvs::Trigger::Request &,
+              std_srvs::Trigger::Response &Answer);
+  Texts takeParameters();
+  void takeFrom(const char *Place, Config &New, const Config &Now,
+                Texts &Complaints);
+
+  WakingQueue Queue;
+  const Config OfEnvironment = current();
+  std::atomic<bool> Served{false};
+  std::atomic<bool> Failed{false};
+  std::atomic<Clock::rep> RetryAt{0};
+  std::chrono::seconds Retry = FirstRetry;
+  int Turns = 0; // of the helper thread
+};
+
+} // namespace
+
+/// What a value of the parameter server is as a word of the environment. YAML
+/// takes `off` for false.
+static bool textOf(const std::string &Name, XmlRpc::XmlRpcValue &Value,
+                   std::string &Text) {
+  switch (Value.getType()) {
+  case XmlRpc::XmlRpcValue::TypeString:
+    Text = static_cast<std::string &>(Value);
+    return true;
+  case XmlRpc::XmlRpcValue::TypeInt:
+    Text = std::to_string(static_cast<int &>(Value));
+    return true;
+  case XmlRpc::XmlRpcValue::TypeDouble: {
+    char Buffer[32];
+    Text.assign(Buffer, std::to_chars(Buffer, std::end(Buffer),
+                                      static_cast<double &>(Value))
+                            .ptr);
+    return true;
+  }
+  case XmlRpc::XmlRpcValue::TypeBoolean:
+    if (Name != "sink" || static_cast<bool &>(Value))
+      return false;
+    Text = "off";
+    return true;
+  default:
+    return false;
+  }
+}
+
+/// The one setting \p Name is in \p New what it is in \p Now.
+static void keep(Config &New, const Config &Now, const std::string &Name) {
+  if (Name == "sink")
+    New.Sink = Now.Sink;
+  else if (Name == "policy")
+    New.Policy = Now.Policy;
+  else if (Name == "period")
+    New.PeriodNs = Now.PeriodNs;
+  else if (Name == "site_cap")
+    New.SiteCap = Now.SiteCap;
+  else if (Name == "process_cap")
+    New.ProcessCap = Now.ProcessCap;
+  else if (Name == "folder")
+    New.Folder = Now.Folder;
+  else if (Name == "file_limit")
+    New.FileLimitMiB = Now.FileLimitMiB;
+  else if (Name == "file_reserve")
+    New.FileReserveMiB = Now.FileReserveMiB;
+}
+
+void Control::takeFrom(const char *Place, Config &New, const Config &Now,
+                       Texts &Complaints) {
+  const std::string Folder = ros::names::resolve(Place);
+  XmlRpc::XmlRpcValue Found;
+  if (!ros::param::get(Folder, Found))
+    return;
+  if (Found.getType() != XmlRpc::XmlRpcValue::TypeStruct) {
+    Complaints.push_back("the parameter " + Folder +
+                         " is no folder of parameters; left as it was");
+    return;
+  }
+  for (auto &[Name, Value] : Found) {
+    const std::string Parameter = Folder + "/" + Name;
+    if (std::find(std::begin(ConfigNames), std::end(ConfigNames), Name) ==
+        std::end(ConfigNames)) {
+      Complaints.push_back("there is no setting " + Name + " (" + Parameter +
+                           ")");
+      continue;
+    }
+    std::string Text, Why = "it is of the wrong type";
+    if (textOf(Name, Value, Text) && parse(New, Name, Text, Why))
+      continue;
+    keep(New, Now, Name);
+    Complaints.push_back("the parameter " + Parameter + " is left out: " + Why);
+  }
+}
+
+Control::Texts Control::takeParameters() {
+  Texts Complaints;
+  // Asked first, because what follows does not tell a parameter that is not
+  // set from a master that does not answer.
+  if (!ros::master::check()) {
+    Complaints.push_back("the ROS master does not answer; the settings are "
+                         "left as they were");
+    return Complaints;
+  }
+  const Config Now = current();
+  Config New = OfEnvironment;
+  takeFrom("/tpc", New, Now, Complaints);
+  takeFrom("~tpc", New, Now, Complaints);
+  if (!(New == Now) && !apply(New))
+    Complaints.push_back("what is set cannot be had; left as it was");
+  return Complaints;
+}
+
+bool Control::reload(std_srvs::Trigger::Request &,
+                     std_srvs::Trigger::Response &Answer) {
+  const Texts Complaints = takeParameters();
+  for (const std::string &Complaint : Complaints) {
+    warn(Complaint);
+    Answer.message += Complaint + "; ";
+  }
+  Answer.success = Complaints.empty();
+  Answer.message += statusLine();
+  return true;
+}
+
+void Control::begin() {
+  if (!ros::master::check()) {
+    if (!Failed)
+      warn("the ROS master does not answer: parameters and " +
+           ros::names::resolve(Service) + " come when it does");
+    RetryAt = (Clock::now() + Retry).time_since_epoch().count();
+    Retry = std::min(2 * Retry, LastRetry);
+    Failed = true;
+    return;
+  }
+  Failed = false;
+  Retry = FirstRetry;
+  for (const std::string &Complaint : takeParameters())
+    warn(Complaint);
+  ros::AdvertiseServiceOptions Options;
+  Options.init<std_srvs::Trigger::Request, std_srvs::Trigger::Response>(
+      ros::names::resolve(Service),
+      [this](auto &Request, auto &Answer) { return reload(Request, Answer); });
+  Options.callback_queue = &Queue;
+  // False is said by roscpp itself, and will not change.
+  ros::ServiceManager::instance()->advertiseService(Options);
+  Served = true;
+}
+
+int64_t Control::turn() {
+  RosUse Use;
+  if (!Use)
+    return -1;
+  if (!rosIsUp()) {
+    // A node that was shut down may start again, and then has no services.
+    Served = false;
+    return Turns < SoonTurns ? (++Turns, SoonNs) : LateNs;
+  }
+  if (!Served) {
+    if (Failed && Clock::now().time_since_epoch().count() < RetryAt)
+      return LateNs;
+    // The thread wakes the helper when it is through.
+    askMaster([this] {
+      if (!Served)
+        begin();
+    });
+    return SoonNs;
+  }
+  if (Queue.isEmpty())
+    return -1;
+  askMaster([this] { serve(); });
+  return SoonNs;
+}
+
+int64_t rosTurn() {
+  try {
+    return Control::instance().turn();
+  } catch (...) {
+    return LateNs;
+  }
+}
+
+void rosEnd() { endRosUse(); }
+
+bool rosIsInitialized() { return ros::isInitialized(); }
+
+const char *rosNodeName() {
+  if (!ros::isInitialized())
+    return "";
+  static const std::string &Name = *new std::string(ros::this_node::getName());
+  return Name.c_str();
+}
+
+/// Whether ros::Time was initialised. Until then it says that it is simulated.
+static bool timeIsKnown() {
+  static std::atomic<bool> Known{false};
+  if (Known)
+    return true;
+  if (!ros::isStarted())
+    return false;
+  try {
+    ros::Time::now();
+    Known = true;
+  } catch (const std::exception &) {
+    return false;
+  }
+  return true;
+}
+
+bool rosTimeIsSimulated() { return timeIsKnown() && ros::Time::isSimTime(); }
+
+int64_t rosNow() {
+  // A forked child gets no /clock, and the lock of the time may be closed.
+  static std::atomic<int64_t> Last{0};
+  if (!timeIsKnown())
+    return 0;
+  if (forkedFromNode() && ros::Time::isSimTime())
+    return Last;
+  const auto Now = static_cast<int64_t>(ros::Time::now().toNSec());
+  Last.store(Now, std::memory_order_relaxed);
+  return Now;
+}
+
+} // namespace tpc

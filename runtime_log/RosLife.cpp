@@ -1,0 +1,133 @@
+//===- RosLife.cpp --------------------------------------------------------===//
+#include "RosLife.h"
+#include "Modes.h"
+#include "Runtime.h"
+
+#include <ros/init.h>
+#include <ros/names.h>
+#include <ros/service_manager.h>
+
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <mutex>
+#include <pthread.h>
+#include <thread>
+#include <unistd.h>
+
+namespace tpc {
+
+static constexpr auto EndPatience = std::chrono::milliseconds(500);
+static constexpr auto Moment = std::chrono::milliseconds(1);
+
+static std::atomic<int> Users{0};
+static std::atomic<bool> Over{false};
+static std::atomic<bool> Up{false};
+static std::atomic<bool> Asking{false};
+static std::atomic<bool> Forked{false};
+
+static void inChild() {
+  Users = 0;
+  Asking = false;
+  if (ros::isInitialized())
+    Forked = true;
+}
+
+// When this library is loaded no second thread can be in it yet.
+static const int Watched = pthread_atfork(nullptr, nullptr, inChild);
+
+RosUse::RosUse() : Held(false) {
+  if (Forked || Watched != 0)
+    return;
+  ++Users;
+  Held = !Over;
+  if (!Held)
+    --Users;
+}
+
+RosUse::~RosUse() {
+  if (Held)
+    --Users;
+}
+
+bool forkedFromNode() { return Forked; }
+
+void warnOfFork(const char *Topic) {
+  static std::atomic<bool> Said{false};
+  if (!Said.exchange(true))
+    warn("process " + std::to_string(getpid()) +
+         " was forked from a node: its reports are not on " + Topic +
+         "; the sink file has them");
+}
+
+bool rosIsUp() {
+  if (!ros::isStarted() || ros::isShuttingDown()) {
+    Up = false;
+    return false;
+  }
+  if (Up)
+    return true;
+  // ros::isStarted() is true from the beginning of ros::start(), when neither
+  // the addresses of this node nor its threads are there yet. This service is
+  // the last thing that every node makes in it that can be seen from outside.
+  if (!ros::ServiceManager::instance()->lookupServicePublication(
+          ros::names::resolve("~set_logger_level")))
+    return false;
+  // Registered now, it runs before the destructors of all that ros::start()
+  // made: handlers run in the opposite order.
+  static const int Registered = std::atexit([] {
+    endRuntime();
+    endRosUse();
+  });
+  Up = Registered == 0;
+  return Up;
+}
+
+bool askMaster(std::function<void()> Job) {
+  if (Asking.exchange(true))
+    return false;
+  // The signals of a node are for the node's own threads.
+  sigset_t All, Before;
+  sigfillset(&All);
+  pthread_sigmask(SIG_SETMASK, &All, &Before);
+  bool Taken = true;
+  try {
+    std::thread([Job = std::move(Job)] {
+      try {
+        RosUse Use;
+        if (Use)
+          Job();
+      } catch (const std::exception &Error) {
+        warn(std::string("talking to the ROS master failed: ") + Error.what());
+      } catch (...) {
+        // What xmlrpcpp throws is no std::exception.
+        warn("talking to the ROS master failed");
+      }
+      Asking = false;
+      wakeHelper();
+    }).detach();
+  } catch (const std::exception &) {
+    // No thread to be had; there will be another turn.
+    Taken = Asking = false;
+  }
+  pthread_sigmask(SIG_SETMASK, &Before, nullptr);
+  return Taken;
+}
+
+void endRosUse() {
+  if (Forked || Over)
+    return;
+  Over = true;
+  const auto Until = std::chrono::steady_clock::now() + EndPatience;
+  while (Users > 0 && std::chrono::steady_clock::now() < Until)
+    std::this_thread::sleep_for(Moment);
+}
+
+void WakingQueue::addCallback(const ros::CallbackInterfacePtr &Callback,
+                              uint64_t Owner) {
+  CallbackQueue::addCallback(Callback, Owner);
+  wakeHelper();
+}
+
+} // namespace tpc

@@ -1,0 +1,309 @@
+//===- TopicSink.cpp ------------------------------------------------------===//
+//
+// Reports wait, as bytes, in a store of blocks until the helper thread makes
+// messages of them. roscpp keeps what a subscriber does not take in time in a
+// queue of its own, and drops the oldest message when that is full: the number
+// of the first report, which each message has, shows this to the reader.
+//
+//===----------------------------------------------------------------------===//
+#include "RosControl.h"
+#include "RosLife.h"
+#include "Runtime.h"
+#include "Sink.h"
+#include "TopicStore.h"
+
+#include <ros/advertise_options.h>
+#include <ros/init.h>
+#include <ros/master.h>
+#include <ros/names.h>
+#include <ros/poll_manager.h>
+#include <ros/publication.h>
+#include <ros/this_node.h>
+#include <ros/topic_manager.h>
+#include <std_msgs/String.h>
+#include <xmlrpcpp/XmlRpcException.h>
+
+#include <atomic>
+#include <chrono>
+#include <mutex>
+#include <pthread.h>
+#include <thread>
+#include <unistd.h>
+
+namespace tpc {
+namespace {
+
+constexpr const char *Topic = "/threshold_information";
+constexpr size_t MessageBytes = 64 * 1024;
+/// Messages that wait for a slow subscriber: at least ten seconds at 20 ms
+/// each, and at most 32 MiB.
+constexpr uint32_t QueueMessages = 512;
+/// A little less than the helper's turn, so that each turn sends.
+constexpr int64_t BatchNs = 15'000'000;
+/// What roscpp's thread gets to write the last messages.
+constexpr std::chrono::milliseconds LastMoment{50};
+/// How long the first message waits for all subscribers that the master knows:
+/// each takes another time to connect, and all are to have everything.
+constexpr int64_t GatherNs = 1'000'000'000;
+constexpr int64_t RetryNs = 2'000'000'000;
+
+int64_t steadyNow() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+/// Where roscpp puts what is to be done when a subscriber comes: nothing is,
+/// but the sink looks for subscribers again.
+class Doorbell : public ros::CallbackQueueInterface {
+public:
+  explicit Doorbell(std::atomic<bool> &Rung) : Rung(Rung) {}
+
+  void addCallback(const ros::CallbackInterfacePtr &, uint64_t) override {
+    Rung = true;
+    wakeHelper();
+  }
+  void removeByID(uint64_t) override {}
+
+private:
+  std::atomic<bool> &Rung;
+};
+
+class TopicSink : public Sink {
+public:
+  TopicSink();
+
+  void take(const Report &R) override;
+  void take(const Summary &S) override;
+  void take(const Dropped &D) override;
+  void turn() override;
+  bool wantsTurns() const override;
+  void end() override;
+  std::string status() const override;
+
+  // Around fork(), which may come while another thread holds the lock.
+  void beforeFork() { StoreLock.lock(); }
+  void afterFork(bool InChild);
+
+private:
+  template <typename F> void keep(F Add);
+  void advertise();
+  bool sendWaiting(bool AtOnce);
+  void send(ros::Publication &To, const TopicStore::Batch &Batch);
+
+  std::mutex StoreLock; ///< of the next two
+  TopicStore Store;
+  int64_t OldestAt = 0; ///< since when something waits
+
+  std::mutex
+      SendLock; ///< of the next three; never held while the master is asked
+  boost::weak_ptr<ros::Publication> Publication;
+  uint32_t Expected = 0; ///< subscribers, until GatherUntil
+  int64_t GatherUntil = 0;
+
+  std::atomic<uint64_t> Sent{0};
+  std::atomic<int64_t> RetryAt{0};
+  std::atomic<bool> Advertised{false}; ///< or never will be
+  std::atomic<bool> Subscribed{false};
+  std::atomic<bool> Something{false}; ///< waits
+  Doorbell Bell{Subscribed};
+};
+
+TopicSink &theSink() {
+  // Never destroyed: threads may report until the very end.
+  static TopicSink &Only = *new TopicSink;
+  return Only;
+}
+
+TopicSink::TopicSink() {
+  pthread_atfork([] { theSink().beforeFork(); },
+                 [] { theSink().afterFork(false); },
+                 [] { theSink().afterFork(true); });
+}
+
+void TopicSink::afterFork(bool InChild) {
+  if (InChild) {
+    // What waits is the parent's to send.
+    Store = TopicStore();
+    Something = false;
+  }
+  StoreLock.unlock();
+}
+
+template <typename F> void TopicSink::keep(F Add) {
+  bool Wake;
+  {
+    std::lock_guard<std::mutex> Guard(StoreLock);
+    const size_t Before = Store.bytes();
+    if (!Something)
+      OldestAt = steadyNow();
+    Wake = !Something.exchange(true);
+    Add();
+    Wake |= Before < MessageBytes && Store.bytes() >= MessageBytes;
+  }
+  if (Wake && Subscribed)
+    wakeHelper();
+}
+
+void TopicSink::take(const Report &R) {
+  if (forkedFromNode())
+    return warnOfFork(Topic);
+  TopicStore::Time When{rosNow(), false};
+  if (When.Ns == 0 && !rosTimeIsSimulated()) {
+    const auto Wall = std::chrono::system_clock::now().time_since_epoch();
+    When = {std::chrono::duration_cast<std::chrono::nanoseconds>(Wall).count(),
+            true};
+  }
+  keep([&] { Store.add(When, R); });
+}
+
+void TopicSink::take(const Summary &S) {
+  if (forkedFromNode())
+    return warnOfFork(Topic);
+  keep([&] { Store.add({S.EndRos, false}, S); });
+}
+
+void TopicSink::take(const Dropped &D) {
+  if (!forkedFromNode())
+    keep([&] { Store.add(D); });
+}
+
+bool TopicSink::wantsTurns() const {
+  return !Advertised || (Subscribed && Something);
+}
+
+/// How many subscribers of a topic the master knows.
+uint32_t subscribersOf(const std::string &Topic) {
+  XmlRpc::XmlRpcValue Arguments, Result, State;
+  Arguments[0] = ros::this_node::getName();
+  if (!ros::master::execute("getSystemState", Arguments, Result, State, false))
+    return 0;
+  try {
+    XmlRpc::XmlRpcValue &Subscribed = State[1];
+    for (int I = 0; I < Subscribed.size(); ++I)
+      if (static_cast<std::string &>(Subscribed[I][0]) == Topic)
+        return static_cast<uint32_t>(Subscribed[I][1].size());
+  } catch (const XmlRpc::XmlRpcException &) {
+    // A master that tells of its graph in another form.
+  }
+  return 0;
+}
+
+/// Registers the topic; where the master does not answer, later.
+void TopicSink::advertise() {
+  if (!ros::master::check()) {
+    RetryAt = steadyNow() + RetryNs;
+    return;
+  }
+  ros::AdvertiseOptions Options;
+  Options.init<std_msgs::String>(ros::names::resolve(Topic), QueueMessages);
+  const auto Callbacks = boost::make_shared<ros::SubscriberCallbacks>(
+      [](const ros::SingleSubscriberPublisher &) {},
+      ros::SubscriberStatusCallback(), ros::VoidConstPtr(), &Bell);
+  const ros::TopicManagerPtr &Topics = ros::TopicManager::instance();
+  if (Topics->advertise(Options, Callbacks)) {
+    const uint32_t Known = subscribersOf(Options.topic);
+    std::lock_guard<std::mutex> Guard(SendLock);
+    Publication = Topics->lookupPublication(Options.topic);
+    Expected = Known;
+    GatherUntil = steadyNow() + GatherNs;
+  } else if (!ros::isShuttingDown()) {
+    warn("nothing is sent on " + Options.topic +
+         ": this process has it with another type");
+  }
+  Advertised = true;
+}
+
+/// Sends what waits if somebody listens: all \p AtOnce, or when it has waited
+/// for a batch's time or fills a message.
+///
+/// \returns whether something was sent.
+bool TopicSink::sendWaiting(bool AtOnce) {
+  std::lock_guard<std::mutex> Sending(SendLock);
+  const auto To = Publication.lock();
+  // In this order: who comes in between is seen by one of the two.
+  Subscribed = false;
+  if (!To || To->isDropped() || !To->hasSubscribers())
+    return false;
+  Subscribed = true;
+  if (!AtOnce && To->getNumSubscribers() < Expected &&
+      steadyNow() < GatherUntil)
+    return false;
+  TopicStore::Batch Batch;
+  {
+    std::lock_guard<std::mutex> Guard(StoreLock);
+    if (!Something || (!AtOnce && Store.bytes() < MessageBytes &&
+                       steadyNow() - OldestAt < BatchNs))
+      return false;
+    Batch = Store.takeAll();
+    Something = false;
+  }
+  send(*To, Batch);
+  return true;
+}
+
+void TopicSink::send(ros::Publication &To, const TopicStore::Batch &Batch) {
+  const std::string Process = ",pid:" + std::to_string(getpid());
+  const std::string Dropped = ",dropped:" + std::to_string(Batch.DroppedInAll);
+  for (const TopicStore::Lines &Part :
+       linesOf(Batch, rosNow(), rosTimeIsSimulated(), MessageBytes)) {
+    std_msgs::String Message;
+    Message.data = "#seq:" + std::to_string(Sent) +
+                   ",count:" + std::to_string(Part.Reports) + Dropped +
+                   Process + ",steady:" + seconds(steadyNow(), 9) + Part.Text;
+    Sent += Part.Reports;
+    // Not by TopicManager::publish, which looks the topic up again and falls
+    // over where it is gone in that moment.
+    ros::SerializedMessage Bytes =
+        ros::serialization::serializeMessage(Message);
+    To.publish(Bytes);
+  }
+  ros::PollManager::instance()->getPollSet().signal();
+}
+
+void TopicSink::turn() {
+  RosUse Use;
+  if (!Use)
+    return;
+  if (!Advertised) {
+    if (rosIsUp() && steadyNow() >= RetryAt)
+      askMaster([this] {
+        if (!Advertised)
+          advertise();
+      });
+    return;
+  }
+  // When the node shuts down there is a moment in which its threads still work.
+  sendWaiting(!rosIsUp());
+}
+
+void TopicSink::end() {
+  {
+    RosUse Use;
+    if (Use && sendWaiting(true))
+      std::this_thread::sleep_for(LastMoment);
+  }
+  if (forkedFromNode())
+    return;
+  uint64_t Unsent;
+  {
+    std::lock_guard<std::mutex> Guard(StoreLock);
+    Unsent = Store.giveUp();
+    Something = false;
+  }
+  if (Unsent)
+    warn(std::to_string(Unsent) + " evaluations were not sent on " + Topic +
+         ": nobody listened, or the node was shut down");
+}
+
+std::string TopicSink::status() const {
+  return "sent=" + std::to_string(Sent) +
+         (Something ? " waiting=yes" : " waiting=no") +
+         (Subscribed ? " subscribed=yes" : " subscribed=no");
+}
+
+} // namespace
+
+Sink &topicSink() { return theSink(); }
+
+} // namespace tpc

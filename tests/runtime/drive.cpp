@@ -1,0 +1,287 @@
+//===- drive.cpp - Programs that report, for the tests of the log library -===//
+//
+// drive WHAT ARGUMENT...; each function below is one WHAT. What a test compares
+// with comes from here, counted beside the library and not by it.
+//
+//===----------------------------------------------------------------------===//
+#include "LogOne.h"
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <fcntl.h>
+#include <functional>
+#include <map>
+#include <pthread.h>
+#include <signal.h>
+#include <string>
+#include <sys/mman.h>
+#include <sys/time.h>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+#include <vector>
+
+namespace {
+
+using Arguments = std::vector<std::string>;
+
+/// The key of the site with this number, from 0.
+std::string keyOf(unsigned long Number) {
+  char Text[48];
+  std::snprintf(Text, sizeof(Text), "%08lx-0000-5000-8000-000000000000",
+                Number);
+  return Text;
+}
+
+/// Keys whose addresses stay.
+class Keys {
+public:
+  explicit Keys(unsigned long Count) {
+    for (unsigned long I = 0; I < Count; ++I)
+      Texts.push_back(keyOf(I));
+  }
+  char *operator[](unsigned long I) { return Texts[I % Texts.size()].data(); }
+
+private:
+  std::vector<std::string> Texts;
+};
+
+void waitMs(long Ms) {
+  std::this_thread::sleep_for(std::chrono::milliseconds(Ms));
+}
+
+/// Report I of a thread: compared is I, the threshold the thread's number, and
+/// every 7th time the result changes.
+void report(char *Key, uint64_t I, unsigned Thread) {
+  bool Result = I / 7 % 2;
+  log_one(Key, Result, static_cast<double>(I), Thread, !Result);
+}
+
+/// threads THREADS SITES REPORTS: so many reports in each thread.
+int threads(const Arguments &A) {
+  unsigned Threads = std::stoul(A[0]);
+  uint64_t Reports = std::stoull(A[2]);
+  Keys K(std::stoul(A[1]));
+  std::vector<std::thread> All;
+  for (unsigned T = 0; T < Threads; ++T)
+    All.emplace_back([&, T] {
+      for (uint64_t I = 0; I < Reports; ++I)
+        report(K[I], I, T);
+    });
+  for (std::thread &T : All)
+    T.join();
+  return 0;
+}
+
+/// counted FILE THREADS SITES PAUSE_US: reports until it is killed; FILE has a
+/// uint64 for each thread, the reports that are done.
+int counted(const Arguments &A) {
+  unsigned Threads = std::stoul(A[1]);
+  Keys K(std::stoul(A[2]));
+  long Pause = std::stol(A[3]);
+  int File = open(A[0].c_str(), O_RDWR | O_CREAT, 0666);
+  if (File < 0 || ftruncate(File, 4096))
+    return 1;
+  auto *Done = static_cast<std::atomic<uint64_t> *>(
+      mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED, File, 0));
+  for (unsigned T = 0; T < Threads; ++T)
+    std::thread([&, T] {
+      for (uint64_t I = 0;; ++I) {
+        report(K[I], I, T);
+        Done[T].store(I + 1, std::memory_order_release);
+        if (Pause)
+          std::this_thread::sleep_for(std::chrono::microseconds(Pause));
+      }
+    }).detach();
+  std::puts("ready");
+  std::fflush(stdout);
+  for (;;)
+    pause();
+}
+
+/// forked REPORTS: in the parent, in a child, in the child's child, and again
+/// in the parent, while another of its threads reports, too.
+int forked(const Arguments &A) {
+  uint64_t Reports = std::stoull(A[0]);
+  Keys K(3);
+  auto All = [&](unsigned Who) {
+    for (uint64_t I = 0; I < Reports; ++I)
+      report(K[I], I, Who);
+  };
+  std::atomic<bool> Stop{false};
+  std::thread Other([&] {
+    for (uint64_t I = 0; !Stop; ++I)
+      report(K[I], I, 100);
+  });
+  All(1);
+  pid_t Child = fork();
+  if (!Child) {
+    All(2);
+    pid_t Grandchild = fork();
+    if (!Grandchild) {
+      All(3);
+      std::exit(0);
+    }
+    int Status = 1;
+    waitpid(Grandchild, &Status, 0);
+    std::exit(Status ? 1 : 0);
+  }
+  All(1);
+  int Status = 1;
+  waitpid(Child, &Status, 0);
+  Stop = true;
+  Other.join();
+  return Status ? 1 : 0;
+}
+
+char EarlyKey[] = "eeeeeeee-0000-5000-8000-000000000000";
+char LateKey[] = "ffffffff-0000-5000-8000-000000000000";
+
+/// Reports before main and after it.
+struct EarlyAndLate {
+  EarlyAndLate() {
+    if (std::getenv("DRIVE_EARLY"))
+      log_one(EarlyKey, true, 1, 0, true);
+  }
+  ~EarlyAndLate() {
+    if (std::getenv("DRIVE_EARLY"))
+      log_one(LateKey, true, 2, 0, true);
+  }
+} Global;
+
+struct AtThreadEnd {
+  char Key[37] = "dddddddd-0000-5000-8000-000000000000";
+  ~AtThreadEnd() { log_one(Key, true, 3, 0, true); }
+};
+
+/// ends: at the end of threads, and by a thread that outlives main.
+int ends(const Arguments &) {
+  for (int I = 0; I < 50; ++I)
+    std::thread([] {
+      thread_local AtThreadEnd End;
+      log_one(End.Key, false, 4, 0, false);
+    }).join();
+  static auto *K = new Keys(1); // outlives main
+  std::thread([] {
+    for (uint64_t I = 0;; ++I) {
+      report((*K)[0], I, 9);
+      if (I % 100 == 0)
+        std::this_thread::yield();
+    }
+  }).detach();
+  waitMs(5);
+  return 0;
+}
+
+Keys *SignalKeys;
+std::atomic<uint64_t> InHandler{0};
+
+/// signals MS: a handler reports while the program does. Prints both numbers.
+int signals(const Arguments &A) {
+  SignalKeys = new Keys(2);
+  (*SignalKeys)[0];
+  struct sigaction Action{};
+  Action.sa_handler = [](int) {
+    log_one((*SignalKeys)[1], true, static_cast<double>(InHandler++), 0, true);
+  };
+  Action.sa_flags = SA_RESTART;
+  log_one((*SignalKeys)[1], true, -1, 0, true);
+  sigaction(SIGPROF, &Action, nullptr);
+  itimerval Often{{0, 100}, {0, 100}};
+  setitimer(ITIMER_PROF, &Often, nullptr);
+  auto Until = std::chrono::steady_clock::now() +
+               std::chrono::milliseconds(std::stol(A[0]));
+  uint64_t I = 0;
+  while (std::chrono::steady_clock::now() < Until)
+    for (int More = 0; More < 100; ++More)
+      report((*SignalKeys)[0], I++, 0);
+  itimerval Never{};
+  setitimer(ITIMER_PROF, &Never, nullptr);
+  waitMs(20);
+  std::printf("%llu %llu\n", static_cast<unsigned long long>(I),
+              static_cast<unsigned long long>(InHandler.load()));
+  return 0;
+}
+
+/// paced PER_SECOND MS SITES: reports at that rate from one thread.
+int paced(const Arguments &A) {
+  double Rate = std::stod(A[0]);
+  auto Begin = std::chrono::steady_clock::now();
+  auto End = Begin + std::chrono::milliseconds(std::stol(A[1]));
+  Keys K(std::stoul(A[2]));
+  for (uint64_t I = 0; std::chrono::steady_clock::now() < End; ++I) {
+    report(K[I], I, 0);
+    std::this_thread::sleep_until(
+        Begin + std::chrono::nanoseconds(static_cast<int64_t>(
+                    1e9 * static_cast<double>(I + 1) / Rate)));
+  }
+  return 0;
+}
+
+/// edges THREADS SITES REPORTS PAUSE_MS: every thread reports at all sites in
+/// turn, one thread after the other has its share of each site's results; then
+/// waits. What each site should have in all: `KEY COUNT FLOPS LOW HIGH SUM`,
+/// printed for one thread alone (threads mix flops).
+int edges(const Arguments &A) {
+  unsigned Threads = std::stoul(A[0]);
+  unsigned long Sites = std::stoul(A[1]);
+  uint64_t Reports = std::stoull(A[2]);
+  Keys K(Sites);
+  std::vector<std::thread> All;
+  for (unsigned T = 0; T < Threads; ++T)
+    All.emplace_back([&] {
+      for (uint64_t I = 0; I < Reports; ++I) {
+        uint64_t Turn = I / Sites;
+        double Value = static_cast<double>(Turn % 1000) / 8;
+        log_one(K[I], Value > 100, Value, 100, Value > 100);
+        if (I % 1000 == 999)
+          std::this_thread::sleep_for(std::chrono::microseconds(500));
+      }
+    });
+  for (std::thread &T : All)
+    T.join();
+  waitMs(std::stol(A[3]));
+  return 0;
+}
+
+/// odd: values that are no usual numbers, at one site.
+int odd(const Arguments &) {
+  Keys K(1);
+  const double Values[] = {1, NAN, INFINITY, -INFINITY, 2, 1e308, 3};
+  for (double V : Values)
+    log_one(K[0], V > 1, V, V == 1e308 ? -1e308 : 1, V > 1);
+  return 0;
+}
+
+/// names: keys that are none, as a hand-written call may have.
+int names(const Arguments &) {
+  std::string Long(10000, 'k');
+  char Short[] = "x", Empty[] = "";
+  for (char *Key : {Short, Empty, Long.data(), Short})
+    log_one(Key, true, 1, 2, false);
+  // The same address with another key.
+  char Reused[40];
+  for (int I = 0; I < 3; ++I) {
+    std::strcpy(Reused, keyOf(500 + I).c_str());
+    log_one(Reused, true, I, 2, false);
+  }
+  return 0;
+}
+
+} // namespace
+
+int main(int Count, char **Words) {
+  const std::map<std::string, std::function<int(const Arguments &)>> Known = {
+      {"threads", threads}, {"counted", counted}, {"forked", forked},
+      {"ends", ends},       {"signals", signals}, {"paced", paced},
+      {"edges", edges},     {"odd", odd},         {"names", names}};
+  auto Found = Count > 1 ? Known.find(Words[1]) : Known.end();
+  if (Found == Known.end())
+    return 2;
+  return Found->second(Arguments(Words + 2, Words + Count));
+}
