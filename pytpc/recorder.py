@@ -26,7 +26,7 @@ from rosbags.rosbag1 import Writer
 
 from pytpc.errors import RunError
 from pytpc.ingest.rosout_line import Batch, parse_batch
-from pytpc.marks import topic_of_marks
+from pytpc.marks import MarkMessages
 from pytpc.tcpros import RawSubscriber, Source
 
 REPORT = b"threshold_information:"
@@ -264,7 +264,7 @@ class Discovery:
         publishers, subscribers = _topics_of(state, 0), _topics_of(state, 1)
         try:
             for topic in publishers:
-                if topic_of_marks(topic) is not None and topic not in self._topics:
+                if MarkMessages.message_type(topic) and topic not in self._topics:
                     self._recorder.add_topic(topic)
                     self._subscriber.subscribe(topic)
                     self._topics[topic] = None

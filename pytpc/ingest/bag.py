@@ -4,18 +4,19 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
+
 from pytpc.errors import InputError
 from pytpc.ingest import ros1
 from pytpc.ingest.bag_chunks import BagConnection, BagIndex, BrokenBagError, messages, read_index
 from pytpc.ingest.bag_damage import describe_damage
 from pytpc.ingest.gathering import Gathering, Progress
 from pytpc.ingest.messages import REPORTS, ROSOUT, ROSOUT_AGG, Decoders, Messages
-from pytpc.marks import topic_of_marks
+from pytpc.marks import MarkMessages
 
 _LOG = "rosgraph_msgs/msg/Log"
 _STRING = "std_msgs/msg/String"
 _TIME = "std_msgs/msg/Time"
-_STEP = 4096
 _DECODERS = Decoders(ros1.decode_log, ros1.decode_string, ros1.decode_time)
 
 
@@ -45,13 +46,19 @@ def read_bag_into(path: Path, gathering: Gathering, on_progress: Progress | None
                 gathering.spans.append(index.span)
             taken = Messages(gathering, str(path), _DECODERS)
             total = index.index_pos
-            for turn, (number, time_ns, raw, behind) in enumerate(
-                messages(stream, index, wanted.keys()) if wanted else ()
-            ):
-                connection = wanted[number]
-                taken.take(connection.topic, connection.caller, time_ns, raw)
-                if on_progress is not None and turn % _STEP == 0:
-                    on_progress(min(behind, total), total)
+            logs = [n for n, connection in wanted.items() if connection.topic == ROSOUT]
+            for chunk in messages(stream, index, wanted.keys()) if wanted else ():
+                is_log = np.isin(chunk.connection, logs)
+                others = np.flatnonzero(~is_log)
+                if not taken.take_logs(chunk, is_log):
+                    others = np.arange(chunk.connection.size)
+                for row in others.tolist():
+                    connection = wanted[int(chunk.connection[row])]
+                    raw = chunk.data[chunk.begin[row] : chunk.end[row]]
+                    time_ns = int(chunk.time_ns[row])
+                    taken.take(connection.topic, connection.caller, time_ns, raw)
+                if on_progress is not None:
+                    on_progress(min(chunk.behind, total), total)
             taken.close()
             if on_progress is not None:
                 on_progress(total, total)
@@ -79,8 +86,9 @@ def _wanted(index: BagIndex) -> tuple[dict[int, BagConnection], list[str]]:
     notes = set()
     for number, connection in index.connections.items():
         expected = {ROSOUT: _LOG, ROSOUT_AGG: _LOG, REPORTS: _STRING}.get(connection.topic)
-        if expected is None and topic_of_marks(connection.topic) is not None:
-            expected = _TIME
+        of_marks = MarkMessages.message_type(connection.topic)
+        if expected is None and of_marks is not None:
+            expected = {"Time": _TIME, "String": _STRING}[of_marks]
         if expected == connection.type:
             wanted[number] = connection
         elif expected is not None:

@@ -2,8 +2,7 @@
 
 rosbags' reader keeps an object for each message of a bag in memory and parses each record's header
 in full; a mission has millions of them. Here the connections are read from the index, as there, but
-the messages from the chunks themselves, one chunk at a time, and the header of a message is parsed
-once for all those that have the same form. Format: http://wiki.ros.org/Bags/Format/2.0
+the messages from the chunks themselves, one chunk at a time, and all of a chunk at once. Format: http://wiki.ros.org/Bags/Format/2.0
 """
 
 from __future__ import annotations
@@ -16,14 +15,23 @@ from dataclasses import dataclass
 from itertools import permutations
 from typing import BinaryIO
 
+import numpy as np
+import numpy.typing as npt
 from lz4.frame import LZ4FrameDecompressor  # type: ignore[import-untyped]
+
+from pytpc.columns import Int64s
+from pytpc.ingest.spool import Rows
 
 MAGIC = b"#ROSBAG V2.0\n"
 _LENGTH = struct.Struct("<I")
 _TWO = struct.Struct("<II")
 _LARGEST_CHUNK = 1 << 30
 _LARGEST_HEADER = 1 << 20
-_MESSAGE, _HEAD, _CHUNK, _CHUNK_INFO, _CONNECTION = 2, 3, 5, 6, 7
+_LARGEST_FILE = 1 << 60
+_MESSAGE, _HEAD, _INDEX, _CHUNK, _CHUNK_INFO, _CONNECTION = 2, 3, 4, 5, 6, 7
+_ENTRY = np.dtype([("seconds", "<u4"), ("nanoseconds", "<u4"), ("offset", "<u4")])
+_FORM_BYTES = 38
+_Found = tuple[Int64s, Int64s, Int64s, Int64s]
 
 
 class BrokenBagError(Exception):
@@ -74,7 +82,7 @@ def read_index(stream: BinaryIO) -> BagIndex:
         raise BrokenBagError("no index")
     if chunk_count == 0:
         return BagIndex({}, [], None, index_pos)
-    stream.seek(index_pos)
+    _seek(stream, index_pos)
     connections = {}
     for _ in range(count):
         header = _fields(_read_header(stream))
@@ -93,29 +101,115 @@ def read_index(stream: BinaryIO) -> BagIndex:
     return BagIndex(connections, sorted(chunks), (first, last) if last >= 0 else None, index_pos)
 
 
-def messages(
-    stream: BinaryIO, index: BagIndex, wanted: Collection[int]
-) -> Iterator[tuple[int, int, bytes, int]]:
+@dataclass(frozen=True)
+class Messages:
+    """The messages of a chunk, in the order of the file; n of them.
+
+    ``data`` is the chunk's bytes; ``connection``, ``time_ns`` (the recorder's), ``begin`` and
+    ``end`` (of the message in ``data``) are int64[n]. ``behind`` is the byte of the file behind the
+    chunk.
+    """
+
+    data: bytes
+    connection: Int64s
+    time_ns: Int64s
+    begin: Int64s
+    end: Int64s
+    behind: int
+
+
+def messages(stream: BinaryIO, index: BagIndex, wanted: Collection[int]) -> Iterator[Messages]:
     """The messages of the connections ``wanted``, chunk by chunk.
 
-    Yields:
-        Number of the connection, time in ns, the message, and the byte of the file at which the
-        next chunk is looked for.
+    The index behind each chunk says where they are; where it does not fit the chunk, or is not
+    there, the chunk is searched.
 
     Raises:
         BrokenBagError: a chunk is not where the index says, or is broken inside.
     """
-    chosen = frozenset(number.to_bytes(4, "little") for number in wanted)
+    chosen = frozenset(wanted)
     for place in index.chunks:
-        stream.seek(place)
+        _seek(stream, place)
         header = _fields(_read_header(stream))
         if header.get(b"op") != bytes([_CHUNK]):
             raise BrokenBagError(f"no chunk at byte {place}")
         length = _LENGTH.unpack(_read(stream, 4))[0]
         data = _unpacked(header, _read(stream, length))
         behind = stream.tell()
-        for number, time_ns, begin, end in _in_chunk(data, chosen):
-            yield number, time_ns, data[begin:end], behind
+        try:
+            found = _by_index(data, _entries(stream, chosen))
+        except BrokenBagError:
+            found = None
+        yield Messages(data, *(_by_search(data, chosen) if found is None else found), behind)
+
+
+def _entries(stream: BinaryIO, chosen: frozenset[int]) -> list[tuple[int, Rows]]:
+    """The index records behind a chunk: number of the connection, time and place of messages."""
+    found: list[tuple[int, Rows]] = []
+    while True:
+        head = stream.read(4)
+        if len(head) < 4 or _LENGTH.unpack(head)[0] > _LARGEST_HEADER:
+            return found
+        header = _fields(_read(stream, _LENGTH.unpack(head)[0]))
+        if header.get(b"op") != bytes([_INDEX]) or _number(header, b"ver", 4) != 1:
+            return found
+        number, count = _number(header, b"conn", 4), _number(header, b"count", 4)
+        raw = _read(stream, _LENGTH.unpack(_read(stream, 4))[0])
+        if len(raw) != count * _ENTRY.itemsize:
+            raise BrokenBagError("an index record of another size than it says")
+        if number in chosen:
+            found.append((number, np.frombuffer(raw, _ENTRY)))
+
+
+def _by_index(data: bytes, entries: list[tuple[int, Rows]]) -> _Found | None:
+    """Where messages are, from the index; None where one is not, or not in the usual form."""
+    if not entries:
+        return None
+    connection = np.concatenate([np.full(rows.size, number) for number, rows in entries])
+    rows = np.concatenate([rows for _, rows in entries])
+    order = np.argsort(rows["offset"], kind="stable")
+    connection, rows = connection[order].astype(np.int64), rows[order]
+    offset = rows["offset"].astype(np.int64)
+    if not offset.size or int(offset[-1]) + _FORM_BYTES + 8 > len(data):
+        return None
+    whole = np.frombuffer(data, np.uint8)
+    heads = whole[offset[:, None] + np.arange(_FORM_BYTES + 8)]
+    form = next((f for f in _FORMS if f.fullmatch(heads[0, 4:-4].tobytes())), None)
+    if form is None:
+        return None
+    # All have the form of the first: the same bytes but for connection and time.
+    first = form.fullmatch(heads[0, 4:-4].tobytes())
+    assert first is not None
+    fixed = np.ones(_FORM_BYTES + 8, np.bool_)
+    fixed[-4:] = False
+    for name in ("conn", "time"):
+        fixed[4 + first.start(name) : 4 + first.end(name)] = False
+    at, time_at = 4 + first.start("conn"), 4 + first.start("time")
+    said = _u32(heads[:, at : at + 4])
+    seconds, nanoseconds = (
+        _u32(heads[:, time_at : time_at + 4]),
+        _u32(heads[:, time_at + 4 : time_at + 8]),
+    )
+    begin = offset + _FORM_BYTES + 8
+    end = begin + _u32(heads[:, -4:])
+    fits = (
+        bool((heads[:, fixed] == heads[0, fixed]).all())
+        and bool((said == connection).all())
+        and bool((end[:-1] <= offset[1:]).all())
+        and int(end[-1]) <= len(data)
+    )
+    return (connection, seconds * 10**9 + nanoseconds, begin, end) if fits else None
+
+
+def _u32(raw: npt.NDArray[np.uint8]) -> Int64s:
+    """int64[n] of uint8[n, 4]."""
+    return np.ascontiguousarray(raw).view("<u4").reshape(-1).astype(np.int64)
+
+
+def _by_search(data: bytes, chosen: frozenset[int]) -> _Found:
+    found = list(_in_chunk(data, frozenset(number.to_bytes(4, "little") for number in chosen)))
+    columns = np.array(found, np.int64).reshape(-1, 4).T
+    return columns[0], columns[1], columns[2], columns[3]
 
 
 def _unpacked(header: dict[bytes, bytes], data: bytes) -> bytes:
@@ -184,6 +278,12 @@ def _form(order: tuple[bytes, ...]) -> re.Pattern[bytes]:
 
 
 _FORMS = [_form(order) for order in permutations((b"conn", b"op", b"time"))]
+
+
+def _seek(stream: BinaryIO, place: int) -> None:
+    if place > _LARGEST_FILE:
+        raise BrokenBagError(f"nothing can be at byte {place}")
+    stream.seek(place)
 
 
 def _read(stream: BinaryIO, count: int) -> bytes:

@@ -39,20 +39,22 @@ class Clock:
         )
 
     def real(self, steady: Int64s) -> Int64s:
-        """int64[...]: real time at ``steady`` (of any shape); quick where all are between two."""
+        """int64[n]: real time at ``steady``, int64[n]; quick where that rises."""
         if not steady.size:
             return steady
-        first, last = self._place(int(steady.min())), self._place(int(steady.max()))
+        if bool((steady[1:] < steady[:-1]).any()):
+            order = np.argsort(steady, kind="stable")
+            times = np.empty_like(steady)
+            times[order] = self.real(steady[order])
+            return times
+        first, last = self._place(int(steady[0])), self._place(int(steady[-1]))
         if first == last:
             return self._between(steady, first)
-        if steady.ndim > 1:
-            return np.stack([self.real(row) for row in steady])
-        places = np.clip(np.searchsorted(self.steady, steady, "right") - 1, 0, None)
-        times = np.empty_like(steady)
-        for place in np.unique(places).tolist():
-            here = places == place
-            times[here] = self._between(steady[here], place)
-        return times
+        # What lies between two moments is a slice.
+        cuts = np.searchsorted(steady, self.steady[first + 1 : last + 1], "left").tolist()
+        begins, ends = [0, *cuts], [*cuts, steady.size]
+        parts = zip(begins, ends, range(first, last + 1), strict=True)
+        return np.concatenate([self._between(steady[b:e], place) for b, e, place in parts])
 
     def at(self, steady: int) -> int:
         """Real time at one moment."""
@@ -63,16 +65,16 @@ class Clock:
 
     def _between(self, steady: Int64s, place: int) -> Int64s:
         shift = int(self.shift[place])
-        if place + 1 < self.steady.size:
-            change = int(self.shift[place + 1]) - shift
-            if change and abs(change) < _JUMP_NS:
-                begin = int(self.steady[place])
-                slope = change / (int(self.steady[place + 1]) - begin)
-                # Before the first moment the line is not followed.
-                drift = np.rint(np.maximum(steady - begin, 0) * slope)
-                moved: Int64s = (
-                    steady + shift + np.clip(drift, -_JUMP_NS, _JUMP_NS).astype(np.int64)
-                )
-                return moved
-        same: Int64s = steady + shift
-        return same
+        times: Int64s = steady + shift
+        if place + 1 == self.steady.size:
+            return times
+        change = int(self.shift[place + 1]) - shift
+        if change and abs(change) < _JUMP_NS:
+            begin = int(self.steady[place])
+            # The change is small against the time: what a double rounds of that does not matter.
+            drift = np.subtract(steady, begin, dtype=np.float64)
+            drift *= change / (int(self.steady[place + 1]) - begin)
+            # Before the first moment the line is not followed.
+            np.clip(drift, min(change, 0), max(change, 0), out=drift)
+            times += np.rint(drift, out=drift).astype(np.int64)
+        return times

@@ -38,8 +38,8 @@ class System:
     torn: int = 0
 
     def key_codes(self, gathering: Gathering) -> Int32s:
-        """int32[largest site + 1]: the code of each site's key, -1 where there is none."""
-        codes = np.full(max(self.keys, default=0) + 1, -1, np.int32)
+        """int32[largest site + 2]: the code of each site's key, -1 where there is none."""
+        codes = np.full(max(self.keys, default=0) + 2, -1, np.int32)
         for site, key in self.keys.items():
             codes[site] = gathering.keys.code(key)
         return codes

@@ -27,7 +27,7 @@ from pytpc.ingest.rosout_line import (
     parse_stamped,
 )
 from pytpc.ingest.spool import RUN_ROWS, Rows, Spool
-from pytpc.marks import Mark
+from pytpc.marks import Mark, MarkMessages
 from pytpc.summaries import Summary
 
 Progress = Callable[[int, int], None]
@@ -143,6 +143,7 @@ class Gathering:
             run_rows // 4 + 1,
         )
         self.marks: list[Mark] = []
+        self.mark_messages = MarkMessages()
         self.malformed = 0
         self._first: list[tuple[int, MalformedRecord]] = []
         self._turn = 0
@@ -169,6 +170,11 @@ class Gathering:
         """A number for the order in which records came."""
         self._turn += 1
         return self._turn
+
+    def turns(self, count: int) -> range:
+        """So many of them."""
+        self._turn += count
+        return range(self._turn - count + 1, self._turn + 1)
 
     def add_events(self, channel: Channel, node: Int32s | int, reports: Reports) -> None:
         """Take in reports of one node, or of those of which ``node`` has the codes."""
@@ -259,10 +265,10 @@ class Lines:
     """
 
     def __init__(
-        self, gathering: Gathering, channel: Channel, *, stamped: bool, prefix: int = 0
+        self, gathering: Gathering, channel: Channel, *, stamped: bool, prefix: str = ""
     ) -> None:
-        """``prefix`` is how many bytes stand before the key, or the time, in what ``add`` gets."""
-        self._gathering = gathering
+        """``prefix`` stood before what ``add`` gets, and stands there in complaints."""
+        self.gathering = gathering
         self.channel = channel
         self._stamped = stamped
         self._prefix = prefix
@@ -278,8 +284,24 @@ class Lines:
         self._lines.append(line)
         self._times.append(time_ns)
         self._nodes.append(node)
-        self._turns.append(self._gathering.turn())
+        self._turns.append(self.gathering.turn())
         self._places.append(number)
+        if len(self._lines) >= LINES:
+            self.flush()
+
+    def extend(
+        self,
+        lines: list[bytes],
+        times_ns: list[int],
+        nodes: list[int],
+        numbers: list[int] | None = None,
+    ) -> None:
+        """The same of many lines."""
+        self._lines += lines
+        self._times += times_ns
+        self._nodes += nodes
+        self._turns += self.gathering.turns(len(lines))
+        self._places += numbers or [0] * len(lines)
         if len(self._lines) >= LINES:
             self.flush()
 
@@ -287,10 +309,9 @@ class Lines:
         """Hand in all that was taken in."""
         if not self._lines:
             return
-        texts = [line[self._prefix :] for line in self._lines] if self._prefix else self._lines
         times = np.array(self._times, np.int64)
         nodes = np.array(self._nodes, np.int32)
-        for part in read_lines(texts, stamped=self._stamped):
+        for part in read_lines(self._lines, stamped=self._stamped):
             if isinstance(part, int):
                 self._alone(part)
                 continue
@@ -300,9 +321,9 @@ class Lines:
                 zero = time_ns == 0
                 self.unstamped += int(np.count_nonzero(zero))
                 time_ns = np.where(zero, given, time_ns)
-            key = self._gathering.keys.all(part.keys)[part.key]
+            key = self.gathering.keys.all(part.keys)[part.key]
             reports = Reports(time_ns, key, part.result, part.cmp, part.thresh, part.res)
-            self._gathering.add_events(self.channel, nodes[part.begin : part.end], reports)
+            self.gathering.add_events(self.channel, nodes[part.begin : part.end], reports)
         self._lines, self._times, self._nodes = [], [], []
         self._turns, self._places = [], []
 
@@ -320,22 +341,24 @@ class Lines:
                 self.unstamped += not stamped.time_ns
                 time_ns = stamped.time_ns or time_ns
         else:
-            found = parse_report(text if self._prefix else PREFIX + text)
+            found = parse_report(PREFIX + text)
         if isinstance(found, Report):
             reports = Reports(
                 np.array([time_ns], np.int64),
-                np.array([self._gathering.keys.code(found.key)], np.int32),
+                np.array([self.gathering.keys.code(found.key)], np.int32),
                 np.array([found.result]),
                 np.array([found.cmp]),
                 np.array([found.thresh]),
                 np.array([found.res]),
             )
-            self._gathering.add_events(self.channel, self._nodes[number], reports)
+            self.gathering.add_events(self.channel, self._nodes[number], reports)
             return
         what = "no report" if found is None else f"{found.what}, column {found.column}"
         if self._places[number]:
             what = f"line {self._places[number]}: {what}"
-        self._gathering.skip(self.channel.topic, time_ns, what, text, self._turns[number])
+        self.gathering.skip(
+            self.channel.topic, time_ns, what, self._prefix + text, self._turns[number]
+        )
 
 
 @dataclass

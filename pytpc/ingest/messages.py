@@ -8,9 +8,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import numpy as np
+
+from pytpc.columns import Bools, Int32s, Int64s
+from pytpc.ingest.bag_chunks import Messages as Chunk
 from pytpc.ingest.gathering import Batches, Channel, Gathering, Lines, Way
 from pytpc.ingest.recording import Dropped
-from pytpc.ingest.ros1 import Log
+from pytpc.ingest.ros1 import Log, decode_logs
 from pytpc.ingest.rosout_line import (
     DROPPED_PREFIX,
     PREFIX,
@@ -21,7 +25,7 @@ from pytpc.ingest.rosout_line import (
     parse_other,
     parse_stamped_other,
 )
-from pytpc.marks import Mark, topic_of_marks
+from pytpc.marks import MarkMessages
 from pytpc.summaries import Summary
 from pytpc.words import many
 
@@ -30,6 +34,7 @@ ROSOUT_AGG = "/rosout_agg"
 REPORTS = "/threshold_information"
 
 _PREFIX = PREFIX.encode()
+_BEGIN = b"threshold_"
 _OTHERS = (SUMMARY_PREFIX.encode(), DROPPED_PREFIX.encode())
 _WITH_TIME = tuple(f",{prefix}".encode() for prefix in (SUMMARY_PREFIX, DROPPED_PREFIX))
 
@@ -92,6 +97,55 @@ class Messages:
         except ValueError as error:
             self._gathering.skip(topic, time_ns, str(error), "")
 
+    def take_logs(self, chunk: Chunk, which: Bools) -> bool:
+        """Read many of /rosout (ROS 1) at once; False, and none read, where one is odd."""
+        if not which.any():
+            return True
+        data = np.frombuffer(chunk.data, np.uint8)
+        logs = decode_logs(data, chunk.begin[which], chunk.end[which])
+        if logs is None:
+            return False
+        places = zip(logs.node_begin.tolist(), logs.node_end.tolist(), strict=True)
+        names = [chunk.data[begin:end] for begin, end in places]
+        nodes = self._count_all_lost(names, logs.seq)
+        # The first bytes of each text; what is too short for them is of no interest.
+        long = logs.msg_end - logs.msg_begin >= len(_PREFIX)
+        rows = np.flatnonzero(long)
+        first = data[logs.msg_begin[rows, None] + np.arange(len(_PREFIX))]
+        begun = (first[:, : len(_BEGIN)] == np.frombuffer(_BEGIN, np.uint8)).all(axis=1)
+        reports = begun & (first == np.frombuffer(_PREFIX, np.uint8)).all(axis=1)
+        others = np.concatenate([rows[begun & ~reports], np.flatnonzero(~long)])
+        for row in np.sort(others).tolist():
+            msg = chunk.data[logs.msg_begin[row] : logs.msg_end[row]]
+            log = Log(0, int(logs.stamp_ns[row]), names[row], msg)
+            self._text_of(log, ROSOUT, int(chunk.time_ns[which][row]))
+        rows = rows[reports]
+        stamps = logs.stamp_ns[rows]
+        self._unstamped += int(np.count_nonzero(stamps == 0))
+        stamps = np.where(stamps == 0, chunk.time_ns[which][rows], stamps)
+        begins = logs.msg_begin[rows] + len(_PREFIX)
+        places = zip(begins.tolist(), logs.msg_end[rows].tolist(), strict=True)
+        texts = [chunk.data[begin:end] for begin, end in places]
+        lines = self._lines_of("log", ROSOUT, stamped=False, prefix=PREFIX)
+        lines.extend(texts, stamps.tolist(), nodes[rows].tolist())
+        return True
+
+    def _count_all_lost(self, names: list[bytes], seq: Int64s) -> Int32s:
+        """As ``_count_lost``, of many messages; the codes of their nodes."""
+        codes = {name: self._node(name) for name in set(names)}
+        nodes = np.array([codes[name] for name in names], np.int32)
+        for name, code in codes.items():
+            own = seq[nodes == code]
+            last = self._last_seq.get(name)
+            if last is not None:
+                own = np.concatenate([[last], own])
+            steps = np.diff(own)
+            lost = int((steps[steps > 1] - 1).sum())
+            if lost:
+                self._gathering.lost[_plain(name)] += lost
+            self._last_seq[name] = int(own[-1])
+        return nodes
+
     def close(self) -> None:
         """Hand in what is still held."""
         for lines in self._lines.values():
@@ -107,13 +161,16 @@ class Messages:
         log = self._decoders.log(raw)
         if topic == ROSOUT and self._numbered:
             self._count_lost(log.node, log.seq)
-        if not log.msg.startswith(b"threshold_"):
+        self._text_of(log, topic, time_ns)
+
+    def _text_of(self, log: Log, topic: str, time_ns: int) -> None:
+        if not log.msg.startswith(_BEGIN):
             return
         way: Way = "log" if topic == ROSOUT else "aggregate"
         if log.msg.startswith(_PREFIX):
             stamp_ns = log.stamp_ns or self._from_bag(time_ns)
-            lines = self._lines_of(way, topic, stamped=False, prefix=len(_PREFIX))
-            lines.add(log.msg, stamp_ns, self._node(log.node))
+            lines = self._lines_of(way, topic, stamped=False, prefix=PREFIX)
+            lines.add(log.msg[len(_PREFIX) :], stamp_ns, self._node(log.node))
         elif log.msg.startswith(_OTHERS) and topic == ROSOUT:
             # What the rosout node passes on is the same once more.
             node, text = _plain(log.node), _plain(log.msg)
@@ -166,10 +223,11 @@ class Messages:
             self._gathering.skip(line.topic, line.time_ns, what, line.text)
 
     def _mark(self, topic: str, time_ns: int, raw: bytes) -> None:
-        named = topic_of_marks(topic)
-        if named is not None:
+        if MarkMessages.message_type(topic) == "String":
+            self._gathering.mark_messages.add_text(topic, _plain(self._decoders.text(raw)))
+        else:
             marked_ns = self._decoders.time(raw) or self._from_bag(time_ns)
-            self._gathering.marks.append(Mark(marked_ns, *named))
+            self._gathering.mark_messages.add_time(topic, marked_ns)
 
     def _from_bag(self, time_ns: int) -> int:
         self._unstamped += 1
@@ -193,7 +251,7 @@ class Messages:
             self._channels[way] = self._gathering.channel(self._source, way, topic)
         return self._channels[way]
 
-    def _lines_of(self, way: Way, topic: str, *, stamped: bool, prefix: int = 0) -> Lines:
+    def _lines_of(self, way: Way, topic: str, *, stamped: bool, prefix: str = "") -> Lines:
         lines = self._lines.get(way)
         if lines is None:
             channel = self._channel(way, topic)

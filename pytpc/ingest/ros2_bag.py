@@ -19,7 +19,7 @@ from pytpc.errors import InputError
 from pytpc.ingest import ros2
 from pytpc.ingest.gathering import Gathering, Progress
 from pytpc.ingest.messages import REPORTS, ROSOUT, Decoders, Messages
-from pytpc.marks import topic_of_marks
+from pytpc.marks import MarkMessages
 
 MCAP_MAGIC = b"\x89MCAP0\r\n"
 SQLITE_MAGIC = b"SQLite format 3\0"
@@ -126,8 +126,9 @@ def _wanted(connections: list[Connection]) -> tuple[list[Connection], list[str]]
     notes = set()
     for connection in connections:
         expected = _TYPES.get(connection.topic)
-        if expected is None and topic_of_marks(connection.topic) is not None:
-            expected = _TIMES
+        of_marks = MarkMessages.message_type(connection.topic)
+        if expected is None and of_marks is not None:
+            expected = _TIMES if of_marks == "Time" else _TYPES[REPORTS]
         if expected is None:
             continue
         if connection.msgtype in expected:

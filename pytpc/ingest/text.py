@@ -50,27 +50,21 @@ def read_text_into(path: Path, gathering: Gathering, on_progress: Progress | Non
     try:
         size = max(1, path.stat().st_size)
         reader: _Taker | None = None
-        first: list[tuple[int, bytes]] = []
-        for number, line, done in _lines(path):
+        for number, lines, done in _lines(path):
             if reader is None:
-                first.append((number, line))
-                if len(first) < 2 and not _CSV.match(line):
-                    continue
-                is_csv = any(_CSV.match(text) for _, text in first)
-                reader = (_Csv if is_csv else _Log)(path, gathering)
-                for earlier in first:
-                    reader.take(*earlier)
-                continue
-            reader.take(number, line)
-            if on_progress is not None and number % 4096 == 0:
+                reader = _reader_for(lines, path, gathering)
+            reader.take_many(number, lines)
+            if on_progress is not None:
                 on_progress(done, size)
-        if reader is None:
-            reader = _Log(path, gathering)
-            for earlier in first:
-                reader.take(*earlier)
-        reader.close()
+        if reader is not None:
+            reader.close()
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror or error}", path) from error
+
+
+def _reader_for(lines: list[bytes], path: Path, gathering: Gathering) -> _Taker:
+    is_csv = any(_CSV.match(line) for line in lines[:2])
+    return (_Csv if is_csv else _Log)(path, gathering)
 
 
 class _Taker:
@@ -85,6 +79,11 @@ class _Taker:
 
     def take(self, number: int, line: bytes) -> None:
         raise NotImplementedError
+
+    def take_many(self, number: int, lines: list[bytes]) -> None:
+        """Lines that follow one another; the first has the number ``number``."""
+        for at, line in enumerate(lines, start=number):
+            self.take(at, line)
 
     def other(
         self, found: Summary | Drop | Malformed | None, node: str, number: int, text: str
@@ -165,28 +164,37 @@ class _Csv(_Taker):
         else:
             self.lines.add(line, 0, self._code, number)
 
+    def take_many(self, number: int, lines: list[bytes]) -> None:
+        if number == 1 or any(b"#" in line or b"threshold_" in line for line in lines):
+            super().take_many(number, lines)
+            return
+        numbers = [at for at, line in enumerate(lines, start=number) if line.strip()]
+        kept = [line for line in lines if line.strip()]
+        self.lines.extend(kept, [0] * len(kept), [self._code] * len(kept), numbers)
 
-def _lines(path: Path) -> Iterator[tuple[int, bytes, int]]:
-    """Number from 1, text without its end, and bytes read so far; of endless lines the begin."""
-    rest, number, done, cut = b"", 0, 0, False
+
+def _lines(path: Path) -> Iterator[tuple[int, list[bytes], int]]:
+    """Number (from 1) of the first of some lines, the lines without their ends, and how many bytes
+    were read so far; of an endless line the begin."""
+    rest, number, done, cut = b"", 1, 0, False
     with path.open("rb") as stream:
         while block := stream.read(_BLOCK):
             done += len(block)
             lines = (rest + block).split(b"\n")
             rest = lines.pop()
-            for line in lines:
-                if cut:
-                    cut = False
-                    continue
-                number += 1
-                yield number, line[:_LONGEST].rstrip(b"\r"), done
+            if cut and lines:
+                # The end of what was too long.
+                del lines[0]
+                cut = False
             if len(rest) > _LONGEST:
                 if not cut:
-                    number += 1
-                    yield number, rest[:_LONGEST], done
+                    lines.append(rest)
                 rest, cut = b"", True
+            if lines:
+                yield number, [line[:_LONGEST].rstrip(b"\r") for line in lines], done
+                number += len(lines)
     if rest and not cut:
-        yield number + 1, rest.rstrip(b"\r"), done
+        yield number, [rest.rstrip(b"\r")], done
 
 
 def _plain(raw: bytes) -> str:

@@ -214,6 +214,16 @@ def test_a_bag_that_was_not_closed(tmp_path):
         read_bag(path)
 
 
+# Found by fuzzing: a place that no file has.
+def test_an_index_beyond_all_files(tmp_path):
+    whole = long_bag(tmp_path / "whole.bag", 100).read_bytes()
+    place = whole.index(b"index_pos=") + len(b"index_pos=")
+    path = tmp_path / "far.bag"
+    path.write_bytes(whole[:place] + b"\xff" * 8 + whole[place + 8 :])
+    with pytest.raises(InputError, match="the index should be at byte 18446744073709551615"):
+        read_bag(path)
+
+
 # Any single corrupt byte: either it does not matter for us, or it is one line.
 @pytest.mark.parametrize("seed", range(40))
 def test_flipped_bytes_never_end_in_a_traceback(tmp_path, seed):

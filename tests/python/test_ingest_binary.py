@@ -119,10 +119,11 @@ def test_clock(tmp_path, steady, real):
 
 def test_clock_of_many_at_once():
     clock = Clock.of([(0, 100), (10, 110), (20, 125), (30, 2_000_030)])
-    steady = np.array([[0, 9, 10, 18], [20, 29, 30, 40]], np.int64)
+    steady = np.array([0, 9, 10, 18, 20, 29, 30, 40], np.int64)
     # 100; from 10 to 20 the difference grows from 100 to 105; then it jumps at 30.
-    expected = [[100, 109, 110, 122], [125, 134, 2_000_030, 2_000_040]]
+    expected = [100, 109, 110, 122, 125, 134, 2_000_030, 2_000_040]
     assert clock.real(steady).tolist() == expected
+    assert clock.real(steady[::-1]).tolist() == expected[::-1]
 
 
 # 1 in wall time, then simulated time stands at 40 s for two reports and over the end of the chunk,
