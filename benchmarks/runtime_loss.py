@@ -72,10 +72,10 @@ def in_bag(path: Path) -> int:
     with Reader(path) as reader:
         for connection, _, raw in reader.messages():
             if connection.topic == "/rosout":
-                count += decode_log(raw).msg.startswith("threshold_information:")
+                count += decode_log(raw).msg.startswith(b"threshold_information:")
             else:
-                lines = decode_string(raw).split("\n")
-                count += sum(not line.startswith("#") for line in lines)
+                lines = decode_string(raw).split(b"\n")
+                count += sum(not line.startswith(b"#") for line in lines)
     return count
 
 

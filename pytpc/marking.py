@@ -50,7 +50,8 @@ class Session:
     """One observer's marks, in the order in which they were made.
 
     ``typing`` is the note that is being written, None where none is. ``said`` is what is to be told
-    the observer, empty where nothing.
+    the observer, empty where nothing. ``used`` are the times that were marked, and may be so no
+    more though the mark was taken back.
     """
 
     observer: str
@@ -58,6 +59,7 @@ class Session:
     typing: str | None = None
     said: str = ""
     ended: bool = False
+    used: frozenset[int] = frozenset()
 
 
 def press(session: Session, key: str, now_ns: int | None) -> tuple[Session, Change | None]:
@@ -101,11 +103,13 @@ def _mark(
         return replace(session, said="not marked: the graph has no time yet (no /clock)"), None
     # While a clock stands still two marks would have one time, and what is taken back or noted is
     # told by its time.
-    while any(mark.time_ns == now_ns for mark in session.marks):
+    used = session.used | {mark.time_ns for mark in session.marks}
+    while now_ns in used:
         now_ns += 1
     mark = Mark(now_ns, kind, session.observer)
     said = f"marked: {_named(mark)}"
-    return replace(session, marks=(*session.marks, mark), said=said), Change(None, mark)
+    after = replace(session, marks=(*session.marks, mark), said=said, used=used | {now_ns})
+    return after, Change(None, mark)
 
 
 def _type(session: Session, text: str, key: str) -> tuple[Session, Change | None]:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import csv
 import io
-from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -30,6 +29,8 @@ _TOPICS: dict[str, MarkType | None] = {
     "mark_wrong": None,
 }
 _HEADER = ["time_ns", "type", "observer", "note"]
+MARKS_HEADER = ",".join(_HEADER).encode()
+"""How a CSV file of marks begins."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,17 +82,21 @@ def observer_of(topic: str, last: str) -> str | None:
 def without_undone(marks: Iterable[Mark], undone: Iterable[tuple[str, int]]) -> tuple[Mark, ...]:
     """``marks`` without those that were taken back, in their order.
 
-    ``undone`` has observer and time of each mark that was: one mark goes for each, the last of
-    that observer at exactly that time.
+    ``undone`` has observer and time of each mark that was. All of that observer at exactly that
+    time go: an observer marks no time twice, so they are the same one, recorded twice.
     """
-    left = Counter(undone)
-    kept = []
-    for mark in reversed(list(marks)):
-        if left[mark.observer, mark.time_ns] > 0:
-            left[mark.observer, mark.time_ns] -= 1
-        else:
-            kept.append(mark)
-    return tuple(reversed(kept))
+    gone = set(undone)
+    return tuple(mark for mark in marks if (mark.observer, mark.time_ns) not in gone)
+
+
+def joined(marks: Iterable[Mark]) -> tuple[Mark, ...]:
+    """``marks`` sorted, each once; of two that differ in their notes alone, the one with a note."""
+    found: dict[tuple[int, str, str], Mark] = {}
+    for mark in marks:
+        before = found.get(mark.order())
+        if before is None or mark.note > before.note:
+            found[mark.order()] = mark
+    return tuple(sorted(found.values(), key=Mark.order))
 
 
 def with_note(marks: Iterable[Mark], observer: str, time_ns: int, note: str) -> tuple[Mark, ...]:
@@ -129,13 +134,12 @@ class MarkMessages:
         self._notes: list[tuple[str, int, str]] = []
 
     @staticmethod
-    def message_type(topic: str) -> str | None:
-        """The type that messages of ``topic`` must have, ``std_msgs/Time`` or ``std_msgs/String``;
-        None where it has nothing to do with marks."""
+    def message_type(topic: str) -> Literal["Time", "String"] | None:
+        """Which of std_msgs the messages of ``topic`` are; None where it is not about marks."""
         last = topic.rpartition("/")[2]
         if last == NOTE_TOPIC:
-            return "std_msgs/String"
-        return "std_msgs/Time" if last in {*_TOPICS, UNDO_TOPIC} else None
+            return "String"
+        return "Time" if last in {*_TOPICS, UNDO_TOPIC} else None
 
     def add_time(self, topic: str, time_ns: int) -> None:
         """A std_msgs/Time of a topic that ``message_type`` knows."""

@@ -177,7 +177,7 @@ class _Tpcs:
             key
             for code, key in enumerate(self.keys)
             if self.parameters[code] == parameter
-            and (events.by_key.rows(code).size or key in summaries.keys)
+            and (events.by_key.rows(code).size or _rows_of(summaries, key).size)
         )
 
 
@@ -232,12 +232,18 @@ def _last(events: Events, summaries: Summaries, key: str, mark_ns: int) -> Evalu
     """
     rows = events.by_key.rows(events.keys.index(key))
     found = [_at(events, events.time_ns, rows, mark_ns)] if rows.size else []
-    if key in summaries.keys:
-        own = np.flatnonzero(summaries.key == summaries.keys.index(key))
+    own = _rows_of(summaries, key)
+    if own.size:
         own = own[np.argsort(summaries.end_ns[own], kind="stable")]
-        found.append(_at(summaries, summaries.end_ns, own, mark_ns))
+        found += [_at(summaries, summaries.end_ns, own, mark_ns)] if own.size else []
     before = [evaluation for evaluation in found if evaluation.time_ns <= mark_ns]
     return max(before) if before else min(found)
+
+
+def _rows_of(summaries: Summaries, key: str) -> Int64s:
+    """The rows of a key; a table may know a key and have none."""
+    code = summaries.keys.index(key) if key in summaries.keys else -1
+    return np.flatnonzero(summaries.key == code)
 
 
 def _at(table: Events | Summaries, times: Int64s, rows: Int64s, mark_ns: int) -> Evaluation:

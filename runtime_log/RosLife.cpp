@@ -19,11 +19,13 @@
 namespace tpc {
 
 static constexpr auto EndPatience = std::chrono::milliseconds(500);
+static constexpr int64_t StartNs = 10'000'000;
 static constexpr auto Moment = std::chrono::milliseconds(1);
 
 static std::atomic<int> Users{0};
 static std::atomic<bool> Over{false};
 static std::atomic<bool> Up{false};
+static std::atomic<int64_t> StartedAt{0};
 static std::atomic<bool> Asking{false};
 static std::atomic<bool> Forked{false};
 
@@ -64,10 +66,18 @@ void warnOfFork(const char *Topic) {
 bool rosIsUp() {
   if (!ros::isStarted() || ros::isShuttingDown()) {
     Up = false;
+    StartedAt = 0;
     return false;
   }
   if (Up)
     return true;
+  // Asking for one of roscpp's singletons makes it, and they are destroyed in
+  // the opposite order: ros::start() is to make its first ones before.
+  const auto Now = std::chrono::steady_clock::now().time_since_epoch().count();
+  int64_t Unset = 0;
+  StartedAt.compare_exchange_strong(Unset, Now);
+  if (Now - StartedAt < StartNs)
+    return false;
   // ros::isStarted() is true from the beginning of ros::start(), when neither
   // the addresses of this node nor its threads are there yet. This service is
   // the last thing that every node makes in it that can be seen from outside.

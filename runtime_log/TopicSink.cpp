@@ -35,11 +35,13 @@ namespace {
 
 constexpr const char *Topic = "/threshold_information";
 constexpr size_t MessageBytes = 64 * 1024;
-/// Messages that wait for a slow subscriber: at least ten seconds at 20 ms
-/// each, and at most 32 MiB.
+/// Messages that wait for a slow subscriber: 100 seconds at five a second, and
+/// at most 32 MiB.
 constexpr uint32_t QueueMessages = 512;
-/// A little less than the helper's turn, so that each turn sends.
-constexpr int64_t BatchNs = 15'000'000;
+/// Five messages a second and node, a little less than so many of the helper's
+/// turns: with a turn each, a node that reports 50 times a second would send a
+/// message for each report.
+constexpr int64_t BatchNs = 190'000'000;
 /// What roscpp's thread gets to write the last messages.
 constexpr std::chrono::milliseconds LastMoment{50};
 /// How long the first message waits for all subscribers that the master knows:

@@ -11,7 +11,7 @@ import click
 
 from pytpc.cli.console import progress, warn
 from pytpc.errors import InputError
-from pytpc.ingest import read_bag
+from pytpc.ingest import read
 from pytpc.marking import Session
 from pytpc.marking_file import MarksFile
 from pytpc.marking_graph import GraphMarks
@@ -52,7 +52,7 @@ def _mission(bag: Path | None, observer: str) -> Mission:
     if bag is None:
         return GraphMarks(os.environ.get("ROS_MASTER_URI") or _MASTER, observer)
     with progress(f"reading {bag.name}") as advance:
-        recording = read_bag(bag, advance)
+        recording = read(bag, advance)
     if recording.end_ns <= recording.start_ns:
         raise InputError("nothing in it takes any time", bag)
     for note in recording.notes:

@@ -16,8 +16,8 @@ from pytpc.marks import MarkMessages
 
 _LOG = "rosgraph_msgs/msg/Log"
 _STRING = "std_msgs/msg/String"
-_MARKS: dict[str | None, str] = {"std_msgs/Time": "std_msgs/msg/Time", "std_msgs/String": _STRING}
-_DECODERS = Decoders(ros1.decode_raw_log, ros1.decode_raw_string, ros1.decode_time)
+_TIME = "std_msgs/msg/Time"
+_DECODERS = Decoders(ros1.decode_log, ros1.decode_string, ros1.decode_time)
 
 
 def read_bag_into(path: Path, gathering: Gathering, on_progress: Progress | None = None) -> None:
@@ -86,8 +86,9 @@ def _wanted(index: BagIndex) -> tuple[dict[int, BagConnection], list[str]]:
     notes = set()
     for number, connection in index.connections.items():
         expected = {ROSOUT: _LOG, ROSOUT_AGG: _LOG, REPORTS: _STRING}.get(connection.topic)
-        if expected is None:
-            expected = _MARKS.get(MarkMessages.message_type(connection.topic))
+        of_marks = MarkMessages.message_type(connection.topic)
+        if expected is None and of_marks is not None:
+            expected = {"Time": _TIME, "String": _STRING}[of_marks]
         if expected == connection.type:
             wanted[number] = connection
         elif expected is not None:

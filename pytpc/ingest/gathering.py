@@ -17,7 +17,7 @@ import numpy as np
 from pytpc.columns import Bools, Floats, Int32s, Int64s
 from pytpc.ingest.recording import Dropped, MalformedRecord
 from pytpc.ingest.spool import RUN_ROWS, Rows, Spool
-from pytpc.marks import Mark
+from pytpc.marks import Mark, MarkMessages
 from pytpc.summaries import Summary
 
 Progress = Callable[[int, int], None]
@@ -135,6 +135,7 @@ class Gathering:
             run_rows // 4 + 1,
         )
         self.marks: list[Mark] = []
+        self.mark_messages = MarkMessages()
         self.malformed = 0
         self._first: list[tuple[int, MalformedRecord]] = []
         self._turn = 0

@@ -15,7 +15,7 @@ from pytpc.ingest.bag_chunks import Messages as Chunk
 from pytpc.ingest.gathering import Channel, Gathering, Way
 from pytpc.ingest.lines import Batches, Lines
 from pytpc.ingest.recording import Dropped
-from pytpc.ingest.ros1 import RawLog, decode_logs
+from pytpc.ingest.ros1 import Log, decode_logs
 from pytpc.ingest.rosout_line import (
     DROPPED_PREFIX,
     PREFIX,
@@ -44,7 +44,7 @@ _WITH_TIME = tuple(f",{prefix}".encode() for prefix in (SUMMARY_PREFIX, DROPPED_
 class Decoders:
     """How the three kinds of messages are read; each raises ValueError where bytes are missing."""
 
-    log: Callable[[bytes], RawLog]
+    log: Callable[[bytes], Log]
     text: Callable[[bytes], bytes]
     time: Callable[[bytes], int]
 
@@ -84,7 +84,6 @@ class Messages:
         self._lines: dict[Way, Lines] = {}
         self._channels: dict[Way, Channel] = {}
         self._nodes: dict[bytes, int] = {}
-        self._marks = MarkMessages()
         self._unstamped = 0
 
     def take(self, topic: str, caller: str, time_ns: int, raw: bytes) -> None:
@@ -119,7 +118,7 @@ class Messages:
         others = np.concatenate([rows[begun & ~reports], np.flatnonzero(~long)])
         for row in np.sort(others).tolist():
             msg = chunk.data[logs.msg_begin[row] : logs.msg_end[row]]
-            log = RawLog(0, int(logs.stamp_ns[row]), names[row], msg)
+            log = Log(0, int(logs.stamp_ns[row]), names[row], msg)
             self._text_of(log, ROSOUT, int(chunk.time_ns[which][row]))
         rows = rows[reports]
         stamps = logs.stamp_ns[rows]
@@ -154,7 +153,6 @@ class Messages:
             lines.flush()
             self._unstamped += lines.unstamped
         self._batches.close()
-        self._gathering.marks += self._marks.marks()
         if self._unstamped:
             self._gathering.late_notes.append(
                 f"{many(self._unstamped, 'record')} without a stamp got the bag's time"
@@ -166,7 +164,7 @@ class Messages:
             self._count_lost(log.node, log.seq)
         self._text_of(log, topic, time_ns)
 
-    def _text_of(self, log: RawLog, topic: str, time_ns: int) -> None:
+    def _text_of(self, log: Log, topic: str, time_ns: int) -> None:
         if not log.msg.startswith(_BEGIN):
             return
         way: Way = "log" if topic == ROSOUT else "aggregate"
@@ -226,10 +224,11 @@ class Messages:
             self._gathering.skip(line.topic, line.time_ns, what, line.text)
 
     def _mark(self, topic: str, time_ns: int, raw: bytes) -> None:
-        if MarkMessages.message_type(topic) == "std_msgs/String":
-            self._marks.add_text(topic, _plain(self._decoders.text(raw)))
+        if MarkMessages.message_type(topic) == "String":
+            self._gathering.mark_messages.add_text(topic, _plain(self._decoders.text(raw)))
         else:
-            self._marks.add_time(topic, self._decoders.time(raw) or self._from_bag(time_ns))
+            marked_ns = self._decoders.time(raw) or self._from_bag(time_ns)
+            self._gathering.mark_messages.add_time(topic, marked_ns)
 
     def _from_bag(self, time_ns: int) -> int:
         self._unstamped += 1

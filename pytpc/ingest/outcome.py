@@ -24,7 +24,7 @@ from pytpc.ingest.duplicates import APART_NS, TOLERANCE_NS, Once, clock_notes
 from pytpc.ingest.gathering import SUMMARY_ROW, Gathering
 from pytpc.ingest.recording import EVENTS_FILE, SUMMARIES_FILE, Recording, write_marks
 from pytpc.ingest.spool import Rows
-from pytpc.marks import Mark
+from pytpc.marks import Mark, joined
 from pytpc.summaries import Summaries
 
 Told = Callable[[int, int], None]
@@ -101,7 +101,7 @@ class Outcome:
     def rest(self, events: Events, summaries: Summaries) -> Recording:
         """The recording with these tables; the blocks must have been taken."""
         gathering = self.gathering
-        marks = tuple(sorted(set(gathering.marks), key=Mark.order))
+        marks = joined([*gathering.marks, *gathering.mark_messages.marks()])
         start_ns, end_ns = self._span(marks)
         notes = [
             *gathering.notes,

@@ -6,6 +6,7 @@ import shutil
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 from pytpc.errors import InputError, TpcError
@@ -20,12 +21,11 @@ from pytpc.ingest.outcome import Outcome
 from pytpc.ingest.recording import EVENTS_FILE, MARKS_FILE, Recording, load_recording
 from pytpc.ingest.ros2_bag import MCAP_MAGIC, SQLITE_MAGIC, read_ros2_into
 from pytpc.ingest.text import read_text_into
-from pytpc.marks import marks_beside, read_marks
+from pytpc.marks import MARKS_HEADER, Mark, joined, marks_beside, read_marks
 
 Reader = Callable[[Path, Gathering, Progress | None], None]
 ROS2_FILE = "metadata.yaml"
 _FIRST = 4096
-_MARKS_BEGIN = b"time_ns,type,observer"
 
 
 def read(
@@ -47,8 +47,9 @@ def read(
         InputError: a file is not there, is none of these, or is broken; one line.
     """
     given = [paths] if isinstance(paths, Path) else list(paths)
-    if len(given) == 1 and is_ingested(given[0]) and not marks_beside(given[0]).is_file():
-        return load_recording(given[0])
+    if len(given) == 1 and is_ingested(given[0]):
+        recording = load_recording(given[0])
+        return replace(recording, marks=joined([*recording.marks, *_beside(given[0])]))
     gathering = Gathering()
     gather(given, gathering, on_progress)
     return Outcome(gathering, name_of(given), tolerance_ns).recording()
@@ -62,6 +63,7 @@ def read_bag(path: Path, on_progress: Progress | None = None) -> Recording:
     """
     gathering = Gathering()
     read_bag_into(path, gathering, on_progress)
+    gathering.marks += _beside(path)
     return Outcome(gathering, path.stem).recording()
 
 
@@ -117,9 +119,7 @@ def gather(
             if real not in seen:
                 seen.add(real)
                 reader_of(source)(source, gathering, on_progress)
-                beside = marks_beside(source)
-                if beside.is_file():
-                    gathering.marks += read_marks(beside)
+                gathering.marks += _beside(source)
 
 
 def sources(path: Path) -> list[Path]:
@@ -178,12 +178,20 @@ def reader_of(path: Path) -> Reader:
         raise InputError("the file is empty", path)
     if BAG_MAGIC.startswith(first) or path.suffix == ".bag":
         return read_bag_into
+    if first.startswith(MARKS_HEADER):
+        return _read_marks_into
     if b"\0" in first:
         raise InputError("neither a bag, nor a .tpc file, nor text", path)
-    return _read_marks_into if first.startswith(_MARKS_BEGIN) else read_text_into
+    return read_text_into
 
 
-def _read_marks_into(path: Path, gathering: Gathering, _: Progress | None = None) -> None:
+def _beside(path: Path) -> tuple[Mark, ...]:
+    """The marks that were made after the recording ``path``, by ``pytpc mark``."""
+    file = marks_beside(path)
+    return read_marks(file) if file.is_file() else ()
+
+
+def _read_marks_into(path: Path, gathering: Gathering, on_progress: Progress | None) -> None:
     gathering.marks += read_marks(path)
 
 

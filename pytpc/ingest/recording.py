@@ -175,6 +175,8 @@ def _recording(document: object) -> Recording:
     for mark in marks:
         if type(mark.time_ns) is not int or not isinstance(mark.observer, str):
             raise ValueError("a mark without a time in ns or an observer")
+        if not isinstance(mark.note, str):
+            raise ValueError("a mark whose note is no text")
         if mark.type is not None and mark.type not in MARK_TYPES:
             raise ValueError(f"a mark of type {mark.type!r}")
     return Recording(

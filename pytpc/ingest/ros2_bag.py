@@ -25,11 +25,8 @@ MCAP_MAGIC = b"\x89MCAP0\r\n"
 SQLITE_MAGIC = b"SQLite format 3\0"
 
 _TYPES = {ROSOUT: {"rcl_interfaces/msg/Log"}, REPORTS: {"std_msgs/msg/String"}}
-_MARKS: dict[str | None, set[str]] = {
-    "std_msgs/Time": {"builtin_interfaces/msg/Time", "std_msgs/msg/Time"},
-    "std_msgs/String": {"std_msgs/msg/String"},
-}
-_DECODERS = Decoders(ros2.decode_raw_log, ros2.decode_raw_string, ros2.decode_time)
+_TIMES = {"builtin_interfaces/msg/Time", "std_msgs/msg/Time"}
+_DECODERS = Decoders(ros2.decode_log, ros2.decode_string, ros2.decode_time)
 _STEP = 4096
 _Reader = Reader | McapReader | Sqlite3Reader
 _IN_A_URI = frozenset("?#%")
@@ -129,8 +126,9 @@ def _wanted(connections: list[Connection]) -> tuple[list[Connection], list[str]]
     notes = set()
     for connection in connections:
         expected = _TYPES.get(connection.topic)
-        if expected is None:
-            expected = _MARKS.get(MarkMessages.message_type(connection.topic))
+        of_marks = MarkMessages.message_type(connection.topic)
+        if expected is None and of_marks is not None:
+            expected = _TIMES if of_marks == "Time" else _TYPES[REPORTS]
         if expected is None:
             continue
         if connection.msgtype in expected:

@@ -66,6 +66,13 @@ def test_marks_of_one_time_are_told_apart():
     assert [mark.time_ns - ns(1) for mark in session.marks] == [0, 1, 2]
 
 
+# What was taken back is told by its time, so that this must not be marked again.
+def test_a_time_that_was_taken_back_is_not_marked_again():
+    session, changes = pressed([("1", 1), ("u", 1), ("1", 1)])
+    assert session.marks == (Mark(ns(1) + 1, "I", "ana"),)
+    assert changes[1] == Change(at(1, "I"), None)
+
+
 def test_other_keys_do_nothing():
     session, changes = pressed([(key, 1) for key in ("x", "left", "enter", "escape", "é")])
     assert (session, changes) == (Session("ana"), [])

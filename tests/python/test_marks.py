@@ -7,13 +7,16 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from mission_samples import ns
+from mission_samples import BagFile, line, ns
 
 from pytpc.errors import InputError
+from pytpc.ingest import load_recording, read, read_bag, save_recording
 from pytpc.marks import (
     MARK_TYPES,
     Mark,
     MarkMessages,
+    joined,
+    marks_beside,
     marks_text,
     note_text,
     parse_note,
@@ -69,19 +72,25 @@ def test_what_was_taken_back_is_no_mark():
     )
 
 
-def test_only_as_many_as_were_taken_back():
+# Two bags of one mission have the same mark, and only one has what took it back.
+def test_what_was_recorded_twice_is_taken_back_once():
     found = MarkMessages()
     for _ in range(2):
         found.add_time("/mark_action", ns(1))
     found.add_time("/mark_undo", ns(1))
-    assert found.marks() == (Mark(ns(1), "I"),)
+    assert found.marks() == ()
+
+
+def test_marks_of_several_sources_are_each_once():
+    marks = [Mark(2, "I"), Mark(1, None, "ana"), Mark(2, "I", "", "late"), Mark(2, "I")]
+    assert joined(marks) == (Mark(1, None, "ana"), Mark(2, "I", "", "late"))
 
 
 def test_types_of_messages():
     topics = ["/mark_action", "/a/mark_wrong", "/a/mark_undo", "/mark_note", "/mark", "/rosout"]
     assert [MarkMessages.message_type(topic) for topic in topics] == [
-        *["std_msgs/Time"] * 3,
-        "std_msgs/String",
+        *["Time"] * 3,
+        "String",
         None,
         None,
     ]
@@ -147,3 +156,51 @@ def test_a_file_that_is_not_text(tmp_path: Path):
         read_marks(path)
     with pytest.raises(InputError, match="cannot be read"):
         read_marks(tmp_path / "none.csv")
+
+
+@pytest.fixture
+def bag(tmp_path: Path) -> Path:
+    """From 100 to 160 s; ana marked at 110 s and 120 s, and took back what was at 110 s."""
+    path = tmp_path / "mission.bag"
+    with BagFile(path) as writer:
+        for seconds in (100, 160):
+            writer.log(seconds, "/node", line(0, 0, 1, 2))
+        writer.mark(110, "/ana/mark_action")
+        writer.mark(111, "/ana/mark_undo", 110)
+        writer.mark(120, "/ana/mark_wrong")
+        writer.text(121, "/ana/mark_note", "/m", "120.000000000,it stands, still")
+        writer.text(122, "/ana/mark_note", "/m", "what?")
+    return path
+
+
+IN_BAG = Mark(ns(120), None, "ana", "it stands, still")
+
+
+def test_a_bag_with_notes_and_what_was_taken_back(bag: Path):
+    recording = read_bag(bag)
+    assert recording.marks == (IN_BAG,)
+    assert [(one.topic, one.what) for one in recording.malformed_first] == [
+        ("/ana/mark_note", "no note: SECONDS.NANOSECONDS,NOTE is expected")
+    ]
+
+
+def test_marks_beside_a_bag_are_read_with_it(bag: Path, tmp_path: Path):
+    late = Mark(ns(130), "II", "ben")
+    write_marks([late, Mark(ns(120), None, "ana")], marks_beside(bag))
+    for source in (bag, tmp_path, [bag, marks_beside(bag)]):
+        assert read(source).marks == (IN_BAG, late)
+    assert read_bag(bag).marks == (IN_BAG, late)
+
+
+def test_marks_beside_an_ingested_folder(bag: Path, tmp_path: Path):
+    folder = tmp_path / "out"
+    save_recording(read(bag), folder)
+    assert load_recording(folder).marks == (IN_BAG,)
+    write_marks([Mark(ns(130), "II", "ben")], marks_beside(folder))
+    assert read(folder).marks == (IN_BAG, Mark(ns(130), "II", "ben"))
+
+
+def test_a_broken_file_beside_a_bag_is_said(bag: Path):
+    marks_beside(bag).write_text("time_ns,type,observer,note\n1,VI\n")
+    with pytest.raises(InputError, match=r"mission.bag.marks.csv:2: 'VI' is no type of mark"):
+        read(bag)

@@ -10,7 +10,7 @@ from pytpc.marks import Mark
 from pytpc.parameters import parameter_name
 from pytpc.ranking import rank_marks, unknown_keys
 from pytpc.static_info import Place
-from pytpc.summaries import Summary, SummaryBuilder
+from pytpc.summaries import Summaries, Summary, SummaryBuilder
 
 # Comparisons 0 and 1 are of coverage, 2 of faces, 3 of idle, 4 is a constant, 5 of never (which is
 # never evaluated), 6 of faces too.
@@ -153,3 +153,12 @@ def test_type2_from_summaries():
     assert (suspect.last.time_ns, suspect.last.cmp, suspect.last.result) == (ns(12), 7.0, True)
     assert suspect.keys == (key(0),)
     assert [(s.last.time_ns, s.last.cmp) for s in early.suspects] == [(ns(10), 0.0)]
+
+
+# A recording's summaries have the words of its events, also where a key has no summary.
+def test_summaries_that_only_name_a_key():
+    names = Summaries.of(
+        keys=[key(0), key(1), key(2)], nodes=["/node"], **Summaries.empty().columns()
+    )
+    mission = replace(recording(ROWS, [Mark(ns(50), "I")]), summaries=names)
+    assert rank_marks(mission, STATIC) == rank_marks(recording(ROWS, [Mark(ns(50), "I")]), STATIC)

@@ -7,13 +7,12 @@ import time
 from pathlib import Path
 
 import pytest
-from rosbags.rosbag1 import Reader
 from terminals import Terminal, pytpc
 
 from pytpc.graph import GraphProcess, RosGraph
-from pytpc.ingest.ros1 import decode_string, decode_time
+from pytpc.ingest import read
 from pytpc.marking_publisher import MessageType, RawPublisher, encode_time
-from pytpc.marks import Mark, MarkMessages, read_marks
+from pytpc.marks import Mark, read_marks
 
 # The layout is that of std_msgs/Time under another name; rosbag needs the definition.
 CLOCK = MessageType("rosgraph_msgs/Clock", "a9c97c1d230cfc112e270351a944ee47", "time clock\n")
@@ -29,18 +28,6 @@ def record(graph: RosGraph, bag: Path) -> GraphProcess:
     """rosbag's own recorder, as a user would have it; on return it has connected to nobody yet."""
     regex = "(.*/)?mark_.*"
     return graph.start("record", ["rosbag", "record", "-O", str(bag), "-e", regex])
-
-
-def marks_in(bag: Path) -> tuple[Mark, ...]:
-    found = MarkMessages()
-    with Reader(bag) as reader:
-        for connection, _, raw in reader.messages():
-            kind = MarkMessages.message_type(connection.topic)
-            if kind == "std_msgs/String":
-                found.add_text(connection.topic, decode_string(raw))
-            elif kind is not None:
-                found.add_time(connection.topic, decode_time(raw))
-    return found.marks()
 
 
 def mark(graph: RosGraph, folder: Path, observer: str) -> Terminal:
@@ -80,7 +67,7 @@ def test_keys_of_two_observers_are_marks_in_the_bag(graph: RosGraph, tmp_path: P
         end(ana, ben)
         time.sleep(0.5)
         graph.stop(recorder)
-    found = marks_in(bag)
+    found = read(bag).marks
     assert [(one.type, one.observer, one.note) for one in found] == [
         ("I", "ana", ""),
         ("II", "lab/ben", ""),
@@ -142,5 +129,5 @@ def test_a_master_that_is_restarted(tmp_path: Path):
             end(terminal)
             time.sleep(0.5)
             graph.stop(recorder)
-    assert [one.type for one in marks_in(bag)] == ["I", "II"]
+    assert [one.type for one in read(bag).marks] == ["I", "II"]
     assert [one.type for one in read_marks(tmp_path / "ana.csv")] == ["I", "II"]
