@@ -266,7 +266,7 @@ def _converted(folder: Path, kind: str, gigabytes: float) -> None:
     if kind == "tpc":
         write_tpc(path, int(gigabytes * 2**30 / 65536), threads=4)
     else:
-        write_bag(path, int(gigabytes * 2**30 / 330))
+        write_bag(path, int(gigabytes * 2**30 / 240))
     size = path.stat().st_size / 2**30
     count, seconds, peak = convert(path)
     figure(TOPIC, f"convert_{kind}_size", size, unit="GiB", target="none", hit=True)

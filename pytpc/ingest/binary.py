@@ -106,9 +106,11 @@ class _Reader:
         self._gathering = gathering
         self._on_progress = on_progress
         self.header = layout.FileHeader.of(stream.read(layout.HEADER_BYTES))
-        self._node = self.header.node or _program(self.header, path)
+        self._node = _node_of(self.header, path)
         self._node_code = gathering.nodes.code(self._node)
         self._channel: Channel = gathering.channel(str(path), "file")
+        head = self.header
+        self._channel.process = f"{head.host} {head.pid} {head.steady_ns} {head.real_ns}"
         self._size = os.fstat(stream.fileno()).st_size
         self._buffer = np.empty((_GROUP, layout.CHUNK_BYTES), np.uint8)
         self._done = 0
@@ -458,8 +460,13 @@ def _byte(place: int, record: int) -> int:
     return place + layout.CHUNK_HEADER_BYTES + record * layout.RECORD_BYTES
 
 
-def _program(header: layout.FileHeader, path: Path) -> str:
-    """What to call a process that never was a node."""
+def _node_of(header: layout.FileHeader, path: Path) -> str:
+    """What to call the process: as its node, or, where it never was one, as its program.
+
+    A forked child has its parent's name. What one of them evaluates says nothing about the other.
+    """
+    if header.node:
+        return f"{header.node} ({header.pid})" if header.parent else header.node
     name = header.program.rpartition("/")[2]
     return f"{name} ({header.pid})" if name else path.stem
 

@@ -5,8 +5,8 @@ nothing is taken from /rosout_agg, and of a key that is in the log messages of a
 its /threshold_information, unless the publisher there reports on /rosout itself, or numbers its
 messages (a sink of TPC's own, not a converter). Everything else that could be twice is compared
 report by report: two are the same where node, key, values and results are equal and their times
-are within the tolerance, one to one. The node does not count where a way does not tell it
-(converters, console text).
+are within the tolerance, one to one; never those of two processes' files. The node does not count
+where a way does not tell it (converters, console text).
 """
 
 from __future__ import annotations
@@ -103,7 +103,7 @@ class Once:
             for with_node in (True, False):
                 earlier = np.zeros(len(channels), np.bool_)
                 for other in channels[:place]:
-                    if _near(other, later, self._tolerance_ns):
+                    if _may_share(other, later, self._tolerance_ns):
                         earlier[other.code] = (
                             bool(pairs[other.code] & pairs[later.code])
                             if with_node
@@ -200,7 +200,10 @@ def _left_out(channels: list[Channel], channel: Channel) -> set[tuple[int, int]]
     return set()
 
 
-def _near(one: Channel, other: Channel, tolerance_ns: int) -> bool:
+def _may_share(one: Channel, other: Channel, tolerance_ns: int) -> bool:
+    """Whether a report can be on both: they overlap, and are not of two processes."""
+    if one.process and other.process and one.process != other.process:
+        return False
     return (
         one.first_ns <= other.last_ns + tolerance_ns
         and other.first_ns <= one.last_ns + tolerance_ns

@@ -15,17 +15,7 @@ from typing import Literal
 import numpy as np
 
 from pytpc.columns import Bools, Floats, Int32s, Int64s
-from pytpc.events import Report
-from pytpc.ingest.bulk_lines import LINES, read_lines
 from pytpc.ingest.recording import Dropped, MalformedRecord
-from pytpc.ingest.rosout_line import (
-    PREFIX,
-    Batch,
-    Drop,
-    Malformed,
-    parse_report,
-    parse_stamped,
-)
 from pytpc.ingest.spool import RUN_ROWS, Rows, Spool
 from pytpc.marks import Mark, MarkMessages
 from pytpc.summaries import Summary
@@ -100,12 +90,14 @@ class Channel:
 
     ``source`` is the file or folder as it was named, ``way`` which kind of channel of it this is,
     ``topic`` its name for messages. ``pairs`` has what was seen on it, as (key, node) codes.
+    ``process`` tells the process from all others where all reports are of one.
     """
 
     code: int
     source: str
     way: Way
     topic: str
+    process: str = ""
     first_ns: int = 2**63 - 1
     last_ns: int = -(2**63)
     count: int = 0
@@ -255,149 +247,3 @@ class Gathering:
             if count
         ]
         return tuple(sorted(found, key=Dropped.order))
-
-
-class Lines:
-    """Reports that come as text on one channel; thousands of them are read at once.
-
-    ``stamped`` says that each line begins with its own time; that of ``add`` then counts only where
-    this is 0, or the line is broken.
-    """
-
-    def __init__(
-        self, gathering: Gathering, channel: Channel, *, stamped: bool, prefix: str = ""
-    ) -> None:
-        """``prefix`` stood before what ``add`` gets, and stands there in complaints."""
-        self.gathering = gathering
-        self.channel = channel
-        self._stamped = stamped
-        self._prefix = prefix
-        self._lines: list[bytes] = []
-        self._times: list[int] = []
-        self._nodes: list[int] = []
-        self._turns: list[int] = []
-        self._places: list[int] = []
-        self.unstamped = 0
-
-    def add(self, line: bytes, time_ns: int, node: int, number: int = 0) -> None:
-        """Take in a line; ``number`` is that of the line in the file or message, if any."""
-        self._lines.append(line)
-        self._times.append(time_ns)
-        self._nodes.append(node)
-        self._turns.append(self.gathering.turn())
-        self._places.append(number)
-        if len(self._lines) >= LINES:
-            self.flush()
-
-    def extend(
-        self,
-        lines: list[bytes],
-        times_ns: list[int],
-        nodes: list[int],
-        numbers: list[int] | None = None,
-    ) -> None:
-        """The same of many lines."""
-        self._lines += lines
-        self._times += times_ns
-        self._nodes += nodes
-        self._turns += self.gathering.turns(len(lines))
-        self._places += numbers or [0] * len(lines)
-        if len(self._lines) >= LINES:
-            self.flush()
-
-    def flush(self) -> None:
-        """Hand in all that was taken in."""
-        if not self._lines:
-            return
-        times = np.array(self._times, np.int64)
-        nodes = np.array(self._nodes, np.int32)
-        for part in read_lines(self._lines, stamped=self._stamped):
-            if isinstance(part, int):
-                self._alone(part)
-                continue
-            given = times[part.begin : part.end]
-            time_ns = given if part.time_ns is None else part.time_ns
-            if self._stamped:
-                zero = time_ns == 0
-                self.unstamped += int(np.count_nonzero(zero))
-                time_ns = np.where(zero, given, time_ns)
-            key = self.gathering.keys.all(part.keys)[part.key]
-            reports = Reports(time_ns, key, part.result, part.cmp, part.thresh, part.res)
-            self.gathering.add_events(self.channel, nodes[part.begin : part.end], reports)
-        self._lines, self._times, self._nodes = [], [], []
-        self._turns, self._places = [], []
-
-    def _alone(self, number: int) -> None:
-        """Read one line strictly."""
-        text = self._lines[number].decode("utf-8", "replace")
-        time_ns = self._times[number]
-        found: Report | Malformed | None
-        if self._stamped:
-            stamped = parse_stamped(text)
-            if isinstance(stamped, Malformed):
-                found = stamped
-            else:
-                found = stamped.report
-                self.unstamped += not stamped.time_ns
-                time_ns = stamped.time_ns or time_ns
-        else:
-            found = parse_report(PREFIX + text)
-        if isinstance(found, Report):
-            reports = Reports(
-                np.array([time_ns], np.int64),
-                np.array([self.gathering.keys.code(found.key)], np.int32),
-                np.array([found.result]),
-                np.array([found.cmp]),
-                np.array([found.thresh]),
-                np.array([found.res]),
-            )
-            self.gathering.add_events(self.channel, self._nodes[number], reports)
-            return
-        what = "no report" if found is None else f"{found.what}, column {found.column}"
-        if self._places[number]:
-            what = f"line {self._places[number]}: {what}"
-        self.gathering.skip(
-            self.channel.topic, time_ns, what, self._prefix + text, self._turns[number]
-        )
-
-
-@dataclass
-class Batches:
-    """Keeps account of numbered messages of several lines: what is missing, what was dropped."""
-
-    gathering: Gathering
-    next_seq: dict[tuple[str, int], int] = field(default_factory=dict)
-    dropped: dict[tuple[str, int], int] = field(default_factory=dict)
-    told: Counter[str] = field(default_factory=Counter)
-    missed: Counter[str] = field(default_factory=Counter)
-
-    def see(self, node: str, batch: Batch) -> None:
-        """Take in the first line of a message."""
-        process = (node, batch.pid)
-        expected = self.next_seq.get(process)
-        if expected is None:
-            self.missed[node] += batch.seq
-        elif batch.seq > expected:
-            self.gathering.lost[node] += batch.seq - expected
-        self.next_seq[process] = max(expected or 0, batch.seq + batch.count)
-        self.dropped[process] = max(self.dropped.get(process, 0), batch.dropped)
-
-    def drop(self, node: str, drop: Drop) -> None:
-        """Take in a line that says what was left out."""
-        self.told[node] += drop.count
-        self.gathering.add_dropped(Dropped(drop.key, node, drop.count, drop.flops, drop.why))
-
-    def close(self) -> None:
-        """Hand in what was left out according to the totals, but that no line told of."""
-        totals: Counter[str] = Counter()
-        for (node, _), count in self.dropped.items():
-            totals[node] += count
-        for node, total in sorted(totals.items()):
-            if total > self.told[node]:
-                rest = total - self.told[node]
-                self.gathering.add_dropped(Dropped("", node, rest, 0, "unknown"))
-        for node, count in sorted(self.missed.items()):
-            if count:
-                self.gathering.late_notes.append(
-                    f"{count:,} reports of {node} were sent before its first one here"
-                )

@@ -37,8 +37,9 @@ def read(
     """Read recordings of one mission into memory, in order of time and every report once.
 
     Args:
-        paths: bags (ROS 1, .mcap, .db3), binary files, logs, console text, CSV, folders of such
-            files, and folders that ``pytpc convert`` wrote.
+        paths: bags (ROS 1, .mcap, .db3), binary files, logs, console text, CSV (reports or marks),
+            folders of such files, and folders that ``pytpc convert`` wrote. Marks in a file
+            ``NAME.marks.csv`` beside one of them are read with it.
         on_progress: called with (done, total) every now and then, of one file after another.
         tolerance_ns: how far apart in time the same report may be in two files.
 
@@ -102,7 +103,9 @@ def opened(
 def gather(
     paths: Sequence[Path], gathering: Gathering, on_progress: Progress | None = None
 ) -> None:
-    """Read all of ``paths`` into ``gathering``; a folder stands for the recordings in it.
+    """Read all of ``paths`` into ``gathering``, and the marks beside them.
+
+    A folder stands for the recordings in it.
 
     Raises:
         InputError: see ``read``.
@@ -195,4 +198,10 @@ def _read_marks_into(path: Path, gathering: Gathering, on_progress: Progress | N
 def _is_recording(path: Path) -> bool:
     if path.is_dir():
         return is_ingested(path) or (path / ROS2_FILE).is_file()
+    if (
+        path.name.endswith(".marks.csv")
+        and path.with_name(path.name[: -len(".marks.csv")]).exists()
+    ):
+        # Read with the recording beside which it is.
+        return False
     return path.suffix in {".bag", ".mcap", ".db3", ".tpc", ".log", ".csv", ".txt"}

@@ -12,7 +12,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from pytpc.errors import InputError
-from pytpc.ingest.gathering import Batches, Gathering, Lines, Progress
+from pytpc.ingest.gathering import Gathering, Progress
+from pytpc.ingest.lines import Batches, Lines
 from pytpc.ingest.rosout_line import (
     LATEST_NS,
     PREFIX,

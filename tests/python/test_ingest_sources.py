@@ -324,6 +324,23 @@ def test_equal_reports_in_a_burst_are_matched_one_to_one(tmp_path):
     assert len(read([bag, file]).events) == 3
 
 
+# A node that was started twice at once, and a forked child: equal reports at the same times. Each
+# of them is one of its own; only a copy of a file is the same again.
+def test_files_of_two_processes_share_nothing(tmp_path):
+    paths = []
+    for number, changes in enumerate(({"pid": 1}, {"pid": 2}, {"pid": 3, "parent": 1})):
+        made = TpcFile(tpc_file.header(node="/uav", real=ns(1_700_000_000), **changes))
+        made.system(site(1, key(1)), sync(0, ns(1_700_000_000)))
+        made.thread(1, *(report(1, ns(n), 1, 5) for n in range(5)))
+        paths.append(made.write(tmp_path / f"{number}.tpc"))
+    copy = tmp_path / "copy.tpc"
+    shutil.copy(paths[0], copy)
+    recording = read([*paths, copy])
+    assert len(recording.events) == 15
+    assert recording.events.nodes == ("/uav", "/uav (3)")
+    assert recording.notes == (f"5 reports in {copy} that came another way too: counted once",)
+
+
 def test_sources_that_lie_apart_are_told(tmp_path):
     bag = bag_of(tmp_path / "a.bag")
     made = TpcFile(tpc_file.header(node="/sim"))
@@ -355,3 +372,30 @@ def test_an_ingested_folder_beside_others(tmp_path):
     recording = read([tmp_path / "a", tpc_of(tmp_path / "b.tpc", values=range(8, 12))])
     assert [cmp for *_, cmp in found(recording)] == list(range(12))
     assert recording.marks == first.marks
+
+
+# One mark is taken back, one gets a note; two more stand beside the bag.
+def test_marks_of_all_kinds(tmp_path):
+    path = tmp_path / "a.bag"
+    with BagFile(path) as bag:
+        bag.log(10, "/uav", line(1, 0, 1, 2))
+        bag.mark(11, "/mark_wrong", 10.5)
+        bag.mark(12, "/m/mark_action", 11.5)
+        bag.mark(13, "/m/mark_undo", 11.5)
+        bag.text(14, "/mark_note", "/x", "10.500000000,it hovers")
+        bag.text(15, "/mark_note", "/x", "soon")
+    (tmp_path / "a.bag.marks.csv").write_text(
+        "time_ns,type,observer,note\n12000000000,II,later,\n10500000000,,,it hovers\n"
+    )
+    recording = read(path)
+    expected = (
+        Mark(ns(10.5), None, "", "it hovers"),
+        Mark(ns(12), "II", "later"),
+    )
+    assert recording.marks == expected
+    assert recording.malformed_first[0].what.startswith("no note")
+    assert read(tmp_path).marks == expected
+    save_recording(recording, tmp_path / "m")
+    (tmp_path / "m.marks.csv").write_text("time_ns,type,observer,note\n13000000000,I\n")
+    assert read(tmp_path / "m").marks == (*expected, Mark(ns(13), "I"))
+    assert read([tmp_path / "m.marks.csv"]).marks == (Mark(ns(13), "I"),)

@@ -23,7 +23,15 @@ from pytpc.ingest import Recording
 from pytpc.marks import Mark
 from pytpc.mission import MissionRun, launch_command, read_status, run_mission, save_run
 from pytpc.ranking import rank_marks
-from pytpc.recorder import BagFile, LossCounter, Recorder, Status, save_status
+from pytpc.recorder import (
+    BagFile,
+    BatchCounter,
+    Discovery,
+    LossCounter,
+    Recorder,
+    Status,
+    save_status,
+)
 from pytpc.tcpros import Source
 from pytpc.treatment import Treatment, load_treatment
 
@@ -90,6 +98,70 @@ def test_loss_counter_gives_the_text_behind_a_frame_name():
     assert LossCounter().see(log(b"/a", 1, b"threshold_information:x", b"map")) == (
         b"threshold_information:x"
     )
+
+
+def batch(seq: int, count: int, pid: int = 1) -> bytes:
+    text = f"#seq:{seq},count:{count},dropped:0,pid:{pid},steady:1.0\n1.5,...".encode()
+    return struct.pack("<I", len(text)) + text
+
+
+# /a's process 1 begins with 3: 0 to 2 were sent before. 3 4 | 7 8 9: two are missing. Process 2 is
+# /a started again. A message of one line has no number.
+def test_batches_that_are_missing_are_counted():
+    losses = LossCounter()
+    counter = BatchCounter(losses)
+    seen = [counter.see("/a", batch(3, 2)), counter.see("/a", batch(7, 3))]
+    seen += [counter.see("/a", batch(0, 4, pid=2)), counter.see("/a", batch(4, 1, pid=2))]
+    assert seen == [2, 3, 4, 1]
+    assert counter.see("/b", struct.pack("<I", 5) + b"1.5,k") == 1
+    assert counter.see("/b", struct.pack("<I", 6) + b"#seq:x") == 0
+    assert (losses.lost, losses.missed_before) == (Counter({"/a": 2}), Counter({"/a": 3}))
+    with pytest.raises(ValueError, match="no std_msgs/String"):
+        counter.see("/b", struct.pack("<I", 7) + b"x")
+
+
+class Master:
+    """A subscriber that only answers for the master; ``state`` is what getSystemState says."""
+
+    name = "/tpc"
+
+    def __init__(self, state: object) -> None:
+        self.state = state
+        self.subscribed: list[str] = []
+
+    def call_master(self, method: str) -> object:
+        assert method == "getSystemState"
+        if self.state is None:
+            raise RunError("no master")
+        return self.state
+
+    def subscribe(self, topic: str) -> None:
+        self.subscribed.append(topic)
+
+
+def test_topics_of_observers_are_found(tmp_path):
+    publishers = [["/m1/mark_action", ["/x"]], ["/m1/mark_note", ["/x"]], ["/chat", ["/x"]]]
+    master = Master([publishers, [["/rosout", ["/other", "/tpc"]]], []])
+    bag = BagFile(tmp_path / "a.bag")
+    recorder = Recorder(bag, ["/rosout"], None, sim_time=False)
+    discovery = Discovery(master, recorder, ["/rosout"])
+    discovery.look()
+    # Found, and, as this master does not list them yet, once more.
+    assert set(master.subscribed) == {"/m1/mark_action", "/m1/mark_note"}
+    recorder.take(replace(CHAT, topic="/m1/mark_note"), b"\0\0\0\0")
+    recorder.take(CHAT, b"\0\0\0\0")
+    assert recorder.status().messages == {"/m1/mark_note": 1}
+    bag.close()
+
+
+@pytest.mark.parametrize("state", [None, [], "nonsense", [[], [["/rosout", ["/other"]]], []]])
+def test_a_master_that_is_gone_or_new(tmp_path, state):
+    master = Master(state)
+    bag = BagFile(tmp_path / "a.bag")
+    Discovery(master, Recorder(bag, [], None, sim_time=False), ["/rosout"]).look()
+    # One that does not know this node any more is told again; one that is silent is waited for.
+    assert master.subscribed == ([] if state is None else ["/rosout"])
+    bag.close()
 
 
 @pytest.mark.parametrize("length", [0, 15, 17, 24, 30])

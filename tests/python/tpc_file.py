@@ -80,9 +80,10 @@ def header(
     real: int = 0,
     not_recorded: int = 0,
     pid: int = 77,
+    parent: int = 0,
 ) -> bytes:
     raw = b"TPCLOG1\n" + struct.pack("<IIII", 4096, 32, CHUNK, pid)
-    raw += struct.pack("<qqIIQII", steady, real, state, 0, not_recorded, 0, 0)
+    raw += struct.pack("<qqIIQII", steady, real, state, 0, not_recorded, parent, 0)
     raw += struct.pack("<256s256s1024s", node.encode(), b"host", program.encode())
     return raw.ljust(4096, b"\0")
 
