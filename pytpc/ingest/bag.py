@@ -16,6 +16,7 @@ from pytpc.marks import MarkMessages
 
 _LOG = "rosgraph_msgs/msg/Log"
 _STRING = "std_msgs/msg/String"
+_TIME = "std_msgs/msg/Time"
 _DECODERS = Decoders(ros1.decode_raw_log, ros1.decode_raw_string, ros1.decode_time)
 
 
