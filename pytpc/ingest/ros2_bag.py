@@ -26,7 +26,7 @@ SQLITE_MAGIC = b"SQLite format 3\0"
 
 _TYPES = {ROSOUT: {"rcl_interfaces/msg/Log"}, REPORTS: {"std_msgs/msg/String"}}
 _TIMES = {"builtin_interfaces/msg/Time", "std_msgs/msg/Time"}
-_DECODERS = Decoders(ros2.decode_raw_log, ros2.decode_raw_string, ros2.decode_time)
+_DECODERS = Decoders(ros2.decode_log, ros2.decode_string, ros2.decode_time)
 _STEP = 4096
 _Reader = Reader | McapReader | Sqlite3Reader
 _IN_A_URI = frozenset("?#%")
