@@ -264,7 +264,7 @@ class Discovery:
         publishers, subscribers = _topics_of(state, 0), _topics_of(state, 1)
         try:
             for topic in publishers:
-                if MarkMessages.message_type(topic) and topic not in self._topics:
+                if MarkMessages.message_type(topic) is not None and topic not in self._topics:
                     self._recorder.add_topic(topic)
                     self._subscriber.subscribe(topic)
                     self._topics[topic] = None
