@@ -170,8 +170,7 @@ int ends(const Arguments &) {
   std::thread([] {
     for (uint64_t I = 0;; ++I) {
       report((*K)[0], I, 9);
-      if (I % 100 == 0)
-        std::this_thread::yield();
+      std::this_thread::sleep_for(std::chrono::microseconds(50));
     }
   }).detach();
   waitMs(5);
