@@ -260,6 +260,16 @@ def test_forked_child_ends_and_its_reports_are_said_to_be_missing(graph, nodes, 
     assert said.count("was forked from a node: its reports are not on") == 1
 
 
+def test_forked_child_goes_on_with_what_its_parent_was_set_to(graph, nodes, tmp_path):
+    graph.call("setParam", "/tpc/sink", "file")
+    graph.call("setParam", "/tpc/folder", str(tmp_path / "log"))
+    process = start(graph, nodes, "--fork=100", "--fork-wait=1.5", TPC_SINK="off")
+    assert made(process)["running"] == 100
+    said = process.log.read_text()
+    assert "child ended with 0" in said and "forked from a node" not in said
+    assert len(list((tmp_path / "log").glob("*.tpc"))) == 2
+
+
 def rosout(graph: RosGraph, texts: list[str], process: GraphProcess, subscriber) -> None:
     def take_all() -> None:
         for _, data in subscriber.poll(0.05):
