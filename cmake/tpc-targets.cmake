@@ -211,6 +211,11 @@ function(_tpc_find_reason_to_leave_out folder target reason)
   if(is_static)
     set(${reason} "it is linked with -static, and reports need a shared library" PARENT_SCOPE)
   endif()
+  # A report from the code that carries reports would bring on the next one, without end.
+  if(package MATCHES "^(cpp_common|rosconsole|roscpp|roscpp_serialization|rosout|rostime|xmlrpcpp)$")
+    set(${reason} "its code carries the reports (its property TPC_INSTRUMENT has it analysed, too)"
+      PARENT_SCOPE)
+  endif()
   # Libraries that only a test program is linked with.
   string(CONCAT test_library
     "^(GTest::)?(gtest|gmock)(_main)?$|/lib(gtest|gmock)(_main)?\\.|^Catch2(::|$)|^doctest::"

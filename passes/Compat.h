@@ -31,6 +31,15 @@ variableRecords(llvm::Value *V) {
   return Records;
 }
 
+/// Of an argument: nothing keeps it after the call.
+inline llvm::Attribute noCapture(llvm::LLVMContext &Ctx) {
+#if LLVM_VERSION_MAJOR >= 22
+  return llvm::Attribute::getWithCaptureInfo(Ctx, llvm::CaptureInfo::none());
+#else
+  return llvm::Attribute::get(Ctx, llvm::Attribute::NoCapture);
+#endif
+}
+
 } // namespace tpc
 
 #endif // TPC_COMPAT_H

@@ -1,6 +1,7 @@
 //===- InstrumentBranches.cpp ---------------------------------------------===//
 #include "InstrumentBranches.h"
 
+#include "Compat.h"
 #include "Guard.h"
 #include "IfStatements.h"
 #include "Print.h"
@@ -175,6 +176,11 @@ static FunctionCallee logFunction(Module &M) {
     F->addParamAttr(1, Attribute::ZExt);
     F->addParamAttr(4, Attribute::ZExt);
     F->setDoesNotThrow();
+    // It sees nothing of the program but its key: what the program keeps in
+    // registers stays there across a report.
+    F->setMemoryEffects(MemoryEffects::inaccessibleOrArgMemOnly());
+    F->addParamAttr(0, Attribute::ReadOnly);
+    F->addParamAttr(0, noCapture(Ctx));
   }
   return Callee;
 }

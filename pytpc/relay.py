@@ -74,7 +74,7 @@ class Relay:
         except ValueError:
             self.malformed += 1
             return
-        line = line_of(log.msg, log.stamp_ns)
+        line = line_of(log.msg.decode("utf-8", "replace"), log.stamp_ns)
         if line is not None:
             self._publish(line)
             self.passed_on += 1

@@ -15,7 +15,8 @@
 /// \param thresh the threshold that it was compared with
 /// \param res    what this comparison came to
 ///
-/// Safe in any thread and before ros::init; never throws.
+/// Safe in any thread and before ros::init; never throws. Instrumented code may
+/// rely on it that none of the program's own variables is read or written here.
 __attribute__((visibility("default"))) void
 log_one(char *key, bool result, double cmp, double thresh, bool res);
 

@@ -17,7 +17,7 @@ from pytpc.marks import MarkMessages
 _LOG = "rosgraph_msgs/msg/Log"
 _STRING = "std_msgs/msg/String"
 _TIME = "std_msgs/msg/Time"
-_DECODERS = Decoders(ros1.decode_raw_log, ros1.decode_raw_string, ros1.decode_time)
+_DECODERS = Decoders(ros1.decode_log, ros1.decode_string, ros1.decode_time)
 
 
 def read_bag_into(path: Path, gathering: Gathering, on_progress: Progress | None = None) -> None:

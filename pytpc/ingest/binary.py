@@ -12,6 +12,7 @@ broken disk, ends the reader with SIGBUS.
 from __future__ import annotations
 
 import os
+import struct
 from collections.abc import Iterator
 from dataclasses import dataclass, field, fields
 from pathlib import Path
@@ -39,6 +40,8 @@ from pytpc.words import many
 Bytes = npt.NDArray[np.uint8]
 
 _GROUP = 32
+# Kind, thread and first record of a chunk, and the time of that record.
+_HEAD = struct.Struct("<IIQ48x8xq")
 _IDENTITY = np.dtype([("thread", "<u4"), ("site", "<u4"), ("period", "<u4")])
 
 
@@ -147,8 +150,10 @@ class _Reader:
         descriptor = self._stream.fileno()
         place = layout.HEADER_BYTES
         while place + layout.CHUNK_HEADER_BYTES <= self._size:
-            head = os.pread(descriptor, layout.CHUNK_HEADER_BYTES + layout.RECORD_BYTES, place)
-            kind = int.from_bytes(head[:4], "little")
+            head = os.pread(descriptor, _HEAD.size, place)
+            if len(head) < _HEAD.size:
+                break
+            kind, number, first, first_steady = _HEAD.unpack(head)
             if kind == 0 and (next_data := _data_after(descriptor, place)) != place:
                 if next_data is None:
                     break
@@ -158,12 +163,11 @@ class _Reader:
                 )
                 continue
             if kind == layout.THREAD_CHUNK:
-                number = int.from_bytes(head[4:8], "little")
                 thread = threads.setdefault(number, _Thread(number))
                 if not thread.chunks:
-                    thread.first_steady = int.from_bytes(head[72:80], "little", signed=True)
+                    thread.first_steady = first_steady
                 thread.chunks.append(place)
-                thread.firsts.append(int.from_bytes(head[8:16], "little"))
+                thread.firsts.append(first)
             elif kind == layout.SYSTEM_CHUNK:
                 self._system_chunks.append(place)
             elif kind == layout.LIVE_CHUNK:
@@ -296,7 +300,7 @@ class _Reader:
         steady = self._rising(thread, np.ascontiguousarray(records["steady"]).reshape(-1))
         return Block(
             steady=steady,
-            time_ns=self._clock.real(steady),
+            time_ns=self._clock.rising(steady),
             key=keys,
             result=(what & 0x100) != 0,
             cmp=records["cmp"].reshape(-1),

@@ -47,6 +47,10 @@ class Clock:
             times = np.empty_like(steady)
             times[order] = self.real(steady[order])
             return times
+        return self.rising(steady)
+
+    def rising(self, steady: Int64s) -> Int64s:
+        """The same of times that do not fall; at least one."""
         first, last = self._place(int(steady[0])), self._place(int(steady[-1]))
         if first == last:
             return self._between(steady, first)
@@ -54,7 +58,7 @@ class Clock:
         cuts = np.searchsorted(steady, self.steady[first + 1 : last + 1], "left").tolist()
         begins, ends = [0, *cuts], [*cuts, steady.size]
         parts = zip(begins, ends, range(first, last + 1), strict=True)
-        return np.concatenate([self._between(steady[b:e], place) for b, e, place in parts])
+        return np.concatenate([self._between(steady[b:e], at) for b, e, at in parts if b < e])
 
     def at(self, steady: int) -> int:
         """Real time at one moment."""
@@ -74,7 +78,8 @@ class Clock:
             # The change is small against the time: what a double rounds of that does not matter.
             drift = np.subtract(steady, begin, dtype=np.float64)
             drift *= change / (int(self.steady[place + 1]) - begin)
-            # Before the first moment the line is not followed.
-            np.clip(drift, min(change, 0), max(change, 0), out=drift)
+            if steady[0] < begin:
+                # Before the first moment the line is not followed.
+                drift[steady < begin] = 0.0
             times += np.rint(drift, out=drift).astype(np.int64)
         return times

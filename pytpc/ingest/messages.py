@@ -15,7 +15,7 @@ from pytpc.ingest.bag_chunks import Messages as Chunk
 from pytpc.ingest.gathering import Channel, Gathering, Way
 from pytpc.ingest.lines import Batches, Lines
 from pytpc.ingest.recording import Dropped
-from pytpc.ingest.ros1 import RawLog, decode_logs
+from pytpc.ingest.ros1 import Log, decode_logs
 from pytpc.ingest.rosout_line import (
     DROPPED_PREFIX,
     PREFIX,
@@ -44,7 +44,7 @@ _WITH_TIME = tuple(f",{prefix}".encode() for prefix in (SUMMARY_PREFIX, DROPPED_
 class Decoders:
     """How the three kinds of messages are read; each raises ValueError where bytes are missing."""
 
-    log: Callable[[bytes], RawLog]
+    log: Callable[[bytes], Log]
     text: Callable[[bytes], bytes]
     time: Callable[[bytes], int]
 
@@ -118,7 +118,7 @@ class Messages:
         others = np.concatenate([rows[begun & ~reports], np.flatnonzero(~long)])
         for row in np.sort(others).tolist():
             msg = chunk.data[logs.msg_begin[row] : logs.msg_end[row]]
-            log = RawLog(0, int(logs.stamp_ns[row]), names[row], msg)
+            log = Log(0, int(logs.stamp_ns[row]), names[row], msg)
             self._text_of(log, ROSOUT, int(chunk.time_ns[which][row]))
         rows = rows[reports]
         stamps = logs.stamp_ns[rows]
@@ -164,7 +164,7 @@ class Messages:
             self._count_lost(log.node, log.seq)
         self._text_of(log, topic, time_ns)
 
-    def _text_of(self, log: RawLog, topic: str, time_ns: int) -> None:
+    def _text_of(self, log: Log, topic: str, time_ns: int) -> None:
         if not log.msg.startswith(_BEGIN):
             return
         way: Way = "log" if topic == ROSOUT else "aggregate"

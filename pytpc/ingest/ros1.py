@@ -27,20 +27,11 @@ class Log(NamedTuple):
 
     seq: int
     stamp_ns: int
-    node: str
-    msg: str
-
-
-class RawLog(NamedTuple):
-    """The same, with the texts as they were sent."""
-
-    seq: int
-    stamp_ns: int
     node: bytes
     msg: bytes
 
 
-def decode_raw_log(raw: bytes) -> RawLog:
+def decode_log(raw: bytes) -> Log:
     """Read a rosgraph_msgs/Log up to its text.
 
     Raises:
@@ -56,18 +47,7 @@ def decode_raw_log(raw: bytes) -> RawLog:
     except struct.error as error:
         raise ValueError(f"a log message of {len(raw)} bytes ends too early") from error
     stamp_ns = seconds * 10**9 + nanoseconds
-    return RawLog(seq, stamp_ns, raw[node_at : msg_at - _LENGTH.size], raw[msg_at:end])
-
-
-def decode_log(raw: bytes) -> Log:
-    """Read a rosgraph_msgs/Log up to its text; what is not UTF-8 is replaced.
-
-    Raises:
-        ValueError: the bytes end too early.
-    """
-    log = decode_raw_log(raw)
-    node, msg = (text.decode("utf-8", "replace") for text in (log.node, log.msg))
-    return Log(log.seq, log.stamp_ns, node, msg)
+    return Log(seq, stamp_ns, raw[node_at : msg_at - _LENGTH.size], raw[msg_at:end])
 
 
 @dataclass(frozen=True)
@@ -113,7 +93,7 @@ def _u32(data: npt.NDArray[np.uint8], at: Int64s) -> Int64s:
     return raw.view("<u4").reshape(-1).astype(np.int64)
 
 
-def decode_raw_string(raw: bytes) -> bytes:
+def decode_string(raw: bytes) -> bytes:
     """Read a std_msgs/String; its text as it was sent.
 
     Raises:
@@ -126,15 +106,6 @@ def decode_raw_string(raw: bytes) -> bytes:
     if end > len(raw):
         raise ValueError(f"a string message of {len(raw)} bytes ends too early")
     return raw[_LENGTH.size : end]
-
-
-def decode_string(raw: bytes) -> str:
-    """Read a std_msgs/String; what is not UTF-8 is replaced.
-
-    Raises:
-        ValueError: the bytes end too early.
-    """
-    return decode_raw_string(raw).decode("utf-8", "replace")
 
 
 def decode_time(raw: bytes) -> int:

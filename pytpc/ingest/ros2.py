@@ -10,14 +10,14 @@ from __future__ import annotations
 
 import struct
 
-from pytpc.ingest.ros1 import RawLog
+from pytpc.ingest.ros1 import Log
 
 _HEAD = 4
 _TIME = {0: struct.Struct(">iI"), 1: struct.Struct("<iI")}
 _LENGTH = {0: struct.Struct(">I"), 1: struct.Struct("<I")}
 
 
-def decode_raw_log(raw: bytes) -> RawLog:
+def decode_log(raw: bytes) -> Log:
     """Read an rcl_interfaces/Log up to its text; it has no number.
 
     Raises:
@@ -31,10 +31,10 @@ def decode_raw_log(raw: bytes) -> RawLog:
         msg, _ = _string(raw, at, order)
     except (struct.error, IndexError) as error:
         raise ValueError(f"a log message of {len(raw)} bytes ends too early") from error
-    return RawLog(0, seconds * 10**9 + nanoseconds, node, msg)
+    return Log(0, seconds * 10**9 + nanoseconds, node, msg)
 
 
-def decode_raw_string(raw: bytes) -> bytes:
+def decode_string(raw: bytes) -> bytes:
     """Read a std_msgs/String; its text as it was sent.
 
     Raises:

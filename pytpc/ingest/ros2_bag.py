@@ -26,7 +26,7 @@ SQLITE_MAGIC = b"SQLite format 3\0"
 
 _TYPES = {ROSOUT: {"rcl_interfaces/msg/Log"}, REPORTS: {"std_msgs/msg/String"}}
 _TIMES = {"builtin_interfaces/msg/Time", "std_msgs/msg/Time"}
-_DECODERS = Decoders(ros2.decode_raw_log, ros2.decode_raw_string, ros2.decode_time)
+_DECODERS = Decoders(ros2.decode_log, ros2.decode_string, ros2.decode_time)
 _STEP = 4096
 _Reader = Reader | McapReader | Sqlite3Reader
 _IN_A_URI = frozenset("?#%")
@@ -54,7 +54,11 @@ def read_ros2_into(path: Path, gathering: Gathering, on_progress: Progress | Non
         taken = Messages(gathering, str(path), _DECODERS, numbered=False)
         total = sum(connection.msgcount for connection in wanted)
         for turn, (connection, time_ns, raw) in enumerate(_messages(reader, wanted, path)):
-            taken.take(connection.topic, "", time_ns, bytes(raw))
+            # SQLite keeps any type in any column.
+            if isinstance(raw, bytes) and isinstance(time_ns, int):
+                taken.take(connection.topic, "", time_ns, raw)
+            else:
+                gathering.skip(connection.topic, 0, "a message without bytes or without time", "")
             if on_progress is not None and turn % _STEP == 0:
                 on_progress(turn, total)
         taken.close()

@@ -93,8 +93,9 @@ def thin(time: Floats, values: Floats, most: int) -> Int64s:
     first = np.flatnonzero(np.concatenate([[True], span[1:] != span[:-1]]))
     last = np.append(first[1:], n) - 1
     # NaN is neither lowest nor highest, so that it does not hide the extremes of its span.
-    low = np.lexsort((np.nan_to_num(values, nan=np.inf), span))[first]
-    high = np.lexsort((np.nan_to_num(values, nan=-np.inf), span))[last]
+    unknown = np.isnan(values)
+    low = np.lexsort((np.where(unknown, np.inf, values), span))[first]
+    high = np.lexsort((np.where(unknown, -np.inf, values), span))[last]
     return np.unique(np.concatenate([first, last, low, high])).astype(np.int64)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gzip
 import shutil
+import sqlite3
 
 import pytest
 import tpc_file
@@ -82,6 +83,23 @@ def test_ros2_files_that_are_cut_are_one_line(ros2):
         assert "\n" not in str(caught.value)
         assert "truncated or damaged" in str(caught.value)
         assert "saves the rest" in str(caught.value)
+
+
+# Found by fuzzing.
+@pytest.mark.parametrize("change", ["data = 7", "timestamp = 'x'"])
+def test_columns_of_another_type_in_db3(tmp_path, change):
+    with Ros2Bag(tmp_path / "m", "db3") as bag:
+        bag.log(1, "uav", line(1, 0, 1, 2))
+        bag.log(2, "uav", line(1, 1, 3, 2))
+    with sqlite3.connect(bag.file) as base:
+        base.execute(f"UPDATE messages SET {change} WHERE id = 1")
+    base.close()
+    try:
+        recording = read(bag.file)
+    except InputError as error:
+        assert "truncated or damaged" in str(error)
+    else:
+        assert (len(recording.events), recording.malformed) == (1, 1)
 
 
 # --- text

@@ -57,6 +57,13 @@ def test_thin_keeps_ends_and_extremes():
     assert thin(time, values, 40).tolist() == list(range(40))
 
 
+# The largest double is not yet infinity.
+def test_thin_keeps_infinities():
+    most = np.finfo(np.float64).max
+    values = np.array([0.0, most, np.inf, most, 0.0, -most, -np.inf, 0.0, 0.0, 0.0])
+    assert {2, 6} <= set(thin(np.arange(10.0), values, 4).tolist())
+
+
 @given(
     st.lists(st.tuples(st.floats(0, 1e6), st.floats()), max_size=300),
     st.integers(4, 50),

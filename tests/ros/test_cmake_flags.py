@@ -432,6 +432,22 @@ def test_a_target_can_be_left_out_and_a_test_is(tmp_path: Path) -> None:
     assert result.analysed() == ["t", "u", "x"]
 
 
+# A workspace may hold ROS itself.
+def test_what_carries_reports_makes_none(tmp_path: Path) -> None:
+    lists = (
+        "cmake_minimum_required(VERSION 3.16)\nproject(roscpp CXX)\n"
+        "add_executable(x main.cpp)\nadd_executable(y main.cpp)\n"
+        "set_property(TARGET y PROPERTY TPC_INSTRUMENT ON)\n"
+    )
+    result = build(tmp_path, lists, toolchain(), "-DCMAKE_BUILD_TYPE=Release")
+    assert result.analysed() == ["y"]
+    reasons = {unit.name: unit.left_out for unit in recorded_units(result.folder) or ()}
+    assert reasons == {
+        "x": "its code carries the reports (its property TPC_INSTRUMENT has it analysed, too)",
+        "y": "",
+    }
+
+
 def test_a_distributions_flags_for_lto_do_not_make_native_objects(tmp_path: Path) -> None:
     lists = HEAD + "add_executable(x main.cpp)\n"
     result = build(tmp_path, lists, CXXFLAGS="-O2 -flto=auto -ffat-lto-objects")
