@@ -264,6 +264,7 @@ def test_forked_child_goes_on_with_what_its_parent_was_set_to(graph, nodes, tmp_
     graph.call("setParam", "/tpc/sink", "file")
     graph.call("setParam", "/tpc/folder", str(tmp_path / "log"))
     process = start(graph, nodes, "--fork=100", "--fork-wait=1.5", TPC_SINK="off")
+    until(lambda: ended(process))
     assert made(process)["running"] == 100
     said = process.log.read_text()
     assert "child ended with 0" in said and "forked from a node" not in said
