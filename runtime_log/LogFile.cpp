@@ -252,6 +252,8 @@ char *LogFile::newChunk(uint32_t Kind, uint32_t Thread, uint64_t First,
     std::lock_guard<std::mutex> Guard(Growing);
     {
       std::lock_guard<std::mutex> Inner(Chunks);
+      if (IsClosed)
+        return nullptr;
       if (Used < Extents.size() * ChunksOfExtent)
         continue;
     }
@@ -340,6 +342,9 @@ void LogFile::close() {
   if (isMine() && ftruncate(Descriptor, HeaderBytes + static_cast<off_t>(Used) *
                                                           ChunkBytes))
     warn(Path + ": " + reason(errno));
+  // Who still wants to grow it sees that it is closed, or not its own.
+  if (isMine())
+    ::close(Descriptor);
   if (!isStopped())
     Header->State = layout::Closed;
 }

@@ -340,6 +340,10 @@ def test_sinks_are_changed_while_the_node_runs(graph, nodes, pytpc, tmp_path):
         read_on(subscriber, reader.take)
         assert reader.messages == at_file
         (file,) = folder.glob("*.tpc")
+        status_of(pytpc, "reporter", "--folder", str(tmp_path / "other"))
+        held = [str(link.readlink()) for link in Path(f"/proc/{process.popen.pid}/fd").iterdir()]
+        (last,) = [path for path in held if path.endswith(".tpc")]
+        assert last.startswith(str(tmp_path / "other")), "the file that was left is closed"
         assert status_of(pytpc, "--sink", "topic")["values"]["sink"] == "file", "/tpc is weaker"
         assert status_of(pytpc, "/reporter", "--clear")["values"]["sink"] == "topic"
         until(lambda: reader.messages > at_file + 3, subscriber, reader.take)
