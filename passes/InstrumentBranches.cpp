@@ -15,6 +15,9 @@ using namespace llvm;
 
 namespace tpc {
 
+/// `void log_one(char *key, bool result, double cmp, double thresh, bool res)`
+static constexpr StringLiteral LogName = "_Z7log_onePcbddb";
+
 /// The instruction that a report on \p V stands before; null where there is no
 /// place that V alone leads to.
 static Instruction *after(Value *V) {
@@ -111,6 +114,9 @@ std::optional<Report> planReport(const Comparison &C, bool IsUnsigned,
   auto *Predicate = cast_or_null<Instruction>(Analysed.original(C.Predicate));
   if (!Predicate)
     return std::nullopt;
+  // A program may have its own log_one, which would call itself without end.
+  if (Predicate->getFunction()->getName() == LogName)
+    return std::nullopt;
   if (!C.Compare)
     return planFlag(C, IsUnsigned, Analysed, R) ? std::optional(R)
                                                 : std::nullopt;
@@ -163,14 +169,13 @@ static Value *takesCase(IRBuilder<> &B, SwitchInst &Switch) {
   return Taken;
 }
 
-/// `void log_one(char *key, bool result, double cmp, double thresh, bool res)`
 static FunctionCallee logFunction(Module &M) {
   LLVMContext &Ctx = M.getContext();
   Type *Bool = Type::getInt1Ty(Ctx), *Double = Type::getDoubleTy(Ctx);
   auto *T = FunctionType::get(
       Type::getVoidTy(Ctx),
       {PointerType::getUnqual(Ctx), Bool, Double, Double, Bool}, false);
-  FunctionCallee Callee = M.getOrInsertFunction("_Z7log_onePcbddb", T);
+  FunctionCallee Callee = M.getOrInsertFunction(LogName, T);
   if (auto *F = dyn_cast<Function>(Callee.getCallee());
       F && F->isDeclaration()) {
     F->addParamAttr(1, Attribute::ZExt);
@@ -241,7 +246,7 @@ static Function *reportFunction(Module &M, FunctionCallee Log) {
 std::string insertReports(Module &M, ArrayRef<Report> Reports) {
   if (Reports.empty())
     return "";
-  bool WasThere = M.getFunction("_Z7log_onePcbddb");
+  bool WasThere = M.getFunction(LogName);
   bool WasWanted = M.getNamedGlobal("tpc_reporting");
   FunctionCallee Log = logFunction(M);
   Function *ReportTo = reportFunction(M, Log);

@@ -88,14 +88,21 @@ LogFile *LogFile::open(const Config &C, std::string &Why) {
   for (int Try = 1;; ++Try) {
     std::string Path =
         Stem + (Try > 1 ? "-" + std::to_string(Try) : "") + ".tpc";
-    if (!access(Path.c_str(), F_OK) && Try < 1000)
-      continue;
-    // It gets its name when it can be read.
+    // It gets its name when it can be read. Until then the other one keeps out
+    // whoever has the same number in another container, and so the same names.
     std::string New = Path + ".new";
     int Descriptor =
-        ::open(New.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (Descriptor < 0) {
-      Why = Path + ": " + reason(errno);
+        ::open(New.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    bool IsTaken = Descriptor < 0 && errno == EEXIST;
+    if (Descriptor >= 0 && !access(Path.c_str(), F_OK)) {
+      IsTaken = true;
+      ::close(Descriptor);
+      unlink(New.c_str());
+    }
+    if (IsTaken && Try < 1000)
+      continue;
+    if (Descriptor < 0 || IsTaken) {
+      Why = Path + ": " + reason(IsTaken ? EEXIST : errno);
       return nullptr;
     }
     auto *File = new LogFile(C, Path, Descriptor);
@@ -119,7 +126,21 @@ LogFile *LogFile::open(const Config &C, std::string &Why) {
 
 LogFile::LogFile(const Config &C, std::string Path, int Descriptor)
     : Path(std::move(Path)), Descriptor(Descriptor),
-      LimitBytes(C.FileLimitMiB << 20), ReserveBytes(C.FileReserveMiB << 20) {}
+      LimitBytes(C.FileLimitMiB << 20), ReserveBytes(C.FileReserveMiB << 20) {
+  struct stat Its;
+  if (!fstat(Descriptor, &Its)) {
+    Device = Its.st_dev;
+    Inode = Its.st_ino;
+  }
+}
+
+/// A program that closes all descriptors, as daemons do, may have opened a file
+/// of its own in the place of this one.
+bool LogFile::isMine() const {
+  struct stat Its;
+  return !fstat(Descriptor, &Its) && Its.st_dev == Device &&
+         Its.st_ino == Inode;
+}
 
 //===----------------------------------------------------------------------===//
 // Room
@@ -142,6 +163,10 @@ bool LogFile::grow(std::string &Why) {
     Count = Extents.size();
   }
   uint64_t Begin = HeaderBytes + Count * ExtentBytes, End = Begin + ExtentBytes;
+  if (!isMine()) {
+    Why = "the program has closed its descriptor";
+    return false;
+  }
   // Beyond this limit the process would get a signal.
   rlimit Limit;
   if (!getrlimit(RLIMIT_FSIZE, &Limit) && End > Limit.rlim_cur) {
@@ -227,6 +252,8 @@ char *LogFile::newChunk(uint32_t Kind, uint32_t Thread, uint64_t First,
     std::lock_guard<std::mutex> Guard(Growing);
     {
       std::lock_guard<std::mutex> Inner(Chunks);
+      if (IsClosed)
+        return nullptr;
       if (Used < Extents.size() * ChunksOfExtent)
         continue;
     }
@@ -312,9 +339,12 @@ void LogFile::close() {
     return;
   IsClosed = true;
   // Nobody writes behind the chunks that were given out.
-  if (ftruncate(Descriptor,
-                HeaderBytes + static_cast<off_t>(Used) * ChunkBytes))
+  if (isMine() && ftruncate(Descriptor, HeaderBytes + static_cast<off_t>(Used) *
+                                                          ChunkBytes))
     warn(Path + ": " + reason(errno));
+  // Who still wants to grow it sees that it is closed, or not its own.
+  if (isMine())
+    ::close(Descriptor);
   if (!isStopped())
     Header->State = layout::Closed;
 }

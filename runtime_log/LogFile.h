@@ -18,6 +18,7 @@
 
 #include <memory>
 #include <string>
+#include <sys/types.h>
 #include <vector>
 
 namespace tpc {
@@ -118,12 +119,15 @@ private:
   layout::Record *systemRecords(uint32_t Count);
   char *newChunk(uint32_t Kind, uint32_t Thread, uint64_t First, uint64_t Tid);
   void finished(const void *EndOfChunk);
+  bool isMine() const;
   bool grow(std::string &Why);
   void stop(const std::string &Why);
   void touch();
 
   const std::string Path;
   const int Descriptor;
+  dev_t Device = 0;
+  ino_t Inode = 0;
   const uint64_t LimitBytes, ReserveBytes;
   layout::Header *Header = nullptr;
 

@@ -5,6 +5,8 @@
 #include "Modes.h"
 #include "Runtime.h"
 
+#include <pthread.h>
+
 char tpc_reporting = 1;
 
 namespace tpc {
@@ -57,9 +59,11 @@ static void report(Thread &T, const Report &R) {
     emit(T, *S, R, 0);
 }
 
-/// Everything that may come in the way of the short way below.
-[[gnu::noinline]] static void slowly(const char *Key, bool Result, double Cmp,
-                                     double Thresh, bool Res) {
+/// One report by a thread that is not cancelled meanwhile. (A function of its
+/// own: cancellation is an exception that its handlers must not see.)
+[[gnu::noinline]] static void uncancelled(const char *Key, bool Result,
+                                          double Cmp, double Thresh,
+                                          bool Res) noexcept {
   try {
     Thread *T = ThisThread ? ThisThread : makeThread();
     uint32_t Inside = T->Inside.load(std::memory_order_relaxed);
@@ -76,6 +80,18 @@ static void report(Thread &T, const Report &R) {
     leave(*T, Inside + 2);
   } catch (...) {
   }
+}
+
+/// Everything that may come in the way of the short way below. Files, the
+/// console and roscpp's locks are no place for a thread to end in: cancellation
+/// waits, for the places where the program itself expects it.
+[[gnu::noinline]] static void slowly(const char *Key, bool Result, double Cmp,
+                                     double Thresh, bool Res) {
+  int Cancelled;
+  pthread_setcancelstate(PTHREAD_CANCEL_DISABLE, &Cancelled);
+  uncancelled(Key, Result, Cmp, Thresh, Res);
+  // A thread that may be cancelled at any instruction ends here.
+  pthread_setcancelstate(Cancelled, nullptr);
 }
 
 } // namespace tpc

@@ -90,6 +90,8 @@ private:
   std::mutex Changing; ///< of all that follows
   Config Held;
   bool IsStarted = false;
+  bool HasSettings =
+      false; ///< Held is what was read or set, maybe before a fork
   bool HelperRuns = false;
   bool RosIsParents = false; ///< in a forked child, where none of it runs
   pthread_t Helper{};
@@ -138,7 +140,10 @@ void Runtime::start() {
   IsStarted = true;
   TimeIsSimulated = rosTimeIsSimulated();
   prepareEdges();
-  Held = configOfEnvironment();
+  // A forked child goes on with what its parent was set to.
+  if (!HasSettings)
+    Held = configOfEnvironment();
+  HasSettings = true;
   if (!choose(Held)) {
     // Its warning was given; a ROS parameter may say another folder.
     Held.Sink = SinkKind::Off;
@@ -287,8 +292,9 @@ int64_t Runtime::turn(int64_t Now) {
   if (Now >= NextRos) {
     int64_t After = RosIsParents ? -1 : rosTurn();
     NextRos = After < 0 ? Never : Now + After;
-    TimeIsSimulated = rosTimeIsSimulated();
   }
+  // roscpp finds out after it looks as if it were up, and a program may set it.
+  TimeIsSimulated = rosTimeIsSimulated();
   std::lock_guard<std::mutex> Guard(Changing);
   LogFile *File = Held.Sink == SinkKind::File ? NowFile.load() : nullptr;
   bool IsEdges = Held.Policy == Policy::Edges && Held.Sink != SinkKind::Off;

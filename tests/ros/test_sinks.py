@@ -260,6 +260,17 @@ def test_forked_child_ends_and_its_reports_are_said_to_be_missing(graph, nodes, 
     assert said.count("was forked from a node: its reports are not on") == 1
 
 
+def test_forked_child_goes_on_with_what_its_parent_was_set_to(graph, nodes, tmp_path):
+    graph.call("setParam", "/tpc/sink", "file")
+    graph.call("setParam", "/tpc/folder", str(tmp_path / "log"))
+    process = start(graph, nodes, "--fork=100", "--fork-wait=1.5", TPC_SINK="off")
+    until(lambda: ended(process))
+    assert made(process)["running"] == 100
+    said = process.log.read_text()
+    assert "child ended with 0" in said and "forked from a node" not in said
+    assert len(list((tmp_path / "log").glob("*.tpc"))) == 2
+
+
 def rosout(graph: RosGraph, texts: list[str], process: GraphProcess, subscriber) -> None:
     def take_all() -> None:
         for _, data in subscriber.poll(0.05):
@@ -329,6 +340,10 @@ def test_sinks_are_changed_while_the_node_runs(graph, nodes, pytpc, tmp_path):
         read_on(subscriber, reader.take)
         assert reader.messages == at_file
         (file,) = folder.glob("*.tpc")
+        status_of(pytpc, "reporter", "--folder", str(tmp_path / "other"))
+        held = [str(link.readlink()) for link in Path(f"/proc/{process.popen.pid}/fd").iterdir()]
+        (last,) = [path for path in held if path.endswith(".tpc")]
+        assert last.startswith(str(tmp_path / "other")), "the file that was left is closed"
         assert status_of(pytpc, "--sink", "topic")["values"]["sink"] == "file", "/tpc is weaker"
         assert status_of(pytpc, "/reporter", "--clear")["values"]["sink"] == "topic"
         until(lambda: reader.messages > at_file + 3, subscriber, reader.take)

@@ -207,6 +207,43 @@ int signals(const Arguments &A) {
   return 0;
 }
 
+/// cancelled THREADS: each reports until it is cancelled.
+int cancelled(const Arguments &A) {
+  static auto *K = new Keys(1);
+  for (unsigned long T = std::stoul(A[0]); T; --T) {
+    pthread_t Thread;
+    auto Body = [](void *) -> void * {
+      for (uint64_t I = 0;; ++I) {
+        report((*K)[0], I, 0);
+        if (I % 64 == 0)
+          pthread_testcancel();
+      }
+    };
+    if (pthread_create(&Thread, nullptr, Body, nullptr))
+      return 1;
+    waitMs(2);
+    pthread_cancel(Thread);
+    pthread_join(Thread, nullptr);
+  }
+  return 0;
+}
+
+/// closed FILE REPORTS: closes all descriptors after the first report, as
+/// daemons do, writes FILE and reports on.
+int closed(const Arguments &A) {
+  Keys K(1);
+  report(K[0], 0, 0);
+  for (int Descriptor = 3; Descriptor < 64; ++Descriptor)
+    close(Descriptor);
+  // The lowest one that is free, which was the log's.
+  int File = open(A[0].c_str(), O_RDWR | O_CREAT | O_TRUNC, 0666);
+  if (write(File, "mine", 4) != 4)
+    return 1;
+  for (uint64_t I = 1; I < std::stoull(A[1]); ++I)
+    report(K[0], I, 0);
+  return 0;
+}
+
 /// paced PER_SECOND MS SITES: reports at that rate from one thread.
 int paced(const Arguments &A) {
   double Rate = std::stod(A[0]);
@@ -276,9 +313,12 @@ int names(const Arguments &) {
 
 int main(int Count, char **Words) {
   const std::map<std::string, std::function<int(const Arguments &)>> Known = {
-      {"threads", threads}, {"counted", counted}, {"forked", forked},
-      {"ends", ends},       {"signals", signals}, {"paced", paced},
-      {"edges", edges},     {"odd", odd},         {"names", names}};
+      {"threads", threads},    {"counted", counted},
+      {"forked", forked},      {"ends", ends},
+      {"signals", signals},    {"paced", paced},
+      {"edges", edges},        {"odd", odd},
+      {"names", names},        {"closed", closed},
+      {"cancelled", cancelled}};
   auto Found = Count > 1 ? Known.find(Words[1]) : Known.end();
   if (Found == Known.end())
     return 2;

@@ -99,6 +99,43 @@ def test_reports_from_a_signal_handler(drive, files):
     assert in_handler > 0
 
 
+# Files are made, the console is written to and roscpp waits in places where a thread may be
+# cancelled: an exception that must not end within the library, or the process is aborted.
+@pytest.mark.parametrize("policy", ["every", "edges"])
+@pytest.mark.parametrize("sink", ["file", "rosout"])
+def test_threads_are_cancelled(drive, files, sink, policy):
+    ran = drive("cancelled", 40, sink=sink, policy=policy)
+    assert (ran.returncode, ran.stderr) == (0, "")
+    assert all(log_file.read(path).torn == 0 for path in files())
+
+
+def test_a_program_that_closes_all_descriptors_keeps_its_own_files(drive, files, tmp_path):
+    own = tmp_path / "own"
+    ran = drive("closed", own, 200_000)
+    assert ran.returncode == 0
+    assert own.read_bytes() == b"mine"
+    assert "the program has closed its descriptor" in ran.stderr
+    file = log_file.read(files()[0])
+    assert file.state == 2
+    assert len(file.all_reports) + file.not_recorded == 200_000
+
+
+# Containers have process numbers of their own, and may share a folder: the shell's number is the
+# program's, and another one with it has begun a file in this second and the next ones.
+def test_the_file_of_another_with_the_same_name_is_left_alone(program, settings, tmp_path):
+    folder = tmp_path / "log"
+    shell = (
+        f"mkdir {folder}; s=$(date +%s); for i in 0 1 2 3 4 5; do"
+        f" printf other > {folder}/drive-$$-$((s + i)).tpc.new; done;"
+        f" exec {program} threads 1 1 10"
+    )
+    subprocess.run(["/bin/sh", "-c", shell], env=settings, check=True, timeout=60)
+    assert {path.read_text() for path in folder.glob("*.new")} == {"other"}
+    (path,) = folder.glob("*.tpc")
+    assert path.name.endswith("-2.tpc")
+    assert len(log_file.read(path).all_reports) == 10
+
+
 def test_keys_that_are_none(drive, files):
     assert drive("names").returncode == 0
     file = log_file.read(files()[0])

@@ -3,7 +3,7 @@
 // `made before=N running=N after=N`.
 //
 // reporter --before=N --rate=N --seconds=S --threads=N --after=N --fork=N
-//          --wait=S --stay=S --shutdown=0|1 --flops=0|1
+//          --fork-wait=S --wait=S --stay=S --shutdown=0|1 --flops=0|1
 
 #include <ros/ros.h>
 #include <tpc/LogOne.h>
@@ -81,6 +81,8 @@ int main(int Count, char **Words) {
     if (const long Children = Option("fork", 0); Children > 0) {
       // roscpp hangs in a child that ends otherwise than by _exit.
       report(key(4), 0, Flops);
+      std::this_thread::sleep_for(
+          std::chrono::duration<double>(Option("fork-wait", 0)));
       if (const pid_t Child = fork(); Child == 0) {
         for (long I = 0; I < Children; ++I)
           report(key(3), I, Flops);
