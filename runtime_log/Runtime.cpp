@@ -137,7 +137,6 @@ void Runtime::start() {
   std::lock_guard<std::mutex> Guard(Changing);
   if (IsStarted)
     return;
-  IsStarted = true;
   TimeIsSimulated = rosTimeIsSimulated();
   prepareEdges();
   // A forked child goes on with what its parent was set to.
@@ -149,6 +148,8 @@ void Runtime::start() {
     Held.Sink = SinkKind::Off;
     choose(Held);
   }
+  // Not before: without memory the next report tries again.
+  IsStarted = true;
   startHelper();
 }
 

@@ -17,9 +17,11 @@ struct Registry {
   std::vector<Thread *> All;
   std::vector<Thread *> Free;
   pthread_key_t Key;
+  /// Where a program has used up all keys, no thread takes another's place.
+  bool HasKey;
 
   Registry() {
-    pthread_key_create(&Key, [](void *T) {
+    HasKey = !pthread_key_create(&Key, [](void *T) {
       ThisThread = nullptr;
       std::lock_guard<std::mutex> Guard(of().Lock);
       of().Free.push_back(static_cast<Thread *>(T));
@@ -50,7 +52,8 @@ Thread *makeThread() {
     }
   }
   T->Tid = static_cast<uint64_t>(syscall(SYS_gettid));
-  pthread_setspecific(R.Key, T);
+  if (R.HasKey)
+    pthread_setspecific(R.Key, T);
   return ThisThread = T;
 }
 
