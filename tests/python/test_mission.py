@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import struct
+import threading
 from collections import Counter
 from dataclasses import replace
 from pathlib import Path
@@ -15,13 +16,21 @@ from mission_samples import comparison, events, ns, static_info
 from rich.console import Console
 from rosbags.highlevel import AnyReader
 
-from pytpc.cli.mission_commands import record_command
+from pytpc.attached import record_graph
+from pytpc.cli.mission_commands import record_command, sink_settings
 from pytpc.demo import TreatedMission, failures, result_table
 from pytpc.errors import InputError, RunError
 from pytpc.graph import GraphProcess
 from pytpc.ingest import Recording
 from pytpc.marks import Mark
-from pytpc.mission import MissionRun, launch_command, read_status, run_mission, save_run
+from pytpc.mission import (
+    MissionRun,
+    clear_earlier,
+    launch_command,
+    read_status,
+    run_mission,
+    save_run,
+)
 from pytpc.ranking import rank_marks
 from pytpc.recorder import (
     BagFile,
@@ -269,6 +278,33 @@ def test_record_command_wants_name_and_value():
     result = CliRunner().invoke(record_command, ["ws", "a.launch", "seed=1", "-o", "out"])
     assert result.exit_code == 2
     assert "'seed=1' is not NAME:=VALUE" in result.output
+
+
+def test_settings_of_sinks_reach_the_nodes_and_nothing_else(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    given = {"TPC_SINK": "file", "TPC_POLICY": "", "TPC_FOLDER": "x", "TPC_PREFIX": "/y", "A": "b"}
+    assert sink_settings(given) == {"TPC_SINK": "file", "TPC_FOLDER": str(tmp_path / "x")}
+
+
+# What is left of it would be ranked as if it were of the next mission.
+def test_an_earlier_mission_is_cleared_and_its_marks_are_kept(tmp_path):
+    (tmp_path / "tpc").mkdir()
+    names = ["mission.bag", "run.json", "events.parquet", "marks.json", "tpc/uav-1-1.tpc"]
+    for name in [*names, "mission.bag.marks.csv", "notes.md"]:
+        (tmp_path / name).write_text("x")
+    clear_earlier(tmp_path)
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        "mission.bag.marks.csv.old",
+        "notes.md",
+    ]
+
+
+@pytest.mark.parametrize("name", ["mission.bag", "mission.bag.active"])
+def test_a_recording_of_a_robot_is_not_replaced(tmp_path, name):
+    (tmp_path / name).write_text("the only one")
+    with pytest.raises(RunError, match="another folder"):
+        record_graph(tmp_path, stop=threading.Event(), env={"ROS_MASTER_URI": "http://[::1]:1"})
+    assert (tmp_path / name).read_text() == "the only one"
 
 
 def test_tail_of_a_process_prefers_what_tells_of_an_error(tmp_path):
