@@ -392,6 +392,14 @@ def test_files_of_two_processes_share_nothing(tmp_path):
     assert recording.notes == (f"5 reports in {copy} that came another way too: counted once",)
 
 
+def test_files_that_were_joined_are_refused(tmp_path):
+    whole = tpc_of(tmp_path / "a.tpc").read_bytes()
+    padded = whole + bytes((4096 - len(whole)) % tpc_file.CHUNK)
+    (tmp_path / "b.tpc").write_bytes(padded + whole)
+    with pytest.raises(InputError, match="another file begins at byte"):
+        read(tmp_path / "b.tpc")
+
+
 def test_sources_that_lie_apart_are_told(tmp_path):
     bag = bag_of(tmp_path / "a.bag")
     made = TpcFile(tpc_file.header(node="/sim"))
