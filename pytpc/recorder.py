@@ -20,6 +20,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
+from typing import BinaryIO
 
 from rosbags.interfaces import Connection
 from rosbags.rosbag1 import Writer
@@ -33,7 +34,14 @@ REPORT = b"threshold_information:"
 NODE_NAME = "/tpc_recorder"
 STATUS_PERIOD_S = 0.2
 DRAIN_S = 2.0
+KEEP_S = 1.0
+"""At most so much of a mission is lost when the recorder is killed."""
 _CLOCK = "/clock"
+# rosbag pads the first record's parts to 4096 bytes, rosbags both with their two lengths.
+_FIRST_PADDING = 4096 - 69
+_FIRST_PADDING_AT = 13 + 4 + 69
+_MORE_PADDING = 8
+_CHUNK = 1 << 20
 _ROSOUT = "/rosout"
 _REPORTS = "/threshold_information"
 LOOK_PERIOD_S = 1.0
@@ -146,6 +154,11 @@ class BagFile:
         self._active.unlink(missing_ok=True)
         self._writer = Writer(self._active)
         self._writer.open()
+        assert self._writer.bio is not None, "it was opened"
+        self._writer.bio.write(b" " * _MORE_PADDING)
+        self._pad(self._writer.bio)
+        self._writer.bio.seek(0, os.SEEK_END)
+        self._kept = time.monotonic()
         self._connections: dict[tuple[str, str, str], Connection] = {}
         self.messages: Counter[str] = Counter()
 
@@ -165,13 +178,28 @@ class BagFile:
                 callerid=source.node,
             )
             self._connections[key] = connection
+        # A chunk stands in memory until it is full: with marks alone, for the whole mission.
+        due = time.monotonic() - self._kept > KEEP_S or MarkMessages.message_type(source.topic)
+        self._writer.chunk_threshold = -1 if due else _CHUNK
         self._writer.write(connection, time_ns, data)
+        if due and self._writer.bio is not None:
+            self._writer.bio.flush()
+            self._kept = time.monotonic()
         self.messages[source.topic] += 1
 
     def close(self) -> None:
         """Write the index and give the file its name."""
         self._writer.close()
+        with self._active.open("r+b") as stream:
+            self._pad(stream)
         self._active.replace(self._path)
+
+    @staticmethod
+    def _pad(stream: BinaryIO) -> None:
+        """Make the first record as long as rosbag's own: `rosbag reindex` writes it anew, and what
+        is longer then stands in the first chunk."""
+        stream.seek(_FIRST_PADDING_AT)
+        stream.write(_LENGTH.pack(_FIRST_PADDING))
 
 
 class Recorder:

@@ -159,6 +159,9 @@ def sources(path: Path) -> list[Path]:
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror or error}", path) from error
     found = [entry for entry in entries if _is_recording(entry)]
+    if not found and any(path.glob("*.bag.active")):
+        what = "only a bag that was cut off: rosbag reindex it, then take .active from its name"
+        raise InputError(what, path)
     if not found:
         raise InputError("a folder without recordings", path)
     return found

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import shutil
 import struct
+import subprocess
 import threading
 from collections import Counter
 from dataclasses import replace
@@ -52,6 +54,9 @@ CHAT = Source(
     "/chat", "/talker", "std_msgs/String", "992ce8a1687cec8c8bd883ec73ca41d1", "string data\n"
 )
 DONE = Source("/done", "/boss", "std_msgs/Bool", "8b94c1b53db61fb6aed406028ad6332a", "bool data\n")
+MARK = Source(
+    "/a/mark_action", "/a", "std_msgs/Time", "cd7166c74c552c311fbcc2fe5a7bc289", "time data\n"
+)
 LOG_DEFINITION = """byte DEBUG=1
 byte INFO=2
 byte WARN=4
@@ -237,6 +242,34 @@ def test_recorder_stamps_with_the_clock_and_keeps_the_account(tmp_path):
         ("/rosout", 4_000_000_000),
         ("/rosout", 4_000_000_000),
     ]
+
+
+def messages_in(path):
+    with AnyReader([path]) as reader:
+        return reader.message_count
+
+
+# A mark is on the disk at once, and what was before it. What rosbag reindex writes over the begin
+# of a bag is 13 + 4 + 4 + 4096 bytes long.
+def test_a_recording_that_was_cut_off_can_be_reindexed(tmp_path):
+    bag = BagFile(tmp_path / "a.bag")
+    for number in range(20):
+        bag.write(CHAT, number + 1, struct.pack("<I", 40) + bytes(40))
+    bag.write(MARK, 30, bytes(8))
+    killed = tmp_path / "killed.bag"
+    shutil.copy(tmp_path / "a.bag.active", killed)
+    bag.close()
+    for path in (killed, tmp_path / "a.bag"):
+        raw = path.read_bytes()
+        (header,) = struct.unpack_from("<I", raw, 13)
+        (data,) = struct.unpack_from("<I", raw, 17 + header)
+        assert header + data == 4096
+        assert raw[4117 + 4 :].startswith(b"\x04\0\0\0op=\x05")
+    assert messages_in(tmp_path / "a.bag") == 21
+    if shutil.which("rosbag") is None:
+        pytest.skip("ROS is not installed")
+    subprocess.run(["rosbag", "reindex", "-q", killed], check=True, capture_output=True)
+    assert messages_in(killed) == 21
 
 
 def test_status_survives_the_way_through_its_file(tmp_path):
