@@ -78,8 +78,11 @@ class LossCounter:
         self.lost: Counter[str] = Counter()
         self.missed_before: Counter[str] = Counter()
 
-    def see(self, data: bytes) -> bytes:
+    def see(self, data: bytes, sender: str = "") -> bytes:
         """Take in one serialized rosgraph_msgs/Log; return its text.
+
+        Who sends numbers: ``rosbag play`` does so anew, in one row for all nodes. Where no
+        ``sender`` is known it is the node.
 
         Raises:
             ValueError: the bytes are shorter than such a message.
@@ -91,7 +94,7 @@ class LossCounter:
             text, _ = _text(data, at)
         except struct.error as error:
             raise ValueError(f"no rosgraph_msgs/Log: {error}") from error
-        node = name.decode("utf-8", "replace")
+        node = sender or name.decode("utf-8", "replace")
         last = self._last.get(node)
         if last is None:
             # roscpp counts from 0 and rospy from 1, so that 1 may be the first one.
@@ -243,7 +246,7 @@ class Recorder:
         if source.topic in self._topics:
             self._bag.write(source, self.now_ns(), data)
         if source.topic == _ROSOUT:
-            self._reports += self._counter.see(data).startswith(REPORT)
+            self._reports += self._counter.see(data, source.node).startswith(REPORT)
         elif source.topic == _REPORTS:
             self._reports += self._batches.see(source.node, data)
         elif source.topic == self._until and any(data):

@@ -108,6 +108,14 @@ def test_loss_counter_takes_a_restarted_node_for_a_new_beginning():
     assert counter.lost == Counter()
 
 
+def test_who_replays_a_bag_numbers_anew():
+    counter = LossCounter()
+    for number, node in enumerate([b"/a", b"/b", b"/b", b"/a"]):
+        counter.see(log(node, number), "/play")
+    counter.see(log(b"/b", 9), "/play")
+    assert (counter.lost, counter.missed_before) == (Counter({"/play": 5}), Counter())
+
+
 def test_loss_counter_gives_the_text_behind_a_frame_name():
     assert LossCounter().see(log(b"/a", 1, b"threshold_information:x", b"map")) == (
         b"threshold_information:x"
