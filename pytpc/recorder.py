@@ -184,7 +184,8 @@ class BagFile:
         # A chunk stands in memory until it is full: with marks alone, for the whole mission.
         due = time.monotonic() - self._kept > KEEP_S or MarkMessages.message_type(source.topic)
         self._writer.chunk_threshold = -1 if due else _CHUNK
-        self._writer.write(connection, time_ns, data)
+        # Before the first /clock it is 0, which rosbag play and info take for a broken entry.
+        self._writer.write(connection, max(time_ns, 1), data)
         if due and self._writer.bio is not None:
             self._writer.bio.flush()
             self._kept = time.monotonic()
@@ -243,6 +244,7 @@ class Recorder:
         if source.topic == _CLOCK and self._sim_time and len(data) >= _TIME.size:
             seconds, nanoseconds = _TIME.unpack_from(data)
             self._clock_ns = seconds * 1_000_000_000 + nanoseconds
+            self._began_ns = self._began_ns or self._clock_ns
         if source.topic in self._topics:
             self._bag.write(source, self.now_ns(), data)
         if source.topic == _ROSOUT:

@@ -235,7 +235,7 @@ def test_recorder_stamps_with_the_clock_and_keeps_the_account(tmp_path):
         ready=True,
         done=True,
         closed=True,
-        began_ns=0,
+        began_ns=3_250_000_000,
         now_ns=4_000_000_000,
         reports=1,
         messages={"/chat": 1, "/done": 2, "/rosout": 2},
@@ -255,6 +255,20 @@ def test_recorder_stamps_with_the_clock_and_keeps_the_account(tmp_path):
 def messages_in(path):
     with AnyReader([path]) as reader:
         return reader.message_count
+
+
+# The clock stands at 1000 s when it is first heard: the recording is then 2 s long, not 1002.
+def test_what_was_before_the_first_clock(tmp_path):
+    bag = BagFile(tmp_path / "a.bag")
+    recorder = Recorder(bag, ["/chat"], None, sim_time=True)
+    recorder.take(CHAT, struct.pack("<I", 2) + b"hi")
+    for seconds in (1000, 1001, 1002):
+        recorder.take(CLOCK, struct.pack("<II", seconds, 0))
+    status = recorder.status()
+    assert status.now_ns - status.began_ns == 2_000_000_000
+    bag.close()
+    with AnyReader([tmp_path / "a.bag"]) as reader:
+        assert [time for _, time, _ in reader.messages()] == [1]
 
 
 # A mark is on the disk at once, and what was before it. What rosbag reindex writes over the begin
