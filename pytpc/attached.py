@@ -13,11 +13,11 @@ from pathlib import Path
 from urllib.parse import urlsplit
 
 from pytpc.errors import MissingToolError, RunError
+from pytpc.ingest.recording import RUN_FILE
 from pytpc.mission import (
     BAG_FILE,
     DEFAULT_TOPICS,
     PARAMS_FILE,
-    RUN_FILE,
     MissionRun,
     Progress,
     dump_params,
@@ -83,10 +83,12 @@ def record_graph(
         on_progress: called about five times a second.
 
     Raises:
-        RunError: the master does not answer.
+        RunError: the master does not answer, or ``out_dir`` has a recording: a robot's mission
+            cannot be flown again, as a simulated one can.
         OSError: the bag cannot be written; what was recorded is in ``mission.bag.active``.
     """
     env = os.environ if env is None else env
+    _refuse_earlier(out_dir)
     out_dir.mkdir(parents=True, exist_ok=True)
     began = time.monotonic()
     recorded = list(dict.fromkeys([*DEFAULT_TOPICS, *topics, *([until] if until else [])]))
@@ -141,6 +143,18 @@ def record_graph(
     )
     save_run(run, None, {}, out_dir / RUN_FILE)
     return run
+
+
+def _refuse_earlier(out_dir: Path) -> None:
+    bag = out_dir / BAG_FILE
+    active = bag.with_name(f"{bag.name}.active")
+    if bag.exists():
+        raise RunError("has a recording already; give another folder", out_dir)
+    if active.exists():
+        what = (
+            "is a recording that was cut off; save it with rosbag reindex, or give another folder"
+        )
+        raise RunError(what, active)
 
 
 def stop_on_signals() -> threading.Event:

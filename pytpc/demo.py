@@ -185,6 +185,7 @@ def _cells(
         mark.time_ns,
         found.type,
         unit=static_info.unit_of(found.key),
+        summaries=mission.recording.summaries,
     )
     first = Text("yes", style="bold green") if found.position == 1 else Text("no")
     return [

@@ -29,8 +29,6 @@ _TOPICS: dict[str, MarkType | None] = {
     "mark_wrong": None,
 }
 _HEADER = ["time_ns", "type", "observer", "note"]
-MARKS_HEADER = ",".join(_HEADER).encode()
-"""How a CSV file of marks begins."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,12 +1,15 @@
 """Runs one mission on a real ROS graph and records it.
 
 ``run_mission`` leaves in the folder that it is given: ``mission.bag``, ``params.yaml`` (what stood
-on the parameter server), ``run.json`` (how it went) and ``ros/`` (the output of all processes).
+on the parameter server), ``run.json`` (how it went), ``tpc/`` (the files of nodes with the sink
+``file``) and ``ros/`` (the output of all processes).
 """
 
 from __future__ import annotations
 
+import contextlib
 import json
+import shutil
 import subprocess
 import sys
 import time
@@ -18,12 +21,18 @@ from pytpc import recorder
 from pytpc.atomic import write_atomic
 from pytpc.errors import RunError
 from pytpc.graph import GraphProcess, RosGraph
-from pytpc.marks import topic_of_marks
+from pytpc.ingest.recording import (
+    EVENTS_FILE,
+    MARKS_FILE,
+    REPORTS_FOLDER,
+    RUN_FILE,
+    SUMMARIES_FILE,
+)
+from pytpc.marks import marks_beside, topic_of_marks
 from pytpc.paths import project_root
 
 BAG_FILE = "mission.bag"
 PARAMS_FILE = "params.yaml"
-RUN_FILE = "run.json"
 MARK_TOPICS = ("/mark_action", "/mark_no_action")
 DEFAULT_TOPICS = ("/rosout", "/threshold_information", *MARK_TOPICS)
 
@@ -123,10 +132,12 @@ def run_mission(
     """
     command = launch_command(launch, args)
     out_dir.mkdir(parents=True, exist_ok=True)
-    for name in (BAG_FILE, PARAMS_FILE, RUN_FILE):
-        (out_dir / name).unlink(missing_ok=True)
+    clear_earlier(out_dir)
     began = time.monotonic()
-    with RosGraph(install_env, out_dir / "ros", use_sim_time=use_sim_time) as graph:
+    reports_to = {"TPC_FOLDER": str((out_dir / REPORTS_FOLDER).absolute())}
+    with RosGraph(
+        {**reports_to, **install_env}, out_dir / "ros", use_sim_time=use_sim_time
+    ) as graph:
         recording = _start_recorder(graph, out_dir, (*DEFAULT_TOPICS, *topics), until)
         started = graph.start("roslaunch", command, patience_s=_LAUNCH_PATIENCE_S)
         watch = _Watch(graph, out_dir, began, on_progress)
@@ -153,6 +164,19 @@ def run_mission(
     )
     save_run(run, launch, args, out_dir / RUN_FILE)
     return run
+
+
+def clear_earlier(out_dir: Path) -> None:
+    """Take away an earlier mission's results: they would be read as if they were of the next one.
+
+    Marks that a person made on its bag are not lost: their file gets the ending ``.old``.
+    """
+    for name in (BAG_FILE, PARAMS_FILE, RUN_FILE, EVENTS_FILE, SUMMARIES_FILE, MARKS_FILE):
+        (out_dir / name).unlink(missing_ok=True)
+    shutil.rmtree(out_dir / REPORTS_FOLDER, ignore_errors=True)
+    marks = marks_beside(out_dir / BAG_FILE)
+    with contextlib.suppress(FileNotFoundError):
+        marks.replace(marks.with_name(f"{marks.name}.old"))
 
 
 def save_run(run: MissionRun, launch: Path | None, args: Mapping[str, str], path: Path) -> None:

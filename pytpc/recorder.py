@@ -20,6 +20,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
+from typing import BinaryIO
 
 from rosbags.interfaces import Connection
 from rosbags.rosbag1 import Writer
@@ -33,7 +34,14 @@ REPORT = b"threshold_information:"
 NODE_NAME = "/tpc_recorder"
 STATUS_PERIOD_S = 0.2
 DRAIN_S = 2.0
+KEEP_S = 1.0
+"""At most so much of a mission is lost when the recorder is killed."""
 _CLOCK = "/clock"
+# rosbag pads the first record's parts to 4096 bytes, rosbags both with their two lengths.
+_FIRST_PADDING = 4096 - 69
+_FIRST_PADDING_AT = 13 + 4 + 69
+_MORE_PADDING = 8
+_CHUNK = 1 << 20
 _ROSOUT = "/rosout"
 _REPORTS = "/threshold_information"
 LOOK_PERIOD_S = 1.0
@@ -70,8 +78,11 @@ class LossCounter:
         self.lost: Counter[str] = Counter()
         self.missed_before: Counter[str] = Counter()
 
-    def see(self, data: bytes) -> bytes:
+    def see(self, data: bytes, sender: str = "") -> bytes:
         """Take in one serialized rosgraph_msgs/Log; return its text.
+
+        Who sends numbers: ``rosbag play`` does so anew, in one row for all nodes. Where no
+        ``sender`` is known it is the node.
 
         Raises:
             ValueError: the bytes are shorter than such a message.
@@ -83,7 +94,7 @@ class LossCounter:
             text, _ = _text(data, at)
         except struct.error as error:
             raise ValueError(f"no rosgraph_msgs/Log: {error}") from error
-        node = name.decode("utf-8", "replace")
+        node = sender or name.decode("utf-8", "replace")
         last = self._last.get(node)
         if last is None:
             # roscpp counts from 0 and rospy from 1, so that 1 may be the first one.
@@ -146,6 +157,11 @@ class BagFile:
         self._active.unlink(missing_ok=True)
         self._writer = Writer(self._active)
         self._writer.open()
+        assert self._writer.bio is not None, "it was opened"
+        self._writer.bio.write(b" " * _MORE_PADDING)
+        self._pad(self._writer.bio)
+        self._writer.bio.seek(0, os.SEEK_END)
+        self._kept = time.monotonic()
         self._connections: dict[tuple[str, str, str], Connection] = {}
         self.messages: Counter[str] = Counter()
 
@@ -165,13 +181,29 @@ class BagFile:
                 callerid=source.node,
             )
             self._connections[key] = connection
-        self._writer.write(connection, time_ns, data)
+        # A chunk stands in memory until it is full: with marks alone, for the whole mission.
+        due = time.monotonic() - self._kept > KEEP_S or MarkMessages.message_type(source.topic)
+        self._writer.chunk_threshold = -1 if due else _CHUNK
+        # Before the first /clock it is 0, which rosbag play and info take for a broken entry.
+        self._writer.write(connection, max(time_ns, 1), data)
+        if due and self._writer.bio is not None:
+            self._writer.bio.flush()
+            self._kept = time.monotonic()
         self.messages[source.topic] += 1
 
     def close(self) -> None:
         """Write the index and give the file its name."""
         self._writer.close()
+        with self._active.open("r+b") as stream:
+            self._pad(stream)
         self._active.replace(self._path)
+
+    @staticmethod
+    def _pad(stream: BinaryIO) -> None:
+        """Make the first record as long as rosbag's own: `rosbag reindex` writes it anew, and what
+        is longer then stands in the first chunk."""
+        stream.seek(_FIRST_PADDING_AT)
+        stream.write(_LENGTH.pack(_FIRST_PADDING))
 
 
 class Recorder:
@@ -212,10 +244,11 @@ class Recorder:
         if source.topic == _CLOCK and self._sim_time and len(data) >= _TIME.size:
             seconds, nanoseconds = _TIME.unpack_from(data)
             self._clock_ns = seconds * 1_000_000_000 + nanoseconds
+            self._began_ns = self._began_ns or self._clock_ns
         if source.topic in self._topics:
             self._bag.write(source, self.now_ns(), data)
         if source.topic == _ROSOUT:
-            self._reports += self._counter.see(data).startswith(REPORT)
+            self._reports += self._counter.see(data, source.node).startswith(REPORT)
         elif source.topic == _REPORTS:
             self._reports += self._batches.see(source.node, data)
         elif source.topic == self._until and any(data):

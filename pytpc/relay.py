@@ -66,10 +66,10 @@ class Relay:
         """Log messages that did not come, by their numbers."""
         return sum(self._counter.lost.values())
 
-    def take(self, data: bytes) -> None:
-        """Take one serialized rosgraph_msgs/Log."""
+    def take(self, data: bytes, sender: str = "") -> None:
+        """Take one serialized rosgraph_msgs/Log; ``sender`` is who published it."""
         try:
-            self._counter.see(data)
+            self._counter.see(data, sender)
             log = decode_log(data)
         except ValueError:
             self.malformed += 1
@@ -182,8 +182,8 @@ def _serve(
     thread = threading.Thread(target=look, daemon=True)
     thread.start()
     while not ended():
-        for _, data in subscriber.poll(_POLL_S):
-            relay.take(data)
+        for source, data in subscriber.poll(_POLL_S):
+            relay.take(data, source.node)
     over.set()
     # What is still on the way.
     until = time.monotonic() + 1.0
@@ -191,8 +191,8 @@ def _serve(
         waiting = list(subscriber.poll(0.05))
         if not waiting:
             break
-        for _, data in waiting:
-            relay.take(data)
+        for source, data in waiting:
+            relay.take(data, source.node)
 
 
 def _knows(subscriber: RawSubscriber, node: str) -> bool:

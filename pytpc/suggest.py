@@ -30,6 +30,7 @@ from pytpc.marks import MarkType
 from pytpc.parameters import parameter_name
 from pytpc.scores import WINDOW_S
 from pytpc.static_info import Comparison, LinkUnit
+from pytpc.summaries import Summaries
 from pytpc.words import Number, exact, show
 
 _WHOLE_TYPES = frozenset(
@@ -76,6 +77,43 @@ class _Case:
         return _number(self.how.back(self.threshold), self.whole)
 
 
+@dataclass(frozen=True, slots=True)
+class _Kept:
+    """What summaries say of the evaluations in a window: those at the ends of what each encloses.
+
+    The outermost values are all that type II asks for. ``threshold`` is the last one up to the
+    mark, in the summary that ends at ``last_ns``. A summary that straddles an end of the window is
+    taken where none lies within it, for its evaluations need not.
+    """
+
+    cmp: Floats
+    thresh: Floats
+    threshold: float
+    last_ns: int
+
+    @classmethod
+    def of(
+        cls, summaries: Summaries | None, key: str, mark_ns: int, window_s: float
+    ) -> _Kept | None:
+        """None where there are none of ``key`` before the mark."""
+        if summaries is None or key not in summaries.keys:
+            return None
+        begins = mark_ns - round(window_s * 1e9)
+        own = summaries.take(summaries.key == summaries.keys.index(key))
+        own = own.take(own.begin_ns <= mark_ns)
+        if not len(own):
+            return None
+        last = int(np.argmax(own.end_ns))
+        threshold, last_ns = float(own.thresh[last]), int(own.end_ns[last])
+        within = own.take((own.begin_ns >= begins) & (own.end_ns <= mark_ns))
+        if not len(within):
+            within = own.take(own.end_ns >= begins)
+        ends = [within.thresh + within.diff_min, within.thresh + within.diff_max]
+        return cls(
+            np.concatenate([*ends, within.cmp]), np.tile(within.thresh, 3), threshold, last_ns
+        )
+
+
 class _NoneBecause(Exception):
     """Why there is no suggestion."""
 
@@ -88,6 +126,7 @@ def suggest(
     *,
     unit: LinkUnit | None = None,
     window_s: float = WINDOW_S,
+    summaries: Summaries | None = None,
 ) -> Suggestion:
     """The suggestion for the parameter of one TPC at a mark.
 
@@ -98,12 +137,16 @@ def suggest(
         kind: the type of error.
         unit: the TPC's link unit, for the C++ type of the parameter.
         window_s: the window of type II in seconds.
+        summaries: what the policy ``edges`` kept of the evaluations that are no events.
     """
     current: Number | None = None
     try:
         _refuse(comparison, unit)
         rows = _rows_up_to(events, comparison.key, mark_ns)
+        kept = _Kept.of(summaries, comparison.key, mark_ns, window_s)
         threshold = float(events.thresh[rows[-1]])
+        if kept is not None and kept.last_ns >= events.time_ns[rows[-1]]:
+            threshold = kept.threshold
         if not math.isfinite(threshold):
             raise _NoneBecause("the threshold is not a finite number")
         how = _unit_of(comparison, threshold)
@@ -115,11 +158,18 @@ def suggest(
         whole = is_whole(comparison, unit, seen)
         pair, window = _evaluations(events, rows, mark_ns, kind, window_s)
         used = window if kind == "II" else pair
-        case = _Case(comparison, how, whole, threshold, events.cmp[used], events.thresh[used])
+        cmp, thresh = events.cmp[used], events.thresh[used]
+        if kind == "II" and kept is not None:
+            cmp, thresh = np.append(kept.cmp, cmp), np.append(kept.thresh, thresh)
+        if kind == "II" and not cmp.size:
+            raise _NoneBecause("it was not evaluated in the window before the mark")
+        case = _Case(comparison, how, whole, threshold, cmp, thresh)
         current = _shown_current(case)
         if comparison.relation == "flag":
             return _switch(case, kind)
         if comparison.relation in {"==", "!="}:
+            if kept is not None and not isinstance(comparison.default, bool):
+                raise _NoneBecause("summaries do not tell which values came near to the threshold")
             return _equality(case, kind)
         return _suggestion(case, _first_type(case) if kind == "I" else _second_type(case))
     except _NoneBecause as why:
@@ -198,8 +248,6 @@ def _evaluations(
     if kind == "II":
         begin = mark_ns - round(window_s * 1e9)
         window = rows[int(np.searchsorted(events.time_ns[rows], begin, side="left")) :]
-        if not window.size:
-            raise _NoneBecause("it was not evaluated in the window before the mark")
         return window[:0], window
     flops = rows[events.flop[rows]]
     if not flops.size:

@@ -44,6 +44,7 @@ def rows_of(
                 ranking.mark.time_ns,
                 suspect.type,
                 unit=static_info.unit_of(suspect.key),
+                summaries=recording.summaries,
             ),
         )
         for suspect in ranking.suspects[:top]

@@ -179,7 +179,9 @@ def _check_reports(recording: Recording, static: StaticInfo, source: Path) -> No
     """A mission without a report that we know would be ranked as if nothing were suspicious."""
     if not len(recording.events):
         raise InputError(
-            "no threshold reports: was /rosout recorded, and the workspace built with TPC?", source
+            "no threshold reports: was /rosout recorded, and the workspace built with TPC? "
+            " Files of the sink `file` have to be in the same folder, or in its tpc",
+            source,
         )
     if len(unknown_keys(recording.events, static)) == len(recording.events.keys):
         raise InputError(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -14,8 +14,11 @@ from rich.console import Console
 from pytpc.attached import master_of, record_graph, stop_on_signals
 from pytpc.build import workspace_env
 from pytpc.colcon import Bases
+from pytpc.complaints import complaints
 from pytpc.ingest.reading import opened
+from pytpc.ingest.recording import REPORTS_FOLDER
 from pytpc.mission import DEFAULT_TOPICS, MissionRun, Progress, run_mission
+from pytpc.runtime_control import SETTINGS
 from pytpc.words import many
 
 _PATH = click.Path(path_type=Path)
@@ -56,8 +59,8 @@ def record_command(
     """Record a mission: of the running graph, or of LAUNCH.
 
     Without WORKSPACE and LAUNCH the graph at ROS_MASTER_URI is recorded until Ctrl-C. With them the
-    launch file of the built workspace is run on a ROS graph of its own, and recorded. The marks of
-    all observers are recorded as they appear.
+    launch file of the built workspace is run on a ROS graph of its own, and recorded; TPC_SINK,
+    TPC_POLICY and so on hold for its nodes. The marks of all observers are recorded as they appear.
     """
     if workspace is None:
         run = _record_graph(output, until, timeout_s, topics)
@@ -67,7 +70,7 @@ def record_command(
         launch_arguments = _launch_arguments(args)
         with mission_progress(launch.stem) as advance:
             run = run_mission(
-                workspace_env(Bases.of(workspace).install),
+                {**workspace_env(Bases.of(workspace).install), **sink_settings(os.environ)},
                 launch,
                 launch_arguments,
                 output,
@@ -83,13 +86,18 @@ def record_command(
     before = sum(run.missed_before.values())
     if before and workspace is None:
         click.echo(f"{many(before, 'log message')} from before the recording", err=True)
+    files = len(list((output / REPORTS_FOLDER).glob("*.tpc")))
+    if files:
+        click.echo(f"more reports in {many(files, 'file')}: {output / REPORTS_FOLDER}", err=True)
     click.echo(
         f"{many(run.reports, 'report')} and {many(run.marks, 'mark')} in {run.sim_s:.1f} s"
         f" ({run.ended}): {run.bag}"
     )
     if parquet:
-        with opened([run.bag], output) as outcome:
-            outcome.save(output)
+        with opened([output], output) as outcome:
+            recording = outcome.save(output)
+        for complaint in complaints(recording):
+            click.echo(f"warning: {complaint}", err=True)
         click.echo(f"{many(outcome.events, 'report')} in Parquet: {output}")
 
 
@@ -107,6 +115,18 @@ def _record_graph(
             topics=topics,
             on_progress=advance,
         )
+
+
+def sink_settings(env: Mapping[str, str]) -> dict[str, str]:
+    """What ``env`` says of sinks: a mission's nodes get nothing else of the caller's environment.
+
+    A relative folder is the caller's: the nodes run elsewhere.
+    """
+    names = (f"TPC_{name.upper()}" for name in SETTINGS)
+    settings = {name: env[name] for name in names if env.get(name)}
+    if "TPC_FOLDER" in settings:
+        settings["TPC_FOLDER"] = str(Path(settings["TPC_FOLDER"]).absolute())
+    return settings
 
 
 def _launch_arguments(texts: tuple[str, ...]) -> dict[str, str]:

@@ -47,10 +47,11 @@ def read_bag_into(path: Path, gathering: Gathering, on_progress: Progress | None
             taken = Messages(gathering, str(path), _DECODERS)
             total = index.index_pos
             logs = [n for n, connection in wanted.items() if connection.topic == ROSOUT]
+            senders = {n: wanted[n].caller.encode() for n in logs}
             for chunk in messages(stream, index, wanted.keys()) if wanted else ():
                 is_log = np.isin(chunk.connection, logs)
                 others = np.flatnonzero(~is_log)
-                if not taken.take_logs(chunk, is_log):
+                if not taken.take_logs(chunk, is_log, senders):
                     others = np.arange(chunk.connection.size)
                 for row in others.tolist():
                     connection = wanted[int(chunk.connection[row])]

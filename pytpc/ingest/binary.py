@@ -172,6 +172,9 @@ class _Reader:
                 self._system_chunks.append(place)
             elif kind == layout.LIVE_CHUNK:
                 self._live_chunks.append(place)
+            elif head.startswith(layout.MAGIC):
+                what = f"another file begins at byte {place}: give each by itself, not joined"
+                raise InputError(what, self._path)
             elif kind:
                 self._skip(f"a chunk of the unknown kind {kind} at byte {place}")
             place += layout.CHUNK_BYTES

@@ -113,7 +113,8 @@ class Gathering:
     """All that was read.
 
     ``spans`` are the times of recordings on their own clock; ``notes`` and ``late_notes`` are for
-    the user, before and behind those about duplicates.
+    the user, before and behind those about duplicates; ``without_reports`` are text files in which
+    no line is one.
 
     Args:
         folder: where rows that are too many for memory are kept; None: all stays in memory.
@@ -142,6 +143,7 @@ class Gathering:
         self.lost: Counter[str] = Counter()
         self.dropped: Counter[tuple[str, str, str]] = Counter()
         self.dropped_flops: Counter[tuple[str, str, str]] = Counter()
+        self.without_reports: list[str] = []
         self.notes: list[str] = []
         self.late_notes: list[str] = []
         self.spans: list[tuple[int, int]] = []

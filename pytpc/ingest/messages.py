@@ -5,12 +5,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections import Counter
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from pytpc.columns import Bools, Int32s, Int64s
+from pytpc.columns import Bools, Int64s
 from pytpc.ingest.bag_chunks import Messages as Chunk
 from pytpc.ingest.gathering import Channel, Gathering, Way
 from pytpc.ingest.lines import Batches, Lines
@@ -61,6 +62,33 @@ class _OtherLine:
     number: int = 0
 
 
+class _Gaps:
+    """Finds what is missing in numbered messages; who is started again counts from the start."""
+
+    def __init__(self) -> None:
+        self._last: dict[bytes, int] = {}
+        self.lost: Counter[bytes] = Counter()
+
+    def see(self, name: bytes, seq: int) -> None:
+        last = self._last.get(name)
+        if last is not None and seq > last + 1:
+            self.lost[name] += seq - last - 1
+        self._last[name] = seq
+
+    def see_all(self, names: list[bytes], seq: Int64s) -> None:
+        """The same of many messages in their order."""
+        codes = {name: code for code, name in enumerate(dict.fromkeys(names))}
+        code_of = np.array([codes[name] for name in names], np.int32)
+        for name, code in codes.items():
+            own = seq[code_of == code]
+            last = self._last.get(name)
+            if last is not None:
+                own = np.concatenate([[last], own])
+            steps = np.diff(own)
+            self.lost[name] += int((steps[steps > 1] - 1).sum())
+            self._last[name] = int(own[-1])
+
+
 class Messages:
     """Takes in the messages of one source.
 
@@ -80,7 +108,8 @@ class Messages:
         self._decoders = decoders
         self._numbered = numbered
         self._batches = Batches(gathering)
-        self._last_seq: dict[bytes, int] = {}
+        self._gaps_of_nodes = _Gaps()
+        self._gaps_of_senders = _Gaps()
         self._lines: dict[Way, Lines] = {}
         self._channels: dict[Way, Channel] = {}
         self._nodes: dict[bytes, int] = {}
@@ -90,7 +119,7 @@ class Messages:
         """Read one message; ``time_ns`` is when the recorder got it, ``caller`` who sent it."""
         try:
             if topic in {ROSOUT, ROSOUT_AGG}:
-                self._log(topic, time_ns, raw)
+                self._log(topic, caller, time_ns, raw)
             elif topic == REPORTS:
                 self._text(caller, time_ns, self._decoders.text(raw))
             else:
@@ -98,8 +127,11 @@ class Messages:
         except ValueError as error:
             self._gathering.skip(topic, time_ns, str(error), "")
 
-    def take_logs(self, chunk: Chunk, which: Bools) -> bool:
-        """Read many of /rosout (ROS 1) at once; False, and none read, where one is odd."""
+    def take_logs(self, chunk: Chunk, which: Bools, senders: Mapping[int, bytes]) -> bool:
+        """Read many of /rosout (ROS 1) at once; False, and none read, where one is odd.
+
+        ``senders`` has who sent the messages of each connection, empty where that is not known.
+        """
         if not which.any():
             return True
         data = np.frombuffer(chunk.data, np.uint8)
@@ -108,7 +140,13 @@ class Messages:
             return False
         places = zip(logs.node_begin.tolist(), logs.node_end.tolist(), strict=True)
         names = [chunk.data[begin:end] for begin, end in places]
-        nodes = self._count_all_lost(names, logs.seq)
+        sent_by = [senders[number] for number in chunk.connection[which].tolist()]
+        self._gaps_of_nodes.see_all(names, logs.seq)
+        self._gaps_of_senders.see_all(
+            [sender or name for sender, name in zip(sent_by, names, strict=True)], logs.seq
+        )
+        codes = {name: self._node(name) for name in set(names)}
+        nodes = np.array([codes[name] for name in names], np.int32)
         # The first bytes of each text; what is too short for them is of no interest.
         long = logs.msg_end - logs.msg_begin >= len(_PREFIX)
         rows = np.flatnonzero(long)
@@ -131,37 +169,27 @@ class Messages:
         lines.extend(texts, stamps.tolist(), nodes[rows].tolist())
         return True
 
-    def _count_all_lost(self, names: list[bytes], seq: Int64s) -> Int32s:
-        """As ``_count_lost``, of many messages; the codes of their nodes."""
-        codes = {name: self._node(name) for name in set(names)}
-        nodes = np.array([codes[name] for name in names], np.int32)
-        for name, code in codes.items():
-            own = seq[nodes == code]
-            last = self._last_seq.get(name)
-            if last is not None:
-                own = np.concatenate([[last], own])
-            steps = np.diff(own)
-            lost = int((steps[steps > 1] - 1).sum())
-            if lost:
-                self._gathering.lost[_plain(name)] += lost
-            self._last_seq[name] = int(own[-1])
-        return nodes
-
     def close(self) -> None:
         """Hand in what is still held."""
         for lines in self._lines.values():
             lines.flush()
             self._unstamped += lines.unstamped
         self._batches.close()
+        # Who sends numbers: rosbag play does so anew, in one row for all nodes. But rosbag filter
+        # names one sender for all. What is missing in both ways of counting is missing.
+        gaps = min(self._gaps_of_nodes, self._gaps_of_senders, key=lambda one: one.lost.total())
+        for name, count in gaps.lost.items():
+            self._gathering.lost[_plain(name)] += count
         if self._unstamped:
             self._gathering.late_notes.append(
                 f"{many(self._unstamped, 'record')} without a stamp got the bag's time"
             )
 
-    def _log(self, topic: str, time_ns: int, raw: bytes) -> None:
+    def _log(self, topic: str, caller: str, time_ns: int, raw: bytes) -> None:
         log = self._decoders.log(raw)
         if topic == ROSOUT and self._numbered:
-            self._count_lost(log.node, log.seq)
+            self._gaps_of_nodes.see(log.node, log.seq)
+            self._gaps_of_senders.see(caller.encode() or log.node, log.seq)
         self._text_of(log, topic, time_ns)
 
     def _text_of(self, log: Log, topic: str, time_ns: int) -> None:
@@ -233,13 +261,6 @@ class Messages:
     def _from_bag(self, time_ns: int) -> int:
         self._unstamped += 1
         return time_ns
-
-    def _count_lost(self, node: bytes, seq: int) -> None:
-        """roscpp and rospy number a node's log messages; a restarted node counts from the start."""
-        last = self._last_seq.get(node)
-        if last is not None and seq > last + 1:
-            self._gathering.lost[_plain(node)] += seq - last - 1
-        self._last_seq[node] = seq
 
     def _node(self, name: bytes) -> int:
         code = self._nodes.get(name)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
@@ -18,14 +19,26 @@ from pytpc.ingest.duplicates import TOLERANCE_NS
 from pytpc.ingest.folder import read_folder_into
 from pytpc.ingest.gathering import Gathering, Progress
 from pytpc.ingest.outcome import Outcome
-from pytpc.ingest.recording import EVENTS_FILE, MARKS_FILE, Recording, load_recording
+from pytpc.ingest.recording import (
+    EVENTS_FILE,
+    MARKS_FILE,
+    REPORTS_FOLDER,
+    RUN_FILE,
+    Recording,
+    load_recording,
+)
 from pytpc.ingest.ros2_bag import MCAP_MAGIC, SQLITE_MAGIC, read_ros2_into
 from pytpc.ingest.text import read_text_into
-from pytpc.marks import MARKS_HEADER, Mark, joined, marks_beside, read_marks
+from pytpc.marks import Mark, joined, marks_beside, read_marks
+from pytpc.words import many
 
 Reader = Callable[[Path, Gathering, Progress | None], None]
 ROS2_FILE = "metadata.yaml"
 _FIRST = 4096
+# With whatever a spreadsheet made of the commas: the reader of marks says what is wrong then.
+_MARKS = re.compile(rb'(?:\xef\xbb\xbf)?"?time_ns"?\s*[,;\t]\s*"?type')
+# The rosout node and roscpp begin a new file after 100 MB.
+_ROTATED = re.compile(r"\.log\.[0-9]+")
 
 
 def read(
@@ -120,6 +133,12 @@ def gather(
                 seen.add(real)
                 reader_of(source)(source, gathering, on_progress)
                 gathering.marks += _beside(source)
+    empty = gathering.without_reports
+    if empty:
+        gathering.late_notes.append(f"no report in {many(len(empty), 'text file')}, as {empty[0]}")
+    for path in paths:
+        for left in sorted(path.glob("*.bag.active")):
+            gathering.late_notes.append(f"{left}: not read; mend it with: rosbag reindex")
 
 
 def sources(path: Path) -> list[Path]:
@@ -134,9 +153,15 @@ def sources(path: Path) -> list[Path]:
         return [path]
     try:
         entries = sorted(entry for entry in path.iterdir() if not entry.name.startswith("."))
+        if (path / RUN_FILE).is_file() and (path / REPORTS_FOLDER).is_dir():
+            # A mission of ``pytpc record``, whose nodes wrote files.
+            entries += sorted((path / REPORTS_FOLDER).iterdir())
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror or error}", path) from error
     found = [entry for entry in entries if _is_recording(entry)]
+    if not found and any(path.glob("*.bag.active")):
+        what = "only a bag that was cut off: rosbag reindex it, then take .active from its name"
+        raise InputError(what, path)
     if not found:
         raise InputError("a folder without recordings", path)
     return found
@@ -178,7 +203,7 @@ def reader_of(path: Path) -> Reader:
         raise InputError("the file is empty", path)
     if BAG_MAGIC.startswith(first) or path.suffix == ".bag":
         return read_bag_into
-    if first.startswith(MARKS_HEADER):
+    if _MARKS.match(first):
         return _read_marks_into
     if b"\0" in first:
         raise InputError("neither a bag, nor a .tpc file, nor text", path)
@@ -204,4 +229,12 @@ def _is_recording(path: Path) -> bool:
     ):
         # Read with the recording beside which it is.
         return False
-    return path.suffix in {".bag", ".mcap", ".db3", ".tpc", ".log", ".csv", ".txt"}
+    return bool(_ROTATED.search(path.name)) or path.suffix in {
+        ".bag",
+        ".mcap",
+        ".db3",
+        ".tpc",
+        ".log",
+        ".csv",
+        ".txt",
+    }

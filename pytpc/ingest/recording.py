@@ -19,6 +19,9 @@ from pytpc.summaries import Summaries, read_summaries, write_summaries
 EVENTS_FILE = "events.parquet"
 SUMMARIES_FILE = "summaries.parquet"
 MARKS_FILE = "marks.json"
+RUN_FILE = "run.json"
+REPORTS_FOLDER = "tpc"
+"""In the folder of a recorded mission: what tells it, and where its nodes' files are."""
 _SCHEMA = 1
 
 

@@ -30,6 +30,9 @@ from pytpc.words import many
 
 _BLOCK = 1 << 20
 _LONGEST = 1 << 16
+# A spreadsheet may have exchanged the commas, or put quotes around all of it.
+_REPORT_LIKE = re.compile(rb"[01e][\s,;\"]+cmp:.*thresh:.*res:")
+_CSV_FORM = "TIME,KEY,RESULT,cmp:C,thresh:T,res:R with decimals in TIME"
 _PREFIX = PREFIX.encode()
 _COLOUR = re.compile(rb"\x1b\[[0-9;]*[A-Za-z]")
 _TIME = re.compile(
@@ -37,6 +40,7 @@ _TIME = re.compile(
 )
 _NODE = re.compile(rb"(?:^|[\[\s(])(/[A-Za-z][A-Za-z0-9_/]*)(?=[\]\s:),])")
 _BEGIN = re.compile(rb"threshold_(?:information|summary|dropped):")
+_BOM = b"\xef\xbb\xbf"
 _CSV = re.compile(rb"[0-9]{1,10}\.[0-9]{1,9},|#seq:")
 
 
@@ -50,21 +54,22 @@ def read_text_into(path: Path, gathering: Gathering, on_progress: Progress | Non
     """
     try:
         size = max(1, path.stat().st_size)
-        reader: _Taker | None = None
+        reader = _reader_for(path, gathering)
         for number, lines, done in _lines(path):
-            if reader is None:
-                reader = _reader_for(lines, path, gathering)
+            if number == 1:
+                lines[0] = lines[0].removeprefix(_BOM)
             reader.take_many(number, lines)
             if on_progress is not None:
                 on_progress(done, size)
-        if reader is not None:
-            reader.close()
+        reader.close()
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror or error}", path) from error
 
 
-def _reader_for(lines: list[bytes], path: Path, gathering: Gathering) -> _Taker:
-    is_csv = any(_CSV.match(line) for line in lines[:2])
+def _reader_for(path: Path, gathering: Gathering) -> _Taker:
+    with path.open("rb") as stream:
+        first = stream.read(_LONGEST).removeprefix(_BOM).split(b"\n", 2)[:2]
+    is_csv = any(_CSV.match(line) for line in first)
     return (_Csv if is_csv else _Log)(path, gathering)
 
 
@@ -72,7 +77,10 @@ class _Taker:
     """What both kinds of files have in common."""
 
     def __init__(self, path: Path, gathering: Gathering, *, stamped: bool) -> None:
+        self.path = path
         self.gathering = gathering
+        self._malformed = gathering.malformed
+        self.others = 0
         self.channel = gathering.channel(str(path), "text", path.name)
         self.lines = Lines(gathering, self.channel, stamped=stamped)
         self.node = path.stem
@@ -90,6 +98,7 @@ class _Taker:
         self, found: Summary | Drop | Malformed | None, node: str, number: int, text: str
     ) -> None:
         """A line that is no report."""
+        self.others += 1
         if isinstance(found, Summary):
             self.gathering.add_summary(self.channel, found)
         elif isinstance(found, Drop):
@@ -101,6 +110,8 @@ class _Taker:
     def close(self) -> None:
         self.lines.flush()
         self.batches.close()
+        if not (self.channel.count or self.others or self.gathering.malformed > self._malformed):
+            self.gathering.without_reports.append(str(self.path))
 
 
 class _Log(_Taker):
@@ -123,6 +134,9 @@ class _Log(_Taker):
         else:
             stamp = None
         if found is None:
+            if _REPORT_LIKE.search(line):
+                what = f"line {number}: neither a line of a log nor {_CSV_FORM}"
+                self.gathering.skip(self.channel.topic, 0, what, _plain(line))
             return
         self._without_time += stamp is None
         named = _NODE.search(front)
@@ -151,7 +165,7 @@ class _Csv(_Taker):
         self._code = gathering.nodes.code(self.node)
 
     def take(self, number: int, line: bytes) -> None:
-        if not line.strip() or (number == 1 and not _CSV.match(line)):
+        if not line.strip() or (number == 1 and not _CSV.match(line) and b"cmp:" not in line):
             return
         if line.startswith(b"#"):
             batch = parse_batch(_plain(line))

@@ -203,7 +203,8 @@ def _suspect_view(
     found = suspect.comparison
     unit = mission.static_info.unit_of(suspect.key)
     events = mission.recording.events
-    advice = suggest(events, found, mark.time_ns, suspect.type, unit=unit)
+    summaries = mission.recording.summaries
+    advice = suggest(events, found, mark.time_ns, suspect.type, unit=unit, summaries=summaries)
     culprit = mission.is_changed(suspect.parameter)
     lines, note = source_lines(mission.static_info, found) if ident else ([], "")
     plot = _evidence(mission, suspect, mark, advice, ident) if ident else Markup("")

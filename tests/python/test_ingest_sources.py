@@ -6,14 +6,20 @@ import gzip
 import shutil
 import sqlite3
 
+import numpy as np
 import pytest
 import tpc_file
 from mission_samples import BagFile, key, line, ns
 from ros2_bags import Ros2Bag
+from test_mission import log
 from tpc_file import TpcFile, report, site, sync
 
 from pytpc.errors import InputError
 from pytpc.ingest import Dropped, read, save_recording
+from pytpc.ingest.bag import _DECODERS
+from pytpc.ingest.bag_chunks import Messages as Chunk
+from pytpc.ingest.gathering import Gathering
+from pytpc.ingest.messages import Messages
 from pytpc.ingest.rosout_line import PREFIX
 from pytpc.marks import Mark
 
@@ -159,6 +165,57 @@ def test_csv(tmp_path, headline, end):
     ]
     assert recording.summaries.begin_ns.tolist() == [10_000_000_001]
     assert recording.dropped == (Dropped(key(2), "reports", 12, 3, "site"),)
+
+
+@pytest.mark.parametrize("headline", ["", "time,key,result,cmp,thresh,res\r\n"])
+def test_csv_with_a_byte_order_mark(tmp_path, headline):
+    path = tmp_path / "reports.csv"
+    rows = [stamped("1.5", 1, 0, 1, 2), stamped("2.5", 1, 1, 3, 2)]
+    path.write_bytes(b"\xef\xbb\xbf" + (headline + "\r\n".join(rows)).encode())
+    recording = read(path)
+    assert [cmp for *_, cmp in found(recording)] == [1, 3]
+    assert recording.malformed == 0
+
+
+def test_a_first_line_that_is_broken_is_no_headline(tmp_path):
+    path = tmp_path / "reports.csv"
+    path.write_text("\n".join([stamped("12345678901.5", 1, 0, 1, 2), stamped("2.5", 1, 1, 3, 2)]))
+    recording = read(path)
+    assert recording.malformed_first[0].what == "line 1: a time in seconds is expected, column 1"
+    assert len(recording.events) == 1
+
+
+@pytest.mark.parametrize(
+    "spoilt",
+    [
+        lambda text: text.replace(",", ";"),
+        lambda text: f'"{text}"',
+        lambda text: text.replace("1.5", "1"),
+        lambda text: f'data: "{text}"',
+    ],
+)
+def test_what_a_spreadsheet_made_of_csv_is_counted(tmp_path, spoilt):
+    path = tmp_path / "reports.csv"
+    path.write_text("\n".join(spoilt(stamped("1.5", 1, 0, 1, 2)) for _ in range(3)))
+    recording = read(path)
+    assert (len(recording.events), recording.malformed) == (0, 3)
+    assert recording.malformed_first[0].what.startswith("line 1: neither a line of a log nor TIME,")
+
+
+def test_text_without_reports_is_told(tmp_path):
+    (tmp_path / "a.log").write_text("[ INFO] [1.5]: hello\n")
+    (tmp_path / "b.log").write_text(f"[ INFO] [1.5]: {line(1, 0, 1, 2)}\n")
+    recording = read(tmp_path)
+    assert recording.notes == (f"no report in 1 text file, as {tmp_path / 'a.log'}",)
+
+
+def test_marks_as_a_spreadsheet_writes_them(tmp_path):
+    path = tmp_path / "marks.csv"
+    path.write_bytes(b"\xef\xbb\xbftime_ns,type,observer,note\r\n1500000000,I,ana,hm\r\n")
+    assert read(path).marks == (Mark(1_500_000_000, "I", "ana", "hm"),)
+    path.write_text("time_ns;type;observer;note\n1500000000;I;ana;hm\n")
+    with pytest.raises(InputError, match="the first line is not time_ns,type,observer,note"):
+        read(path)
 
 
 # Found by fuzzing: 2^63 ns is 9,223,372,036.854775808 s.
@@ -359,6 +416,14 @@ def test_files_of_two_processes_share_nothing(tmp_path):
     assert recording.notes == (f"5 reports in {copy} that came another way too: counted once",)
 
 
+def test_files_that_were_joined_are_refused(tmp_path):
+    whole = tpc_of(tmp_path / "a.tpc").read_bytes()
+    padded = whole + bytes((4096 - len(whole)) % tpc_file.CHUNK)
+    (tmp_path / "b.tpc").write_bytes(padded + whole)
+    with pytest.raises(InputError, match="another file begins at byte"):
+        read(tmp_path / "b.tpc")
+
+
 def test_sources_that_lie_apart_are_told(tmp_path):
     bag = bag_of(tmp_path / "a.bag")
     made = TpcFile(tpc_file.header(node="/sim"))
@@ -381,6 +446,27 @@ def test_a_folder_of_several(tmp_path):
     assert recording.name == tmp_path.name
     assert recording.events.nodes == ("/face", "/uav")
     assert [cmp for *_, cmp in found(recording)] == [n // 2 for n in range(20)]
+
+
+def test_rotated_logs_and_a_bag_that_was_cut_off(tmp_path):
+    for number, name in enumerate(["rosout.log", "rosout.log.1", "rosout.log.2"]):
+        (tmp_path / name).write_text(f"{9 - number}.5 INFO /uav {line(1, 0, number, 2)}\n")
+    (tmp_path / "m.bag.active").write_bytes(b"#ROSBAG V2.0\n")
+    recording = read(tmp_path)
+    assert [cmp for *_, cmp in found(recording)] == [2, 1, 0]
+    assert recording.notes == (
+        f"{tmp_path / 'm.bag.active'}: not read; mend it with: rosbag reindex",
+    )
+
+
+# Files of nodes are below a recorded mission; only there.
+def test_a_recorded_mission_with_files(tmp_path):
+    bag_of(tmp_path / "mission.bag", values=range(3))
+    (tmp_path / "tpc").mkdir()
+    tpc_of(tmp_path / "tpc/face-2-1.tpc", node="/face")
+    assert read(tmp_path).events.nodes == ("/uav",)
+    (tmp_path / "run.json").write_text("{}")
+    assert read(tmp_path).events.nodes == ("/face", "/uav")
 
 
 def test_an_ingested_folder_beside_others(tmp_path):
@@ -417,3 +503,32 @@ def test_marks_of_all_kinds(tmp_path):
     (tmp_path / "m.marks.csv").write_text("time_ns,type,observer,note\n13000000000,I\n")
     assert read(tmp_path / "m").marks == (*expected, Mark(ns(13), "I"))
     assert read([tmp_path / "m.marks.csv"]).marks == (Mark(ns(13), "I"),)
+
+
+# rosbag play numbers the messages of all nodes in one row, rosbag filter names one sender for all:
+# neither is a loss. In the third 3 of /a are missing, however it is counted.
+@pytest.mark.parametrize(
+    ("sent", "lost"),
+    [
+        ([("/play", "/a", 0), ("/play", "/b", 1), ("/play", "/b", 2), ("/play", "/a", 3)], {}),
+        ([("/a", "/a", 0), ("/a", "/b", 70), ("/a", "/b", 71), ("/a", "/a", 1)], {}),
+        ([("/a", "/a", 0), ("/b", "/b", 1), ("/b", "/b", 2), ("/a", "/a", 4)], {"/a": 3}),
+    ],
+)
+@pytest.mark.parametrize("odd", [False, True])
+def test_loss_is_told_by_who_numbers(tmp_path, sent, lost, odd):
+    gathering = Gathering()
+    messages = Messages(gathering, "x", _DECODERS)
+    raw = [log(node.encode(), number) for _, node, number in sent]
+    if odd:
+        for (sender, _, _), data in zip(sent, raw, strict=True):
+            messages.take("/rosout", sender, 1, data)
+    else:
+        ends = np.cumsum([len(data) for data in raw])
+        begins = np.concatenate([[0], ends[:-1]])
+        numbers = np.arange(len(sent))
+        chunk = Chunk(b"".join(raw), numbers, np.ones(len(sent), np.int64), begins, ends, 0)
+        senders = {number: sender.encode() for number, (sender, _, _) in enumerate(sent)}
+        assert messages.take_logs(chunk, np.ones(len(sent), np.bool_), senders)
+    messages.close()
+    assert {node: count for node, count in gathering.lost.items() if count} == lost

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import json
+import shutil
 import struct
+import subprocess
+import threading
 from collections import Counter
 from dataclasses import replace
 from pathlib import Path
@@ -15,13 +18,21 @@ from mission_samples import comparison, events, ns, static_info
 from rich.console import Console
 from rosbags.highlevel import AnyReader
 
-from pytpc.cli.mission_commands import record_command
+from pytpc.attached import record_graph
+from pytpc.cli.mission_commands import record_command, sink_settings
 from pytpc.demo import TreatedMission, failures, result_table
 from pytpc.errors import InputError, RunError
 from pytpc.graph import GraphProcess
 from pytpc.ingest import Recording
 from pytpc.marks import Mark
-from pytpc.mission import MissionRun, launch_command, read_status, run_mission, save_run
+from pytpc.mission import (
+    MissionRun,
+    clear_earlier,
+    launch_command,
+    read_status,
+    run_mission,
+    save_run,
+)
 from pytpc.ranking import rank_marks
 from pytpc.recorder import (
     BagFile,
@@ -43,6 +54,9 @@ CHAT = Source(
     "/chat", "/talker", "std_msgs/String", "992ce8a1687cec8c8bd883ec73ca41d1", "string data\n"
 )
 DONE = Source("/done", "/boss", "std_msgs/Bool", "8b94c1b53db61fb6aed406028ad6332a", "bool data\n")
+MARK = Source(
+    "/a/mark_action", "/a", "std_msgs/Time", "cd7166c74c552c311fbcc2fe5a7bc289", "time data\n"
+)
 LOG_DEFINITION = """byte DEBUG=1
 byte INFO=2
 byte WARN=4
@@ -92,6 +106,14 @@ def test_loss_counter_takes_a_restarted_node_for_a_new_beginning():
     for number in (8, 9, 0, 1):
         counter.see(log(b"/a", number))
     assert counter.lost == Counter()
+
+
+def test_who_replays_a_bag_numbers_anew():
+    counter = LossCounter()
+    for number, node in enumerate([b"/a", b"/b", b"/b", b"/a"]):
+        counter.see(log(node, number), "/play")
+    counter.see(log(b"/b", 9), "/play")
+    assert (counter.lost, counter.missed_before) == (Counter({"/play": 5}), Counter())
 
 
 def test_loss_counter_gives_the_text_behind_a_frame_name():
@@ -213,7 +235,7 @@ def test_recorder_stamps_with_the_clock_and_keeps_the_account(tmp_path):
         ready=True,
         done=True,
         closed=True,
-        began_ns=0,
+        began_ns=3_250_000_000,
         now_ns=4_000_000_000,
         reports=1,
         messages={"/chat": 1, "/done": 2, "/rosout": 2},
@@ -228,6 +250,48 @@ def test_recorder_stamps_with_the_clock_and_keeps_the_account(tmp_path):
         ("/rosout", 4_000_000_000),
         ("/rosout", 4_000_000_000),
     ]
+
+
+def messages_in(path):
+    with AnyReader([path]) as reader:
+        return reader.message_count
+
+
+# The clock stands at 1000 s when it is first heard: the recording is then 2 s long, not 1002.
+def test_what_was_before_the_first_clock(tmp_path):
+    bag = BagFile(tmp_path / "a.bag")
+    recorder = Recorder(bag, ["/chat"], None, sim_time=True)
+    recorder.take(CHAT, struct.pack("<I", 2) + b"hi")
+    for seconds in (1000, 1001, 1002):
+        recorder.take(CLOCK, struct.pack("<II", seconds, 0))
+    status = recorder.status()
+    assert status.now_ns - status.began_ns == 2_000_000_000
+    bag.close()
+    with AnyReader([tmp_path / "a.bag"]) as reader:
+        assert [time for _, time, _ in reader.messages()] == [1]
+
+
+# A mark is on the disk at once, and what was before it. What rosbag reindex writes over the begin
+# of a bag is 13 + 4 + 4 + 4096 bytes long.
+def test_a_recording_that_was_cut_off_can_be_reindexed(tmp_path):
+    bag = BagFile(tmp_path / "a.bag")
+    for number in range(20):
+        bag.write(CHAT, number + 1, struct.pack("<I", 40) + bytes(40))
+    bag.write(MARK, 30, bytes(8))
+    killed = tmp_path / "killed.bag"
+    shutil.copy(tmp_path / "a.bag.active", killed)
+    bag.close()
+    for path in (killed, tmp_path / "a.bag"):
+        raw = path.read_bytes()
+        (header,) = struct.unpack_from("<I", raw, 13)
+        (data,) = struct.unpack_from("<I", raw, 17 + header)
+        assert header + data == 4096
+        assert raw[4117 + 4 :].startswith(b"\x04\0\0\0op=\x05")
+    assert messages_in(tmp_path / "a.bag") == 21
+    if shutil.which("rosbag") is None:
+        pytest.skip("ROS is not installed")
+    subprocess.run(["rosbag", "reindex", "-q", killed], check=True, capture_output=True)
+    assert messages_in(killed) == 21
 
 
 def test_status_survives_the_way_through_its_file(tmp_path):
@@ -269,6 +333,33 @@ def test_record_command_wants_name_and_value():
     result = CliRunner().invoke(record_command, ["ws", "a.launch", "seed=1", "-o", "out"])
     assert result.exit_code == 2
     assert "'seed=1' is not NAME:=VALUE" in result.output
+
+
+def test_settings_of_sinks_reach_the_nodes_and_nothing_else(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    given = {"TPC_SINK": "file", "TPC_POLICY": "", "TPC_FOLDER": "x", "TPC_PREFIX": "/y", "A": "b"}
+    assert sink_settings(given) == {"TPC_SINK": "file", "TPC_FOLDER": str(tmp_path / "x")}
+
+
+# What is left of it would be ranked as if it were of the next mission.
+def test_an_earlier_mission_is_cleared_and_its_marks_are_kept(tmp_path):
+    (tmp_path / "tpc").mkdir()
+    names = ["mission.bag", "run.json", "events.parquet", "marks.json", "tpc/uav-1-1.tpc"]
+    for name in [*names, "mission.bag.marks.csv", "notes.md"]:
+        (tmp_path / name).write_text("x")
+    clear_earlier(tmp_path)
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        "mission.bag.marks.csv.old",
+        "notes.md",
+    ]
+
+
+@pytest.mark.parametrize("name", ["mission.bag", "mission.bag.active"])
+def test_a_recording_of_a_robot_is_not_replaced(tmp_path, name):
+    (tmp_path / name).write_text("the only one")
+    with pytest.raises(RunError, match="another folder"):
+        record_graph(tmp_path, stop=threading.Event(), env={"ROS_MASTER_URI": "http://[::1]:1"})
+    assert (tmp_path / name).read_text() == "the only one"
 
 
 def test_tail_of_a_process_prefers_what_tells_of_an_error(tmp_path):

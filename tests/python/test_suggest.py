@@ -8,10 +8,11 @@ import operator
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from mission_samples import comparison, events, link_unit, ns
+from mission_samples import comparison, events, key, link_unit, ns
 
 from pytpc.static_info import ParameterRead, Transform
 from pytpc.suggest import suggest
+from pytpc.summaries import Summary, SummaryBuilder
 from pytpc.words import exact, show
 
 OPERATORS = {
@@ -33,6 +34,36 @@ def ask(rows, kind, relation=">", at=100.0, **changes):
     compare = (lambda cmp, _: cmp != 0) if relation == "flag" else OPERATORS[relation]
     table = events([(t, 0, compare(cmp, thresh), cmp, thresh) for t, cmp, thresh in rows])
     return suggest(table, found, ns(at), kind, window_s=window, unit=unit)
+
+
+# What `edges` keeps of 0.25 at 0.5 s (the first), 0.5 and 0.375 later, all against 0.75 and False:
+# one True needs a limit below 0.5. The summary lies within [1, 3]; the event does not.
+def test_type2_from_summaries():
+    builder = SummaryBuilder()
+    builder.add(
+        Summary(
+            key=key(0), node="/node", begin_ns=ns(2), end_ns=ns(2.1), count=2, flops=0, far=2,
+            odd=0, result=False, res=False, cmp=0.375, thresh=0.75, diff_min=-0.375,
+            diff_max=-0.25, diff_mean=-0.3125, abs_mean=0.3125, low=0.375, high=0.75,
+        )
+    )  # fmt: skip
+    kept = builder.build()
+    table = events([(0.5, 0, 0, 0.25, 0.75)])
+    limit = comparison(0, "limit", ">")
+    found = suggest(table, limit, ns(3), "II", window_s=2, summaries=kept)
+    assert (found.direction, found.boundary, found.inclusive) == ("lower", 0.5, False)
+    # Where the mark cuts the only summary it may be that its evaluations were before.
+    cut = suggest(table, limit, ns(2.05), "II", window_s=1, summaries=kept)
+    assert cut.boundary == 0.5
+    # Of the window before it nothing is known.
+    none = suggest(table, limit, ns(9), "II", window_s=2, summaries=kept)
+    assert none.reason == "it was not evaluated in the window before the mark"
+    # No value between the ends is known.
+    equal = suggest(table, comparison(0, "limit", "=="), ns(3), "II", window_s=2, summaries=kept)
+    assert equal.reason == "summaries do not tell which values came near to the threshold"
+    # The threshold was changed after the last event: the present one is in the summary.
+    early = events([(0.5, 0, 0, 0.25, 0.9)])
+    assert suggest(early, limit, ns(3), "II", window_s=2, summaries=kept).current == 0.75
 
 
 # coverage > limit was False at 0.2 and 0.5, and flopped to True at 0.731 with limit 0.6: it stays
