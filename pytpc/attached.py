@@ -130,17 +130,7 @@ def record_graph(
     except (RunError, MissingToolError):
         # The master may be gone, and the bag is what matters.
         (out_dir / PARAMS_FILE).unlink(missing_ok=True)
-    run = MissionRun(
-        bag=out_dir / BAG_FILE,
-        params=out_dir / PARAMS_FILE,
-        ended=ended,
-        sim_s=(status.now_ns - status.began_ns) / 1e9,
-        wall_s=time.monotonic() - began,
-        reports=status.reports,
-        messages=status.messages,
-        lost=status.lost,
-        missed_before=status.missed_before,
-    )
+    run = MissionRun.of(status, out_dir, ended, time.monotonic() - began)
     save_run(run, None, {}, out_dir / RUN_FILE)
     return run
 

@@ -5,7 +5,7 @@ A word column (keys, nodes) is int32 codes into a tuple of words; in Arrow it is
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TypeVar
 
@@ -22,6 +22,7 @@ Int32s = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
 Scalar = TypeVar("Scalar", bound=np.generic)
+Read = TypeVar("Read")
 Columns = dict[str, npt.NDArray[np.generic]]
 
 WORDS = pa.dictionary(pa.int32(), pa.string())
@@ -153,14 +154,16 @@ def write_table(table: pa.Table, path: Path) -> None:
     write_atomic(path, sink.getvalue().to_pybytes())
 
 
-def read_table(path: Path, what: str) -> pa.Table:
-    """Read a Parquet file; ``what`` says in the message what it should be.
+def read_table(path: Path, what: str, of: Callable[[pa.Table], Read]) -> Read:
+    """Read a Parquet file of ``what`` ("events") and make of it what ``of`` does.
 
     Raises:
-        InputError: the file cannot be read or is no Parquet.
+        InputError: the file cannot be read, is no Parquet, or ``of`` finds fault with it.
     """
     try:
-        return pq.read_table(pa.BufferReader(path.read_bytes()))
+        return of(pq.read_table(pa.BufferReader(path.read_bytes())))
+    except InputError as error:
+        raise InputError(error.message, path) from error
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror or error}", path) from error
     except (pa.ArrowException, ValueError) as error:

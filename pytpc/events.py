@@ -19,7 +19,6 @@ import pyarrow as pa
 
 from pytpc import columns as tables
 from pytpc.columns import Bools, Columns, Floats, Int32s, Int64s, frozen, sorted_words
-from pytpc.errors import InputError
 
 __all__ = ["SCHEMA", "Bools", "EventBuilder", "Events", "Floats", "Int32s", "Int64s", "KeyIndex"]
 __all__ += ["Report", "concat", "read_parquet", "write_parquet"]
@@ -282,10 +281,4 @@ def read_parquet(path: Path) -> Events:
     Raises:
         InputError: the file cannot be read, is no Parquet, or has other columns.
     """
-    table = tables.read_table(path, "events")
-    try:
-        return Events.from_arrow(table)
-    except InputError as error:
-        raise InputError(error.message, path) from error
-    except ValueError as error:
-        raise InputError(f"not a file of events: {error}", path) from error
+    return tables.read_table(path, "events", Events.from_arrow)

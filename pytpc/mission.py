@@ -72,6 +72,21 @@ class MissionRun:
     lost: dict[str, int]
     missed_before: dict[str, int]
 
+    @classmethod
+    def of(cls, status: recorder.Status, out_dir: Path, ended: str, wall_s: float) -> MissionRun:
+        """The run whose recorder ended with ``status``."""
+        return cls(
+            bag=out_dir / BAG_FILE,
+            params=out_dir / PARAMS_FILE,
+            ended=ended,
+            sim_s=(status.now_ns - status.began_ns) / 1e9,
+            wall_s=wall_s,
+            reports=status.reports,
+            messages=status.messages,
+            lost=status.lost,
+            missed_before=status.missed_before,
+        )
+
     @property
     def marks(self) -> int:
         """Marks of all observers."""
@@ -151,17 +166,7 @@ def run_mission(
     if status is None or not status.closed:
         said = "; ".join(recording.tail()) or "it says nothing"
         raise RunError(f"the recorder did not finish: {said}", recording.log)
-    run = MissionRun(
-        bag=out_dir / BAG_FILE,
-        params=out_dir / PARAMS_FILE,
-        ended=ended,
-        sim_s=(status.now_ns - status.began_ns) / 1e9,
-        wall_s=time.monotonic() - began,
-        reports=status.reports,
-        messages=status.messages,
-        lost=status.lost,
-        missed_before=status.missed_before,
-    )
+    run = MissionRun.of(status, out_dir, ended, time.monotonic() - began)
     save_run(run, launch, args, out_dir / RUN_FILE)
     return run
 

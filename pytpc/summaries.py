@@ -18,7 +18,6 @@ import pyarrow as pa
 
 from pytpc import columns as tables
 from pytpc.columns import Bools, Columns, Floats, Int32s, Int64s, frozen, sorted_words
-from pytpc.errors import InputError
 
 _INTEGERS = ("begin_ns", "end_ns", "count", "flops", "far", "odd")
 _BOOLS = ("result", "res")
@@ -228,10 +227,4 @@ def read_summaries(path: Path) -> Summaries:
     Raises:
         InputError: the file cannot be read, is no Parquet, or has other columns.
     """
-    table = tables.read_table(path, "summaries")
-    try:
-        return Summaries.from_arrow(table)
-    except InputError as error:
-        raise InputError(error.message, path) from error
-    except ValueError as error:
-        raise InputError(f"not a file of summaries: {error}", path) from error
+    return tables.read_table(path, "summaries", Summaries.from_arrow)
