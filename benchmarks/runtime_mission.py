@@ -119,7 +119,8 @@ def fly(env: dict[str, str], name: str, out: Path, topics: list[str]) -> tuple[M
 
 def message_share(run: MissionRun) -> float:
     """What part of all messages is there for reports, in percent."""
-    reports = run.reports + run.messages.get(REPORTS, 0)
+    # On the topic many reports are one message, on /rosout each is one.
+    reports = run.messages.get(REPORTS, 0) or run.reports
     return 100 * reports / sum(run.messages.values())
 
 
