@@ -17,6 +17,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -138,31 +139,29 @@ with rosbag.Bag({str(path)!r}, "w") as bag:
     subprocess.run(["/usr/bin/python3", "-c", program], check=True, env={"PATH": "/usr/bin:/bin"})
 
 
-def write_csv(path: Path, reports: int) -> None:
-    """The thesis's form."""
+def write_lines(path: Path, reports: int, line: Callable[[int, int, str], str]) -> None:
+    """Text: ``line`` makes each one from the seconds, nanoseconds and text of a report."""
     cmp, _ = values(reports)
     with path.open("w", encoding="ascii") as stream:
         for number, value in enumerate(cmp.tolist()):
             result = int(value > 0.5)
             seconds, rest = divmod(number * 200_000, 10**9)
-            stream.write(
-                f"{BEGIN_NS // 10**9 + seconds}.{rest // 100:07d},{KEYS[number % len(KEYS)]},"
-                f"{result},cmp:{value!r},thresh:0.5,res:{result}\n"
-            )
+            text = f"{KEYS[number % len(KEYS)]},{result},cmp:{value!r},thresh:0.5,res:{result}"
+            stream.write(line(BEGIN_NS // 10**9 + seconds, rest, text) + "\n")
+
+
+def write_csv(path: Path, reports: int) -> None:
+    """The thesis's form."""
+    write_lines(path, reports, lambda s, ns, text: f"{s}.{ns // 100:07d},{text}")
 
 
 def write_log(path: Path, reports: int) -> None:
     """What roscpp prints."""
-    cmp, _ = values(reports)
-    with path.open("w", encoding="ascii") as stream:
-        for number, value in enumerate(cmp.tolist()):
-            result = int(value > 0.5)
-            seconds, rest = divmod(number * 200_000, 10**9)
-            stream.write(
-                f"\x1b[0m[ INFO] [{BEGIN_NS // 10**9 + seconds}.{rest:09d}]: threshold_information:"
-                f"{KEYS[number % len(KEYS)]},{result},cmp:{value!r},thresh:0.5,res:{result}"
-                "\x1b[0m\n"
-            )
+
+    def line(s: int, ns: int, text: str) -> str:
+        return f"\x1b[0m[ INFO] [{s}.{ns:09d}]: threshold_information:{text}\x1b[0m"
+
+    write_lines(path, reports, line)
 
 
 def write_ros2(folder: Path, kind: str, reports: int) -> Path:

@@ -133,18 +133,8 @@ static void edge(Thread &T, Site &S, Slot &In, const Report &R) {
   S.Last.store(R.Result, std::memory_order_relaxed);
   bool IsFlop = Last >= 0;
   In.Kept.Flops += IsFlop;
-  if (SiteCap.load(std::memory_order_relaxed) ||
-      ProcessCap.load(std::memory_order_relaxed)) {
-    int64_t Now = Clock::now();
-    DropCount *Over = !S.Used.takes(SiteCap, Now)            ? &S.OverSiteCap
-                      : !ProcessMeter.takes(ProcessCap, Now) ? &S.OverProcessCap
-                                                             : nullptr;
-    if (Over) {
-      Over->Count.fetch_add(1, std::memory_order_relaxed);
-      Over->Flops.fetch_add(IsFlop, std::memory_order_relaxed);
-      return;
-    }
-  }
+  if (isOverCap(S, IsFlop))
+    return;
   // Under the lock, so that flops stand in the order in which they happened.
   emit(T, S, R, layout::EdgeBit);
 }

@@ -19,18 +19,26 @@ void emit(Thread &T, Site &S, const Report &R, uint32_t Bits) {
                 R.Threshold);
 }
 
-/// One report under caps.
-static void capped(Thread &T, Site &S, const Report &R) {
-  int8_t Last = S.Last.exchange(R.Result, std::memory_order_relaxed);
+bool isOverCap(Site &S, bool IsFlop) {
+  if (!SiteCap.load(std::memory_order_relaxed) &&
+      !ProcessCap.load(std::memory_order_relaxed))
+    return false;
   int64_t Now = Clock::now();
   DropCount *Over = !S.Used.takes(SiteCap, Now)            ? &S.OverSiteCap
                     : !ProcessMeter.takes(ProcessCap, Now) ? &S.OverProcessCap
                                                            : nullptr;
   if (!Over)
-    return emit(T, S, R, 0);
+    return false;
   Over->Count.fetch_add(1, std::memory_order_relaxed);
-  Over->Flops.fetch_add(Last >= 0 && Last != R.Result,
-                        std::memory_order_relaxed);
+  Over->Flops.fetch_add(IsFlop, std::memory_order_relaxed);
+  return true;
+}
+
+/// One report under caps.
+static void capped(Thread &T, Site &S, const Report &R) {
+  int8_t Last = S.Last.exchange(R.Result, std::memory_order_relaxed);
+  if (!isOverCap(S, Last >= 0 && Last != R.Result))
+    emit(T, S, R, 0);
 }
 
 /// Says that the thread is inside of a report: a signal's handler, or code that

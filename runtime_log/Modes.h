@@ -44,6 +44,10 @@ void startRuntime();
 /// earlier where what it needs is about to go.
 void endRuntime();
 
+/// Whether the caps leave no room for one more report of \p S; then it is
+/// counted as dropped.
+bool isOverCap(Site &S, bool IsFlop);
+
 /// Gives \p R to the chosen sink; \p Bits are those of the file's records.
 void emit(Thread &T, Site &S, const Report &R, uint32_t Bits);
 

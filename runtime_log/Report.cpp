@@ -2,7 +2,6 @@
 #include "Report.h"
 
 #include <charconv>
-#include <cstdio>
 
 namespace tpc {
 
@@ -21,14 +20,12 @@ static void append(std::string &Text, const char *Name, uint64_t X) {
   Text += std::to_string(X);
 }
 
-static void appendSeconds(std::string &Text, int64_t Ns) {
-  char Buffer[40];
-  const char *Sign = Ns < 0 ? "-" : "";
+std::string seconds(int64_t Ns, int Decimals) {
+  constexpr uint64_t Second = 1'000'000'000;
   uint64_t Size = Ns < 0 ? -static_cast<uint64_t>(Ns) : Ns;
-  std::snprintf(Buffer, sizeof(Buffer), "%s%llu.%09llu", Sign,
-                static_cast<unsigned long long>(Size / 1'000'000'000),
-                static_cast<unsigned long long>(Size % 1'000'000'000));
-  Text += Buffer;
+  std::string Fraction = std::to_string(Second + Size % Second);
+  return (Ns < 0 ? "-" : "") + std::to_string(Size / Second) + "." +
+         Fraction.substr(1, Decimals);
 }
 
 const char *text(DropReason R) {
@@ -71,9 +68,9 @@ std::string format(const Summary &S) {
   append(Text, ",far:", S.Far);
   append(Text, ",odd:", S.Odd);
   Text += ",span:";
-  appendSeconds(Text, S.BeginRos);
+  Text += seconds(S.BeginRos, 9);
   Text += ';';
-  appendSeconds(Text, S.EndRos);
+  Text += seconds(S.EndRos, 9);
   return Text;
 }
 

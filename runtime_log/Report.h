@@ -71,6 +71,9 @@ std::string format(const Summary &S);
 /// `KEY,count:N,flops:F,why:W`.
 std::string format(const Dropped &D);
 
+/// `S.FFFFFFF` of nanoseconds: seconds with so many decimals, cut off.
+std::string seconds(int64_t Ns, int Decimals);
+
 } // namespace tpc
 
 #endif // TPC_REPORT_H

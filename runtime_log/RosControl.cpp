@@ -231,8 +231,6 @@ int64_t rosTurn() {
 
 void rosEnd() { endRosUse(); }
 
-bool rosIsInitialized() { return ros::isInitialized(); }
-
 const char *rosNodeName() {
   if (!ros::isInitialized())
     return "";

@@ -16,8 +16,9 @@ int64_t rosTurn();
 /// The process ends: withdraws the service.
 void rosEnd();
 
-/// Whether ros::init was called.
-bool rosIsInitialized();
+/// Whether this process was forked from one in which roscpp was initialised:
+/// its threads are not here, and their locks may never be opened.
+bool forkedFromNode();
 
 /// The name of this process's node, empty where it is not known (yet).
 const char *rosNodeName();

@@ -9,6 +9,8 @@
 #ifndef TPC_ROSLIFE_H
 #define TPC_ROSLIFE_H
 
+#include "RosControl.h"
+
 #include <ros/callback_queue.h>
 
 #include <functional>
@@ -32,10 +34,6 @@ private:
 /// Whether roscpp is started, its start is through, and it is not shutting
 /// down. To be asked with a RosUse held.
 bool rosIsUp();
-
-/// Whether this process was forked from one in which roscpp was initialised:
-/// its threads are not here, and their locks may never be opened.
-bool forkedFromNode();
 
 /// Says, once in a process, that for this reason its reports are not on \p
 /// Topic. Not at its end: such a process has to leave by _exit.

@@ -93,7 +93,6 @@ private:
   bool HasSettings =
       false; ///< Held is what was read or set, maybe before a fork
   bool HelperRuns = false;
-  bool RosIsParents = false; ///< in a forked child, where none of it runs
   pthread_t Helper{};
 
   std::mutex Waiting; ///< of the next three
@@ -291,7 +290,7 @@ void Runtime::help() {
 int64_t Runtime::turn(int64_t Now) {
   // roscpp calls back into apply(): no lock is held.
   if (Now >= NextRos) {
-    int64_t After = RosIsParents ? -1 : rosTurn();
+    int64_t After = forkedFromNode() ? -1 : rosTurn();
     NextRos = After < 0 ? Never : Now + After;
   }
   // roscpp finds out after it looks as if it were up, and a program may set it.
@@ -420,7 +419,6 @@ void Runtime::afterFork(bool IsChild) {
     sites()[Number].Last = -1;
   NowFile = nullptr;
   SlotsHome = nullptr;
-  RosIsParents = rosIsInitialized();
   IsStarted = HelperRuns = false;
   IsAwake = false;
   NowMode = Mode::NotStarted;

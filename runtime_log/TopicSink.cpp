@@ -6,6 +6,7 @@
 // of the first report, which each message has, shows this to the reader.
 //
 //===----------------------------------------------------------------------===//
+#include "Clock.h"
 #include "RosControl.h"
 #include "RosLife.h"
 #include "Runtime.h"
@@ -48,12 +49,6 @@ constexpr std::chrono::milliseconds LastMoment{50};
 /// each takes another time to connect, and all are to have everything.
 constexpr int64_t GatherNs = 1'000'000'000;
 constexpr int64_t RetryNs = 2'000'000'000;
-
-int64_t steadyNow() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
 
 /// Where roscpp puts what is to be done when a subscriber comes: nothing is,
 /// but the sink looks for subscribers again.
@@ -138,7 +133,7 @@ template <typename F> void TopicSink::keep(F Add) {
     std::lock_guard<std::mutex> Guard(StoreLock);
     const size_t Before = Store.bytes();
     if (!Something)
-      OldestAt = steadyNow();
+      OldestAt = Clock::steady();
     Wake = !Something.exchange(true);
     Add();
     Wake |= Before < MessageBytes && Store.bytes() >= MessageBytes;
@@ -152,9 +147,7 @@ void TopicSink::take(const Report &R) {
     return warnOfFork(Topic);
   TopicStore::Time When{rosNow(), false};
   if (When.Ns == 0 && !rosTimeIsSimulated()) {
-    const auto Wall = std::chrono::system_clock::now().time_since_epoch();
-    When = {std::chrono::duration_cast<std::chrono::nanoseconds>(Wall).count(),
-            true};
+    When = {Clock::real(), true};
   }
   keep([&] { Store.add(When, R); });
 }
@@ -194,7 +187,7 @@ uint32_t subscribersOf(const std::string &Topic) {
 /// Registers the topic; where the master does not answer, later.
 void TopicSink::advertise() {
   if (!ros::master::check()) {
-    RetryAt = steadyNow() + RetryNs;
+    RetryAt = Clock::steady() + RetryNs;
     return;
   }
   ros::AdvertiseOptions Options;
@@ -208,7 +201,7 @@ void TopicSink::advertise() {
     std::lock_guard<std::mutex> Guard(SendLock);
     Publication = Topics->lookupPublication(Options.topic);
     Expected = Known;
-    GatherUntil = steadyNow() + GatherNs;
+    GatherUntil = Clock::steady() + GatherNs;
   } else if (!ros::isShuttingDown()) {
     warn("nothing is sent on " + Options.topic +
          ": this process has it with another type");
@@ -229,13 +222,13 @@ bool TopicSink::sendWaiting(bool AtOnce) {
     return false;
   Subscribed = true;
   if (!AtOnce && To->getNumSubscribers() < Expected &&
-      steadyNow() < GatherUntil)
+      Clock::steady() < GatherUntil)
     return false;
   TopicStore::Batch Batch;
   {
     std::lock_guard<std::mutex> Guard(StoreLock);
     if (!Something || (!AtOnce && Store.bytes() < MessageBytes &&
-                       steadyNow() - OldestAt < BatchNs))
+                       Clock::steady() - OldestAt < BatchNs))
       return false;
     Batch = Store.takeAll();
     Something = false;
@@ -252,7 +245,8 @@ void TopicSink::send(ros::Publication &To, const TopicStore::Batch &Batch) {
     std_msgs::String Message;
     Message.data = "#seq:" + std::to_string(Sent) +
                    ",count:" + std::to_string(Part.Reports) + Dropped +
-                   Process + ",steady:" + seconds(steadyNow(), 9) + Part.Text;
+                   Process + ",steady:" + seconds(Clock::steady(), 9) +
+                   Part.Text;
     Sent += Part.Reports;
     // Not by TopicManager::publish, which looks the topic up again and falls
     // over where it is gone in that moment.
@@ -268,7 +262,7 @@ void TopicSink::turn() {
   if (!Use)
     return;
   if (!Advertised) {
-    if (rosIsUp() && steadyNow() >= RetryAt)
+    if (rosIsUp() && Clock::steady() >= RetryAt)
       askMaster([this] {
         if (!Advertised)
           advertise();

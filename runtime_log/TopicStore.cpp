@@ -132,12 +132,6 @@ uint64_t TopicStore::giveUp() {
   return DroppedInAll - Before;
 }
 
-std::string seconds(int64_t Ns, int Decimals) {
-  constexpr int64_t Second = 1'000'000'000;
-  std::string Fraction = std::to_string(Second + Ns % Second);
-  return std::to_string(Ns / Second) + "." + Fraction.substr(1, Decimals);
-}
-
 std::vector<TopicStore::Lines> linesOf(const TopicStore::Batch &B, int64_t Now,
                                        bool Simulated, size_t MessageBytes) {
   std::vector<TopicStore::Lines> Found(1);

@@ -77,9 +77,6 @@ private:
 std::vector<TopicStore::Lines> linesOf(const TopicStore::Batch &B, int64_t Now,
                                        bool Simulated, size_t MessageBytes);
 
-/// `S.FFFFFFF` of nanoseconds: seconds with so many decimals, cut off.
-std::string seconds(int64_t Ns, int Decimals);
-
 } // namespace tpc
 
 #endif // TPC_TOPICSTORE_H
