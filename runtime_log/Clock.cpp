@@ -44,8 +44,11 @@ Clock::Line Clock::sample() {
   return Best;
 }
 
+static bool Trusted = false;
+
+void Clock::prepare() { Trusted = counterIsTrusted(); }
+
 void Clock::adjust() {
-  static const bool Trusted = counterIsTrusted();
   static Line Previous{};
   // A reader may hold a line for as long as it likes to sleep between two
   // instructions; after a thousand renewals it would see a newer one.

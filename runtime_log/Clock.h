@@ -33,6 +33,10 @@ public:
   static int64_t steady() { return read(CLOCK_MONOTONIC); }
   static int64_t real() { return read(CLOCK_REALTIME); }
 
+  /// Asks the kernel whether the counter may be used; before the first
+  /// adjust().
+  static void prepare();
+
   /// Draws the line anew; from one thread, about once a second. The first call
   /// takes the first reading, the second begins to use the counter.
   static void adjust();

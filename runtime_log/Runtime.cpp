@@ -138,6 +138,8 @@ void Runtime::start() {
     return;
   TimeIsSimulated = rosTimeIsSimulated();
   prepareEdges();
+  // Not by the helper: a fork waits for this lock, and so never comes between.
+  Clock::prepare();
   // A forked child goes on with what its parent was set to.
   if (!HasSettings)
     Held = configOfEnvironment();
@@ -375,8 +377,12 @@ void Runtime::end() {
     timespec Until;
     clock_gettime(CLOCK_REALTIME, &Until);
     Until.tv_sec += 2;
-    if (pthread_timedjoin_np(Helper, nullptr, &Until))
+    if (pthread_timedjoin_np(Helper, nullptr, &Until)) {
+      // The file needs nobody.
+      if (LogFile *F = NowFile.load())
+        F->close();
       return;
+    }
   }
   std::lock_guard<std::mutex> Guard(Changing);
   if (!IsStarted)

@@ -255,6 +255,34 @@ def test_wrong_settings_are_said_and_left(drive, files):
     assert len(log_file.read(files()[0]).all_reports) == 5
 
 
+# The helper thread must not be in the middle of anything that its copy would wait for.
+def test_a_fork_while_the_kernel_is_asked_for_its_clock(program, settings, files, tmp_path):
+    source = tmp_path / "slow.cpp"
+    source.write_text(
+        """
+        #include <dlfcn.h>
+        #include <stdio.h>
+        #include <string.h>
+        #include <unistd.h>
+        extern "C" FILE *fopen(const char *path, const char *mode) {
+          using Open = FILE *(*)(const char *, const char *);
+          static Open real = (Open)dlsym(RTLD_NEXT, "fopen");
+          if (strstr(path, "clocksource"))
+            usleep(300000);
+          return real(path, mode);
+        }
+        """
+    )
+    shim = compile_program(source, tmp_path / "slow.so", "-shared", "-fPIC", "-ldl")
+    subprocess.run(
+        [str(program), "forked", "10"],
+        env={**settings, "LD_PRELOAD": str(shim)},
+        check=True,
+        timeout=60,
+    )
+    assert [log_file.read(path).state for path in files()] == [1, 1, 1]
+
+
 # The library's only call of clock_gettime is what the preloaded one answers.
 def test_the_wall_clock_is_set_back(program, settings, files, tmp_path):
     source = tmp_path / "set_back.cpp"
