@@ -138,11 +138,13 @@ void Runtime::start() {
     return;
   TimeIsSimulated = rosTimeIsSimulated();
   prepareEdges();
-  // Not by the helper: a fork waits for this lock, and so never comes between.
-  Clock::prepare();
-  // A forked child goes on with what its parent was set to.
-  if (!HasSettings)
+  // A forked child goes on with what its parent was set to, and has its clock.
+  if (!HasSettings) {
+    // Not by the helper: a fork waits for this lock, and so never comes
+    // between.
+    Clock::prepare();
     Held = configOfEnvironment();
+  }
   HasSettings = true;
   if (!choose(Held)) {
     // Its warning was given; a ROS parameter may say another folder.

@@ -255,10 +255,23 @@ def test_wrong_settings_are_said_and_left(drive, files):
     assert len(log_file.read(files()[0]).all_reports) == 5
 
 
+@pytest.fixture
+def drive_with(program, settings, tmp_path):
+    """Run the driver with a library in front of all others, from its C++ source."""
+
+    def run(source: str, *words: str) -> None:
+        path = tmp_path / "shim.cpp"
+        path.write_text(source)
+        shim = compile_program(path, path.with_suffix(".so"), "-shared", "-fPIC", "-ldl")
+        environment = {**settings, "LD_PRELOAD": str(shim)}
+        subprocess.run([str(program), *words], env=environment, check=True, timeout=60)
+
+    return run
+
+
 # The helper thread must not be in the middle of anything that its copy would wait for.
-def test_a_fork_while_the_kernel_is_asked_for_its_clock(program, settings, files, tmp_path):
-    source = tmp_path / "slow.cpp"
-    source.write_text(
+def test_a_fork_while_the_kernel_is_asked_for_its_clock(drive_with, files):
+    drive_with(
         """
         #include <dlfcn.h>
         #include <stdio.h>
@@ -271,22 +284,16 @@ def test_a_fork_while_the_kernel_is_asked_for_its_clock(program, settings, files
             usleep(300000);
           return real(path, mode);
         }
-        """
-    )
-    shim = compile_program(source, tmp_path / "slow.so", "-shared", "-fPIC", "-ldl")
-    subprocess.run(
-        [str(program), "forked", "10"],
-        env={**settings, "LD_PRELOAD": str(shim)},
-        check=True,
-        timeout=60,
+        """,
+        "forked",
+        "10",
     )
     assert [log_file.read(path).state for path in files()] == [1, 1, 1]
 
 
 # The library's only call of clock_gettime is what the preloaded one answers.
-def test_the_wall_clock_is_set_back(program, settings, files, tmp_path):
-    source = tmp_path / "set_back.cpp"
-    source.write_text(
+def test_the_wall_clock_is_set_back(drive_with, files):
+    drive_with(
         """
         #include <dlfcn.h>
         #include <time.h>
@@ -303,14 +310,11 @@ def test_the_wall_clock_is_set_back(program, settings, files, tmp_path):
             t->tv_sec -= 3600;
           return result;
         }
-        """
-    )
-    shim = compile_program(source, tmp_path / "set_back.so", "-shared", "-fPIC", "-ldl")
-    subprocess.run(
-        [str(program), "paced", "100", "4500", "1"],
-        env={**settings, "LD_PRELOAD": str(shim)},
-        check=True,
-        timeout=60,
+        """,
+        "paced",
+        "100",
+        "4500",
+        "1",
     )
     file = log_file.read(files()[0])
     hours = [round((real - steady) / 3.6e12) for steady, real, _ in file.syncs]
