@@ -9,7 +9,7 @@ import numpy as np
 from figures import figure
 
 from pytpc.events import Events
-from pytpc.scores import type1, type2
+from pytpc.scoring.scores import type1, type2
 
 REPORTS = 1_000_000
 KEYS = 60

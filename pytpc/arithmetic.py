@@ -14,7 +14,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from pytpc.halfline import HalfLine
+from pytpc.advice.thresholds import HalfLine
 
 Tree = float | str | tuple["Tree", ...]
 

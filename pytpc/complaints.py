@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from pytpc.ingest.recording import Recording
-from pytpc.ranking import unknown_keys
+from pytpc.scoring.ranking import unknown_keys
 from pytpc.static_info import StaticInfo
 from pytpc.words import many
 

@@ -14,15 +14,15 @@ from pathlib import Path
 from rich.table import Table
 from rich.text import Text
 
+from pytpc.advice.suggest import suggest
 from pytpc.errors import RunError
 from pytpc.ingest import Recording, read_bag, save_recording
 from pytpc.ingest.recording import EVENTS_FILE, MARKS_FILE
 from pytpc.marks import Mark
 from pytpc.mission import MissionRun, Progress, run_mission
-from pytpc.ranking import MarkRanking, rank_marks
 from pytpc.report.html import MissionReport
+from pytpc.scoring.ranking import MarkRanking, rank_marks
 from pytpc.static_info import StaticInfo
-from pytpc.suggest import suggest
 from pytpc.treatment import Treatment
 
 FIRST = 3

@@ -9,10 +9,10 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
+from pytpc.advice.suggest import Suggestion, suggest
 from pytpc.ingest.recording import Recording
-from pytpc.ranking import MarkRanking, Suspect
+from pytpc.scoring.ranking import MarkRanking, Suspect
 from pytpc.static_info import StaticInfo
-from pytpc.suggest import Suggestion, suggest
 from pytpc.words import exact, plain, show
 
 _WHAT = {

@@ -18,8 +18,8 @@ from pytpc.ingest.duplicates import TOLERANCE_NS
 from pytpc.ingest.outcome import Outcome
 from pytpc.ingest.reading import opened
 from pytpc.marks import MARK_TYPES
-from pytpc.ranking import MarkRanking, rank_marks, unknown_keys
 from pytpc.report.html import MissionReport, write_report
+from pytpc.scoring.ranking import MarkRanking, rank_marks, unknown_keys
 from pytpc.static_info import StaticInfo
 from pytpc.terminal import Row, print_rankings, rows_of
 from pytpc.words import many, plain

@@ -12,10 +12,10 @@ import click
 from pytpc.cli.console import progress, warn
 from pytpc.errors import InputError
 from pytpc.ingest import read
-from pytpc.marking import Session
-from pytpc.marking_file import MarksFile
-from pytpc.marking_graph import GraphMarks
-from pytpc.marking_terminal import Mission, RecordedMission, run
+from pytpc.marking.file import MarksFile
+from pytpc.marking.graph import GraphMarks
+from pytpc.marking.session import Session
+from pytpc.marking.terminal import Mission, RecordedMission, run
 from pytpc.marks import marks_beside
 from pytpc.words import many, plain
 

@@ -12,18 +12,18 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
+from pytpc.advice.suggest import Suggestion, suggest
 from pytpc.arithmetic import evaluate
 from pytpc.complaints import complaints
 from pytpc.ingest.recording import Recording
 from pytpc.marks import Mark, MarkType
 from pytpc.parameters import same_parameter
-from pytpc.ranking import MarkRanking, Suspect
 from pytpc.report.plots import EvidenceStyle, Lane, evidence_svg, timeline_svg
 from pytpc.report.series import evidence, lane
 from pytpc.report.source import LONGEST_LINE, Line, StepView, source_lines, way_of
-from pytpc.scores import WINDOW_S
+from pytpc.scoring.ranking import MarkRanking, Suspect
+from pytpc.scoring.scores import WINDOW_S
 from pytpc.static_info import Comparison, StaticInfo
-from pytpc.suggest import Suggestion, suggest
 from pytpc.words import exact, show
 
 CARDS = 3

@@ -9,8 +9,8 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from static_units import comparison, unit
 
+from pytpc.advice.thresholds import HalfLine
 from pytpc.arithmetic import OPERATORS, Expression, evaluate, from_json
-from pytpc.halfline import HalfLine
 from pytpc.static_json import check_unit
 
 

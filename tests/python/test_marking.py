@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from mission_samples import ns
 from rich.cells import cell_len
 
-from pytpc.marking import Change, Player, Session, View, clock_text, press, screen
+from pytpc.marking.session import Change, Player, Session, View, clock_text, press, screen
 from pytpc.marks import Mark
 
 

@@ -33,7 +33,6 @@ from pytpc.mission import (
     run_mission,
     save_run,
 )
-from pytpc.ranking import rank_marks
 from pytpc.recorder import (
     BagFile,
     BatchCounter,
@@ -43,6 +42,7 @@ from pytpc.recorder import (
     Status,
     save_status,
 )
+from pytpc.scoring.ranking import rank_marks
 from pytpc.tcpros import Source
 from pytpc.treatment import Treatment, load_treatment
 

@@ -8,7 +8,7 @@ from pytpc.events import Events
 from pytpc.ingest import Recording
 from pytpc.marks import Mark
 from pytpc.parameters import parameter_name
-from pytpc.ranking import rank_marks, unknown_keys
+from pytpc.scoring.ranking import rank_marks, unknown_keys
 from pytpc.static_info import Place
 from pytpc.summaries import Summaries, Summary, SummaryBuilder
 

@@ -16,7 +16,6 @@ from mission_samples import comparison, events, key, ns, static_info
 from pytpc.errors import TpcError
 from pytpc.ingest import MalformedRecord, Recording
 from pytpc.marks import Mark
-from pytpc.ranking import rank_marks
 from pytpc.report.html import MissionReport, write_report
 from pytpc.report.series import (
     BINS,
@@ -30,6 +29,7 @@ from pytpc.report.series import (
     thin,
     with_gaps,
 )
+from pytpc.scoring.ranking import rank_marks
 from pytpc.static_info import PathStep
 
 NAN = math.nan

@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from mission_samples import events, key, ns
 
 from pytpc.events import EventBuilder, Events, Report
-from pytpc.score_bounds import type2_bounds
-from pytpc.scores import NONE, type1, type2
+from pytpc.scoring.bounds import type2_bounds
+from pytpc.scoring.scores import NONE, type1, type2
 from pytpc.summaries import Summaries, Summary, SummaryBuilder
 
 NAN, INF = math.nan, math.inf

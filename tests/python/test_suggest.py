@@ -10,8 +10,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from mission_samples import comparison, events, key, link_unit, ns
 
+from pytpc.advice.suggest import suggest
 from pytpc.static_info import ParameterRead, Transform
-from pytpc.suggest import suggest
 from pytpc.summaries import Summary, SummaryBuilder
 from pytpc.words import exact, show
 

@@ -22,7 +22,7 @@ from pytpc.graph import GRAPH_WORD, RosGraph
 from pytpc.ingest import read_bag
 from pytpc.mission import Progress, run_mission
 from pytpc.paths import cmake_file, log_library, plugin
-from pytpc.ranking import unknown_keys
+from pytpc.scoring.ranking import unknown_keys
 from pytpc.treatment import load_treatment
 
 PACKAGE = Path(__file__).parents[2] / "examples/image_capture"

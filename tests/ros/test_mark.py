@@ -11,7 +11,7 @@ from terminals import Terminal, pytpc
 
 from pytpc.graph import GraphProcess, RosGraph
 from pytpc.ingest import read
-from pytpc.marking_publisher import MessageType, RawPublisher, encode_time
+from pytpc.marking.publisher import MessageType, RawPublisher, encode_time
 from pytpc.marks import Mark, read_marks
 
 # The layout is that of std_msgs/Time under another name; rosbag needs the definition.

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from pytpc.errors import TpcError
-from pytpc.marking import Change
+from pytpc.marking.session import Change
 from pytpc.marks import Mark, read_marks, write_marks
 
 

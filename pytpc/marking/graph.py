@@ -11,8 +11,7 @@ from typing import NamedTuple
 
 from pytpc.errors import RunError
 from pytpc.ingest.ros1 import decode_time
-from pytpc.marking import Change, View
-from pytpc.marking_publisher import (
+from pytpc.marking.publisher import (
     STRING,
     TIME,
     MessageType,
@@ -21,6 +20,7 @@ from pytpc.marking_publisher import (
     encode_time,
     own_address,
 )
+from pytpc.marking.session import Change, View
 from pytpc.marks import (
     MARK_TYPES,
     NOTE_TOPIC,

@@ -17,8 +17,8 @@ from pytpc.events import Events, Floats, Int64s
 from pytpc.ingest.recording import Recording
 from pytpc.marks import Mark, MarkType
 from pytpc.parameters import parameter_name, same_parameter
-from pytpc.score_bounds import type2_bounds
-from pytpc.scores import (
+from pytpc.scoring.bounds import type2_bounds
+from pytpc.scoring.scores import (
     NONE,
     WINDOW_S,
     ParameterScores,

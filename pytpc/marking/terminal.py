@@ -18,8 +18,17 @@ from rich.live import Live
 from rich.text import Text
 
 from pytpc.errors import RunError
-from pytpc.marking import PLAYER_HELP, Change, Player, Session, View, clock_text, press, screen
-from pytpc.marking_file import MarksFile
+from pytpc.marking.file import MarksFile
+from pytpc.marking.session import (
+    PLAYER_HELP,
+    Change,
+    Player,
+    Session,
+    View,
+    clock_text,
+    press,
+    screen,
+)
 from pytpc.signals import signals_end
 
 _TURN_S = 0.2

@@ -24,7 +24,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pytpc.events import Bools, Events, Floats, Int64s
-from pytpc.scores import (
+from pytpc.scoring.scores import (
     EQUAL,
     NONE,
     WINDOW_S,

@@ -15,9 +15,7 @@ from typing import Literal
 
 import numpy as np
 
-from pytpc.arithmetic import Expression
-from pytpc.events import Bools, Events, Floats, Int64s
-from pytpc.halfline import (
+from pytpc.advice.thresholds import (
     Affine,
     HalfLine,
     Unit,
@@ -26,9 +24,11 @@ from pytpc.halfline import (
     readable,
     thresholds_for,
 )
+from pytpc.arithmetic import Expression
+from pytpc.events import Bools, Events, Floats, Int64s
 from pytpc.marks import MarkType
 from pytpc.parameters import parameter_name
-from pytpc.scores import WINDOW_S
+from pytpc.scoring.scores import WINDOW_S
 from pytpc.static_info import Comparison, LinkUnit
 from pytpc.summaries import Summaries
 from pytpc.words import Number, exact, show

@@ -1,0 +1,1 @@
+"""Scores, ranks and rankings of SPEC 7: offline, over a grid of times, and live."""

@@ -1,0 +1,1 @@
+"""The tables and figures of SPEC 9 from recorded missions."""

@@ -1,0 +1,1 @@
+"""Where the values of parameters come from, and how they are changed."""
