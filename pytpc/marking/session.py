@@ -199,7 +199,7 @@ def screen(session: Session, view: View, width: int, height: int) -> list[str]:
     room = max(1, height - len(lines) - len(foot) - 1)
     shown = session.marks[-room:]
     of_all = f"{len(session.marks)} marks" if len(session.marks) != 1 else "1 mark"
-    lines.append(of_all + (":" if shown else ""))
+    lines.append(_cut(of_all + (":" if shown else ""), width))
     lines += [_cut(_line(mark, view), width) for mark in shown]
     return (lines + foot)[:height]
 
@@ -228,4 +228,10 @@ def _folded(line: str, width: int) -> list[str]:
 def _cut(line: str, width: int) -> str:
     """``width`` columns of it; some characters take two."""
     line = plain(line)
-    return line if cell_len(line) <= width else set_cell_size(line, max(0, width - 1)) + "~"
+    if cell_len(line) <= width:
+        return line
+    # What is put behind a joiner or in its place can be wider than the parts were.
+    cut = set_cell_size(line, max(0, width - 1))
+    while cut and cell_len(f"{cut}~") > width:
+        cut = cut[:-1]
+    return f"{cut}~"

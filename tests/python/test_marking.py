@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from mission_samples import ns
 from rich.cells import cell_len
@@ -147,6 +147,9 @@ def test_the_newest_marks_are_shown():
     assert lines[7:-1] == [f"   0:{n:02d}.0  I" for n in range(14, 30)]
 
 
+# "1 mark:" has seven columns; a joiner (U+200D) takes the width of what is put behind it.
+@example(6, 28, "", False)
+@example(5, 28, "a\N{ZERO WIDTH JOINER}\N{ARABIC NUMBER SIGN}" * 4, True)
 @given(st.integers(1, 60), st.integers(1, 30), st.text(max_size=40), st.booleans())
 def test_the_screen_fits(width: int, height: int, text: str, typing: bool):
     session = Session("ana", (at(101, "II", text),), typing=text if typing else None, said=text)
