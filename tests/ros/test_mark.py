@@ -27,7 +27,8 @@ def graph(tmp_path: Path):
 def record(graph: RosGraph, bag: Path) -> GraphProcess:
     """rosbag's own recorder, as a user would have it; on return it has connected to nobody yet."""
     regex = "(.*/)?mark_.*"
-    return graph.start("record", ["rosbag", "record", "-O", str(bag), "-e", regex])
+    command = ["rosbag", "record", "-O", str(bag), "-e", regex]
+    return graph.start("record", command, patience_s=20.0)
 
 
 def mark(graph: RosGraph, folder: Path, observer: str) -> Terminal:
