@@ -68,6 +68,10 @@ def test_keys_of_two_observers_are_marks_in_the_bag(graph: RosGraph, tmp_path: P
         end(ana, ben)
         time.sleep(0.5)
         graph.stop(recorder)
+    # `rosbag` may end before the recorder that it started has given the bag its name.
+    until = time.monotonic() + 10
+    while not bag.exists() and time.monotonic() < until:
+        time.sleep(0.1)
     found = read(bag).marks
     assert [(one.type, one.observer, one.note) for one in found] == [
         ("I", "ana", ""),
