@@ -271,14 +271,19 @@ class Ranker:
         if max(early, late) > APART_NS:
             return "the mark is on another clock than the reports"
         if early > 0:
-            return f"the mark is {early / 1e9:.3g} s before the first report"
+            return f"the mark is {_seconds(early)} before the first report"
         if late > self.window_s * 1e9:
-            return f"the mark is {late / 1e9:.3g} s after the last report"
+            return f"the mark is {_seconds(late)} after the last report"
         return ""
 
     def _why_nobody(self, mark: Mark) -> str:
         change = "no result had changed up to the mark"
-        near = f"nothing was compared in the {self.window_s:g} s before it, or never differed"
+        near = f"nothing that ever had two different values was compared in the {self.window_s:g} s"
         if self.types != "believe" or mark.type is None:
-            return f"{change}, and {near}"
-        return change if mark.type == "I" else near.replace("it", "the mark", 1)
+            return f"{change}, and {near} before it"
+        return change if mark.type == "I" else f"{near} before the mark"
+
+
+def _seconds(time_ns: int) -> str:
+    seconds = time_ns / 1e9
+    return f"{seconds:,.0f} s" if seconds >= 1000 else f"{seconds:.3g} s"
