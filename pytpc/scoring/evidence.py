@@ -8,7 +8,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from pytpc.events import Events, Int64s
+from pytpc.events import Bools, Events, Int64s
 from pytpc.summaries import Summaries
 
 
@@ -31,9 +31,8 @@ class Evidence(Protocol):
         """When each comparison was evaluated first; those that never were are not in it."""
         ...
 
-    @property
-    def last_ns(self) -> int:
-        """When anything was evaluated last; only where ``first_ns`` is not empty."""
+    def reported_ns(self, mark_ns: int) -> int | None:
+        """When anything was evaluated last up to the mark, None where nothing was."""
         ...
 
     def last(self, key: str, mark_ns: int) -> Evaluation:
@@ -64,13 +63,19 @@ class Log:
                 first[key] = min(times)
         return first
 
+    def reported_ns(self, mark_ns: int) -> int | None:
+        """When anything was evaluated last up to the mark; a summary lasts to its end."""
+        place = int(np.searchsorted(self.events.time_ns, mark_ns, side="right"))
+        times = [int(self.events.time_ns[place - 1])] if place else []
+        begun = self._ours & (self.summaries.begin_ns <= mark_ns)
+        times += [min(mark_ns, int(self.summaries.end_ns[begun].max()))] if begun.any() else []
+        return max(times, default=None)
+
     @cached_property
-    def last_ns(self) -> int:
-        """When anything was evaluated last."""
-        times = [int(self.events.time_ns[-1])] if len(self.events) else []
-        ends = [self.summaries.end_ns[self._rows_of(key)] for key in self._codes]
-        times += [int(end.max()) for end in ends if end.size]
-        return max(times)
+    def _ours(self) -> Bools:
+        """Which summaries are of the TPCs."""
+        ours = [self._summary_codes[key] for key in self._codes if key in self._summary_codes]
+        return np.isin(self.summaries.key, ours)
 
     def last(self, key: str, mark_ns: int) -> Evaluation:
         """The last evaluation up to the mark that is known: a report, or the last of a summary.

@@ -266,14 +266,14 @@ class Ranker:
         first = self.evidence.first_ns
         if not first:
             return "no comparison was reported"
-        early = min(first.values()) - mark.time_ns
-        late = mark.time_ns - self.evidence.last_ns
-        if max(early, late) > APART_NS:
+        last = self.evidence.reported_ns(mark.time_ns)
+        away = min(first.values()) - mark.time_ns if last is None else mark.time_ns - last
+        if away > APART_NS:
             return "the mark is on another clock than the reports"
-        if early > 0:
-            return f"the mark is {_seconds(early)} before the first report"
-        if late > self.window_s * 1e9:
-            return f"the mark is {_seconds(late)} after the last report"
+        if last is None:
+            return f"the mark is {_seconds(away)} before the first report"
+        if away > self.window_s * 1e9:
+            return f"the last report up to the mark is {_seconds(away)} before it"
         return ""
 
     def _why_nobody(self, mark: Mark) -> str:

@@ -121,7 +121,9 @@ def test_a_time_that_nobody_marked(files, quiet):
     assert [s["parameter"] for s in early["suspects"]] == ["coverage", "faces"]
     outside = run("rank", quiet, "--static", static, "--at", "100")
     assert outside.exit_code == 0
-    assert "not enough evidence: the mark is 80.1 s after the last report" in outside.stdout
+    assert (
+        "not enough evidence: the last report up to the mark is 80.1 s before it" in outside.stdout
+    )
 
 
 def test_several_missions(files, quiet):
@@ -217,8 +219,9 @@ def test_nodes_on_two_clocks_are_told_in_one_line(files, tmp_path):
             writer.log(9, "/wall", line(0, 0, 1, 3), stamp=1_790_000_000 + second)
         writer.mark(16, "/mark_action")
     result = run("rank", bag, "--static", static, "--json")
-    (warning,) = [row for row in result.stderr.splitlines() if "different clocks" in row]
-    assert "the reports of /wall and of /uav are on different clocks" in warning
+    (warning,) = [row for row in result.stderr.splitlines() if "reports, of" in row]
+    assert "5 of 605 reports, of /wall, are on another clock than the others" in warning
+    assert "(2026-09-21 and 1.0 s; /use_sim_time?)" in warning
     # What is later than the mark on its clock does not count: as without /wall, (16 - 15) * 2.
     assert json.loads(result.stdout)[0]["suspects"][0]["score"] == 2.0
 

@@ -310,9 +310,16 @@ def test_a_mark_before_the_first_report():
 def test_a_mark_after_the_last_report():
     assert ranking(ALL, 52, "I").enough
     found = ranking(ALL, 52.5, "I")
-    lacks(found, "the mark is 12.5 s after the last report")
+    lacks(found, "the last report up to the mark is 12.5 s before it")
     # What flopped last is still said: (52.5 - 38) * 3 = 43.5 and (52.5 - 35) * 2 = 35.
     assert [(s.parameter, s.score) for s in found.suspects] == [("limit", 35.0), ("speed", 43.5)]
+
+
+# The same in a gap of the log, from 40 to 70 s.
+def test_a_mark_in_a_gap():
+    rows = [*ALL, (70, 3, 0, 9, 10)]
+    assert ranking(rows, 70, "I").enough
+    lacks(ranking(rows, 60, "I"), "the last report up to the mark is 20 s before it")
 
 
 def test_a_mark_on_another_clock():
