@@ -185,10 +185,8 @@ def as_json(table: Table) -> dict[str, Any]:
 
 
 def as_rich(table: Table) -> RichTable:
-    """A table for a terminal, without its notes."""
-    made = RichTable(
-        title=Text(plain(table.title), style="bold"), title_justify="left", caption_justify="left"
-    )
+    """A table for a terminal, without its title and notes."""
+    made = RichTable()
     made.add_column(Text(plain(table.first)), overflow="fold")
     for column in table.columns:
         above = f"{plain(column.group)}\n" if column.group else ""
