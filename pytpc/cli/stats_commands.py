@@ -180,7 +180,8 @@ def _text_of(tables: Sequence[Table], form: str) -> str:
 def _show(out: Console, table: Table) -> None:
     out.print(Text(f"{table.title} (as table {NUMBERS[table.label]})", style="bold"))
     if table.rows:
-        out.print(as_rich(table), highlight=False)
+        for part in as_rich(table, out.width):
+            out.print(part, highlight=False)
     else:
         out.print(Text("No mission has anything for it."))
     for note in table.notes:

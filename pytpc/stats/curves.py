@@ -14,11 +14,12 @@ import matplotlib.patheffects as effects
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from pytpc.columns import Bools, Floats
 from pytpc.ingest.recording import Recording
-from pytpc.marks import MARK_TYPES
+from pytpc.marks import MARK_TYPES, Mark
 from pytpc.parameters import same_parameter
 from pytpc.scoring.curves import RankCurves
 from pytpc.scoring.scores import NONE
@@ -34,6 +35,7 @@ from pytpc.stats.drawing import (
     short,
 )
 from pytpc.stats.states import Phases, RobotState
+from pytpc.words import many
 
 NAMED = 8
 _SIZE = (8.6, 8.0)
@@ -97,23 +99,33 @@ def mission_figure(
         axes.set_ylabel(f"rank by type {kind}")
     # The lines are the same in both.
     _legend(panels[-2], reverse=True)
+    inside = _inside(recording)
     for axes in panels:
-        draw_marks(axes, recording.marks, recording.start_ns)
+        draw_marks(axes, inside, recording.start_ns)
         axes.set_xlim(-0.01 * seconds, 1.01 * seconds)
     panels[-1].set_xlabel("seconds since the mission began")
     if recording.marks:
-        _legend_of_marks(figure, recording)
+        _legend_of_marks(figure, inside, len(recording.marks) - len(inside))
     return figure
 
 
-def _legend_of_marks(figure: Figure, recording: Recording) -> None:
-    kinds = {mark.type for mark in recording.marks}
+def _inside(recording: Recording) -> list[Mark]:
+    """The marks during the mission; others have no place in the figure."""
+    begin, end = recording.start_ns, recording.end_ns
+    return [mark for mark in recording.marks if begin <= mark.time_ns <= end]
+
+
+def _legend_of_marks(figure: Figure, marks: Sequence[Mark], outside: int) -> None:
+    kinds = {mark.type for mark in marks}
     handles = [mark_line(kind) for kind in (*MARK_TYPES, None) if kind in kinds]
+    if outside:
+        text = f"({many(outside, 'mark')} before or after the mission)"
+        handles.append(Line2D([], [], linestyle="none", label=text))
     figure.legend(
         handles=handles,
         loc="upper left",
         bbox_to_anchor=(_LEFT - 0.01, 0.97),
-        ncols=3,
+        ncols=4,
         frameon=False,
         fontsize=7.5,
         handlelength=2.6,
@@ -214,6 +226,7 @@ def _lines(curves: RankCurves, marks_ns: Sequence[int], changed: str | None) -> 
     )
     best = np.maximum(curves.rank1, curves.rank2)
     if marks_ns and best.size:
+        # A mark after the mission is about its end.
         place_of = np.searchsorted(curves.times_ns, marks_ns, side="right") - 1
         best = best[np.clip(place_of, 0, best.shape[0] - 1)]
     weight = best.mean(axis=0) if best.size else np.zeros(len(curves.parameters))

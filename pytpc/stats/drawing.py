@@ -115,8 +115,10 @@ def draw_marks(axes: Axes, marks: Sequence[Mark], start_ns: int) -> None:
     """
     for mark in marks:
         time = (mark.time_ns - start_ns) / 1e9
+        colour, dash, _, _ = _MARKS[mark.type]
+        axes.axvline(time, color=colour, linewidth=1.2, linestyle=dash, zorder=4)
         line = mark_line(mark.type)
-        axes.axvline(time, color=line.get_color(), linewidth=1.2, linestyle=line.get_linestyle())
+        line.set_linestyle("none")
         line.set_data([time], [1.0])
         line.set_transform(axes.get_xaxis_transform())
         line.set_clip_on(False)
