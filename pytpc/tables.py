@@ -197,15 +197,16 @@ def as_rich(table: Table, width: int) -> list[RichTable]:
     Where the columns do not fit beside each other the rest stands in further tables, with the names
     again: rich itself would leave them out.
     """
-    names = [name for name, _ in (*table.rows, *table.summary)]
+    names = [plain(name) for name, _ in (*table.rows, *table.summary)]
     first = min(max(map(cell_len, (table.first, *names))), max(_NAME_WIDTH, width // 3))
     rows = [shown(table, cells) for _, cells in table.rows]
     rows += [shown(table, cells, statistic=True) for _, cells in table.summary]
+    rows = [[plain(text) for text in row] for row in rows]
     parts: list[list[tuple[int, int]]] = [[]]
     used = first
     for number, column in enumerate(table.columns):
-        group = min(cell_len(column.group), _GROUP_WIDTH)
-        need = max([group, *map(cell_len, (column.heading, *(row[number] for row in rows)))])
+        group = min(cell_len(plain(column.group)), _GROUP_WIDTH)
+        need = max([group, *map(cell_len, (plain(column.heading), *(row[number] for row in rows)))])
         if parts[-1] and used + need + _BETWEEN > width - _BETWEEN:
             parts.append([])
             used = first
@@ -233,8 +234,8 @@ def _rich_part(
         if place == len(table.rows):
             made.add_section()
         look = "italic" if place >= len(table.rows) else ""
-        texts = (Text(plain(row[number])) for number, _ in columns)
-        made.add_row(Text(plain(name), style=look), *texts)
+        texts = (Text(row[number]) for number, _ in columns)
+        made.add_row(Text(name, style=look), *texts)
     return made
 
 

@@ -61,7 +61,7 @@ _BY_NUMBER = {number: name for name, number in NUMBERS.items()}
     "--output",
     type=PATH,
     metavar="OUT",
-    help="A file, or a folder (one that is there, or ends in /): then a file for each table.",
+    help="A file; a folder that is there, or several tables as CSV: a file in it for each table.",
 )
 @click.option("--figures", type=PATH, metavar="DIR", help="Draw the figures into this folder.")
 @click.option(
@@ -101,10 +101,11 @@ def stats_command(  # noqa: PLR0917
     stands for all of them. What was changed in each, its treatment.json tells.
     """
     form = "json" if as_json else form
-    folder = output is not None and (output.is_dir() or str(output).endswith("/"))
     chosen = _chosen(names)
-    if form == "csv" and len(chosen) > 1 and not folder:
-        raise click.UsageError("several tables as CSV: choose one by --table, or give -o FOLDER/")
+    several = form == "csv" and len(chosen) > 1
+    if several and output is None:
+        raise click.UsageError("several tables as CSV: choose one by --table, or give -o FOLDER")
+    folder = several or (output is not None and output.is_dir())
     static = static_of([static_source])
     with progress("reading missions") as advance:
         missions = load_missions(paths, treatments, advance)
