@@ -30,6 +30,7 @@ SUMMARIES = {
     "report": ("event_commands", "Write a page with the suspects at each mark, and why."),
     "show": ("static_commands", "Show all that is known about a comparison."),
     "sink": ("graph_commands", "Show and change where running nodes report to."),
+    "stats": ("stats_commands", "Tables and figures of a study from recorded missions."),
     "survey": ("survey_commands", "Build source trees with and without TPC; tables."),
     "toolchain": ("machine_commands", "Print what to type to build with TPC by another tool."),
 }
