@@ -48,7 +48,7 @@ def advise(
         window_s: the window of type II in seconds.
     """
     return [
-        _advice(recording, static_info, ranking.mark, suspect, declared, window_s)
+        _advice(recording, static_info, ranking.mark, suspect, declared=declared, window_s=window_s)
         for suspect in ranking.suspects[:top]
     ]
 
@@ -67,14 +67,18 @@ def alternatives(
     Each has ``suspect`` as it is with another ``key`` and ``comparison``; those that suggest the
     same value, or none, are left out.
     """
-    said = _advice(recording, static_info, ranking.mark, suspect, declared, window_s)
+    said = _advice(
+        recording, static_info, ranking.mark, suspect, declared=declared, window_s=window_s
+    )
     known = {(said.suggestion.direction, said.suggestion.value)}
     found = []
     for key in suspect.keys:
         if key == suspect.key:
             continue
         other = replace(suspect, key=key, comparison=static_info.comparisons[key])
-        advice = _advice(recording, static_info, ranking.mark, other, declared, window_s)
+        advice = _advice(
+            recording, static_info, ranking.mark, other, declared=declared, window_s=window_s
+        )
         what = (advice.suggestion.direction, advice.suggestion.value)
         if what[0] is not None and what not in known:
             known.add(what)
@@ -87,6 +91,7 @@ def _advice(
     static_info: StaticInfo,
     mark: Mark,
     suspect: Suspect,
+    *,
     declared: Sequence[Declared],
     window_s: float,
 ) -> Advice:

@@ -57,7 +57,7 @@ class Track:
         """bool[rows]: whether the outcome would be another with ``threshold``."""
         cmp, thresh = self.cmp[rows], self.thresh[rows]
         if self.comparison.relation == "flag":
-            return self._flag(rows, threshold) != self.res[rows]
+            return np.asarray(self._flag(rows, threshold) != self.res[rows], dtype=np.bool_)
         relation = self.comparison.relation
         before = outcomes(relation, cmp, thresh)
         return np.asarray(before != outcomes(relation, cmp, threshold), dtype=np.bool_)

@@ -126,7 +126,7 @@ def suggest(
     feasible: Intervals = ()
     try:
         _refuse(comparison, unit)
-        evidence = evidence_of(events, summaries, comparison.key, mark_ns, kind, window_s)
+        evidence = evidence_of(events, summaries, comparison.key, mark_ns, kind, window_s=window_s)
         case = _case(comparison, unit, evidence, declared)
         current = _shown_current(case)
         if comparison.relation == "flag":
