@@ -21,6 +21,7 @@ from pytpc.arithmetic import SINGLE, Tree, evaluate
 _LARGEST = 1.7976931348623157e308
 _SMALLEST = 5e-324
 _PERIODS = 2
+_ROUNDER = 4
 _EVERYWHERE = [(-_LARGEST, _LARGEST)]
 _NOT_NEGATIVE = (0.0, _LARGEST)
 _NOT_POSITIVE = (-_LARGEST, 0.0)
@@ -191,7 +192,7 @@ def _end(
         return (math.copysign(math.inf, outside), False) if endless else (outside, True)
     yes, no = _boundary(inside, outside, is_in)
     # Of two neighbours the one that reads better: "below 3", not "at most 2.9999999999999996".
-    is_round = len(repr(no)) < len(repr(yes))
+    is_round = len(repr(no)) < len(repr(yes)) - _ROUNDER
     return (no, False) if is_round or apply(no) == bound else (yes, True)
 
 
