@@ -2,7 +2,7 @@
 
 ``type1`` and ``type2`` give a table float64[marks, keys] of scores: lower is more suspicious,
 ``NONE`` where there is none. ``ranks`` turns it into ranks in [0, 1], ``by_parameter`` joins the
-TPCs of a parameter, ``combined`` orders both tables where the observer gave no type.
+TPCs of a parameter, ``combined`` joins the ranks of both types where the observer gave no type.
 
 What the formulas leave open is settled thus. An evaluation at exactly m is "up to m", and the
 window [m - w, m] holds both its ends. A flop happens at the later of its two evaluations, which are
@@ -20,6 +20,7 @@ because the first evaluation and all flops are among the events; for type II see
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -37,8 +38,37 @@ WINDOW_S = 12.0
 EQUAL = 1e-4
 """Up to this difference a value counts as the threshold itself (n_i of type II)."""
 
+NEVER = -(2**63)
+"""The time of what did not happen."""
+
 _LARGE = 2.0**960
 _SCALE = 2.0**-64
+
+
+class Before(NamedTuple):
+    """What came before the first row of a table whose begin was forgotten, for each of its k keys.
+
+    ``flops`` int64[k], how many; ``last_flop_ns`` int64[k], the last of them (``NEVER`` where there
+    is none); ``finite`` int64[k], evaluations with finite values, and ``highest`` and ``lowest``
+    float64[k] the extremes of these values (-inf and inf where there are none).
+    """
+
+    flops: Int64s
+    last_flop_ns: Int64s
+    finite: Int64s
+    highest: Floats
+    lowest: Floats
+
+    @classmethod
+    def nothing(cls, keys: int) -> Before:
+        """The table has its begin."""
+        return cls(
+            np.zeros(keys, np.int64),
+            np.full(keys, NEVER),
+            np.zeros(keys, np.int64),
+            np.full(keys, -np.inf),
+            np.full(keys, np.inf),
+        )
 
 
 def type1(
@@ -49,6 +79,7 @@ def type1(
     alpha: float = 1.0,
     beta: float = 1.0,
     gamma: float = 0.0,
+    before: Before | None = None,
 ) -> Floats:
     """Type I, recent flop: (m - t_last_flop)^alpha * (1 + flops up to m)^beta * d_i^gamma.
 
@@ -59,6 +90,7 @@ def type1(
         alpha: exponent of the seconds since the last flop, at least 0.
         beta: exponent of the number of flops.
         gamma: exponent of the distance.
+        before: what was before the first of ``events``; no mark may be earlier.
 
     Returns:
         float64[marks, keys]; ``NONE`` where the key has not flopped up to m.
@@ -68,13 +100,16 @@ def type1(
     """
     marks, distances = checked(events, marks_ns, distance)
     not_negative(alpha=alpha)
+    earlier = before or Before.nothing(len(events.keys))
     scores = np.full((marks.size, len(events.keys)), NONE)
     for code in range(len(events.keys)):
         rows = events.by_key.rows(code)
         flops = events.time_ns[rows[events.flop[rows]]]
-        count = np.searchsorted(flops, marks, side="right")
+        place = np.searchsorted(flops, marks, side="right")
+        count = place + earlier.flops[code]
         some = count > 0
-        seconds = (marks[some] - flops[count[some] - 1]) / 1e9
+        last = np.concatenate([[NEVER], flops])[place[some]]
+        seconds = (marks[some] - np.maximum(last, earlier.last_flop_ns[code])) / 1e9
         value = seconds**alpha * (1.0 + count[some]) ** beta * distances[code] ** gamma
         scores[some, code] = beside_none(value)
     return scores
@@ -90,6 +125,7 @@ def type2(
     beta: float = 1.0,
     gamma: float = 0.0,
     delta: float = 0.0,
+    before: Before | None = None,
 ) -> Floats:
     """Type II, about to flop: D^alpha * max(1, flops)^beta * n_i^gamma * (d_i/d_max)^delta.
 
@@ -105,6 +141,7 @@ def type2(
         beta: exponent of the number of flops in the window.
         gamma: exponent of n_i, at least 0.
         delta: exponent of the distance.
+        before: what was before the first of ``events``; no window may begin earlier.
 
     Returns:
         float64[marks, keys]; ``NONE`` where the key has no evaluation with finite values in the
@@ -116,13 +153,14 @@ def type2(
     marks, distances = checked(events, marks_ns, distance)
     not_negative(window_s=window_s, alpha=alpha, gamma=gamma)
     begins = marks - round(window_s * 1e9)
+    earlier = before or Before.nothing(len(events.keys))
     scores = np.full((marks.size, len(events.keys)), NONE)
     nearness = distances / distances.max(initial=1.0)
     for code in range(len(events.keys)):
         rows = events.by_key.rows(code)
         flops = events.time_ns[rows[events.flop[rows]]]
         flop_count = count_within(flops, begins, marks)
-        window = _Differences(events, rows).over(begins, marks)
+        window = _Differences(events, rows, earlier, code).over(begins, marks)
         some = window.usable
         value = (
             window.mean[some] ** alpha
@@ -134,18 +172,23 @@ def type2(
     return scores
 
 
-def ranks(
-    scores: Floats, distance: npt.ArrayLike | None = None, keys: Sequence[str] | None = None
-) -> Floats:
+def ranks(scores: Floats) -> Floats:
     """Ranks of float64[marks, n] scores: 1 - index/n in ascending order, 0 where there is no score.
 
-    Equal scores are ordered by ``distance``, then by ``keys``, then by column; 1 is the most
-    suspicious.
+    1 is the most suspicious. The index of a score is how many are smaller, so that equal scores
+    have equal ranks.
     """
     n = scores.shape[1]
-    order = ordering(scores, distance, keys)
+    if not n:
+        return np.zeros_like(scores)
+    values = np.where(scores == NONE, np.inf, scores)
+    order = np.argsort(values, axis=1)
+    ascending = np.take_along_axis(values, order, axis=1)
+    index = np.zeros(scores.shape, np.int64)
+    index[:, 1:] = np.where(ascending[:, 1:] > ascending[:, :-1], np.arange(1, n), 0)
+    np.maximum.accumulate(index, axis=1, out=index)
     result = np.empty_like(scores)
-    np.put_along_axis(result, order, 1.0 - np.arange(n)[np.newaxis, :] / max(1, n), axis=1)
+    np.put_along_axis(result, order, 1.0 - index / n, axis=1)
     result[scores == NONE] = 0.0
     return result
 
@@ -153,7 +196,10 @@ def ranks(
 def ordering(
     scores: Floats, distance: npt.ArrayLike | None = None, keys: Sequence[str] | None = None
 ) -> Int64s:
-    """int64[marks, n]: the columns by ascending score, then those without; ties as ``ranks``."""
+    """int64[marks, n]: the columns by ascending score, then those without.
+
+    Equal scores are ordered by ``distance``, then by ``keys``, then by column.
+    """
     n = scores.shape[1]
     ties = _tie_order(n, distance, keys)
     values = np.where(scores == NONE, np.inf, scores)[:, ties]
@@ -183,33 +229,30 @@ def by_parameter(
     if len(parameters) != scores.shape[1]:
         raise ValueError("one parameter for each column is needed")
     names = sorted(set(parameters))
-    place = np.empty_like(scores, dtype=np.int64)
-    count = np.arange(scores.shape[1])[np.newaxis, :]
-    np.put_along_axis(place, ordering(scores, distance, keys), count, axis=1)
+    number = {name: place for place, name in enumerate(names)}
+    ties = _tie_order(len(parameters), distance, keys)
+    columns: list[list[int]] = [[] for _ in names]
+    for column in ties.tolist():
+        columns[number[parameters[column]]].append(column)
+    values = np.where(scores == NONE, np.inf, scores)
     best = np.empty((scores.shape[0], len(names)), dtype=np.int64)
-    for number, name in enumerate(names):
-        columns = np.array([i for i, of in enumerate(parameters) if of == name], dtype=np.int64)
-        best[:, number] = columns[np.argmin(place[:, columns], axis=1)]
+    for place, own in enumerate(columns):
+        best[:, place] = np.array(own)[np.argmin(values[:, own], axis=1)]
     return ParameterScores(tuple(names), np.take_along_axis(scores, best, axis=1), best)
 
 
-def combined(
-    first: Floats,
-    second: Floats,
-    distance: npt.ArrayLike | None = None,
-    keys: Sequence[str] | None = None,
-) -> tuple[Floats, Int64s]:
-    """Ranking for marks without a type, from the ranks of both types, float64[marks, n] each.
+def combined(first: Floats, second: Floats, weight: float = 1.0) -> Floats:
+    """The better of two ranks, the second of which counts ``weight`` of itself.
+
+    Args:
+        first: float64[marks, n], ranks of the type that is believed, or of either where none is.
+        second: float64[marks, n], ranks of the other type.
+        weight: from 0 (the second type does not count) to 1 (it counts as much).
 
     Returns:
-        The better of the two ranks, float64[marks, n], and the columns in the order of that, most
-        suspicious first, int64[marks, n]: ties by the mean of both ranks, then as in ``ranks``.
+        float64[marks, n].
     """
-    better = np.maximum(first, second)
-    mean = (first + second) / 2
-    ties = _tie_order(first.shape[1], distance, keys)
-    order = np.lexsort((-mean[:, ties], -better[:, ties]), axis=-1)
-    return better, ties[order]
+    return np.maximum(first, weight * second)
 
 
 class _Window(NamedTuple):
@@ -223,17 +266,21 @@ class _Window(NamedTuple):
 class _Differences:
     """|cmp - thresh| of one key, ready for sums over spans of time."""
 
-    def __init__(self, events: Events, rows: Int64s) -> None:
+    def __init__(self, events: Events, rows: Int64s, before: Before, code: int) -> None:
         finite = np.isfinite(events.cmp[rows]) & np.isfinite(events.thresh[rows])
         rows = rows[finite]
         cmp, thresh = events.cmp[rows], events.thresh[rows]
+        span = float(before.highest[code]), float(before.lowest[code])
+        skipped = int(before.finite[code])
         self.times = events.time_ns[rows]
         with np.errstate(over="ignore"):
             self.unequal = np.concatenate([[0], np.cumsum(np.abs(cmp - thresh) > EQUAL)])
-        self.ratios = [_Ratio(cmp, thresh)]
-        if np.abs([cmp, thresh]).max(initial=0.0) > _LARGE:
+        self.ratios = [_Ratio(cmp, thresh, span, skipped)]
+        known = [abs(value) for value in span if math.isfinite(value)]
+        if np.abs([cmp, thresh]).max(initial=max(known, default=0.0)) > _LARGE:
             # Differences and sums of the largest doubles overflow; a power of two changes no ratio.
-            self.ratios.append(_Ratio(cmp * _SCALE, thresh * _SCALE))
+            less = span[0] * _SCALE, span[1] * _SCALE
+            self.ratios.append(_Ratio(cmp * _SCALE, thresh * _SCALE, less, skipped))
 
     def over(self, begins: Int64s, ends: Int64s) -> _Window:
         """D and n_i over the closed spans."""
@@ -252,11 +299,15 @@ class _Differences:
 class _Ratio:
     """Means of |cmp - thresh| / (max - min), max and min over all up to the last of the span."""
 
-    def __init__(self, cmp: Floats, thresh: Floats) -> None:
+    def __init__(
+        self, cmp: Floats, thresh: Floats, span: tuple[float, float], skipped: int
+    ) -> None:
+        """``span`` has the extremes of before, ``skipped`` how many there were."""
         with np.errstate(over="ignore"):
-            self.sums = RangeSums(np.abs(cmp - thresh))
-        self.highest = np.maximum.accumulate(np.maximum(cmp, thresh))
-        self.lowest = np.minimum.accumulate(np.minimum(cmp, thresh))
+            self.sums = RangeSums(np.abs(cmp - thresh), skipped)
+        highest, lowest = np.maximum(cmp, thresh), np.minimum(cmp, thresh)
+        self.highest = np.maximum(np.maximum.accumulate(highest), span[0])
+        self.lowest = np.minimum(np.minimum.accumulate(lowest), span[1])
 
     def spread(self, last: Int64s) -> Floats:
         with np.errstate(over="ignore"):
@@ -278,17 +329,19 @@ class RangeSums:
     stays below log2(n) roundings.
     """
 
-    def __init__(self, values: Floats) -> None:
-        """``values`` float64[n], none of them negative."""
-        self.levels = [values]
+    def __init__(self, values: Floats, skipped: int = 0) -> None:
+        """``values`` float64[n], none of them negative, the first ``skipped`` of which were left
+        out: sums are to the last bit what they are with them."""
+        self.shift = skipped % (1 << max(1, values.size).bit_length())
+        self.levels = [np.concatenate([np.zeros(self.shift), values]) if self.shift else values]
         while self.levels[-1].size > 1:
             below = self.levels[-1]
             even = below[: below.size // 2 * 2]
             self.levels.append(even[0::2] + even[1::2])
 
     def over(self, low: Int64s, high: Int64s) -> Floats:
-        """float64[spans]: the sums over ``[low, high)``."""
-        low, high = low.copy(), high.copy()
+        """float64[spans]: the sums over ``[low, high)`` of the values that are there."""
+        low, high = low + self.shift, high + self.shift
         total = np.zeros(low.size)
         for level in self.levels:
             odd = np.flatnonzero((low < high) & (low & 1 == 1))
