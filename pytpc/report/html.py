@@ -21,7 +21,7 @@ from pytpc.atomic import write_atomic
 from pytpc.report.environment import environment
 from pytpc.report.view import CARDS, ROWS, MissionReport, figures, mission_view
 
-__all__ = ["MissionReport", "render", "write_report"]
+__all__ = ["CARDS", "MissionReport", "render", "write_report"]
 
 Progress = Callable[[int, int], None]
 _COMPONENTS = ["bokeh", "bokeh-api"]
@@ -70,7 +70,6 @@ def render(
             title=title,
             missions=views,
             rows=ROWS,
-            cards=CARDS,
             scripts=scripts,
             hashes=[_hash(script) for script in scripts],
         )

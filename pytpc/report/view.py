@@ -7,17 +7,17 @@ too, for they are the larger part of the time; ``on_figure`` is called after eac
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from markupsafe import Markup
 
-from pytpc.advice.advise import Advice
-from pytpc.advice.suggest import suggest
+from pytpc.advice.advise import advise
 from pytpc.complaints import complaints
 from pytpc.marks import MarkType
 from pytpc.report.answer import AnswerView, answers, spoken
 from pytpc.report.cards import (
+    CARDS,
     CardView,
     Figures,
     MissionReport,
@@ -25,20 +25,21 @@ from pytpc.report.cards import (
     card_view,
     row_view,
 )
-from pytpc.report.payload import embedded, lanes_of, marks_of
+from pytpc.report.payload import curves_of, embedded, lanes_of, marks_of
 from pytpc.report.plots import Lane, timeline_svg
 from pytpc.report.series import lane
+from pytpc.scoring.clocks import two_clocks
+from pytpc.scoring.curves import STEP_S, RankCurves, rank_curves
 from pytpc.scoring.ranking import MarkRanking
 
 __all__ = ["CARDS", "MissionReport", "MissionView", "figures", "mission_view"]
-
-CARDS = 3
-"""Suspects of a mark that are shown with their evidence."""
 
 ROWS = 8
 """Suspects of a mark that are listed at first; the others are when asked for."""
 
 _LANES = 8
+_STEPS = 6000
+_NUMBERS = 10_000_000
 
 WHAT: dict[MarkType | None, str] = {
     "I": "it did something that it should not have",
@@ -62,6 +63,7 @@ class MarkView:
     cards: list[CardView]
     more: int
     parameters: int
+    reason: str
     changed: str | None
 
 
@@ -90,7 +92,7 @@ class MissionView:
 
 def figures(mission: MissionReport) -> int:
     """How many figures ``mission_view`` makes."""
-    cards = sum(min(CARDS, len(ranking.suspects)) for ranking in mission.rankings)
+    cards = sum(min(mission.top, len(ranking.suspects)) for ranking in mission.rankings)
     return 1 + cards
 
 
@@ -100,9 +102,8 @@ def mission_view(mission: MissionReport, number: int, on_figure: Callable[[], No
     recording = mission.recording
     kinds = [mark.type for mark in recording.marks]
     drawn = Figures(mission)
-    advice = [_advice(mission, ranking) for ranking in mission.rankings]
     marks = [
-        _mark_view(mission, ranking, advice[place - 1], (ident, place), drawn, on_figure)
+        _mark_view(mission, ranking, (ident, place), drawn, on_figure)
         for place, ranking in enumerate(mission.rankings, start=1)
     ]
     timeline, lanes, moving = _timeline(mission, ident)
@@ -123,7 +124,7 @@ def mission_view(mission: MissionReport, number: int, on_figure: Callable[[], No
         lanes=lanes,
         marks=marks,
         facts=_facts(mission),
-        warnings=list(complaints(recording, mission.static_info)),
+        warnings=[*complaints(recording, mission.static_info), *two_clocks(recording)],
         payload=embedded(
             {
                 "seconds": recording.seconds,
@@ -138,39 +139,26 @@ def mission_view(mission: MissionReport, number: int, on_figure: Callable[[], No
     )
 
 
-def _advice(mission: MissionReport, ranking: MarkRanking) -> list[Advice]:
-    recording, static = mission.recording, mission.static_info
-    return [
-        Advice(
-            suspect,
-            suggest(
-                recording.events,
-                suspect.comparison,
-                ranking.mark.time_ns,
-                suspect.type,
-                unit=static.unit_of(suspect.key),
-                summaries=recording.summaries,
-            ),
-            None,
-            None,
-        )
-        for suspect in ranking.suspects
-    ]
-
-
 def _mark_view(
     mission: MissionReport,
     ranking: MarkRanking,
-    advice: Sequence[Advice],
     at: tuple[str, int],
     drawn: Figures,
     on_figure: Callable[[], None],
 ) -> MarkView:
     mark = ranking.mark
     ident = f"{at[0]}-{at[1]}"
+    advice = advise(
+        mission.recording,
+        mission.static_info,
+        ranking,
+        top=len(ranking.suspects),
+        declared=mission.declared,
+        window_s=mission.window_s,
+    )
     cards = []
-    for place, one in enumerate(advice[:CARDS], start=1):
-        cards.append(card_view(mission, one, mark, drawn, f"{ident}-{place}"))
+    for place, one in enumerate(advice[: mission.top], start=1):
+        cards.append(card_view(mission, one, ranking, drawn, f"{ident}-{place}"))
         on_figure()
     changed = mission.changed_parameter
     return MarkView(
@@ -185,6 +173,7 @@ def _mark_view(
         cards=cards,
         more=max(0, len(ranking.suspects) - ROWS),
         parameters=ranking.parameters,
+        reason=ranking.reason,
         changed=None if changed is None else _position(ranking, changed),
     )
 
@@ -208,16 +197,23 @@ def _timeline(
     if not order:
         return Markup(""), [], None
     events, start, end = recording.events, recording.start_ns, recording.end_ns
-    lanes = [
-        Lane(name, lane(events, best[name][1], start, end), name == changed) for name in order
-    ]
+    lanes = [Lane(name, lane(events, best[name][1], start, end), name == changed) for name in order]
     marks = [(mission.seconds(mark.time_ns), mark.type) for mark in recording.marks]
     label = f"results of {len(lanes)} parameters over {recording.seconds:.0f} s, {len(marks)} marks"
     svg = timeline_svg(lanes, marks, recording.seconds, f"{ident}-t", label)
     moving = lanes_of(events, [(name, best[name][1]) for name in order], start, end)
+    moving["curves"] = curves_of(_curves(mission), order, start)
     moving["accent"] = order.index(changed) if changed is not None else 0
     moving["culprit"] = changed is not None
     return Markup(svg), [(name, name == changed) for name in order], moving
+
+
+def _curves(mission: MissionReport) -> RankCurves:
+    """Both ranks over the mission, at 10 Hz or, where that were too much for a page, less often."""
+    static = mission.static_info
+    steps = min(_STEPS, _NUMBERS // max(1, len(static.thresholds)))
+    step_s = max(STEP_S, mission.recording.seconds / max(1, steps))
+    return rank_curves(mission.recording, static, step_s=step_s, window_s=mission.window_s)
 
 
 def _position(ranking: MarkRanking, parameter: str) -> str:
