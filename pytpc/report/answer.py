@@ -15,8 +15,9 @@ from pytpc.words import many
 class AnswerView:
     """Marks that name the same first suspect and the same direction, and that suspect's card.
 
-    Of the values that the marks suggest it is the one that answers most of them, and among these the
-    one that changes least elsewhere. ``numbers`` are the marks' numbers from 1, ``marks`` says in words which they are.
+    Of the values that the marks suggest it is the one that answers most of them, and among these
+    the one that changes least elsewhere. ``numbers`` are the marks' numbers from 1, ``marks`` says
+    in words which they are.
     """
 
     numbers: tuple[int, ...]

@@ -30,7 +30,7 @@ from pytpc.words import exact, many, show
 CARDS = 3
 """Suspects of a mark that are shown with their evidence."""
 
-_PARTS = 3
+_PARTS = 2
 
 
 @dataclass(frozen=True)
@@ -358,8 +358,8 @@ def _origin_view(mission: MissionReport, suspect: Suspect) -> OriginView | None:
         place=_short_path(origin.words()),
         full=origin.words(),
         text=origin.text.strip()[:LONGEST_LINE],
-        via=[_short_path(place) for place in origin.via],
-        overrides=[_short_path(place) for place in origin.overridden],
+        via=list(origin.via),
+        overrides=list(origin.overridden),
         note=origin.note,
     )
 

@@ -75,6 +75,7 @@ class MissionView:
     name: str
     treatment: str
     seconds: str
+    window: str
     reports: str
     marks_i: int
     marks_ii: int
@@ -113,6 +114,7 @@ def mission_view(mission: MissionReport, number: int, on_figure: Callable[[], No
         name=mission.name,
         treatment=mission.treatment,
         seconds=f"{recording.seconds:.1f}",
+        window=f"{mission.window_s:g}",
         reports=f"{len(recording.events):,}",
         marks_i=kinds.count("I"),
         marks_ii=kinds.count("II"),
