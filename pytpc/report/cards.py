@@ -272,8 +272,6 @@ def _evidence(mission: MissionReport, advice: Advice, mark: Mark) -> tuple[Evide
         mark_type=mark.type,
         window=at - mission.window_s if suspect.type == "II" else None,
         suggested=_suggested_threshold(found, advice.suggestion),
-        value_name="compared value" if found.relation != "flag" else "flag",
-        limit_name=found.name or suspect.parameter,
         culprit=mission.is_changed(suspect.parameter),
         feasible=_feasible_thresholds(found, advice.suggestion),
     )

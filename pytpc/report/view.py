@@ -25,11 +25,9 @@ from pytpc.report.cards import (
     card_view,
     row_view,
 )
-from pytpc.report.payload import curves_of, embedded, lanes_of, marks_of
-from pytpc.report.plots import Lane, timeline_svg
-from pytpc.report.series import lane
+from pytpc.report.payload import embedded, marks_of
+from pytpc.report.timeline import timeline
 from pytpc.scoring.clocks import two_clocks
-from pytpc.scoring.curves import STEP_S, RankCurves, rank_curves
 from pytpc.scoring.ranking import MarkRanking
 
 __all__ = ["CARDS", "MissionReport", "MissionView", "figures", "mission_view"]
@@ -37,9 +35,6 @@ __all__ = ["CARDS", "MissionReport", "MissionView", "figures", "mission_view"]
 ROWS = 8
 """Suspects of a mark that are listed at first; the others are when asked for."""
 
-_LANES = 8
-_STEPS = 6000
-_NUMBERS = 10_000_000
 
 WHAT: dict[MarkType | None, str] = {
     "I": "it did something that it should not have",
@@ -84,7 +79,6 @@ class MissionView:
     changed_parameter: str | None
     changed_positions: str
     timeline: Markup
-    lanes: list[tuple[str, bool]]
     marks: list[MarkView]
     facts: list[tuple[str, str]]
     warnings: list[str]
@@ -107,7 +101,7 @@ def mission_view(mission: MissionReport, number: int, on_figure: Callable[[], No
         _mark_view(mission, ranking, (ident, place), drawn, on_figure)
         for place, ranking in enumerate(mission.rankings, start=1)
     ]
-    timeline, lanes, moving = _timeline(mission, ident)
+    still, moving = timeline(mission, ident)
     on_figure()
     return MissionView(
         ident=ident,
@@ -122,8 +116,7 @@ def mission_view(mission: MissionReport, number: int, on_figure: Callable[[], No
         answers=answers([mark.cards for mark in marks]),
         changed_parameter=mission.changed_parameter,
         changed_positions=_positions(mission),
-        timeline=timeline,
-        lanes=lanes,
+        timeline=still,
         marks=marks,
         facts=_facts(mission),
         warnings=[*complaints(recording, mission.static_info), *two_clocks(recording)],
@@ -178,44 +171,6 @@ def _mark_view(
         reason=ranking.reason,
         changed=None if changed is None else _position(ranking, changed),
     )
-
-
-def _timeline(
-    mission: MissionReport, ident: str
-) -> tuple[Markup, list[tuple[str, bool]], dict[str, object] | None]:
-    """The figure that stands still, its lanes as (name, changed), and what the moving one shows."""
-    recording = mission.recording
-    best: dict[str, tuple[int, str]] = {}
-    for ranking in mission.rankings:
-        for suspect in ranking.suspects:
-            known = best.get(suspect.parameter)
-            if known is None or suspect.position < known[0]:
-                best[suspect.parameter] = (suspect.position, suspect.key)
-    ranked = sorted(best, key=lambda name: (best[name][0], name))
-    order = ranked[:_LANES]
-    changed = next((name for name in ranked if mission.is_changed(name)), None)
-    if changed is not None and changed not in order:
-        order[-1] = changed
-    if not order:
-        return Markup(""), [], None
-    events, start, end = recording.events, recording.start_ns, recording.end_ns
-    lanes = [Lane(name, lane(events, best[name][1], start, end), name == changed) for name in order]
-    marks = [(mission.seconds(mark.time_ns), mark.type) for mark in recording.marks]
-    label = f"results of {len(lanes)} parameters over {recording.seconds:.0f} s, {len(marks)} marks"
-    svg = timeline_svg(lanes, marks, recording.seconds, f"{ident}-t", label)
-    moving = lanes_of(events, [(name, best[name][1]) for name in order], start, end)
-    moving["curves"] = curves_of(_curves(mission), order, start)
-    moving["accent"] = order.index(changed) if changed is not None else 0
-    moving["culprit"] = changed is not None
-    return Markup(svg), [(name, name == changed) for name in order], moving
-
-
-def _curves(mission: MissionReport) -> RankCurves:
-    """Both ranks over the mission, at 10 Hz or, where that were too much for a page, less often."""
-    static = mission.static_info
-    steps = min(_STEPS, _NUMBERS // max(1, len(static.thresholds)))
-    step_s = max(STEP_S, mission.recording.seconds / max(1, steps))
-    return rank_curves(mission.recording, static, step_s=step_s, window_s=mission.window_s)
 
 
 def _position(ranking: MarkRanking, parameter: str) -> str:

@@ -260,7 +260,7 @@ const tpcFigures = (() => {
       for (const figure of [upper, lower]) {
         figure.add_layout(paint(
           new Bokeh.BoxAnnotation({
-            left: card.window, right: card.mark, level: "underlay", line_color: null, propagate_hover: true,
+            left: card.window, right: card.mark, level: "underlay", line_color: null, fill_alpha: 1,
           }),
           { fill_color: "span" },
         ));
