@@ -266,19 +266,24 @@ class Ranker:
         first = self.evidence.first_ns
         if not first:
             return "no comparison was reported"
-        early = min(first.values()) - mark.time_ns
-        late = mark.time_ns - self.evidence.last_ns
-        if max(early, late) > APART_NS:
+        last = self.evidence.reported_ns(mark.time_ns)
+        away = min(first.values()) - mark.time_ns if last is None else mark.time_ns - last
+        if away > APART_NS:
             return "the mark is on another clock than the reports"
-        if early > 0:
-            return f"the mark is {early / 1e9:.3g} s before the first report"
-        if late > self.window_s * 1e9:
-            return f"the mark is {late / 1e9:.3g} s after the last report"
+        if last is None:
+            return f"the mark is {_seconds(away)} before the first report"
+        if away > self.window_s * 1e9:
+            return f"the last report up to the mark is {_seconds(away)} before it"
         return ""
 
     def _why_nobody(self, mark: Mark) -> str:
         change = "no result had changed up to the mark"
-        near = f"nothing was compared in the {self.window_s:g} s before it, or never differed"
+        near = f"nothing that ever had two different values was compared in the {self.window_s:g} s"
         if self.types != "believe" or mark.type is None:
-            return f"{change}, and {near}"
-        return change if mark.type == "I" else near.replace("it", "the mark", 1)
+            return f"{change}, and {near} before it"
+        return change if mark.type == "I" else f"{near} before the mark"
+
+
+def _seconds(time_ns: int) -> str:
+    seconds = time_ns / 1e9
+    return f"{seconds:,.0f} s" if seconds >= 1000 else f"{seconds:.3g} s"
