@@ -30,6 +30,7 @@ SUMMARIES = {
     "report": ("report_commands", "Write a page with the suspects at each mark, and why."),
     "show": ("static_commands", "Show all that is known about a comparison."),
     "sink": ("graph_commands", "Show and change where running nodes report to."),
+    "suggest": ("advice_commands", "Say what to do with the suspects, and what it would change."),
     "survey": ("survey_commands", "Build source trees with and without TPC; tables."),
     "toolchain": ("machine_commands", "Print what to type to build with TPC by another tool."),
 }
