@@ -1,9 +1,13 @@
 from __future__ import annotations
 
+import base64
+import hashlib
+import json
 import math
 import re
 from collections import Counter
 from dataclasses import replace
+from html import unescape
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -13,6 +17,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from mission_samples import comparison, events, key, ns, static_info
 
+from pytpc.advice.declared import Declared
 from pytpc.errors import TpcError
 from pytpc.ingest import MalformedRecord, Recording
 from pytpc.marks import Mark
@@ -31,6 +36,7 @@ from pytpc.report.series import (
 )
 from pytpc.scoring.ranking import rank_marks
 from pytpc.static_info import PathStep
+from pytpc.values.origins import Origin
 
 NAN = math.nan
 # Two known lines and a gap; the second line is the comparison's own.
@@ -183,7 +189,7 @@ def mission(tmp_path, **changes):
 class Page(HTMLParser):
     """Collects what the tests ask of a page, and checks that its elements close."""
 
-    VOID = frozenset({"meta", "br", "path", "use", "rect", "line", "stop", "link", "img"})
+    VOID = frozenset({"meta", "br", "path", "use", "rect", "line", "stop", "link", "img", "input"})
 
     def __init__(self, text):
         super().__init__()
@@ -241,11 +247,20 @@ def test_the_page_asks_the_network_for_nothing(page_text):
     text = page_text
     page = Page(text)
     assert page.addresses == set()
-    assert page.tags["script"] == page.tags["link"] == page.tags["img"] == 0
-    # Namespaces are names, and nothing is fetched from them.
-    outside = set(re.findall(r"https?://[^\"' <]*", text))
-    assert outside == {"http://www.w3.org/2000/svg", "http://www.w3.org/1999/xlink"}
+    assert page.tags["link"] == page.tags["img"] == 0
     assert "@import" not in text
+    # What the page may do is said in it: it may fetch nothing, and run what it was written with.
+    policy = re.search('<meta http-equiv="Content-Security-Policy" content="([^"]*)">', text)
+    assert policy is not None
+    rules = dict(rule.strip().split(" ", 1) for rule in unescape(policy[1]).split(";"))
+    assert rules["default-src"] == "'none'"
+    assert set(rules) == {"default-src", "style-src", "img-src", "script-src"}
+    assert rules["img-src"] == "data:"
+    scripts = re.findall("<script>(.*?)</script>", text, re.DOTALL)
+    digests = [hashlib.sha256(script.encode()).digest() for script in scripts]
+    hashes = [f"'sha256-{base64.b64encode(digest).decode()}'" for digest in digests]
+    assert rules["script-src"].split() == hashes
+    assert page.tags["script"] == len(scripts) + 1
 
 
 def test_ids_are_unique_and_every_reference_meets_one(tmp_path):
@@ -271,10 +286,18 @@ def test_what_it_says(page_text):
     text = " ".join("".join(Page(page_text).text).split())
     assert "Mark at 31.0 s type I: it did something that it should not have, by o<b>" in text
     assert "The changed parameter's position: not ranked." in text
-    # faces >= 3 became true with 4 faces: above 4 it would not have.
-    assert "▲ Raise from 3 to 5 (above 4)" in text
-    # The nearest evaluation in the window has coverage 0.5 of 0.6: true below 0.5.
-    assert "▼ Lower from 0.6 to 0.499 (below 0.5)" in text
+    # Marks 1 and 3 name faces first: at 36 s both scores count, and faces, last changed 6 s before,
+    # is first by type I: 6 * 2 = 12 against 1 * 15 = 15 of NASTY.
+    assert "First suspect at marks 1, 3 of 3, by the score of type I." in text
+    # faces >= 3 became true with 4 faces: above 4 it would not have, and there are whole faces.
+    assert "▲ Raise faces from 3 to 5" in text
+    assert "It became true 1.00 s before the mark, with 4 against 3." in text
+    assert "Any value above 4 would do (limited by whole number)." in text
+    # The nearest evaluation in the window has coverage 0.5 of 0.6: true below 0.5. From 23 to 35 s
+    # there are 121 evaluations, both ends with them.
+    assert "At mark 2 of 3: ▼ Lower coverage changed from 0.6 to 0.499" in text
+    assert "In the 12 s before the mark it was false each of 121 times" in text
+    assert "the compared value came as near as 0.5 to 0.6. Any value below 0.5 would do." in text
     assert "4 >= 3 was true, 0.00 s before the mark" in text
     assert "Ranked among 4 parameters." in text
     assert re.search("Comparisons seen *3 of 4 found in the source", text)
@@ -312,8 +335,8 @@ def test_the_way_is_folded_on_the_card(page_text):
 
 
 def test_only_the_first_mark_is_unfolded(page_text):
-    assert page_text.count('<details class="mark" open>') == 1
-    assert page_text.count('<details class="mark">') == 2
+    found = re.findall('<details class="mark" id="(m1-[0-9])"( open)?>', page_text)
+    assert found == [("m1-1", " open"), ("m1-2", ""), ("m1-3", "")]
 
 
 def test_the_same_missions_make_the_same_page(tmp_path):
@@ -345,7 +368,8 @@ def test_missions_without_marks_or_reports(tmp_path):
     )
     text = "".join(Page(written(tmp_path, silent, empty)).text)
     assert "The observer marked nothing." in text
-    assert "No parameter has a score at this mark" in text
+    assert "Not enough evidence: no" in text
+    assert "At no mark has any parameter a score." in text
     assert "No missions." in "".join(Page(written(tmp_path)).text)
 
 
@@ -402,12 +426,138 @@ def test_odd_values_are_drawn_without_a_word(tmp_path, rows):
     recording = Recording("odd", events(rows), (Mark(ns(9), "I"),), 0, ns(9))
     static = static_info(comparison(0, "x" * 60))
     report = MissionReport("odd", recording, static, rank_marks(recording, static))
-    assert Page(written(tmp_path, report)).tags["svg"] == 2
+    assert Page(written(tmp_path, report)).tags["svg"] == 3
+
+
+def numbers_of(text, mission="m1"):
+    block = re.search(
+        f'<script type="application/json" id="{mission}-numbers">(.*?)</script>', text
+    )
+    assert block is not None
+    return json.loads(block[1])
+
+
+def unpacked(text, kind):
+    return np.frombuffer(base64.b64decode(text), dtype=kind)
+
+
+# Mark 2 is at 35 s of 40: shown from 15 s to the end, the window from 23 s, and what would do is
+# all below 0.5. Coverage t/60 stays at 0.5 from 30 s on; it is never above its limit of 0.6, which
+# never changes, so that it is told once.
+def test_the_numbers_of_the_moving_figures(page_text):
+    numbers = numbers_of(page_text)
+    assert numbers["seconds"] == 40
+    assert numbers["marks"] == [
+        {"t": 31, "type": "I"},
+        {"t": 35, "type": "II"},
+        {"t": 36, "type": ""},
+    ]
+    card = numbers["cards"]["m1-2-1"]
+    assert (card["begin"], card["end"], card["mark"], card["window"]) == (15, 40, 35, 23)
+    assert (card["feasible"], card["suggested"], card["culprit"]) == ([[None, 0.5]], 0.499, True)
+    series = numbers["series"][card["series"]]
+    assert series["of"] == 400
+    times = unpacked(series["t"], "<f4")
+    assert (times.size, times[0], times[-1]) == (400, 0, np.float32(39.9))
+    values = unpacked(series["c"], "<f8")
+    assert (values[60], values[300], values.max()) == (6 / 60, 0.5, 0.5)
+    assert not unpacked(series["r"], "u1").any()
+    assert unpacked(series["lt"], "<f8").tolist() == [0]
+    assert unpacked(series["lv"], "<f8").tolist() == [0.6]
+
+
+# Each of 6000 columns is 1/150 s: an evaluation each tenth of a second holds for 15 of them. faces
+# is false up to 30 s and true from then on, the last evaluation at 39.9 s for its own column.
+def test_the_lanes_of_the_moving_figure(page_text):
+    timeline = numbers_of(page_text)["timeline"]
+    assert timeline["labels"][0] == "coverage"
+    assert timeline["labels"][timeline["accent"]] == "coverage"
+    place = timeline["labels"].index("faces")
+    states = unpacked(timeline["runs"][place], "<i4").reshape(-1, 3).tolist()
+    assert states == [[FALSE, 0, 4500], [TRUE, 4500, 1486]]
+
+
+# faces first flops at 30 s; from then on it has a score of type I: rank 1 of 4 parameters while
+# 2 * (t - 30) is less than NASTY's. Before that it has none: rank 0.
+def test_the_curves_of_the_moving_figure(page_text):
+    timeline = numbers_of(page_text)["timeline"]
+    curves = timeline["curves"]
+    times = unpacked(curves["t"], "<f8")
+    assert (times.size, times[1], times[-1]) == (401, 0.1, 40)
+    ranks = unpacked(curves["I"][timeline["labels"].index("faces")], "<u2")
+    assert (ranks[299], ranks[310]) == (0, 65535)
+
+
+@pytest.mark.parametrize(
+    ("name", "shown"),
+    [
+        ("</script><b>", "</script><b>"),
+        ("<!--<script>", "<!--<script>"),
+        # Bokeh would look for a formula, and for MathJax on the network.
+        ("$$x$$", "$\N{WORD JOINER}$x$\N{WORD JOINER}$"),
+        ("\\[x\\]", "\\\N{WORD JOINER}[x\\]"),
+        # What nobody sees could make a name pass for another.
+        ("a\u202eb\x00c\u2028", "a\ufffdb\ufffdc\ufffd"),
+    ],
+)
+def test_names_stay_names_in_the_figures(tmp_path, name, shown):
+    plain = mission(tmp_path)
+    found = plain.static_info.comparisons[key(0)]
+    static = static_info(replace(found, source=name), source_root=str(tmp_path))
+    report = replace(plain, static_info=static, rankings=rank_marks(plain.recording, static))
+    text = written(tmp_path, report)
+    assert numbers_of(text)["timeline"]["labels"] == [shown]
+    assert Page(text).tags["b"] == 0
+    assert not set("\x00\u202e\u2028") & set(text)
+
+
+def test_ties_and_what_is_not_enough_are_said(tmp_path):
+    # Two parameters that flop at the same times have the same score.
+    rows = [(t, n, t % 2, t % 2, 0.5) for t in range(20) for n in (0, 1)]
+    recording = Recording("tie", events(rows), (Mark(ns(19), "I"),), 0, ns(20))
+    static = static_info(comparison(0, "a"), comparison(1, "b"), comparison(2, "c"))
+    rankings = rank_marks(recording, static)
+    whole = written(tmp_path, MissionReport("tie", recording, static, rankings))
+    assert whole.count('<td class="right number">1=</td>') == 2
+    text = "".join(Page(whole).text)
+    assert rankings[0].reason
+    assert f"Not enough evidence: {rankings[0].reason}" in text
+
+
+# The value is set in the first file, instead of in the second.
+def test_where_the_value_came_from_is_on_the_card(tmp_path):
+    origin = Origin(
+        "/node/coverage",
+        "yaml",
+        0.6,
+        Path("/a/very/long/way/robot/config/params<i>.yaml"),
+        7,
+        "coverage: 0.6  # <i>",
+        via=("/launch/robot.launch:3",),
+        overridden=("/else/where.yaml:9",),
+    )
+    report = mission(tmp_path, origins={origin.name: origin})
+    found = report.static_info.comparisons[key(1)]
+    static = static_info(replace(found, source="/node/coverage"), source_root=str(tmp_path))
+    rankings = rank_marks(report.recording, static)
+    page = Page(written(tmp_path, replace(report, static_info=static, rankings=rankings)))
+    assert page.tags["i"] == 0
+    text = " ".join("".join(page.text).split())
+    assert "Value set in…/config/params<i>.yaml:7coverage: 0.6 # <i>" in text
+    assert "Value set in/a/very/long/way/robot/config/params<i>.yaml:7coverage: 0.6" in text
+    assert "loaded by /launch/robot.launch:3instead of /else/where.yaml:9" in text
+
+
+def test_what_is_declared_is_on_the_card(tmp_path):
+    declared = Declared("coverage", "double", 0.0, 0.55, 0.05, 0.5, (), "how much", "cfg/A.cfg:4")
+    text = "".join(Page(written(tmp_path, mission(tmp_path, declared=[declared]))).text)
+    assert "double from 0 to 0.55, in steps of 0.05 cfg/A.cfg:4" in text
 
 
 def test_the_package_brings_its_templates():
     folder = Path(__file__).parents[2] / "pytpc" / "report" / "templates"
     assert {p.name for p in folder.iterdir()} == {
         *("report.html.j2", "report.css"),
+        *("report.js", "report-figures.js", "report-timeline.js"),
         *("tpcs.html.j2", "tpcs.css", "tpcs.js"),
     }
