@@ -111,7 +111,7 @@ const tpcTimeline = (() => {
     const narrow = host.clientWidth < 640;
     const margin = (mission.seconds || 1) * 0.006;
     const home = [-margin, (mission.seconds || 1) + margin];
-    const range = new Bokeh.Range1d({ start: home[0], end: home[1] });
+    const range = new Bokeh.Range1d({ start: home[0], end: home[1], bounds: home });
     const common = { x_range: range, min_border_left: narrow ? 110 : 190, min_border_right: 12 };
     const lanes = lanesOf(mission, common, narrow);
     const figures = [lanes];
