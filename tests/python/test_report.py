@@ -257,7 +257,7 @@ def test_missions_without_marks_or_reports(tmp_path):
         "empty", nothing, plain.static_info, rank_marks(nothing, silent.static_info)
     )
     text = "".join(Page(written(tmp_path, silent, empty)).text)
-    assert "The observer marked nothing." in text
+    assert "The observer marked nothing; `pytpc mark` does it afterwards, too." in text
     assert "Not enough evidence: no" in text
     assert "At no mark has any parameter a score." in text
     assert "No missions." in "".join(Page(written(tmp_path)).text)
