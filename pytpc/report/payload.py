@@ -16,7 +16,6 @@ import numpy.typing as npt
 from markupsafe import Markup
 
 from pytpc.columns import Floats
-from pytpc.events import Events
 from pytpc.ingest.recording import Recording
 from pytpc.marks import MarkType
 from pytpc.report.environment import seen
@@ -77,16 +76,26 @@ def series_of(recording: Recording, key: str) -> dict[str, object]:
     }
 
 
-def lanes_of(
-    events: Events, lanes: Sequence[tuple[str, str]], start_ns: int, end_ns: int
-) -> dict[str, object]:
+def lanes_of(recording: Recording, lanes: Sequence[tuple[str, str]]) -> dict[str, object]:
     """The lanes of the timeline, from pairs of (label, key)."""
-    states = [runs(lane(events, key, start_ns, end_ns, FINE)) for _, key in lanes]
+    found = [lane_of(recording, key, FINE) for _, key in lanes]
     return {
         "labels": [calm(label) for label, _ in lanes],
         "columns": FINE,
-        "runs": [packed(np.array(found, dtype=np.int32).reshape(-1)) for found in states],
+        "runs": [packed(np.array(runs(states), dtype=np.int32).reshape(-1)) for states in found],
     }
+
+
+def lane_of(recording: Recording, key: str, bins: int) -> npt.NDArray[np.int8]:
+    """int8[bins]: the states of one lane, see `pytpc.report.series.lane`."""
+    return lane(
+        recording.events,
+        key,
+        recording.start_ns,
+        recording.end_ns,
+        bins=bins,
+        summaries=recording.summaries,
+    )
 
 
 def curves_of(curves: RankCurves, names: Sequence[str], start_ns: int) -> dict[str, object]:

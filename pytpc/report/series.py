@@ -152,12 +152,19 @@ def gap_after(time: Floats) -> float:
 
 
 def lane(
-    events: Events, key: str, start_ns: int, end_ns: int, bins: int = BINS
+    events: Events,
+    key: str,
+    start_ns: int,
+    end_ns: int,
+    *,
+    bins: int = BINS,
+    summaries: Summaries | None = None,
 ) -> npt.NDArray[np.int8]:
     """int8[bins]: what the TPC ``key`` gave in each of equal spans of the mission.
 
     A result holds until the next one, if that comes within 2 s and three usual periods of the TPC:
-    a slow one is not a row of dots, and a pause stays a pause.
+    a slow one is not a row of dots, and a pause stays a pause. A summary with flops is both in all
+    of its period.
     """
     states = np.zeros(bins, dtype=np.int8)
     rows = rows_of(events, key)
@@ -171,6 +178,13 @@ def lane(
         usual = min(_GAP_S * 1e9, _HOLD_PERIODS * float(np.median(steps)))
         for row in np.flatnonzero((np.diff(place) > 1) & (steps <= usual)):
             states[place[row] + 1 : place[row + 1]] = TRUE if result[row] else FALSE
+    if summaries is not None and key in summaries.keys:
+        own = summaries.take(summaries.key == summaries.keys.index(key))
+        ends = np.stack([own.begin_ns, own.end_ns]) - start_ns
+        spans = np.clip(ends * bins // max(1, end_ns - start_ns), 0, bins - 1)
+        known = np.where(own.flops > 0, BOTH, np.where(own.result, TRUE, FALSE))
+        for first, last, state in zip(*spans.tolist(), known.tolist(), strict=True):
+            states[first : last + 1] |= state
     return states
 
 

@@ -179,6 +179,14 @@ def test_summaries_are_drawn_as_spans(tmp_path):
         for card in cards
     ]
     assert spans == [[[20, 40], [30, 50], [2, 2], [2.5, 2.5]], [[20], [30], [2], [2.5]]]
+    # 6000 columns of a hundredth of a second; the first evaluation stands alone at 1 s.
+    lanes = dict(zip(numbers["timeline"]["labels"], numbers["timeline"]["runs"], strict=True))
+    assert unpacked(lanes["b"], "<i4").tolist() == [FALSE, 2000, 1001]
+    assert unpacked(lanes["a"], "<i4").reshape(-1, 3).tolist() == [
+        [FALSE, 100, 1],
+        [FALSE, 2000, 1001],
+        [FALSE, 4000, 1001],
+    ]
     shown = " ".join("".join(Page(text).text).split())
     said = "In the 12 s before the mark it was false each of 100 times; the compared value came as"
     assert f"{said} near as 2.5 to 3." in shown
