@@ -24,7 +24,7 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 
@@ -124,7 +124,7 @@ def rank_marks(
         One ranking for each mark, in the order of ``recording.marks``.
 
     Raises:
-        ValueError: ``window_s`` is negative.
+        ValueError: ``window_s`` is negative, or ``types`` is none of these words.
     """
     tpcs = Tpcs.of(static_info)
     events = recording.events.with_keys(tpcs.keys)
@@ -166,6 +166,15 @@ class Ranker:
     evidence: Evidence
     types: Types = "believe"
     window_s: float = WINDOW_S
+
+    def __post_init__(self) -> None:
+        """Check the word.
+
+        Raises:
+            ValueError: ``types`` is none of ``Types``.
+        """
+        if self.types not in get_args(Types):
+            raise ValueError(f"types is {self.types!r}, not one of {', '.join(get_args(Types))}")
 
     def ranking(self, mark: Mark, tables: Tables, row: int) -> MarkRanking:
         """The ranking at ``mark``, whose scores are in ``row`` of the tables."""
