@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from xml.sax.saxutils import escape
 
 from pytpc.values.launch_value import launch_text, launch_value
 from pytpc.values.launch_xml import Attribute, Tag, encoding_of, inner_text, read_tags, written
