@@ -213,10 +213,12 @@ def _set_live(journal: Journal, parameter: str, value: str, options: _Options) -
     name = _full_name(robot, parameter)
     change = robot.plan(name, value, force=options.force)
     if options.dry_run:
-        holds, entry = change.new, None
+        entry, holds, taken = None, change.new, False
     else:
-        holds, entry = set_live(robot, change, journal)
-    told = _told(change, holds)
+        entry, holds, taken = set_live(robot, change, journal)
+    told = _told(change, holds, taken)
+    if options.dry_run and change.service:
+        told = "the node would take it at once (dynamic_reconfigure)"
     if options.as_json:
         return {
             "parameter": name,
@@ -226,7 +228,7 @@ def _set_live(journal: Journal, parameter: str, value: str, options: _Options) -
             "holds": to_json(holds),
             "service": change.service or None,
             "nodes": list(change.nodes),
-            "taken_at_once": bool(change.service),
+            "taken_at_once": taken,
             "note": told,
             "written": entry is not None,
             "undo": None if entry is None else entry.number,
@@ -250,9 +252,9 @@ def _full_name(robot: Robot, parameter: str) -> str:
     return meant[0]
 
 
-def _told(change: LiveChange, holds: object) -> str:
+def _told(change: LiveChange, holds: object, taken: bool) -> str:
     """Whether the node has the new value, too."""
-    if change.service:
+    if taken:
         if repr(holds) != repr(change.new):
             return f"the node has made {shown(holds)} of it (dynamic_reconfigure): its own limits"
         return "the node has taken it (dynamic_reconfigure); it goes on without a restart"

@@ -15,6 +15,7 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import json
+import re
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -28,6 +29,8 @@ from roslaunch.xmlloader import XmlLoader, XmlParseException
 from rospkg import ResourceNotFound
 
 COMMAND_LINE = "command line"
+ANONYMOUS = "__tpc_anon"
+_ANON = re.compile(r"\$\(anon\s+([^)\s]+)\s*\)")
 
 # roslaunch has no types. A tag is a minidom element, a context its LoaderContext.
 _Tag = Any
@@ -68,8 +71,7 @@ class _Tracer(XmlLoader):  # type: ignore[misc]
     """roslaunch's loader, which tells ``_Config`` where it is."""
 
     def __init__(self, config: _Config) -> None:
-        # $(anon x) stays as it is: its random name would not be that of the run.
-        super().__init__(resolve_anon=False)
+        super().__init__()
         # Whether an <arg> is missing is roslaunch's to say.
         self.ignore_unset_args = False
         self.files: dict[str, str] = {}
@@ -79,6 +81,13 @@ class _Tracer(XmlLoader):  # type: ignore[misc]
         self._tag_place: dict[str, Any] | None = None
         self._node_params: dict[str, dict[str, Any]] = {}
         config.place_of = self._place_of
+
+    def resolve_args(self, args: str, context: _Context) -> str:
+        # The random name of $(anon x) would not be that of the run.
+        for name in _ANON.findall(args or ""):
+            context.resolve_dict.setdefault("anon", {})[name] = name + ANONYMOUS
+        resolved: str = super().resolve_args(args, context)
+        return resolved
 
     def _place_of(self, key: str) -> dict[str, Any]:
         if self._tag_place is not None:
