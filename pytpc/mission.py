@@ -285,7 +285,7 @@ class _Watch:
 
     def wait_for_parameters(self, trace: Trace | None) -> None:
         """Until roslaunch has set what the launch file sets, which it does before any node runs."""
-        wanted = set(trace.settings if trace is not None else ())
+        wanted = set() if trace is None else trace.by_roslaunch
         limit = time.monotonic() + _SET_PATIENCE_S
         while time.monotonic() < limit:
             self.look()

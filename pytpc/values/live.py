@@ -134,6 +134,13 @@ class Robot:
         if service:
             try:
                 uri = call(self.master, "lookupService", _CALLER, service)
+            except xmlrpc.client.Fault:
+                # The node has ended meanwhile: the next one reads the server.
+                service = ""
+            except _CALL_ERRORS as error:
+                raise RunError(f"the ROS master at {self.master} does not answer") from error
+        if service:
+            try:
                 taken = _reconfigure(str(uri), service, name.rpartition("/")[2], value)
             except (*_CALL_ERRORS, struct.error) as error:
                 raise RunError(f"{service} does not take it: {error}") from error

@@ -51,6 +51,15 @@ class Trace:
     nodes: Sequence[LaunchNode]
     files: Mapping[str, str]
 
+    @property
+    def by_roslaunch(self) -> set[str]:
+        """What roslaunch sets before any node runs; nodes set what is in their args themselves."""
+        return {
+            name
+            for name, settings in self.settings.items()
+            if any(setting.get("from") != "args" for setting in settings)
+        }
+
 
 def roslaunch_python(env: Mapping[str, str]) -> str:
     """The Python that roslaunch runs with.

@@ -41,6 +41,8 @@ MAIN = """<launch>
   <rosparam param="alone">5</rosparam>
   <param name="again" value="1"/>
   <param name="again" value="2"/>
+  <node pkg="robot" type="leg" name="leg" args="-v _step:=0.5 _fast:=true"/>
+  <param name="leg/step" value="0.4"/>
 </launch>
 """
 INNER = """<launch>

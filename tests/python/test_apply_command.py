@@ -241,6 +241,13 @@ def test_what_is_refused_by_origin(run, tmp_path: Path) -> None:
     )
     given = run(launch, "/left/gain", "3", "rate:=8", status=1).output
     assert "rate:=8 on roslaunch's command line; give rate:=VALUE there instead" in given
+    assert (
+        "<arg> speed is used in line 12, too" in run(launch, "/right/depth", "2", status=1).output
+    )
+    assert (
+        "main.launch:29: /leg/step stands in the args of the node: _step:=0.5"
+        in run(launch, "/leg/step", "2", status=1).output
+    )
     assert "roslaunch works its value out" in run(launch, "/computed", "2", status=1).output
     assert "the output of a command" in run(launch, "/text", "2", status=1).output
     merged = run(launch, "/other/mass", "5", status=1).output

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+import subprocess
 from pathlib import Path
 
 import pytest
+import yaml
 from click.testing import CliRunner
 from launch_samples import environment, make_package, needs_roslaunch
 
@@ -59,6 +61,9 @@ PLACES = [
     ("/right/depth", "launch", 1.5, "launch/main.launch", 3),
     ("/right/width", "launch", 9, "launch/inner.launch", 3),
     ("/computed", "launch", 6, "launch/main.launch", 24),
+    # The node itself sets what is in its args, when it starts.
+    ("/leg/step", "launch", 0.5, "launch/main.launch", 29),
+    ("/leg/fast", "launch", True, "launch/main.launch", 29),
     # The last of two holds.
     ("/again", "launch", 2, "launch/main.launch", 28),
 ]
@@ -91,14 +96,51 @@ def test_what_else_is_known(sample):
     assert target.origins["/right/depth"].via == (
         f"{main_launch}:21",
         f"{folder}/robot/launch/inner.launch:4",
+        f"{main_launch}:22",
     )
     assert "roslaunch works it out" in target.origins["/computed"].note
     # The command of a parameter is not run: `false` would have failed the whole file.
     assert target.origins["/text"].note == "the output of a command: false"
+    assert target.origins["/leg/step"].note == "in the args of the node: _step:=0.5"
+    assert target.origins["/leg/step"].overridden == (f"{main_launch}:30",)
     assert target.origins["/again"].overridden == (f"{main_launch}:27",)
     # rosparam's own angles: 90 degrees are pi/2.
     assert target.origins["/mission/angle"].value == pytest.approx(1.5707963267948966)
-    assert [(node.name, node.lineno) for node in target.nodes] == [("/left/arm", 11)]
+    assert [(node.name, node.lineno) for node in target.nodes] == [
+        ("/left/arm", 11),
+        ("/leg", 29),
+    ]
+
+
+@needs_roslaunch
+def test_roslaunch_says_the_same(tmp_path):
+    """The values are those that `roslaunch --dump-params` gives, for the sample and a mission."""
+    launch = make_package(tmp_path)
+    # roslaunch would run the command, which fails.
+    launch.write_text(launch.read_text().replace(' command="false"', ' value="t"'))
+    mission = Path(__file__).parents[2] / "examples/image_capture/launch/image_capture.launch"
+    env = environment(tmp_path)
+    env["ROS_PACKAGE_PATH"] += f":{mission.parents[2]}"
+    for file, args in ((launch, {"rate": "8"}), (mission, {"seed": "3", "fault": "true"})):
+        given = [f"{name}:={value}" for name, value in args.items()]
+        said = subprocess.run(
+            ["roslaunch", "--dump-params", str(file), *given],
+            env=env, capture_output=True, text=True, check=True, timeout=60,
+        )  # fmt: skip
+        wanted = yaml.load(said.stdout, yaml.SafeLoader)
+        trace = trace_launch(env, file, args)
+        found = {
+            name: settings[-1]["value"]
+            for name, settings in trace.settings.items()
+            if name in trace.by_roslaunch
+        }
+        # In a node's args; roslaunch does not know of it.
+        found.pop("/leg/step", None)
+        wanted.pop("/leg/step", None)
+        for own in ("/rosdistro", "/rosversion"):
+            wanted.pop(own, None)
+        assert len(found) > 15
+        assert found == wanted
 
 
 @needs_roslaunch
@@ -333,6 +375,16 @@ def test_the_command(tmp_path, monkeypatch):
     several = CliRunner().invoke(main, ["origin", str(launch), "limit"])
     assert several.exit_code == 1
     assert "several parameters end with limit: /left/arm/limit, /mission/limit" in several.output
+
+
+def test_the_launch_file_of_a_graph_that_runs(tmp_path):
+    out = ["-o", str(tmp_path / "out"), "--launch", str(tmp_path / "none.launch")]
+    done = CliRunner().invoke(main, ["record", *out])
+    assert done.exit_code == 1
+    assert f"{tmp_path}/none.launch: no such launch file" in done.output
+    twice = CliRunner().invoke(main, ["record", "ws", "a.launch", *out])
+    assert twice.exit_code == 2
+    assert "--launch is for a graph that runs" in twice.output
 
 
 def test_a_mission_that_was_recorded_without(tmp_path):
