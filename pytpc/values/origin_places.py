@@ -104,54 +104,51 @@ class Places:
         return found
 
     def _origin(self, name: str, setting: Mapping[str, Any]) -> Origin:
-        value = setting.get("value")
         if "file" not in setting:
-            return Origin(name, "unknown", value, None, None, "")
+            return Origin(name, "unknown", setting.get("value"), None, None, "")
         launch = Path(setting["file"])
-        way = tuple(setting.get("via", ()))
         if setting["tag"] == "rosparam":
-            return self._from_rosparam(name, setting, launch, way)
-        lineno = int(setting["lineno"])
-        origin = Origin(
-            name, "launch", value, launch, lineno, self._files.line(launch, lineno), way
-        )
-        return self._from_param(origin, setting)
+            return self._from_rosparam(name, setting, launch)
+        return self._from_param(self._at(name, launch, int(setting["lineno"]), setting), setting)
 
-    def _from_rosparam(
-        self, name: str, setting: Mapping[str, Any], launch: Path, way: tuple[str, ...]
-    ) -> Origin:
-        value = setting.get("value")
+    def _at(self, name: str, path: Path, lineno: int | None, setting: Mapping[str, Any]) -> Origin:
+        """An origin at a line, of a launch file as long as nobody says otherwise."""
+        return Origin(
+            name=name,
+            kind="launch",
+            value=setting.get("value"),
+            path=path,
+            lineno=lineno,
+            text="" if lineno is None else self._files.line(path, lineno),
+            via=tuple(setting.get("via", ())),
+            source=self._files.source(path),
+        )
+
+    def _from_rosparam(self, name: str, setting: Mapping[str, Any], launch: Path) -> Origin:
         below = keys_below(name, str(setting.get("base", "/")))
+        of_tag = int(setting["lineno"])
         if setting.get("from") == "file":
-            path = Path(setting["yaml"])
+            path, first = Path(setting["yaml"]), 0
             found = self._files.settings(path, 0).get(below)
-            way = (*way, f"{launch}:{setting['lineno']}")
-            kind, first = "yaml", 0
+            unknown = self._at(name, path, None, setting)
+            unknown = replace(unknown, kind="yaml", via=(*unknown.via, f"{launch}:{of_tag}"))
         else:
-            path = launch
+            path, first = launch, 0
             span = self._files.text_of(launch, int(setting["offset"]))
             found = None if span is None else self._files.settings(path, *span).get(below)
-            kind = "launch"
-            first = int(setting["lineno"]) - 1
             if span is not None:
                 first = self._files.data(path)[: span[0]].count(b"\n")
+            unknown = self._at(name, path, of_tag, setting)
         if found is None:
-            lineno = None if kind == "yaml" else int(setting["lineno"])
-            return Origin(
-                name, "yaml" if kind == "yaml" else "launch", value, path, lineno,
-                "" if lineno is None else self._files.line(path, lineno), way,
-                note="the line in it is not known", source=self._files.source(path),
-            )  # fmt: skip
+            return replace(unknown, note="the line in it is not known")
         lineno = first + found.node.lineno
         note = ""
         if found.shared:
             note = f"it is written for more than this place ({found.shared})"
         elif setting.get("substituted") and "$(" in found.node.text:
             note = "roslaunch puts something in here (subst_value)"
-        return Origin(
-            name, "yaml" if kind == "yaml" else "launch", value, path, lineno,
-            self._files.line(path, lineno), way, note, found.keys, source=self._files.source(path),
-        )  # fmt: skip
+        text = self._files.line(path, lineno)
+        return replace(unknown, lineno=lineno, text=text, note=note, keys=found.keys)
 
     def _from_param(self, origin: Origin, setting: Mapping[str, Any]) -> Origin:
         written = str(setting.get("written", ""))

@@ -330,6 +330,18 @@ def test_the_source_of_an_installed_copy_is_changed(run, tmp_path: Path) -> None
     assert "the robot had 0.5; the file was changed since" in again.stderr
 
 
+@needs_roslaunch
+def test_an_installed_launch_file(run, tmp_path: Path) -> None:
+    source, copy = workspace(tmp_path)
+    text = '<launch>\n  <param name="limit" value="0.5"/>\n</launch>\n'
+    files = [folder.parent.parent / "launch/a.launch" for folder in (source, copy)]
+    for file in files:
+        file.parent.mkdir()
+        file.write_text(text)
+    run(files[1], "limit", "0.25")
+    assert [file.read_text() for file in files] == [text.replace("0.5", "0.25"), text]
+
+
 def test_sources(tmp_path: Path) -> None:
     source, copy = workspace(tmp_path)
     assert source_of(copy) == source
