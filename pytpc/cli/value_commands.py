@@ -34,6 +34,7 @@ from pytpc.values.target import (
 from pytpc.values.undo import entry_of, set_live, take_back
 from pytpc.words import plain
 
+_LONGEST = 60
 _PATH = click.Path(path_type=Path)
 _ARGUMENT = re.compile(r"[A-Za-z_]\w*:=.*", re.DOTALL)
 _WORKSPACE = click.option(
@@ -319,7 +320,7 @@ def _show_diff(change: Change) -> None:
 
 
 def _show_origin(origin: Origin) -> None:
-    click.echo(plain(f"{origin.name} = {shown(origin.value)}: {origin.words()}"))
+    click.echo(plain(f"{origin.name} = {_short(shown(origin.value))}: {origin.words()}"))
     lines = [origin.text] if origin.text else []
     lines += [f"through {place}" for place in origin.via]
     lines += [f"overrides {place}" for place in origin.overridden]
@@ -335,9 +336,14 @@ def _origins_table(origins: Sequence[Origin]) -> Table:
         table.add_column(heading, overflow="fold")
     for origin in origins:
         where = origin.words() if origin.path is not None else ""
-        cells = (origin.name, shown(origin.value), origin.kind, where, origin.note)
+        cells = (origin.name, _short(shown(origin.value)), origin.kind, where, origin.note)
         table.add_row(*(Text(plain(cell)) for cell in cells))
     return table
+
+
+def _short(text: str) -> str:
+    """A robot's description is a parameter, too, of half a megabyte."""
+    return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}..."
 
 
 COMMANDS: list[click.Command] = [origin_command, apply_command]

@@ -1,7 +1,7 @@
 """What a launch file sets, and which line of which file sets it.
 
-``trace_launch`` runs ``pytpc.values.launch_tracer`` with roslaunch's own Python; this module turns
-what that says into places.
+``trace_launch`` runs ``pytpc.values.tracer.launch_tracer`` with roslaunch's own Python, and
+``pytpc.values.origin_places`` turns what that says into places.
 """
 
 from __future__ import annotations

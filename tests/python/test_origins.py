@@ -262,6 +262,13 @@ def test_recorded_and_read(tmp_path):
     assert document["env"]["ROS_PACKAGE_PATH"] == str(tmp_path)
 
 
+def test_a_dump_that_cannot_be_read_costs_no_mission(tmp_path):
+    (tmp_path / "params.yaml").write_text("a: [\n")
+    save_origins(tmp_path, tmp_path / "params.yaml", None, "", {})
+    assert read_origins(tmp_path) == {}
+    assert "not YAML in line 2" in json.loads((tmp_path / ORIGINS_FILE).read_text())["reason"]
+
+
 def test_no_origins(tmp_path):
     assert read_origins(tmp_path) == {}
 
