@@ -12,6 +12,7 @@ INTERRUPTED = 130
 # Where each command is and what the list of commands says of it: what draws, builds or reads bags
 # takes a second to import, which asking for help, or another command, must not wait for.
 SUMMARIES = {
+    "apply": ("value_commands", "Write a value into the file that set it, or onto the robot."),
     "blind-spots": ("explain_commands", "List the places behind which the analysis does not see."),
     "build": ("workspace_commands", "Build a workspace with analysis and instrumentation."),
     "collect": ("static_commands", "Merge the static information of link units into one file."),
@@ -23,11 +24,12 @@ SUMMARIES = {
     "list": ("static_commands", "List the comparisons that were found."),
     "mark": ("mark_commands", "Mark by one key each when the robot does wrong."),
     "marks": ("rank_commands", "List the marks of a recording; add or remove some."),
+    "origin": ("value_commands", "Say where the values of parameters came from."),
     "patch": ("workspace_commands", "Put TPC's three lines into each CMakeLists.txt."),
     "rank": ("rank_commands", "Name the suspected parameters at each mark."),
     "record": ("mission_commands", "Record the running graph, or a launch file's mission."),
     "relay": ("graph_commands", "Pass reports on from /rosout to /threshold_information."),
-    "report": ("event_commands", "Write a page with the suspects at each mark, and why."),
+    "report": ("report_commands", "Write a page with the suspects at each mark, and why."),
     "show": ("static_commands", "Show all that is known about a comparison."),
     "sink": ("graph_commands", "Show and change where running nodes report to."),
     "stats": ("stats_commands", "Tables and figures of a study from recorded missions."),

@@ -1,0 +1,339 @@
+"""A suspect at a mark as plain texts and numbers, before any HTML: a row, or a row and its card."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from markupsafe import Markup
+
+from pytpc.advice.advise import Advice, alternatives
+from pytpc.advice.counterfactual import WhatIf
+from pytpc.advice.declared import Declared
+from pytpc.advice.suggest import Suggestion
+from pytpc.arithmetic import evaluate
+from pytpc.marks import Mark
+from pytpc.report.mission import MissionReport
+from pytpc.report.payload import finite, series_of
+from pytpc.report.plots import EvidenceStyle, evidence_svg, span_of
+from pytpc.report.reasons import why
+from pytpc.report.series import Evidence, evidence
+from pytpc.report.source import LONGEST_LINE, Line, StepView, source_lines, way_of
+from pytpc.scoring.ranking import MarkRanking, Suspect
+from pytpc.static_info import Comparison
+from pytpc.values.origins import origin_for
+from pytpc.words import exact, show
+
+_PARTS = 2
+
+
+@dataclass(frozen=True)
+class SuspectView:
+    """A suspect at a mark, as a row of the ranking."""
+
+    position: str
+    parameter: str
+    culprit: bool
+    current: str
+    value: str
+    direction: str
+    suggestion: str
+    impossible: bool
+    bound: str
+    limited: str
+    place: str
+    condition: str
+    relation: str
+    type: str
+    score: str
+    rank: str
+    order: Mapping[str, float | int | str]
+
+
+@dataclass(frozen=True)
+class OriginView:
+    """Where a value came from; ``full`` has whole paths, ``overrides`` what does not count."""
+
+    place: str
+    full: str
+    text: str
+    via: list[str]
+    overrides: list[str]
+    note: str
+
+
+@dataclass(frozen=True)
+class CardView:
+    """A suspect at a mark with its evidence; ``ident`` names its figure."""
+
+    ident: str
+    row: SuspectView
+    why: str
+    compared: str
+    threshold: str
+    result: str
+    age: str
+    node: str
+    unit: str
+    exposed: str
+    others: int
+    limit_name: str
+    kept: bool
+    plot: Markup
+    alone: str
+    source: list[Line]
+    source_note: str
+    way: list[StepView]
+    origin: OriginView | None
+    declared: str
+    declared_at: str
+    what_if: WhatIf | None
+    alternatives: list[tuple[str, str]]
+
+
+class Figures:
+    """The figures of one mission, as the page's script draws them: cards, and series by TPC."""
+
+    def __init__(self, mission: MissionReport) -> None:
+        """None yet."""
+        self._mission = mission
+        self._numbers: dict[str, int] = {}
+        self.series: list[dict[str, object]] = []
+        self.cards: dict[str, dict[str, object]] = {}
+
+    def add(self, ident: str, key: str, card: dict[str, object]) -> None:
+        """Keep a card's figure, and the evaluations of its TPC where they are not kept yet."""
+        if key not in self._numbers:
+            self._numbers[key] = len(self.series)
+            self.series.append(series_of(self._mission.recording, key))
+        self.cards[ident] = {**card, "series": self._numbers[key]}
+
+
+def row_view(mission: MissionReport, advice: Advice) -> SuspectView:
+    """The row of a suspect."""
+    suspect, suggestion = advice.suspect, advice.suggestion
+    found = suspect.comparison
+    current = suggestion.current if suggestion.current is not None else suspect.last.thresh
+    place = f"{found.file}:{found.lineno}"
+    return SuspectView(
+        position=f"{suspect.position}{'=' if suspect.tied else ''}",
+        parameter=suspect.parameter,
+        culprit=mission.is_changed(suspect.parameter),
+        current=show(current),
+        value=exact(suggestion.value) if suggestion.value is not None else "",
+        direction=suggestion.direction or "",
+        suggestion=suggestion.text,
+        impossible=suggestion.direction is None,
+        bound=_bound(suggestion),
+        limited=suggestion.limited_by,
+        place=place,
+        condition=(found.source_code or "").strip()[:LONGEST_LINE],
+        relation=found.relation,
+        type=suspect.type,
+        score=f"{suspect.score:.3g}",
+        rank=f"{suspect.rank:.2f}",
+        order={
+            "position": suspect.position,
+            "parameter": suspect.parameter,
+            "current": _sortable(float(current)),
+            "place": f"{found.file}:{found.lineno:08d}",
+            "score": _sortable(suspect.score),
+            "rank": suspect.rank,
+        },
+    )
+
+
+def card_view(
+    mission: MissionReport, advice: Advice, ranking: MarkRanking, figures: Figures, ident: str
+) -> CardView:
+    """The card of a suspect at a mark; its figure is added to ``figures``."""
+    mark = ranking.mark
+    suspect, declared = advice.suspect, advice.declared
+    found, last = suspect.comparison, suspect.last
+    unit = mission.static_info.unit_of(suspect.key)
+    lines, note = source_lines(mission.static_info, found)
+    data, style = _evidence(mission, advice, mark)
+    label = (
+        f"{suspect.parameter}: compared value and threshold around the mark at {style.mark:.1f} s;"
+        f" {data.evaluations} evaluations, {data.flops.size} changes of the result"
+    )
+    figures.add(ident, suspect.key, _figure(data, style, suspect))
+    return CardView(
+        ident=ident,
+        row=row_view(mission, advice),
+        why=why(mission, suspect, mark),
+        compared=show(last.cmp),
+        threshold=show(last.thresh),
+        result="true" if last.result else "false",
+        age=f"{(mark.time_ns - last.time_ns) / 1e9:.2f}",
+        node=last.node,
+        unit=f"{unit.package}/{unit.link_unit}",
+        exposed=_exposed(found),
+        others=len(suspect.keys) - 1,
+        limit_name=found.name or suspect.parameter,
+        kept=bool(data.kept.size),
+        # Made of matplotlib's own XML, in which it escapes every text.
+        plot=Markup(evidence_svg(data, style, ident, label)),
+        alone=label,
+        source=lines,
+        source_note=note,
+        way=way_of(found),
+        origin=_origin_view(mission, suspect),
+        declared=_declared(declared) if declared is not None else "",
+        declared_at=declared.place if declared is not None else "",
+        what_if=advice.what_if,
+        alternatives=_alternatives(mission, ranking, suspect),
+    )
+
+
+def _evidence(mission: MissionReport, advice: Advice, mark: Mark) -> tuple[Evidence, EvidenceStyle]:
+    recording, suspect = mission.recording, advice.suspect
+    found = suspect.comparison
+    start, end = recording.start_ns, recording.end_ns
+    at = mission.seconds(mark.time_ns)
+    style = EvidenceStyle(
+        mark=at,
+        mark_type=mark.type,
+        window=at - mission.window_s if suspect.type == "II" else None,
+        suggested=_suggested_threshold(found, advice.suggestion),
+        culprit=mission.is_changed(suspect.parameter),
+        feasible=_feasible_thresholds(found, advice.suggestion),
+    )
+    data = evidence(
+        recording.events, suspect.key, mark.time_ns, start, end, summaries=recording.summaries
+    )
+    return data, style
+
+
+def _figure(data: Evidence, style: EvidenceStyle, suspect: Suspect) -> dict[str, object]:
+    low, high, beyond = span_of(data, style)
+    return {
+        "begin": data.begin,
+        "end": data.end,
+        "low": low,
+        "high": high,
+        "beyond": beyond,
+        "mark": style.mark,
+        "type": style.mark_type or "",
+        "window": style.window,
+        "suggested": finite(style.suggested),
+        "feasible": [[finite(low), finite(high)] for low, high in style.feasible],
+        "culprit": style.culprit,
+        "kept": bool(data.kept.size),
+        "flag": suspect.comparison.relation == "flag",
+    }
+
+
+def _threshold_of(found: Comparison, value: float) -> float:
+    """The threshold that a value of the parameter gives; NaN where that is not known."""
+    how = found.transform
+    try:
+        if how is not None and how.tree is not None:
+            return evaluate(how.tree, value)
+        if how is None or how.scale is None or how.offset is None:
+            return value
+        return how.scale * value + how.offset
+    except (ArithmeticError, ValueError):
+        return math.nan
+
+
+def _suggested_threshold(found: Comparison, suggestion: Suggestion) -> float | None:
+    if suggestion.value is None or suggestion.direction == "switch":
+        return None
+    return _threshold_of(found, float(suggestion.value))
+
+
+def _feasible_thresholds(
+    found: Comparison, suggestion: Suggestion
+) -> tuple[tuple[float, float], ...]:
+    """The values that would do, as thresholds; an end without a finite one lies beyond the plot."""
+    if found.relation == "flag":
+        return ()
+    spans = []
+    for interval in suggestion.feasible:
+        low, high = (_threshold_of(found, end) for end in (interval.low, interval.high))
+        if math.isnan(low) or math.isnan(high):
+            # Which end is open shows the side on which the suggested value lies.
+            end = high if math.isnan(low) else low
+            inside = _suggested_threshold(found, suggestion)
+            if inside is None or math.isnan(end) or math.isnan(inside):
+                continue
+            low, high = end, math.inf if inside > end else -math.inf
+        spans.append((min(low, high), max(low, high)))
+    return tuple(spans)
+
+
+def _bound(suggestion: Suggestion) -> str:
+    """Which values would do: ``any value below 0.0527, or above 3``; empty for a switch."""
+    if suggestion.direction == "switch" or not suggestion.feasible:
+        return ""
+    return f"any value {', or '.join(interval.words() for interval in suggestion.feasible)}"
+
+
+def _exposed(found: Comparison) -> str:
+    place = f"{found.exposed_at.file}:{found.exposed_at.lineno}"
+    return f"{found.topic} ({place})" if found.topic else place
+
+
+def _origin_view(mission: MissionReport, suspect: Suspect) -> OriginView | None:
+    default = suspect.comparison.default
+    origin = origin_for(mission.origins, suspect.parameter, suspect.last.node, default)
+    if origin is None:
+        return None
+    return OriginView(
+        place=_short_path(origin.words()),
+        full=origin.words(),
+        text=origin.text.strip()[:LONGEST_LINE],
+        via=list(origin.via),
+        overrides=list(origin.overridden),
+        note=origin.note,
+    )
+
+
+def _short_path(place: str) -> str:
+    """The last parts of a long path; what stands before them is the same for all of a robot."""
+    parts = place.split("/")
+    return place if len(parts) <= _PARTS + 1 else "/".join(["…", *parts[-_PARTS:]])
+
+
+def _alternatives(
+    mission: MissionReport, ranking: MarkRanking, suspect: Suspect
+) -> list[tuple[str, str]]:
+    """What the parameter's other comparisons suggest: sentence and place."""
+    found = alternatives(
+        mission.recording,
+        mission.static_info,
+        ranking,
+        suspect,
+        declared=mission.declared,
+        window_s=mission.window_s,
+    )
+    return [
+        (
+            f"{advice.suggestion.text}{f': {advice.what_if.text}' if advice.what_if else ''}",
+            f"{advice.suspect.comparison.file}:{advice.suspect.comparison.lineno}",
+        )
+        for advice in found
+    ]
+
+
+def _declared(declared: Declared) -> str:
+    """``double from 0 to 1, in steps of 0.1``; ``one of low (0), high (1)``."""
+    if declared.choices:
+        named = ", ".join(f"{name} ({value})" for name, value in declared.choices)
+        return f"one of {named}"
+    ends = [
+        f"{word} {show(end)}"
+        for word, end in (("from", declared.low), ("to", declared.high))
+        if end is not None
+    ]
+    step = f", in steps of {show(declared.step)}" if declared.step is not None else ""
+    return f"{' '.join([declared.type, *ends])}{step}"
+
+
+def _sortable(value: float) -> float:
+    """NaN sorts behind all else, infinities at the ends; JSON and HTML know neither."""
+    if math.isnan(value):
+        return 1e308
+    return max(-1e308, min(1e308, value))
