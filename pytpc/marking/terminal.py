@@ -5,7 +5,7 @@ from __future__ import annotations
 import select
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from typing import Protocol
@@ -111,8 +111,38 @@ class RecordedMission:
         """There is nothing to end."""
 
 
-def run(session: Session, mission: Mission, file: MarksFile) -> Session:
+class Paint(Protocol):
+    """Makes the lines of a screen; ``utf8`` says whether the terminal takes more than ASCII."""
+
+    def __call__(
+        self, session: Session, view: View, width: int, height: int, *, utf8: bool
+    ) -> Sequence[Text]:
+        """At most ``height`` lines, none wider than ``width``."""
+
+
+def paint_marks(
+    session: Session, view: View, width: int, height: int, *, utf8: bool
+) -> Sequence[Text]:
+    """The screen of ``mark``."""
+    return [Text(line) for line in screen(session, view, width, height)]
+
+
+def run(
+    session: Session,
+    mission: Mission,
+    file: MarksFile,
+    *,
+    paint: Paint = paint_marks,
+    full: bool = False,
+) -> Session:
     """Mark until the observer ends it, or a signal does; the marks are in the file then.
+
+    Args:
+        session: with the marks of before.
+        mission: what is marked.
+        file: where the marks are kept.
+        paint: makes the screen.
+        full: take the whole screen, and leave what stood there as it was.
 
     Raises:
         RunError: standard input is no terminal.
@@ -122,7 +152,7 @@ def run(session: Session, mission: Mission, file: MarksFile) -> Session:
         raise RunError("the keys are read from a terminal, and standard input is none")
     console = Console()
     try:
-        with signals_end(), _keys() as read, _shown(console) as show:
+        with signals_end(), _keys() as read, _shown(console, paint, full=full) as show:
             while not session.ended:
                 show(session, mission.view())
                 for key in read():
@@ -186,15 +216,18 @@ def _named(pressed: KeyPress) -> list[str]:
 
 
 @contextmanager
-def _shown(console: Console) -> Iterator[Callable[[Session, View], None]]:
+def _shown(
+    console: Console, paint: Paint, *, full: bool
+) -> Iterator[Callable[[Session, View], None]]:
     """A function that shows the session: in place, or where that is not possible, line by line
     what is new."""
     if console.is_terminal and not console.is_dumb_terminal:
-        with Live(console=console, auto_refresh=False, transient=True) as live:
+        utf8 = console.encoding.startswith("utf")
+        with Live(console=console, auto_refresh=False, transient=not full, screen=full) as live:
 
             def draw(session: Session, view: View) -> None:
-                lines = screen(session, view, console.width, console.height)
-                text = Text("\n".join(lines), no_wrap=True, overflow="crop")
+                lines = paint(session, view, console.width, console.height, utf8=utf8)
+                text = Text("\n", no_wrap=True, overflow="crop").join(lines)
                 live.update(text, refresh=True)
 
             yield draw
@@ -205,7 +238,8 @@ def _shown(console: Console) -> Iterator[Callable[[Session, View], None]]:
         nonlocal told
         said = session.said if session.typing is None else "note (Enter ends it):"
         if told is None:
-            print("\n".join(screen(session, view, _DUMB_WIDTH, _DUMB_HEIGHT)), flush=True)
+            lines = paint(session, view, _DUMB_WIDTH, _DUMB_HEIGHT, utf8=False)
+            print("\n".join(line.plain for line in lines), flush=True)
         elif said and told != (len(session.marks), said):
             print(said, flush=True)
         told = len(session.marks), said

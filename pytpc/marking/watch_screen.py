@@ -1,0 +1,310 @@
+"""The screen of ``pytpc watch``: what was looked at in, lines of styled text out.
+
+Every line fits its width whatever the robot calls its parameters, and means the same without
+colours and without UTF-8. Columns go as the terminal becomes narrower, the least needed first.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+from rich.cells import cell_len
+from rich.text import Text
+
+from pytpc.marking.session import Session, View, clock_text, cut, folded
+from pytpc.marking.watching import Kept, KeptRankings, Look, Part, Row
+from pytpc.marks import Mark, MarkType
+from pytpc.words import many, plain, show
+
+Layout = tuple[MarkType | None, ...]
+LAYOUTS: tuple[Layout, ...] = (("I", "II"), (None,), ("I",), ("II",))
+"""What can stand side by side, in the order of the key that changes it."""
+
+WATCH_HELP = ("v view", "m marks")
+_SHORT = {"I": "should not have", "II": "should be doing", None: "wrong"}
+_TITLES: dict[MarkType | None, str] = {
+    "I": "Type I: what changed last",
+    "II": "Type II: what is near its threshold",
+    None: "Both types combined",
+}
+# Blue and orange differ for all who see colours; the words say the same.
+_COLOURS: dict[MarkType | None, str] = {"I": "bright_blue", "II": "dark_orange", None: "bold"}
+_GAP = 2
+_BETWEEN = 3
+_LEAST_SIDE = 48
+_LEAST_NAME = 12
+_RECENT_S = 3.0
+_BARS = {True: "▁▂▃▄▅▆▇█", False: "_.-=+*%#"}
+_FLOP = {True: "×", False: "x"}
+_LEAST_ROWS = 3
+
+
+class Options(NamedTuple):
+    """What the observer has chosen: which tables, how many rows, which mark is looked back at (None
+    for now), and what the terminal can show."""
+
+    layout: Layout = LAYOUTS[0]
+    top: int = 10
+    back: int | None = None
+    utf8: bool = True
+
+
+class Status(NamedTuple):
+    """What has come in: reports, how many in a second, nodes, keys that are not known, what was
+    lost, and what is wrong (empty where nothing)."""
+
+    reports: int = 0
+    rate: float = 0.0
+    nodes: int = 0
+    unknown: int = 0
+    lost: int = 0
+    fault: str = ""
+
+    def words(self) -> str:
+        """One line; what is wrong comes first."""
+        text = f"{many(self.reports, 'report')} of {many(self.nodes, 'node')}, {self.rate:,.0f}/s"
+        if self.lost:
+            text += f", {self.lost:,} lost"
+        if self.unknown:
+            text += f"; {many(self.unknown, 'key')} not in the static information (another build?)"
+        return f"{self.fault}; {text}" if self.fault else text
+
+
+class Panel(NamedTuple):
+    """What is watched, beside the session and the view of `pytpc.marking.session`."""
+
+    look: Look
+    kept: KeptRankings
+    status: Status
+    options: Options
+
+
+class _Column(NamedTuple):
+    """``need`` orders what goes first where room is short: the highest."""
+
+    heading: str
+    width: int
+    right: bool
+    need: int
+    text: Callable[[Row, bool], str]
+
+
+def watch_screen(
+    session: Session, view: View, panel: Panel, width: int, height: int
+) -> list[Text]:
+    """The lines to show, none wider than ``width``, at most ``height``: tables, marks, keys."""
+    width, height = max(1, width), max(1, height)
+    head = [Text(cut(view.title, width), style="bold")]
+    head += _plain([*view.status, panel.status.words()], width)
+    foot = _plain([_keys(view)], width, "dim")
+    if session.typing is not None:
+        foot += _plain([f"note: {session.typing}_"], width, "bold")
+    elif session.said:
+        foot += _plain([session.said], width, "bold")
+    room = height - len(head) - len(foot)
+    layout = panel.options.layout
+    stacked = len(layout) > 1 and width < 2 * _LEAST_SIDE + _BETWEEN
+    marks = min(len(session.marks), max(0, room // 4))
+    body = _body(panel, view, width, room - (marks + 1 if marks else 0), stacked)
+    tail = _marks(session, view, panel, width, room - len(body)) if marks else []
+    blank = [Text()] * max(0, room - len(body) - len(tail))
+    lines = [*head, *body, *blank, *tail, *foot]
+    if len(lines) > height:
+        # Where there is hardly any room: what is asked or said matters most.
+        lines = [*lines[: max(0, height - 1)], lines[-1]]
+    return [_encodable(line, panel.options.utf8) for line in lines]
+
+
+def table(look: Look, kind: MarkType | None, width: int, rows: int, *, utf8: bool) -> list[Text]:
+    """A table of one type: its title, the headings, then at most ``rows`` suspects."""
+    lines = [Text(cut(_TITLES[kind], width), style=f"bold {_COLOURS[kind]}")]
+    found = look.rows[kind][:rows]
+    if not found:
+        why = look.reasons[kind] or "no parameter has a score yet"
+        return lines + _plain(folded(why, width)[: max(1, rows)], width, "dim")
+    columns, name_width = _columns(kind, width, found)
+    heads = [("#", True, 3), ("Parameter", False, name_width)]
+    heads += [(column.heading, column.right, column.width) for column in columns]
+    # Not underlined or coloured: the headings are bold so that they show on any terminal.
+    line = _joined([_fit(text, room, right=right) for text, right, room in heads])
+    lines.append(Text(cut(line, width), style="bold"))
+    if look.reasons[kind]:
+        lines += _plain([look.reasons[kind]], width, "dim")[:1]
+    for row in found:
+        suspect = row.suspect
+        number = f"{suspect.position}{'=' if suspect.tied else ''}"
+        cells = [_fit(number, 3, right=True), _fit(suspect.parameter, name_width)]
+        cells += [_fit(one.text(row, utf8), one.width, right=one.right) for one in columns]
+        recent = row.flop_s is not None and row.flop_s < _RECENT_S
+        style = "bold" if suspect.position == 1 or recent else ""
+        lines.append(Text(cut(_joined(cells), width), style=style))
+    return lines[: rows + 2]
+
+
+def _body(panel: Panel, view: View, width: int, room: int, stacked: bool) -> list[Text]:
+    """The tables, side by side or below one another; of now, or of a mark."""
+    options = panel.options
+    look, layout = panel.look, options.layout
+    lines: list[Text] = []
+    if options.back is not None:
+        kept = panel.kept[options.back]
+        look, layout = kept.look, tuple(kept.look.rows)
+        stacked = False
+        when = clock_text(kept.mark.time_ns - view.start_ns)
+        text = f"At the mark of {when} ({_named(kept.mark)}); m goes on"
+        lines.append(Text(cut(text, width), style="bold reverse"))
+    room -= len(lines)
+    if stacked:
+        each = max(1, room // len(layout) - 2)
+        rows = min(options.top, each)
+        for kind in layout:
+            lines += table(look, kind, width, rows, utf8=options.utf8)
+        return lines[: max(0, room + 1)]
+    rows = max(1, min(options.top, room - 2))
+    side = (width - _BETWEEN * (len(layout) - 1)) // len(layout)
+    sides = [table(look, kind, side, rows, utf8=options.utf8) for kind in layout]
+    for number in range(max(len(one) for one in sides)):
+        line = Text()
+        for place, one in enumerate(sides):
+            part = one[number] if number < len(one) else Text()
+            line.append_text(part)
+            if place + 1 < len(sides):
+                line.append(" " * (side - cell_len(part.plain) + _BETWEEN))
+        lines.append(line)
+    return lines[: max(0, room + 1)]
+
+
+def _marks(
+    session: Session, view: View, panel: Panel, width: int, room: int
+) -> list[Text]:
+    """The newest marks, each with its first suspects, below a line that counts them."""
+    shown = session.marks[-max(0, room - 1) :] if room > 1 else ()
+    if not shown:
+        return []
+    lines = [Text(cut(f"{many(len(session.marks), 'mark')}:", width), style="bold")]
+    for mark in shown:
+        when = clock_text(mark.time_ns - view.start_ns)
+        text = f"{when:>9}  {mark.type or '-':2}  {_first(panel.kept.of(mark))}{_note(mark)}"
+        lines.append(Text(cut(text.rstrip(), width), style=_COLOURS[mark.type]))
+    return lines
+
+
+def _first(kept: Kept | None) -> str:
+    """The first suspects at a mark, in a few words."""
+    if kept is None:
+        return "made earlier"
+    (kind,) = kept.look.rows
+    rows = kept.look.rows[kind][:_LEAST_ROWS]
+    words = [f"{row.suspect.position} {row.suspect.parameter}" for row in rows]
+    return ", ".join(words) or kept.look.reasons[kind] or "no parameter has a score"
+
+
+def _note(mark: Mark) -> str:
+    return f'  "{mark.note}"' if mark.note else ""
+
+
+def _named(mark: Mark) -> str:
+    return f"type {mark.type}" if mark.type else "wrong"
+
+
+def _keys(view: View) -> str:
+    """What the keys do, in few words; what belongs together stays on one line."""
+    marks = [f"{key} {_SHORT[kind]}" for key, kind in zip("123", ("I", "II", None), strict=True)]
+    others = ("n note", "u undo", "q quit")
+    words = (*marks, *others, *WATCH_HELP, *view.help)
+    return "  ".join(word.replace(" ", "\N{NO-BREAK SPACE}") for word in words)
+
+
+def _columns(
+    kind: MarkType | None, width: int, rows: Sequence[Row]
+) -> tuple[list[_Column], int]:
+    """The columns that have room, in their order, and how wide the names are."""
+    longest = max(cell_len(plain(row.suspect.parameter)) for row in rows)
+    score = _Column("Score", 7, True, 1, lambda row, _: f"{row.suspect.score:.3g}")
+    now = _Column("Now", _now_width(rows), False, 2, lambda row, _: _now(row))
+    parts = _Column("Trend", len(rows[0].parts), False, 3, lambda row, utf8: bars(row.parts, utf8))
+    flop = _Column("Flop", 6, True, 4, lambda row, _: ago(row.flop_s))
+    of = _Column("By", 2, False, 5, lambda row, _: row.suspect.type)
+    if kind == "I":
+        flop, parts = flop._replace(need=0), parts._replace(need=4)
+    chosen = [score, now, parts, flop] + ([of] if kind is None else [])
+    while chosen:
+        left = width - 3 - _GAP - sum(column.width + _GAP for column in chosen)
+        if left >= min(longest, max(_LEAST_NAME, width // 3)):
+            return chosen, min(left, max(longest, len("Parameter")))
+        chosen.remove(max(chosen, key=lambda column: column.need))
+    return [], max(1, width - 3 - _GAP)
+
+
+def _now(row: Row) -> str:
+    """What is compared now: ``0.0527 > 0.058``."""
+    if row.last is None:
+        return ""
+    relation = row.suspect.comparison.relation
+    if relation == "flag":
+        return "on" if row.last.result else "off"
+    return f"{show(row.last.cmp)} {relation} {show(row.last.thresh)}"
+
+
+def _now_width(rows: Sequence[Row]) -> int:
+    return max(3, *(cell_len(_now(row)) for row in rows))
+
+
+def ago(seconds: float | None) -> str:
+    """How long ago, in at most six characters.
+
+    >>> ago(None), ago(0.04), ago(75.0), ago(7200.0)
+    ('never', '0.0 s', '75 s', '120 m')
+    """
+    if seconds is None:
+        return "never"
+    if seconds < 10:
+        return f"{seconds:.1f} s"
+    if seconds < 1000:
+        return f"{seconds:.0f} s"
+    minutes = int(seconds / 60)
+    return f"{minutes} m" if minutes < 1000 else f"{minutes // 60} h"
+
+
+def bars(parts: Sequence[Part], utf8: bool) -> str:
+    """How far the value was from its threshold: low bars are near, a cross is a flop.
+
+    >>> bars([Part(0.0, False), Part(1.0, False), Part(0.3, True), Part(math.nan, False)], True)
+    '▁█× '
+    """
+    levels = _BARS[utf8]
+    text = ""
+    for part in parts:
+        if part.flopped:
+            text += _FLOP[utf8]
+        elif math.isnan(part.distance):
+            text += " "
+        else:
+            text += levels[min(len(levels) - 1, int(part.distance * len(levels)))]
+    return text
+
+
+def _plain(lines: Sequence[str], width: int, style: str = "") -> list[Text]:
+    return [Text(part, style=style) for line in lines for part in folded(line, width)]
+
+
+def _joined(cells: Sequence[str]) -> str:
+    return (" " * _GAP).join(cells).rstrip()
+
+
+def _fit(text: str, width: int, *, right: bool = False) -> str:
+    """Exactly ``width`` columns."""
+    shown = cut(text, width)
+    room = " " * (width - cell_len(shown))
+    return room + shown if right else shown + room
+
+
+def _encodable(line: Text, utf8: bool) -> Text:
+    """Where the terminal has no UTF-8, what is beyond ASCII is a question mark."""
+    if utf8 or line.plain.isascii():
+        return line
+    # One character for one character, so that the styles stay where they are.
+    line.plain = line.plain.encode("ascii", "replace").decode("ascii")
+    return line
