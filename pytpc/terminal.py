@@ -71,8 +71,11 @@ def _mark(
     seconds = (mark.time_ns - recording.start_ns) / 1e9
     by = f", by {mark.observer}" if mark.observer else ""
     title = Text(f"Mark {number} at {seconds:.1f} s: {_WHAT[mark.type]}{plain(by)}", style="bold")
+    heading: list[RenderableType] = [title]
+    if not ranking.enough:
+        heading.append(Padding(_lack(ranking), (0, 0, 0, 2)))
     if not rows:
-        return Group(title, Padding(Text("no parameter has a score here"), (0, 0, 1, 2)))
+        return Padding(Group(*heading), (0, 0, 1, 0))
     table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
     table.add_column("#", justify="right")
     table.add_column("Parameter", overflow="fold")
@@ -82,7 +85,11 @@ def _mark(
     table.add_column("Compared at", overflow="fold")
     for row in rows:
         table.add_row(*_cells(row))
-    return Group(title, Padding(table, (0, 0, 1, 2)))
+    return Group(*heading, Padding(table, (0, 0, 1, 2)))
+
+
+def _lack(ranking: MarkRanking) -> Text:
+    return Text(plain(f"not enough evidence: {ranking.reason}"), style="yellow")
 
 
 def _cells(row: Row) -> list[Text]:
@@ -97,7 +104,7 @@ def _cells(row: Row) -> list[Text]:
     else:
         what = Text(f"{_WAYS[advice.direction]} ").append(exact(advice.value), style="bold")
     return [
-        Text(str(suspect.position)),
+        Text(f"{suspect.position}=" if suspect.tied else str(suspect.position)),
         Text(plain(suspect.parameter), style="bold" if suspect.position == 1 else ""),
         Text(show(current)),
         what,

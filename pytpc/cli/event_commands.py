@@ -1,4 +1,4 @@
-"""Commands about what was recorded: ``convert`` (``ingest``), ``rank`` and ``report``."""
+"""Commands about what was recorded: ``convert`` (``ingest``) and ``report``."""
 
 from __future__ import annotations
 
@@ -9,41 +9,25 @@ from pathlib import Path
 
 import click
 
-from pytpc.cli.console import console, progress, warn
+from pytpc.cli.console import progress
+from pytpc.cli.options import PATH, STATIC, TYPES, check_reports, recording_of, warn_about
 from pytpc.cli.sources import static_of
-from pytpc.complaints import complaints
-from pytpc.errors import InputError
-from pytpc.ingest import Recording, read
+from pytpc.ingest import Recording
 from pytpc.ingest.duplicates import TOLERANCE_NS
 from pytpc.ingest.outcome import Outcome
 from pytpc.ingest.reading import opened
 from pytpc.marks import MARK_TYPES
 from pytpc.report.html import MissionReport, write_report
-from pytpc.scoring.ranking import MarkRanking, rank_marks, unknown_keys
-from pytpc.static_info import StaticInfo
-from pytpc.terminal import Row, print_rankings, rows_of
-from pytpc.words import many, plain
-
-_PATH = click.Path(path_type=Path)
-_STATIC = click.option(
-    "--static",
-    "static_source",
-    type=_PATH,
-    required=True,
-    metavar="FILE_OR_FOLDER",
-    help="static.json, a build base or a built workspace.",
-)
-_UNTYPED = click.option(
-    "--untyped", is_flag=True, help="Do not believe the marks' types: rank by both."
-)
+from pytpc.scoring.ranking import Types, rank_marks
+from pytpc.words import many
 
 
 @click.command("convert")
-@click.argument("inputs", type=_PATH, nargs=-1, required=True, metavar="INPUT...")
+@click.argument("inputs", type=PATH, nargs=-1, required=True, metavar="INPUT...")
 @click.option(
     "-o",
     "--output",
-    type=_PATH,
+    type=PATH,
     required=True,
     metavar="OUT",
     help="A folder, or a file: .parquet (the events), .csv (the events in the thesis's form).",
@@ -77,7 +61,7 @@ def convert_command(
                 recording = outcome.save_csv(output, written)
             else:
                 recording = outcome.save(output, written)
-    _warn_about(recording, None)
+    warn_about(recording, None)
     kinds = [mark.type for mark in recording.marks]
     if as_json:
         click.echo(json.dumps(_summary_of(recording, outcome, output), ensure_ascii=False))
@@ -97,47 +81,20 @@ ingest_command = copy(convert_command)
 ingest_command.name = "ingest"
 
 
-@click.command("rank")
-@click.argument("bag", type=_PATH)
-@_STATIC
-@click.option("--top", type=click.IntRange(min=1), default=5, show_default=True, metavar="N")
-@click.option("--json", "as_json", is_flag=True, help="Print a JSON list with one item a mark.")
-@_UNTYPED
-def rank_command(bag: Path, static_source: Path, top: int, as_json: bool, untyped: bool) -> None:
-    """Name the suspected parameters at each mark in BAG (any INPUT of `convert`)."""
-    static = static_of([static_source])
-    recording = _recording(bag)
-    if not recording.marks:
-        raise InputError("no marks: nobody said on /mark_action or /mark_no_action what", bag)
-    _check_reports(recording, static, bag)
-    rankings = rank_marks(recording, static, untyped=untyped)
-    _warn_about(recording, static)
-    if as_json:
-        items = [
-            _json_of(ranking, recording, rows_of(ranking, recording, static, top))
-            for ranking in rankings
-        ]
-        click.echo(json.dumps(items, indent=1, ensure_ascii=False))
-        return
-    print_rankings(console(), recording, static, rankings, top)
-
-
 @click.command("report")
-@click.argument("bags", type=_PATH, nargs=-1, required=True, metavar="BAG...")
-@_STATIC
-@click.option("-o", "--output", type=_PATH, default=Path("report.html"), show_default=True)
-@_UNTYPED
-def report_command(
-    bags: tuple[Path, ...], static_source: Path, output: Path, untyped: bool
-) -> None:
+@click.argument("bags", type=PATH, nargs=-1, required=True, metavar="BAG...")
+@STATIC
+@click.option("-o", "--output", type=PATH, default=Path("report.html"), show_default=True)
+@TYPES
+def report_command(bags: tuple[Path, ...], static_source: Path, output: Path, types: Types) -> None:
     """Write a page with the suspects at each mark of each BAG, and the evidence."""
     static = static_of([static_source])
     missions = []
     for bag in bags:
-        recording = _recording(bag)
-        _check_reports(recording, static, bag)
-        _warn_about(recording, static)
-        rankings = rank_marks(recording, static, untyped=untyped)
+        recording = recording_of(bag)
+        check_reports(recording, static, bag)
+        warn_about(recording, static)
+        rankings = rank_marks(recording, static, types=types)
         missions.append(MissionReport(recording.name, recording, static, rankings))
     with progress("drawing") as advance:
         write_report(output, missions, on_progress=advance)
@@ -145,12 +102,7 @@ def report_command(
     click.echo(f"{many(len(missions), 'mission')} with {many(marks, 'mark')}: {output}")
 
 
-COMMANDS: list[click.Command] = [convert_command, ingest_command, rank_command, report_command]
-
-
-def _recording(source: Path) -> Recording:
-    with progress(f"reading {source.name}") as advance:
-        return read(source, advance)
+COMMANDS: list[click.Command] = [convert_command, ingest_command, report_command]
 
 
 def _standing(path: Path) -> Path:
@@ -173,62 +125,3 @@ def _summary_of(recording: Recording, outcome: Outcome, output: Path) -> dict[st
         "dropped": [asdict(dropped) for dropped in recording.dropped],
         "notes": list(recording.notes),
     }
-
-
-def _check_reports(recording: Recording, static: StaticInfo, source: Path) -> None:
-    """A mission without a report that we know would be ranked as if nothing were suspicious."""
-    if not len(recording.events):
-        raise InputError(
-            "no threshold reports: was /rosout recorded, and the workspace built with TPC? "
-            " Files of the sink `file` have to be in the same folder, or in its tpc",
-            source,
-        )
-    if len(unknown_keys(recording.events, static)) == len(recording.events.keys):
-        raise InputError(
-            "none of its reports is known to the static information: it is of another build",
-            source,
-        )
-
-
-def _warn_about(recording: Recording, static: StaticInfo | None) -> None:
-    for complaint in complaints(recording, static):
-        warn(f"{plain(recording.name)}: {plain(complaint)}")
-
-
-def _json_of(ranking: MarkRanking, recording: Recording, rows: list[Row]) -> dict[str, object]:
-    mark = ranking.mark
-    return {
-        "mission": recording.name,
-        "time_ns": mark.time_ns,
-        "seconds": (mark.time_ns - recording.start_ns) / 1e9,
-        "type": mark.type,
-        "observer": mark.observer,
-        "parameters": ranking.parameters,
-        "suspects": [
-            {
-                "position": row.suspect.position,
-                "parameter": row.suspect.parameter,
-                "key": row.suspect.key,
-                "score": row.suspect.score,
-                "rank": row.suspect.rank,
-                "score_type": row.suspect.type,
-                "current": _finite(row.advice.current),
-                "direction": row.advice.direction,
-                "value": _finite(row.advice.value),
-                "boundary": _finite(row.advice.boundary),
-                "inclusive": row.advice.inclusive,
-                "suggestion": row.advice.text,
-                "file": row.suspect.comparison.file,
-                "lineno": row.suspect.comparison.lineno,
-                "source_code": row.suspect.comparison.source_code,
-                "topic": row.suspect.comparison.topic,
-                "node": row.suspect.last.node,
-            }
-            for row in rows
-        ],
-    }
-
-
-def _finite(value: float | None) -> float | None:
-    """JSON has neither NaN nor infinity."""
-    return value if value is None or abs(value) < float("inf") else None

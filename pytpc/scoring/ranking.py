@@ -2,55 +2,65 @@
 
 ``rank_marks`` is the entrance. TPCs whose threshold is a constant are no parameters and are left
 out. A parameter is named as in the source; where no constant names it, its place does.
+
+How far the observer's type is believed (``Types``):
+
+- ``believe``: the score of the mark's type orders the parameters.
+- ``ignore``: a parameter's rank is the better one of its two ranks.
+- ``doubt``: the better one, too, but the rank by the other type counts only ``DOUBT`` of itself:
+  the probability that the other type is meant, after the mark, by table 6.13 of the thesis and with
+  both types as likely before it. Of 17 marks on the type I treatment 2 were of type I, of 51 on the
+  type II treatment 26. So after a mark of type I, type II has
+  26/51 / (26/51 + 2/17) = 26/32, and after one of type II, type I has
+  15/17 / (15/17 + 25/51) = 45/70. What is first by the given type stays first, and the first by the
+  other comes in below it, the higher the likelier the confusion. With a weight of 0 this is
+  ``believe``, with 1 ``ignore``.
+
+Equal better ranks are ordered by the other rank. A mark without a type is ranked by both. These are
+baselines (SPEC 7).
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
-from pytpc.events import Events, Floats, Int64s
+from pytpc.events import Events
 from pytpc.ingest.recording import Recording
 from pytpc.marks import Mark, MarkType
-from pytpc.parameters import parameter_name, same_parameter
-from pytpc.scoring.bounds import type2_bounds
-from pytpc.scoring.scores import (
-    NONE,
-    WINDOW_S,
-    ParameterScores,
-    by_parameter,
-    combined,
-    ordering,
-    ranks,
-    type1,
-)
+from pytpc.parameters import same_parameter
+from pytpc.scoring.evidence import Evaluation, Evidence, Log
+from pytpc.scoring.scores import NONE, WINDOW_S, combined
+from pytpc.scoring.tables import Tables, Tpcs, parameter_tables, tpc_scores
 from pytpc.static_info import Comparison, StaticInfo
-from pytpc.summaries import Summaries
 
+Types = Literal["believe", "doubt", "ignore"]
+"""How far the types of the marks are believed, see above."""
 
-class Evaluation(NamedTuple):
-    """One evaluation, as it was reported, or the last of a summary."""
+DOUBT: dict[MarkType, float] = {"I": 26 / 32, "II": 45 / 70}
+"""How probable the other type is after a mark of this one."""
 
-    time_ns: int
-    result: bool
-    cmp: float
-    thresh: float
-    res: bool
-    node: str
+FEWEST = 2
+"""Fewer parameters that were evaluated up to the mark than this are no ranking."""
+
+# A robot on simulated time and one on the wall's are decades apart, two missions hours.
+APART_NS = 24 * 3600 * 10**9
 
 
 @dataclass(frozen=True, slots=True)
 class Suspect:
     """A parameter at a mark.
 
-    ``position`` counts from 1. ``key`` and ``comparison`` are its most suspicious TPC, ``score``
-    that one's score by the formula of ``type`` (SPEC 7) and ``rank`` the parameter's rank among all
-    parameters. ``keys`` are all TPCs of the parameter that the log has. ``last`` is the TPC's last
-    evaluation up to the mark.
+    ``position`` counts from 1; parameters between which nothing decides are ``tied`` and have the
+    same one. ``key`` and ``comparison`` are its most suspicious TPC, ``score`` that one's score by
+    the formula of ``type`` (SPEC 7). ``rank`` is what they are ordered by: the parameter's rank
+    among all parameters, or what is made of both where the type is not believed. ``keys`` are all
+    TPCs of the parameter that the log has. ``last`` is the TPC's last evaluation up to the mark.
+    ``rank1`` and ``rank2`` are the parameter's ranks by type I and by type II, 0 where it has no
+    such score.
     """
 
     position: int
@@ -62,18 +72,25 @@ class Suspect:
     rank: float
     keys: tuple[str, ...]
     last: Evaluation
+    tied: bool = False
+    rank1: float = 0.0
+    rank2: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
 class MarkRanking:
     """The suspects at one mark, most suspicious first; parameters without a score are not here.
 
-    ``parameters`` is the number of parameters among which they were ranked.
+    ``parameters`` is the number of parameters among which they were ranked. Where there is not
+    ``enough`` evidence to go by the order, or for any at all, ``reason`` says why; else it is
+    empty.
     """
 
     mark: Mark
     suspects: tuple[Suspect, ...]
     parameters: int
+    enough: bool = True
+    reason: str = ""
 
     def position_of(self, parameter: str) -> int | None:
         """The position of a parameter, None where it has no score at this mark."""
@@ -90,7 +107,7 @@ def rank_marks(
     recording: Recording,
     static_info: StaticInfo,
     *,
-    untyped: bool = False,
+    types: Types = "believe",
     window_s: float = WINDOW_S,
 ) -> list[MarkRanking]:
     """Rank the parameters at every mark.
@@ -100,44 +117,22 @@ def rank_marks(
             ``unknown_keys`` counts them.
         static_info: what the analysis found. All its TPCs and parameters count in n of the rank,
             also those that were never evaluated.
-        untyped: do not believe the observer's types: the combined ranking at every mark.
+        types: how far the observer's types are believed.
         window_s: the window of type II in seconds.
 
     Returns:
         One ranking for each mark, in the order of ``recording.marks``.
+
+    Raises:
+        ValueError: ``window_s`` is negative.
     """
-    tpcs = _Tpcs.of(static_info)
+    tpcs = Tpcs.of(static_info)
     events = recording.events.with_keys(tpcs.keys)
     marks_ns = np.array([mark.time_ns for mark in recording.marks], dtype=np.int64)
-    second = type2_bounds(
-        events, recording.summaries, marks_ns, tpcs.distance, window_s=window_s
-    ).value
-    tables = _Tables(
-        _by_parameter(tpcs, type1(events, marks_ns, tpcs.distance)),
-        _by_parameter(tpcs, second),
-    )
-    rankings = []
-    for row, mark in enumerate(recording.marks):
-        order = _order(tables, row, None if untyped else mark.type)
-        suspects = []
-        for position, (number, kind, rank) in enumerate(order, start=1):
-            table = tables.of(kind)
-            key = tpcs.keys[int(table.best[row, number])]
-            suspects.append(
-                Suspect(
-                    position=position,
-                    parameter=table.names[number],
-                    key=key,
-                    comparison=static_info.comparisons[key],
-                    type=kind,
-                    score=float(table.scores[row, number]),
-                    rank=rank,
-                    keys=tpcs.seen(events, recording.summaries, table.names[number]),
-                    last=_last(events, recording.summaries, key, mark.time_ns),
-                )
-            )
-        rankings.append(MarkRanking(mark, tuple(suspects), len(tables.first.names)))
-    return rankings
+    scores = tpc_scores(tpcs, events, recording.summaries, marks_ns, window_s)
+    ranker = Ranker(static_info, tpcs, Log(events, recording.summaries), types, window_s)
+    tables = parameter_tables(tpcs, scores)
+    return [ranker.ranking(mark, tables, row) for row, mark in enumerate(recording.marks)]
 
 
 def unknown_keys(events: Events, static_info: StaticInfo) -> dict[str, int]:
@@ -153,108 +148,137 @@ def unknown_keys(events: Events, static_info: StaticInfo) -> dict[str, int]:
     }
 
 
-@dataclass(frozen=True, slots=True)
-class _Tpcs:
-    """The TPCs on parameters, sorted by key."""
+class _Place(NamedTuple):
+    """A parameter in the order: its column, and what it is ordered by."""
 
-    keys: tuple[str, ...]
-    distance: Floats
-    parameters: tuple[str, ...]
+    column: int
+    type: MarkType
+    rank: float
+    order: tuple[float, ...]
 
-    @classmethod
-    def of(cls, static_info: StaticInfo) -> _Tpcs:
-        found = static_info.thresholds
-        keys = tuple(sorted(found))
-        return cls(
-            keys,
-            np.array([found[key].distance for key in keys], dtype=np.float64),
-            tuple(parameter_name(found[key]) for key in keys),
+
+@dataclass(frozen=True)
+class Ranker:
+    """Makes rankings out of tables of scores."""
+
+    static_info: StaticInfo
+    tpcs: Tpcs
+    evidence: Evidence
+    types: Types = "believe"
+    window_s: float = WINDOW_S
+
+    def ranking(self, mark: Mark, tables: Tables, row: int) -> MarkRanking:
+        """The ranking at ``mark``, whose scores are in ``row`` of the tables."""
+        places = self._places(mark, tables, row)
+        alike = Counter(place.order for place in places)
+        suspects: list[Suspect] = []
+        for number, place in enumerate(places, start=1):
+            same = number > 1 and place.order == places[number - 2].order
+            position = suspects[-1].position if same else number
+            tied = alike[place.order] > 1
+            suspects.append(self._suspect(mark, tables, row, place, position=position, tied=tied))
+        reason = self._reason(mark, suspects)
+        return MarkRanking(mark, tuple(suspects), len(self.tpcs.names), not reason, reason)
+
+    def _places(self, mark: Mark, tables: Tables, row: int) -> list[_Place]:
+        """The parameters with a score, in order; ties by distance and name."""
+        given = None if self.types == "ignore" else mark.type
+        kind: MarkType = given or "I"
+        other: MarkType = "II" if kind == "I" else "I"
+        own = tables.of(kind)
+        ranks, others = own.ranks[row], tables.of(other).ranks[row]
+        if given is not None and self.types == "believe":
+            scores = own.scores[row]
+            places = [
+                _Place(n, kind, float(ranks[n]), (float(scores[n]),))
+                for n in np.flatnonzero(scores != NONE).tolist()
+            ]
+            distance = own.distance[row]
+        else:
+            weight = 1.0 if given is None else DOUBT[kind]
+            better = combined(ranks, others, weight)
+            both = ranks + weight * others
+            places = [
+                _Place(
+                    n,
+                    kind if ranks[n] >= weight * others[n] else other,
+                    float(better[n]),
+                    (-float(better[n]), -float(both[n])),
+                )
+                for n in np.flatnonzero(better > 0).tolist()
+            ]
+            distance = np.minimum(tables.first.distance[row], tables.second.distance[row])
+        # The columns are in the order of the names.
+        return sorted(places, key=lambda place: (place.order, distance[place.column], place.column))
+
+    def _suspect(
+        self,
+        mark: Mark,
+        tables: Tables,
+        row: int,
+        place: _Place,
+        *,
+        position: int,
+        tied: bool,
+    ) -> Suspect:
+        table, column = tables.of(place.type), place.column
+        key = self.tpcs.keys[int(table.best[row, column])]
+        parameter = table.names[column]
+        seen = self.evidence.first_ns
+        return Suspect(
+            position=position,
+            parameter=parameter,
+            key=key,
+            comparison=self.static_info.comparisons[key],
+            type=place.type,
+            score=float(table.scores[row, column]),
+            rank=place.rank,
+            keys=tuple(one for one in self.tpcs.keys_of[parameter] if one in seen),
+            last=self.evidence.last(key, mark.time_ns),
+            tied=tied,
+            rank1=float(tables.first.ranks[row, column]),
+            rank2=float(tables.second.ranks[row, column]),
         )
 
-    def seen(self, events: Events, summaries: Summaries, parameter: str) -> tuple[str, ...]:
-        """The keys of a parameter that have events or summaries."""
-        return tuple(
-            key
-            for code, key in enumerate(self.keys)
-            if self.parameters[code] == parameter
-            and (events.by_key.rows(code).size or _rows_of(summaries, key).size)
-        )
+    def _reason(self, mark: Mark, suspects: list[Suspect]) -> str:
+        """Why the evidence is not enough; empty where it is."""
+        first = self.evidence.first_ns
+        if not self.tpcs.keys:
+            return "the static information has no comparison with a parameter"
+        outside = self._outside(mark)
+        if outside:
+            return outside
+        evaluated = {
+            name
+            for key, name in zip(self.tpcs.keys, self.tpcs.parameters, strict=True)
+            if key in first and first[key] <= mark.time_ns
+        }
+        if not suspects:
+            return self._why_nobody(mark)
+        if len(evaluated) < FEWEST:
+            return f"only {suspects[0].parameter} had been compared up to the mark"
+        if len(suspects) > 1 and suspects[-1].position == 1:
+            return f"all {len(suspects)} parameters with a score have the same one"
+        return ""
 
+    def _outside(self, mark: Mark) -> str:
+        """What is wrong with the time of the mark; empty where nothing is."""
+        first = self.evidence.first_ns
+        if not first:
+            return "no comparison was reported"
+        early = min(first.values()) - mark.time_ns
+        late = mark.time_ns - self.evidence.last_ns
+        if max(early, late) > APART_NS:
+            return "the mark is on another clock than the reports"
+        if early > 0:
+            return f"the mark is {early / 1e9:.3g} s before the first report"
+        if late > self.window_s * 1e9:
+            return f"the mark is {late / 1e9:.3g} s after the last report"
+        return ""
 
-class _Table(NamedTuple):
-    names: tuple[str, ...]
-    scores: Floats
-    best: Int64s
-    distance: Floats
-    ranks: Floats
-
-
-class _Tables(NamedTuple):
-    first: _Table
-    second: _Table
-
-    def of(self, kind: MarkType) -> _Table:
-        return self.first if kind == "I" else self.second
-
-
-def _by_parameter(tpcs: _Tpcs, scores: Floats) -> _Table:
-    """Scores and ranks of the parameters; the distance of one is that of its best TPC."""
-    found: ParameterScores = by_parameter(scores, tpcs.parameters, tpcs.distance, tpcs.keys)
-    distance = np.append(tpcs.distance, np.inf)[found.best]
-    table = np.empty_like(found.scores)
-    for row in range(table.shape[0]):
-        table[row] = ranks(found.scores[row : row + 1], distance[row], found.names)[0]
-    return _Table(found.names, found.scores, found.best, distance, table)
-
-
-def _order(tables: _Tables, row: int, kind: MarkType | None) -> list[tuple[int, MarkType, float]]:
-    """Parameters with a score at one mark, in order: number, type of the score, rank."""
-    first, second = tables
-    if kind is not None:
-        table = tables.of(kind)
-        scores, distance = table.scores[row : row + 1], table.distance[row]
-        order: Sequence[int] = ordering(scores, distance, table.names)[0].tolist()
-        return [(n, kind, float(table.ranks[row, n])) for n in order if scores[0, n] != NONE]
-    distance = np.minimum(first.distance[row], second.distance[row])
-    ranks1, ranks2 = first.ranks[row : row + 1], second.ranks[row : row + 1]
-    better, places = combined(ranks1, ranks2, distance, first.names)
-    return [
-        (n, "II" if ranks2[0, n] > ranks1[0, n] else "I", float(better[0, n]))
-        for n in places[0].tolist()
-        if better[0, n] > 0
-    ]
-
-
-def _last(events: Events, summaries: Summaries, key: str, mark_ns: int) -> Evaluation:
-    """The last evaluation up to the mark that is known: a report, or the last of a summary.
-
-    Where the mark is within the first period, it is the first of these.
-    """
-    rows = events.by_key.rows(events.keys.index(key))
-    found = [_at(events, events.time_ns, rows, mark_ns)] if rows.size else []
-    own = _rows_of(summaries, key)
-    if own.size:
-        own = own[np.argsort(summaries.end_ns[own], kind="stable")]
-        found += [_at(summaries, summaries.end_ns, own, mark_ns)] if own.size else []
-    before = [evaluation for evaluation in found if evaluation.time_ns <= mark_ns]
-    return max(before) if before else min(found)
-
-
-def _rows_of(summaries: Summaries, key: str) -> Int64s:
-    """The rows of a key; a table may know a key and have none."""
-    code = summaries.keys.index(key) if key in summaries.keys else -1
-    return np.flatnonzero(summaries.key == code)
-
-
-def _at(table: Events | Summaries, times: Int64s, rows: Int64s, mark_ns: int) -> Evaluation:
-    """The last of ``rows`` up to the mark, else the first; they are in the order of ``times``."""
-    place = int(np.searchsorted(times[rows], mark_ns, side="right")) - 1
-    row = int(rows[max(0, place)])
-    return Evaluation(
-        int(times[row]),
-        bool(table.result[row]),
-        float(table.cmp[row]),
-        float(table.thresh[row]),
-        bool(table.res[row]),
-        table.nodes[table.node[row]],
-    )
+    def _why_nobody(self, mark: Mark) -> str:
+        change = "no result had changed up to the mark"
+        near = f"nothing was compared in the {self.window_s:g} s before it, or never differed"
+        if self.types != "believe" or mark.type is None:
+            return f"{change}, and {near}"
+        return change if mark.type == "I" else near.replace("it", "the mark", 1)

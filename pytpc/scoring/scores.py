@@ -2,7 +2,7 @@
 
 ``type1`` and ``type2`` give a table float64[marks, keys] of scores: lower is more suspicious,
 ``NONE`` where there is none. ``ranks`` turns it into ranks in [0, 1], ``by_parameter`` joins the
-TPCs of a parameter, ``combined`` orders both tables where the observer gave no type.
+TPCs of a parameter, ``combined`` joins the ranks of both types where the observer gave no type.
 
 What the formulas leave open is settled thus. An evaluation at exactly m is "up to m", and the
 window [m - w, m] holds both its ends. A flop happens at the later of its two evaluations, which are
@@ -134,18 +134,23 @@ def type2(
     return scores
 
 
-def ranks(
-    scores: Floats, distance: npt.ArrayLike | None = None, keys: Sequence[str] | None = None
-) -> Floats:
+def ranks(scores: Floats) -> Floats:
     """Ranks of float64[marks, n] scores: 1 - index/n in ascending order, 0 where there is no score.
 
-    Equal scores are ordered by ``distance``, then by ``keys``, then by column; 1 is the most
-    suspicious.
+    1 is the most suspicious. The index of a score is how many are smaller, so that equal scores
+    have equal ranks.
     """
     n = scores.shape[1]
-    order = ordering(scores, distance, keys)
+    if not n:
+        return np.zeros_like(scores)
+    values = np.where(scores == NONE, np.inf, scores)
+    order = np.argsort(values, axis=1)
+    ascending = np.take_along_axis(values, order, axis=1)
+    index = np.zeros(scores.shape, np.int64)
+    index[:, 1:] = np.where(ascending[:, 1:] > ascending[:, :-1], np.arange(1, n), 0)
+    np.maximum.accumulate(index, axis=1, out=index)
     result = np.empty_like(scores)
-    np.put_along_axis(result, order, 1.0 - np.arange(n)[np.newaxis, :] / max(1, n), axis=1)
+    np.put_along_axis(result, order, 1.0 - index / n, axis=1)
     result[scores == NONE] = 0.0
     return result
 
@@ -153,7 +158,10 @@ def ranks(
 def ordering(
     scores: Floats, distance: npt.ArrayLike | None = None, keys: Sequence[str] | None = None
 ) -> Int64s:
-    """int64[marks, n]: the columns by ascending score, then those without; ties as ``ranks``."""
+    """int64[marks, n]: the columns by ascending score, then those without.
+
+    Equal scores are ordered by ``distance``, then by ``keys``, then by column.
+    """
     n = scores.shape[1]
     ties = _tie_order(n, distance, keys)
     values = np.where(scores == NONE, np.inf, scores)[:, ties]
@@ -183,33 +191,30 @@ def by_parameter(
     if len(parameters) != scores.shape[1]:
         raise ValueError("one parameter for each column is needed")
     names = sorted(set(parameters))
-    place = np.empty_like(scores, dtype=np.int64)
-    count = np.arange(scores.shape[1])[np.newaxis, :]
-    np.put_along_axis(place, ordering(scores, distance, keys), count, axis=1)
+    number = {name: place for place, name in enumerate(names)}
+    ties = _tie_order(len(parameters), distance, keys)
+    columns: list[list[int]] = [[] for _ in names]
+    for column in ties.tolist():
+        columns[number[parameters[column]]].append(column)
+    values = np.where(scores == NONE, np.inf, scores)
     best = np.empty((scores.shape[0], len(names)), dtype=np.int64)
-    for number, name in enumerate(names):
-        columns = np.array([i for i, of in enumerate(parameters) if of == name], dtype=np.int64)
-        best[:, number] = columns[np.argmin(place[:, columns], axis=1)]
+    for place, own in enumerate(columns):
+        best[:, place] = np.array(own)[np.argmin(values[:, own], axis=1)]
     return ParameterScores(tuple(names), np.take_along_axis(scores, best, axis=1), best)
 
 
-def combined(
-    first: Floats,
-    second: Floats,
-    distance: npt.ArrayLike | None = None,
-    keys: Sequence[str] | None = None,
-) -> tuple[Floats, Int64s]:
-    """Ranking for marks without a type, from the ranks of both types, float64[marks, n] each.
+def combined(first: Floats, second: Floats, weight: float = 1.0) -> Floats:
+    """The better of two ranks, the second of which counts ``weight`` of itself.
+
+    Args:
+        first: float64[marks, n], ranks of the type that is believed, or of either where none is.
+        second: float64[marks, n], ranks of the other type.
+        weight: from 0 (the second type does not count) to 1 (it counts as much).
 
     Returns:
-        The better of the two ranks, float64[marks, n], and the columns in the order of that, most
-        suspicious first, int64[marks, n]: ties by the mean of both ranks, then as in ``ranks``.
+        float64[marks, n].
     """
-    better = np.maximum(first, second)
-    mean = (first + second) / 2
-    ties = _tie_order(first.shape[1], distance, keys)
-    order = np.lexsort((-mean[:, ties], -better[:, ties]), axis=-1)
-    return better, ties[order]
+    return np.maximum(first, weight * second)
 
 
 class _Window(NamedTuple):

@@ -65,27 +65,31 @@ def test_type1_by_hand():
 # Window [38, 50]. Comparison 0: only 40 s, |5-4| / (5-0) = 0.2, one flop: 0.2.
 # Comparison 1: only 45 s, 0.3 / 0.5 = 0.6. So coverage has 0.2 by comparison 0.
 # Comparison 2: (1 + 0) / 2 / (1 - 0) = 0.5, one flop. Comparison 3: 1 / (10 - 5) = 0.2.
-# coverage and idle both have 0.2; idle is nearer (1 < 3). Ranks 1, 0.75, 0.5.
+# coverage and idle both have 0.2: they share position and rank; idle is nearer (1 < 3), so it is
+# listed first. faces has two before it: 1 - 2/4.
 def test_type2_by_hand():
     (found,) = rank_marks(recording(ROWS, [Mark(ns(50), "II")]), STATIC)
-    assert [(s.parameter, s.key, s.score, s.rank) for s in found.suspects] == [
-        ("idle", key(3), 0.2, 1.0),
-        ("coverage", key(0), 0.2, 0.75),
-        ("faces", key(2), 0.5, 0.5),
+    assert [(s.position, s.tied, s.parameter, s.key, s.score, s.rank) for s in found.suspects] == [
+        (1, True, "idle", key(3), 0.2, 1.0),
+        (1, True, "coverage", key(0), 0.2, 1.0),
+        (3, False, "faces", key(2), 0.5, 0.5),
     ]
+    assert [(s.rank1, s.rank2) for s in found.suspects] == [(0.0, 1.0), (0.75, 1.0), (1.0, 0.5)]
+    assert (found.enough, found.reason) == (True, "")
 
 
-# Type I ranks: faces 1, coverage 0.75, idle 0. Type II: idle 1, coverage 0.75, faces 0.5.
-# Better rank and mean: faces 1 and 0.75, idle 1 and 0.5, coverage 0.75 and 0.75.
+# Type I ranks: faces 1, coverage 0.75, idle 0. Type II: idle and coverage 1, faces 0.5.
+# All have a better rank of 1; the sums are coverage 1.75, faces 1.5, idle 1.
 def test_a_mark_without_a_type():
     (found,) = rank_marks(recording(ROWS, [Mark(ns(50), None)]), STATIC)
     assert [(s.position, s.parameter, s.type, s.rank) for s in found.suspects] == [
-        (1, "faces", "I", 1.0),
-        (2, "idle", "II", 1.0),
-        (3, "coverage", "I", 0.75),
+        (1, "coverage", "II", 1.0),
+        (2, "faces", "I", 1.0),
+        (3, "idle", "II", 1.0),
     ]
+    assert not any(suspect.tied for suspect in found.suspects)
     # The same where the types are not to be believed.
-    (again,) = rank_marks(recording(ROWS, [Mark(ns(50), "I")]), STATIC, untyped=True)
+    (again,) = rank_marks(recording(ROWS, [Mark(ns(50), "I")]), STATIC, types="ignore")
     assert again.suspects == found.suspects
 
 

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from mission_samples import events, key, ns
 
 from pytpc.events import Events
-from pytpc.scoring.scores import NONE, by_parameter, combined, ranks, type1, type2
+from pytpc.scoring.scores import NONE, by_parameter, combined, ordering, ranks, type1, type2
 
 NAN, INF = math.nan, math.inf
 
@@ -125,14 +125,19 @@ def test_smallest_double_before_the_largest():
     assert type2(table, [0], [1]).tolist() == [[1.0]]
 
 
-# Scores 5, none, 1, 5 of n = 4: order 1, 5, 5, none. Of the two 5s the nearer (distance 1) first.
-#   rank = 1 - index/4: 1 -> 1, then 0.75, then 0.5; none -> 0.
+# Scores 5, none, 1, 5 of n = 4. Smaller than 1 is none: 1 - 0/4. Smaller than either 5 is the 1
+# alone: 1 - 1/4 for both. Then 7 of [7, 5, 1, 5] has three that are smaller: 1 - 3/4.
 def test_ranks_by_hand():
+    scores = np.array([[5.0, NONE, 1.0, 5.0], [5.0, 7.0, 1.0, 5.0]])
+    assert ranks(scores).tolist() == [[0.75, 0.0, 1.0, 0.75], [0.75, 0.25, 1.0, 0.75]]
+
+
+# In the order of the scores 1, 5, 5, none; of the two 5s the nearer first, or the smaller key.
+def test_the_order_of_ties():
     scores = np.array([[5.0, NONE, 1.0, 5.0]])
-    assert ranks(scores, [2, 1, 1, 1], "abcd").tolist() == [[0.5, 0.0, 1.0, 0.75]]
-    # The same distance: the smaller key first, wherever its column is.
-    assert ranks(scores, [1, 1, 1, 1], "zbcd").tolist() == [[0.5, 0.0, 1.0, 0.75]]
-    assert ranks(scores, [1, 1, 1, 1], "abcd").tolist() == [[0.75, 0.0, 1.0, 0.5]]
+    assert ordering(scores, [2, 1, 1, 1], "abcd").tolist() == [[2, 3, 0, 1]]
+    assert ordering(scores, [1, 1, 1, 1], "zbcd").tolist() == [[2, 3, 0, 1]]
+    assert ordering(scores, [1, 1, 1, 1], "abcd").tolist() == [[2, 0, 3, 1]]
 
 
 # A flop 1,000,000 s ago has a score far above 9999.9. It is a score all the same: before "none".
@@ -160,20 +165,12 @@ def test_by_parameter_by_hand():
     assert int(found.best[0, 0]) == 2
 
 
-# Ranks of type I 1, 0.5, 0, 0.5 and of type II 0.5, 1, 0, 0: the better ones are 1, 1, 0, 0.5; the
-# first two have equal means (0.75), so the nearer one is first.
+# The better of 1 and 0.5, 0.5 and 1, 0 and 0, 0.5 and 0. With half a weight the second 1 is 0.5.
 def test_combined_by_hand():
     first = np.array([[1.0, 0.5, 0.0, 0.5]])
     second = np.array([[0.5, 1.0, 0.0, 0.0]])
-    better, order = combined(first, second, [2, 1, 1, 1], "abcd")
-    assert better.tolist() == [[1.0, 1.0, 0.0, 0.5]]
-    assert order.tolist() == [[1, 0, 3, 2]]
-
-
-# Both have a best rank of 1; the means are 0.5 and 0.75.
-def test_combined_ties_by_mean():
-    _, order = combined(np.array([[1.0, 0.5]]), np.array([[0.0, 1.0]]))
-    assert order.tolist() == [[1, 0]]
+    assert combined(first, second).tolist() == [[1.0, 1.0, 0.0, 0.5]]
+    assert combined(second, first, 0.5).tolist() == [[0.5, 1.0, 0.0, 0.25]]
 
 
 def test_wrong_arguments():

@@ -1,0 +1,119 @@
+"""Options and readings that the commands about recordings share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TypeVar
+
+import click
+
+from pytpc.cli.console import progress, warn
+from pytpc.complaints import complaints
+from pytpc.errors import InputError
+from pytpc.ingest import Recording, read
+from pytpc.scoring.ranking import unknown_keys
+from pytpc.scoring.scores import WINDOW_S
+from pytpc.static_info import StaticInfo
+from pytpc.words import plain
+
+PATH = click.Path(path_type=Path)
+Command = TypeVar("Command", bound=Callable[..., object])
+
+STATIC = click.option(
+    "--static",
+    "static_source",
+    type=PATH,
+    required=True,
+    metavar="FILE_OR_FOLDER",
+    help="static.json, a build base or a built workspace.",
+)
+TOP = click.option(
+    "--top",
+    type=click.IntRange(min=1),
+    default=5,
+    show_default=True,
+    metavar="N",
+    help="How many suspects are shown.",
+)
+JSON = click.option("--json", "as_json", is_flag=True, help="Print JSON, for programs.")
+WINDOW = click.option(
+    "--window",
+    "window_s",
+    type=click.FloatRange(min=0.0, min_open=True, max=86400.0),
+    default=WINDOW_S,
+    show_default=True,
+    metavar="SECONDS",
+    help="How far before a mark type II looks.",
+)
+
+_UNTYPED = "pytpc.untyped"
+
+
+def _note_untyped(ctx: click.Context, _: click.Parameter, value: bool) -> None:
+    ctx.meta[_UNTYPED] = value
+
+
+def _types(ctx: click.Context, _: click.Parameter, value: str) -> str:
+    return "ignore" if ctx.meta.get(_UNTYPED) else value
+
+
+_BELIEVED = click.option(
+    "--types",
+    type=click.Choice(["believe", "doubt", "ignore"]),
+    default="believe",
+    show_default=True,
+    callback=_types,
+    help="How far the marks' types are believed.",
+)
+# What `--types ignore` was called first.
+_OLDER = click.option(
+    "--untyped",
+    is_flag=True,
+    hidden=True,
+    expose_value=False,
+    is_eager=True,
+    callback=_note_untyped,
+)
+
+
+def TYPES(command: Command) -> Command:
+    """The option ``--types``, as the argument ``types`` of `pytpc.scoring.ranking.rank_marks`."""
+    return _BELIEVED(_OLDER(command))
+
+
+def recording_of(source: Path) -> Recording:
+    """Read a recording, with its progress shown.
+
+    Raises:
+        InputError: it cannot be read.
+    """
+    with progress(f"reading {source.name}") as advance:
+        return read(source, advance)
+
+
+def check_reports(recording: Recording, static: StaticInfo, source: Path) -> None:
+    """See that the recording has a report that the static information knows.
+
+    Without, it would be ranked as if nothing were suspicious.
+
+    Raises:
+        InputError: it has none.
+    """
+    if not len(recording.events):
+        raise InputError(
+            "no threshold reports: was /rosout recorded, and the workspace built with TPC? "
+            " Files of the sink `file` have to be in the same folder, or in its tpc",
+            source,
+        )
+    if len(unknown_keys(recording.events, static)) == len(recording.events.keys):
+        raise InputError(
+            "none of its reports is known to the static information: it is of another build",
+            source,
+        )
+
+
+def warn_about(recording: Recording, static: StaticInfo | None) -> None:
+    """A line for each thing that is wrong with a recording, and for what was left out of it."""
+    for complaint in complaints(recording, static):
+        warn(f"{plain(recording.name)}: {plain(complaint)}")
