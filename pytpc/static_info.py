@@ -209,7 +209,7 @@ class StaticInfo:
         return cls.from_json(_rooted(data, path.absolute().parent), path)
 
 
-def _rooted(data: Any, folder: Path) -> Any:
+def _rooted(data: object, folder: Path) -> object:
     """The document with sources that are given relative to its ``folder`` as absolute paths.
 
     Static information that is passed on together with the sources says so.

@@ -32,6 +32,7 @@ SUMMARIES = {
     "sink": ("graph_commands", "Show and change where running nodes report to."),
     "survey": ("survey_commands", "Build source trees with and without TPC; tables."),
     "toolchain": ("machine_commands", "Print what to type to build with TPC by another tool."),
+    "watch": ("watch_commands", "Show the suspected parameters while the robot runs; mark."),
 }
 
 

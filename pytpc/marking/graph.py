@@ -54,10 +54,12 @@ class GraphMarks:
     Args:
         master: URI of the ROS master.
         observer: namespace of the topics, empty for none.
+        what: what the observer is doing, for the title.
     """
 
-    def __init__(self, master: str, observer: str) -> None:
+    def __init__(self, master: str, observer: str, what: str = "marking") -> None:
         """See the class; connects in the background."""
+        self._what = what
         self._master = master
         self._observer = observer
         self._name = f"/tpc_mark_{os.getpid()}_{secrets.token_hex(3)}"
@@ -106,7 +108,7 @@ class GraphMarks:
         clock = "simulated time" if self._clock_ns is not None else "wall time"
         clock = "no /clock yet" if now_ns is None else clock
         status = f"{self._fault or 'connected'}; {heard}; {clock}"
-        return View(f"marking{who} on {self._master}", (status,), start_ns, now_ns)
+        return View(f"{self._what}{who} on {self._master}", (status,), start_ns, now_ns)
 
     def send(self, change: Change) -> None:
         """Tell the graph what happened to the marks."""

@@ -54,7 +54,9 @@ _MOST_WAITING = 200_000
 
 
 class Feed(Protocol):
-    """Where evaluations come from."""
+    """Where evaluations come from; ``live`` where they come by themselves."""
+
+    live: bool
 
     def take(self, now_ns: int | None) -> tuple[Watching, Sequence[Item]]:
         """What is to be taken in now, and into what: another than before where time went back."""
@@ -176,6 +178,8 @@ class GraphFeed:
         fresh: what nothing was taken into; a copy of it is used anew when the clock is put back.
     """
 
+    live = True
+
     def __init__(self, master: str, fresh: Watching) -> None:
         """See the class; listens in a thread of its own."""
         self._master = master
@@ -270,6 +274,8 @@ class RecordedFeed:
         recording: the mission.
         fresh: what nothing was taken into.
     """
+
+    live = False
 
     def __init__(self, recording: Recording, fresh: Watching) -> None:
         """The clock is at the beginning. Copies of what was known are kept every half a minute,
@@ -394,9 +400,14 @@ class WatchedMission:
             self._rates.popleft()
         since, before = self._rates[0]
         rate = max(0, reports - before) / (steady_s - since) if steady_s > since else 0.0
-        found = self.watching
-        nodes, unknown = len(found.nodes), len(found.unknown)
-        return Status(reports, rate, nodes, unknown, self._feed.lost(), self._feed.fault())
+        return Status(
+            reports=reports,
+            rate=rate if self._feed.live else None,
+            nodes=len(self.watching.nodes),
+            unknown=len(self.watching.unknown),
+            lost=self._feed.lost(),
+            fault=self._feed.fault(),
+        )
 
     def panel(self, now_ns: int, *, utf8: bool) -> Panel:
         """What is to be shown of an instant."""

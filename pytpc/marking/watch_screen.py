@@ -16,7 +16,7 @@ from rich.text import Text
 from pytpc.marking.session import Session, View, clock_text, cut, folded
 from pytpc.marking.watching import Kept, KeptRankings, Look, Part, Row
 from pytpc.marks import Mark, MarkType
-from pytpc.words import many, plain, show
+from pytpc.words import exact, many, plain
 
 Layout = tuple[MarkType | None, ...]
 LAYOUTS: tuple[Layout, ...] = (("I", "II"), (None,), ("I",), ("II",))
@@ -37,8 +37,10 @@ _LEAST_SIDE = 48
 _LEAST_NAME = 12
 _RECENT_S = 3.0
 _BARS = {True: "▁▂▃▄▅▆▇█", False: "_.-=+*%#"}
-_FLOP = {True: "×", False: "x"}
+_FLOP = "x"
 _LEAST_ROWS = 3
+_WIDEST_NOW = 24
+_LEGEND = "Trend of the last seconds: a low bar is near the threshold, an x is a flop"
 
 
 class Options(NamedTuple):
@@ -52,11 +54,11 @@ class Options(NamedTuple):
 
 
 class Status(NamedTuple):
-    """What has come in: reports, how many in a second, nodes, keys that are not known, what was
-    lost, and what is wrong (empty where nothing)."""
+    """What has come in: reports, how many in a second (None of a recording), nodes, keys that are
+    not known, what was lost, and what is wrong (empty where nothing)."""
 
     reports: int = 0
-    rate: float = 0.0
+    rate: float | None = None
     nodes: int = 0
     unknown: int = 0
     lost: int = 0
@@ -64,7 +66,9 @@ class Status(NamedTuple):
 
     def words(self) -> str:
         """One line; what is wrong comes first."""
-        text = f"{many(self.reports, 'report')} of {many(self.nodes, 'node')}, {self.rate:,.0f}/s"
+        text = f"{many(self.reports, 'report')} of {many(self.nodes, 'node')}"
+        if self.rate is not None:
+            text += f", {self.rate:,.0f}/s"
         if self.lost:
             text += f", {self.lost:,} lost"
         if self.unknown:
@@ -91,9 +95,7 @@ class _Column(NamedTuple):
     text: Callable[[Row, bool], str]
 
 
-def watch_screen(
-    session: Session, view: View, panel: Panel, width: int, height: int
-) -> list[Text]:
+def watch_screen(session: Session, view: View, panel: Panel, width: int, height: int) -> list[Text]:
     """The lines to show, none wider than ``width``, at most ``height``: tables, marks, keys."""
     width, height = max(1, width), max(1, height)
     head = [Text(cut(view.title, width), style="bold")]
@@ -109,8 +111,11 @@ def watch_screen(
     marks = min(len(session.marks), max(0, room // 4))
     body = _body(panel, view, width, room - (marks + 1 if marks else 0), stacked)
     tail = _marks(session, view, panel, width, room - len(body)) if marks else []
-    blank = [Text()] * max(0, room - len(body) - len(tail))
-    lines = [*head, *body, *blank, *tail, *foot]
+    left = room - len(body) - len(tail)
+    more = _evidence(_shown_look(panel), width) if marks or not session.marks else []
+    more = more if len(more) <= left else []
+    blank = [Text()] * max(0, left - len(more))
+    lines = [*head, *body, *more, *blank, *tail, *foot]
     if len(lines) > height:
         # Where there is hardly any room: what is asked or said matters most.
         lines = [*lines[: max(0, height - 1)], lines[-1]]
@@ -143,14 +148,38 @@ def table(look: Look, kind: MarkType | None, width: int, rows: int, *, utf8: boo
     return lines[: rows + 2]
 
 
+def _shown_look(panel: Panel) -> tuple[Look, Layout]:
+    """What is looked at, of now or of a mark, and its tables."""
+    if panel.options.back is None:
+        return panel.look, panel.options.layout
+    look = panel.kept[panel.options.back].look
+    return look, tuple(look.rows)
+
+
+def _evidence(shown: tuple[Look, Layout], width: int) -> list[Text]:
+    """Where the first suspect of each table is compared, and how to read the bars."""
+    look, layout = shown
+    lines = [Text(), Text(cut(_LEGEND, width), style="dim"), Text()]
+    for row in (look.rows[kind][0] for kind in layout if look.rows[kind]):
+        found = row.suspect.comparison
+        line = Text(f"{row.suspect.position} {row.suspect.parameter}", style="bold")
+        where = f"  {found.file}:{found.lineno}"
+        where += f" in {row.last.node}" if row.last is not None else ""
+        where += f", for {found.topic}" if found.topic else ""
+        line.append(where, style="not bold")
+        line.plain = plain(line.plain)
+        line.truncate(width)
+        lines += [line, Text(cut(f"    {(found.source_code or '').strip()}", width), style="dim")]
+    return lines if len(lines) > 3 else []
+
+
 def _body(panel: Panel, view: View, width: int, room: int, stacked: bool) -> list[Text]:
     """The tables, side by side or below one another; of now, or of a mark."""
     options = panel.options
-    look, layout = panel.look, options.layout
+    look, layout = _shown_look(panel)
     lines: list[Text] = []
     if options.back is not None:
         kept = panel.kept[options.back]
-        look, layout = kept.look, tuple(kept.look.rows)
         stacked = False
         when = clock_text(kept.mark.time_ns - view.start_ns)
         text = f"At the mark of {when} ({_named(kept.mark)}); m goes on"
@@ -176,9 +205,7 @@ def _body(panel: Panel, view: View, width: int, room: int, stacked: bool) -> lis
     return lines[: max(0, room + 1)]
 
 
-def _marks(
-    session: Session, view: View, panel: Panel, width: int, room: int
-) -> list[Text]:
+def _marks(session: Session, view: View, panel: Panel, width: int, room: int) -> list[Text]:
     """The newest marks, each with its first suspects, below a line that counts them."""
     shown = session.marks[-max(0, room - 1) :] if room > 1 else ()
     if not shown:
@@ -217,12 +244,10 @@ def _keys(view: View) -> str:
     return "  ".join(word.replace(" ", "\N{NO-BREAK SPACE}") for word in words)
 
 
-def _columns(
-    kind: MarkType | None, width: int, rows: Sequence[Row]
-) -> tuple[list[_Column], int]:
+def _columns(kind: MarkType | None, width: int, rows: Sequence[Row]) -> tuple[list[_Column], int]:
     """The columns that have room, in their order, and how wide the names are."""
     longest = max(cell_len(plain(row.suspect.parameter)) for row in rows)
-    score = _Column("Score", 7, True, 1, lambda row, _: f"{row.suspect.score:.3g}")
+    score = _Column("Score", 6, True, 1, lambda row, _: score_text(row.suspect.score))
     now = _Column("Now", _now_width(rows), False, 2, lambda row, _: _now(row))
     parts = _Column("Trend", len(rows[0].parts), False, 3, lambda row, utf8: bars(row.parts, utf8))
     flop = _Column("Flop", 6, True, 4, lambda row, _: ago(row.flop_s))
@@ -232,7 +257,7 @@ def _columns(
     chosen = [score, now, parts, flop] + ([of] if kind is None else [])
     while chosen:
         left = width - 3 - _GAP - sum(column.width + _GAP for column in chosen)
-        if left >= min(longest, max(_LEAST_NAME, width // 3)):
+        if left >= min(longest, max(_LEAST_NAME, width // 4)):
             return chosen, min(left, max(longest, len("Parameter")))
         chosen.remove(max(chosen, key=lambda column: column.need))
     return [], max(1, width - 3 - _GAP)
@@ -245,11 +270,29 @@ def _now(row: Row) -> str:
     relation = row.suspect.comparison.relation
     if relation == "flag":
         return "on" if row.last.result else "off"
-    return f"{show(row.last.cmp)} {relation} {show(row.last.thresh)}"
+    cmp, thresh = row.last.cmp, row.last.thresh
+    left, right = f"{cmp:.4g}", f"{thresh:.4g}"
+    # What is not equal must not look so.
+    if left == right and cmp != thresh:
+        left, right = exact(cmp), exact(thresh)
+    return f"{left} {relation} {right}"
 
 
 def _now_width(rows: Sequence[Row]) -> int:
-    return max(3, *(cell_len(_now(row)) for row in rows))
+    return min(_WIDEST_NOW, max(3, *(cell_len(_now(row)) for row in rows)))
+
+
+def score_text(score: float) -> str:
+    """Three digits, as far as six characters go.
+
+    >>> score_text(0.06021), score_text(28.16), score_text(1234.5), score_text(2.5e9)
+    ('0.0602', '28.2', '1234', '2e+09')
+    """
+    if 0 < score < 1e-3:
+        return f"{score:.0e}"
+    if score < 1000:
+        return f"{score:.3g}"
+    return f"{score:.0f}" if score < 999_999 else f"{score:.0e}"
 
 
 def ago(seconds: float | None) -> str:
@@ -272,13 +315,13 @@ def bars(parts: Sequence[Part], utf8: bool) -> str:
     """How far the value was from its threshold: low bars are near, a cross is a flop.
 
     >>> bars([Part(0.0, False), Part(1.0, False), Part(0.3, True), Part(math.nan, False)], True)
-    '▁█× '
+    '▁█x '
     """
     levels = _BARS[utf8]
     text = ""
     for part in parts:
         if part.flopped:
-            text += _FLOP[utf8]
+            text += _FLOP
         elif math.isnan(part.distance):
             text += " "
         else:

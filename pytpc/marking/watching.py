@@ -41,7 +41,7 @@ class Seen(NamedTuple):
 class Engine(Protocol):
     """The live scores, see `pytpc.scoring.live.LiveRanking`."""
 
-    def add(
+    def add(  # noqa: PLR0917 (the columns of an event)
         self, time_ns: int, key: str, node: str, result: bool, cmp: float, thresh: float, res: bool
     ) -> None:
         """Take in an evaluation."""
@@ -117,9 +117,7 @@ class Watching:
         window_s: the window of type II, in seconds.
     """
 
-    def __init__(
-        self, engine: Engine, static_info: StaticInfo, window_s: float = WINDOW_S
-    ) -> None:
+    def __init__(self, engine: Engine, static_info: StaticInfo, window_s: float = WINDOW_S) -> None:
         """Nothing was seen yet."""
         self._engine = engine
         self._static = static_info
@@ -180,9 +178,7 @@ class Watching:
         """The suspects at an instant that is not before the last evaluation."""
         return self._engine.ranking_at(mark)
 
-    def look(
-        self, now_ns: int, top: int, kinds: Sequence[MarkType | None] = KINDS
-    ) -> Look:
+    def look(self, now_ns: int, top: int, kinds: Sequence[MarkType | None] = KINDS) -> Look:
         """What is to be shown now: the first ``top`` suspects of each of ``kinds``."""
         rankings = {kind: self._engine.ranking_at(Mark(now_ns, kind)) for kind in kinds}
         return self.look_of(rankings, now_ns, top)
@@ -266,7 +262,9 @@ class KeptRankings:
         """Keep, forget or rename what belongs to a mark that was made, taken back or noted."""
         before, after = change
         if before is not None and after is not None:
-            self._kept = [one._replace(mark=after) if one.mark == before else one for one in self._kept]
+            self._kept = [
+                one._replace(mark=after) if one.mark == before else one for one in self._kept
+            ]
         elif before is not None:
             self._kept = [one for one in self._kept if one.mark != before]
         elif after is not None:
