@@ -32,7 +32,8 @@ _TITLES: dict[MarkType | None, str] = {
 # Blue and orange differ for all who see colours; the words say the same.
 _COLOURS: dict[MarkType | None, str] = {"I": "bright_blue", "II": "dark_orange", None: "bold"}
 _GAP = 2
-_BETWEEN = 3
+_NUMBER = 3 + 1
+_BETWEEN = 2
 _LEAST_SIDE = 48
 _LEAST_NAME = 12
 _RECENT_S = 3.0
@@ -130,17 +131,16 @@ def table(look: Look, kind: MarkType | None, width: int, rows: int, *, utf8: boo
         why = look.reasons[kind] or "no parameter has a score yet"
         return lines + _plain(folded(why, width)[: max(1, rows)], width, "dim")
     columns, name_width = _columns(kind, width, found)
-    heads = [("#", True, 3), ("Parameter", False, name_width)]
-    heads += [(column.heading, column.right, column.width) for column in columns]
-    # Not underlined or coloured: the headings are bold so that they show on any terminal.
-    line = _joined([_fit(text, room, right=right) for text, right, room in heads])
-    lines.append(Text(cut(line, width), style="bold"))
+    name = _fit("#", 3, right=True) + " " + _fit("Parameter", name_width)
+    heads = [_fit(one.heading, one.width, right=one.right) for one in columns]
+    # Neither underlined nor coloured: bold shows on any terminal.
+    lines.append(Text(cut(_joined([name, *heads]), width), style="bold"))
     if look.reasons[kind]:
         lines += _plain([look.reasons[kind]], width, "dim")[:1]
     for row in found:
         suspect = row.suspect
         number = f"{suspect.position}{'=' if suspect.tied else ''}"
-        cells = [_fit(number, 3, right=True), _fit(suspect.parameter, name_width)]
+        cells = [_fit(number, 3, right=True) + " " + _fit(suspect.parameter, name_width)]
         cells += [_fit(one.text(row, utf8), one.width, right=one.right) for one in columns]
         recent = row.flop_s is not None and row.flop_s < _RECENT_S
         style = "bold" if suspect.position == 1 or recent else ""
@@ -256,11 +256,11 @@ def _columns(kind: MarkType | None, width: int, rows: Sequence[Row]) -> tuple[li
         flop, parts = flop._replace(need=0), parts._replace(need=4)
     chosen = [score, now, parts, flop] + ([of] if kind is None else [])
     while chosen:
-        left = width - 3 - _GAP - sum(column.width + _GAP for column in chosen)
-        if left >= min(longest, max(_LEAST_NAME, width // 4)):
+        left = width - _NUMBER - sum(column.width + _GAP for column in chosen)
+        if left >= min(longest, max(_LEAST_NAME, width // 3)):
             return chosen, min(left, max(longest, len("Parameter")))
         chosen.remove(max(chosen, key=lambda column: column.need))
-    return [], max(1, width - 3 - _GAP)
+    return [], max(1, width - _NUMBER)
 
 
 def _now(row: Row) -> str:
@@ -271,7 +271,7 @@ def _now(row: Row) -> str:
     if relation == "flag":
         return "on" if row.last.result else "off"
     cmp, thresh = row.last.cmp, row.last.thresh
-    left, right = f"{cmp:.4g}", f"{thresh:.4g}"
+    left, right = f"{cmp:.3g}", f"{thresh:.3g}"
     # What is not equal must not look so.
     if left == right and cmp != thresh:
         left, right = exact(cmp), exact(thresh)
