@@ -28,6 +28,7 @@ from pytpc.scoring.scores import (
     EQUAL,
     NONE,
     WINDOW_S,
+    Before,
     RangeSums,
     beside_none,
     checked,
@@ -67,17 +68,20 @@ def type2_bounds(
     beta: float = 1.0,
     gamma: float = 0.0,
     delta: float = 0.0,
+    before: Before | None = None,
 ) -> Bounds:
     """Type II from first evaluations, flops and summaries; the arguments are those of ``type2``.
 
     Keys of ``summaries`` that are not among ``events.keys`` are left out. A key may have both
-    summaries and evaluations that are in none (another node, or another policy before).
+    summaries and evaluations that are in none (another node, or another policy before). ``before``
+    has the extremes of summaries, too, that ended before the first of ``summaries``.
 
     Raises:
         ValueError: ``distance`` is not one number for each key, or an argument is negative.
     """
     powers = _Powers(alpha, beta, gamma, delta)
-    plain = type2(events, marks_ns, distance, window_s=window_s, **powers._asdict())
+    earlier = before or Before.nothing(len(events.keys))
+    plain = type2(events, marks_ns, distance, window_s=window_s, before=earlier, **powers._asdict())
     marks, distances = checked(events, marks_ns, distance)
     begins = marks - round(window_s * 1e9)
     bounds = Bounds(plain, plain.copy(), plain.copy())
@@ -89,7 +93,7 @@ def type2_bounds(
         if rows.size:
             # What is beyond a double is looked for where it matters, in ``scores``.
             with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-                own = _Key(events, code, summaries, rows)
+                own = _Key(events, code, summaries, rows, earlier)
                 columns = own.scores(begins, marks, powers, float(nearness[code]))
             for table, column in zip(bounds, columns, strict=True):
                 table[:, code] = column
@@ -113,7 +117,10 @@ class _Spread(NamedTuple):
 class _Key:
     """The summaries of one key, and its evaluations that are in none, each as one of its own."""
 
-    def __init__(self, events: Events, code: int, summaries: Summaries, rows: Int64s) -> None:
+    def __init__(
+        self, events: Events, code: int, summaries: Summaries, rows: Int64s, before: Before
+    ) -> None:
+        self.before = float(before.highest[code]), float(before.lowest[code])
         evaluations = events.by_key.rows(code)
         flop = events.flop[evaluations]
         self.flops = events.time_ns[evaluations[flop]]
@@ -193,6 +200,8 @@ class _Key:
             lowest = _up_to(_running_max(-self.low[rows]), count)
             highest = np.maximum(highest, _up_to(self.highest, known))
             lowest = np.maximum(lowest, _up_to(-self.lowest, known))
+            highest = np.maximum(highest, self.before[0])
+            lowest = np.maximum(lowest, -self.before[1])
             found.append(np.where(np.isfinite(highest), highest + lowest, 0.0))
         return _Spread(*found)
 

@@ -20,6 +20,7 @@ because the first evaluation and all flops are among the events; for type II see
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -37,8 +38,37 @@ WINDOW_S = 12.0
 EQUAL = 1e-4
 """Up to this difference a value counts as the threshold itself (n_i of type II)."""
 
+NEVER = -(2**63)
+"""The time of what did not happen."""
+
 _LARGE = 2.0**960
 _SCALE = 2.0**-64
+
+
+class Before(NamedTuple):
+    """What came before the first row of a table whose begin was forgotten, for each of its k keys.
+
+    ``flops`` int64[k], how many; ``last_flop_ns`` int64[k], the last of them (``NEVER`` where there
+    is none); ``finite`` int64[k], evaluations with finite values, and ``highest`` and ``lowest``
+    float64[k] the extremes of these values (-inf and inf where there are none).
+    """
+
+    flops: Int64s
+    last_flop_ns: Int64s
+    finite: Int64s
+    highest: Floats
+    lowest: Floats
+
+    @classmethod
+    def nothing(cls, keys: int) -> Before:
+        """The table has its begin."""
+        return cls(
+            np.zeros(keys, np.int64),
+            np.full(keys, NEVER),
+            np.zeros(keys, np.int64),
+            np.full(keys, -np.inf),
+            np.full(keys, np.inf),
+        )
 
 
 def type1(
@@ -49,6 +79,7 @@ def type1(
     alpha: float = 1.0,
     beta: float = 1.0,
     gamma: float = 0.0,
+    before: Before | None = None,
 ) -> Floats:
     """Type I, recent flop: (m - t_last_flop)^alpha * (1 + flops up to m)^beta * d_i^gamma.
 
@@ -59,6 +90,7 @@ def type1(
         alpha: exponent of the seconds since the last flop, at least 0.
         beta: exponent of the number of flops.
         gamma: exponent of the distance.
+        before: what was before the first of ``events``; no mark may be earlier.
 
     Returns:
         float64[marks, keys]; ``NONE`` where the key has not flopped up to m.
@@ -68,13 +100,16 @@ def type1(
     """
     marks, distances = checked(events, marks_ns, distance)
     not_negative(alpha=alpha)
+    earlier = before or Before.nothing(len(events.keys))
     scores = np.full((marks.size, len(events.keys)), NONE)
     for code in range(len(events.keys)):
         rows = events.by_key.rows(code)
         flops = events.time_ns[rows[events.flop[rows]]]
-        count = np.searchsorted(flops, marks, side="right")
+        place = np.searchsorted(flops, marks, side="right")
+        count = place + earlier.flops[code]
         some = count > 0
-        seconds = (marks[some] - flops[count[some] - 1]) / 1e9
+        last = np.concatenate([[NEVER], flops])[place[some]]
+        seconds = (marks[some] - np.maximum(last, earlier.last_flop_ns[code])) / 1e9
         value = seconds**alpha * (1.0 + count[some]) ** beta * distances[code] ** gamma
         scores[some, code] = beside_none(value)
     return scores
@@ -90,6 +125,7 @@ def type2(
     beta: float = 1.0,
     gamma: float = 0.0,
     delta: float = 0.0,
+    before: Before | None = None,
 ) -> Floats:
     """Type II, about to flop: D^alpha * max(1, flops)^beta * n_i^gamma * (d_i/d_max)^delta.
 
@@ -105,6 +141,7 @@ def type2(
         beta: exponent of the number of flops in the window.
         gamma: exponent of n_i, at least 0.
         delta: exponent of the distance.
+        before: what was before the first of ``events``; no window may begin earlier.
 
     Returns:
         float64[marks, keys]; ``NONE`` where the key has no evaluation with finite values in the
@@ -116,13 +153,14 @@ def type2(
     marks, distances = checked(events, marks_ns, distance)
     not_negative(window_s=window_s, alpha=alpha, gamma=gamma)
     begins = marks - round(window_s * 1e9)
+    earlier = before or Before.nothing(len(events.keys))
     scores = np.full((marks.size, len(events.keys)), NONE)
     nearness = distances / distances.max(initial=1.0)
     for code in range(len(events.keys)):
         rows = events.by_key.rows(code)
         flops = events.time_ns[rows[events.flop[rows]]]
         flop_count = count_within(flops, begins, marks)
-        window = _Differences(events, rows).over(begins, marks)
+        window = _Differences(events, rows, earlier, code).over(begins, marks)
         some = window.usable
         value = (
             window.mean[some] ** alpha
@@ -228,17 +266,21 @@ class _Window(NamedTuple):
 class _Differences:
     """|cmp - thresh| of one key, ready for sums over spans of time."""
 
-    def __init__(self, events: Events, rows: Int64s) -> None:
+    def __init__(self, events: Events, rows: Int64s, before: Before, code: int) -> None:
         finite = np.isfinite(events.cmp[rows]) & np.isfinite(events.thresh[rows])
         rows = rows[finite]
         cmp, thresh = events.cmp[rows], events.thresh[rows]
+        span = float(before.highest[code]), float(before.lowest[code])
+        skipped = int(before.finite[code])
         self.times = events.time_ns[rows]
         with np.errstate(over="ignore"):
             self.unequal = np.concatenate([[0], np.cumsum(np.abs(cmp - thresh) > EQUAL)])
-        self.ratios = [_Ratio(cmp, thresh)]
-        if np.abs([cmp, thresh]).max(initial=0.0) > _LARGE:
+        self.ratios = [_Ratio(cmp, thresh, span, skipped)]
+        known = [abs(value) for value in span if math.isfinite(value)]
+        if np.abs([cmp, thresh]).max(initial=max(known, default=0.0)) > _LARGE:
             # Differences and sums of the largest doubles overflow; a power of two changes no ratio.
-            self.ratios.append(_Ratio(cmp * _SCALE, thresh * _SCALE))
+            less = span[0] * _SCALE, span[1] * _SCALE
+            self.ratios.append(_Ratio(cmp * _SCALE, thresh * _SCALE, less, skipped))
 
     def over(self, begins: Int64s, ends: Int64s) -> _Window:
         """D and n_i over the closed spans."""
@@ -257,11 +299,15 @@ class _Differences:
 class _Ratio:
     """Means of |cmp - thresh| / (max - min), max and min over all up to the last of the span."""
 
-    def __init__(self, cmp: Floats, thresh: Floats) -> None:
+    def __init__(
+        self, cmp: Floats, thresh: Floats, span: tuple[float, float], skipped: int
+    ) -> None:
+        """``span`` has the extremes of before, ``skipped`` how many there were."""
         with np.errstate(over="ignore"):
-            self.sums = RangeSums(np.abs(cmp - thresh))
-        self.highest = np.maximum.accumulate(np.maximum(cmp, thresh))
-        self.lowest = np.minimum.accumulate(np.minimum(cmp, thresh))
+            self.sums = RangeSums(np.abs(cmp - thresh), skipped)
+        highest, lowest = np.maximum(cmp, thresh), np.minimum(cmp, thresh)
+        self.highest = np.maximum(np.maximum.accumulate(highest), span[0])
+        self.lowest = np.minimum(np.minimum.accumulate(lowest), span[1])
 
     def spread(self, last: Int64s) -> Floats:
         with np.errstate(over="ignore"):
@@ -283,17 +329,19 @@ class RangeSums:
     stays below log2(n) roundings.
     """
 
-    def __init__(self, values: Floats) -> None:
-        """``values`` float64[n], none of them negative."""
-        self.levels = [values]
+    def __init__(self, values: Floats, skipped: int = 0) -> None:
+        """``values`` float64[n], none of them negative, the first ``skipped`` of which were left
+        out: sums are to the last bit what they are with them."""
+        self.shift = skipped % (1 << max(1, values.size).bit_length())
+        self.levels = [np.concatenate([np.zeros(self.shift), values]) if self.shift else values]
         while self.levels[-1].size > 1:
             below = self.levels[-1]
             even = below[: below.size // 2 * 2]
             self.levels.append(even[0::2] + even[1::2])
 
     def over(self, low: Int64s, high: Int64s) -> Floats:
-        """float64[spans]: the sums over ``[low, high)``."""
-        low, high = low.copy(), high.copy()
+        """float64[spans]: the sums over ``[low, high)`` of the values that are there."""
+        low, high = low + self.shift, high + self.shift
         total = np.zeros(low.size)
         for level in self.levels:
             odd = np.flatnonzero((low < high) & (low & 1 == 1))

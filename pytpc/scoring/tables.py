@@ -13,7 +13,7 @@ from pytpc.events import Events, Floats, Int64s
 from pytpc.marks import MarkType
 from pytpc.parameters import parameter_name
 from pytpc.scoring.bounds import type2_bounds
-from pytpc.scoring.scores import WINDOW_S, by_parameter, combined, ranks, type1, type2
+from pytpc.scoring.scores import WINDOW_S, Before, by_parameter, combined, ranks, type1, type2
 from pytpc.static_info import StaticInfo
 from pytpc.summaries import Summaries
 
@@ -97,6 +97,8 @@ def tpc_scores(
     summaries: Summaries,
     times_ns: npt.ArrayLike,
     window_s: float = WINDOW_S,
+    *,
+    before: Before | None = None,
 ) -> TpcScores:
     """Both scores of every TPC at all times.
 
@@ -106,12 +108,16 @@ def tpc_scores(
         summaries: where there are any of a TPC, its type II is `type2_bounds`' value.
         times_ns: int64[t], in any order.
         window_s: the window of type II in seconds.
+        before: what was before the first of ``events`` and ``summaries``.
     """
-    first = type1(events, times_ns, tpcs.distance)
-    if len(summaries):
-        bounds = type2_bounds(events, summaries, times_ns, tpcs.distance, window_s=window_s)
-        return TpcScores(first, bounds.value)
-    return TpcScores(first, type2(events, times_ns, tpcs.distance, window_s=window_s))
+    first = type1(events, times_ns, tpcs.distance, before=before)
+    if not len(summaries):
+        second = type2(events, times_ns, tpcs.distance, window_s=window_s, before=before)
+        return TpcScores(first, second)
+    bounds = type2_bounds(
+        events, summaries, times_ns, tpcs.distance, window_s=window_s, before=before
+    )
+    return TpcScores(first, bounds.value)
 
 
 def parameter_tables(tpcs: Tpcs, scores: TpcScores) -> Tables:
