@@ -33,6 +33,8 @@ from pytpc.recorder import (
     graph_has_sim_time,
 )
 from pytpc.tcpros import RawSubscriber
+from pytpc.values.origins import START_FILE
+from pytpc.values.recording import NO_LAUNCH, save_origins, try_trace
 
 MASTER = "http://localhost:11311"
 _CLOCK = "/clock"
@@ -69,17 +71,23 @@ def record_graph(
     until: str | None = None,
     timeout_s: float | None = None,
     topics: Sequence[str] = (),
+    launch: Path | None = None,
+    args: Mapping[str, str] | None = None,
     on_progress: Callable[[Progress], None] | None = None,
 ) -> MissionRun:
     """Record /rosout, /threshold_information, all observers' marks and ``topics``.
 
     Args:
-        out_dir: gets mission.bag, params.yaml where rosparam is there, and run.json.
+        out_dir: gets mission.bag, run.json and, where rosparam is there, params_start.yaml,
+            params.yaml and origins.json.
         stop: ends the recording.
         env: says where the master is and what this machine is called; None: that of this process.
         until: a topic of type std_msgs/Bool; when it says true the recording ends.
         timeout_s: the longest that it lasts; None: until ``stop``.
         topics: recorded besides.
+        launch: the launch file that the graph was started with; without it the origins of its
+            values are not known.
+        args: the arguments that it was started with.
         on_progress: called about five times a second.
 
     Raises:
@@ -96,10 +104,12 @@ def record_graph(
     name = f"{NODE_NAME}_{os.getpid()}"
     subscribed = list(dict.fromkeys([*recorded, _CLOCK]))
     subscriber = RawSubscriber(master, name, own_host(env, master), subscribed)
+    trace, reason = (None, NO_LAUNCH) if launch is None else try_trace(env, launch, args or {})
     try:
         bag = BagFile(out_dir / BAG_FILE)
         recorder = Recorder(bag, recorded, until, graph_has_sim_time(subscriber))
         discovery = Discovery(subscriber, recorder, subscribed)
+        _try_dump(env, out_dir / START_FILE)
         ended, told = "", 0.0
         while not ended:
             discovery.look()
@@ -125,14 +135,22 @@ def record_graph(
         subscriber.close()
     bag.close()
     status = recorder.status(closed=True)
-    try:
-        dump_params(env, out_dir / PARAMS_FILE)
-    except (RunError, MissingToolError):
-        # The master may be gone, and the bag is what matters.
-        (out_dir / PARAMS_FILE).unlink(missing_ok=True)
+    _try_dump(env, out_dir / PARAMS_FILE)
     run = MissionRun.of(status, out_dir, ended, time.monotonic() - began)
-    save_run(run, None, {}, out_dir / RUN_FILE)
+    save_run(run, launch, args or {}, out_dir / RUN_FILE)
+    save_origins(out_dir, out_dir / PARAMS_FILE, trace, reason, env)
     return run
+
+
+def _try_dump(env: Mapping[str, str], path: Path) -> None:
+    """Write what stands on the parameter server, or nothing.
+
+    The master may be gone, or rosparam not be installed, and the bag is what matters.
+    """
+    try:
+        dump_params(env, path)
+    except (RunError, MissingToolError):
+        path.unlink(missing_ok=True)
 
 
 def _refuse_earlier(out_dir: Path) -> None:

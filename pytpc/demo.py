@@ -23,7 +23,7 @@ from pytpc.mission import MissionRun, Progress, run_mission
 from pytpc.report.html import MissionReport
 from pytpc.scoring.ranking import MarkRanking, rank_marks
 from pytpc.static_info import StaticInfo
-from pytpc.treatment import Treatment
+from pytpc.treatment import Treatment, save_treatment
 
 FIRST = 3
 """The changed parameter has to be among so many first suspects."""
@@ -93,6 +93,7 @@ def run_treatment(
     run = run_mission(
         install_env, launch, args, out_dir, timeout_s, topics=WATCHED, on_progress=on_progress
     )
+    save_treatment(treatment, out_dir)
     recording = read_bag(run.bag)
     if not len(recording.events):
         raise RunError("no node reported a comparison: was the workspace built with TPC?", run.bag)

@@ -1,8 +1,9 @@
 """Runs one mission on a real ROS graph and records it.
 
 ``run_mission`` leaves in the folder that it is given: ``mission.bag``, ``params.yaml`` (what stood
-on the parameter server), ``run.json`` (how it went), ``tpc/`` (the files of nodes with the sink
-``file``) and ``ros/`` (the output of all processes).
+on the parameter server at the end; ``params_start.yaml`` right after the launch), ``origins.json``
+(where these values came from), ``run.json`` (how it went), ``tpc/`` (the files of nodes with the
+sink ``file``) and ``ros/`` (the output of all processes).
 """
 
 from __future__ import annotations
@@ -30,6 +31,9 @@ from pytpc.ingest.recording import (
 )
 from pytpc.marks import marks_beside, topic_of_marks
 from pytpc.paths import project_root
+from pytpc.values.origins import ORIGINS_FILE, START_FILE
+from pytpc.values.recording import save_origins, try_trace
+from pytpc.values.trace import Trace
 
 BAG_FILE = "mission.bag"
 PARAMS_FILE = "params.yaml"
@@ -41,6 +45,7 @@ _RECORDER_PATIENCE_S = 20.0
 _CLOCK_PATIENCE_S = 30.0
 _LAUNCH_PATIENCE_S = 20.0
 _DUMP_PATIENCE_S = 20.0
+_SET_PATIENCE_S = 10.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,6 +154,7 @@ def run_mission(
     out_dir.mkdir(parents=True, exist_ok=True)
     clear_earlier(out_dir)
     began = time.monotonic()
+    trace, reason = try_trace(install_env, launch, args)
     reports_to = {"TPC_FOLDER": str((out_dir / REPORTS_FOLDER).absolute())}
     with RosGraph(
         {**reports_to, **install_env}, out_dir / "ros", use_sim_time=use_sim_time
@@ -156,6 +162,8 @@ def run_mission(
         recording = _start_recorder(graph, out_dir, (*DEFAULT_TOPICS, *topics), until)
         started = graph.start("roslaunch", command, patience_s=_LAUNCH_PATIENCE_S)
         watch = _Watch(graph, out_dir, began, on_progress)
+        watch.wait_for_parameters(trace)
+        dump_params(graph.env, out_dir / START_FILE)
         if use_sim_time:
             watch.wait_for_clock()
         ended = watch.wait_for_end(timeout_s, settle_s if use_sim_time else 0.0)
@@ -168,6 +176,7 @@ def run_mission(
         raise RunError(f"the recorder did not finish: {said}", recording.log)
     run = MissionRun.of(status, out_dir, ended, time.monotonic() - began)
     save_run(run, launch, args, out_dir / RUN_FILE)
+    save_origins(out_dir, out_dir / PARAMS_FILE, trace, reason, install_env)
     return run
 
 
@@ -176,7 +185,16 @@ def clear_earlier(out_dir: Path) -> None:
 
     Marks that a person made on its bag are not lost: their file gets the ending ``.old``.
     """
-    for name in (BAG_FILE, PARAMS_FILE, RUN_FILE, EVENTS_FILE, SUMMARIES_FILE, MARKS_FILE):
+    for name in (
+        BAG_FILE,
+        PARAMS_FILE,
+        START_FILE,
+        ORIGINS_FILE,
+        RUN_FILE,
+        EVENTS_FILE,
+        SUMMARIES_FILE,
+        MARKS_FILE,
+    ):
         (out_dir / name).unlink(missing_ok=True)
     shutil.rmtree(out_dir / REPORTS_FOLDER, ignore_errors=True)
     marks = marks_beside(out_dir / BAG_FILE)
@@ -265,6 +283,19 @@ class _Watch:
             self._on_progress(Progress(sim_s, wall_s, status.reports, marks))
         return status
 
+    def wait_for_parameters(self, trace: Trace | None) -> None:
+        """Until roslaunch has set what the launch file sets, which it does before any node runs."""
+        wanted = set(trace.settings if trace is not None else ())
+        wanted = {name for name in wanted if "$(" not in name}
+        limit = time.monotonic() + _SET_PATIENCE_S
+        while time.monotonic() < limit:
+            self.look()
+            names = self._graph.call("getParamNames")
+            known = set(names) if isinstance(names, list) else set()
+            if not {n for n in wanted if n not in known and not _below(n, known)}:
+                return
+            time.sleep(_POLL_S)
+
     def wait_for_clock(self) -> None:
         limit = time.monotonic() + _CLOCK_PATIENCE_S
         while self.look().now_ns == 0:
@@ -285,6 +316,11 @@ class _Watch:
         while self.look().now_ns < enough and time.monotonic() < limit:
             time.sleep(_POLL_S)
         return "done"
+
+
+def _below(name: str, known: set[str]) -> bool:
+    """Whether there are parameters below a name: a ``<param type="yaml">`` may be a map."""
+    return any(other.startswith(f"{name}/") for other in known)
 
 
 def dump_params(env: Mapping[str, str], path: Path) -> None:

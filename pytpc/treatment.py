@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, get_args
 
+from pytpc.atomic import write_atomic
 from pytpc.errors import InputError
 from pytpc.marks import MarkType
 
@@ -78,6 +79,21 @@ def load_treatment(folder: Path) -> Treatment:
         return _treatment(document, overlay)
     except ValueError as error:
         raise InputError(f"not a treatment: {error}", path) from error
+
+
+def save_treatment(treatment: Treatment, mission: Path) -> None:
+    """Copy what was done into a mission's folder, for those who read the mission later.
+
+    Raises:
+        InputError: the treatment's file cannot be read any more.
+        TpcError: the copy cannot be written.
+    """
+    path = treatment.overlay.with_name(TREATMENT_FILE)
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"cannot be read: {error.strerror}", path) from error
+    write_atomic(mission / TREATMENT_FILE, data)
 
 
 def _treatment(document: object, overlay: Path) -> Treatment:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from pytpc.advice.counterfactual import WhatIf
-from pytpc.advice.declared import Declared
-from pytpc.advice.suggest import Suggestion
+from pytpc.advice.counterfactual import WhatIf, what_if
+from pytpc.advice.declared import Declared, declared_for
+from pytpc.advice.suggest import Suggestion, suggest
 from pytpc.ingest.recording import Recording
+from pytpc.marks import Mark
 from pytpc.scoring.ranking import MarkRanking, Suspect
+from pytpc.scoring.scores import WINDOW_S
 from pytpc.static_info import StaticInfo
 
 
@@ -30,6 +32,92 @@ def advise(
     *,
     top: int = 5,
     declared: Sequence[Declared] = (),
+    window_s: float = WINDOW_S,
 ) -> list[Advice]:
-    """Advice for the first ``top`` suspects at a mark, in their order."""
-    raise NotImplementedError
+    """Advice for the first ``top`` suspects at a mark, in their order.
+
+    The counterfactual looks at the marks of the type that the suspect's score is of, those of no
+    type, and this mark.
+
+    Args:
+        recording: the mission.
+        static_info: what the analysis found.
+        ranking: the suspects at a mark of the recording.
+        top: how many of them, at least 0.
+        declared: what is declared, see `pytpc.advice.declared.read_declared`.
+        window_s: the window of type II in seconds.
+    """
+    return [
+        _advice(recording, static_info, ranking.mark, suspect, declared=declared, window_s=window_s)
+        for suspect in ranking.suspects[:top]
+    ]
+
+
+def alternatives(
+    recording: Recording,
+    static_info: StaticInfo,
+    ranking: MarkRanking,
+    suspect: Suspect,
+    *,
+    declared: Sequence[Declared] = (),
+    window_s: float = WINDOW_S,
+) -> list[Advice]:
+    """What else may be done about a suspect: by the other comparisons of its parameter.
+
+    Each has ``suspect`` as it is with another ``key`` and ``comparison``; those that suggest the
+    same value, or none, are left out.
+    """
+    said = _advice(
+        recording, static_info, ranking.mark, suspect, declared=declared, window_s=window_s
+    )
+    known = {(said.suggestion.direction, said.suggestion.value)}
+    found = []
+    for key in suspect.keys:
+        if key == suspect.key:
+            continue
+        other = replace(suspect, key=key, comparison=static_info.comparisons[key])
+        advice = _advice(
+            recording, static_info, ranking.mark, other, declared=declared, window_s=window_s
+        )
+        what = (advice.suggestion.direction, advice.suggestion.value)
+        if what[0] is not None and what not in known:
+            known.add(what)
+            found.append(advice)
+    return found
+
+
+def _advice(
+    recording: Recording,
+    static_info: StaticInfo,
+    mark: Mark,
+    suspect: Suspect,
+    *,
+    declared: Sequence[Declared],
+    window_s: float,
+) -> Advice:
+    about = declared_for(declared, suspect)
+    suggestion = suggest(
+        recording.events,
+        suspect.comparison,
+        mark.time_ns,
+        suspect.type,
+        unit=static_info.unit_of(suspect.key),
+        window_s=window_s,
+        summaries=recording.summaries,
+        declared=about,
+    )
+    if suggestion.value is None:
+        return Advice(suspect, suggestion, None, about)
+    marks = [one for one in recording.marks if one.type in {suspect.type, None} or one == mark]
+    if mark not in marks:
+        marks.append(mark)
+    then = what_if(
+        recording,
+        static_info,
+        suspect.parameter,
+        suggestion.value,
+        kind=suspect.type,
+        marks=marks,
+        window_s=window_s,
+    )
+    return Advice(suspect, suggestion, then, about)

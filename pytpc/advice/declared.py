@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
+from pytpc.parameters import same_parameter
+from pytpc.scoring.ranking import Suspect
 from pytpc.words import Number
 
 
@@ -24,3 +27,13 @@ class Declared:
     choices: tuple[tuple[str, Number | str], ...]
     description: str
     place: str
+
+
+def declared_for(declared: Sequence[Declared], suspect: Suspect) -> Declared | None:
+    """What is declared of the parameter of a suspect; None where nothing is, or not one thing.
+
+    Where several declarations have its name, those of the suspect's package count.
+    """
+    same = [one for one in declared if same_parameter(one.parameter, suspect.parameter)]
+    meanings = {replace(one, description="", place="") for one in same}
+    return same[0] if len(meanings) == 1 else None

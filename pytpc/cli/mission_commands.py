@@ -15,6 +15,7 @@ from pytpc.attached import master_of, record_graph, stop_on_signals
 from pytpc.build import workspace_env
 from pytpc.colcon import Bases
 from pytpc.complaints import complaints
+from pytpc.errors import InputError
 from pytpc.ingest.reading import opened
 from pytpc.ingest.recording import REPORTS_FOLDER
 from pytpc.mission import DEFAULT_TOPICS, MissionRun, Progress, run_mission
@@ -42,6 +43,12 @@ _LAUNCH_TIMEOUT_S = 300.0
 @click.option(
     "--topic", "topics", multiple=True, help=f"Record it besides {', '.join(DEFAULT_TOPICS)}."
 )
+@click.option(
+    "--launch",
+    "launched",
+    type=_PATH,
+    help="The launch file that the running graph was started with: says where values came from.",
+)
 @click.option("--wall-time", is_flag=True, help="There is no /clock: the nodes run in real time.")
 @click.option("--parquet", is_flag=True, help="Convert the bag too, as `convert` does.")
 def record_command(
@@ -53,6 +60,7 @@ def record_command(
     timeout_s: float | None,
     until: str | None,
     topics: tuple[str, ...],
+    launched: Path | None,
     wall_time: bool,
     parquet: bool,
 ) -> None:
@@ -63,7 +71,9 @@ def record_command(
     TPC_POLICY and so on hold for its nodes. The marks of all observers are recorded as they appear.
     """
     if workspace is None:
-        run = _record_graph(output, until, timeout_s, topics)
+        run = _record_graph(output, until, timeout_s, topics, launched)
+    elif launched is not None:
+        raise click.UsageError("--launch is for a graph that runs; LAUNCH says it already")
     elif launch is None:
         raise click.UsageError("give both WORKSPACE and LAUNCH, or neither of them")
     else:
@@ -102,8 +112,14 @@ def record_command(
 
 
 def _record_graph(
-    output: Path, until: str | None, timeout_s: float | None, topics: tuple[str, ...]
+    output: Path,
+    until: str | None,
+    timeout_s: float | None,
+    topics: tuple[str, ...],
+    launched: Path | None,
 ) -> MissionRun:
+    if launched is not None and not launched.is_file():
+        raise InputError("no such launch file", launched)
     stop = stop_on_signals()
     click.echo(f"recording {master_of(os.environ)}; Ctrl-C ends it", err=True)
     with mission_progress("recording", "s of it") as advance:
@@ -113,6 +129,7 @@ def _record_graph(
             until=until,
             timeout_s=timeout_s,
             topics=topics,
+            launch=launched,
             on_progress=advance,
         )
 

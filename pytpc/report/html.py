@@ -1,18 +1,31 @@
-"""The report page as one HTML file that asks the network for nothing."""
+"""The report page as one HTML file that asks the network for nothing.
+
+Figures stand in it twice: as SVG, which is seen without a script and on paper, and as numbers, of
+which the page's script makes figures that move, by Bokeh's own JavaScript.
+"""
 
 from __future__ import annotations
 
+import base64
+import hashlib
 from collections.abc import Callable, Sequence
+from functools import cache
+from importlib.resources import files
 from itertools import count
 from pathlib import Path
 
+from bokeh.resources import Resources
+from markupsafe import Markup
+
 from pytpc.atomic import write_atomic
 from pytpc.report.environment import environment
-from pytpc.report.view import MissionReport, figures, mission_view
+from pytpc.report.view import CARDS, ROWS, MissionReport, figures, mission_view
 
 __all__ = ["MissionReport", "render", "write_report"]
 
 Progress = Callable[[int, int], None]
+_COMPONENTS = ["bokeh", "bokeh-api"]
+_OWN = ("report-figures.js", "report-timeline.js", "report.js")
 
 
 def write_report(
@@ -49,4 +62,30 @@ def render(
             on_progress(number, total)
 
     views = [mission_view(mission, n, figure_made) for n, mission in enumerate(missions, start=1)]
-    return environment().get_template("report.html.j2").render(title=title, missions=views)
+    scripts = _scripts()
+    return (
+        environment()
+        .get_template("report.html.j2")
+        .render(
+            title=title,
+            missions=views,
+            rows=ROWS,
+            cards=CARDS,
+            scripts=scripts,
+            hashes=[_hash(script) for script in scripts],
+        )
+    )
+
+
+@cache
+def _scripts() -> tuple[Markup, ...]:
+    """Bokeh's scripts and ours, in the order in which they run."""
+    templates = files("pytpc.report").joinpath("templates")
+    # The last one only sets how much is said to the console, and says so there.
+    bokeh = Resources(mode="inline", components=_COMPONENTS).js_raw[: len(_COMPONENTS)]
+    own = [templates.joinpath(name).read_text("utf-8") for name in _OWN]
+    return tuple(Markup(text) for text in (*bokeh, *own))
+
+
+def _hash(script: str) -> str:
+    return f"sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}"

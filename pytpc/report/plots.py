@@ -72,7 +72,10 @@ _LINES = {"I": "-", "II": (0, (5, 2)), None: (0, (1, 1.5))}
 
 @dataclass(frozen=True, slots=True)
 class EvidenceStyle:
-    """What an evidence plot shows besides the evaluations; times in seconds."""
+    """What an evidence plot shows besides the evaluations; times in seconds.
+
+    ``feasible`` are the thresholds that would do, as (low, high), either of which may be infinite.
+    """
 
     mark: float
     mark_type: MarkType | None
@@ -81,6 +84,7 @@ class EvidenceStyle:
     value_name: str
     limit_name: str
     culprit: bool
+    feasible: tuple[tuple[float, float], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -205,9 +209,14 @@ def _values(axes: Axes, data: Evidence, style: EvidenceStyle) -> None:
             linestyle=(0, (1, 1.6)),
             label="suggested",
         )
-    low, high, beyond = _span(finite, np.append(limit, suggested))
-    margin = 0.08 * (high - low)
-    axes.set_ylim(low - margin, high + margin + _HEADROOM * (high - low))
+    low, high, beyond = span_of(data, style)
+    axes.set_ylim(low, high)
+    for begin, end in style.feasible:
+        shown = max(begin, low), min(end, high)
+        if shown[0] < shown[1]:
+            axes.axhspan(
+                *shown, facecolor="none", edgecolor=_OF["span"], hatch="////", linewidth=0
+            )
     if beyond:
         axes.annotate(
             "some values are beyond this plot",
@@ -253,6 +262,15 @@ def _dots(axes: Axes, data: Evidence, values: Floats, colour: str) -> None:
 def _drawable(values: Floats) -> Floats:
     """NaN where there is no point to draw; matplotlib cannot subtract the largest doubles."""
     return np.clip(np.where(np.isfinite(values), values, np.nan), -_LARGEST, _LARGEST)
+
+
+def span_of(data: Evidence, style: EvidenceStyle) -> tuple[float, float, bool]:
+    """The ends of the axis of values, and whether values lie beyond them."""
+    suggested = np.nan if style.suggested is None else style.suggested
+    limits = np.append(_drawable(data.thresh), suggested)
+    low, high, beyond = _span(_drawable(data.cmp), limits)
+    margin = 0.08 * (high - low)
+    return low - margin, high + margin + _HEADROOM * (high - low), beyond
 
 
 def _span(values: Floats, limits: Floats) -> tuple[float, float, bool]:

@@ -101,24 +101,29 @@ def thin(time: Floats, values: Floats, most: int) -> Int64s:
 
 def with_gaps(time: Floats, *columns: Floats) -> list[Floats]:
     """The columns with a NaN put in wherever the next point is long after the one before."""
-    steps = np.diff(time)
-    if not steps.size:
-        return [time, *columns]
-    gap = np.flatnonzero(steps > max(_GAP_S, _GAP_FACTOR * float(np.median(steps)))) + 1
+    gap = np.flatnonzero(np.diff(time) > gap_after(time)) + 1
     return [np.insert(column, gap, np.nan) for column in (time, *columns)]
 
 
-def lane(events: Events, key: str, start_ns: int, end_ns: int) -> npt.NDArray[np.int8]:
-    """int8[BINS]: what the TPC ``key`` gave in each of equal spans of the mission.
+def gap_after(time: Floats) -> float:
+    """Seconds between two evaluations after which the second does not go on from the first."""
+    steps = np.diff(time)
+    return max(_GAP_S, _GAP_FACTOR * float(np.median(steps))) if steps.size else _GAP_S
+
+
+def lane(
+    events: Events, key: str, start_ns: int, end_ns: int, bins: int = BINS
+) -> npt.NDArray[np.int8]:
+    """int8[bins]: what the TPC ``key`` gave in each of equal spans of the mission.
 
     A result holds until the next one, if that comes within 2 s and three usual periods of the TPC:
     a slow one is not a row of dots, and a pause stays a pause.
     """
-    states = np.zeros(BINS, dtype=np.int8)
+    states = np.zeros(bins, dtype=np.int8)
     rows = events.by_key.rows(events.keys.index(key))
     times, result = events.time_ns[rows], events.result[rows]
-    place = (times - start_ns) * BINS // max(1, end_ns - start_ns)
-    place = np.clip(place, 0, BINS - 1)
+    place = (times - start_ns) * bins // max(1, end_ns - start_ns)
+    place = np.clip(place, 0, bins - 1)
     states[place[result]] |= TRUE
     states[place[~result]] |= FALSE
     steps = np.diff(times)

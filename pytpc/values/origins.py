@@ -2,10 +2,20 @@
 
 from __future__ import annotations
 
+import json
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal, cast, get_args
+
+from pytpc.atomic import write_atomic
+from pytpc.errors import InputError
+from pytpc.parameters import DYNAMIC, same_parameter
+
+ORIGINS_FILE = "origins.json"
+START_FILE = "params_start.yaml"
+SCHEMA = 1
 
 OriginKind = Literal["yaml", "launch", "argument", "default", "runtime", "unknown"]
 
@@ -19,6 +29,10 @@ class Origin:
     roslaunch's command line, the default in the code (nobody set it), set at ``runtime``.
     ``path`` and ``lineno`` are the place, ``text`` the source line; ``via`` the launch files on the
     way to it, ``note`` a sentence about what is not certain. ``value`` is as on the server.
+
+    ``keys`` are the keys in a YAML file from the top, ``argument`` the launch argument whose value
+    this is, ``source`` the file of which ``path`` is an installed copy, ``overridden`` the places
+    (``file:line``) that set it before and do not count.
     """
 
     name: str
@@ -29,6 +43,10 @@ class Origin:
     text: str
     via: tuple[str, ...] = ()
     note: str = ""
+    keys: tuple[str, ...] = ()
+    argument: str = ""
+    source: Path | None = None
+    overridden: tuple[str, ...] = ()
 
     def words(self) -> str:
         """``config/params.yaml:12``, ``default in the code``, ``set at runtime``."""
@@ -40,8 +58,119 @@ class Origin:
 
 
 def read_origins(mission: Path) -> Mapping[str, Origin]:
-    """The origins that were recorded with a mission (origins.json), by full name; empty if none."""
-    raise NotImplementedError
+    """The origins that were recorded with a mission, by full name; empty where none were.
+
+    Args:
+        mission: the folder of the mission, or its bag.
+
+    Raises:
+        InputError: origins.json is there and cannot be read.
+    """
+    path = origins_file(mission)
+    if not path.is_file():
+        return {}
+    document = read_document(path)
+    try:
+        found = [_origin(name, entry) for name, entry in document["parameters"].items()]
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise InputError(f"not a file of origins: {error!r}", path) from error
+    return {origin.name: origin for origin in found}
+
+
+def origins_file(mission: Path) -> Path:
+    """Where the origins of a mission stand, of which ``mission`` is the folder or the bag."""
+    return (mission if mission.is_dir() else mission.parent) / ORIGINS_FILE
+
+
+def read_document(path: Path) -> dict[str, Any]:
+    """origins.json as it is written.
+
+    Raises:
+        InputError: it cannot be read, or is of another version.
+    """
+    try:
+        document = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise InputError(f"cannot be read: {error.strerror}", path) from error
+    except UnicodeDecodeError as error:
+        raise InputError(f"not JSON: byte {error.start} is not UTF-8", path) from error
+    except json.JSONDecodeError as error:
+        raise InputError(f"not JSON: {error.msg}", path, error.lineno) from error
+    if not isinstance(document, dict) or document.get("schema") != SCHEMA:
+        raise InputError(f"not a file of origins of version {SCHEMA}", path)
+    return document
+
+
+def _origin(name: str, entry: Mapping[str, Any]) -> Origin:
+    kind = entry["kind"]
+    if kind not in get_args(OriginKind):
+        raise ValueError(f"kind {kind!r}")
+    path, source = entry.get("path"), entry.get("source")
+    lineno = entry.get("lineno")
+    return Origin(
+        name=name,
+        kind=cast(OriginKind, kind),
+        value=from_json(entry["value"]),
+        path=None if path is None else Path(path),
+        lineno=None if lineno is None else int(lineno),
+        text=str(entry.get("text", "")),
+        via=tuple(map(str, entry.get("via", ()))),
+        note=str(entry.get("note", "")),
+        keys=tuple(map(str, entry.get("keys", ()))),
+        argument=str(entry.get("argument", "")),
+        source=None if source is None else Path(source),
+        overridden=tuple(map(str, entry.get("overridden", ()))),
+    )
+
+
+def write_origins(document: Mapping[str, Any], origins: Mapping[str, Origin], path: Path) -> None:
+    """Write origins.json: ``document`` with the origins in it.
+
+    Raises:
+        TpcError: the file cannot be written.
+    """
+    parameters = {name: as_json(origins[name]) for name in sorted(origins)}
+    whole = {"schema": SCHEMA, **document, "parameters": parameters}
+    write_atomic(path, json.dumps(whole, indent=1, allow_nan=False).encode() + b"\n")
+
+
+def as_json(origin: Origin) -> dict[str, object]:
+    """The fields of an origin but its name; those that are empty are left out."""
+    fields: dict[str, object] = {
+        "path": None if origin.path is None else str(origin.path),
+        "lineno": origin.lineno,
+        "text": origin.text,
+        "via": list(origin.via),
+        "note": origin.note,
+        "keys": list(origin.keys),
+        "argument": origin.argument,
+        "source": None if origin.source is None else str(origin.source),
+        "overridden": list(origin.overridden),
+    }
+    kept = {field: value for field, value in fields.items() if value not in (None, "", [])}
+    return {"kind": origin.kind, "value": to_json(origin.value), **kept}
+
+
+def to_json(value: object) -> object:
+    """A value in strict JSON: NaN and the infinities as ``{"yaml": ".nan"}``, dates as text."""
+    if isinstance(value, float) and not math.isfinite(value):
+        return {"yaml": ".nan" if math.isnan(value) else ".inf" if value > 0 else "-.inf"}
+    if isinstance(value, list | tuple):
+        return [to_json(item) for item in value]
+    if isinstance(value, dict):
+        return {str(key): to_json(item) for key, item in value.items()}
+    return value if value is None or isinstance(value, bool | int | float | str) else str(value)
+
+
+def from_json(value: object) -> object:
+    """The reverse of ``to_json``."""
+    if isinstance(value, dict):
+        if set(value) == {"yaml"}:
+            return float(str(value["yaml"]).replace(".", ""))
+        return {key: from_json(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [from_json(item) for item in value]
+    return value
 
 
 def origin_for(
@@ -49,6 +178,46 @@ def origin_for(
 ) -> Origin | None:
     """The origin of a parameter as the source names it (``~limit``, ``limit``, ``/a/limit``).
 
-    ``node`` is the node's full name, whose namespace the name is in. None where nothing is known.
+    Args:
+        origins: of a mission; where there are none nothing is known.
+        source: the name in the source, with ``<dynamic>`` for what only the running node knows.
+        node: the node's full name, whose namespace the name is in; empty where it is not known.
+        default: the default in the code, of which the value is where nobody set another.
+
+    Returns:
+        None where nothing is known: no origins, a name that is dynamic as a whole, or one that
+        fits several parameters of several nodes.
     """
-    raise NotImplementedError
+    if not origins or source == DYNAMIC:
+        return None
+    node = node.partition(" ")[0]
+    own = node if node.startswith("/") and len(node) > 1 else ""
+    if DYNAMIC not in source and (own or source.startswith("/")):
+        name = resolved(source, own)
+        return origins.get(name) or _default(name, default)
+    fitting = [name for name in origins if same_parameter(name, source)]
+    below = [name for name in fitting if own and name.startswith(f"{own}/")]
+    chosen = below or fitting
+    if len(chosen) == 1:
+        return origins[chosen[0]]
+    if not chosen and DYNAMIC not in source:
+        return _default(source, default)
+    return None
+
+
+def resolved(source: str, node: str) -> str:
+    """The full name of a parameter that a node calls ``source``.
+
+    >>> resolved("~limit", "/ns/mission"), resolved("limit", "/ns/mission"), resolved("/a", "/m")
+    ('/ns/mission/limit', '/ns/limit', '/a')
+    """
+    if source.startswith("/"):
+        return source
+    if source.startswith("~"):
+        return f"{node}/{source.lstrip('~/')}"
+    return f"{node.rpartition('/')[0]}/{source}"
+
+
+def _default(name: str, default: object) -> Origin:
+    note = "" if default is not None else "the default is not known"
+    return Origin(name, "default", default, None, None, "", note=note)

@@ -195,7 +195,7 @@ def test_an_expression():
     # -1 is no square, whatever the limit.
     how = Transform("expression", text="x^2", tree=("pow", "x", 2.0))
     found = ask([(99, -1, 4)], "II", ">", type="derived", transform=how, default=2.0)
-    assert found.reason == "no value of the parameter near this one gives such a threshold"
+    assert found.reason == "no value of the parameter gives such a threshold"
     found = ask([(99, 3, -4)], "II", "<", type="derived", transform=how, default=2.0)
     assert found.reason == "no value of the parameter gives the threshold x^2"
 
@@ -263,8 +263,8 @@ def test_the_type_of_the_read_decides(type_, default, value):
         ([], "I", ">", {}, "it was not evaluated before the mark"),
         ([(101, 1, 2)], "II", ">", {}, "it was not evaluated before the mark"),
         ([(50, 1, 2)], "II", ">", {}, "not evaluated in the window before the mark"),
-        ([(1, 1, 2), (2, 2, 2)], "I", "==", {}, "for equality"),
-        ([(1, 1, 2), (2, 2, 2)], "I", "!=", {}, "for equality"),
+        ([(1, 1, 2), (2, 2, 2)], "I", "==", {}, "any value but 1 and 2 would do"),
+        ([(1, 1, 2), (2, 2, 2)], "I", "!=", {}, "any value but 1 and 2 would do"),
         ([(99, 2, 2)], "II", "==", {}, "any value but 2 would do"),
         ([(1, 3, 2), (2, NAN, 2)], "I", ">", {}, "the compared value was not a number"),
         ([(1, 1, 2), (2, INF, 2)], "I", ">", {}, "no finite threshold"),

@@ -1,0 +1,78 @@
+"""What the page says first: which parameter, up or down, to what, and why."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from markupsafe import Markup
+
+from pytpc.report.cards import CardView
+from pytpc.words import many
+
+
+@dataclass(frozen=True)
+class AnswerView:
+    """Marks that name the same first suspect and the same direction, and that suspect's card.
+
+    ``numbers`` are the marks' numbers from 1, ``marks`` says in words which they are.
+    """
+
+    numbers: tuple[int, ...]
+    marks: str
+    card: CardView
+    plot: Markup
+    others: list[CardView]
+
+
+def answers(cards: Sequence[Sequence[CardView]]) -> list[AnswerView]:
+    """The answers of a mission, the one that most marks give first.
+
+    Nothing is added up over marks: an answer is what one mark says, and how many say the same.
+
+    Args:
+        cards: for each mark those of its first suspects, in order; may be empty.
+    """
+    groups: dict[tuple[str, str], list[int]] = {}
+    for place, first in enumerate(cards):
+        if first:
+            row = first[0].row
+            groups.setdefault((row.parameter, row.direction), []).append(place)
+    found = []
+    for places in groups.values():
+        chosen = cards[places[0]]
+        numbers = tuple(place + 1 for place in places)
+        found.append(
+            AnswerView(
+                numbers, _marks(numbers, len(cards)), chosen[0], _copy(chosen[0]), [*chosen[1:]]
+            )
+        )
+    return sorted(found, key=lambda answer: (-len(answer.numbers), answer.numbers))
+
+
+def spoken(texts: Sequence[str]) -> str:
+    """Texts in their order, repetitions joined: ``1 (x4), 2``."""
+    found: list[tuple[str, int]] = []
+    for text in texts:
+        count = found.pop()[1] + 1 if found and found[-1][0] == text else 1
+        found.append((text, count))
+    return ", ".join(text if count == 1 else f"{text} (x{count})" for text, count in found)
+
+
+def _copy(card: CardView) -> Markup:
+    """The figure of a card with other ids, for a page has each once."""
+    return Markup(card.plot.replace(f"{card.ident}-", f"{card.ident}a-"))
+
+
+def _marks(numbers: Sequence[int], of: int) -> str:
+    """``at the mark``, ``at all 4 marks``, ``at mark 3 of 5``, ``at marks 1-2, 4 of 5``."""
+    if len(numbers) == of:
+        return "at the mark" if of == 1 else f"at all {many(of, 'mark')}"
+    runs: list[list[int]] = []
+    for number in numbers:
+        if runs and number == runs[-1][-1] + 1:
+            runs[-1].append(number)
+        else:
+            runs.append([number])
+    listed = ", ".join(str(run[0]) if len(run) == 1 else f"{run[0]}-{run[-1]}" for run in runs)
+    return f"at mark{'' if len(numbers) == 1 else 's'} {listed} of {of}"

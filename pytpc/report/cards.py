@@ -1,0 +1,373 @@
+"""A suspect at a mark as plain texts and numbers, before any HTML: a row, or a row and its card."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from markupsafe import Markup
+
+from pytpc.advice.advise import Advice
+from pytpc.advice.declared import Declared
+from pytpc.advice.intervals import Interval
+from pytpc.advice.suggest import Suggestion
+from pytpc.arithmetic import evaluate
+from pytpc.ingest.recording import Recording
+from pytpc.marks import Mark
+from pytpc.parameters import same_parameter
+from pytpc.report.payload import finite, series_of
+from pytpc.report.plots import EvidenceStyle, evidence_svg, span_of
+from pytpc.report.series import Evidence, evidence
+from pytpc.report.source import LONGEST_LINE, Line, StepView, source_lines, way_of
+from pytpc.scoring.ranking import MarkRanking, Suspect
+from pytpc.scoring.scores import WINDOW_S
+from pytpc.static_info import Comparison, StaticInfo
+from pytpc.values.origins import Origin, origin_for
+from pytpc.words import exact, many, show
+
+
+@dataclass(frozen=True)
+class MissionReport:
+    """One mission for the page.
+
+    ``rankings`` are ``rank_marks``' answer for ``recording`` and ``static_info``. ``treatment``
+    says what was done to the robot, and ``changed_parameter`` which parameter was changed, where
+    that is known (in a study); it is shown in red. ``origins`` are where the values came from,
+    ``declared`` the ranges that are declared of parameters; both may be empty.
+    """
+
+    name: str
+    recording: Recording
+    static_info: StaticInfo
+    rankings: list[MarkRanking]
+    treatment: str = ""
+    changed_parameter: str | None = None
+    origins: Mapping[str, Origin] = field(default_factory=dict)
+    declared: Sequence[Declared] = ()
+
+    def is_changed(self, parameter: str) -> bool:
+        """True where ``parameter``, as in the source, is the one that was changed."""
+        changed = self.changed_parameter
+        return changed is not None and same_parameter(changed, parameter)
+
+    def seconds(self, time_ns: int) -> float:
+        """A time of the recording's clock as seconds since the recording began."""
+        return (time_ns - self.recording.start_ns) / 1e9
+
+
+@dataclass(frozen=True)
+class SuspectView:
+    """A suspect at a mark, as a row of the ranking."""
+
+    position: str
+    parameter: str
+    culprit: bool
+    current: str
+    value: str
+    direction: str
+    suggestion: str
+    impossible: bool
+    bound: str
+    place: str
+    condition: str
+    relation: str
+    type: str
+    score: str
+    rank: str
+    order: Mapping[str, float | int | str]
+
+
+@dataclass(frozen=True)
+class CardView:
+    """A suspect at a mark with its evidence; ``ident`` names its figure."""
+
+    ident: str
+    row: SuspectView
+    why: str
+    compared: str
+    threshold: str
+    result: str
+    age: str
+    node: str
+    unit: str
+    exposed: str
+    others: int
+    limit_name: str
+    plot: Markup
+    alone: str
+    source: list[Line]
+    source_note: str
+    way: list[StepView]
+    origin: str
+    origin_text: str
+    origin_note: str
+    declared: str
+    declared_at: str
+    what_if: str
+    caveats: tuple[str, ...]
+
+
+class Figures:
+    """The figures of one mission, as the page's script draws them: cards, and series by TPC."""
+
+    def __init__(self, mission: MissionReport) -> None:
+        """None yet."""
+        self._mission = mission
+        self._numbers: dict[str, int] = {}
+        self.series: list[dict[str, object]] = []
+        self.cards: dict[str, dict[str, object]] = {}
+
+    def add(self, ident: str, key: str, card: dict[str, object]) -> None:
+        """Keep a card's figure, and the evaluations of its TPC where they are not kept yet."""
+        if key not in self._numbers:
+            recording = self._mission.recording
+            self._numbers[key] = len(self.series)
+            self.series.append(series_of(recording.events, key, recording.start_ns))
+        self.cards[ident] = {**card, "series": self._numbers[key]}
+
+
+def row_view(mission: MissionReport, advice: Advice) -> SuspectView:
+    """The row of a suspect."""
+    suspect, suggestion = advice.suspect, advice.suggestion
+    found = suspect.comparison
+    current = suggestion.current if suggestion.current is not None else suspect.last.thresh
+    place = f"{found.file}:{found.lineno}"
+    return SuspectView(
+        position=str(suspect.position),
+        parameter=suspect.parameter,
+        culprit=mission.is_changed(suspect.parameter),
+        current=show(current),
+        value=exact(suggestion.value) if suggestion.value is not None else "",
+        direction=suggestion.direction or "",
+        suggestion=suggestion.text,
+        impossible=suggestion.direction is None,
+        bound=_bound(suggestion),
+        place=place,
+        condition=(found.source_code or "").strip()[:LONGEST_LINE],
+        relation=found.relation,
+        type=suspect.type,
+        score=f"{suspect.score:.3g}",
+        rank=f"{suspect.rank:.2f}",
+        order={
+            "position": suspect.position,
+            "parameter": suspect.parameter,
+            "current": _sortable(float(current)),
+            "place": f"{found.file}:{found.lineno:08d}",
+            "score": _sortable(suspect.score),
+            "rank": suspect.rank,
+        },
+    )
+
+
+def card_view(
+    mission: MissionReport, advice: Advice, mark: Mark, figures: Figures, ident: str
+) -> CardView:
+    """The card of a suspect; its figure is added to ``figures``."""
+    suspect = advice.suspect
+    found, last = suspect.comparison, suspect.last
+    unit = mission.static_info.unit_of(suspect.key)
+    lines, note = source_lines(mission.static_info, found)
+    origin = (
+        origin_for(mission.origins, suspect.parameter, last.node, found.default)
+        if mission.origins
+        else None
+    )
+    declared, what_if = advice.declared, advice.what_if
+    data, style = _evidence(mission, advice, mark)
+    label = (
+        f"{suspect.parameter}: compared value and threshold around the mark at {style.mark:.1f} s;"
+        f" {data.evaluations} evaluations, {data.flops.size} changes of the result"
+    )
+    figures.add(ident, suspect.key, _figure(data, style, suspect))
+    return CardView(
+        ident=ident,
+        row=row_view(mission, advice),
+        why=why(mission, suspect, mark),
+        compared=show(last.cmp),
+        threshold=show(last.thresh),
+        result="true" if last.result else "false",
+        age=f"{(mark.time_ns - last.time_ns) / 1e9:.2f}",
+        node=last.node,
+        unit=f"{unit.package}/{unit.link_unit}",
+        exposed=_exposed(found),
+        others=len(suspect.keys) - 1,
+        limit_name=found.name or suspect.parameter,
+        # Made of matplotlib's own XML, in which it escapes every text.
+        plot=Markup(evidence_svg(data, style, ident, label)),
+        alone=label,
+        source=lines,
+        source_note=note,
+        way=way_of(found),
+        origin=origin.words() if origin is not None else "",
+        origin_text=origin.text.strip()[:LONGEST_LINE] if origin is not None else "",
+        origin_note=_origin_note(origin),
+        declared=_declared(declared) if declared is not None else "",
+        declared_at=declared.place if declared is not None else "",
+        what_if=what_if.text if what_if is not None else "",
+        caveats=what_if.caveats if what_if is not None else (),
+    )
+
+
+def why(mission: MissionReport, suspect: Suspect, mark: Mark) -> str:
+    """What the suspect's comparison did before the mark, in one sentence; empty where nothing.
+
+    Type I: its last flop. Type II: its results in the window, and the evaluation that came nearest
+    to going the other way.
+    """
+    events = mission.recording.events
+    rows = events.by_key.rows(events.keys.index(suspect.key))
+    rows = rows[events.time_ns[rows] <= mark.time_ns]
+    flag = suspect.comparison.relation == "flag"
+    if suspect.type == "I":
+        flops = rows[events.flop[rows]]
+        if not flops.size:
+            return ""
+        row = int(flops[-1])
+        age = (mark.time_ns - int(events.time_ns[row])) / 1e9
+        with_what = "" if flag else f", with {show(float(events.cmp[row]))}"
+        against = "" if flag else f" against {show(float(events.thresh[row]))}"
+        truth = "true" if events.result[row] else "false"
+        return f"It became {truth} {age:.2f} s before the mark{with_what}{against}."
+    rows = rows[events.time_ns[rows] >= mark.time_ns - round(WINDOW_S * 1e9)]
+    if not rows.size:
+        return ""
+    true = int(events.result[rows].sum())
+    times = many(int(rows.size), "time")
+    counted = (
+        f"{'true' if true else 'false'} each of {times}"
+        if true in (0, rows.size)
+        else f"true {true:,} of {times}"
+    )
+    text = f"In the {WINDOW_S:g} s before the mark it was {counted}"
+    away = np.abs(events.cmp[rows] - events.thresh[rows])
+    if flag or not np.any(np.isfinite(away)):
+        return f"{text}."
+    nearest = int(rows[int(np.nanargmin(away))])
+    cmp, thresh = float(events.cmp[nearest]), float(events.thresh[nearest])
+    return f"{text}; the compared value came as near as {show(cmp)} to {show(thresh)}."
+
+
+def _evidence(
+    mission: MissionReport, advice: Advice, mark: Mark
+) -> tuple[Evidence, EvidenceStyle]:
+    recording, suspect = mission.recording, advice.suspect
+    found = suspect.comparison
+    start, end = recording.start_ns, recording.end_ns
+    at = mission.seconds(mark.time_ns)
+    style = EvidenceStyle(
+        mark=at,
+        mark_type=mark.type,
+        window=at - WINDOW_S if suspect.type == "II" else None,
+        suggested=_suggested_threshold(found, advice.suggestion),
+        value_name="compared value" if found.relation != "flag" else "flag",
+        limit_name=found.name or suspect.parameter,
+        culprit=mission.is_changed(suspect.parameter),
+        feasible=_feasible_thresholds(found, advice.suggestion),
+    )
+    return evidence(recording.events, suspect.key, mark.time_ns, start, end), style
+
+
+def _figure(data: Evidence, style: EvidenceStyle, suspect: Suspect) -> dict[str, object]:
+    low, high, beyond = span_of(data, style)
+    return {
+        "begin": data.begin,
+        "end": data.end,
+        "low": low,
+        "high": high,
+        "beyond": beyond,
+        "mark": style.mark,
+        "type": style.mark_type or "",
+        "window": style.window,
+        "suggested": finite(style.suggested),
+        "feasible": [[finite(low), finite(high)] for low, high in style.feasible],
+        "culprit": style.culprit,
+        "flag": suspect.comparison.relation == "flag",
+    }
+
+
+def _threshold_of(found: Comparison, value: float) -> float:
+    """The threshold that a value of the parameter gives; NaN where that is not known."""
+    how = found.transform
+    try:
+        if how is not None and how.tree is not None:
+            return evaluate(how.tree, value)
+        if how is None or how.scale is None or how.offset is None:
+            return value
+        return how.scale * value + how.offset
+    except (ArithmeticError, ValueError):
+        return math.nan
+
+
+def _suggested_threshold(found: Comparison, suggestion: Suggestion) -> float | None:
+    if suggestion.value is None or suggestion.direction == "switch":
+        return None
+    return _threshold_of(found, float(suggestion.value))
+
+
+def _feasible_thresholds(
+    found: Comparison, suggestion: Suggestion
+) -> tuple[tuple[float, float], ...]:
+    """The values that would do, as thresholds; an end without a finite one lies beyond the plot."""
+    if suggestion.direction not in {"raise", "lower"}:
+        return ()
+    spans = []
+    for interval in _intervals(suggestion):
+        low, high = (_threshold_of(found, end) for end in (interval.low, interval.high))
+        if math.isnan(low) or math.isnan(high):
+            # Which end is open shows the side on which the suggested value lies.
+            end = high if math.isnan(low) else low
+            inside = _suggested_threshold(found, suggestion)
+            if inside is None or math.isnan(end) or math.isnan(inside):
+                continue
+            low, high = end, math.inf if inside > end else -math.inf
+        spans.append((min(low, high), max(low, high)))
+    return tuple(spans)
+
+
+def _intervals(suggestion: Suggestion) -> tuple[Interval, ...]:
+    if suggestion.boundary is None:
+        return ()
+    if suggestion.direction == "raise":
+        return (Interval(low=suggestion.boundary, low_inclusive=suggestion.inclusive),)
+    return (Interval(high=suggestion.boundary, high_inclusive=suggestion.inclusive),)
+
+
+def _bound(suggestion: Suggestion) -> str:
+    """The words in parentheses of the sentence; a switch has none."""
+    _, found, rest = suggestion.text.rpartition(" (")
+    return rest.rstrip(")") if found and suggestion.direction in {"raise", "lower"} else ""
+
+
+def _exposed(found: Comparison) -> str:
+    place = f"{found.exposed_at.file}:{found.exposed_at.lineno}"
+    return f"{found.topic} ({place})" if found.topic else place
+
+
+def _origin_note(origin: Origin | None) -> str:
+    if origin is None:
+        return ""
+    via = f"by way of {', '.join(origin.via)}" if origin.via else ""
+    return "; ".join(text for text in (via, origin.note) if text)
+
+
+def _declared(declared: Declared) -> str:
+    """``double from 0 to 1, in steps of 0.1``; ``one of low (0), high (1)``."""
+    if declared.choices:
+        named = ", ".join(f"{name} ({value})" for name, value in declared.choices)
+        return f"one of {named}"
+    ends = [
+        f"{word} {show(end)}"
+        for word, end in (("from", declared.low), ("to", declared.high))
+        if end is not None
+    ]
+    step = f", in steps of {show(declared.step)}" if declared.step is not None else ""
+    return f"{' '.join([declared.type, *ends])}{step}"
+
+
+def _sortable(value: float) -> float:
+    """NaN sorts behind all else, infinities at the ends; JSON and HTML know neither."""
+    if math.isnan(value):
+        return 1e308
+    return max(-1e308, min(1e308, value))

@@ -1,0 +1,114 @@
+"""What the figures that move are drawn from: numbers of a mission as JSON inside the page.
+
+Columns of numbers are little-endian arrays in base64, which a browser reads at once and which lose
+nothing: NaN and infinities are no JSON. All evaluations of a TPC are kept once for each mission,
+however many cards show them.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import numpy.typing as npt
+from markupsafe import Markup
+
+from pytpc.columns import Floats
+from pytpc.events import Events
+from pytpc.marks import MarkType
+from pytpc.report.series import gap_after, lane, runs, thin
+from pytpc.scoring.curves import RankCurves
+
+KEPT = 200_000
+"""The most evaluations of one TPC that are kept; of more, the extremes."""
+
+FINE = 6000
+"""The number of columns of a lane that can be zoomed into."""
+
+_RANKS = 65_535
+
+
+def embedded(document: object) -> Markup:
+    """JSON that may stand in a script element: nothing in it can end the element."""
+    text = json.dumps(document, ensure_ascii=True, allow_nan=False, separators=(",", ":"))
+    for sign in "<>&":
+        text = text.replace(sign, f"\\u{ord(sign):04x}")
+    return Markup(text)
+
+
+def packed(values: npt.NDArray[np.generic]) -> str:
+    """The bytes of an array, little-endian, in base64."""
+    return base64.b64encode(
+        np.ascontiguousarray(values, values.dtype.newbyteorder("<")).tobytes()
+    ).decode("ascii")
+
+
+def series_of(events: Events, key: str, start_ns: int) -> dict[str, object]:
+    """All evaluations of one TPC.
+
+    Returns:
+        ``t`` float32 seconds since the recording began, ``c`` float64 compared values, ``r`` uint8
+        results, ``lt`` and ``lv`` float64 when the threshold became what it is, ``gap`` seconds
+        after which a line is not drawn on, ``of`` how many evaluations there were.
+    """
+    rows = events.by_key.rows(events.keys.index(key))
+    seconds = (events.time_ns[rows] - start_ns) / 1e9
+    kept = rows[thin(seconds, events.cmp[rows], KEPT)]
+    limit = events.thresh[rows]
+    same = (limit[1:] == limit[:-1]) | (np.isnan(limit[1:]) & np.isnan(limit[:-1]))
+    change = np.flatnonzero(np.concatenate([[True], ~same])[: limit.size])
+    change = change[thin(seconds[change], limit[change], KEPT)]
+    return {
+        "t": packed(((events.time_ns[kept] - start_ns) / 1e9).astype(np.float32)),
+        "c": packed(events.cmp[kept]),
+        "r": packed(events.result[kept].astype(np.uint8)),
+        "lt": packed(seconds[change]),
+        "lv": packed(limit[change]),
+        "gap": gap_after(seconds),
+        "of": int(rows.size),
+    }
+
+
+def lanes_of(
+    events: Events, lanes: Sequence[tuple[str, str]], start_ns: int, end_ns: int
+) -> dict[str, object]:
+    """The lanes of the timeline, from pairs of (label, key)."""
+    states = [runs(lane(events, key, start_ns, end_ns, FINE)) for _, key in lanes]
+    return {
+        "labels": [calm(label) for label, _ in lanes],
+        "columns": FINE,
+        "runs": [packed(np.array(found, dtype=np.int32).reshape(-1)) for found in states],
+    }
+
+
+def curves_of(curves: RankCurves, names: Sequence[str], start_ns: int) -> dict[str, object]:
+    """Both rank curves of ``names``: uint16 of 65,535ths, by type, and the times."""
+    places = [curves.parameters.index(name) for name in names]
+    return {
+        "t": packed(((curves.times_ns - start_ns) / 1e9).astype(np.float64)),
+        "I": [_ranks(curves.rank1[:, place]) for place in places],
+        "II": [_ranks(curves.rank2[:, place]) for place in places],
+    }
+
+
+def marks_of(marks: Sequence[tuple[float, MarkType | None]]) -> list[Mapping[str, object]]:
+    """Marks as (seconds, type) in the order of the page."""
+    return [{"t": time, "type": kind or ""} for time, kind in marks]
+
+
+def finite(value: float | None) -> float | None:
+    """``value``, or None where JSON has no number for it."""
+    return value if value is not None and np.isfinite(value) else None
+
+
+def calm(text: str) -> str:
+    """``text`` in which Bokeh finds no formula: for one it would ask the network for MathJax."""
+    for start in ("$$", "\\[", "\\("):
+        text = text.replace(start, f"{start[0]}\N{WORD JOINER}{start[1]}")
+    return text
+
+
+def _ranks(values: Floats) -> str:
+    return packed(np.rint(np.clip(np.nan_to_num(values), 0, 1) * _RANKS).astype(np.uint16))

@@ -1,0 +1,127 @@
+// The page: what is drawn when, theme, sorting, search, and what is unfolded.
+(() => {
+  "use strict";
+  const root = document.documentElement;
+  root.classList.add("script");
+
+  // A figure is drawn when it is about to be seen, and takes the place of the one that stands still.
+  const draw = (host) => {
+    const target = document.createElement("div");
+    target.className = "moving-figure";
+    host.querySelector(".still").before(target);
+    const make = "timeline" in host.dataset ? tpcTimeline.timeline : tpcFigures.evidence;
+    const column = new Bokeh.Column({ children: make(host), sizing_mode: "stretch_width", spacing: 0 });
+    host.classList.add("drawn");
+    return Bokeh.Plotting.show(column, target);
+  };
+  const seen = new IntersectionObserver((entries) => {
+    for (const entry of entries) {
+      if (!entry.isIntersecting) continue;
+      seen.unobserve(entry.target);
+      draw(entry.target);
+    }
+  }, { rootMargin: "300px" });
+  for (const host of document.querySelectorAll(".figure[data-mission]")) seen.observe(host);
+
+  // The theme follows the machine until a button says otherwise.
+  const dark = matchMedia("(prefers-color-scheme: dark)");
+  const theme = document.getElementById("theme");
+  theme.hidden = false;
+  const isDark = () => (root.dataset.theme ? root.dataset.theme === "dark" : dark.matches);
+  const told = () => {
+    theme.textContent = isDark() ? "Light" : "Dark";
+    theme.setAttribute("aria-label", isDark() ? "Show the page in light colours" : "Show the page in dark colours");
+    tpcFigures.repaint();
+  };
+  theme.addEventListener("click", () => {
+    root.dataset.theme = isDark() ? "light" : "dark";
+    told();
+  });
+  dark.addEventListener("change", told);
+  told();
+
+  // Sorting: a press on a column's head; another press turns it around.
+  const sort = (table, id, head) => {
+    const down = head.getAttribute("aria-sort") === "ascending";
+    for (const other of table.querySelectorAll("th[aria-sort]")) other.removeAttribute("aria-sort");
+    head.setAttribute("aria-sort", down ? "descending" : "ascending");
+    const body = table.tBodies[0];
+    const of = (row) => row.getAttribute(`data-${id}`);
+    const text = id === "parameter" || id === "place";
+    const rows = [...body.rows].sort((a, b) =>
+      text ? (of(a) < of(b) ? -1 : of(a) > of(b) ? 1 : 0) : Number(of(a)) - Number(of(b)));
+    if (down) rows.reverse();
+    body.append(...rows);
+    trim(table);
+  };
+  // Of a long table the first rows are shown, in whatever order it is.
+  const trim = (table) => {
+    if (table.classList.contains("whole")) return;
+    [...table.tBodies[0].rows].forEach((row, place) => row.classList.toggle("rest", place >= ROWS));
+  };
+  const ROWS = Number(document.body.dataset.rows);
+  for (const table of document.querySelectorAll("table.ranking")) {
+    for (const head of table.querySelectorAll("th[data-sort]")) {
+      const button = document.createElement("button");
+      button.type = "button";
+      button.textContent = head.textContent;
+      head.replaceChildren(button);
+      button.addEventListener("click", () => sort(table, head.dataset.sort, head));
+    }
+    table.querySelector("th[data-sort=position]").setAttribute("aria-sort", "ascending");
+    const more = table.closest("details").querySelector("button.more");
+    if (more === null) continue;
+    more.hidden = false;
+    more.addEventListener("click", () => {
+      table.classList.add("whole");
+      for (const row of table.tBodies[0].rows) row.classList.remove("rest");
+      more.hidden = true;
+    });
+  }
+
+  // Search: rows and cards of a mission that have all the words; marks without any are folded away.
+  for (const section of document.querySelectorAll("section.mission")) {
+    const label = section.querySelector(".search");
+    if (label === null) continue;
+    label.hidden = false;
+    const found = section.querySelector(".found");
+    const items = [...section.querySelectorAll("table.ranking tbody tr, details.card")];
+    const texts = items.map((item) => item.textContent.toLowerCase());
+    label.querySelector("input").addEventListener("input", (event) => {
+      const words = event.target.value.toLowerCase().split(/\s+/).filter(Boolean);
+      let rows = 0;
+      items.forEach((item, place) => {
+        const fits = words.every((word) => texts[place].includes(word));
+        item.classList.toggle("unfit", !fits);
+        rows += fits && item.localName === "tr";
+      });
+      section.classList.toggle("searching", words.length > 0);
+      for (const mark of section.querySelectorAll("details.mark")) {
+        const has = mark.querySelector("tbody tr:not(.unfit)") !== null;
+        mark.classList.toggle("unfit", words.length > 0 && !has);
+      }
+      found.textContent = words.length ? `${rows} row${rows === 1 ? "" : "s"} found` : "";
+    });
+  }
+
+  // A link leads to what is folded away, and nobody prints what is.
+  const reveal = () => {
+    const target = location.hash.length > 1 && document.getElementById(location.hash.slice(1));
+    if (!target) return;
+    for (let at = target; at; at = at.parentElement) if (at.localName === "details") at.open = true;
+    target.scrollIntoView();
+  };
+  addEventListener("hashchange", reveal);
+  const opened = [];
+  addEventListener("beforeprint", () => {
+    for (const folded of document.querySelectorAll("details:not([open])")) {
+      folded.open = true;
+      opened.push(folded);
+    }
+  });
+  addEventListener("afterprint", () => {
+    for (const folded of opened.splice(0)) folded.open = false;
+  });
+  reveal();
+  root.classList.add("ready");
+})();

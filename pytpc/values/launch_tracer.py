@@ -1,0 +1,266 @@
+"""Reads a launch file with roslaunch's own loader and says which line set which parameter.
+
+A program of its own: it runs below ``pytpc.values.trace`` with the Python that roslaunch has (3.8
+on Noetic), in the environment of the workspace, and needs nothing but roslaunch. Nothing is
+started, and what a ``<param command=...>`` would run is not run: a command may do anything.
+
+    python3 launch_tracer.py FILE [NAME:=VALUE]...
+
+It prints one JSON object: ``parameters`` by full name, each a list of settings of which the last
+holds; ``nodes``; ``arguments`` by name with where they were set; ``files`` with their SHA-256.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import json
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, cast
+from xml.dom import expatbuilder
+
+from rosgraph.names import canonicalize_name, ns_join
+from roslaunch.config import ROSLaunchConfig
+from roslaunch.core import RLException
+from roslaunch.xmlloader import XmlLoader, XmlParseException
+from rospkg import ResourceNotFound
+
+COMMAND_LINE = "command line"
+
+# roslaunch has no types. A tag is a minidom element, a context its LoaderContext.
+_Tag = Any
+_Context = Any
+_Loaded = Any
+
+
+class _Builder(expatbuilder.ExpatBuilderNS):
+    """Keeps of each element the line and the byte at which it begins."""
+
+    def start_element_handler(self, name: str, attributes: list[str]) -> None:
+        super().start_element_handler(name, attributes)
+        parser, tag = self.getParser(), cast(_Tag, self.curNode)
+        tag.tpc_line = parser.CurrentLineNumber
+        tag.tpc_offset = parser.CurrentByteIndex
+
+
+class _Placed(str):
+    """The value of an <arg> that knows where it was set; it survives roslaunch's copies."""
+
+    place: dict[str, Any]
+
+
+class _Config(ROSLaunchConfig):  # type: ignore[misc]
+    """Notes for each parameter the tag that is being read."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.settings: dict[str, list[dict[str, Any]]] = {}
+        self.place_of: Callable[[str], dict[str, Any]] = lambda _key: {"tag": "unknown"}
+
+    def add_param(self, p: _Loaded, filename: str | None = None, verbose: bool = True) -> None:
+        super().add_param(p, filename=filename, verbose=verbose)
+        self.settings.setdefault(p.key, []).append({**self.place_of(p.key), "value": p.value})
+
+
+class _Tracer(XmlLoader):  # type: ignore[misc]
+    """roslaunch's loader, which tells ``_Config`` where it is."""
+
+    def __init__(self, config: _Config) -> None:
+        # $(anon x) stays as it is: its random name would not be that of the run.
+        super().__init__(resolve_anon=False)
+        # Whether an <arg> is missing is roslaunch's to say.
+        self.ignore_unset_args = False
+        self.files: dict[str, str] = {}
+        self.arguments: list[dict[str, Any]] = []
+        self.nodes: list[dict[str, Any]] = []
+        self._via: list[str] = []
+        self._tag_place: dict[str, Any] | None = None
+        self._node_params: dict[str, dict[str, Any]] = {}
+        config.place_of = self._place_of
+
+    def _place_of(self, key: str) -> dict[str, Any]:
+        if self._tag_place is not None:
+            return self._tag_place
+        # roslaunch gives a node its private parameters when all of its tag was read.
+        unknown: dict[str, Any] = {"tag": "unknown"}
+        return self._node_params.get(key, unknown)
+
+    def _parse_launch(self, filename: str, verbose: bool) -> _Tag:
+        try:
+            data = Path(filename).read_bytes()
+            root = _Builder().parseString(data).getElementsByTagName("launch")
+        except Exception as error:
+            raise XmlParseException(f"Invalid roslaunch XML syntax: {error}") from error
+        if len(root) != 1:
+            raise XmlParseException("Invalid roslaunch XML syntax: no root <launch> tag")
+        self.files[filename] = hashlib.sha256(data).hexdigest()
+        return root[0]
+
+    def _here(self, tag: _Tag, context: _Context) -> dict[str, Any]:
+        return {
+            "tag": tag.tagName,
+            "file": context.filename,
+            "lineno": tag.tpc_line,
+            "offset": tag.tpc_offset,
+            "via": list(self._via),
+        }
+
+    def _param_tag(self, tag: _Tag, context: _Context, *args: object, **options: object) -> _Loaded:
+        place = self._here(tag, context)
+        for name in ("value", "textfile", "binfile", "command"):
+            if tag.hasAttribute(name):
+                place["from"], place["written"] = name, tag.getAttribute(name)
+        place["type"] = (tag.getAttribute("type") or "auto").lower().strip()
+        self._note_arguments(place, context)
+        self._tag_place = place
+        try:
+            param = super()._param_tag(tag, context, *args, **options)
+        finally:
+            self._tag_place = None
+        if param is not None:
+            param.tpc_place = place
+            self._node_params[canonicalize_name(context.ns + param.key.lstrip("~"))] = place
+        return param
+
+    def param_value(
+        self, verbose: bool, name: str, ptype: str, value: str | None, *others: str | None
+    ) -> _Loaded:
+        if value is None:
+            return None
+        return super().param_value(verbose, name, ptype, value, *others)
+
+    def load_rosparam(
+        self,
+        context: _Context,
+        ros_config: _Config,
+        cmd: str,
+        param: str,
+        file_: str | None,
+        *text: str,
+        **options: object,
+    ) -> None:
+        place = self._tag_place
+        if place is not None:
+            place["from"] = "file" if file_ else "text"
+            place["base"] = ns_join(context.ns, param) if param else context.ns
+            place["substituted"] = options.get("subst_function") is not None
+            if file_:
+                place["yaml"] = file_
+                with contextlib.suppress(OSError):
+                    data = Path(file_).read_bytes()
+                    self.files[file_] = hashlib.sha256(data).hexdigest()
+        super().load_rosparam(context, ros_config, cmd, param, file_, *text, **options)
+
+    def _rosparam_tag(
+        self, tag: _Tag, context: _Context, *args: object, **options: object
+    ) -> _Loaded:
+        place = self._here(tag, context)
+        if tag.hasAttribute("file"):
+            place["written"] = tag.getAttribute("file")
+            self._note_arguments(place, context)
+        self._tag_place = place
+        try:
+            return super()._rosparam_tag(tag, context, *args, **options)
+        finally:
+            self._tag_place = None
+
+    def _node_tag(self, tag: _Tag, context: _Context, *args: object, **options: object) -> _Loaded:
+        (name, own_ns) = self.opt_attrs(tag, context, ("name", "ns"))
+        below = context.child(own_ns).child(name or "").ns
+        self._node_params = {
+            canonicalize_name(below + param.key.lstrip("~")): param.tpc_place
+            for param in context.params
+            if hasattr(param, "tpc_place")
+        }
+        node = super()._node_tag(tag, context, *args, **options)
+        self._node_params = {}
+        if node is not None:
+            full = canonicalize_name(ns_join(node.namespace, node.name))
+            self.nodes.append(
+                {**self._here(tag, context), "name": full, "pkg": node.package, "type": node.type}
+            )
+        return node
+
+    def _arg_tag(self, tag: _Tag, context: _Context, *args: object, **options: object) -> _Loaded:
+        name = tag.getAttribute("name")
+        before = self._argument(context, name)
+        place = {**self._here(tag, context), "name": name}
+        for attribute in ("value", "default"):
+            if tag.hasAttribute(attribute):
+                place["from"], place["written"] = attribute, tag.getAttribute(attribute)
+        self._note_arguments(place, context)
+        result = super()._arg_tag(tag, context, *args, **options)
+        after = self._argument(context, name)
+        if after is None:
+            return result
+        if not isinstance(after, _Placed):
+            if before is not None:
+                # Only roslaunch's command line sets one before any tag.
+                place = {"tag": COMMAND_LINE, "name": name, "declared": place}
+            value = _Placed(after)
+            value.place = {**place, "value": str(after)}
+            self._arguments_of(context)[name] = value
+            self.arguments.append(value.place)
+        return result
+
+    @staticmethod
+    def _arguments_of(context: _Context) -> dict[str, str]:
+        inner = context.include_resolve_dict
+        chosen: dict[str, Any] = context.resolve_dict if inner is None else inner
+        arguments: dict[str, str] = chosen.setdefault("arg", {})
+        return arguments
+
+    def _argument(self, context: _Context, name: str) -> str | None:
+        return self._arguments_of(context).get(name)
+
+    @staticmethod
+    def _note_arguments(place: dict[str, Any], context: _Context) -> None:
+        """Note where the arguments that stand in ``written`` were set."""
+        written = place.get("written", "")
+        known: dict[str, str] = context.resolve_dict.get("arg", {})
+        places = {
+            name: value.place if isinstance(value, _Placed) else {"tag": COMMAND_LINE}
+            for name, value in known.items()
+            if "$(" in written and name in written
+        }
+        if places:
+            place["arguments"] = places
+
+    def _include_tag(
+        self, tag: _Tag, context: _Context, *args: object, **options: object
+    ) -> _Loaded:
+        self._via.append(f"{context.filename}:{tag.tpc_line}")
+        try:
+            return super()._include_tag(tag, context, *args, **options)
+        finally:
+            self._via.pop()
+
+
+def _no_json(_value: object) -> None:
+    """What JSON has no form for (binary data, dates) is null."""
+
+
+def main(argv: list[str]) -> None:
+    """See the module; status 1 and a line on standard error where roslaunch would not start."""
+    config = _Config()
+    tracer = _Tracer(config)
+    try:
+        # What roslaunch says on the way is not part of the answer.
+        with contextlib.redirect_stdout(sys.stderr):
+            tracer.load(argv[0], config, argv=argv, verbose=False)
+    except (RLException, ResourceNotFound, ValueError, OSError, KeyError) as error:
+        raise SystemExit(" ".join(f"{error}".split())) from error
+    answer = {
+        "parameters": config.settings,
+        "nodes": tracer.nodes,
+        "arguments": tracer.arguments,
+        "files": tracer.files,
+        "errors": [str(text) for text in config.config_errors],
+    }
+    json.dump(answer, sys.stdout, default=_no_json)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

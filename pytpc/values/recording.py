@@ -1,0 +1,164 @@
+"""Recording, with a mission, where the values of its parameters came from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+from pytpc.errors import InputError, TpcError
+from pytpc.values.origin_places import Places
+from pytpc.values.origins import ORIGINS_FILE, START_FILE, Origin, write_origins
+from pytpc.values.trace import Trace, name_on_server, trace_launch
+from pytpc.values.yaml_tree import YamlNode, read_yaml, settings, value_of
+
+# What roslaunch and the master keep for themselves.
+OF_ROS = ("/rosdistro", "/rosversion", "/run_id", "/roslaunch", "/tcp_keepalive")
+NO_LAUNCH = "the graph ran already, and nobody said which launch file it was started with"
+BY_A_NODE = (
+    "set by a program, not by the launch file; a node with dynamic_reconfigure writes all of its"
+    " values when it starts"
+)
+_ENV_NAMES = ("ROS_PACKAGE_PATH", "CMAKE_PREFIX_PATH", "ROS_DISTRO", "ROS_ROOT")
+
+
+def read_parameters(path: Path) -> dict[str, object]:
+    """A dump of the parameter server (``rosparam dump``) by full names; lists are values.
+
+    Raises:
+        InputError: it cannot be read, or is not such a dump.
+    """
+    try:
+        text = path.read_text(encoding="utf-8")
+        documents = read_yaml(text)
+    except OSError as error:
+        raise InputError(f"cannot be read: {error.strerror}", path) from error
+    except ValueError as error:
+        raise InputError(str(error), path) from error
+    found = settings(documents[0]) if documents else {}
+    return {"/" + "/".join(keys): _value(setting.node) for keys, setting in found.items()}
+
+
+def _value(node: YamlNode) -> object:
+    try:
+        return value_of(node)
+    except ValueError:
+        # Binary data and dates: what is written is all that is shown of them.
+        return node.text
+
+
+def origins_of(
+    trace: Trace | None, at_end: Mapping[str, object], at_start: Mapping[str, object] | None = None
+) -> dict[str, Origin]:
+    """The origins of all values that stood on the server.
+
+    Args:
+        trace: what the launch file sets; None where that is not known.
+        at_end: the server at the end of the mission, by full names.
+        at_start: the same right after the launch; None where nobody looked.
+    """
+    launched: dict[str, Origin] = {}
+    if trace is not None:
+        for name, origin in Places(trace).origins().items():
+            for full, value in _leaves(name_on_server(name, at_end), origin.value):
+                launched[full] = replace(origin, name=full, value=value)
+    found = {}
+    for name in sorted({*at_end, *launched}):
+        if not any(name == own or name.startswith(f"{own}/") for own in OF_ROS):
+            found[name] = _origin(name, launched.get(name), at_end, at_start, trace is not None)
+    return found
+
+
+def _leaves(name: str, value: object) -> list[tuple[str, object]]:
+    """A ``<param type="yaml">`` may be a map: below the name there are several parameters."""
+    if not isinstance(value, dict) or not value:
+        return [(name, value)]
+    return [leaf for key, below in value.items() for leaf in _leaves(f"{name}/{key}", below)]
+
+
+def _origin(
+    name: str,
+    launched: Origin | None,
+    at_end: Mapping[str, object],
+    at_start: Mapping[str, object] | None,
+    traced: bool,
+) -> Origin:
+    value = at_end.get(name)
+    if launched is None:
+        changed = at_start is not None and at_start.get(name, value) != value
+        if traced or changed:
+            return Origin(name, "runtime", value, None, None, "", note=BY_A_NODE)
+        return Origin(name, "unknown", value, None, None, "")
+    if name not in at_end:
+        # A node has taken it away.
+        note = f"{launched.words()} set it, and it was deleted at runtime"
+        return Origin(name, "runtime", None, None, None, "", note=note)
+    if launched.value is None or _same(launched.value, value):
+        return replace(launched, value=value)
+    note = f"{launched.words()} set it to {launched.value!r}"
+    return Origin(name, "runtime", value, None, None, "", launched.via, note)
+
+
+def _same(one: object, other: object) -> bool:
+    """Equal, of one type; NaN is NaN."""
+    if isinstance(one, float) and isinstance(other, float):
+        return one == other or (one != one and other != other)  # noqa: PLR0124
+    if isinstance(one, list) and isinstance(other, list):
+        return len(one) == len(other) and all(map(_same, one, other))
+    return type(one) is type(other) and one == other
+
+
+def try_trace(
+    env: Mapping[str, str], launch: Path, args: Mapping[str, str]
+) -> tuple[Trace | None, str]:
+    """``trace_launch``, or why it is not possible: no mission fails for that."""
+    try:
+        return trace_launch(env, launch, args), ""
+    except TpcError as error:
+        return None, str(error)
+
+
+def save_origins(
+    folder: Path, params: Path, trace: Trace | None, reason: str, env: Mapping[str, str]
+) -> None:
+    """Write origins.json of a mission whose parameters were dumped.
+
+    Args:
+        folder: of the mission; ``params_start.yaml`` in it, the dump right after the launch, may
+            be missing.
+        params: the dump at the end; origins are written only where it is there.
+        trace: what the launch file sets.
+        reason: why there is no trace, empty where there is one.
+        env: in which the launch file was read.
+
+    Raises:
+        TpcError: a dump cannot be read, or the file cannot be written.
+    """
+    if not params.is_file():
+        return
+    params_start = folder / START_FILE
+    at_start = read_parameters(params_start) if params_start.is_file() else None
+    origins = origins_of(trace, read_parameters(params), at_start)
+    document: dict[str, object] = {
+        "launch": None if trace is None else str(trace.launch),
+        "args": {} if trace is None else dict(sorted(trace.args.items())),
+        "env": {name: env[name] for name in _ENV_NAMES if name in env},
+        "reason": reason,
+        "files": {} if trace is None else dict(sorted(trace.files.items())),
+        "nodes": [] if trace is None else _nodes(trace),
+    }
+    write_origins(document, origins, folder / ORIGINS_FILE)
+
+
+def _nodes(trace: Trace) -> list[dict[str, object]]:
+    return [
+        {
+            "name": node.name,
+            "package": node.package,
+            "program": node.program,
+            "path": str(node.path),
+            "lineno": node.lineno,
+            "offset": node.offset,
+        }
+        for node in trace.nodes
+    ]

@@ -1,0 +1,143 @@
+"""What a launch file sets, and which line of which file sets it.
+
+``trace_launch`` runs ``pytpc.values.launch_tracer`` with roslaunch's own Python; this module turns
+what that says into places.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import subprocess
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pytpc.errors import InputError, MissingToolError, RunError
+from pytpc.values import launch_tracer_path
+
+_PATIENCE_S = 60.0
+_SHEBANG_BYTES = 256
+_ANON = re.compile(r"\$\(anon ([^)]*)\)")
+
+
+@dataclass(frozen=True, slots=True)
+class LaunchNode:
+    """A ``<node>`` that would be started: its full name, package, program and tag."""
+
+    name: str
+    package: str
+    program: str
+    path: Path
+    lineno: int
+    offset: int
+
+
+@dataclass(frozen=True, slots=True)
+class Trace:
+    """What a launch file sets.
+
+    ``settings`` has for each parameter, by full name, what set it in this order: the last holds.
+    Each is the object that ``launch_tracer`` describes. ``files`` has the SHA-256 of every launch
+    and YAML file that was read.
+    """
+
+    launch: Path
+    args: Mapping[str, str]
+    settings: Mapping[str, Sequence[Mapping[str, Any]]]
+    nodes: Sequence[LaunchNode]
+    files: Mapping[str, str]
+
+
+def roslaunch_python(env: Mapping[str, str]) -> str:
+    """The Python that roslaunch runs with.
+
+    Raises:
+        MissingToolError: roslaunch is not on this environment's PATH.
+    """
+    path = env.get("PATH")
+    program = shutil.which("roslaunch", path=path)
+    if program is None:
+        raise MissingToolError(
+            "roslaunch not found; mend it with: apt-get install python3-roslaunch"
+        )
+    with Path(program).open("rb") as stream:
+        first = stream.read(_SHEBANG_BYTES).splitlines()[0].decode("utf-8", "replace")
+    words = first.removeprefix("#!").split() if first.startswith("#!") else []
+    if words and Path(words[0]).name == "env":
+        words = [shutil.which(words[-1], path=path) or ""]
+    if not words or "python" not in words[0]:
+        words = [shutil.which("python3", path=path) or "/usr/bin/python3"]
+    return words[0]
+
+
+def trace_launch(env: Mapping[str, str], launch: Path, args: Mapping[str, str]) -> Trace:
+    """Read a launch file as roslaunch would, and start nothing.
+
+    Args:
+        env: the environment of the workspace, in which ``$(find ...)`` finds packages.
+        launch: the launch file.
+        args: its arguments, as on roslaunch's command line.
+
+    Raises:
+        InputError: roslaunch would not take the file; the message is its own.
+        MissingToolError: roslaunch is not installed.
+        RunError: it does not end.
+    """
+    if not launch.is_file():
+        raise InputError("no such launch file", launch)
+    given = [f"{name}:={value}" for name, value in sorted(args.items())]
+    command = [roslaunch_python(env), str(launch_tracer_path()), str(launch.absolute()), *given]
+    try:
+        ran = subprocess.run(
+            command,
+            env={**env, "PYTHONDONTWRITEBYTECODE": "1"},
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            timeout=_PATIENCE_S,
+            check=False,
+        )
+    except subprocess.TimeoutExpired as error:
+        raise RunError(f"reading it does not end in {_PATIENCE_S:.0f} s", launch) from error
+    if ran.returncode != 0:
+        said = ran.stderr.decode("utf-8", "replace").strip().splitlines()
+        if said and said[-1].startswith("ModuleNotFoundError"):
+            raise MissingToolError(
+                f"{command[0]} has no roslaunch; mend it with: apt-get install python3-roslaunch"
+            )
+        raise InputError(f"roslaunch cannot read it: {said[-1] if said else 'no reason'}", launch)
+    return _trace(launch.absolute(), args, json.loads(ran.stdout))
+
+
+def _trace(launch: Path, args: Mapping[str, str], answer: Mapping[str, Any]) -> Trace:
+    nodes = [
+        LaunchNode(
+            node["name"],
+            node["pkg"],
+            node["type"],
+            Path(node["file"]),
+            node["lineno"],
+            node["offset"],
+        )
+        for node in answer["nodes"]
+    ]
+    return Trace(launch, dict(args), answer["parameters"], nodes, answer["files"])
+
+
+def name_on_server(name: str, on_server: Mapping[str, object]) -> str:
+    """The name with which a parameter of the launch file stands on the server.
+
+    They differ where ``$(anon x)`` is in it, for which roslaunch puts a random name.
+    """
+    if "$(anon " not in name:
+        return name
+    parts = _ANON.split(name)
+    # Odd parts are the arguments of $(anon ...).
+    pattern = "".join(
+        f"{re.escape(part)}_[^/]+" if index % 2 else re.escape(part)
+        for index, part in enumerate(parts)
+    )
+    matching = [known for known in on_server if re.fullmatch(pattern, known)]
+    return matching[0] if len(matching) == 1 else name

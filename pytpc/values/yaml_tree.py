@@ -1,0 +1,227 @@
+"""YAML as it is written: each value with its exact place in the text.
+
+Loading YAML forgets where a value stood and how it was written; writing it anew changes quotes,
+indentation and comments. Here a text is read into nodes with spans, so that one scalar can be
+replaced and all else stays as it is. Values are those that rosparam reads: YAML 1.1 as PyYAML
+resolves it, with ``deg()`` and ``rad()``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+from ruamel.yaml import YAML
+from ruamel.yaml.error import MarkedYAMLError, YAMLError
+
+from pytpc.values.scalars import plain_value
+
+# ruamel's classes of events, which differ in their fields.
+_Event = Any
+_MERGE = "<<"
+_MERGE_TAG = "tag:yaml.org,2002:merge"
+
+
+@dataclass(slots=True)
+class YamlNode:
+    """A value, or a key.
+
+    ``start`` and ``end`` are offsets into the text, without the anchor and the tag; ``lineno`` is
+    counted from 1. ``style`` of a scalar is ``"`` or ``'`` or ``|`` or ``>``, empty where plain.
+    ``tag`` is one that is written. ``target`` is where an alias points.
+    """
+
+    kind: Literal["scalar", "map", "list", "alias"]
+    start: int
+    end: int
+    lineno: int
+    text: str = ""
+    style: str = ""
+    tag: str | None = None
+    anchor: str | None = None
+    flow: bool = False
+    pairs: list[tuple[YamlNode, YamlNode]] = field(default_factory=list)
+    items: list[YamlNode] = field(default_factory=list)
+    target: YamlNode | None = None
+
+    @property
+    def behind(self) -> YamlNode:
+        """The node itself, or that which the alias stands for."""
+        return self if self.target is None else self.target
+
+    @property
+    def is_plain(self) -> bool:
+        """A scalar without quotes."""
+        return self.kind == "scalar" and not self.style
+
+
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """A value in a tree of maps: its keys from the top and its node.
+
+    ``key`` is the node of the last key. ``shared`` says how the value is written for more than this
+    place: ``alias`` (``*x``), ``merge`` (``<<``) or empty. ``earlier`` are lines with the same
+    keys, which this one overrides.
+    """
+
+    keys: tuple[str, ...]
+    key: YamlNode
+    node: YamlNode
+    shared: str = ""
+    earlier: tuple[int, ...] = ()
+
+
+def read_yaml(text: str) -> list[YamlNode]:
+    """The documents of a text; an empty document is an empty plain scalar.
+
+    Raises:
+        ValueError: the text is not YAML; the message has the line.
+    """
+    try:
+        return list(_documents(YAML(typ="rt", pure=True).parse(text), text))
+    except MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        where = f" in line {mark.line + 1}" if mark is not None else ""
+        raise ValueError(f"not YAML{where}: {error.problem or error.context}") from error
+    except (YAMLError, RecursionError, ValueError) as error:
+        raise ValueError(f"not YAML: {' '.join(str(error).split())}") from error
+
+
+def _documents(events: Iterator[_Event], text: str) -> Iterator[YamlNode]:
+    anchors: dict[str, YamlNode] = {}
+    for event in events:
+        if type(event).__name__ == "DocumentStartEvent":
+            anchors = {}
+            yield _node(next(events), events, anchors, text)
+
+
+def _node(
+    event: _Event, events: Iterator[_Event], anchors: dict[str, YamlNode], text: str
+) -> YamlNode:
+    kind = type(event).__name__
+    start, end = event.start_mark.index, event.end_mark.index
+    lineno = event.start_mark.line + 1
+    if kind == "AliasEvent":
+        target = anchors.get(event.anchor)
+        if target is None:
+            raise ValueError(f"line {lineno}: *{event.anchor} has no anchor")
+        return YamlNode("alias", start, end, lineno, text=event.anchor, target=target)
+    tag = None if event.tag is None else str(event.tag)
+    node = YamlNode("scalar", start, end, lineno, tag=tag, anchor=event.anchor)
+    if node.anchor is not None:
+        anchors[node.anchor] = node
+    if kind == "ScalarEvent":
+        node.text = event.value
+        node.style = event.style or ""
+        _skip_properties(node, text)
+        return node
+    node.flow = bool(event.flow_style)
+    if kind == "SequenceStartEvent":
+        node.kind = "list"
+        while type(event := next(events)).__name__ != "SequenceEndEvent":
+            node.items.append(_node(event, events, anchors, text))
+    else:
+        node.kind = "map"
+        while type(event := next(events)).__name__ != "MappingEndEvent":
+            key = _node(event, events, anchors, text)
+            node.pairs.append((key, _node(next(events), events, anchors, text)))
+    node.end = event.end_mark.index
+    return node
+
+
+def _skip_properties(node: YamlNode, text: str) -> None:
+    """Put the start behind ``&anchor`` and ``!tag``."""
+    while node.start < node.end and text[node.start] in "&!" and (node.anchor or node.tag):
+        while node.start < node.end and not text[node.start].isspace():
+            node.start += 1
+        while node.start < node.end and text[node.start].isspace():
+            if text[node.start] == "\n":
+                node.lineno += 1
+            node.start += 1
+
+
+def settings(document: YamlNode) -> dict[tuple[str, ...], Setting]:
+    """All values below the maps of a document, by their keys; the last of equal keys holds.
+
+    A list is one value, as on the parameter server. Keys that are no texts are left out.
+    """
+    found: dict[tuple[str, ...], Setting] = {}
+    if document.kind == "map":
+        _gather(document, (), "", found, ())
+    elif document.text or document.kind == "list":
+        # The whole document is one value: <rosparam param="x">5</rosparam>.
+        found[()] = Setting((), document, document.behind)
+    return found
+
+
+def _gather(
+    node: YamlNode,
+    keys: tuple[str, ...],
+    shared: str,
+    found: dict[tuple[str, ...], Setting],
+    open_maps: tuple[int, ...],
+) -> None:
+    if id(node) in open_maps:
+        return
+    for key, value, way in _pairs(node, open_maps):
+        name = key.behind.text
+        place = (*keys, name)
+        how = way or shared or ("alias" if value.kind == "alias" else "")
+        below = value.behind
+        if below.kind == "map":
+            if below.pairs:
+                _gather(below, place, how, found, (*open_maps, id(node)))
+            continue
+        before = found.pop(place, None)
+        earlier = () if before is None else (*before.earlier, before.node.lineno)
+        found[place] = Setting(place, key, below, how, earlier)
+
+
+def _pairs(node: YamlNode, open_maps: tuple[int, ...]) -> Iterator[tuple[YamlNode, YamlNode, str]]:
+    """The pairs of a map in the order in which later ones override: merged ones come first."""
+    own: list[tuple[YamlNode, YamlNode, str]] = []
+    merged: list[YamlNode] = []
+    for key, value in node.pairs:
+        if _is_merge(key):
+            behind = value.behind
+            merged += [behind] if behind.kind == "map" else [item.behind for item in behind.items]
+        elif key.behind.kind == "scalar":
+            own.append((key, value, ""))
+    # Of several merged maps the first holds.
+    for below in reversed(merged):
+        if id(below) not in open_maps:
+            for key, value, _ in _pairs(below, (*open_maps, id(node))):
+                yield key, value, "merge"
+    # Of equal keys PyYAML keeps the last, and of a map none of what an earlier one had.
+    last = {key.behind.text: index for index, (key, _, _) in enumerate(own)}
+    for index, pair in enumerate(own):
+        whole = (
+            pair[1].behind.kind == "map" or own[last[pair[0].behind.text]][1].behind.kind == "map"
+        )
+        if not whole or last[pair[0].behind.text] == index:
+            yield pair
+
+
+def _is_merge(key: YamlNode) -> bool:
+    return key.kind == "scalar" and (
+        key.tag == _MERGE_TAG or (key.text == _MERGE and key.is_plain and key.tag is None)
+    )
+
+
+def value_of(node: YamlNode) -> object:
+    """What rosparam makes of a node.
+
+    Raises:
+        ValueError: a tag that rosparam does not know, or a value that does not fit it.
+    """
+    node = node.behind
+    if node.kind == "map":
+        return {key: value_of(value) for key, value in _last_pairs(node).items()}
+    if node.kind == "list":
+        return [value_of(item) for item in node.items]
+    return plain_value(node.text, node.tag, quoted=bool(node.style))
+
+
+def _last_pairs(node: YamlNode) -> Mapping[str, YamlNode]:
+    return {key.behind.text: value for key, value, _ in _pairs(node, ())}
