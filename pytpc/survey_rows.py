@@ -5,19 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from pytpc.source_lines import CPP, HEADER, PYTHON
 from pytpc.survey import Build, TreeResult
+from pytpc.tables import STATISTICS, Cell, Column, Table, statistics
 
-STATISTICS = ("mean", "median", "std", "min", "max", "sum")
 NOT_ANALYSED = "not analysed"
-
-Cell = float | int | str | None
 
 
 @dataclass(frozen=True, slots=True)
-class Column:
+class Measure:
     """A column of a table: its heading, decimal places, and its value for a tree.
 
     ``total`` gives the value of the row ``sum`` where that is no sum.
@@ -27,38 +23,6 @@ class Column:
     digits: int
     of: Callable[[TreeResult], Cell]
     total: Callable[[Sequence[TreeResult]], Cell] | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Table:
-    """A table ready to be written: ``label`` names it in files; the first column is the name."""
-
-    label: str
-    title: str
-    columns: tuple[Column, ...]
-    rows: tuple[tuple[str, tuple[Cell, ...]], ...]
-    summary: tuple[tuple[str, tuple[Cell, ...]], ...]
-
-
-def statistics(values: Sequence[Cell]) -> dict[str, float | None]:
-    """Mean, median, standard deviation, minimum, maximum and sum of the numbers among ``values``.
-
-    The deviation is that of a sample (n - 1), so it is None for a single number. All are None
-    where there is no number.
-    """
-    numbers = np.array(
-        [value for value in values if isinstance(value, int | float)], dtype=np.float64
-    )
-    if not numbers.size:
-        return dict.fromkeys(STATISTICS)
-    return {
-        "mean": float(numbers.mean()),
-        "median": float(np.median(numbers)),
-        "std": float(numbers.std(ddof=1)) if numbers.size > 1 else None,
-        "min": float(numbers.min()),
-        "max": float(numbers.max()),
-        "sum": float(numbers.sum()),
-    }
 
 
 def tables(results: Sequence[TreeResult]) -> list[Table]:
@@ -71,7 +35,7 @@ def tables(results: Sequence[TreeResult]) -> list[Table]:
 
 
 def _table(
-    label: str, title: str, columns: tuple[Column, ...], results: Sequence[TreeResult]
+    label: str, title: str, columns: tuple[Measure, ...], results: Sequence[TreeResult]
 ) -> Table:
     rows = tuple(
         (result.name, tuple(column.of(result) for column in columns)) for result in results
@@ -85,7 +49,21 @@ def _table(
                 if column.total is not None:
                     cells[number] = column.total(results)
         summary.append((name, tuple(cells)))
-    return Table(label, title, columns, rows, tuple(summary))
+    return Table(label, title, _columns(columns), rows, tuple(summary))
+
+
+def _columns(measures: Sequence[Measure]) -> tuple[Column, ...]:
+    """Columns of which no two have one name: ``with TPC`` belongs to the column before it."""
+    made: list[Column] = []
+    group = ""
+    for measure in measures:
+        heading = measure.heading
+        if heading not in ("with TPC", "Factor"):
+            group = name = heading
+        else:
+            name = f"{group} {heading}"
+        made.append(Column(heading, measure.digits, name=name.lower()))
+    return tuple(made)
 
 
 def _factor_of_sums(which: str) -> Callable[[Sequence[TreeResult]], Cell]:
@@ -111,8 +89,8 @@ def _time(build: str, which: str) -> Callable[[TreeResult], Cell]:
     return value
 
 
-def _factor(heading: str, which: str) -> Column:
-    return Column(heading, 2, lambda result: result.factor(which), _factor_of_sums(which))
+def _factor(heading: str, which: str) -> Measure:
+    return Measure(heading, 2, lambda result: result.factor(which), _factor_of_sums(which))
 
 
 def _of_language(what: str, *languages: str) -> Callable[[TreeResult], Cell]:
@@ -136,37 +114,37 @@ def _all_comparisons(result: TreeResult) -> Cell:
 
 
 _COMPARISONS = (
-    Column("Time", 1, _time("plain", "processor")),
+    Measure("Time", 1, _time("plain", "processor")),
     _factor("Time Factor", "processor"),
-    Column("TPCs", 0, _all_comparisons),
-    Column("C++", 0, lambda result: result.found.comparisons),
-    Column("Python", 0, _python),
-    Column("Unique", 0, lambda result: result.found.parameters),
-    Column("Files", 0, lambda result: result.found.files),
-    Column("Packages", 0, lambda result: result.packages),
-    Column("Not built", 0, lambda result: len(result.tpc.not_built)),
+    Measure("TPCs", 0, _all_comparisons),
+    Measure("C++", 0, lambda result: result.found.comparisons),
+    Measure("Python", 0, _python),
+    Measure("Unique", 0, lambda result: result.found.parameters),
+    Measure("Files", 0, lambda result: result.found.files),
+    Measure("Packages", 0, lambda result: result.packages),
+    Measure("Not built", 0, lambda result: len(result.tpc.not_built)),
 )
 _LINES = (
-    Column("C++ Files", 0, _of_language("files", CPP)),
-    Column("C++ Lines", 0, _of_language("code", CPP)),
-    Column("Header Files", 0, _of_language("files", HEADER)),
-    Column("Header Lines", 0, _of_language("code", HEADER)),
-    Column("Python Files", 0, _of_language("files", PYTHON)),
-    Column("Python Lines", 0, _of_language("code", PYTHON)),
-    Column("Total Files", 0, _of_language("files", CPP, HEADER, PYTHON)),
-    Column("Total Lines", 0, _of_language("code", CPP, HEADER, PYTHON)),
-    Column("Other Files", 0, _others("files")),
-    Column("Other Lines", 0, _others("code")),
+    Measure("C++ Files", 0, _of_language("files", CPP)),
+    Measure("C++ Lines", 0, _of_language("code", CPP)),
+    Measure("Header Files", 0, _of_language("files", HEADER)),
+    Measure("Header Lines", 0, _of_language("code", HEADER)),
+    Measure("Python Files", 0, _of_language("files", PYTHON)),
+    Measure("Python Lines", 0, _of_language("code", PYTHON)),
+    Measure("Total Files", 0, _of_language("files", CPP, HEADER, PYTHON)),
+    Measure("Total Lines", 0, _of_language("code", CPP, HEADER, PYTHON)),
+    Measure("Other Files", 0, _others("files")),
+    Measure("Other Lines", 0, _others("code")),
 )
 _TIMES = (
-    Column("Processor", 1, _time("plain", "processor")),
-    Column("with TPC", 1, _time("tpc", "processor")),
+    Measure("Processor", 1, _time("plain", "processor")),
+    Measure("with TPC", 1, _time("tpc", "processor")),
     _factor("Factor", "processor"),
-    Column("Compile", 1, _time("plain", "compile")),
-    Column("with TPC", 1, _time("tpc", "compile")),
+    Measure("Compile", 1, _time("plain", "compile")),
+    Measure("with TPC", 1, _time("tpc", "compile")),
     _factor("Factor", "compile"),
-    Column("Wall", 1, _time("plain", "wall")),
-    Column("with TPC", 1, _time("tpc", "wall")),
+    Measure("Wall", 1, _time("plain", "wall")),
+    Measure("with TPC", 1, _time("tpc", "wall")),
     _factor("Factor", "wall"),
-    Column("First", 0, lambda result: result.first),
+    Measure("First", 0, lambda result: result.first),
 )

@@ -28,6 +28,7 @@ SUMMARIES = {
     "record": ("mission_commands", "Record the running graph, or a launch file's mission."),
     "relay": ("graph_commands", "Pass reports on from /rosout to /threshold_information."),
     "report": ("event_commands", "Write a page with the suspects at each mark, and why."),
+    "stats": ("stats_commands", "Tables and figures of a study from recorded missions."),
     "show": ("static_commands", "Show all that is known about a comparison."),
     "sink": ("graph_commands", "Show and change where running nodes report to."),
     "survey": ("survey_commands", "Build source trees with and without TPC; tables."),

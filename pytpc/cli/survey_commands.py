@@ -18,9 +18,10 @@ from pytpc.atomic import write_atomic
 from pytpc.errors import WorkspaceError
 from pytpc.static_json import dump_json
 from pytpc.survey import TreeResult
-from pytpc.survey_rows import Table, tables
+from pytpc.survey_rows import tables
 from pytpc.survey_run import Options, Step, survey
 from pytpc.survey_tables import FORMATS, documents, faults, shown
+from pytpc.tables import Table
 from pytpc.words import many, plain
 
 _FOLDER = click.Path(path_type=Path, file_okay=True)

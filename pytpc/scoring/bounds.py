@@ -125,12 +125,12 @@ class _Key:
         flop = events.flop[evaluations]
         self.flops = events.time_ns[evaluations[flop]]
         finite = np.isfinite(events.cmp[evaluations]) & np.isfinite(events.thresh[evaluations])
-        covered = _covered(events, evaluations, summaries, rows)
+        held = covered(events, evaluations, summaries, rows)
         self.known = evaluations[finite]
         self.times = events.time_ns[self.known]
         self.highest = _running_max(np.maximum(events.cmp[self.known], events.thresh[self.known]))
         self.lowest = -_running_max(-np.minimum(events.cmp[self.known], events.thresh[self.known]))
-        alone = evaluations[finite & ~covered]
+        alone = evaluations[finite & ~held]
         diff = events.cmp[alone] - events.thresh[alone]
         count = (summaries.count - summaries.odd)[rows]
         rows, count = rows[count > 0], count[count > 0]
@@ -329,7 +329,7 @@ class _Window(NamedTuple):
             taken = fewer
 
 
-def _covered(events: Events, rows: Int64s, summaries: Summaries, own: Int64s) -> Bools:
+def covered(events: Events, rows: Int64s, summaries: Summaries, own: Int64s) -> Bools:
     """bool[rows]: evaluations that one of the summaries ``own`` of the same node has taken in."""
     covered = np.zeros(rows.size, np.bool_)
     times, nodes = events.time_ns[rows], events.node[rows]

@@ -21,7 +21,8 @@ from pytpc.survey import (
     needed_trees,
     python_tpcs,
 )
-from pytpc.survey_rows import statistics, tables
+from pytpc.survey_rows import tables
+from pytpc.tables import statistics
 
 
 def tree(name: str, **packages: str) -> Tree:

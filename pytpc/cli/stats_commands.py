@@ -1,0 +1,211 @@
+"""The command ``stats``: the tables and figures of the thesis's study from recorded missions."""
+
+from __future__ import annotations
+
+import io
+import json
+from collections.abc import Sequence
+from pathlib import Path
+
+import click
+from rich.console import Console
+from rich.text import Text
+
+from pytpc.atomic import write_atomic
+from pytpc.cli.console import console, progress, warn
+from pytpc.cli.sources import static_of
+from pytpc.errors import InputError
+from pytpc.static_info import StaticInfo
+from pytpc.stats.missions import StudyMission, load_missions
+from pytpc.stats.study import NUMBERS, study_complaints, study_tables
+from pytpc.tables import Table, as_csv, as_json, as_latex, as_markdown, as_rich
+from pytpc.words import many, plain
+
+_PATH = click.Path(path_type=Path)
+_SUFFIXES = {"text": ".txt", "csv": ".csv", "markdown": ".md", "latex": ".tex", "json": ".json"}
+_FIGURE_FORMATS = ("png", "svg", "pdf")
+_WIDTH = 200
+_BY_NUMBER = {number: name for name, number in NUMBERS.items()}
+
+
+@click.command("stats")
+@click.argument("paths", type=_PATH, nargs=-1, required=True, metavar="MISSION...")
+@click.option(
+    "--static",
+    "static_source",
+    type=_PATH,
+    required=True,
+    metavar="FILE_OR_FOLDER",
+    help="static.json, a build base or a built workspace.",
+)
+@click.option(
+    "--treatments",
+    type=_PATH,
+    metavar="DIR",
+    help="Folders with a treatment.json each, for missions that have none in theirs.",
+)
+@click.option(
+    "--table",
+    "names",
+    type=click.Choice(["all", *NUMBERS, *NUMBERS.values()]),
+    multiple=True,
+    default=("all",),
+    show_default=True,
+    help="May be given several times.",
+)
+@click.option(
+    "--format",
+    "form",
+    type=click.Choice(list(_SUFFIXES)),
+    default="text",
+    show_default=True,
+    help="csv and json have the numbers in full.",
+)
+@click.option("--json", "as_json_too", is_flag=True, help="The same as --format json.")
+@click.option(
+    "-o",
+    "--output",
+    type=_PATH,
+    metavar="OUT",
+    help="A file, or a folder (one that is there, or ends in /): then a file for each table.",
+)
+@click.option("--figures", type=_PATH, metavar="DIR", help="Draw the figures into this folder.")
+@click.option(
+    "--figure-format",
+    "figure_formats",
+    type=click.Choice(_FIGURE_FORMATS),
+    multiple=True,
+    default=("png",),
+    show_default=True,
+    help="May be given several times.",
+)
+@click.option(
+    "--state",
+    "states",
+    multiple=True,
+    metavar="TOPIC.FIELD",
+    help="What of the robot is drawn above the ranks, as /odom.pose.pose.position.x; several times."
+    " Otherwise a pose and a state are looked for.",
+)
+@click.option(
+    "--window",
+    "window_s",
+    type=click.FloatRange(min=0.0, min_open=True),
+    metavar="SECONDS",
+    help="The window of type II in the figures.",
+)
+def stats_command(
+    paths: tuple[Path, ...],
+    static_source: Path,
+    treatments: Path | None,
+    names: tuple[str, ...],
+    form: str,
+    as_json_too: bool,
+    output: Path | None,
+    figures: Path | None,
+    figure_formats: tuple[str, ...],
+    states: tuple[str, ...],
+    window_s: float | None,
+) -> None:
+    """Write the tables of the study (6.12 to 6.16) from recorded missions, and its figures.
+
+    A MISSION is a folder of `pytpc record`, or any INPUT of `pytpc convert`; a folder of missions
+    stands for all of them. What was changed in each, its treatment.json tells.
+    """
+    form = "json" if as_json_too else form
+    folder = output is not None and (output.is_dir() or str(output).endswith("/"))
+    chosen = _chosen(names)
+    if form == "csv" and len(chosen) > 1 and not folder:
+        raise click.UsageError("several tables as CSV: choose one by --table, or give -o FOLDER/")
+    static = static_of([static_source])
+    with progress("reading missions") as advance:
+        missions = load_missions(paths, treatments, advance)
+    _check(missions, static)
+    with progress("working out tables") as advance:
+        tables = study_tables(missions, static, chosen, advance)
+    if output is None:
+        _print(tables, form)
+    else:
+        _write(tables, form, output, folder=folder)
+    if figures is not None:
+        _draw(missions, static, figures, figure_formats, states, window_s)
+
+
+COMMANDS: list[click.Command] = [stats_command]
+
+
+def _chosen(names: Sequence[str]) -> list[str]:
+    if "all" in names:
+        return list(NUMBERS)
+    return list(dict.fromkeys(_BY_NUMBER.get(name, name) for name in names))
+
+
+def _check(missions: Sequence[StudyMission], static: StaticInfo) -> None:
+    for mission in missions:
+        for complaint in study_complaints(mission, static):
+            warn(f"{plain(mission.name)}: {plain(complaint)}")
+    known = set(static.comparisons)
+    seen = {
+        key for m in missions for key in (*m.recording.events.keys, *m.recording.summaries.keys)
+    }
+    if seen and not seen & known:
+        raise InputError("none of the reports is known to the static information: other build")
+
+
+def _print(tables: Sequence[Table], form: str) -> None:
+    if form == "text":
+        out = console()
+        for table in tables:
+            _show(out, table)
+    else:
+        click.echo(_text_of(tables, form), nl=False)
+
+
+def _write(tables: Sequence[Table], form: str, output: Path, *, folder: bool) -> None:
+    if not folder:
+        write_atomic(output, _text_of(tables, form).encode("utf-8", "backslashreplace"))
+        click.echo(f"{many(len(tables), 'table')}: {output}", err=True)
+        return
+    for table in tables:
+        target = output / f"{table.label}{_SUFFIXES[form]}"
+        write_atomic(target, _text_of([table], form).encode("utf-8", "backslashreplace"))
+    click.echo(f"{many(len(tables), 'table')}: {output}", err=True)
+
+
+def _text_of(tables: Sequence[Table], form: str) -> str:
+    if form == "json":
+        items = [{**as_json(table), "thesis": NUMBERS[table.label]} for table in tables]
+        return json.dumps(items, indent=1, ensure_ascii=False) + "\n"
+    if form == "csv":
+        return "\n".join(as_csv(table) for table in tables)
+    if form == "latex":
+        return "\n".join(as_latex(table) for table in tables)
+    if form == "markdown":
+        return "\n".join(f"## {table.title}\n\n{as_markdown(table)}" for table in tables)
+    stream = io.StringIO()
+    out = Console(file=stream, width=_WIDTH, color_system=None)
+    for table in tables:
+        _show(out, table)
+    return stream.getvalue()
+
+
+def _show(out: Console, table: Table) -> None:
+    out.print(Text(f"{table.title} (as table {NUMBERS[table.label]})", style="bold"))
+    if table.rows:
+        out.print(as_rich(table), highlight=False)
+    else:
+        out.print(Text("No mission has anything for it."))
+    for note in table.notes:
+        out.print(Text(plain(note)), highlight=False)
+    out.print()
+
+
+def _draw(
+    missions: Sequence[StudyMission],
+    static: StaticInfo,
+    folder: Path,
+    formats: Sequence[str],
+    states: Sequence[str],
+    window_s: float | None,
+) -> None:
+    raise NotImplementedError
