@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import overload
 
+from pytpc import tables
 from pytpc.advice.advise import Advice, advise
 from pytpc.advice.counterfactual import WhatIf
 from pytpc.advice.counterfactual import what_if as replay
@@ -30,10 +31,13 @@ from pytpc.scoring.curves import STEP_S, RankCurves, rank_curves
 from pytpc.scoring.ranking import MarkRanking, Types, rank_marks
 from pytpc.scoring.scores import WINDOW_S
 from pytpc.static_info import StaticInfo, read_static
+from pytpc.stats.missions import load_missions
+from pytpc.stats.study import NUMBERS
+from pytpc.stats.study import study_tables as tables_of_study
 from pytpc.words import Number, exact, show
 
-__all__ = ["Advices", "Rankings", "curves", "load_static", "rank", "read", "suggest"]
-__all__ += ["what_if", "write_report"]
+__all__ = ["Advices", "Rankings", "StudyTable", "curves", "load_static", "rank", "read"]
+__all__ += ["study_tables", "suggest", "what_if", "write_report"]
 
 Source = str | os.PathLike[str]
 
@@ -121,7 +125,7 @@ class Rankings(Sequence[MarkRanking]):
         return str(self.table())
 
     def _repr_html_(self) -> str:
-        """The table for a notebook."""
+        """The table for a notebook, escaped."""
         return self.table()._repr_html_()
 
 
@@ -168,7 +172,7 @@ class Advices(Sequence[Advice]):
                     advice.what_if.text if advice.what_if else "",
                 )
             )
-        headings = ("#", "parameter", "value", "suggestion", "it would have")
+        headings = ("#", "parameter", "value", "suggestion", "in the recorded run")
         return Table(headings, tuple(rows), frozenset({0, 2}))
 
     def __str__(self) -> str:
@@ -176,8 +180,38 @@ class Advices(Sequence[Advice]):
         return str(self.table())
 
     def _repr_html_(self) -> str:
-        """The table for a notebook."""
+        """The table for a notebook, escaped."""
         return self.table()._repr_html_()
+
+
+@dataclass(frozen=True, slots=True)
+class StudyTable:
+    """A table of `pytpc.tables` that prints, and shows itself in a notebook."""
+
+    table: tables.Table
+
+    def rows(self) -> list[dict[str, object]]:
+        """The rows with their numbers in full; ``pandas.DataFrame(table.rows())``."""
+        return [dict(row) for row in tables.as_json(self.table)["rows"]]
+
+    def shown(self) -> Table:
+        """The same as a person reads it, with the statistics below."""
+        headings = [f"{column.group} {column.heading}".strip() for column in self.table.columns]
+        rows = [(name, *tables.shown(self.table, cells)) for name, cells in self.table.rows]
+        rows += [
+            (name, *tables.shown(self.table, cells, statistic=True))
+            for name, cells in self.table.summary
+        ]
+        right = frozenset(range(1, len(headings) + 1))
+        return Table((self.table.first, *headings), tuple(rows), right, self.table.title)
+
+    def __str__(self) -> str:
+        """The table as text."""
+        return str(self.shown())
+
+    def _repr_html_(self) -> str:
+        """The table for a notebook, escaped."""
+        return self.shown()._repr_html_()
 
 
 def load_static(source: StaticInfo | Source) -> StaticInfo:
@@ -263,7 +297,7 @@ def what_if(
     parameter: str,
     value: Number,
     *,
-    kind: MarkType,
+    kind: MarkType | None = None,
     marks: Sequence[Mark] | None = None,
     window_s: float = WINDOW_S,
 ) -> WhatIf:
@@ -274,16 +308,37 @@ def what_if(
         static_info: what the analysis found.
         parameter: its name as in the source, or as a user gives it.
         value: in the parameter's own unit.
-        kind: what kind of error the marks are taken for.
-        marks: those to answer; all of the mission's where not given.
+        kind: the type of error that the question is about; None: of each mark its own.
+        marks: those to answer; None: the mission's, of that type or without one.
         window_s: how long before a mark counts as near to it, in seconds.
 
     Raises:
         InputError: no comparison is with that parameter, or something cannot be read.
     """
     recording, static = read(mission), load_static(static_info)
-    asked = tuple(recording.marks if marks is None else marks)
-    return replay(recording, static, parameter, value, kind=kind, marks=asked, window_s=window_s)
+    return replay(recording, static, parameter, value, kind=kind, marks=marks, window_s=window_s)
+
+
+def study_tables(
+    missions: Source | Sequence[Source],
+    static_info: StaticInfo | Source,
+    names: Sequence[str] = tuple(NUMBERS),
+) -> dict[str, StudyTable]:
+    """The tables of a study (6.12 to 6.16 of the thesis), by name.
+
+    Args:
+        missions: folders or files of recorded missions; a folder of them stands for all.
+        static_info: of the build that was recorded.
+        names: which, of ``runtime``, ``confusion``, ``delays``, ``marks`` and ``found``.
+
+    Raises:
+        InputError: a mission cannot be read.
+        KeyError: there is no table of such a name.
+    """
+    given = [missions] if isinstance(missions, str | os.PathLike) else missions
+    found = load_missions([Path(one) for one in given])
+    made = tables_of_study(found, load_static(static_info), names)
+    return {name: StudyTable(table) for name, table in zip(names, made, strict=True)}
 
 
 def write_report(path: Source, *rankings: Rankings, title: str = "Suspected parameters") -> Path:

@@ -83,7 +83,9 @@ def watch_command(
     static = static_of([static_source])
     if not static.thresholds:
         raise InputError("no comparison with a parameter was found there", static_source)
-    fresh = Watching(LiveRanking(static, window_s), static, window_s)
+    # Where types are ignored, the tables of both are there to be chosen all the same.
+    engine = LiveRanking(static, window_s, types="doubt" if types == "doubt" else "believe")
+    fresh = Watching(engine, static, window_s)
     layout = (None,) if types == "ignore" else LAYOUTS[0]
     options = Options(layout=layout, top=top)
     if once or as_json:

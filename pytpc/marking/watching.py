@@ -11,10 +11,11 @@ import copy
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 from pytpc.marking.session import Change
 from pytpc.marks import Mark, MarkType
+from pytpc.scoring.live import LiveRanking
 from pytpc.scoring.ranking import MarkRanking, Suspect
 from pytpc.scoring.scores import WINDOW_S
 from pytpc.static_info import StaticInfo
@@ -36,21 +37,6 @@ class Seen(NamedTuple):
     cmp: float
     thresh: float
     res: bool
-
-
-class Engine(Protocol):
-    """The live scores, see `pytpc.scoring.live.LiveRanking`."""
-
-    def add(  # noqa: PLR0917 (the columns of an event)
-        self, time_ns: int, key: str, node: str, result: bool, cmp: float, thresh: float, res: bool
-    ) -> None:
-        """Take in an evaluation."""
-
-    def add_summary(self, summary: Summary) -> None:
-        """Take in a summary."""
-
-    def ranking_at(self, mark: Mark) -> MarkRanking:
-        """The suspects at an instant."""
 
 
 class Part(NamedTuple):
@@ -112,12 +98,14 @@ class Watching:
     """All that is known at the time of the last evaluation.
 
     Args:
-        engine: the live scores.
+        engine: the live scores, without a report yet.
         static_info: what the analysis found.
         window_s: the window of type II, in seconds.
     """
 
-    def __init__(self, engine: Engine, static_info: StaticInfo, window_s: float = WINDOW_S) -> None:
+    def __init__(
+        self, engine: LiveRanking, static_info: StaticInfo, window_s: float = WINDOW_S
+    ) -> None:
         """Nothing was seen yet."""
         self._engine = engine
         self._static = static_info
@@ -136,7 +124,7 @@ class Watching:
         if seen.key not in self._known:
             self.unknown[seen.key] = self.unknown.get(seen.key, 0) + 1
             return
-        self._engine.add(*seen)
+        self._engine.scores.add(*seen)
         track = self._tracks.setdefault(seen.key, _Track())
         part = self._bin(track, seen.time_ns)
         before = track.results.get(seen.node)
@@ -161,7 +149,7 @@ class Watching:
         if summary.key not in self._known:
             self.unknown[summary.key] = self.unknown.get(summary.key, 0) + summary.count
             return
-        self._engine.add_summary(summary)
+        self._engine.scores.add_summary(summary)
         track = self._tracks.setdefault(summary.key, _Track())
         if track.last is None or track.last.time_ns <= summary.end_ns:
             values = summary.result, summary.cmp, summary.thresh, summary.res
@@ -175,7 +163,7 @@ class Watching:
             track.high = max(track.high, summary.high)
 
     def ranking_at(self, mark: Mark) -> MarkRanking:
-        """The suspects at an instant that is not before the last evaluation."""
+        """The suspects at an instant, as `LiveRanking.ranking_at` gives them."""
         return self._engine.ranking_at(mark)
 
     def look(self, now_ns: int, top: int, kinds: Sequence[MarkType | None] = KINDS) -> Look:

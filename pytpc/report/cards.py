@@ -249,9 +249,7 @@ def why(mission: MissionReport, suspect: Suspect, mark: Mark) -> str:
     return f"{text}; the compared value came as near as {show(cmp)} to {show(thresh)}."
 
 
-def _evidence(
-    mission: MissionReport, advice: Advice, mark: Mark
-) -> tuple[Evidence, EvidenceStyle]:
+def _evidence(mission: MissionReport, advice: Advice, mark: Mark) -> tuple[Evidence, EvidenceStyle]:
     recording, suspect = mission.recording, advice.suspect
     found = suspect.comparison
     start, end = recording.start_ns, recording.end_ns

@@ -214,9 +214,7 @@ def _values(axes: Axes, data: Evidence, style: EvidenceStyle) -> None:
     for begin, end in style.feasible:
         shown = max(begin, low), min(end, high)
         if shown[0] < shown[1]:
-            axes.axhspan(
-                *shown, facecolor="none", edgecolor=_OF["span"], hatch="////", linewidth=0
-            )
+            axes.axhspan(*shown, facecolor="none", edgecolor=_OF["span"], hatch="////", linewidth=0)
     if beyond:
         axes.annotate(
             "some values are beyond this plot",

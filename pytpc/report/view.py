@@ -208,9 +208,7 @@ def _timeline(
     if not order:
         return Markup(""), [], None
     events, start, end = recording.events, recording.start_ns, recording.end_ns
-    lanes = [
-        Lane(name, lane(events, best[name][1], start, end), name == changed) for name in order
-    ]
+    lanes = [Lane(name, lane(events, best[name][1], start, end), name == changed) for name in order]
     marks = [(mission.seconds(mark.time_ns), mark.type) for mark in recording.marks]
     label = f"results of {len(lanes)} parameters over {recording.seconds:.0f} s, {len(marks)} marks"
     svg = timeline_svg(lanes, marks, recording.seconds, f"{ident}-t", label)
