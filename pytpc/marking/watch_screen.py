@@ -41,7 +41,8 @@ _BARS = {True: "▁▂▃▄▅▆▇█", False: "_.-=+*%#"}
 _FLOP = "x"
 _LEAST_ROWS = 3
 _WIDEST_NOW = 24
-_LEGEND = "Trend of the last seconds: a low bar is near the threshold, an x is a flop"
+_ROOMY = 20
+_LEGEND = "Trend of the window: a low bar is near the threshold, an x is a flop. Bold: just flopped"
 
 
 class Options(NamedTuple):
@@ -106,6 +107,8 @@ def watch_screen(session: Session, view: View, panel: Panel, width: int, height:
         foot += _plain([f"note: {session.typing}_"], width, "bold")
     elif session.said:
         foot += _plain([session.said], width, "bold")
+    if height >= _ROOMY:
+        head.append(Text())
     room = height - len(head) - len(foot)
     layout = panel.options.layout
     stacked = len(layout) > 1 and width < 2 * _LEAST_SIDE + _BETWEEN
@@ -143,7 +146,7 @@ def table(look: Look, kind: MarkType | None, width: int, rows: int, *, utf8: boo
         cells = [_fit(number, 3, right=True) + " " + _fit(suspect.parameter, name_width)]
         cells += [_fit(one.text(row, utf8), one.width, right=one.right) for one in columns]
         recent = row.flop_s is not None and row.flop_s < _RECENT_S
-        style = "bold" if suspect.position == 1 or recent else ""
+        style = "bold" if recent else ""
         lines.append(Text(cut(_joined(cells), width), style=style))
     return lines[: rows + 2]
 

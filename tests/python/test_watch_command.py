@@ -107,7 +107,7 @@ def test_v_goes_through_the_views(mission: Path):
 def test_the_terminal_changes_its_size(mission: Path):
     with watch(mission) as screen:
         screen.press("\x1b[A")
-        screen.wait_for("1:00.0 of", "Trend of the last seconds")
+        screen.wait_for("1:00.0 of", "Trend of the window")
         screen.resize(60, 12)
         screen.wait_for("1:00.0 of", "~min_coverage_limit", "q quit")
         assert all(len(line) <= 60 for line in screen.lines)
@@ -115,7 +115,7 @@ def test_the_terminal_changes_its_size(mission: Path):
         screen.press("2")
         screen.wait_for("type II")
         screen.resize(120, 36)
-        screen.wait_for("Trend of the last seconds", "1:00.0  II")
+        screen.wait_for("Trend of the window", "1:00.0  II")
         end(screen)
 
 
