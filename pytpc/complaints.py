@@ -9,6 +9,9 @@ from pytpc.scoring.ranking import unknown_keys
 from pytpc.static_info import StaticInfo
 from pytpc.words import many
 
+_NAMED = 3
+"""Unknown keys that are named, those with the most reports."""
+
 
 def complaints(recording: Recording, static_info: StaticInfo | None = None) -> Iterator[str]:
     """Each a sentence without a final full stop, the most harmful first.
@@ -19,9 +22,12 @@ def complaints(recording: Recording, static_info: StaticInfo | None = None) -> I
     """
     unknown = unknown_keys(recording.events, static_info) if static_info is not None else {}
     if unknown:
+        often = sorted(unknown, key=lambda key: (-unknown[key], key))[:_NAMED]
+        named = ", ".join(f"{key} ({unknown[key]:,})" for key in often)
+        more = f" and {len(unknown) - _NAMED:,} more" if len(unknown) > _NAMED else ""
         yield (
             f"{many(sum(unknown.values()), 'report')} of {many(len(unknown), 'key')} left out:"
-            f" not in the static information, as {next(iter(unknown))} (built at another time?)"
+            f" not in the static information (built at another time?): {named}{more}"
         )
     if recording.lost:
         worst = max(recording.lost, key=lambda node: (recording.lost[node], node))

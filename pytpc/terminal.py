@@ -81,10 +81,14 @@ def _mark(
     table.add_column("Parameter", overflow="fold")
     table.add_column("Value", justify="right")
     table.add_column("Suggestion", overflow="fold")
+    # Scores of both types stand in one list where the mark's type is not all that counts.
+    mixed = any(row.suspect.type != mark.type for row in rows)
+    if mixed:
+        table.add_column("By type")
     table.add_column("Score", justify="right")
     table.add_column("Compared at", overflow="fold")
     for row in rows:
-        table.add_row(*_cells(row))
+        table.add_row(*_cells(row, mixed))
     return Group(*heading, Padding(table, (0, 0, 1, 2)))
 
 
@@ -92,7 +96,7 @@ def _lack(ranking: MarkRanking) -> Text:
     return Text(plain(f"not enough evidence: {ranking.reason}"), style="yellow")
 
 
-def _cells(row: Row) -> list[Text]:
+def _cells(row: Row, mixed: bool) -> list[Text]:
     suspect, advice = row.suspect, row.advice
     found = suspect.comparison
     current = advice.current if advice.current is not None else suspect.last.thresh
@@ -108,6 +112,7 @@ def _cells(row: Row) -> list[Text]:
         Text(plain(suspect.parameter), style="bold" if suspect.position == 1 else ""),
         Text(show(current)),
         what,
+        *([Text(suspect.type)] if mixed else []),
         Text(f"{suspect.score:.3g}"),
         place,
     ]

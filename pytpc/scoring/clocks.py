@@ -9,41 +9,40 @@ import numpy as np
 from pytpc.ingest.recording import Recording
 from pytpc.scoring.ranking import APART_NS
 
+_NAMED = 3
+
 
 def two_clocks(recording: Recording) -> Iterator[str]:
     """A sentence for each part of a recording that is more than a day from its other reports.
 
-    Nothing is shifted: what lies after a mark on its clock does not count for it.
+    The clock of most reports is the one to compare with. Nothing is shifted: what is later than a
+    mark on its clock does not count for it.
     """
     events = recording.events
-    spans = {}
-    for code, node in enumerate(events.nodes):
-        times = events.time_ns[events.node == code]
-        if times.size:
-            spans[node] = int(times[0]), int(times[-1])
-    if not spans:
+    if not len(events):
         return
-    # The clock of most reports is the one to compare with.
-    counts = np.bincount(events.node, minlength=len(events.nodes))
-    usual = events.nodes[int(np.argmax(counts))]
-    first, last = spans[usual]
-    for node, (begin, end) in spans.items():
-        if _apart(begin, end, first, last):
-            yield (
-                f"the reports of {node} and of {usual} are on different clocks"
-                f" ({_day(begin)} and {_day(first)}; /use_sim_time?)"
-            )
-    times = [mark.time_ns for mark in recording.marks]
-    other = [time for time in times if _apart(time, time, first, last)]
-    if other:
+    times = events.time_ns
+    cuts = np.flatnonzero(np.diff(times) > APART_NS) + 1
+    begins = np.concatenate([[0], cuts])
+    ends = np.concatenate([cuts, [times.size]])
+    usual = int(np.argmax(ends - begins))
+    first, last = int(times[begins[usual]]), int(times[ends[usual] - 1])
+    for begin, end in zip(begins.tolist(), ends.tolist(), strict=True):
+        if begin == begins[usual]:
+            continue
+        nodes = [events.nodes[code] for code in np.unique(events.node[begin:end]).tolist()]
+        named = ", ".join(nodes[:_NAMED]) + (" and others" if len(nodes) > _NAMED else "")
         yield (
-            f"{len(other)} of {len(times)} marks are on another clock than the reports"
-            f" ({_day(other[0])} and {_day(first)}; /use_sim_time?)"
+            f"{end - begin:,} of {times.size:,} reports, of {named}, are on another clock than the"
+            f" others ({_day(int(times[begin]))} and {_day(first)}; /use_sim_time?)"
         )
-
-
-def _apart(begin: int, end: int, first: int, last: int) -> bool:
-    return begin > last + APART_NS or end < first - APART_NS
+    marks = [mark.time_ns for mark in recording.marks]
+    apart = [mark for mark in marks if mark > last + APART_NS or mark < first - APART_NS]
+    if apart:
+        yield (
+            f"{len(apart)} of {len(marks)} marks are on another clock than the reports"
+            f" ({_day(apart[0])} and {_day(first)}; /use_sim_time?)"
+        )
 
 
 def _day(time_ns: int) -> str:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import cached_property
 from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from pytpc.events import Events, Int64s
+from pytpc.events import Bools, Events, Int64s
 from pytpc.summaries import Summaries
 
 
@@ -31,9 +31,8 @@ class Evidence(Protocol):
         """When each comparison was evaluated first; those that never were are not in it."""
         ...
 
-    @property
-    def last_ns(self) -> int:
-        """When anything was evaluated last; only where ``first_ns`` is not empty."""
+    def reported_ns(self, mark_ns: int) -> int | None:
+        """When anything was evaluated last up to the mark, None where nothing was."""
         ...
 
     def last(self, key: str, mark_ns: int) -> Evaluation:
@@ -50,6 +49,7 @@ class Log:
         self.summaries = summaries
         self._codes = {key: code for code, key in enumerate(events.keys)}
         self._summary_codes = {key: code for code, key in enumerate(summaries.keys)}
+        self._of: dict[str, list[_Rows]] = {}
 
     @cached_property
     def first_ns(self) -> dict[str, int]:
@@ -63,42 +63,61 @@ class Log:
                 first[key] = min(times)
         return first
 
+    def reported_ns(self, mark_ns: int) -> int | None:
+        """When anything was evaluated last up to the mark; a summary lasts to its end."""
+        place = int(np.searchsorted(self.events.time_ns, mark_ns, side="right"))
+        times = [int(self.events.time_ns[place - 1])] if place else []
+        begun = self._ours & (self.summaries.begin_ns <= mark_ns)
+        times += [min(mark_ns, int(self.summaries.end_ns[begun].max()))] if begun.any() else []
+        return max(times, default=None)
+
     @cached_property
-    def last_ns(self) -> int:
-        """When anything was evaluated last."""
-        times = [int(self.events.time_ns[-1])] if len(self.events) else []
-        ends = [self.summaries.end_ns[self._rows_of(key)] for key in self._codes]
-        times += [int(end.max()) for end in ends if end.size]
-        return max(times)
+    def _ours(self) -> Bools:
+        """Which summaries are of the TPCs."""
+        ours = [self._summary_codes[key] for key in self._codes if key in self._summary_codes]
+        return np.isin(self.summaries.key, ours)
 
     def last(self, key: str, mark_ns: int) -> Evaluation:
         """The last evaluation up to the mark that is known: a report, or the last of a summary.
 
         Where the mark is within the first period, it is the first of these.
         """
+        if key not in self._of:
+            self._of[key] = list(self._tables(key))
+        found = [rows.at(mark_ns) for rows in self._of[key]]
+        before = [evaluation for evaluation in found if evaluation.time_ns <= mark_ns]
+        return max(before) if before else min(found)
+
+    def _tables(self, key: str) -> Iterator[_Rows]:
         rows = self.events.by_key.rows(self._codes[key])
-        found = [_at(self.events, self.events.time_ns, rows, mark_ns)] if rows.size else []
+        if rows.size:
+            yield _Rows(self.events, rows, self.events.time_ns[rows])
         own = self._rows_of(key)
         if own.size:
             own = own[np.argsort(self.summaries.end_ns[own], kind="stable")]
-            found.append(_at(self.summaries, self.summaries.end_ns, own, mark_ns))
-        before = [evaluation for evaluation in found if evaluation.time_ns <= mark_ns]
-        return max(before) if before else min(found)
+            yield _Rows(self.summaries, own, self.summaries.end_ns[own])
 
     def _rows_of(self, key: str) -> Int64s:
         """The summaries of a key; a table may know a key and have none."""
         return np.flatnonzero(self.summaries.key == self._summary_codes.get(key, -1))
 
 
-def _at(table: Events | Summaries, times: Int64s, rows: Int64s, mark_ns: int) -> Evaluation:
-    """The last of ``rows`` up to the mark, else the first; they are in the order of ``times``."""
-    place = int(np.searchsorted(times[rows], mark_ns, side="right")) - 1
-    row = int(rows[max(0, place)])
-    return Evaluation(
-        int(times[row]),
-        bool(table.result[row]),
-        float(table.cmp[row]),
-        float(table.thresh[row]),
-        bool(table.res[row]),
-        table.nodes[table.node[row]],
-    )
+class _Rows(NamedTuple):
+    """The rows of one key, in the order of ``times_ns``; there is at least one."""
+
+    table: Events | Summaries
+    rows: Int64s
+    times_ns: Int64s
+
+    def at(self, mark_ns: int) -> Evaluation:
+        """The last up to the mark, else the first."""
+        place = max(0, int(np.searchsorted(self.times_ns, mark_ns, side="right")) - 1)
+        row, table = int(self.rows[place]), self.table
+        return Evaluation(
+            int(self.times_ns[place]),
+            bool(table.result[row]),
+            float(table.cmp[row]),
+            float(table.thresh[row]),
+            bool(table.res[row]),
+            table.nodes[table.node[row]],
+        )

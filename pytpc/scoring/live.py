@@ -177,6 +177,19 @@ class LiveScores:
         before = [one for one in evaluations if one.time_ns <= mark_ns]
         return max(before) if before else min(evaluations)
 
+    def reported_ns(self, mark_ns: int) -> int | None:
+        """When anything was evaluated last up to a time, None where nothing was that is known."""
+        times: list[int] = []
+        for streams in self._streams.values():
+            for stream in streams.values():
+                place = bisect_right(stream.times, mark_ns)
+                times += stream.times[place - 1 : place] if place else []
+        for summaries in self._summaries.values():
+            for kept in summaries.values():
+                begun = (one for one in kept.kept if one.begin_ns <= mark_ns)
+                times += [min(mark_ns, one.end_ns) for one in begun]
+        return max(times, default=None)
+
     def _saw(self, key: str, first_ns: int, last_ns: int) -> None:
         if first_ns < self.first_ns.get(key, 2**63):
             self.first_ns[key] = first_ns

@@ -24,7 +24,7 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 
@@ -124,7 +124,7 @@ def rank_marks(
         One ranking for each mark, in the order of ``recording.marks``.
 
     Raises:
-        ValueError: ``window_s`` is negative.
+        ValueError: ``window_s`` is negative, or ``types`` is none of these words.
     """
     tpcs = Tpcs.of(static_info)
     events = recording.events.with_keys(tpcs.keys)
@@ -166,6 +166,15 @@ class Ranker:
     evidence: Evidence
     types: Types = "believe"
     window_s: float = WINDOW_S
+
+    def __post_init__(self) -> None:
+        """Check the word.
+
+        Raises:
+            ValueError: ``types`` is none of ``Types``.
+        """
+        if self.types not in get_args(Types):
+            raise ValueError(f"types is {self.types!r}, not one of {', '.join(get_args(Types))}")
 
     def ranking(self, mark: Mark, tables: Tables, row: int) -> MarkRanking:
         """The ranking at ``mark``, whose scores are in ``row`` of the tables."""
@@ -266,19 +275,24 @@ class Ranker:
         first = self.evidence.first_ns
         if not first:
             return "no comparison was reported"
-        early = min(first.values()) - mark.time_ns
-        late = mark.time_ns - self.evidence.last_ns
-        if max(early, late) > APART_NS:
+        last = self.evidence.reported_ns(mark.time_ns)
+        away = min(first.values()) - mark.time_ns if last is None else mark.time_ns - last
+        if away > APART_NS:
             return "the mark is on another clock than the reports"
-        if early > 0:
-            return f"the mark is {early / 1e9:.3g} s before the first report"
-        if late > self.window_s * 1e9:
-            return f"the mark is {late / 1e9:.3g} s after the last report"
+        if last is None:
+            return f"the mark is {_seconds(away)} before the first report"
+        if away > self.window_s * 1e9:
+            return f"the last report up to the mark is {_seconds(away)} before it"
         return ""
 
     def _why_nobody(self, mark: Mark) -> str:
         change = "no result had changed up to the mark"
-        near = f"nothing was compared in the {self.window_s:g} s before it, or never differed"
+        near = f"nothing that ever had two different values was compared in the {self.window_s:g} s"
         if self.types != "believe" or mark.type is None:
-            return f"{change}, and {near}"
-        return change if mark.type == "I" else near.replace("it", "the mark", 1)
+            return f"{change}, and {near} before it"
+        return change if mark.type == "I" else f"{near} before the mark"
+
+
+def _seconds(time_ns: int) -> str:
+    seconds = time_ns / 1e9
+    return f"{seconds:,.0f} s" if seconds >= 1000 else f"{seconds:.3g} s"

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-
 import pytest
 from click.testing import CliRunner
 from mission_samples import BagFile, comparison, line, static_info
@@ -30,34 +28,6 @@ def files(tmp_path):
 
 def run(*arguments):
     return CliRunner().invoke(main, [str(argument) for argument in arguments])
-
-
-def test_rank_prints_a_table_for_each_mark(files):
-    bag, static = files
-    result = run("rank", bag, "--static", static)
-    assert result.exit_code == 0, result.output
-    lines = result.stdout.splitlines()
-    assert lines[0] == "Mark 1 at 15.0 s: type I, did what it should not"
-    assert lines[2].split()[:6] == ["1", "faces", "3", "raise", "to", "5"]
-    assert "src/node.cpp:10" in lines[2]
-    assert "if (value >= faces_) {" in lines[3]
-    # Type II at 20 s, window [8, 20]: faces has |1 - 3| 70 times and |4 - 3| 51 times of 121, and
-    # one flop: 191 / 121 / (4 - 1) = 0.526; coverage (0.3 + 0.1) / 2 / (0.6 - 0.3) = 0.667.
-    # faces turns at 1 and above 4, two away from 3 both: as the last one (4 >= 3) went.
-    second = [text.split() for text in lines[5:] if text.strip()]
-    assert second[2][:7] == ["1", "faces", "3", "raise", "to", "5", "0.526"]
-    assert second[4][:7] == ["2", "coverage", "0.6", "lower", "to", "0.499", "0.667"]
-
-
-def test_rank_as_json(files):
-    bag, static = files
-    result = run("rank", bag, "--static", static, "--json", "--top", "1")
-    marks = json.loads(result.stdout)
-    assert [(mark["type"], len(mark["suspects"])) for mark in marks] == [("I", 1), ("II", 1)]
-    first = marks[0]["suspects"][0]
-    assert (first["parameter"], first["direction"], first["value"]) == ("faces", "raise", 5)
-    # (16 - 15) * (1 + 1)
-    assert (first["score"], first["rank"], first["lineno"]) == (2.0, 1.0, 10)
 
 
 def test_ingest_then_rank_and_report(files, tmp_path):

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import pytest
 from mission_samples import comparison, events, key, ns, static_info
 
 from pytpc.events import Events
@@ -166,3 +167,11 @@ def test_summaries_that_only_name_a_key():
     )
     mission = replace(recording(ROWS, [Mark(ns(50), "I")]), summaries=names)
     assert rank_marks(mission, STATIC) == rank_marks(recording(ROWS, [Mark(ns(50), "I")]), STATIC)
+
+
+def test_wrong_arguments():
+    mission = recording(ROWS, [Mark(ns(50), "I")])
+    with pytest.raises(ValueError, match="types is 'maybe', not one of believe, doubt, ignore"):
+        rank_marks(mission, STATIC, types="maybe")
+    with pytest.raises(ValueError, match="window_s is negative"):
+        rank_marks(mission, STATIC, window_s=-1)
