@@ -95,7 +95,7 @@ def _advice(
     declared: Sequence[Declared],
     window_s: float,
 ) -> Advice:
-    about = declared_for(declared, suspect)
+    about = declared_for(declared, suspect, static_info.source_path(suspect.key))
     suggestion = suggest(
         recording.events,
         suspect.comparison,

@@ -147,8 +147,9 @@ def sweep(
     for track in tracks:
         thresholds = track.thresholds(several)
         inside = _within(track.time_ns, track.time_ns, near)
-        flipped_near += track.turned(track.own & inside, thresholds)
-        flipped += track.turned(track.own, thresholds)
+        turned_near, turned = track.turned_near(inside, thresholds)
+        flipped_near += turned_near
+        flipped += turned
         beside = _within(track.kept.begin_ns, track.kept.end_ns, near)
         for place, threshold in enumerate(thresholds.tolist()):
             least, most = track.turned_kept(np.ones_like(beside), threshold)
@@ -197,12 +198,12 @@ def _stays(tracks: Sequence[Track], values: Floats, mark_ns: int) -> Bools:
     """
     last: tuple[int, Track, Int64s] | None = None
     for track in tracks:
-        before = track.flops[track.time_ns[track.flops[:, 1]] <= mark_ns]
-        if before.size:
-            pair = before[-1]
-            time_ns = int(track.time_ns[pair[1]])
-            if last is None or time_ns > last[0]:
-                last = (time_ns, track, pair)
+        pair = track.flop_before(mark_ns)
+        if pair is None:
+            continue
+        time_ns = int(track.time_ns[pair[1]])
+        if last is None or time_ns > last[0]:
+            last = (time_ns, track, pair)
     if last is None:
         return np.zeros(values.size, dtype=np.bool_)
     _, track, pair = last
@@ -257,7 +258,7 @@ def _caveats(
             f"{many(len(joined), 'comparison')} of it stand in a condition with others, which may"
             " decide it whatever this one says"
         )
-    nodes = {int(node) for track in tracks for node in np.unique(track.node)}
+    nodes = {int(node) for track in tracks for node in np.flatnonzero(np.bincount(track.node))}
     if len(nodes) > 1:
         names = ", ".join(sorted(recording.events.nodes[node] for node in nodes))
         said.append(f"several nodes read it, and all are replayed with the value: {names}")

@@ -1,39 +1,103 @@
-"""What is declared of a parameter: its type, range and step (dynamic_reconfigure, descriptors)."""
+"""What is declared of a parameter: its type, range and step (dynamic_reconfigure, descriptors).
+
+``read_declared`` is the entrance. Read are dynamic_reconfigure's ``.cfg`` files below folders of
+sources, and the descriptions that its servers publish, where a bag has them. Descriptors of ROS 2
+are not read: they stand in the program, and no topic has them.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+import os
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
+from pathlib import Path
 
+from pytpc.advice.declaration import Declared
+from pytpc.advice.declared_bag import is_bag, read_bag
+from pytpc.advice.declared_cfg import read_cfg
 from pytpc.parameters import same_parameter
 from pytpc.scoring.ranking import Suspect
-from pytpc.words import Number
+from pytpc.static_info import StaticInfo
+
+__all__ = ["Declared", "declared_for", "declared_in", "read_declared"]
+
+_LARGEST_FILE = 1 << 20
+_NOT_SOURCES = frozenset({"build", "devel", "install", "log", "node_modules", "__pycache__"})
+_GENERATOR = b"ParameterGenerator"
 
 
-@dataclass(frozen=True, slots=True)
-class Declared:
-    """One declaration.
+def read_declared(
+    paths: Iterable[Path], on_skipped: Callable[[str], None] | None = None
+) -> list[Declared]:
+    """The declarations in files and below folders, in the order of the paths.
 
-    ``type`` is ``bool``, ``int``, ``double`` or ``str``; ``choices`` are the values of an
-    enumeration with their names. ``place`` is ``file:line``, or the topic that said so.
+    Args:
+        paths: ``.cfg`` files, ROS 1 bags, and folders that have such files: sources, whose hidden
+            and built folders are not looked into, or a recorded mission. One that is not there has
+            none.
+        on_skipped: called with a line for each declaration or file that could not be read.
     """
+    found: list[Declared] = []
+    for path in dict.fromkeys(file for given in paths for file in _files(given)):
+        try:
+            if path.suffix == ".bag":
+                some, skipped = read_bag(path) if is_bag(path) else ([], [])
+            elif path.stat().st_size > _LARGEST_FILE:
+                some, skipped = [], [f"{path}: too large"]
+            else:
+                text = path.read_bytes()
+                some, skipped = read_cfg(text, path) if _GENERATOR in text else ([], [])
+        except OSError as error:
+            some, skipped = [], [f"{path}: {error.strerror or error}"]
+        found += some
+        for line in skipped if on_skipped is not None else ():
+            on_skipped(line)  # type: ignore[misc]
+    return found
 
-    parameter: str
-    type: str
-    low: Number | None
-    high: Number | None
-    step: Number | None
-    default: Number | str | None
-    choices: tuple[tuple[str, Number | str], ...]
-    description: str
-    place: str
+
+def declared_in(
+    static_info: StaticInfo,
+    recordings: Iterable[Path] = (),
+    on_skipped: Callable[[str], None] | None = None,
+) -> list[Declared]:
+    """The declarations in the packages of ``static_info``, and in what was recorded."""
+    roots = sorted({Path(unit.source_root) for unit in static_info.units})
+    tops = [root for root in roots if not any(above in roots for above in root.parents)]
+    return read_declared([*tops, *recordings], on_skipped)
 
 
-def declared_for(declared: Sequence[Declared], suspect: Suspect) -> Declared | None:
+def declared_for(
+    declared: Sequence[Declared], suspect: Suspect, source: Path | None = None
+) -> Declared | None:
     """What is declared of the parameter of a suspect; None where nothing is, or not one thing.
 
-    Where several declarations have its name, those of the suspect's package count.
+    What its node published counts before what a file says. Of files with ``source``, where the
+    comparison stands, only those below one folder with it that holds a package.xml.
     """
     same = [one for one in declared if same_parameter(one.parameter, suspect.parameter)]
-    meanings = {replace(one, description="", place="") for one in same}
-    return same[0] if len(meanings) == 1 else None
+    said = [one for one in same if one.parameter.startswith(f"{suspect.last.node}/")]
+    if not said and source is not None:
+        package = _package_of(source)
+        same = [
+            one
+            for one in same
+            if not one.place.startswith("/") or package in Path(one.place).parents
+        ]
+    meanings = {replace(one, parameter="", description="", place="") for one in said or same}
+    return (said or same)[0] if len(meanings) == 1 else None
+
+
+def _files(path: Path) -> list[Path]:
+    if path.is_file():
+        return [path]
+    found = []
+    for folder, below, files in os.walk(path):
+        below[:] = sorted(b for b in below if not b.startswith(".") and b not in _NOT_SOURCES)
+        found += [Path(folder, name) for name in sorted(files) if name.endswith((".cfg", ".bag"))]
+    return found
+
+
+def _package_of(source: Path) -> Path:
+    """The folder of the package that a source file is in; its own, where none is there."""
+    above = (folder for folder in source.parents if (folder / "package.xml").is_file())
+    return next(above, source.parent)

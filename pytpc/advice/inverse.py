@@ -21,6 +21,7 @@ from pytpc.arithmetic import SINGLE, Tree, evaluate
 _LARGEST = 1.7976931348623157e308
 _SMALLEST = 5e-324
 _PERIODS = 2
+_ROUNDER = 4
 _EVERYWHERE = [(-_LARGEST, _LARGEST)]
 _NOT_NEGATIVE = (0.0, _LARGEST)
 _NOT_POSITIVE = (-_LARGEST, 0.0)
@@ -158,13 +159,15 @@ def _on_piece(apply: Function, low: float, high: float, wanted: Interval) -> Int
     if math.isnan(at_low) or math.isnan(at_high):
         return None
 
+    # What overflows is beyond every number, and so in an interval without that end.
+    at_least = wanted.low_inclusive or math.isinf(wanted.low)
+    at_most = wanted.high_inclusive or math.isinf(wanted.high)
+
     def is_above(y: float) -> bool:
-        value = apply(y)
-        return value >= wanted.low if wanted.low_inclusive else value > wanted.low
+        return apply(y) >= wanted.low if at_least else apply(y) > wanted.low
 
     def is_below(y: float) -> bool:
-        value = apply(y)
-        return value <= wanted.high if wanted.high_inclusive else value < wanted.high
+        return apply(y) <= wanted.high if at_most else apply(y) < wanted.high
 
     rises = at_low <= at_high
     enters, leaves = (is_above, is_below) if rises else (is_below, is_above)
@@ -183,10 +186,14 @@ def _end(
 ) -> tuple[float, bool]:
     """Where, on the way from ``inside`` to ``outside``, it ends; and whether the end is in it."""
     if is_in(outside):
+        if abs(outside) == _SMALLEST:
+            return 0.0, False
         endless = abs(outside) == _LARGEST
         return (math.copysign(math.inf, outside), False) if endless else (outside, True)
     yes, no = _boundary(inside, outside, is_in)
-    return (no, False) if apply(no) == bound else (yes, True)
+    # Of two neighbours the one that reads better: "below 3", not "at most 2.9999999999999996".
+    is_round = len(repr(no)) < len(repr(yes)) - _ROUNDER
+    return (no, False) if is_round or apply(no) == bound else (yes, True)
 
 
 def _boundary(inside: float, outside: float, is_in: Callable[[float], bool]) -> tuple[float, float]:

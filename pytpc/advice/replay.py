@@ -32,9 +32,9 @@ class Track:
     """The evaluations of one TPC, in the order of time.
 
     ``time_ns`` int64[n], ``cmp`` and ``thresh`` float64[n], ``result``, ``res`` bool[n], ``node``
-    int32[n] as in the events; ``flop`` are places in these, int64[f, 2], the evaluation before and
-    that of each flop. ``kept`` are the summaries of the TPC, ``own`` bool[n] is False for what is
-    counted in one of them.
+    int64[n] are as in the events; ``flops`` int64[f, 2] are places in these, of the evaluation
+    before and that of each flop, which is at ``flop_ns`` int64[f]. ``kept`` are the summaries of
+    the TPC; ``own`` bool[n] is False for what is counted in one of them.
     """
 
     comparison: Comparison
@@ -46,6 +46,7 @@ class Track:
     res: Bools
     node: Int64s
     flops: Int64s
+    flop_ns: Int64s
     kept: Summaries
     own: Bools
 
@@ -110,6 +111,22 @@ class Track:
         some = np.where(sure, 0, np.where(all_before | all_after, 1, 0))
         most = np.where(sure, whole, np.where(all_before | all_after, size - 1, size))
         return int((whole + some).sum()), int(most.sum())
+
+    def turned_near(self, near: Bools, thresholds: Floats) -> tuple[Int64s, Int64s]:
+        """int64[v] each: how many of ``near``, and of all, would turn; without those summed up."""
+        if thresholds.size > _FEW and self.comparison.relation != "flag":
+            return self.turned(self.own & near, thresholds), self.turned(self.own, thresholds)
+        counts = []
+        for threshold in thresholds.tolist():
+            turned = self.other(slice(None), threshold) & self.own
+            counts.append((np.count_nonzero(turned & near), np.count_nonzero(turned)))
+        both = np.array(counts, dtype=np.int64).reshape(-1, 2)
+        return both[:, 0], both[:, 1]
+
+    def flop_before(self, mark_ns: int) -> Int64s | None:
+        """int64[2]: the places of the last flop up to a mark; None where there is none."""
+        count = int(np.searchsorted(self.flop_ns, mark_ns, side="right"))
+        return self.flops[count - 1] if count else None
 
     def rows_between(self, begin_ns: int, end_ns: int) -> slice:
         """The evaluations of a closed span."""
@@ -180,7 +197,11 @@ def _name_of(static_info: StaticInfo, parameter: str) -> str:
 
 def _track(events: Events, summaries: Summaries, found: Comparison, tree: Tree) -> Track:
     code = events.keys.index(found.key) if found.key in events.keys else -1
-    rows = np.flatnonzero(events.key == code)
+    # The index of all keys is worth its sorting only where it is there already.
+    if code >= 0 and "by_key" in vars(events):
+        rows = events.by_key.rows(code)
+    else:
+        rows = np.flatnonzero(events.key == code)
     time_ns, node = events.time_ns[rows], events.node[rows].astype(np.int64)
     result = events.result[rows]
     flops = _flops(result, node)
@@ -196,6 +217,7 @@ def _track(events: Events, summaries: Summaries, found: Comparison, tree: Tree) 
         events.res[rows],
         node,
         flops,
+        time_ns[flops[:, 1]],
         kept,
         _not_in(kept, time_ns, node, events.nodes),
     )
@@ -203,7 +225,10 @@ def _track(events: Events, summaries: Summaries, found: Comparison, tree: Tree) 
 
 def _flops(result: Bools, node: Int64s) -> Int64s:
     """int64[f, 2]: the evaluation before in the same node, and that of each flop, by the latter."""
-    order = np.argsort(node, kind="stable") if node.size and np.ptp(node) else np.arange(node.size)
+    if not node.size or not np.ptp(node):
+        after = np.flatnonzero(result[1:] != result[:-1]) + 1
+        return np.stack([after - 1, after], axis=1).astype(np.int64)
+    order = np.argsort(node, kind="stable")
     before, after = order[:-1], order[1:]
     is_flop = (node[before] == node[after]) & (result[before] != result[after])
     pairs = np.stack([before[is_flop], after[is_flop]], axis=1).astype(np.int64)

@@ -1,0 +1,125 @@
+"""Advice as JSON: what docs/diagnosing.md says of ``pytpc suggest --json``."""
+
+from __future__ import annotations
+
+import math
+
+from pytpc.advice.advise import Advice
+from pytpc.advice.counterfactual import WhatIf
+from pytpc.advice.declared import Declared
+from pytpc.advice.intervals import Intervals
+from pytpc.advice.joining import JoinedAdvice, MarkGroup
+from pytpc.advice.suggest import Suggestion
+from pytpc.marks import Mark
+from pytpc.words import Number
+
+Json = dict[str, object]
+
+
+def finite(value: Number | None) -> Number | None:
+    """JSON has neither NaN nor infinity: null."""
+    return value if value is not None and math.isfinite(value) else None
+
+
+def intervals_json(intervals: Intervals) -> list[Json]:
+    """A list of ``{low, high, low_inclusive, high_inclusive}``; an end that is none is null."""
+    return [
+        {
+            "low": finite(one.low),
+            "high": finite(one.high),
+            "low_inclusive": one.low_inclusive,
+            "high_inclusive": one.high_inclusive,
+        }
+        for one in intervals
+    ]
+
+
+def suggestion_json(found: Suggestion) -> Json:
+    """All fields of a suggestion."""
+    return {
+        "parameter": found.parameter,
+        "current": finite(found.current),
+        "direction": found.direction,
+        "value": finite(found.value),
+        "boundary": finite(found.boundary),
+        "inclusive": found.inclusive,
+        "text": found.text,
+        "reason": found.reason,
+        "feasible": intervals_json(found.feasible),
+        "limited_by": found.limited_by,
+    }
+
+
+def what_if_json(found: WhatIf) -> Json:
+    """All fields of a counterfactual."""
+    return {
+        "parameter": found.parameter,
+        "value": finite(found.value),
+        "marks": found.marks,
+        "answered": found.answered,
+        "evaluations": found.evaluations,
+        "flipped_near": found.flipped_near,
+        "flipped_away": found.flipped_away,
+        "unsure": found.unsure,
+        "text": found.text,
+        "caveats": list(found.caveats),
+    }
+
+
+def declared_json(found: Declared) -> Json:
+    """All fields of a declaration; ``choices`` is a list of ``{name, value}``."""
+    return {
+        "parameter": found.parameter,
+        "type": found.type,
+        "low": finite(found.low),
+        "high": finite(found.high),
+        "step": finite(found.step),
+        "default": found.default if isinstance(found.default, str) else finite(found.default),
+        "choices": [{"name": name, "value": value} for name, value in found.choices],
+        "description": found.description,
+        "place": found.place,
+    }
+
+
+def advice_json(found: Advice) -> Json:
+    """A suspect with its suggestion, counterfactual and declaration; these may be null."""
+    suspect = found.suspect
+    return {
+        "position": suspect.position,
+        "parameter": suspect.parameter,
+        "key": suspect.key,
+        "score_type": suspect.type,
+        "score": finite(suspect.score),
+        "rank": suspect.rank,
+        "file": suspect.comparison.file,
+        "lineno": suspect.comparison.lineno,
+        "source_code": suspect.comparison.source_code,
+        "node": suspect.last.node,
+        "suggestion": suggestion_json(found.suggestion),
+        "what_if": None if found.what_if is None else what_if_json(found.what_if),
+        "declared": None if found.declared is None else declared_json(found.declared),
+    }
+
+
+def group_json(group: MarkGroup, start_ns: int) -> Json:
+    """Marks that say the same, with what is advised; ``start_ns`` is the begin of the mission."""
+    return {
+        "type": group.type,
+        "marks": [_mark(mark, start_ns) for mark in group.marks],
+        "reasons": list(group.reasons),
+        "suspects": [_joined(joined) for joined in group.suspects],
+    }
+
+
+def _joined(found: JoinedAdvice) -> Json:
+    return {**advice_json(found.advice), "named": found.named, "agreed": found.agreed}
+
+
+def _mark(mark: Mark, start_ns: int) -> Json:
+    return {
+        "time_ns": mark.time_ns,
+        "seconds": (mark.time_ns - start_ns) / 1e9,
+        "type": mark.type,
+        "observer": mark.observer,
+        "note": mark.note,
+    }
