@@ -1,4 +1,4 @@
-"""Commands about what was recorded: ``convert`` (``ingest``) and ``report``."""
+"""The command about what was recorded: ``convert``, which was called ``ingest``."""
 
 from __future__ import annotations
 
@@ -10,15 +10,12 @@ from pathlib import Path
 import click
 
 from pytpc.cli.console import progress
-from pytpc.cli.options import PATH, STATIC, TYPES, check_reports, recording_of, warn_about
-from pytpc.cli.sources import static_of
+from pytpc.cli.options import PATH, warn_about
 from pytpc.ingest import Recording
 from pytpc.ingest.duplicates import TOLERANCE_NS
 from pytpc.ingest.outcome import Outcome
 from pytpc.ingest.reading import opened
 from pytpc.marks import MARK_TYPES
-from pytpc.report.html import MissionReport, write_report
-from pytpc.scoring.ranking import Types, rank_marks
 from pytpc.words import many
 
 
@@ -81,28 +78,7 @@ ingest_command = copy(convert_command)
 ingest_command.name = "ingest"
 
 
-@click.command("report")
-@click.argument("bags", type=PATH, nargs=-1, required=True, metavar="BAG...")
-@STATIC
-@click.option("-o", "--output", type=PATH, default=Path("report.html"), show_default=True)
-@TYPES
-def report_command(bags: tuple[Path, ...], static_source: Path, output: Path, types: Types) -> None:
-    """Write a page with the suspects at each mark of each BAG, and the evidence."""
-    static = static_of([static_source])
-    missions = []
-    for bag in bags:
-        recording = recording_of(bag)
-        check_reports(recording, static, bag)
-        warn_about(recording, static)
-        rankings = rank_marks(recording, static, types=types)
-        missions.append(MissionReport(recording.name, recording, static, rankings))
-    with progress("drawing") as advance:
-        write_report(output, missions, on_progress=advance)
-    marks = sum(len(mission.rankings) for mission in missions)
-    click.echo(f"{many(len(missions), 'mission')} with {many(marks, 'mark')}: {output}")
-
-
-COMMANDS: list[click.Command] = [convert_command, ingest_command, report_command]
+COMMANDS: list[click.Command] = [convert_command, ingest_command]
 
 
 def _standing(path: Path) -> Path:

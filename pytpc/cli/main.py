@@ -30,7 +30,7 @@ SUMMARIES = {
     "rank": ("rank_commands", "Name the suspected parameters at each mark."),
     "record": ("mission_commands", "Record the running graph, or a launch file's mission."),
     "relay": ("graph_commands", "Pass reports on from /rosout to /threshold_information."),
-    "report": ("event_commands", "Write a page with the suspects at each mark, and why."),
+    "report": ("report_commands", "Write a page with the suspects at each mark, and why."),
     "show": ("static_commands", "Show all that is known about a comparison."),
     "sink": ("graph_commands", "Show and change where running nodes report to."),
     "stats": ("stats_commands", "Tables and figures of a study from recorded missions."),

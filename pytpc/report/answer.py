@@ -15,7 +15,9 @@ from pytpc.words import many
 class AnswerView:
     """Marks that name the same first suspect and the same direction, and that suspect's card.
 
-    ``numbers`` are the marks' numbers from 1, ``marks`` says in words which they are.
+    Of the values that the marks suggest it is the one that answers most of them, and among these
+    the one that changes least elsewhere. ``numbers`` are the marks' numbers from 1, ``marks`` says
+    in words which they are.
     """
 
     numbers: tuple[int, ...]
@@ -40,7 +42,7 @@ def answers(cards: Sequence[Sequence[CardView]]) -> list[AnswerView]:
             groups.setdefault((row.parameter, row.direction), []).append(place)
     found = []
     for places in groups.values():
-        chosen = cards[places[0]]
+        chosen = cards[min(places, key=lambda place: _worth(cards[place][0]))]
         numbers = tuple(place + 1 for place in places)
         found.append(
             AnswerView(
@@ -57,6 +59,12 @@ def spoken(texts: Sequence[str]) -> str:
         count = found.pop()[1] + 1 if found and found[-1][0] == text else 1
         found.append((text, count))
     return ", ".join(text if count == 1 else f"{text} (x{count})" for text, count in found)
+
+
+def _worth(card: CardView) -> tuple[int, int]:
+    """The less the better."""
+    then = card.what_if
+    return (0, 0) if then is None else (-then.answered, then.flipped_away)
 
 
 def _copy(card: CardView) -> Markup:

@@ -9,9 +9,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from markupsafe import Markup
 
-from pytpc.advice.advise import Advice
+from pytpc.advice.advise import Advice, alternatives
+from pytpc.advice.counterfactual import WhatIf
 from pytpc.advice.declared import Declared
-from pytpc.advice.intervals import Interval
 from pytpc.advice.suggest import Suggestion
 from pytpc.arithmetic import evaluate
 from pytpc.ingest.recording import Recording
@@ -27,6 +27,11 @@ from pytpc.static_info import Comparison, StaticInfo
 from pytpc.values.origins import Origin, origin_for
 from pytpc.words import exact, many, show
 
+CARDS = 3
+"""Suspects of a mark that are shown with their evidence."""
+
+_PARTS = 2
+
 
 @dataclass(frozen=True)
 class MissionReport:
@@ -35,7 +40,8 @@ class MissionReport:
     ``rankings`` are ``rank_marks``' answer for ``recording`` and ``static_info``. ``treatment``
     says what was done to the robot, and ``changed_parameter`` which parameter was changed, where
     that is known (in a study); it is shown in red. ``origins`` are where the values came from,
-    ``declared`` the ranges that are declared of parameters; both may be empty.
+    ``declared`` the ranges that are declared of parameters; both may be empty. ``window_s`` is the
+    window with which the marks were ranked, ``top`` how many suspects have a card.
     """
 
     name: str
@@ -46,6 +52,8 @@ class MissionReport:
     changed_parameter: str | None = None
     origins: Mapping[str, Origin] = field(default_factory=dict)
     declared: Sequence[Declared] = ()
+    window_s: float = WINDOW_S
+    top: int = CARDS
 
     def is_changed(self, parameter: str) -> bool:
         """True where ``parameter``, as in the source, is the one that was changed."""
@@ -70,6 +78,7 @@ class SuspectView:
     suggestion: str
     impossible: bool
     bound: str
+    limited: str
     place: str
     condition: str
     relation: str
@@ -77,6 +86,18 @@ class SuspectView:
     score: str
     rank: str
     order: Mapping[str, float | int | str]
+
+
+@dataclass(frozen=True)
+class OriginView:
+    """Where a value came from; ``full`` has whole paths, ``overrides`` what does not count."""
+
+    place: str
+    full: str
+    text: str
+    via: list[str]
+    overrides: list[str]
+    note: str
 
 
 @dataclass(frozen=True)
@@ -100,13 +121,11 @@ class CardView:
     source: list[Line]
     source_note: str
     way: list[StepView]
-    origin: str
-    origin_text: str
-    origin_note: str
+    origin: OriginView | None
     declared: str
     declared_at: str
-    what_if: str
-    caveats: tuple[str, ...]
+    what_if: WhatIf | None
+    alternatives: list[tuple[str, str]]
 
 
 class Figures:
@@ -135,7 +154,7 @@ def row_view(mission: MissionReport, advice: Advice) -> SuspectView:
     current = suggestion.current if suggestion.current is not None else suspect.last.thresh
     place = f"{found.file}:{found.lineno}"
     return SuspectView(
-        position=str(suspect.position),
+        position=f"{suspect.position}{'=' if suspect.tied else ''}",
         parameter=suspect.parameter,
         culprit=mission.is_changed(suspect.parameter),
         current=show(current),
@@ -144,6 +163,7 @@ def row_view(mission: MissionReport, advice: Advice) -> SuspectView:
         suggestion=suggestion.text,
         impossible=suggestion.direction is None,
         bound=_bound(suggestion),
+        limited=suggestion.limited_by,
         place=place,
         condition=(found.source_code or "").strip()[:LONGEST_LINE],
         relation=found.relation,
@@ -162,19 +182,14 @@ def row_view(mission: MissionReport, advice: Advice) -> SuspectView:
 
 
 def card_view(
-    mission: MissionReport, advice: Advice, mark: Mark, figures: Figures, ident: str
+    mission: MissionReport, advice: Advice, ranking: MarkRanking, figures: Figures, ident: str
 ) -> CardView:
-    """The card of a suspect; its figure is added to ``figures``."""
-    suspect = advice.suspect
+    """The card of a suspect at a mark; its figure is added to ``figures``."""
+    mark = ranking.mark
+    suspect, declared = advice.suspect, advice.declared
     found, last = suspect.comparison, suspect.last
     unit = mission.static_info.unit_of(suspect.key)
     lines, note = source_lines(mission.static_info, found)
-    origin = (
-        origin_for(mission.origins, suspect.parameter, last.node, found.default)
-        if mission.origins
-        else None
-    )
-    declared, what_if = advice.declared, advice.what_if
     data, style = _evidence(mission, advice, mark)
     label = (
         f"{suspect.parameter}: compared value and threshold around the mark at {style.mark:.1f} s;"
@@ -200,13 +215,11 @@ def card_view(
         source=lines,
         source_note=note,
         way=way_of(found),
-        origin=origin.words() if origin is not None else "",
-        origin_text=origin.text.strip()[:LONGEST_LINE] if origin is not None else "",
-        origin_note=_origin_note(origin),
+        origin=_origin_view(mission, suspect),
         declared=_declared(declared) if declared is not None else "",
         declared_at=declared.place if declared is not None else "",
-        what_if=what_if.text if what_if is not None else "",
-        caveats=what_if.caveats if what_if is not None else (),
+        what_if=advice.what_if,
+        alternatives=_alternatives(mission, ranking, suspect),
     )
 
 
@@ -230,7 +243,7 @@ def why(mission: MissionReport, suspect: Suspect, mark: Mark) -> str:
         against = "" if flag else f" against {show(float(events.thresh[row]))}"
         truth = "true" if events.result[row] else "false"
         return f"It became {truth} {age:.2f} s before the mark{with_what}{against}."
-    rows = rows[events.time_ns[rows] >= mark.time_ns - round(WINDOW_S * 1e9)]
+    rows = rows[events.time_ns[rows] >= mark.time_ns - round(mission.window_s * 1e9)]
     if not rows.size:
         return ""
     true = int(events.result[rows].sum())
@@ -240,7 +253,7 @@ def why(mission: MissionReport, suspect: Suspect, mark: Mark) -> str:
         if true in (0, rows.size)
         else f"true {true:,} of {times}"
     )
-    text = f"In the {WINDOW_S:g} s before the mark it was {counted}"
+    text = f"In the {mission.window_s:g} s before the mark it was {counted}"
     away = np.abs(events.cmp[rows] - events.thresh[rows])
     if flag or not np.any(np.isfinite(away)):
         return f"{text}."
@@ -257,10 +270,8 @@ def _evidence(mission: MissionReport, advice: Advice, mark: Mark) -> tuple[Evide
     style = EvidenceStyle(
         mark=at,
         mark_type=mark.type,
-        window=at - WINDOW_S if suspect.type == "II" else None,
+        window=at - mission.window_s if suspect.type == "II" else None,
         suggested=_suggested_threshold(found, advice.suggestion),
-        value_name="compared value" if found.relation != "flag" else "flag",
-        limit_name=found.name or suspect.parameter,
         culprit=mission.is_changed(suspect.parameter),
         feasible=_feasible_thresholds(found, advice.suggestion),
     )
@@ -308,10 +319,10 @@ def _feasible_thresholds(
     found: Comparison, suggestion: Suggestion
 ) -> tuple[tuple[float, float], ...]:
     """The values that would do, as thresholds; an end without a finite one lies beyond the plot."""
-    if suggestion.direction not in {"raise", "lower"}:
+    if found.relation == "flag":
         return ()
     spans = []
-    for interval in _intervals(suggestion):
+    for interval in suggestion.feasible:
         low, high = (_threshold_of(found, end) for end in (interval.low, interval.high))
         if math.isnan(low) or math.isnan(high):
             # Which end is open shows the side on which the suggested value lies.
@@ -324,18 +335,11 @@ def _feasible_thresholds(
     return tuple(spans)
 
 
-def _intervals(suggestion: Suggestion) -> tuple[Interval, ...]:
-    if suggestion.boundary is None:
-        return ()
-    if suggestion.direction == "raise":
-        return (Interval(low=suggestion.boundary, low_inclusive=suggestion.inclusive),)
-    return (Interval(high=suggestion.boundary, high_inclusive=suggestion.inclusive),)
-
-
 def _bound(suggestion: Suggestion) -> str:
-    """The words in parentheses of the sentence; a switch has none."""
-    _, found, rest = suggestion.text.rpartition(" (")
-    return rest.rstrip(")") if found and suggestion.direction in {"raise", "lower"} else ""
+    """Which values would do: ``any value below 0.0527, or above 3``; empty for a switch."""
+    if suggestion.direction == "switch" or not suggestion.feasible:
+        return ""
+    return f"any value {', or '.join(interval.words() for interval in suggestion.feasible)}"
 
 
 def _exposed(found: Comparison) -> str:
@@ -343,11 +347,46 @@ def _exposed(found: Comparison) -> str:
     return f"{found.topic} ({place})" if found.topic else place
 
 
-def _origin_note(origin: Origin | None) -> str:
+def _origin_view(mission: MissionReport, suspect: Suspect) -> OriginView | None:
+    default = suspect.comparison.default
+    origin = origin_for(mission.origins, suspect.parameter, suspect.last.node, default)
     if origin is None:
-        return ""
-    via = f"by way of {', '.join(origin.via)}" if origin.via else ""
-    return "; ".join(text for text in (via, origin.note) if text)
+        return None
+    return OriginView(
+        place=_short_path(origin.words()),
+        full=origin.words(),
+        text=origin.text.strip()[:LONGEST_LINE],
+        via=list(origin.via),
+        overrides=list(origin.overridden),
+        note=origin.note,
+    )
+
+
+def _short_path(place: str) -> str:
+    """The last parts of a long path; what stands before them is the same for all of a robot."""
+    parts = place.split("/")
+    return place if len(parts) <= _PARTS + 1 else "/".join(["…", *parts[-_PARTS:]])
+
+
+def _alternatives(
+    mission: MissionReport, ranking: MarkRanking, suspect: Suspect
+) -> list[tuple[str, str]]:
+    """What the parameter's other comparisons suggest: sentence and place."""
+    found = alternatives(
+        mission.recording,
+        mission.static_info,
+        ranking,
+        suspect,
+        declared=mission.declared,
+        window_s=mission.window_s,
+    )
+    return [
+        (
+            f"{advice.suggestion.text}{f': {advice.what_if.text}' if advice.what_if else ''}",
+            f"{advice.suspect.comparison.file}:{advice.suspect.comparison.lineno}",
+        )
+        for advice in found
+    ]
 
 
 def _declared(declared: Declared) -> str:

@@ -21,10 +21,9 @@ from pytpc.atomic import write_atomic
 from pytpc.report.environment import environment
 from pytpc.report.view import CARDS, ROWS, MissionReport, figures, mission_view
 
-__all__ = ["MissionReport", "render", "write_report"]
+__all__ = ["CARDS", "MissionReport", "render", "write_report"]
 
 Progress = Callable[[int, int], None]
-_COMPONENTS = ["bokeh", "bokeh-api"]
 _OWN = ("report-figures.js", "report-timeline.js", "report.js")
 
 
@@ -70,7 +69,6 @@ def render(
             title=title,
             missions=views,
             rows=ROWS,
-            cards=CARDS,
             scripts=scripts,
             hashes=[_hash(script) for script in scripts],
         )
@@ -81,8 +79,8 @@ def render(
 def _scripts() -> tuple[Markup, ...]:
     """Bokeh's scripts and ours, in the order in which they run."""
     templates = files("pytpc.report").joinpath("templates")
-    # The last one only sets how much is said to the console, and says so there.
-    bokeh = Resources(mode="inline", components=_COMPONENTS).js_raw[: len(_COMPONENTS)]
+    # Behind the two stands one that only sets how much is said to the console, and says so there.
+    bokeh = Resources(mode="inline", components=["bokeh", "bokeh-api"]).js_raw[:2]
     own = [templates.joinpath(name).read_text("utf-8") for name in _OWN]
     return tuple(Markup(text) for text in (*bokeh, *own))
 

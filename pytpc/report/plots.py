@@ -11,7 +11,7 @@ from __future__ import annotations
 import io
 import re
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from html import escape
@@ -19,7 +19,6 @@ from typing import Any
 
 import matplotlib as mpl
 import numpy as np
-import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
@@ -27,7 +26,7 @@ from matplotlib.ticker import MaxNLocator
 
 from pytpc.events import Floats
 from pytpc.marks import MarkType
-from pytpc.report.series import BINS, BOTH, FALSE, TRUE, Evidence, runs
+from pytpc.report.series import Evidence
 
 # Stand-ins, none of which matplotlib would write of itself.
 _COLOURS = {
@@ -39,8 +38,10 @@ _COLOURS = {
     "#060606": "culprit",
     "#070707": "paper",
     "#080808": "span",
+    "#090909": "would",
+    "#0a0a0a": "lane",
 }
-_OF = {name: colour for colour, name in _COLOURS.items()}
+COLOUR = {name: colour for colour, name in _COLOURS.items()}
 _STYLE: dict[Any, Any] = {
     "svg.fonttype": "none",
     "svg.hashsalt": "tpc",
@@ -48,17 +49,17 @@ _STYLE: dict[Any, Any] = {
     "axes.unicode_minus": False,
     "figure.facecolor": "none",
     "axes.facecolor": "none",
-    "axes.edgecolor": _OF["faint"],
-    "axes.labelcolor": _OF["ink"],
+    "axes.edgecolor": COLOUR["faint"],
+    "axes.labelcolor": COLOUR["ink"],
     "axes.linewidth": 0.8,
     "axes.spines.top": False,
     "axes.spines.right": False,
     "axes.formatter.useoffset": False,
-    "text.color": _OF["ink"],
-    "xtick.color": _OF["faint"],
-    "ytick.color": _OF["faint"],
-    "xtick.labelcolor": _OF["ink"],
-    "ytick.labelcolor": _OF["ink"],
+    "text.color": COLOUR["ink"],
+    "xtick.color": COLOUR["faint"],
+    "ytick.color": COLOUR["faint"],
+    "xtick.labelcolor": COLOUR["ink"],
+    "ytick.labelcolor": COLOUR["ink"],
     "hatch.linewidth": 0.6,
     "lines.solid_capstyle": "butt",
 }
@@ -66,8 +67,7 @@ _DOTS = 70
 _HEADROOM = 0.16
 _LARGEST = 1e150
 _OUTLIER = 50.0
-_HEIGHTS = {TRUE: 0.62, BOTH: 0.34, FALSE: 0.08}
-_LINES = {"I": "-", "II": (0, (5, 2)), None: (0, (1, 1.5))}
+MARK_LINES = {"I": "-", "II": (0, (5, 2)), None: (0, (1, 1.5))}
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,19 +81,8 @@ class EvidenceStyle:
     mark_type: MarkType | None
     window: float | None
     suggested: float | None
-    value_name: str
-    limit_name: str
     culprit: bool
     feasible: tuple[tuple[float, float], ...] = ()
-
-
-@dataclass(frozen=True, slots=True)
-class Lane:
-    """One parameter of the timeline: int8[BINS] states of ``pytpc.report.series``."""
-
-    label: str
-    states: npt.NDArray[np.int8]
-    culprit: bool
 
 
 def evidence_svg(data: Evidence, style: EvidenceStyle, ident: str, label: str) -> str:
@@ -108,84 +97,36 @@ def evidence_svg(data: Evidence, style: EvidenceStyle, ident: str, label: str) -
     Returns:
         An ``<svg>`` element.
     """
-    with _style(10.5):
+    with drawing(10.5):
         figure = Figure(figsize=(6.4, 2.9))
         upper, lower = figure.subplots(
             2, 1, sharex=True, gridspec_kw={"height_ratios": [5, 1], "hspace": 0.12}
         )
-        figure.subplots_adjust(left=0.115, right=0.985, top=0.9, bottom=0.165)
+        figure.subplots_adjust(left=0.115, right=0.985, top=0.97, bottom=0.165)
         _values(upper, data, style)
         _outcomes(lower, data)
         for axes in (upper, lower):
             axes.axvline(
-                style.mark, color=_OF["ink"], linewidth=1.3, linestyle=_LINES[style.mark_type]
+                style.mark,
+                color=COLOUR["ink"],
+                linewidth=1.3,
+                linestyle=MARK_LINES[style.mark_type],
             )
             if style.window is not None:
                 axes.axvspan(
-                    max(style.window, data.begin), style.mark, color=_OF["span"], linewidth=0
+                    max(style.window, data.begin), style.mark, color=COLOUR["span"], linewidth=0
                 )
         _name_mark(upper, data, style)
         lower.set_xlabel("seconds since the recording began")
         margin = 0.01 * max(data.end - data.begin, 1e-3)
         lower.set_xlim(data.begin - margin, data.end + margin)
-        return _svg(figure, ident, label)
-
-
-def timeline_svg(
-    lanes: Sequence[Lane],
-    marks: Sequence[tuple[float, MarkType | None]],
-    seconds: float,
-    ident: str,
-    label: str,
-) -> str:
-    """Every suspect's results over the whole mission, and the marks, numbered from 1.
-
-    Args:
-        lanes: from top to bottom.
-        marks: time in seconds since the recording began, and type, in the order of time.
-        seconds: length of the recording.
-        ident: prefix of all ids, unlike that of any other figure of the page.
-        label: what the figure shows, for those who do not see it.
-
-    Returns:
-        An ``<svg>`` element.
-    """
-    seconds = max(seconds, 1e-3)
-    with _style(8.8):
-        figure = Figure(figsize=(10.0, 0.75 + 0.25 * max(1, len(lanes))))
-        height = figure.get_figheight()
-        axes = figure.subplots()
-        figure.subplots_adjust(left=0.22, right=0.985, top=1 - 0.22 / height, bottom=0.42 / height)
-        for row, one in enumerate(lanes):
-            _lane(axes, row, one, seconds)
-        for number, (time, kind) in enumerate(marks, start=1):
-            axes.axvline(time, color=_OF["ink"], linewidth=1.1, linestyle=_LINES[kind])
-            if number in _labelled([time for time, _ in marks], seconds):
-                axes.annotate(
-                    f"{number}",
-                    (time, 1.0),
-                    xycoords=("data", "axes fraction"),
-                    xytext=(0, 2),
-                    textcoords="offset points",
-                    ha="center",
-                    annotation_clip=False,
-                )
-        axes.set_ylim(max(1, len(lanes)) - 0.4, -0.6)
-        axes.set_yticks(range(len(lanes)), [_short(one.label, 30) for one in lanes])
-        for tick, one in zip(axes.get_yticklabels(), lanes, strict=True):
-            if one.culprit:
-                tick.set_color(_OF["culprit"])
-                tick.set_fontweight("bold")
-        axes.tick_params(axis="y", length=0)
-        axes.set_xlim(-0.005 * seconds, 1.005 * seconds)
-        axes.set_xlabel("seconds since the recording began")
-        return _svg(figure, ident, label)
+        return svg_of(figure, ident, label)
 
 
 def _values(axes: Axes, data: Evidence, style: EvidenceStyle) -> None:
-    colour = _OF["culprit" if style.culprit else "value"]
+    colour = COLOUR["culprit" if style.culprit else "value"]
     finite, limit = _drawable(data.cmp), _drawable(data.thresh)
-    axes.plot(data.time, finite, color=colour, linewidth=1.4, label=_short(style.value_name, 20))
+    axes.plot(data.time, finite, color=colour, linewidth=1.4)
     # A parameter keeps its value while nothing compares with it.
     known = np.flatnonzero(np.isfinite(data.time))
     around = [*known[:1], *known, *known[-1:]]
@@ -193,10 +134,9 @@ def _values(axes: Axes, data: Evidence, style: EvidenceStyle) -> None:
         [data.begin, *data.time[known], data.end] if known.size else [],
         limit[around],
         where="post",
-        color=_OF["limit"],
+        color=COLOUR["limit"],
         linewidth=1.6,
         linestyle=(0, (6, 2.5)),
-        label=_short(style.limit_name, 27),
     )
     if data.evaluations <= _DOTS:
         _dots(axes, data, finite, colour)
@@ -204,40 +144,29 @@ def _values(axes: Axes, data: Evidence, style: EvidenceStyle) -> None:
     if np.isfinite(suggested):
         axes.axhline(
             suggested,
-            color=_OF["limit"],
+            color=COLOUR["limit"],
             linewidth=1.3,
             linestyle=(0, (1, 1.6)),
-            label="suggested",
         )
     low, high, beyond = span_of(data, style)
     axes.set_ylim(low, high)
     for begin, end in style.feasible:
         shown = max(begin, low), min(end, high)
         if shown[0] < shown[1]:
-            axes.axhspan(*shown, facecolor="none", edgecolor=_OF["span"], hatch="////", linewidth=0)
+            axes.axhspan(
+                *shown, facecolor="none", edgecolor=COLOUR["would"], hatch="//", linewidth=0
+            )
     if beyond:
         axes.annotate(
             "some values are beyond this plot",
             (0.01, 0.03),
             xycoords="axes fraction",
-            color=_OF["faint"],
+            color=COLOUR["faint"],
         )
-    axes.grid(axis="y", color=_OF["grid"], linewidth=0.7)
+    axes.grid(axis="y", color=COLOUR["grid"], linewidth=0.7)
     axes.set_axisbelow(True)
     axes.yaxis.set_major_locator(MaxNLocator(5))
     axes.tick_params(axis="x", length=0, labelbottom=False)
-    axes.legend(
-        loc="lower left",
-        bbox_to_anchor=(0, 1.0),
-        ncols=3,
-        frameon=False,
-        borderaxespad=0.1,
-        borderpad=0.2,
-        handlelength=2.2,
-        handletextpad=0.5,
-        columnspacing=1.2,
-        fontsize=9.5,
-    )
 
 
 def _dots(axes: Axes, data: Evidence, values: Floats, colour: str) -> None:
@@ -245,7 +174,7 @@ def _dots(axes: Axes, data: Evidence, values: Floats, colour: str) -> None:
     after = np.searchsorted(data.steps, data.time, side="right") - 1
     drawn = np.isfinite(data.time)
     true = drawn & data.outcome[np.clip(after, 0, None)]
-    for chosen, face in ((true, colour), (drawn & ~true, _OF["paper"])):
+    for chosen, face in ((true, colour), (drawn & ~true, COLOUR["paper"])):
         axes.plot(
             data.time[chosen],
             values[chosen],
@@ -305,7 +234,7 @@ def _name_mark(axes: Axes, data: Evidence, style: EvidenceStyle) -> None:
         textcoords="offset points",
         ha="left" if right else "right",
         va="top",
-        bbox={"facecolor": _OF["paper"], "edgecolor": "none", "pad": 1.0, "alpha": 0.8},
+        bbox={"facecolor": COLOUR["paper"], "edgecolor": "none", "pad": 1.0, "alpha": 0.8},
     )
 
 
@@ -313,49 +242,26 @@ def _outcomes(axes: Axes, data: Evidence) -> None:
     if data.steps.size:
         time = np.append(data.steps, data.ends)
         level = np.append(data.outcome, data.outcome[-1]).astype(np.float64)
-        axes.fill_between(time, 0, level, step="post", color=_OF["value"], alpha=0.3, linewidth=0)
-        axes.step(time, level, where="post", color=_OF["value"], linewidth=1.2)
+        axes.fill_between(
+            time, 0, level, step="post", color=COLOUR["value"], alpha=0.3, linewidth=0
+        )
+        axes.step(time, level, where="post", color=COLOUR["value"], linewidth=1.2)
         # What came out last still stands, but was not evaluated again.
         axes.plot(
-            [data.ends, data.end], level[-2:], color=_OF["value"], linewidth=1.2, linestyle=":"
+            [data.ends, data.end], level[-2:], color=COLOUR["value"], linewidth=1.2, linestyle=":"
         )
     axes.set_ylim(-0.25, 1.3)
     axes.set_yticks([0, 1], ["false", "true"])
     axes.tick_params(axis="y", length=0)
 
 
-def _lane(axes: Axes, row: int, one: Lane, seconds: float) -> None:
-    width = seconds / BINS
-    colour = _OF["culprit" if one.culprit else "value"]
-    for state, first, length in runs(one.states):
-        height = _HEIGHTS[state]
-        axes.broken_barh(
-            [(first * width, length * width)],
-            (row - height / 2, height),
-            facecolors=colour,
-            linewidth=0,
-            hatch="////" if state == BOTH else None,
-            edgecolor=_OF["paper"],
-        )
-
-
-def _labelled(times: Sequence[float], seconds: float) -> set[int]:
-    """Numbers of the marks that have room for their number: those far enough from the last one."""
-    chosen: set[int] = set()
-    last = -seconds
-    for number, time in enumerate(times, start=1):
-        if time - last >= 0.018 * seconds:
-            chosen.add(number)
-            last = time
-    return chosen
-
-
-def _short(text: str, most: int) -> str:
+def short(text: str, most: int) -> str:
+    """``text``, cut to so many characters."""
     return text if len(text) <= most else f"{text[: most - 1]}…"
 
 
 @contextmanager
-def _style(size: float) -> Iterator[None]:
+def drawing(size: float) -> Iterator[None]:
     """Our settings, with text of ``size`` points: the wider figure is shown less enlarged."""
     with mpl.rc_context({**_STYLE, "font.size": size}), warnings.catch_warnings():
         # The page's own font draws the text, so that it does not matter what matplotlib's lacks.
@@ -363,7 +269,7 @@ def _style(size: float) -> Iterator[None]:
         yield
 
 
-def _svg(figure: Figure, ident: str, label: str) -> str:
+def svg_of(figure: Figure, ident: str, label: str) -> str:
     """The figure as an element of a page: own ids, the page's colours and font, no fixed size."""
     stream = io.StringIO()
     FigureCanvasSVG(figure)

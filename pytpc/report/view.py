@@ -7,17 +7,17 @@ too, for they are the larger part of the time; ``on_figure`` is called after eac
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from markupsafe import Markup
 
-from pytpc.advice.advise import Advice
-from pytpc.advice.suggest import suggest
+from pytpc.advice.advise import advise
 from pytpc.complaints import complaints
 from pytpc.marks import MarkType
 from pytpc.report.answer import AnswerView, answers, spoken
 from pytpc.report.cards import (
+    CARDS,
     CardView,
     Figures,
     MissionReport,
@@ -25,20 +25,16 @@ from pytpc.report.cards import (
     card_view,
     row_view,
 )
-from pytpc.report.payload import embedded, lanes_of, marks_of
-from pytpc.report.plots import Lane, timeline_svg
-from pytpc.report.series import lane
+from pytpc.report.payload import embedded, marks_of
+from pytpc.report.timeline import timeline
+from pytpc.scoring.clocks import two_clocks
 from pytpc.scoring.ranking import MarkRanking
 
 __all__ = ["CARDS", "MissionReport", "MissionView", "figures", "mission_view"]
 
-CARDS = 3
-"""Suspects of a mark that are shown with their evidence."""
-
 ROWS = 8
 """Suspects of a mark that are listed at first; the others are when asked for."""
 
-_LANES = 8
 
 WHAT: dict[MarkType | None, str] = {
     "I": "it did something that it should not have",
@@ -62,6 +58,7 @@ class MarkView:
     cards: list[CardView]
     more: int
     parameters: int
+    reason: str
     changed: str | None
 
 
@@ -73,6 +70,7 @@ class MissionView:
     name: str
     treatment: str
     seconds: str
+    window: str
     reports: str
     marks_i: int
     marks_ii: int
@@ -81,7 +79,6 @@ class MissionView:
     changed_parameter: str | None
     changed_positions: str
     timeline: Markup
-    lanes: list[tuple[str, bool]]
     marks: list[MarkView]
     facts: list[tuple[str, str]]
     warnings: list[str]
@@ -90,7 +87,7 @@ class MissionView:
 
 def figures(mission: MissionReport) -> int:
     """How many figures ``mission_view`` makes."""
-    cards = sum(min(CARDS, len(ranking.suspects)) for ranking in mission.rankings)
+    cards = sum(min(mission.top, len(ranking.suspects)) for ranking in mission.rankings)
     return 1 + cards
 
 
@@ -100,18 +97,18 @@ def mission_view(mission: MissionReport, number: int, on_figure: Callable[[], No
     recording = mission.recording
     kinds = [mark.type for mark in recording.marks]
     drawn = Figures(mission)
-    advice = [_advice(mission, ranking) for ranking in mission.rankings]
     marks = [
-        _mark_view(mission, ranking, advice[place - 1], (ident, place), drawn, on_figure)
+        _mark_view(mission, ranking, (ident, place), drawn, on_figure)
         for place, ranking in enumerate(mission.rankings, start=1)
     ]
-    timeline, lanes, moving = _timeline(mission, ident)
+    still, moving = timeline(mission, ident)
     on_figure()
     return MissionView(
         ident=ident,
         name=mission.name,
         treatment=mission.treatment,
         seconds=f"{recording.seconds:.1f}",
+        window=f"{mission.window_s:g}",
         reports=f"{len(recording.events):,}",
         marks_i=kinds.count("I"),
         marks_ii=kinds.count("II"),
@@ -119,11 +116,10 @@ def mission_view(mission: MissionReport, number: int, on_figure: Callable[[], No
         answers=answers([mark.cards for mark in marks]),
         changed_parameter=mission.changed_parameter,
         changed_positions=_positions(mission),
-        timeline=timeline,
-        lanes=lanes,
+        timeline=still,
         marks=marks,
         facts=_facts(mission),
-        warnings=list(complaints(recording, mission.static_info)),
+        warnings=[*complaints(recording, mission.static_info), *two_clocks(recording)],
         payload=embedded(
             {
                 "seconds": recording.seconds,
@@ -138,39 +134,26 @@ def mission_view(mission: MissionReport, number: int, on_figure: Callable[[], No
     )
 
 
-def _advice(mission: MissionReport, ranking: MarkRanking) -> list[Advice]:
-    recording, static = mission.recording, mission.static_info
-    return [
-        Advice(
-            suspect,
-            suggest(
-                recording.events,
-                suspect.comparison,
-                ranking.mark.time_ns,
-                suspect.type,
-                unit=static.unit_of(suspect.key),
-                summaries=recording.summaries,
-            ),
-            None,
-            None,
-        )
-        for suspect in ranking.suspects
-    ]
-
-
 def _mark_view(
     mission: MissionReport,
     ranking: MarkRanking,
-    advice: Sequence[Advice],
     at: tuple[str, int],
     drawn: Figures,
     on_figure: Callable[[], None],
 ) -> MarkView:
     mark = ranking.mark
     ident = f"{at[0]}-{at[1]}"
+    advice = advise(
+        mission.recording,
+        mission.static_info,
+        ranking,
+        top=len(ranking.suspects),
+        declared=mission.declared,
+        window_s=mission.window_s,
+    )
     cards = []
-    for place, one in enumerate(advice[:CARDS], start=1):
-        cards.append(card_view(mission, one, mark, drawn, f"{ident}-{place}"))
+    for place, one in enumerate(advice[: mission.top], start=1):
+        cards.append(card_view(mission, one, ranking, drawn, f"{ident}-{place}"))
         on_figure()
     changed = mission.changed_parameter
     return MarkView(
@@ -185,37 +168,9 @@ def _mark_view(
         cards=cards,
         more=max(0, len(ranking.suspects) - ROWS),
         parameters=ranking.parameters,
+        reason=ranking.reason,
         changed=None if changed is None else _position(ranking, changed),
     )
-
-
-def _timeline(
-    mission: MissionReport, ident: str
-) -> tuple[Markup, list[tuple[str, bool]], dict[str, object] | None]:
-    """The figure that stands still, its lanes as (name, changed), and what the moving one shows."""
-    recording = mission.recording
-    best: dict[str, tuple[int, str]] = {}
-    for ranking in mission.rankings:
-        for suspect in ranking.suspects:
-            known = best.get(suspect.parameter)
-            if known is None or suspect.position < known[0]:
-                best[suspect.parameter] = (suspect.position, suspect.key)
-    ranked = sorted(best, key=lambda name: (best[name][0], name))
-    order = ranked[:_LANES]
-    changed = next((name for name in ranked if mission.is_changed(name)), None)
-    if changed is not None and changed not in order:
-        order[-1] = changed
-    if not order:
-        return Markup(""), [], None
-    events, start, end = recording.events, recording.start_ns, recording.end_ns
-    lanes = [Lane(name, lane(events, best[name][1], start, end), name == changed) for name in order]
-    marks = [(mission.seconds(mark.time_ns), mark.type) for mark in recording.marks]
-    label = f"results of {len(lanes)} parameters over {recording.seconds:.0f} s, {len(marks)} marks"
-    svg = timeline_svg(lanes, marks, recording.seconds, f"{ident}-t", label)
-    moving = lanes_of(events, [(name, best[name][1]) for name in order], start, end)
-    moving["accent"] = order.index(changed) if changed is not None else 0
-    moving["culprit"] = changed is not None
-    return Markup(svg), [(name, name == changed) for name in order], moving
 
 
 def _position(ranking: MarkRanking, parameter: str) -> str:

@@ -221,12 +221,12 @@ const tpcFigures = (() => {
     line.textContent = "\u00a0";
     host.append(line);
     const spans = figures.map((figure) => {
-      const span = new Bokeh.Span({ location: null, dimension: "height", line_width: 1 });
+      const span = new Bokeh.Span({ location: 0, visible: false, dimension: "height", line_width: 1 });
       figure.add_layout(paint(span, { line_color: "faint" }));
       return span;
     });
     const move = (x) => {
-      for (const span of spans) span.location = x;
+      for (const span of spans) span.setv(x === null ? { visible: false } : { visible: true, location: x });
       line.textContent = (x === null ? "" : say(x)) || "\u00a0";
     };
     for (const figure of figures) {
@@ -260,7 +260,7 @@ const tpcFigures = (() => {
       for (const figure of [upper, lower]) {
         figure.add_layout(paint(
           new Bokeh.BoxAnnotation({
-            left: card.window, right: card.mark, level: "underlay", line_color: null, propagate_hover: true,
+            left: card.window, right: card.mark, level: "underlay", line_color: null, fill_alpha: 1,
           }),
           { fill_color: "span" },
         ));
@@ -272,7 +272,7 @@ const tpcFigures = (() => {
           // Without an end it reaches as far as the figure.
           ...(low === null ? {} : { bottom: low }), ...(high === null ? {} : { top: high }),
           level: "underlay", line_color: null, fill_color: null,
-          hatch_pattern: "right_diagonal_line", hatch_scale: 9, hatch_weight: 0.7,
+          hatch_pattern: "right_diagonal_line", hatch_scale: 14, hatch_weight: 0.8,
         }),
         { hatch_color: "would" },
       ));

@@ -1,0 +1,138 @@
+"""The command ``report``: a page with the answer and the evidence for it."""
+
+from __future__ import annotations
+
+import json
+import webbrowser
+from pathlib import Path
+
+import click
+
+from pytpc.cli.console import progress, warn
+from pytpc.cli.options import (
+    JSON,
+    PATH,
+    STATIC,
+    TYPES,
+    WINDOW,
+    check_reports,
+    recording_of,
+    warn_about,
+)
+from pytpc.cli.sources import static_of
+from pytpc.errors import TpcError
+from pytpc.report.html import CARDS, MissionReport, write_report
+from pytpc.scoring.clocks import two_clocks
+from pytpc.scoring.ranking import Types, rank_marks
+from pytpc.static_info import StaticInfo
+from pytpc.treatment import TREATMENT_FILE, Treatment, load_treatment
+from pytpc.values.origins import read_origins
+from pytpc.words import many, plain
+
+
+@click.command("report")
+@click.argument("recordings", type=PATH, nargs=-1, required=True, metavar="RECORDING...")
+@STATIC
+@click.option(
+    "-o",
+    "--output",
+    type=PATH,
+    default=Path("report.html"),
+    show_default=True,
+    metavar="FILE",
+    help="The page, one file that needs no other.",
+)
+@TYPES
+@WINDOW
+@click.option(
+    "--top",
+    type=click.IntRange(1, 20),
+    default=CARDS,
+    show_default=True,
+    metavar="N",
+    help="How many suspects of a mark are shown with their evidence.",
+)
+@click.option("--open", "open_it", is_flag=True, help="Show the page in the browser.")
+@JSON
+def report_command(
+    *,
+    recordings: tuple[Path, ...],
+    static_source: Path,
+    output: Path,
+    types: Types,
+    window_s: float,
+    top: int,
+    open_it: bool,
+    as_json: bool,
+) -> None:
+    """Write a page with the suspects at each mark of each RECORDING, and the evidence.
+
+    A RECORDING is any INPUT of `convert`. Where the folder of a mission also has origins.json or
+    treatment.json, the page says where values came from, and what was done to the robot.
+    """
+    static = static_of([static_source])
+    missions = [
+        _mission(source, static, types, window_s=window_s, top=top) for source in recordings
+    ]
+    with progress("drawing") as advance:
+        write_report(output, missions, on_progress=advance)
+    if as_json:
+        click.echo(json.dumps(_json_of(output, missions), indent=1, ensure_ascii=False))
+    else:
+        marks = sum(len(mission.rankings) for mission in missions)
+        click.echo(f"{many(len(missions), 'mission')} with {many(marks, 'mark')}: {output}")
+    if open_it and not webbrowser.open(output.absolute().as_uri()):
+        raise TpcError("no browser was found to show it in", output)
+
+
+COMMANDS: list[click.Command] = [report_command]
+
+
+def _mission(
+    source: Path, static: StaticInfo, types: Types, *, window_s: float, top: int
+) -> MissionReport:
+    recording = recording_of(source)
+    check_reports(recording, static, source)
+    warn_about(recording, static)
+    for clock in two_clocks(recording):
+        warn(f"{plain(recording.name)}: {plain(clock)}")
+    treatment = _treatment(source)
+    return MissionReport(
+        # The bags of all missions have the same name, their folders have not.
+        source.absolute().name if source.is_dir() else recording.name,
+        recording,
+        static,
+        rank_marks(recording, static, types=types, window_s=window_s),
+        treatment=treatment.effect if treatment is not None else "",
+        changed_parameter=treatment.parameter if treatment is not None else None,
+        origins=read_origins(source),
+        window_s=window_s,
+        top=top,
+    )
+
+
+def _treatment(source: Path) -> Treatment | None:
+    """What was done to the robot, where the mission's folder says so."""
+    here = source if source.is_dir() else source.parent
+    return load_treatment(here) if (here / TREATMENT_FILE).is_file() else None
+
+
+def _json_of(output: Path, missions: list[MissionReport]) -> dict[str, object]:
+    return {
+        "output": str(output),
+        "bytes": output.stat().st_size,
+        "missions": [
+            {
+                "name": mission.name,
+                "marks": [
+                    {
+                        "seconds": mission.seconds(ranking.mark.time_ns),
+                        "type": ranking.mark.type,
+                        "first": ranking.suspects[0].parameter if ranking.suspects else None,
+                    }
+                    for ranking in mission.rankings
+                ],
+            }
+            for mission in missions
+        ],
+    }
