@@ -14,6 +14,7 @@ INTERRUPTED = 130
 # Where each command is and what the list of commands says of it: what draws, builds or reads bags
 # takes a second to import, which asking for help, or another command, must not wait for.
 SUMMARIES = {
+    "apply": ("value_commands", "Write a value into the file that set it, or onto the robot."),
     "blind-spots": ("explain_commands", "List the places behind which the analysis does not see."),
     "build": ("workspace_commands", "Build a workspace with analysis and instrumentation."),
     "collect": ("static_commands", "Merge the static information of link units into one file."),
@@ -26,6 +27,7 @@ SUMMARIES = {
     "list": ("static_commands", "List the comparisons that were found."),
     "mark": ("mark_commands", "Mark by one key each when the robot does wrong."),
     "marks": ("rank_commands", "List the marks of a recording; add or remove some."),
+    "origin": ("value_commands", "Say where the values of parameters came from."),
     "patch": ("workspace_commands", "Put TPC's three lines into each CMakeLists.txt."),
     "rank": ("rank_commands", "Name the suspected parameters at each mark."),
     "record": ("mission_commands", "Record the running graph, or a launch file's mission."),

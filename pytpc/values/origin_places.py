@@ -91,7 +91,8 @@ class Places:
 
     def _from_param(self, origin: Origin, setting: Mapping[str, Any]) -> Origin:
         written = str(setting.get("written", ""))
-        origin = replace(origin, source=source_of(origin.path))
+        kind = str(setting.get("type", "auto"))
+        origin = replace(origin, source=source_of(origin.path), param_type=kind)
         if setting.get("from") != "value":
             what = {"command": "the output of a command", "textfile": "the text of a file"}
             note = what.get(str(setting.get("from")), "the bytes of a file")

@@ -32,7 +32,8 @@ class Origin:
 
     ``keys`` are the keys in a YAML file from the top, ``argument`` the launch argument whose value
     this is, ``source`` the file of which ``path`` is an installed copy, ``overridden`` the places
-    (``file:line``) that set it before and do not count.
+    (``file:line``) that set it before and do not count, ``param_type`` the ``type`` of a
+    ``<param>``.
     """
 
     name: str
@@ -47,6 +48,7 @@ class Origin:
     argument: str = ""
     source: Path | None = None
     overridden: tuple[str, ...] = ()
+    param_type: str = ""
 
     def words(self) -> str:
         """``config/params.yaml:12``, ``default in the code``, ``set at runtime``."""
@@ -120,6 +122,7 @@ def _origin(name: str, entry: Mapping[str, Any]) -> Origin:
         argument=str(entry.get("argument", "")),
         source=None if source is None else Path(source),
         overridden=tuple(map(str, entry.get("overridden", ()))),
+        param_type=str(entry.get("param_type", "")),
     )
 
 
@@ -146,6 +149,7 @@ def as_json(origin: Origin) -> dict[str, object]:
         "argument": origin.argument,
         "source": None if origin.source is None else str(origin.source),
         "overridden": list(origin.overridden),
+        "param_type": origin.param_type,
     }
     kept = {field: value for field, value in fields.items() if value not in (None, "", [])}
     return {"kind": origin.kind, "value": to_json(origin.value), **kept}

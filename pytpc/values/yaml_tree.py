@@ -60,7 +60,8 @@ class YamlNode:
 class Setting:
     """A value in a tree of maps: its keys from the top and its node.
 
-    ``key`` is the node of the last key. ``shared`` says how the value is written for more than this
+    ``key`` is the node of the last key. ``written`` is what stands behind it: the node itself, or
+    an alias of it. ``shared`` says how the value is written for more than this
     place: ``alias`` (``*x``), ``merge`` (``<<``) or empty. ``earlier`` are lines with the same
     keys, which this one overrides.
     """
@@ -68,6 +69,7 @@ class Setting:
     keys: tuple[str, ...]
     key: YamlNode
     node: YamlNode
+    written: YamlNode
     shared: str = ""
     earlier: tuple[int, ...] = ()
 
@@ -151,7 +153,7 @@ def settings(document: YamlNode) -> dict[tuple[str, ...], Setting]:
         _gather(document, (), "", found, ())
     elif document.text or document.kind == "list":
         # The whole document is one value: <rosparam param="x">5</rosparam>.
-        found[()] = Setting((), document, document.behind)
+        found[()] = Setting((), document, document.behind, document)
     return found
 
 
@@ -175,7 +177,7 @@ def _gather(
             continue
         before = found.pop(place, None)
         earlier = () if before is None else (*before.earlier, before.node.lineno)
-        found[place] = Setting(place, key, below, how, earlier)
+        found[place] = Setting(place, key, below, value, how, earlier)
 
 
 def _pairs(node: YamlNode, open_maps: tuple[int, ...]) -> Iterator[tuple[YamlNode, YamlNode, str]]:

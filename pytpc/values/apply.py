@@ -1,0 +1,175 @@
+"""Writing a value into the file that set it, and taking it back."""
+
+from __future__ import annotations
+
+import contextlib
+import difflib
+import os
+import re
+import stat
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from pytpc.atomic import stage_beside
+from pytpc.errors import InputError, TpcError
+from pytpc.values.journal import Entry, Journal, digest
+from pytpc.values.scalars import number_text
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """What a new value does to one file.
+
+    ``path`` is the file itself, behind symbolic links. ``old`` is None where the parameter stood
+    nowhere. ``notes`` are sentences for who applies it.
+    """
+
+    parameter: str
+    path: Path
+    before: bytes
+    after: bytes
+    old: object
+    new: object
+    lineno: int
+    notes: tuple[str, ...] = ()
+
+
+def read_file(path: Path) -> bytes:
+    """The bytes of a file that is to be changed.
+
+    Raises:
+        InputError: it cannot be read.
+    """
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise InputError(f"cannot be read: {error.strerror}", path) from error
+
+
+def decoded(data: bytes, path: Path) -> str:
+    """The text of a YAML file, with its byte order mark.
+
+    Raises:
+        InputError: it is not UTF-8, in which alone rosparam reads it.
+    """
+    try:
+        return data.decode("utf-8")
+    except UnicodeDecodeError as error:
+        line = data[: error.start].count(b"\n") + 1
+        raise InputError("not UTF-8: it is not changed", path, line) from error
+
+
+def shown(value: object) -> str:
+    """A value as it is told of.
+
+    >>> shown(0.5), shown(True), shown("a"), shown(None)
+    ('0.5', 'true', 'a', 'not set')
+    """
+    if value is None:
+        return "not set"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return number_text(value) if isinstance(value, float) else str(value)
+
+
+def apply_change(change: Change, journal: Journal) -> Entry:
+    """Write a change, and note it so that it can be taken back.
+
+    Raises:
+        TpcError: the file changed since the change was worked out, or cannot be written; it is as
+            it was.
+    """
+    if read_file(change.path) != change.before:
+        raise TpcError("somebody else has just changed it; run the command again", change.path)
+    entry = journal.add(
+        change.parameter,
+        (shown(change.old), shown(change.new)),
+        path=change.path,
+        before=change.before,
+        after=change.after,
+    )
+    try:
+        replace_file(change.path, change.after)
+    except BaseException:
+        journal.remove(entry)
+        raise
+    return entry
+
+
+def undo_change(entry: Entry, journal: Journal) -> Change:
+    """What taking back a change of a file does to it; nothing is written.
+
+    Raises:
+        TpcError: the file was changed since, by another change that is taken back first or by
+            somebody.
+    """
+    path, before = entry.path, entry.before
+    assert path is not None, "a change of a file"
+    assert before is not None, "a change of a file"
+    now = read_file(path)
+    later = [e for e in journal.entries() if e.path == path and e.number > entry.number]
+    if later:
+        raise TpcError(f"change {later[-1].number} came after it; take that back first", path)
+    if now != before and digest(now) != entry.after:
+        raise TpcError(
+            f"was changed since: change {entry.number} is not taken back; the value was"
+            f" {entry.old}",
+            path,
+        )
+    return Change(entry.parameter, path, now, before, entry.new, entry.old, 0)
+
+
+def replace_file(path: Path, data: bytes) -> None:
+    """Put new bytes into a file; its owner and permissions stay.
+
+    Raises:
+        TpcError: it cannot be written; what stood there is untouched.
+    """
+    try:
+        status = path.stat()
+        if not os.access(path, os.W_OK):
+            raise PermissionError(13, "it is read-only")
+        staged = stage_beside(path, data)
+        try:
+            if (status.st_uid, status.st_gid) != (os.geteuid(), os.getegid()):
+                with contextlib.suppress(PermissionError):
+                    os.chown(staged, status.st_uid, status.st_gid)
+            staged.chmod(stat.S_IMODE(status.st_mode))
+            staged.replace(path)
+        except BaseException:
+            with contextlib.suppress(OSError):
+                staged.unlink()
+            raise
+    except OSError as error:
+        raise TpcError(f"cannot be written: {error.strerror or error}", path) from error
+
+
+def diff_of(change: Change) -> str:
+    """The change as a unified diff; bytes that are no UTF-8 are shown as replacement characters."""
+    before, after = (_lines(data) for data in (change.before, change.after))
+    name = str(change.path).lstrip("/")
+    pieces = difflib.unified_diff(before, after, f"a/{name}", f"b/{name}")
+    lines = []
+    for piece in pieces:
+        lines.append(piece if piece.endswith("\n") else f"{piece}\n\\ No newline at end of file\n")
+    return "".join(lines)
+
+
+def _lines(data: bytes) -> list[str]:
+    """Lines as diff counts them: a carriage return alone ends none."""
+    return [line.decode("utf-8", "replace") for line in re.findall(rb"[^\n]*\n|[^\n]+", data)]
+
+
+def change_as_json(change: Change) -> Mapping[str, object]:
+    """A change for a program that reads it."""
+    return {
+        "parameter": change.parameter,
+        "path": str(change.path),
+        "lineno": change.lineno,
+        "old": change.old,
+        "new": change.new,
+        "changed": change.before != change.after,
+        "notes": list(change.notes),
+        "diff": diff_of(change),
+    }

@@ -1,0 +1,161 @@
+"""What ``pytpc apply`` changed, so that it can be taken back byte for byte.
+
+One JSON file for each change, in ``$XDG_STATE_HOME/tpc/applied`` (``~/.local/state`` where that is
+not set). It is written before the file is changed, and removed when the change is taken back.
+"""
+
+from __future__ import annotations
+
+import base64
+import contextlib
+import hashlib
+import json
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+from pytpc.atomic import stage_beside
+from pytpc.errors import InputError, TpcError
+
+SCHEMA = 1
+_MOST_TRIES = 1000
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """One change.
+
+    ``path`` is the file and ``before`` its bytes; of a change of a running robot both are None and
+    ``live`` says what to do. ``after`` is the SHA-256 of the file as it was left. Values are as
+    they are shown.
+    """
+
+    number: int
+    time: str
+    parameter: str
+    old: str
+    new: str
+    path: Path | None
+    before: bytes | None
+    after: str
+    live: Mapping[str, Any]
+
+    @property
+    def place(self) -> str:
+        """The file, or the robot."""
+        return str(self.path) if self.path is not None else str(self.live.get("master", "?"))
+
+
+def folder_of(env: Mapping[str, str]) -> Path:
+    """Where the journal is."""
+    chosen = env.get("XDG_STATE_HOME", "")
+    # The standard says that a relative one is not to be used.
+    base = Path(chosen) if chosen.startswith("/") else Path.home() / ".local" / "state"
+    return base / "tpc" / "applied"
+
+
+def digest(data: bytes) -> str:
+    """The SHA-256 of a file."""
+    return hashlib.sha256(data).hexdigest()
+
+
+class Journal:
+    """The changes that can be taken back."""
+
+    def __init__(self, folder: Path) -> None:
+        """The folder need not be there."""
+        self._folder = folder
+
+    def entries(self) -> list[Entry]:
+        """All changes, the oldest first.
+
+        Raises:
+            InputError: one of the files is none of these.
+        """
+        try:
+            paths = [path for path in self._folder.glob("*.json") if path.stem.isdigit()]
+        except OSError:
+            return []
+        return sorted((_read(path) for path in paths), key=lambda entry: entry.number)
+
+    def add(
+        self,
+        parameter: str,
+        values: tuple[str, str],
+        *,
+        path: Path | None = None,
+        before: bytes | None = None,
+        after: bytes = b"",
+        live: Mapping[str, Any] | None = None,
+    ) -> Entry:
+        """Write down a change that is about to be made.
+
+        Raises:
+            TpcError: it cannot be written; then nothing should be changed.
+        """
+        document = {
+            "schema": SCHEMA,
+            "time": datetime.now().astimezone().isoformat(timespec="seconds"),
+            "parameter": parameter,
+            "old": values[0],
+            "new": values[1],
+            "path": None if path is None else str(path),
+            "before": None if before is None else base64.b64encode(before).decode("ascii"),
+            "after": digest(after),
+            "live": dict(live or {}),
+        }
+        data = json.dumps(document, indent=1).encode() + b"\n"
+        try:
+            # What stood in a file may be nobody else's business.
+            self._folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+            staged = stage_beside(self._folder / "new", data, 0o600)
+            try:
+                target = self._link(staged)
+            finally:
+                staged.unlink()
+        except OSError as error:
+            raise TpcError(
+                f"the change cannot be noted for --undo: {error.strerror}", self._folder
+            ) from error
+        return _read(target)
+
+    def _link(self, staged: Path) -> Path:
+        """Give a file the next number; two commands at once get two."""
+        numbers = [int(path.stem) for path in self._folder.glob("*.json") if path.stem.isdigit()]
+        first = max(numbers, default=0) + 1
+        for number in range(first, first + _MOST_TRIES):
+            target = self._folder / f"{number:06d}.json"
+            with contextlib.suppress(FileExistsError):
+                os.link(staged, target)
+                return target
+        raise OSError(0, "no number is free")
+
+    def remove(self, entry: Entry) -> None:
+        """Forget a change that was taken back, or was not made after all."""
+        (self._folder / f"{entry.number:06d}.json").unlink(missing_ok=True)
+
+
+def _read(path: Path) -> Entry:
+    try:
+        document = json.loads(path.read_text(encoding="utf-8"))
+        if document["schema"] != SCHEMA:
+            raise ValueError(f"version {document['schema']}")
+        before = document["before"]
+        return Entry(
+            int(path.stem),
+            str(document["time"]),
+            str(document["parameter"]),
+            str(document["old"]),
+            str(document["new"]),
+            None if document["path"] is None else Path(document["path"]),
+            None if before is None else base64.b64decode(before, validate=True),
+            str(document["after"]),
+            dict(document["live"]),
+        )
+    except OSError as error:
+        raise InputError(f"cannot be read: {error.strerror}", path) from error
+    except (ValueError, KeyError, TypeError) as error:
+        raise InputError(f"not a change that was noted: {error}", path) from error

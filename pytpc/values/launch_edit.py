@@ -1,0 +1,248 @@
+"""Changing one value in a launch file: all other bytes stay as they are."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from pytpc.values.launch_value import launch_text, launch_value
+from pytpc.values.launch_xml import Attribute, Tag, encoding_of, inner_text, read_tags, written
+from pytpc.values.new_value import Refused, read_value
+from pytpc.values.scalars import type_of
+from pytpc.values.yaml_edit import edit_yaml
+
+_LISTED = 5
+
+
+@dataclass(frozen=True, slots=True)
+class LaunchEdit:
+    """A change of one value in a launch file; see ``yaml_edit.Edit``."""
+
+    data: bytes
+    old: object
+    new: object
+    lineno: int
+    notes: tuple[str, ...] = ()
+
+
+def tags_of(data: bytes) -> list[Tag]:
+    """The tags of a launch file.
+
+    Raises:
+        Refused: it is not XML, or in an encoding that is not handled.
+    """
+    try:
+        return read_tags(data)
+    except ValueError as error:
+        raise Refused(str(error)) from error
+
+
+def edit_param(
+    data: bytes, name: str, lineno: int, given: str, *, force: bool = False
+) -> LaunchEdit:
+    """Put a value into a ``<param value=...>``, or into the text of a ``<rosparam>``.
+
+    Args:
+        data: the launch file.
+        name: the parameter's full name.
+        lineno: the line of the tag, or of the value in a ``<rosparam>``.
+        given: the new value as typed.
+        force: change the type, or replace what roslaunch works out.
+
+    Raises:
+        Refused: see docs/applying.md.
+    """
+    tags = tags_of(data)
+    found = [t for t in tags if t.name == "param" and _names(t, name)]
+    here = [tag for tag in found if tag.lineno == lineno] or (found if len(found) == 1 else [])
+    if len(here) != 1:
+        raise Refused(f"no <param> for {name} is here any more; give the launch file", lineno)
+    tag = here[0]
+    value = tag.attributes.get("value")
+    if value is None:
+        raise Refused("its value is the text of a file, or the output of a command", tag.lineno)
+    kind = _attribute(tag, "type", "auto").lower().strip()
+    return _edit_attribute(data, tag, value, kind=kind, given=given, force=force)
+
+
+def edit_argument(
+    data: bytes,
+    name: str,
+    lineno: int,
+    given: str,
+    *,
+    kind: str,
+    via: Sequence[int] = (),
+    force: bool = False,
+) -> LaunchEdit:
+    """Put a value into the ``<arg>`` whose value a parameter has.
+
+    Args:
+        data: the launch file.
+        name: of the argument.
+        lineno: of its tag.
+        given: the new value as typed.
+        kind: the ``type`` of the parameter's tag.
+        via: lines in this file through which the parameter gets it; other uses change with it.
+        force: change it all the same where there are others.
+
+    Raises:
+        Refused: see docs/applying.md.
+    """
+    tags = tags_of(data)
+    found = [t for t in tags if t.name == "arg" and _attribute(t, "name") == name]
+    here = [tag for tag in found if tag.lineno == lineno] or (found if len(found) == 1 else [])
+    if len(here) != 1:
+        raise Refused(f"no <arg> {name} is here any more; give the launch file", lineno)
+    tag = here[0]
+    value = tag.attributes.get("value") or tag.attributes.get("default")
+    if value is None:
+        raise Refused(f"<arg> {name} has no value here", tag.lineno)
+    others = sorted({t.lineno for t in tags if _uses(t, data, name)} - set(via))
+    notes = []
+    if others:
+        lines = ", ".join(map(str, others[:_LISTED]))
+        if not force:
+            raise Refused(f"<arg> {name} is used in line {lines}, too; --force changes all")
+        notes = [f"line {lines} uses <arg> {name}, too, and changes with it"]
+    edit = _edit_attribute(data, tag, value, kind=kind, given=given, force=force)
+    return LaunchEdit(edit.data, edit.old, edit.new, edit.lineno, (*edit.notes, *notes))
+
+
+def edit_inline(
+    data: bytes, keys: tuple[str, ...], lineno: int, given: str, *, force: bool = False
+) -> LaunchEdit:
+    """Put a value into the YAML that stands in a ``<rosparam>``.
+
+    Raises:
+        Refused: see docs/applying.md.
+    """
+    for tag in tags_of(data):
+        span = inner_text(tag, data) if tag.name == "rosparam" else None
+        if span is None:
+            continue
+        start, end = span
+        first = data[:start].count(b"\n")
+        if not tag.lineno <= lineno <= first + 1 + data[start:end].count(b"\n"):
+            continue
+        encoding = encoding_of(data)
+        edit = edit_yaml(data[start:end].decode(encoding), keys, given, force=force)
+        in_section = data[:start].endswith(b"<![CDATA[")
+        if "]]>" in edit.text if in_section else "<" in edit.text or "&" in edit.text:
+            raise Refused("the value has characters that mean something to XML", lineno)
+        result = data[:start] + _encoded(edit.text, encoding) + data[end:]
+        return LaunchEdit(result, edit.old, edit.new, first + edit.lineno, edit.notes)
+    raise Refused("no <rosparam> with it is here any more; give the launch file", lineno)
+
+
+def add_param(data: bytes, offset: int | None, name: str, value: object, given: str) -> LaunchEdit:
+    """Add a ``<param>`` to the tag of a node, or before the end of the launch file.
+
+    Args:
+        data: the launch file.
+        offset: of the node's tag; None: at the end of the file, with a full name.
+        name: below the node, or full.
+        value: bool, int, float or text.
+        given: what was typed.
+
+    Raises:
+        Refused: the node's tag is not here any more.
+    """
+    tags = tags_of(data)
+    wanted = "launch" if offset is None else "node"
+    found = [t for t in tags if t.name == wanted and (offset is None or t.offset == offset)]
+    if not found:
+        raise Refused("the tag of the node is not here any more; give the launch file")
+    tag = found[0]
+    kind = {"bool": "bool", "int": "int", "double": "double"}.get(type_of(value), "str")
+    text = launch_text(value, given, kind, "")
+    newline = "\r\n" if b"\r\n" in data else "\n"
+    indent = _indent(data, tag.offset)
+    step = _indent(data, tag.children[0].offset) if tag.children else indent + "  "
+    shown = written(name, '"')
+    line = f'<param name="{shown}" value="{written(text, chr(34))}" type="{kind}"/>'
+    if tag.closed:
+        slash = data.rindex(b"/", tag.offset, tag.head_end)
+        head = data[:slash].rstrip() + b">"
+        tail, more = data[tag.head_end :], f"{newline}{indent}</{tag.name}>"
+    else:
+        # The tag's end stands in a line of its own, or behind something.
+        head, tail = data[: tag.end].rstrip(), data[tag.end :]
+        more = newline + indent
+    added = _encoded(f"{newline}{step}{line}{more}", encoding_of(data))
+    result = head + added + tail
+    tags_of(result)
+    return LaunchEdit(result, None, value, _line_at(result, len(head)) + 1)
+
+
+def _edit_attribute(
+    data: bytes, tag: Tag, attribute: Attribute, *, kind: str, given: str, force: bool
+) -> LaunchEdit:
+    old_text = attribute.value
+    notes = []
+    if "$(" in old_text:
+        if not force:
+            raise Refused(
+                f"roslaunch works its value out: {old_text}; --force replaces it", tag.lineno
+            )
+        notes.append(f"{old_text} is replaced by a value")
+        old: object = old_text
+        new = _typed(given, kind)
+    else:
+        try:
+            old = launch_value(old_text, kind)
+        except ValueError as error:
+            raise Refused(str(error), tag.lineno) from error
+        new = read_value(given, type_of(old), force=force)
+    text = launch_text(new, given, kind, old_text)
+    piece = _encoded(written(text, attribute.quote), encoding_of(data))
+    result = data[: attribute.start] + piece + data[attribute.end :]
+    return LaunchEdit(result, old, new, _line_at(data, attribute.start), tuple(notes))
+
+
+def _typed(given: str, kind: str) -> object:
+    try:
+        return launch_value(given, kind)
+    except ValueError as error:
+        raise Refused(f"{given!r} does not fit the parameter's type: {error}") from error
+
+
+def _names(tag: Tag, name: str) -> bool:
+    """Whether a tag may set a parameter of this full name."""
+    raw = _attribute(tag, "name").strip()
+    if "$(" in raw:
+        pattern = ".+".join(re.escape(part) for part in re.split(r"\$\([^)]*\)", raw.lstrip("~/")))
+        return re.search(f"/{pattern}$", name) is not None
+    return name == raw or (not raw.startswith("/") and name.endswith(f"/{raw.lstrip('~')}"))
+
+
+def _uses(tag: Tag, data: bytes, name: str) -> bool:
+    """Whether an attribute, or the text of a ``<rosparam>``, has an argument in it."""
+    texts = [attribute.value for attribute in tag.attributes.values()]
+    if tag.name == "rosparam" and not tag.closed:
+        texts.append(data[tag.head_end : tag.end].decode("utf-8", "replace"))
+    word = re.compile(rf"\$\(arg\s+{re.escape(name)}\s*\)|\$\(eval\b.*?\b{re.escape(name)}\b")
+    return any(word.search(text) for text in texts)
+
+
+def _attribute(tag: Tag, name: str, default: str = "") -> str:
+    found = tag.attributes.get(name)
+    return default if found is None else found.value
+
+
+def _indent(data: bytes, offset: int) -> str:
+    """The white space before a tag that begins its line."""
+    before = data[:offset].rpartition(b"\n")[2]
+    return before.decode("latin-1") if not before.strip() else ""
+
+
+def _line_at(data: bytes, offset: int) -> int:
+    return data[:offset].count(b"\n") + 1
+
+
+def _encoded(text: str, encoding: str) -> bytes:
+    try:
+        return text.encode(encoding)
+    except UnicodeEncodeError as error:
+        raise Refused(f"the file is in {encoding}, which has no {text[error.start]!r}") from error

@@ -1,0 +1,163 @@
+"""A new value: what a person typed, read as the type that the parameter has, and written again."""
+
+from __future__ import annotations
+
+import math
+import re
+
+from pytpc.values.scalars import ValueType, number_text, plain_value, type_of
+
+_WORDS = (("true", "false"), ("on", "off"), ("yes", "no"))
+_TRUE, _FALSE = ("true", "on", "yes", "1"), ("false", "off", "no", "0")
+_SAFE_PLAIN = re.compile(r"[A-Za-z_/][\w./-]*(?: [\w./-]+)*", re.ASCII)
+_NAMES: dict[ValueType, str] = {
+    "bool": "true or false",
+    "int": "a whole number",
+    "double": "a number",
+    "string": "a text",
+    "list": "a list",
+    "map": "a map",
+    "null": "nothing",
+    "binary": "binary data",
+}
+
+
+class Refused(ValueError):
+    """A change that is not made; ``lineno`` is the line that it is about, counted from 1."""
+
+    def __init__(self, message: str, lineno: int | None = None) -> None:
+        """See the class."""
+        super().__init__(message)
+        self.lineno = lineno
+
+
+def read_value(given: str, kind: ValueType, *, force: bool = False) -> object:
+    """What ``given`` is as a value of a type.
+
+    Args:
+        given: as typed.
+        kind: the type that the parameter has; it is kept.
+        force: where ``given`` does not fit the type, it gets the type that it looks like.
+
+    Raises:
+        Refused: it does not fit.
+    """
+    try:
+        return _read(given.strip(), kind) if kind != "string" else given
+    except ValueError:
+        if force:
+            return guessed(given)
+        what = _NAMES[kind]
+        raise Refused(
+            f"the parameter is {what} and {given!r} is not; --force changes its type"
+        ) from None
+
+
+def _read(given: str, kind: ValueType) -> object:
+    if kind == "bool":
+        if given.lower() in (*_TRUE, *_FALSE):
+            return given.lower() in _TRUE
+    elif kind == "int":
+        number = _number(given)
+        if isinstance(number, int) or number.is_integer():
+            return int(number)
+    elif kind == "double":
+        return float(_number(given))
+    raise ValueError(given)
+
+
+def _number(given: str) -> int | float:
+    value = plain_value(given)
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        # What Python calls a number and YAML does not: 1e-3, inf.
+        return float(given)
+    return value
+
+
+def guessed(given: str) -> object:
+    """What a text is where nothing is known of its type: 0.5, 3, true, else a text."""
+    value = plain_value(given)
+    if isinstance(value, str):
+        try:
+            return float(given)
+        except ValueError:
+            return value
+    return value
+
+
+def yaml_text(value: object, given: str, old: str = "", style: str = "") -> str:
+    """A scalar as it is written in YAML, so that rosparam reads this value.
+
+    Args:
+        value: bool, int, float, text.
+        given: what was typed; it is kept where it reads as ``value``.
+        old: the text that stood there; of words for bools its kind and case are kept.
+        style: quotes that stood there; a text keeps them.
+
+    Raises:
+        Refused: a value that cannot be written as one scalar.
+    """
+    if isinstance(value, bool):
+        return bool_text(value, old)
+    if isinstance(value, str):
+        return _quoted(value, style)
+    if not isinstance(value, int | float):
+        raise Refused(f"{type_of(value)} values cannot be written here")
+    read = plain_value(given.strip())
+    if type(read) is type(value) and (read == value or (read != read and value != value)):  # noqa: PLR0124
+        return given.strip()
+    return number_text(value) if isinstance(value, float) else str(value)
+
+
+def bool_text(value: bool, old: str) -> str:
+    """A bool in the words and the case of the one that stood there.
+
+    >>> bool_text(False, "True"), bool_text(True, "OFF"), bool_text(True, "")
+    ('False', 'ON', 'true')
+    """
+    for words in _WORDS:
+        if old.lower() in words:
+            word = words[0] if value else words[1]
+            return word.upper() if old.isupper() else word.title() if old.istitle() else word
+    return "true" if value else "false"
+
+
+def _quoted(value: str, style: str) -> str:
+    if style not in ('"', "'") and _SAFE_PLAIN.fullmatch(value):
+        if isinstance(plain_value(value), str):
+            return value
+        style = style or "'"
+    if style == '"' or not value.isprintable():
+        escaped = value.replace("\\", "\\\\").replace('"', '\\"')
+        return '"' + "".join(_escape(c) for c in escaped) + '"'
+    return "'" + value.replace("'", "''") + "'"
+
+
+def _escape(character: str) -> str:
+    if character.isprintable():
+        return character
+    code = ord(character)
+    return (
+        f"\\x{code:02x}"
+        if code < 0x100
+        else f"\\u{code:04x}"
+        if code < 0x10000
+        else f"\\U{code:08x}"
+    )
+
+
+def degrees_text(value: float) -> str | None:
+    """The degrees that rosparam turns into exactly this angle in rad; None where none does.
+
+    rosparam multiplies by pi and divides by 180.
+    """
+    if not math.isfinite(value):
+        return None
+    guess = value * 180.0 / math.pi
+    near = [guess, math.nextafter(guess, math.inf), math.nextafter(guess, -math.inf)]
+    candidates = [*(round(guess, digits) for digits in range(16)), *near]
+    for degrees in candidates:
+        if degrees * math.pi / 180.0 == value:
+            text = number_text(degrees)
+            return text.removesuffix(".0")
+    return None

@@ -1,0 +1,302 @@
+"""What ``pytpc apply`` and ``pytpc origin`` are given: a mission, a launch file, a YAML file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from pytpc.errors import InputError
+from pytpc.parameters import same_parameter
+from pytpc.values.apply import Change, decoded, read_file
+from pytpc.values.installed import is_installed, of_the_system, source_of
+from pytpc.values.launch_edit import LaunchEdit, add_param, edit_argument, edit_inline, edit_param
+from pytpc.values.launch_xml import read_tags
+from pytpc.values.new_value import Refused, guessed, read_value
+from pytpc.values.origins import ORIGINS_FILE, Origin, origins_file, read_document, read_origins
+from pytpc.values.recording import origins_of
+from pytpc.values.scalars import type_of
+from pytpc.values.trace import LaunchNode, trace_launch
+from pytpc.values.yaml_edit import all_settings, edit_yaml
+
+_YAML = (".yaml", ".yml")
+_LISTED = 8
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """Where values can be looked for: what is known of them, and the nodes of the launch file.
+
+    ``launch`` is the launch file, None where that is not known.
+    """
+
+    origins: Mapping[str, Origin]
+    nodes: Sequence[LaunchNode]
+    launch: Path | None
+
+
+def is_yaml(path: Path) -> bool:
+    """Whether a path names a YAML file."""
+    return path.suffix.lower() in _YAML
+
+
+def read_target(path: Path, args: Mapping[str, str], env: Mapping[str, str]) -> Target:
+    """What is known of a mission's folder, its bag, or a launch file.
+
+    Args:
+        path: of one of them.
+        args: for a launch file.
+        env: in which ``$(find ...)`` finds the launch file's packages.
+
+    Raises:
+        InputError: no such file, a mission without origins, a launch file that cannot be read.
+        MissingToolError: roslaunch is not installed.
+    """
+    if not path.exists():
+        raise InputError("no such file or folder", path)
+    if path.is_dir() or path.suffix in (".bag", ".parquet"):
+        if not origins_file(path).is_file():
+            raise InputError(
+                f"no {ORIGINS_FILE}: it was not recorded where values came from; give the launch"
+                " file, or record with `pytpc record`",
+                path,
+            )
+        return _of_mission(path)
+    trace = trace_launch(env, path, args)
+    values = {name: settings[-1].get("value") for name, settings in trace.settings.items()}
+    flat = {name: value for name, value in values.items() if not isinstance(value, dict)}
+    return Target(origins_of(trace, flat), trace.nodes, trace.launch)
+
+
+def _of_mission(path: Path) -> Target:
+    file = origins_file(path)
+    document = read_document(file)
+    try:
+        nodes = [
+            LaunchNode(
+                str(node["name"]),
+                str(node["package"]),
+                str(node["program"]),
+                Path(node["path"]),
+                int(node["lineno"]),
+                int(node["offset"]),
+            )
+            for node in document.get("nodes", [])
+        ]
+    except (KeyError, TypeError, ValueError) as error:
+        raise InputError(f"not a file of origins: {error!r}", file) from error
+    launch = document.get("launch")
+    return Target(read_origins(path), nodes, None if launch is None else Path(launch))
+
+
+def chosen(target: Target, parameter: str) -> Origin:
+    """The origin of the parameter that a person means.
+
+    Args:
+        target: where it is looked for.
+        parameter: its full name, or the end of it.
+
+    Returns:
+        Of a full name that nobody set: an origin of the kind ``default``.
+
+    Raises:
+        InputError: several parameters are meant, or none.
+    """
+    if parameter in target.origins:
+        return target.origins[parameter]
+    meant = [name for name in target.origins if same_parameter(name, parameter)]
+    if len(meant) > 1:
+        raise InputError(f"several parameters end with {parameter}: {_listed(meant)}")
+    if meant:
+        return target.origins[meant[0]]
+    if parameter.startswith("/"):
+        return Origin(parameter, "default", None, None, None, "")
+    names = _listed([node.name for node in target.nodes]) or "no node is known"
+    raise InputError(
+        f"nobody sets {parameter}; where it has its default, give its full name, as in"
+        f" /NODE/{parameter.lstrip('~/')} ({names})"
+    )
+
+
+def plan_yaml(path: Path, parameter: str, given: str, *, force: bool = False) -> Change:
+    """Work out a change of a YAML file; nothing is written.
+
+    Args:
+        path: of the file; symbolic links are followed.
+        parameter: its keys from the top, joined by slashes, or the end of them.
+        given: the new value as typed.
+        force: see ``edit_yaml``.
+
+    Raises:
+        InputError: the file cannot be read, or the change is refused; with the line.
+    """
+    real = path.resolve()
+    data = read_file(real)
+    text = decoded(data, path)
+    try:
+        wanted = parameter.strip("~/")
+        known = {keys for document in all_settings(text) for keys in document}
+        whole = [keys for keys in known if "/".join(keys) == wanted]
+        ending = [keys for keys in known if "/".join(keys).endswith(f"/{wanted}")]
+        meant = sorted(whole or ending)
+        if len(meant) != 1:
+            names = _listed(["/".join(keys) for keys in meant])
+            what = f"several values end with {parameter}: {names}" if meant else ""
+            raise Refused(what or f"{parameter} does not stand in it")
+        edit = edit_yaml(text, meant[0], given, force=force)
+    except Refused as error:
+        raise InputError(str(error), path, error.lineno) from error
+    notes = (*edit.notes, *_where(path, real))
+    name = "/" + "/".join(meant[0])
+    after = edit.text.encode("utf-8")
+    return Change(name, real, data, after, edit.old, edit.new, edit.lineno, notes)
+
+
+def plan_origin(origin: Origin, given: str, *, force: bool = False) -> Change:
+    """Work out a change of the file that set a value; nothing is written.
+
+    Raises:
+        InputError: no file set it, the file is not here any more, or the change is refused.
+    """
+    path = origin.path
+    if path is None or origin.kind not in ("yaml", "launch"):
+        raise InputError(_why_not(origin))
+    file = origin.source or path
+    if of_the_system(file) and not force:
+        raise InputError(
+            "it was installed with the system; set the value in a launch file of your own (--add),"
+            " or --force",
+            file,
+        )
+    real = file.resolve()
+    data = read_file(real)
+    try:
+        if origin.kind == "yaml":
+            edit = edit_yaml(decoded(data, file), origin.keys, given, force=force)
+            after, found = (
+                edit.text.encode("utf-8"),
+                LaunchEdit(b"", edit.old, edit.new, edit.lineno, edit.notes),
+            )
+        else:
+            found = _edit_launch(data, origin, given, force)
+            after = found.data
+    except Refused as error:
+        raise InputError(str(error), file, error.lineno) from error
+    notes = [*found.notes, *_where(path, real)]
+    if origin.value is not None and repr(origin.value) != repr(found.old):
+        notes.append(f"the robot had {origin.value!r}; the file was changed since")
+    return Change(origin.name, real, data, after, found.old, found.new, found.lineno, tuple(notes))
+
+
+def _edit_launch(data: bytes, origin: Origin, given: str, force: bool) -> LaunchEdit:
+    lineno = origin.lineno or 0
+    if origin.argument:
+        via = [
+            int(line)
+            for file, _, line in (place.rpartition(":") for place in origin.via)
+            if Path(file) == origin.path
+        ]
+        return edit_argument(
+            data,
+            origin.argument,
+            lineno,
+            given,
+            kind=origin.param_type or "auto",
+            via=via,
+            force=force,
+        )
+    if origin.param_type:
+        return edit_param(data, origin.name, lineno, given, force=force)
+    return edit_inline(data, origin.keys, lineno, given, force=force)
+
+
+def plan_addition(origin: Origin, target: Target, given: str, default: object = None) -> Change:
+    """Work out a ``<param>`` for a value that no file sets; nothing is written.
+
+    It goes into the tag of the node in whose namespace it is, else to the end of the launch file.
+
+    Args:
+        origin: of the kind ``default`` or ``runtime``.
+        target: where the nodes stand.
+        given: the new value as typed.
+        default: in the code, where it is known: its type is kept.
+
+    Raises:
+        InputError: the launch file is not known or not here, or a value does not fit.
+    """
+    below = [node for node in target.nodes if origin.name.startswith(f"{node.name}/")]
+    node = max(below, key=lambda one: len(one.name), default=None)
+    path = target.launch if node is None else node.path
+    if path is None:
+        raise InputError("the launch file is not known; give that instead of the mission")
+    file = source_of(path) or path
+    real = file.resolve()
+    data = read_file(real)
+    known = origin.value if origin.value is not None else default
+    try:
+        value = guessed(given) if known is None else read_value(given, type_of(known))
+        offset = None if node is None else _offset_of(data, node)
+        name = origin.name if node is None else origin.name[len(node.name) + 1 :]
+        edit = add_param(data, offset, name, value, given)
+    except Refused as error:
+        raise InputError(str(error), file, error.lineno) from error
+    notes = _where(path, real)
+    return Change(origin.name, real, data, edit.data, None, value, edit.lineno, notes)
+
+
+def _offset_of(data: bytes, node: LaunchNode) -> int:
+    """The place of a node's tag: where it was, or the only one of this name."""
+    try:
+        tags = [tag for tag in read_tags(data) if tag.name == "node"]
+    except ValueError as error:
+        raise Refused(str(error)) from error
+    own = node.name.rpartition("/")[2]
+    named = [t for t in tags if "name" in t.attributes and t.attributes["name"].value == own]
+    here = [t for t in tags if t.offset == node.offset and t.lineno == node.lineno]
+    if len(named) == 1:
+        return named[0].offset
+    if not here:
+        raise Refused(f"the tag of {node.name} is not here any more", node.lineno)
+    return here[0].offset
+
+
+def _why_not(origin: Origin) -> str:
+    name = origin.name
+    if origin.kind == "argument":
+        return f"{name} is {origin.note}; give {origin.argument}:=VALUE there instead"
+    if origin.kind == "default":
+        return (
+            f"nobody sets {name}: it has its default in the code; --add puts it into the launch"
+            " file"
+        )
+    if origin.kind == "runtime":
+        return (
+            f"{name} was set at runtime ({origin.note}); --live sets it on the running robot, --add"
+            " puts it into the launch file"
+        )
+    return f"it is not known where {name} was set; give the launch file or the YAML file"
+
+
+def _where(path: Path, real: Path) -> tuple[str, ...]:
+    """What to know of where a change goes."""
+    if path.resolve() != real:
+        differs = "" if _same_bytes(path, real) else ", which is older or newer than it"
+        return (
+            f"the robot reads the installed copy {path}{differs}: build the workspace again for"
+            " the change to reach it",
+        )
+    if is_installed(real):
+        return ("this is an installed copy, and no source of it is found: a build overwrites it",)
+    return ()
+
+
+def _same_bytes(one: Path, other: Path) -> bool:
+    try:
+        return one.read_bytes() == other.read_bytes()
+    except OSError:
+        return False
+
+
+def _listed(names: Sequence[str]) -> str:
+    shown = ", ".join(sorted(names)[:_LISTED])
+    return shown if len(names) <= _LISTED else f"{shown} and {len(names) - _LISTED} more"

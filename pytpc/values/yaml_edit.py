@@ -1,0 +1,207 @@
+"""Changing one value in a YAML text: all other characters stay as they are."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from pytpc.values.new_value import Refused, degrees_text, read_value, yaml_text
+from pytpc.values.scalars import number_text, type_of
+from pytpc.values.yaml_tree import Setting, YamlNode, read_yaml, settings, value_of
+
+Keys = tuple[str, ...]
+_DEGREES = re.compile(r"\s*deg\(.*\)\s*")
+_RADIANS = re.compile(r"\s*rad\(.*\)\s*")
+_LISTED = 5
+
+
+@dataclass(frozen=True, slots=True)
+class Edit:
+    """A change of one value in a text: what it was and is, in which line, what else to know."""
+
+    text: str
+    keys: Keys
+    old: object
+    new: object
+    lineno: int
+    notes: tuple[str, ...] = ()
+
+
+def all_settings(text: str) -> list[Mapping[Keys, Setting]]:
+    """What each document of a YAML text sets.
+
+    Raises:
+        Refused: it is not YAML.
+    """
+    try:
+        return [settings(document) for document in read_yaml(text)]
+    except ValueError as error:
+        raise Refused(str(error)) from error
+
+
+def edit_yaml(text: str, keys: Keys, given: str, *, force: bool = False) -> Edit:
+    """Put a value in the place of another.
+
+    Args:
+        text: of a YAML file.
+        keys: from the top of the document.
+        given: the new value as typed.
+        force: change the type, or a value that other parameters have, too (an anchor).
+
+    Raises:
+        Refused: see docs/applying.md; the message says what to do.
+    """
+    documents = all_settings(text)
+    having = [document for document in documents if keys in document]
+    if len(having) != 1:
+        where = "nowhere" if not having else f"in {len(having)} documents"
+        raise Refused(f"{'/'.join(keys)} stands {where} in it")
+    setting = having[0][keys]
+    node, spot = setting.node, setting.written
+    if spot.kind != "alias" or node.kind == "list":
+        spot = node
+    old = _read(node)
+    if "$(" in node.text and not force:
+        raise Refused(
+            f"roslaunch puts something in here: {node.text}; --force replaces it", node.lineno
+        )
+    notes = _notes(having[0], setting, spot, force)
+    pieces: list[tuple[YamlNode, str]]
+    new: object
+    if isinstance(old, list):
+        pieces, new = _list_pieces(node, given, force)
+    else:
+        new = read_value(given, type_of(old), force=force)
+        piece, more = _piece(node, new, given)
+        pieces = [(spot, piece)]
+        notes += more
+    for one, piece in sorted(pieces, key=lambda pair: -pair[0].start):
+        text = _put(text, one, piece)
+    changed = _changed_with(having[0], spot)
+    _check(documents, text, {(documents.index(having[0]), keys): new for keys in changed})
+    return Edit(text, keys, old, new, spot.lineno, tuple(notes))
+
+
+def _changed_with(document: Mapping[Keys, Setting], spot: YamlNode) -> list[Keys]:
+    """The keys of all values that change when the text of this node does."""
+    return [one.keys for one in document.values() if one.written is spot or one.node is spot]
+
+
+def _notes(
+    document: Mapping[Keys, Setting], setting: Setting, spot: YamlNode, force: bool
+) -> list[str]:
+    """What else to know of a change.
+
+    Raises:
+        Refused: other parameters have the same text as their value, and nobody wants to force it.
+    """
+    others = [keys for keys in _changed_with(document, spot) if keys != setting.keys]
+    if others:
+        names = ", ".join("/".join(keys) for keys in others[:_LISTED])
+        if not force:
+            raise Refused(f"it is the value of {names}, too; --force changes all", spot.lineno)
+        return [f"{names} changes with it"]
+    notes = []
+    if spot.kind == "alias":
+        notes.append(f"it stood for &{spot.text} of line {setting.node.lineno}, which stays")
+    if setting.earlier:
+        lines = ", ".join(map(str, setting.earlier[:_LISTED]))
+        notes.append(f"line {lines} sets it, too, and does not count")
+    return notes
+
+
+def _read(node: YamlNode) -> object:
+    if node.kind == "scalar" and node.style in ("|", ">"):
+        raise Refused("it is a block of text, which is not changed here", node.lineno)
+    try:
+        return value_of(node)
+    except ValueError as error:
+        raise Refused(str(error), node.lineno) from error
+
+
+def _piece(node: YamlNode, new: object, given: str) -> tuple[str, list[str]]:
+    """The text for a scalar; angles stay angles."""
+    tag = (node.tag or "").lstrip("!")
+    degrees = tag == "degrees" or (node.is_plain and _DEGREES.fullmatch(node.text))
+    if degrees and isinstance(new, float):
+        exact = degrees_text(new)
+        if exact is None:
+            if tag:
+                raise Refused(f"no number of degrees is {number_text(new)} rad", node.lineno)
+            return number_text(new), ["no number of degrees is this angle; it is in rad now"]
+        return (exact if tag and "(" not in node.text else f"deg({exact})"), []
+    if isinstance(new, float) and node.is_plain and _RADIANS.fullmatch(node.text):
+        return f"rad({yaml_text(new, given)})", []
+    style = node.style if isinstance(new, str) else ""
+    if isinstance(new, str) and node.is_plain and node.tag:
+        # A tag makes a text of anything.
+        return yaml_text(new, given, style="'"), []
+    return yaml_text(new, given, node.text, style), []
+
+
+def _list_pieces(
+    node: YamlNode, given: str, force: bool
+) -> tuple[list[tuple[YamlNode, str]], list[object]]:
+    try:
+        documents = read_yaml(given)
+        wanted = documents[0].items if documents and documents[0].kind == "list" else None
+    except ValueError:
+        wanted = None
+    if wanted is None or any(item.kind != "scalar" for item in wanted):
+        raise Refused("the parameter is a list: give all of it, as in '[1.0, 2.0]'", node.lineno)
+    if len(wanted) != len(node.items):
+        had = len(node.items)
+        raise Refused(f"the list has {had} values, and {len(wanted)} are given", node.lineno)
+    pieces: list[tuple[YamlNode, str]] = []
+    new: list[object] = []
+    for item, one in zip(node.items, wanted, strict=True):
+        if item.kind != "scalar":
+            raise Refused("lists in lists, maps in lists and aliases are not changed", item.lineno)
+        old = _read(item)
+        value = read_value(one.text, type_of(old), force=force)
+        new.append(value)
+        if value != old or type(value) is not type(old):
+            piece, _ = _piece(item, value, one.text)
+            pieces.append((item, piece))
+    return pieces, new
+
+
+def _put(text: str, node: YamlNode, piece: str) -> str:
+    start, end = node.start, node.end
+    if start == end:
+        raise Refused("it has no value yet; write one into the file", node.lineno)
+    return text[:start] + piece + text[end:]
+
+
+def _check(
+    before: list[Mapping[Keys, Setting]], text: str, changed: Mapping[tuple[int, Keys], object]
+) -> None:
+    """See that the text says what it should: these values are new, and every other one is not.
+
+    ``changed`` has them by the number of the document and the keys.
+    """
+    after = all_settings(text)
+    wanted: dict[tuple[int, Keys], object] = {
+        (number, keys): _value(setting.node)
+        for number, document in enumerate(before)
+        for keys, setting in document.items()
+    }
+    wanted.update(changed)
+    found = {
+        (number, keys): _value(setting.node)
+        for number, document in enumerate(after)
+        for keys, setting in document.items()
+    }
+    # repr tells 1 from 1.0 and takes NaN for NaN.
+    if {place: repr(value) for place, value in found.items()} != {
+        place: repr(value) for place, value in wanted.items()
+    }:
+        raise Refused("it cannot be written without changing something else")
+
+
+def _value(node: YamlNode) -> object:
+    try:
+        return value_of(node)
+    except ValueError:
+        return (node.tag, node.text)
