@@ -16,6 +16,8 @@ from itertools import groupby
 from typing import Any
 
 import numpy as np
+from rich import box
+from rich.cells import cell_len
 from rich.table import Table as RichTable
 from rich.text import Text
 
@@ -41,6 +43,11 @@ _LATEX = {
 }
 # Markdown gives these a meaning within a line or a table.
 _MARKDOWN = re.compile(r"([\\`*_\[\]<>|])")
+# In a terminal: so much of a name stays on one line however many columns there are, so much of a
+# group's, and so much is between two columns.
+_NAME_WIDTH = 28
+_GROUP_WIDTH = 10
+_BETWEEN = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,20 +191,51 @@ def as_json(table: Table) -> dict[str, Any]:
     }
 
 
-def as_rich(table: Table) -> RichTable:
-    """A table for a terminal, without its title and notes."""
-    made = RichTable()
-    made.add_column(Text(plain(table.first)), overflow="fold")
-    for column in table.columns:
+def as_rich(table: Table, width: int) -> list[RichTable]:
+    """A table for a terminal of so many columns, without its title and notes.
+
+    Where the columns do not fit beside each other the rest stands in further tables, with the names
+    again: rich itself would leave them out.
+    """
+    names = [plain(name) for name, _ in (*table.rows, *table.summary)]
+    first = min(max(map(cell_len, (table.first, *names))), max(_NAME_WIDTH, width // 3))
+    rows = [shown(table, cells) for _, cells in table.rows]
+    rows += [shown(table, cells, statistic=True) for _, cells in table.summary]
+    rows = [[plain(text) for text in row] for row in rows]
+    parts: list[list[tuple[int, int]]] = [[]]
+    used = first
+    for number, column in enumerate(table.columns):
+        group = min(cell_len(plain(column.group)), _GROUP_WIDTH)
+        need = max([group, *map(cell_len, (plain(column.heading), *(row[number] for row in rows)))])
+        if parts[-1] and used + need + _BETWEEN > width - _BETWEEN:
+            parts.append([])
+            used = first
+        used += need + _BETWEEN
+        parts[-1].append((number, need))
+    return [_rich_part(table, names, rows, part, first) for part in parts]
+
+
+def _rich_part(
+    table: Table,
+    names: Sequence[str],
+    rows: Sequence[Sequence[str]],
+    columns: Sequence[tuple[int, int]],
+    first: int,
+) -> RichTable:
+    """The ``columns``, each with its width, beside the names."""
+    made = RichTable(box=box.SIMPLE_HEAD, pad_edge=False)
+    made.add_column(Text(plain(table.first)), overflow="fold", width=first)
+    for number, width in columns:
+        column = table.columns[number]
         above = f"{plain(column.group)}\n" if column.group else ""
-        made.add_column(Text(above + plain(column.heading)), justify="right", overflow="fold")
-    for name, cells in table.rows:
-        made.add_row(*(Text(plain(text)) for text in (name, *shown(table, cells))))
-    if table.summary:
-        made.add_section()
-    for name, cells in table.summary:
-        texts = shown(table, cells, statistic=True)
-        made.add_row(Text(plain(name), style="italic"), *(Text(plain(text)) for text in texts))
+        heading = Text(above + plain(column.heading))
+        made.add_column(heading, justify="right", overflow="fold", width=width)
+    for place, (name, row) in enumerate(zip(names, rows, strict=True)):
+        if place == len(table.rows):
+            made.add_section()
+        look = "italic" if place >= len(table.rows) else ""
+        texts = (Text(row[number]) for number, _ in columns)
+        made.add_row(Text(name, style=look), *texts)
     return made
 
 

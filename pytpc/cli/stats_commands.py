@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import click
@@ -13,6 +14,7 @@ from rich.text import Text
 
 from pytpc.atomic import write_atomic
 from pytpc.cli.console import console, progress, warn
+from pytpc.cli.options import JSON, PATH, STATIC, WINDOW
 from pytpc.cli.sources import static_of
 from pytpc.errors import InputError
 from pytpc.static_info import StaticInfo
@@ -21,7 +23,6 @@ from pytpc.stats.study import NUMBERS, study_complaints, study_tables
 from pytpc.tables import Table, as_csv, as_json, as_latex, as_markdown, as_rich
 from pytpc.words import many, plain
 
-_PATH = click.Path(path_type=Path)
 _SUFFIXES = {"text": ".txt", "csv": ".csv", "markdown": ".md", "latex": ".tex", "json": ".json"}
 _FIGURE_FORMATS = ("png", "svg", "pdf")
 _WIDTH = 200
@@ -29,18 +30,11 @@ _BY_NUMBER = {number: name for name, number in NUMBERS.items()}
 
 
 @click.command("stats")
-@click.argument("paths", type=_PATH, nargs=-1, required=True, metavar="MISSION...")
-@click.option(
-    "--static",
-    "static_source",
-    type=_PATH,
-    required=True,
-    metavar="FILE_OR_FOLDER",
-    help="static.json, a build base or a built workspace.",
-)
+@click.argument("paths", type=PATH, nargs=-1, required=True, metavar="MISSION...")
+@STATIC
 @click.option(
     "--treatments",
-    type=_PATH,
+    type=PATH,
     metavar="DIR",
     help="Folders with a treatment.json each, for missions that have none in theirs.",
 )
@@ -61,15 +55,15 @@ _BY_NUMBER = {number: name for name, number in NUMBERS.items()}
     show_default=True,
     help="csv and json have the numbers in full.",
 )
-@click.option("--json", "as_json_too", is_flag=True, help="The same as --format json.")
+@JSON
 @click.option(
     "-o",
     "--output",
-    type=_PATH,
+    type=PATH,
     metavar="OUT",
-    help="A file, or a folder (one that is there, or ends in /): then a file for each table.",
+    help="A file; a folder that is there, or several tables as CSV: a file in it for each table.",
 )
-@click.option("--figures", type=_PATH, metavar="DIR", help="Draw the figures into this folder.")
+@click.option("--figures", type=PATH, metavar="DIR", help="Draw the figures into this folder.")
 @click.option(
     "--figure-format",
     "figure_formats",
@@ -87,36 +81,31 @@ _BY_NUMBER = {number: name for name, number in NUMBERS.items()}
     help="What of the robot is drawn above the ranks, as /odom.pose.pose.position.x; several times."
     " Otherwise a pose and a state are looked for.",
 )
-@click.option(
-    "--window",
-    "window_s",
-    type=click.FloatRange(min=0.0, min_open=True),
-    metavar="SECONDS",
-    help="The window of type II in the figures.",
-)
-def stats_command(
+@WINDOW
+def stats_command(  # noqa: PLR0917
     paths: tuple[Path, ...],
     static_source: Path,
     treatments: Path | None,
     names: tuple[str, ...],
     form: str,
-    as_json_too: bool,
+    as_json: bool,
     output: Path | None,
     figures: Path | None,
     figure_formats: tuple[str, ...],
     states: tuple[str, ...],
-    window_s: float | None,
+    window_s: float,
 ) -> None:
     """Write the tables of the study (6.12 to 6.16) from recorded missions, and its figures.
 
     A MISSION is a folder of `pytpc record`, or any INPUT of `pytpc convert`; a folder of missions
     stands for all of them. What was changed in each, its treatment.json tells.
     """
-    form = "json" if as_json_too else form
-    folder = output is not None and (output.is_dir() or str(output).endswith("/"))
+    form = "json" if as_json else form
     chosen = _chosen(names)
-    if form == "csv" and len(chosen) > 1 and not folder:
-        raise click.UsageError("several tables as CSV: choose one by --table, or give -o FOLDER/")
+    several = form == "csv" and len(chosen) > 1
+    if several and output is None:
+        raise click.UsageError("several tables as CSV: choose one by --table, or give -o FOLDER")
+    folder = several or (output is not None and output.is_dir())
     static = static_of([static_source])
     with progress("reading missions") as advance:
         missions = load_missions(paths, treatments, advance)
@@ -128,7 +117,7 @@ def stats_command(
     else:
         _write(tables, form, output, folder=folder)
     if figures is not None:
-        _draw(missions, static, figures, figure_formats, states, window_s)
+        _draw(missions, static, _Figures(figures, figure_formats, states, window_s))
 
 
 COMMANDS: list[click.Command] = [stats_command]
@@ -192,7 +181,8 @@ def _text_of(tables: Sequence[Table], form: str) -> str:
 def _show(out: Console, table: Table) -> None:
     out.print(Text(f"{table.title} (as table {NUMBERS[table.label]})", style="bold"))
     if table.rows:
-        out.print(as_rich(table), highlight=False)
+        for part in as_rich(table, out.width):
+            out.print(part, highlight=False)
     else:
         out.print(Text("No mission has anything for it."))
     for note in table.notes:
@@ -200,12 +190,29 @@ def _show(out: Console, table: Table) -> None:
     out.print()
 
 
-def _draw(
-    missions: Sequence[StudyMission],
-    static: StaticInfo,
-    folder: Path,
-    formats: Sequence[str],
-    states: Sequence[str],
-    window_s: float | None,
-) -> None:
-    raise NotImplementedError
+@dataclass(frozen=True, slots=True)
+class _Figures:
+    """What is to be drawn, where and how."""
+
+    folder: Path
+    formats: Sequence[str]
+    states: Sequence[str]
+    window_s: float
+
+
+def _draw(missions: Sequence[StudyMission], static: StaticInfo, wanted: _Figures) -> None:
+    # matplotlib takes half a second to import, which tables alone need not wait for.
+    from pytpc.stats.figures import draw_study  # noqa: PLC0415
+
+    with progress("drawing") as advance:
+        drawn = draw_study(
+            missions,
+            static,
+            wanted.folder,
+            wanted.formats,
+            states=wanted.states,
+            window_s=wanted.window_s,
+            on_progress=advance,
+            on_trouble=lambda text: warn(plain(text)),
+        )
+    click.echo(f"{many(len(drawn), 'figure')}: {wanted.folder}", err=True)

@@ -23,7 +23,7 @@ UNNAMED = "unnamed"
 """The user whose marks have no namespace."""
 
 _ORDER: Sequence[TreatmentType | None] = ("type1", "type2", "fault", "clean", None)
-_RECORDINGS = {".bag", ".mcap", ".db3"}
+_BAG = ".bag"
 
 
 @dataclass(frozen=True, eq=False)
@@ -189,13 +189,13 @@ def _run(path: Path) -> dict[str, Any]:
 
 def _bag(path: Path, run: dict[str, Any]) -> Path | None:
     if not path.is_dir():
-        return path if path.suffix in _RECORDINGS else None
+        return path if path.suffix == _BAG else None
     if (path / "metadata.yaml").is_file():
         return path
     named = run.get("bag")
     if isinstance(named, str) and (path / named).is_file():
         return path / named
-    bags = [entry for entry in sorted(path.iterdir()) if entry.suffix in _RECORDINGS]
+    bags = [entry for entry in sorted(path.iterdir()) if entry.suffix == _BAG]
     return bags[0] if bags else None
 
 

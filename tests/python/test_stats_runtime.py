@@ -32,8 +32,8 @@ def mission(rows, begin: float, end: float, summaries=()) -> Recording:
 
 
 # First mission, 10 s: coverage at 0.5 (false), 0.9 (true, a flop) and 10.0 (true, in the last of
-# the ten seconds) by comparison 0 and 3.2 (true) by 1; faces at 3.5. Second, 4.5 s, so five seconds:
-# coverage at 100.5, the first one there, so no flop; faces at 104.4.
+# the ten seconds) by comparison 0 and 3.2 (true) by 1; faces at 3.5. Second, 4.5 s, so five
+# seconds: coverage at 100.5, the first one there, so no flop; faces at 104.4.
 ONE = mission(
     [
         (0.5, 0, 0, 1, 2),

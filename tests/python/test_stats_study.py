@@ -149,9 +149,9 @@ def test_summaries_in_which_it_went_there_and_back():
 
 
 # At 10 s ~limit has flopped at 2 s, once: 8 * 2 = 16, ~idle at 9 s: 1 * 2 = 2. Five parameters:
-# ~idle has rank 1, ~limit 1 - 1/5 = 0.8. At 1.5 s nothing has flopped: rank 0, no score. Type II at
-# 10 s, window [-2, 10]: ~limit |0.13 - 0.058| + 0.003 + 0.038 + 0.008 + 0.003 = 0.124, / 5 / (0.13 -
-# 0.02) = 0.225; ~idle (1 + 1) / 2 / (3 - 1) = 0.5, one flop. So ~limit is first.
+# ~idle has rank 1, ~limit 1 - 1/5 = 0.8. At 1.5 s nothing has flopped: rank 0, no score. Type II
+# at 10 s, window [-2, 10]: ~limit |0.13 - 0.058| + 0.003 + 0.038 + 0.008 + 0.003 = 0.124,
+# / 5 / (0.13 - 0.02) = 0.225; ~idle (1 + 1) / 2 / (3 - 1) = 0.5, one flop. So ~limit is first.
 def test_table_6_16_by_hand():
     rows = [(8, 1, 0, 1, 2), (9, 1, 1, 3, 2), *MISSED]
     marks = [Mark(ns(1.5), "I"), Mark(ns(10), "I"), Mark(ns(10), "II")]

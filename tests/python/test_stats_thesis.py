@@ -134,7 +134,7 @@ def test_the_totals_of_table_6_15():
     ]
 
 
-# As printed, two digits each; the printed half digits (1.625, 2.625) are cut off or rounded to even.
+# As printed, two digits each; half digits (1.625) are printed cut off or rounded to even.
 @pytest.mark.parametrize(
     ("name", "printed"),
     [

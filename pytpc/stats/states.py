@@ -1,0 +1,237 @@
+"""What the robot did, from the topics that were recorded besides the reports.
+
+``robot_state`` reads numbers and texts over time from a ROS 1 bag or a folder of rosbag2: the
+fields that are asked for, else those of a pose and of a mission's state where topics look like it.
+A field is written ``TOPIC.FIELD.FIELD``; ``yaw`` of something with an orientation is its angle.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, is_dataclass
+from dataclasses import fields as fields_of
+from numbers import Real
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+from rosbags.highlevel import AnyReader
+from rosbags.typesys import Stores, get_typestore
+
+from pytpc.columns import Floats
+from pytpc.errors import InputError, TpcError
+
+_POSES = {
+    "geometry_msgs/msg/PoseStamped": "pose",
+    "geometry_msgs/msg/PoseWithCovarianceStamped": "pose.pose",
+    "nav_msgs/msg/Odometry": "pose.pose",
+    "geometry_msgs/msg/Pose": "",
+    "geometry_msgs/msg/TransformStamped": "transform",
+}
+# Whose pose it is, the best first; and what has a pose and is not the robot.
+_ROBOT = ("truth", "uav", "robot", "base", "odom", "pose")
+_OTHER = ("person", "goal", "target", "cmd", "command", "setpoint", "waypoint", "marker")
+_STATES = {"state", "mode", "status", "phase"}
+_NAMES = ("name", "mode", "phase", "status", "data", "state")
+_AXES = ("x", "y", "z")
+
+
+@dataclass(frozen=True, eq=False)
+class Series:
+    """A number over time: ``times`` and ``values`` float64[n], times in seconds of the mission."""
+
+    label: str
+    times: Floats
+    values: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Phases:
+    """A text over time: from ``times[i]`` on it is ``names[i]``."""
+
+    label: str
+    times: Floats
+    names: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class RobotState:
+    """All that is drawn of the robot; both empty where nothing is known."""
+
+    series: tuple[Series, ...] = ()
+    phases: tuple[Phases, ...] = ()
+
+
+class _Quaternion(Protocol):
+    x: float
+    y: float
+    z: float
+    w: float
+
+
+@dataclass(frozen=True, slots=True)
+class _Field:
+    topic: str
+    path: tuple[str, ...]
+    label: str
+
+
+def robot_state(
+    bag: Path,
+    start_ns: int,
+    wanted: Sequence[str] = (),
+    on_progress: Callable[[int, int], None] | None = None,
+) -> RobotState:
+    """Read what the robot did.
+
+    Args:
+        bag: a ROS 1 bag, or a folder of rosbag2.
+        start_ns: the begin of the mission, where the seconds count from.
+        wanted: fields; without any they are looked for.
+        on_progress: called with (messages read, messages in all).
+
+    Raises:
+        InputError: the bag cannot be read, or one of ``wanted`` is not in it; one line.
+    """
+    fallback = get_typestore(Stores.ROS2_HUMBLE)
+    try:
+        with AnyReader([bag], default_typestore=fallback) as reader:
+            fields = [_field(text) for text in wanted] or _guessed(reader)
+            return _read(reader, fields, start_ns, on_progress)
+    except TpcError as error:
+        raise InputError(error.message, bag) from error
+    except Exception as error:  # rosbags raises whatever its parsers do
+        said = " ".join(str(error).split()) or type(error).__name__
+        raise InputError(f"the robot's state cannot be read: {said}", bag) from error
+
+
+def _read(
+    reader: AnyReader,
+    fields: Sequence[_Field],
+    start_ns: int,
+    on_progress: Callable[[int, int], None] | None,
+) -> RobotState:
+    topics = {connection.topic for connection in reader.connections}
+    for field in fields:
+        if field.topic not in topics:
+            raise TpcError(f"no topic {field.topic}; there are {', '.join(sorted(topics))}")
+    wanted = {field.topic for field in fields}
+    connections = [c for c in reader.connections if c.topic in wanted]
+    total = sum(connection.msgcount for connection in connections)
+    times: dict[_Field, list[float]] = {field: [] for field in fields}
+    values: dict[_Field, list[float | str]] = {field: [] for field in fields}
+    for number, (connection, time_ns, raw) in enumerate(
+        reader.messages(connections) if connections else (), start=1
+    ):
+        message = reader.deserialize(raw, connection.msgtype)
+        at = (_stamp(message) or time_ns) - start_ns
+        for field in fields:
+            if field.topic == connection.topic:
+                times[field].append(at / 1e9)
+                values[field].append(_value(message, field))
+        if on_progress is not None and number % 512 == 0:
+            on_progress(number, total)
+    series, phases = [], []
+    for field in fields:
+        seconds = np.array(times[field])
+        order = np.argsort(seconds, kind="stable")
+        if any(isinstance(value, str) for value in values[field]):
+            phases.append(_phases(field.label, seconds[order], [values[field][i] for i in order]))
+        else:
+            numbers = np.array(values[field], dtype=np.float64)[order]
+            if field.path[-1:] == ("yaw",):
+                numbers = _unwrapped(numbers)
+            series.append(Series(field.label, seconds[order], numbers))
+    return RobotState(tuple(series), tuple(phases))
+
+
+def _field(text: str) -> _Field:
+    topic, dot, path = text.partition(".")
+    if not topic or not dot or not all(path.split(".")):
+        raise TpcError(f"{text!r} is not TOPIC.FIELD, as /odom.pose.pose.position.x")
+    topic = topic if topic.startswith("/") else f"/{topic}"
+    return _Field(topic, tuple(path.split(".")), f"{topic}.{path}")
+
+
+def _guessed(reader: AnyReader) -> list[_Field]:
+    """Position and yaw of what looks most like the robot, and what looks like a mission's state."""
+    poses = {c.topic: c.msgtype for c in reader.connections if c.msgtype in _POSES and c.msgcount}
+    fields = []
+    own = sorted((_likeness(topic), topic) for topic in poses if _likeness(topic) is not None)
+    if own:
+        topic = own[0][1]
+        fields = _pose_fields(topic, poses[topic])
+    for connection in sorted(reader.connections, key=lambda c: c.topic):
+        if connection.topic.rpartition("/")[2] in _STATES and connection.msgcount:
+            found = reader.typestore.fielddefs[connection.msgtype][1]
+            names = {name: kind for name, kind in found if kind[0].value == 1}
+            name = next((name for name in _NAMES if name in names), None)
+            if name is not None:
+                field = _Field(connection.topic, (name,), f"{connection.topic}.{name}")
+                fields += [field] if field not in fields else []
+    return fields
+
+
+def _pose_fields(topic: str, msgtype: str) -> list[_Field]:
+    above = tuple(part for part in _POSES[msgtype].split(".") if part)
+    position = "translation" if above == ("transform",) else "position"
+    fields = [_Field(topic, (*above, position, axis), axis) for axis in _AXES]
+    return [*fields, _Field(topic, (*above, "yaw"), "yaw")]
+
+
+def _likeness(topic: str) -> int | None:
+    """The smaller, the more it is called like the robot's pose; None where like another's."""
+    words = topic.lower()
+    if any(word in words for word in _OTHER):
+        return None
+    return -sum(1 << (len(_ROBOT) - n) for n, word in enumerate(_ROBOT) if word in words)
+
+
+def _stamp(message: object) -> int:
+    """The message's own time, 0 where it has none."""
+    stamp = getattr(getattr(message, "header", None), "stamp", None)
+    return 0 if stamp is None else int(stamp.sec) * 10**9 + int(stamp.nanosec)
+
+
+def _value(message: object, field: _Field) -> float | str:
+    found: Any = message
+    for name in field.path:
+        turned = getattr(found, "orientation", getattr(found, "rotation", None))
+        if name == "yaw" and not hasattr(found, "yaw") and turned is not None:
+            return _yaw(turned)
+        if isinstance(found, np.ndarray | list) and name.isdecimal() and int(name) < len(found):
+            found = found[int(name)]
+        elif hasattr(found, name):
+            found = getattr(found, name)
+        else:
+            raise TpcError(f"{field.topic} has no {name}; {_offers(found)}")
+    if isinstance(found, str):
+        return found
+    if isinstance(found, Real | np.bool_):
+        return float(found)
+    raise TpcError(f"{field.label} is neither a number nor a text; {_offers(found)}")
+
+
+def _offers(found: object) -> str:
+    names = [each.name for each in fields_of(found)] if is_dataclass(found) else []
+    return f"there are {', '.join(names)}" if names else "there is nothing below it"
+
+
+def _yaw(q: _Quaternion) -> float:
+    """The angle about z of a quaternion, in radians."""
+    return math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))
+
+
+def _unwrapped(angles: Floats) -> Floats:
+    """An angle that goes on where it would jump from pi to -pi."""
+    finite = np.isfinite(angles)
+    result = angles.copy()
+    result[finite] = np.unwrap(angles[finite])
+    return result
+
+
+def _phases(label: str, seconds: Floats, texts: Sequence[float | str]) -> Phases:
+    names = [str(text) for text in texts]
+    first = [n for n, name in enumerate(names) if n == 0 or name != names[n - 1]]
+    return Phases(label, seconds[first], tuple(names[n] for n in first))
