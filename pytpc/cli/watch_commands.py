@@ -20,7 +20,7 @@ from pytpc.cli.mark_commands import (
     marks_path,
     recorded,
 )
-from pytpc.cli.options import JSON, PATH, STATIC, TYPES, WINDOW, recording_of
+from pytpc.cli.options import JSON, PATH, STATIC, TYPES, WINDOW, check_reports, recording_of
 from pytpc.cli.sources import static_of
 from pytpc.errors import InputError, RunError
 from pytpc.marking.graph import GraphMarks
@@ -105,6 +105,7 @@ def _opened(recording: Path | None, observer: str, fresh: Watching) -> tuple[Mis
         master = os.environ.get("ROS_MASTER_URI") or MASTER
         return GraphMarks(master, observer, what="watching"), GraphFeed(master, fresh)
     found = recording_of(recording)
+    check_reports(found, fresh.static_info, recording)
     return recorded(found, recording), RecordedFeed(found, fresh)
 
 
@@ -119,6 +120,7 @@ def _once(
     """Listen for a while, or go to a place in the recording; then print what is known."""
     if recording is not None:
         found = recording_of(recording)
+        check_reports(found, fresh.static_info, recording)
         far = round(seconds * 1e9) if seconds is not None else found.end_ns - found.start_ns
         now_ns = min(found.end_ns, found.start_ns + far)
         feed: Feed = RecordedFeed(found, fresh)
@@ -135,7 +137,9 @@ def _once(
     status = watched.status()
     watched.close()
     if recording is None and not status.reports:
-        warn(status.fault or "no report came: is a node built with TPC running?")
+        if status.fault:
+            raise RunError(status.fault)
+        warn("no report came: is a node built with TPC running?")
     if as_json:
         document = _json_of(look, status, now_ns - start_ns if recording is not None else None)
         click.echo(json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False))

@@ -217,7 +217,8 @@ class GraphFeed:
 
     def fault(self) -> str:
         """What is wrong with the connection, and what was broken."""
-        words = [] if self._connected else ["no reports: the ROS master does not answer"]
+        gone = f"the ROS master at {self._master} does not answer"
+        words = [] if self._connected else [gone]
         words += [self._restarted] if self._restarted else []
         if self._reports.malformed:
             words.append(f"{self._reports.malformed:,} broken")

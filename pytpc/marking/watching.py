@@ -108,7 +108,7 @@ class Watching:
     ) -> None:
         """Nothing was seen yet."""
         self._engine = engine
-        self._static = static_info
+        self.static_info = static_info
         self._known = static_info.comparisons
         self._bin_ns = max(1, round(window_s * 1e9) // BINS)
         self._tracks: dict[str, _Track] = {}
@@ -187,7 +187,7 @@ class Watching:
 
     def snapshot(self) -> Watching:
         """A copy that goes its own way; what was found by the analysis is not copied."""
-        shared: Iterable[object] = (self._static, self._known, *self._known.values())
+        shared: Iterable[object] = (self.static_info, self._known, *self._known.values())
         return copy.deepcopy(self, {id(one): one for one in shared})
 
     def _note(self, time_ns: int, node: str) -> None:

@@ -100,7 +100,7 @@ def test_a_copy_goes_its_own_way():
     assert (one.reports, other.reports) == (2, 3)
     assert one.look(110 * S, 5).rows["I"] == ()
     assert len(other.look(110 * S, 5).rows["I"]) == 1
-    assert other._static is STATIC
+    assert other.static_info is STATIC
 
 
 # Ten evaluations in one summary, as far from 10 as 2 to 6, mean 4; values 4 to 10, spread 6.
