@@ -210,6 +210,8 @@ def _suspect(row: Row) -> dict[str, object]:
         "score": suspect.score,
         "score_type": suspect.type,
         "rank": suspect.rank,
+        "rank1": suspect.rank1,
+        "rank2": suspect.rank2,
         "cmp": None if last is None else _finite(last.cmp),
         "relation": found.relation,
         "thresh": None if last is None else _finite(last.thresh),

@@ -32,7 +32,7 @@ from pytpc.marking.publisher import own_address
 from pytpc.marking.session import Change, Session, View
 from pytpc.marking.terminal import Mission
 from pytpc.marking.watch_screen import LAYOUTS, Options, Panel, Status, watch_screen
-from pytpc.marking.watching import KeptRankings, Seen, Watching
+from pytpc.marking.watching import KeptRankings, Look, Seen, Watching
 from pytpc.recorder import BatchCounter, LossCounter
 from pytpc.relay import ROSOUT, TOPIC, line_of
 from pytpc.summaries import Summary
@@ -46,6 +46,8 @@ _POLL_S = 0.2
 _HOLD_S = 0.5
 _FORGET_S = 5.0
 _RATE_S = 5.0
+# Ranking a hundred comparisons takes a few hundredths of a second.
+_RANK_S = 0.4
 _SNAPSHOT_NS = 30 * 10**9
 # What comes from several nodes is out of order by less than this; more is a clock put back.
 _BACK_NS = 5 * 10**9
@@ -342,6 +344,7 @@ class WatchedMission:
         self._options = options
         self._believe = believe
         self._rates: deque[tuple[float, int]] = deque()
+        self._look: tuple[float, Look, tuple[object, ...]] | None = None
         self.kept = KeptRankings(options.top)
         self.watching, _ = feed.take(None)
 
@@ -351,6 +354,7 @@ class WatchedMission:
 
     def press(self, key: str) -> bool:
         """``v`` changes the tables, ``m`` looks back at the marks, the rest is the mission's."""
+        self._look = None
         options = self._options
         if key == "v":
             place = LAYOUTS.index(options.layout) + 1
@@ -413,8 +417,20 @@ class WatchedMission:
     def panel(self, now_ns: int, *, utf8: bool) -> Panel:
         """What is to be shown of an instant."""
         options = self._options._replace(utf8=utf8)
+        return Panel(self._look_at(now_ns), self.kept, self.status(), options)
+
+    def _look_at(self, now_ns: int) -> Look:
+        """The look of now: worked out where anything is new, and some time has gone since."""
+        options = self._options
+        of = (now_ns, self.watching, self.watching.reports, options.top, options.layout)
+        steady_s = time.monotonic()
+        if self._look is not None:
+            since, look, before = self._look
+            if of == before or steady_s < since + _RANK_S:
+                return look
         look = self.watching.look(now_ns, options.top, options.layout)
-        return Panel(look, self.kept, self.status(), options)
+        self._look = steady_s, look, of
+        return look
 
     def paint(
         self, session: Session, view: View, width: int, height: int, *, utf8: bool

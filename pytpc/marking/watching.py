@@ -168,8 +168,8 @@ class Watching:
 
     def look(self, now_ns: int, top: int, kinds: Sequence[MarkType | None] = KINDS) -> Look:
         """What is to be shown now: the first ``top`` suspects of each of ``kinds``."""
-        rankings = {kind: self._engine.ranking_at(Mark(now_ns, kind)) for kind in kinds}
-        return self.look_of(rankings, now_ns, top)
+        found = self._engine.rankings_at(now_ns, [Mark(now_ns, kind) for kind in kinds])
+        return self.look_of(dict(zip(kinds, found, strict=True)), now_ns, top)
 
     def look_of(
         self, rankings: Mapping[MarkType | None, MarkRanking], now_ns: int, top: int
