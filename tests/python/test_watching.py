@@ -10,8 +10,9 @@ from rich.cells import cell_len
 from rich.text import Text
 
 from pytpc.ingest.recording import Recording
-from pytpc.marking.live_mission import RecordedFeed, Reports
+from pytpc.marking.live_mission import RecordedFeed
 from pytpc.marking.publisher import encode_string
+from pytpc.marking.reports import Reports
 from pytpc.marking.session import Change, Session, View
 from pytpc.marking.watch_screen import LAYOUTS, Options, Panel, Status, watch_screen
 from pytpc.marking.watching import BINS, KeptRankings, Look, Seen, Watching
