@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar
@@ -19,6 +20,22 @@ from pytpc.words import plain
 
 PATH = click.Path(path_type=Path)
 Command = TypeVar("Command", bound=Callable[..., object])
+
+
+class Seconds(click.FloatRange):
+    """A number of seconds; unlike a plain range of click's it does not take "nan"."""
+
+    name = "seconds"
+
+    def convert(
+        self, value: float, param: click.Parameter | None, ctx: click.Context | None
+    ) -> float:
+        """The number, or a usage error."""
+        seconds = float(super().convert(value, param, ctx))
+        if math.isnan(seconds):
+            self.fail(f"{value!r} is not a number.", param, ctx)
+        return seconds
+
 
 STATIC = click.option(
     "--static",
@@ -40,7 +57,7 @@ JSON = click.option("--json", "as_json", is_flag=True, help="Print JSON, for pro
 WINDOW = click.option(
     "--window",
     "window_s",
-    type=click.FloatRange(min=0.0, min_open=True, max=86400.0),
+    type=Seconds(min=0.0, min_open=True, max=86400.0),
     default=WINDOW_S,
     show_default=True,
     metavar="SECONDS",

@@ -101,6 +101,17 @@ def test_types_and_their_older_name(files):
     assert run("rank", bag, "--static", static, "--types", "maybe").exit_code == 2
 
 
+# faces: by type I alone. coverage has no score by it.
+def test_whose_score_it_is_where_types_are_mixed(files):
+    bag, static = files
+    believed = run("rank", bag, "--static", static).stdout
+    assert "By type" not in believed
+    doubted = run("rank", bag, "--static", static, "--types", "doubt").stdout.splitlines()
+    assert "By type" in doubted[1]
+    assert doubted[2].split()[1:8] == ["faces", "3", "raise", "to", "5", "I", "2"]
+    assert doubted[4].split()[1:7] == ["coverage", "0.6", "lower", "to", "0.499", "II"]
+
+
 # With 0.5 s before the mark at 20 s, faces has only |4 - 3| / (4 - 1) and no flop: 0.333.
 def test_another_window(files):
     bag, static = files
@@ -124,6 +135,15 @@ def test_a_time_that_nobody_marked(files, quiet):
     assert (
         "not enough evidence: the last report up to the mark is 80.1 s before it" in outside.stdout
     )
+
+
+@pytest.mark.parametrize("option", ["--at", "--window"])
+@pytest.mark.parametrize("value", ["nan", "inf", "-1", "1e300", "x"])
+def test_times_that_are_none(files, option, value):
+    bag, static = files
+    result = run("rank", bag, "--static", static, option, value)
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert option in result.stderr
 
 
 def test_several_missions(files, quiet):
@@ -273,6 +293,7 @@ def test_what_cannot_be_added_or_removed(files):
         (["--remove", "3"], "there are 2 marks"),
         (["--add", "20", "I"], "the mission, which takes 19.9 s"),
         (["--add", "-1", "I"], "outside of the mission"),
+        (["--add", "nan", "I"], "outside of the mission"),
         (["--add", "1", "III"], "'III' is not one of"),
         (["--add", "1", "I", "--remove", "1"], "one of --add and --remove"),
         (["--note", "x"], "about a mark to --add"),

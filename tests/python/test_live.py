@@ -17,7 +17,7 @@ from pytpc.marks import Mark
 from pytpc.scoring.bounds import type2_bounds
 from pytpc.scoring.live import LiveRanking, LiveScores, TooOldError
 from pytpc.scoring.ranking import rank_marks
-from pytpc.scoring.scores import NONE, type1, type2
+from pytpc.scoring.scores import NONE, Before, type1, type2
 from pytpc.summaries import Summary, SummaryBuilder
 
 NAN, INF = math.nan, math.inf
@@ -103,6 +103,16 @@ def test_live_is_offline_after_much_was_forgotten(seed, window):
     # Of 20 s six streams keep the window and 0.5 s, and a quarter more until they look again.
     kept = sum(len(s.times) for streams in live._streams.values() for s in streams.values())
     assert kept <= (window + 0.5) * 1.25 * 100 + 6 * 20
+
+
+# Sums depend on the order of what is added, in their last bits.
+def test_equal_times_of_several_nodes_are_in_the_order_of_arrival():
+    values = [("/a", 1.0), ("/b", 2.0), ("/a", 3.0), ("/b", 4.0)]
+    rows = [(ns(1), key(0), node, True, value, 0.0) for node, value in values]
+    live = LiveScores(KEYS, DISTANCE, 3.0)
+    add(live, rows)
+    assert live._events(ns(1), Before.nothing(3)).equals(table(rows))
+    assert live.last(key(0), ns(1)).cmp == 4.0
 
 
 # A spread of 1e16 in the first second, then small numbers: the extremes are remembered when the

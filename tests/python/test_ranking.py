@@ -123,33 +123,34 @@ def test_nothing_to_rank():
     assert [r.suspects for r in rank_marks(mission, static_info())] == [(), ()]
 
 
+SUMMARY = Summary(
+    key=key(0),
+    node="/node",
+    begin_ns=ns(10),
+    end_ns=ns(12),
+    count=3,
+    flops=0,
+    far=3,
+    odd=0,
+    result=True,
+    res=True,
+    cmp=7.0,
+    thresh=4.0,
+    diff_min=-4.0,
+    diff_max=3.0,
+    diff_mean=1 / 3,
+    abs_mean=3.0,
+    low=0.0,
+    high=8.0,
+)
+
+
 # Under `edges` the log has the first evaluation of comparison 0 alone, and a summary of 2 s whose
 # last evaluation was 7 against 4. Its window holds differences 4, 2 and 3 of a spread of 8:
 # (4 + 2 + 3) / 3 / 8. At 10.5 s all that is known to be before the mark is the first evaluation.
 def test_type2_from_summaries():
     builder = SummaryBuilder()
-    builder.add(
-        Summary(
-            key=key(0),
-            node="/node",
-            begin_ns=ns(10),
-            end_ns=ns(12),
-            count=3,
-            flops=0,
-            far=3,
-            odd=0,
-            result=True,
-            res=True,
-            cmp=7.0,
-            thresh=4.0,
-            diff_min=-4.0,
-            diff_max=3.0,
-            diff_mean=1 / 3,
-            abs_mean=3.0,
-            low=0.0,
-            high=8.0,
-        )
-    )
+    builder.add(SUMMARY)
     marks = [Mark(ns(10.5), "II"), Mark(ns(13), "II")]
     mission = replace(recording([(10, 0, 0, 0, 4)], marks), summaries=builder.build())
     early, late = rank_marks(mission, STATIC)
@@ -175,3 +176,15 @@ def test_wrong_arguments():
         rank_marks(mission, STATIC, types="maybe")
     with pytest.raises(ValueError, match="window_s is negative"):
         rank_marks(mission, STATIC, window_s=-1)
+
+
+# The last report is at 10 s, but a summary goes on to 30 s, which at 40 s was 10 s ago, at 43 s 13.
+def test_a_summary_is_a_report_up_to_its_end():
+    builder = SummaryBuilder()
+    builder.add(replace(SUMMARY, end_ns=ns(30)))
+    marks = [Mark(ns(20), "II"), Mark(ns(40), "II"), Mark(ns(43), "II")]
+    rows = [(10, 0, 0, 0, 4), (9, 2, 0, 0, 1)]
+    mission = replace(recording(rows, marks), summaries=builder.build())
+    during, after, late = rank_marks(mission, STATIC)
+    assert (during.reason, after.reason) == ("", "")
+    assert late.reason == "the last report up to the mark is 13 s before it"
