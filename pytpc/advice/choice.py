@@ -14,6 +14,7 @@ from pytpc.words import Number, show
 WHOLE = "whole number"
 _FIRST_DIGITS = 3
 _LAST_DIGITS = 6
+_ALL_DIGITS = 17
 _NOTHING = 1e-300
 
 
@@ -180,15 +181,18 @@ def readable(interval: Interval, first: float, current: float) -> float:
         around = Decimal(10) ** (math.floor(math.log10(size)) - _FIRST_DIGITS + 1)
         return _inside(interval, [0.0, float(around if up else -around)], first)
     found = []
-    for digits in range(_FIRST_DIGITS, _LAST_DIGITS + 1):
+    for digits in range(_FIRST_DIGITS, _ALL_DIGITS + 1):
         context.prec = digits
         rounded = context.create_decimal(repr(first))
         beyond = context.next_plus(rounded) if up else context.next_minus(rounded)
-        value = _inside(interval, [float(rounded), float(beyond)], first)
+        value = _inside(interval, [float(rounded), float(beyond)], math.nan)
         if abs(value - first) <= way / 2:
             return value
-        found.append(value)
-    return found[0] if way <= abs(first) * 1e-9 else found[-1]
+        if not math.isnan(value):
+            found.append(value)
+        if digits >= _LAST_DIGITS and found:
+            return found[0] if way <= abs(first) * 1e-9 else found[-1]
+    return first
 
 
 def _inside(interval: Interval, values: list[float], otherwise: float) -> float:

@@ -76,15 +76,14 @@ def declared_for(
     """
     same = [one for one in declared if same_parameter(one.parameter, suspect.parameter)]
     said = [one for one in same if one.parameter.startswith(f"{suspect.last.node}/")]
-    if not said and source is not None:
-        package = _package_of(source)
-        same = [
-            one
-            for one in same
-            if not one.place.startswith("/") or package in Path(one.place).parents
-        ]
-    meanings = {replace(one, parameter="", description="", place="") for one in said or same}
-    return (said or same)[0] if len(meanings) == 1 else None
+    if not said:
+        # Full names are those of messages: other nodes have parameters of their own.
+        said = [one for one in same if not one.parameter.startswith("/")]
+        package = None if source is None else _package_of(source)
+        if package is not None:
+            said = [one for one in said if package in Path(one.place).parents]
+    meanings = {replace(one, parameter="", description="", place="") for one in said}
+    return said[0] if len(meanings) == 1 else None
 
 
 def _files(path: Path) -> list[Path]:

@@ -155,8 +155,9 @@ def _case(
         raise NoneBecauseError("the threshold is not a finite number")
     how = unit_of(comparison, unit, evidence.threshold)
     if how.current is None:
-        text = comparison.transform.text if comparison.transform is not None else "there is"
-        raise NoneBecauseError(f"no value of the parameter gives the threshold {text}")
+        text = comparison.transform.text if comparison.transform is not None else ""
+        what = text or show(evidence.threshold)
+        raise NoneBecauseError(f"no value of the parameter gives the threshold {what}")
     seen = evidence.seen if how.tree == "x" else np.array([how.current])
     whole = is_whole(comparison, unit, seen)
     if declared is not None and declared.type in {"int", "double"}:

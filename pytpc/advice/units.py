@@ -78,10 +78,12 @@ def unit_of(comparison: Comparison, unit: LinkUnit | None, threshold: float) -> 
     Raises:
         NoUnitError: the file does not say how.
     """
-    tree = kept_as(tree_of(comparison), read_type(comparison, unit))
+    tree = tree_of(comparison)
     default = comparison.default
     anchor = None if default is None or isinstance(default, str) else float(default)
-    return ParameterUnit(tree, threshold, anchor)
+    kept = ParameterUnit(kept_as(tree, read_type(comparison, unit)), threshold, anchor)
+    # A float may be read and the sum be done in doubles, or the other way round.
+    return kept if kept.current is not None else ParameterUnit(tree, threshold, anchor)
 
 
 def tree_of(comparison: Comparison) -> Tree:

@@ -1,0 +1,152 @@
+"""The command suggest: what it prints, its JSON, and one line for each error."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from click.testing import CliRunner
+from mission_samples import BagFile, comparison, line, link_unit
+
+from pytpc.cli.main import main
+from pytpc.static_info import ParameterRead, StaticInfo
+
+AWAY = "marks of type II; away from marks it turns"
+HOSTILE = "if (value > \x1b[31mcover_) {"
+
+
+@pytest.fixture
+def files(tmp_path):
+    """A bag with marks, its static information, and sources that declare a range of cover.
+
+    coverage > cover of 0.6 is False with 0.3 up to 10 s and with 0.5 up to 20 s; the bag begins at
+    1 s, the marks of type II are at 9 and 19 s of the mission.
+    """
+    root = tmp_path / "robot"
+    (root / "cfg").mkdir(parents=True)
+    (root / "package.xml").write_text("<package/>")
+    (root / "cfg" / "Robot.cfg").write_text(
+        "gen = ParameterGenerator()\ngen.add('cover', double_t, 0, 'share', 0.6, 0.0, 1.0)\n"
+        "add_more(gen)\n"
+    )
+    bag = tmp_path / "m.bag"
+    with BagFile(bag) as writer:
+        for step in range(190):
+            t = 1 + step / 10
+            cmp = 0.3 if t < 10 else 0.5
+            writer.log(t, "/uav", line(1, 0, cmp if step % 2 else cmp - 0.1, 0.6))
+        writer.mark(10, "/mark_no_action", 9.5)
+        writer.mark(19.9, "/mark_no_action", 19.5)
+    static = tmp_path / "static.json"
+    read = ParameterRead("~cover", "param", "double", 0.6, "src/node.cpp", 3, 1, "")
+    cover = comparison(1, "~cover", source_code=HOSTILE)
+    StaticInfo.of([link_unit([cover], [read], str(root))]).save(static)
+    return bag, static
+
+
+def run(*arguments):
+    return CliRunner().invoke(main, [str(argument) for argument in arguments])
+
+
+# At 9.5 s the largest value is 0.3, at 19.5 s 0.5: 0.299 does at both, and turns 0.3 and above: of
+# 190 values those of odd steps (0.3 and 0.5: 95) and the 0.4 of even steps from 10 s on: steps 90
+# to 189, half of which are even, 50. All are near: [-2.5, 9.5] and [7.5, 19.5] reach over the log,
+# which ends at 19.9 s, but for steps 186 to 189: 19.6 to 19.9 s, all of which turn.
+def test_what_is_printed(files):
+    bag, static = files
+    result = run("suggest", bag, "--static", static)
+    assert result.exit_code == 0, result.output
+    lines = [text.strip() for text in result.stdout.splitlines() if text.strip()]
+    assert lines == [
+        "2 marks at 8.5 and 18.5 s: type II, does not do what it should",
+        "not enough evidence: only ~cover had been compared up to the mark",
+        "1  lower ~cover from 0.6 to 0.299 (below 0.3)",
+        "src/node.cpp:11  if (value > \N{REPLACEMENT CHARACTER}[31mcover_) {",
+        f"0.299 answers 2 of 2 {AWAY} 4 of 190 decisions (2.1 %)",
+        f"declared at {bag.parent}/robot/cfg/Robot.cfg:2",
+    ]
+    assert "Robot.cfg:3: add_more(gen): the function is not followed" in result.stderr
+    assert "\x1b" not in result.output
+
+
+def test_one_parameter(files):
+    bag, static = files
+    result = run("suggest", bag, "cover", "--static", static, "--json")
+    found = json.loads(result.stdout)
+    assert found["mission"] == "m"
+    (group,) = found["groups"]
+    assert [mark["seconds"] for mark in group["marks"]] == [8.5, 18.5]
+    (suspect,) = group["suspects"]
+    assert suspect["parameter"] == "~cover"
+    assert suspect["suggestion"]["value"] == 0.299
+    assert suspect["declared"]["high"] == 1.0
+    assert suspect["suggestion"]["limited_by"] == ""
+
+
+# 0.45 turns the 0.5 of odd steps from 10 s on, 50 of which 2 are after 19.5 s (187 and 189).
+def test_a_value(files):
+    bag, static = files
+    result = run("suggest", bag, "cover", "--static", static, "--value", "0.45")
+    lines = result.stdout.splitlines()
+    assert lines[:2] == [
+        "~cover = 0.45:",
+        f"  0.45 answers 1 of 2 {AWAY} 2 of 190 decisions (1.1 %)",
+    ]
+    assert lines[2].startswith("  note: the robot would have gone on differently")
+    found = json.loads(
+        run("suggest", bag, "cover", "--static", static, "--value", "0.45", "--json").stdout
+    )
+    (answer,) = found["what_if"]
+    assert (answer["type"], answer["answered"], answer["flipped_near"]) == ("II", 1, 48)
+    ignored = run("suggest", bag, "cover", "--static", static, "--value=-1", "--types", "ignore")
+    assert "-1 answers 2 of 2 marks; away" in ignored.stdout
+
+
+def test_types_and_top(files):
+    bag, static = files
+    for types in ("believe", "doubt", "ignore"):
+        result = run("suggest", bag, "--static", static, "--types", types, "--top", 1)
+        assert result.exit_code == 0
+        assert "~cover" in result.stdout
+    assert "2 marks at 8.5 and 18.5 s: no type" in result.stdout
+
+
+def test_without_marks(tmp_path, files):
+    _, static = files
+    bag = tmp_path / "unmarked.bag"
+    with BagFile(bag) as writer:
+        for t in range(1, 9):
+            writer.log(t, "/uav", line(1, 0, 0.3, 0.6))
+    result = run("suggest", bag, "--static", static)
+    assert result.exit_code == 1
+    assert "no marks: mark it with `pytpc mark`, or ask for a --value" in result.stderr
+    value = run("suggest", bag, "cover", "--static", static, "--value", "0.1")
+    assert (
+        "0.1 is replayed without a mark; away from marks it turns 8 of 8 decisions" in value.stdout
+    )
+
+
+@pytest.mark.parametrize(
+    ("arguments", "status", "says"),
+    [
+        (["speed"], 1, "no comparison with a parameter speed is known"),
+        (["speed", "--value", "1"], 1, "no comparison with a parameter speed is known"),
+        (["--value", "1"], 2, "--value needs a PARAMETER"),
+        (["cover", "--value", "much"], 2, "'much' is no number, true or false"),
+        (["cover", "--value", "inf"], 2, "'inf' is not finite"),
+        (["cover", "--value", "nan"], 2, "'nan' is not finite"),
+    ],
+)
+def test_errors(files, arguments, status, says):
+    bag, static = files
+    result = run("suggest", bag, *arguments, "--static", static)
+    assert result.exit_code == status
+    assert says in result.stderr
+    assert "Traceback" not in result.output
+
+
+def test_values_as_they_are_typed(files):
+    bag, static = files
+    for text, shown in (("true", "true"), ("FALSE", "false"), ("3", "3"), ("1e-3", "0.001")):
+        result = run("suggest", bag, "cover", "--static", static, "--value", text)
+        assert result.stdout.splitlines()[0] == f"~cover = {shown}:"
