@@ -33,7 +33,7 @@ from pytpc.marks import marks_beside, topic_of_marks
 from pytpc.paths import project_root
 from pytpc.values.origins import ORIGINS_FILE, START_FILE
 from pytpc.values.recording import save_origins, try_trace
-from pytpc.values.trace import Trace
+from pytpc.values.trace import Trace, name_on_server
 
 BAG_FILE = "mission.bag"
 PARAMS_FILE = "params.yaml"
@@ -285,14 +285,13 @@ class _Watch:
 
     def wait_for_parameters(self, trace: Trace | None) -> None:
         """Until roslaunch has set what the launch file sets, which it does before any node runs."""
-        wanted = set(trace.settings if trace is not None else ())
-        wanted = {name for name in wanted if "$(" not in name}
+        wanted = set() if trace is None else trace.by_roslaunch
         limit = time.monotonic() + _SET_PATIENCE_S
         while time.monotonic() < limit:
             self.look()
             names = self._graph.call("getParamNames")
             known = set(names) if isinstance(names, list) else set()
-            if not {n for n in wanted if n not in known and not _below(n, known)}:
+            if not {n for n in wanted if not _stands(n, known)}:
                 return
             time.sleep(_POLL_S)
 
@@ -318,9 +317,10 @@ class _Watch:
         return "done"
 
 
-def _below(name: str, known: set[str]) -> bool:
-    """Whether there are parameters below a name: a ``<param type="yaml">`` may be a map."""
-    return any(other.startswith(f"{name}/") for other in known)
+def _stands(name: str, known: set[str]) -> bool:
+    """Whether a parameter is set, or one below it: a ``<param type="yaml">`` may be a map."""
+    full = name_on_server(name, known)
+    return full in known or any(other.startswith(f"{full}/") for other in known)
 
 
 def dump_params(env: Mapping[str, str], path: Path) -> None:

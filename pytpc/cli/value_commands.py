@@ -34,6 +34,7 @@ from pytpc.values.target import (
 from pytpc.values.undo import entry_of, set_live, take_back
 from pytpc.words import plain
 
+_LONGEST = 60
 _PATH = click.Path(path_type=Path)
 _ARGUMENT = re.compile(r"[A-Za-z_]\w*:=.*", re.DOTALL)
 _WORKSPACE = click.option(
@@ -213,10 +214,12 @@ def _set_live(journal: Journal, parameter: str, value: str, options: _Options) -
     name = _full_name(robot, parameter)
     change = robot.plan(name, value, force=options.force)
     if options.dry_run:
-        holds, entry = change.new, None
+        entry, holds, taken = None, change.new, False
     else:
-        holds, entry = set_live(robot, change, journal)
-    told = _told(change, holds)
+        entry, holds, taken = set_live(robot, change, journal)
+    told = _told(change, holds, taken)
+    if options.dry_run and change.service:
+        told = "the node would take it at once (dynamic_reconfigure)"
     if options.as_json:
         return {
             "parameter": name,
@@ -226,7 +229,7 @@ def _set_live(journal: Journal, parameter: str, value: str, options: _Options) -
             "holds": to_json(holds),
             "service": change.service or None,
             "nodes": list(change.nodes),
-            "taken_at_once": bool(change.service),
+            "taken_at_once": taken,
             "note": told,
             "written": entry is not None,
             "undo": None if entry is None else entry.number,
@@ -250,9 +253,9 @@ def _full_name(robot: Robot, parameter: str) -> str:
     return meant[0]
 
 
-def _told(change: LiveChange, holds: object) -> str:
+def _told(change: LiveChange, holds: object, taken: bool) -> str:
     """Whether the node has the new value, too."""
-    if change.service:
+    if taken:
         if repr(holds) != repr(change.new):
             return f"the node has made {shown(holds)} of it (dynamic_reconfigure): its own limits"
         return "the node has taken it (dynamic_reconfigure); it goes on without a restart"
@@ -317,7 +320,7 @@ def _show_diff(change: Change) -> None:
 
 
 def _show_origin(origin: Origin) -> None:
-    click.echo(plain(f"{origin.name} = {shown(origin.value)}: {origin.words()}"))
+    click.echo(plain(f"{origin.name} = {_short(shown(origin.value))}: {origin.words()}"))
     lines = [origin.text] if origin.text else []
     lines += [f"through {place}" for place in origin.via]
     lines += [f"overrides {place}" for place in origin.overridden]
@@ -333,9 +336,14 @@ def _origins_table(origins: Sequence[Origin]) -> Table:
         table.add_column(heading, overflow="fold")
     for origin in origins:
         where = origin.words() if origin.path is not None else ""
-        cells = (origin.name, shown(origin.value), origin.kind, where, origin.note)
+        cells = (origin.name, _short(shown(origin.value)), origin.kind, where, origin.note)
         table.add_row(*(Text(plain(cell)) for cell in cells))
     return table
+
+
+def _short(text: str) -> str:
+    """A robot's description is a parameter, too, of half a megabyte."""
+    return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}..."
 
 
 COMMANDS: list[click.Command] = [origin_command, apply_command]

@@ -7,4 +7,4 @@ from pathlib import Path
 
 def launch_tracer_path() -> Path:
     """The program that reads launch files with roslaunch's own loader."""
-    return Path(__file__).with_name("launch_tracer.py")
+    return Path(__file__).with_name("tracer") / "launch_tracer.py"

@@ -106,40 +106,50 @@ class Robot:
             self.master, name, old, new, service if service in services else "", below
         )
 
-    def put(self, change: LiveChange) -> object:
-        """Set the new value; returns the one that holds then.
+    def put(self, change: LiveChange) -> tuple[object, bool]:
+        """Set the new value.
 
         A node with dynamic_reconfigure is asked first, for it writes its own values to the server.
+
+        Returns:
+            The value that holds then, and whether the node has taken it over by itself.
 
         Raises:
             RunError: the master or the node does not answer, or refuses.
         """
         return self._put(change.name, change.new, change.service)
 
-    def take_back(self, name: str, old: object, service: str) -> object:
+    def take_back(self, name: str, old: object, service: str) -> None:
         """Set what stood there before; where nothing did, the parameter is deleted.
 
         Raises:
             RunError: the master or the node does not answer, or refuses.
         """
         if old is not None:
-            return self._put(name, old, service)
-        if self.value(name) is not None:
+            self._put(name, old, service)
+        elif self.value(name) is not None:
             self._call("deleteParam", name)
-        return None
 
-    def _put(self, name: str, value: object, service: str) -> object:
+    def _put(self, name: str, value: object, service: str) -> tuple[object, bool]:
         if service:
             try:
                 uri = call(self.master, "lookupService", _CALLER, service)
+            except xmlrpc.client.Fault:
+                # The node has ended meanwhile: the next one reads the server.
+                service = ""
+            except _CALL_ERRORS as error:
+                raise RunError(f"the ROS master at {self.master} does not answer") from error
+        if service:
+            try:
                 taken = _reconfigure(str(uri), service, name.rpartition("/")[2], value)
             except (*_CALL_ERRORS, struct.error) as error:
                 raise RunError(f"{service} does not take it: {error}") from error
-            if taken is not None:
-                return taken
-            # The node has a set_parameters, and this name is not among what it sets.
+            # A name that is not among what the node sets may be in its answer all the same, but
+            # before it answers it has written to the server all that it does set.
+            if taken is not None and self.value(name) == taken:
+                return taken, True
         self._call("setParam", name, value)
-        return self.value(name)
+        return self.value(name), False
 
     def _graph(self) -> tuple[set[str], set[str]]:
         state = self._call("getSystemState")

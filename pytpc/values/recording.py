@@ -131,14 +131,20 @@ def save_origins(
         reason: why there is no trace, empty where there is one.
         env: in which the launch file was read.
 
+    A dump that cannot be read is the ``reason`` why no origin is known: the mission was flown.
+
     Raises:
-        TpcError: a dump cannot be read, or the file cannot be written.
+        TpcError: the file cannot be written.
     """
     if not params.is_file():
         return
     params_start = folder / START_FILE
-    at_start = read_parameters(params_start) if params_start.is_file() else None
-    origins = origins_of(trace, read_parameters(params), at_start)
+    origins: dict[str, Origin] = {}
+    try:
+        at_start = read_parameters(params_start) if params_start.is_file() else None
+        origins = origins_of(trace, read_parameters(params), at_start)
+    except InputError as error:
+        reason = str(error)
     document: dict[str, object] = {
         "launch": None if trace is None else str(trace.launch),
         "args": {} if trace is None else dict(sorted(trace.args.items())),

@@ -13,6 +13,7 @@ from pytpc.values.installed import is_installed, of_the_system, source_of
 from pytpc.values.launch_edit import LaunchEdit, add_param, edit_argument, edit_inline, edit_param
 from pytpc.values.launch_xml import read_tags
 from pytpc.values.new_value import Refused, guessed, read_value
+from pytpc.values.origin_places import IN_ARGS
 from pytpc.values.origins import ORIGINS_FILE, Origin, origins_file, read_document, read_origins
 from pytpc.values.recording import origins_of
 from pytpc.values.scalars import type_of
@@ -159,6 +160,10 @@ def plan_origin(origin: Origin, given: str, *, force: bool = False) -> Change:
         InputError: no file set it, the file is not here any more, or the change is refused.
     """
     path = origin.path
+    if origin.note.startswith(IN_ARGS):
+        raise InputError(
+            f"{origin.name} stands {origin.note}; change it there", path, origin.lineno
+        )
     if path is None or origin.kind not in ("yaml", "launch"):
         raise InputError(_why_not(origin))
     file = origin.source or path

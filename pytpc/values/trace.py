@@ -1,7 +1,7 @@
 """What a launch file sets, and which line of which file sets it.
 
-``trace_launch`` runs ``pytpc.values.launch_tracer`` with roslaunch's own Python; this module turns
-what that says into places.
+``trace_launch`` runs ``pytpc.values.tracer.launch_tracer`` with roslaunch's own Python, and
+``pytpc.values.origin_places`` turns what that says into places.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import json
 import re
 import shutil
 import subprocess
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -20,7 +20,8 @@ from pytpc.values import launch_tracer_path
 
 _PATIENCE_S = 60.0
 _SHEBANG_BYTES = 256
-_ANON = re.compile(r"\$\(anon ([^)]*)\)")
+# What launch_tracer puts for the random part of $(anon x).
+_ANONYMOUS = "__tpc_anon"
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +50,15 @@ class Trace:
     settings: Mapping[str, Sequence[Mapping[str, Any]]]
     nodes: Sequence[LaunchNode]
     files: Mapping[str, str]
+
+    @property
+    def by_roslaunch(self) -> set[str]:
+        """What roslaunch sets before any node runs; nodes set what is in their args themselves."""
+        return {
+            name
+            for name, settings in self.settings.items()
+            if any(setting.get("from") != "args" for setting in settings)
+        }
 
 
 def roslaunch_python(env: Mapping[str, str]) -> str:
@@ -126,18 +136,13 @@ def _trace(launch: Path, args: Mapping[str, str], answer: Mapping[str, Any]) -> 
     return Trace(launch, dict(args), answer["parameters"], nodes, answer["files"])
 
 
-def name_on_server(name: str, on_server: Mapping[str, object]) -> str:
+def name_on_server(name: str, on_server: Collection[str]) -> str:
     """The name with which a parameter of the launch file stands on the server.
 
     They differ where ``$(anon x)`` is in it, for which roslaunch puts a random name.
     """
-    if "$(anon " not in name:
+    if _ANONYMOUS not in name:
         return name
-    parts = _ANON.split(name)
-    # Odd parts are the arguments of $(anon ...).
-    pattern = "".join(
-        f"{re.escape(part)}_[^/]+" if index % 2 else re.escape(part)
-        for index, part in enumerate(parts)
-    )
+    pattern = "_[^/]+".join(re.escape(part) for part in name.split(_ANONYMOUS))
     matching = [known for known in on_server if re.fullmatch(pattern, known)]
     return matching[0] if len(matching) == 1 else name

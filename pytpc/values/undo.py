@@ -12,8 +12,11 @@ from pytpc.values.live import LiveChange, Robot
 from pytpc.values.origins import from_json, to_json
 
 
-def set_live(robot: Robot, change: LiveChange, journal: Journal) -> tuple[object, Entry]:
-    """Set a value on the running robot, and note it; returns what holds then, too.
+def set_live(robot: Robot, change: LiveChange, journal: Journal) -> tuple[Entry, object, bool]:
+    """Set a value on the running robot, and note it.
+
+    Returns:
+        The note; the value that holds then; whether the node has taken it over by itself.
 
     Raises:
         RunError: the robot does not take it.
@@ -28,10 +31,11 @@ def set_live(robot: Robot, change: LiveChange, journal: Journal) -> tuple[object
     }
     entry = journal.add(change.name, (shown(change.old), shown(change.new)), live=live)
     try:
-        return robot.put(change), entry
+        holds, taken = robot.put(change)
     except BaseException:
         journal.remove(entry)
         raise
+    return entry, holds, taken
 
 
 def entry_of(journal: Journal, what: str) -> Entry:

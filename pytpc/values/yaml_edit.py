@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from pytpc.values.new_value import Refused, degrees_text, read_value, yaml_text
+from pytpc.values.new_value import Refused, degrees_text, guessed, read_value, yaml_text
 from pytpc.values.scalars import number_text, type_of
 from pytpc.values.yaml_tree import Setting, YamlNode, read_yaml, settings, value_of
 
@@ -72,7 +72,9 @@ def edit_yaml(text: str, keys: Keys, given: str, *, force: bool = False) -> Edit
     if isinstance(old, list):
         pieces, new = _list_pieces(node, given, force)
     else:
-        new = read_value(given, type_of(old), force=force)
+        # Of what roslaunch puts in the type is not known.
+        worked_out = "$(" in node.text
+        new = guessed(given) if worked_out else read_value(given, type_of(old), force=force)
         piece, more = _piece(node, new, given)
         pieces = [(spot, piece)]
         notes += more

@@ -15,6 +15,7 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import json
+import re
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -28,6 +29,9 @@ from roslaunch.xmlloader import XmlLoader, XmlParseException
 from rospkg import ResourceNotFound
 
 COMMAND_LINE = "command line"
+ANONYMOUS = "__tpc_anon"
+_PRIVATE = re.compile(r"(?:^|\s)_([A-Za-z][\w/]*):=(\S+)")
+_ANON = re.compile(r"\$\(anon\s+([^)\s]+)\s*\)")
 
 # roslaunch has no types. A tag is a minidom element, a context its LoaderContext.
 _Tag = Any
@@ -68,17 +72,24 @@ class _Tracer(XmlLoader):  # type: ignore[misc]
     """roslaunch's loader, which tells ``_Config`` where it is."""
 
     def __init__(self, config: _Config) -> None:
-        # $(anon x) stays as it is: its random name would not be that of the run.
-        super().__init__(resolve_anon=False)
+        super().__init__()
         # Whether an <arg> is missing is roslaunch's to say.
         self.ignore_unset_args = False
         self.files: dict[str, str] = {}
         self.arguments: list[dict[str, Any]] = []
         self.nodes: list[dict[str, Any]] = []
+        self.of_nodes: list[tuple[str, dict[str, Any]]] = []
         self._via: list[str] = []
         self._tag_place: dict[str, Any] | None = None
         self._node_params: dict[str, dict[str, Any]] = {}
         config.place_of = self._place_of
+
+    def resolve_args(self, args: str, context: _Context) -> str:
+        # The random name of $(anon x) would not be that of the run.
+        for name in _ANON.findall(args or ""):
+            context.resolve_dict.setdefault("anon", {})[name] = name + ANONYMOUS
+        resolved: str = super().resolve_args(args, context)
+        return resolved
 
     def _place_of(self, key: str) -> dict[str, Any]:
         if self._tag_place is not None:
@@ -178,9 +189,13 @@ class _Tracer(XmlLoader):  # type: ignore[misc]
         self._node_params = {}
         if node is not None:
             full = canonicalize_name(ns_join(node.namespace, node.name))
-            self.nodes.append(
-                {**self._here(tag, context), "name": full, "pkg": node.package, "type": node.type}
-            )
+            here = self._here(tag, context)
+            self.nodes.append({**here, "name": full, "pkg": node.package, "type": node.type})
+            # The node sets these itself when it starts, so they come after all others.
+            for name, value in _PRIVATE.findall(node.args or ""):
+                written = f"_{name}:={value}"
+                place = {**here, "from": "args", "written": written, "value": _guessed(value)}
+                self.of_nodes.append((canonicalize_name(f"{full}/{name}"), place))
         return node
 
     def _arg_tag(self, tag: _Tag, context: _Context, *args: object, **options: object) -> _Loaded:
@@ -238,6 +253,14 @@ class _Tracer(XmlLoader):  # type: ignore[misc]
             self._via.pop()
 
 
+def _guessed(text: str) -> bool | int | float | str:
+    """The value of ``_name:=text`` as roscpp and rospy read it."""
+    for kind in (int, float):
+        with contextlib.suppress(ValueError):
+            return kind(text)
+    return {"true": True, "false": False}.get(text.lower(), text)
+
+
 def _no_json(_value: object) -> None:
     """What JSON has no form for (binary data, dates) is null."""
 
@@ -252,6 +275,8 @@ def main(argv: list[str]) -> None:
             tracer.load(argv[0], config, argv=argv, verbose=False)
     except (RLException, ResourceNotFound, ValueError, OSError, KeyError) as error:
         raise SystemExit(" ".join(f"{error}".split())) from error
+    for name, place in tracer.of_nodes:
+        config.settings.setdefault(name, []).append(place)
     answer = {
         "parameters": config.settings,
         "nodes": tracer.nodes,
