@@ -14,7 +14,7 @@ from rich.text import Text
 
 from pytpc.atomic import write_atomic
 from pytpc.cli.console import console, progress, warn
-from pytpc.cli.options import JSON, PATH, STATIC, WINDOW
+from pytpc.cli.options import JSON, PATH, STATIC, WINDOW, recording_of
 from pytpc.cli.sources import static_of
 from pytpc.errors import InputError
 from pytpc.static_info import StaticInfo
@@ -107,8 +107,7 @@ def stats_command(  # noqa: PLR0917
         raise click.UsageError("several tables as CSV: choose one by --table, or give -o FOLDER")
     folder = several or (output is not None and output.is_dir())
     static = static_of([static_source])
-    with progress("reading missions") as advance:
-        missions = load_missions(paths, treatments, advance)
+    missions = load_missions(paths, treatments, recording_of)
     _check(missions, static)
     with progress("working out tables") as advance:
         tables = study_tables(missions, static, chosen, advance)

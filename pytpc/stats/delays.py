@@ -23,6 +23,7 @@ from pytpc.columns import Int64s
 from pytpc.events import Bools, Events, Floats
 from pytpc.ingest.recording import Recording
 from pytpc.parameters import parameter_name, same_parameter
+from pytpc.scoring.ranking import APART_NS
 from pytpc.static_info import Comparison, StaticInfo
 from pytpc.stats.missions import StudyMission, Trial, user_of
 from pytpc.summaries import Summaries
@@ -52,7 +53,8 @@ def delays_of(trial: Trial, static_info: StaticInfo) -> DelaysOfTrial | None:
         return DelaysOfTrial(trial.label, None, {})
     delays: dict[str, float] = {}
     for mark in sorted(mission.recording.marks, key=lambda mark: mark.time_ns):
-        if mark.time_ns >= start_ns:
+        # What is more than a day later was set on another clock.
+        if start_ns <= mark.time_ns <= start_ns + APART_NS:
             delays.setdefault(user_of(mark), (mark.time_ns - start_ns) / 1e9)
     start = (start_ns - mission.recording.start_ns) / 1e9
     return DelaysOfTrial(trial.label, start, delays)

@@ -85,7 +85,7 @@ def user_of(mark: Mark) -> str:
 def load_missions(
     paths: Sequence[Path],
     treatments: Path | None = None,
-    on_progress: Callable[[int, int], None] | None = None,
+    reader: Callable[[Path], Recording] = read,
 ) -> list[StudyMission]:
     """Read missions.
 
@@ -96,7 +96,7 @@ def load_missions(
             what ``treatment.json`` in its folder says; else that of ``treatments`` which run.json
             names, or which the mission's folder or the one above is called after; else the one
             that run.json names, if it is still where it was.
-        on_progress: called with (missions read, missions in all).
+        reader: reads a recording, `pytpc.ingest.read` or what shows its progress.
 
     Raises:
         InputError: a recording or a treatment cannot be read, or a mission is given twice.
@@ -106,20 +106,17 @@ def load_missions(
     twice = [path for path, count in Counter(path.resolve() for path in found).items() if count > 1]
     if twice:
         raise InputError("this mission is given twice", twice[0])
-    missions = []
-    for number, path in enumerate(found, start=1):
-        missions.append(_load(path, known))
-        if on_progress is not None:
-            on_progress(number, len(found))
-    return missions
+    return [_load(path, known, reader) for path in found]
 
 
-def _load(path: Path, known: dict[str, Treatment]) -> StudyMission:
+def _load(
+    path: Path, known: dict[str, Treatment], reader: Callable[[Path], Recording]
+) -> StudyMission:
     folder = path if path.is_dir() else path.parent
     run = _run(folder / RUN_FILE)
     whole = path.is_dir() or bool(run)
     name = folder.name if whole else path.stem
-    recording = replace(read(path), name=name)
+    recording = replace(reader(path), name=name)
     args = run.get("args")
     given = args if isinstance(args, dict) else {}
     # A bag in a folder of many says nothing about the mission by its folder's name.

@@ -290,12 +290,10 @@ def _share_true(events: Events, mine: Int64s, summaries: Summaries, row: int) ->
     begin, end = sorted((int(summaries.begin_ns[row]), int(summaries.end_ns[row])))
     times = events.time_ns[mine]
     inside = mine[(times > begin) & (times <= end) & events.flop[mine]]
-    final = bool(summaries.result[row])
     if not inside.size or end == begin:
-        return float(final)
+        return float(summaries.result[row])
     edges = np.concatenate([[begin], events.time_ns[inside], [end]])
     outcome = np.concatenate([[not events.result[inside[0]]], events.result[inside]])
-    outcome[-1] = final
     return float(np.diff(edges)[outcome].sum() / (end - begin))
 
 

@@ -7,6 +7,7 @@ from typing import TypeVar
 
 from pytpc.complaints import complaints
 from pytpc.parameters import parameter_name, same_parameter
+from pytpc.scoring.clocks import two_clocks
 from pytpc.static_info import StaticInfo
 from pytpc.stats.delays import delays_of, delays_table
 from pytpc.stats.found import found_in, found_table
@@ -65,6 +66,7 @@ def study_tables(
 def study_complaints(mission: StudyMission, static_info: StaticInfo) -> Iterator[str]:
     """What a reader of the tables has to know about a mission, in sentences."""
     yield from complaints(mission.recording, static_info)
+    yield from two_clocks(mission.recording)
     if not len(mission.recording.events) and not len(mission.recording.summaries):
         yield "no threshold reports: was the workspace built with TPC?"
     if mission.treatment is None:

@@ -168,6 +168,27 @@ def test_errors_are_one_line(study, tmp_path):
         assert "Traceback" not in result.output
 
 
+def test_broken_missions_are_one_line_each(study):
+    mission = study / "missions" / "m1"
+    for name, data, said in (
+        ("treatment.json", b"{", "treatment.json:1: not JSON"),
+        ("run.json", b"[]", "run.json: not about a run"),
+        ("mission.bag", (mission / "mission.bag").read_bytes()[:3000], "mission.bag: "),
+    ):
+        before = (mission / name).read_bytes() if (mission / name).exists() else None
+        (mission / name).write_bytes(data)
+        result = stats(study)
+        assert result.exit_code == 1, name
+        (error,) = result.stderr.splitlines()
+        assert error.startswith("pytpc: error: ")
+        assert said in error
+        if before is None:
+            (mission / name).unlink()
+        else:
+            (mission / name).write_bytes(before)
+    assert stats(study).exit_code == 0
+
+
 def test_the_words_of_the_help():
     result = CliRunner().invoke(main, ["stats", "--help"])
     assert result.exit_code == 0

@@ -69,6 +69,17 @@ def test_an_error_of_type2_begins_when_it_should_have_flopped():
     assert (found.start, found.delays) == (4.0, {"a": 2.0, "b": 6.0})
 
 
+# The observer's clock says 2020, the robot's begins at 0.
+def test_marks_on_another_clock_have_no_delay_and_are_told_of():
+    marks = [Mark(ns(1.6e9), "II", "a"), Mark(ns(6), "II", "b")]
+    given = mission(MISSED, marks, treatment("type2"))
+    found = delays_of(Trial("t", given), STATIC)
+    assert found is not None
+    assert found.delays == {"b": 2.0}
+    (said,) = study_complaints(given, STATIC)
+    assert said.startswith("1 of 2 marks are on another clock than the reports")
+
+
 def test_an_error_of_type1_begins_with_the_first_flop():
     # The flop of ~idle at 1.5 s is none of ~limit, whose first is from 1 to 2 s.
     rows = [(1, 1, 0, 1, 2), (1.5, 1, 1, 3, 2), *MISSED]
