@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import json
 import webbrowser
+from dataclasses import replace
 from pathlib import Path
 
 import click
 
+from pytpc.advice.declared import declared_in
 from pytpc.cli.console import progress, warn
 from pytpc.cli.options import (
     JSON,
@@ -72,7 +74,7 @@ def report_command(
     """
     static = static_of([static_source])
     missions = [
-        _mission(source, static, types, window_s=window_s, top=top) for source in recordings
+        replace(_mission(source, static, types, window_s), top=top) for source in recordings
     ]
     with progress("drawing") as advance:
         write_report(output, missions, on_progress=advance)
@@ -88,9 +90,7 @@ def report_command(
 COMMANDS: list[click.Command] = [report_command]
 
 
-def _mission(
-    source: Path, static: StaticInfo, types: Types, *, window_s: float, top: int
-) -> MissionReport:
+def _mission(source: Path, static: StaticInfo, types: Types, window_s: float) -> MissionReport:
     recording = recording_of(source)
     check_reports(recording, static, source)
     warn_about(recording, static)
@@ -106,8 +106,8 @@ def _mission(
         treatment=treatment.effect if treatment is not None else "",
         changed_parameter=treatment.parameter if treatment is not None else None,
         origins=read_origins(source),
+        declared=declared_in(static, [source], lambda line: warn(plain(line))),
         window_s=window_s,
-        top=top,
     )
 
 

@@ -26,6 +26,11 @@ class AnswerView:
     plot: Markup
     others: list[CardView]
 
+    @property
+    def mark(self) -> str:
+        """The ident of the mark whose card it is."""
+        return self.card.ident.rpartition("-")[0]
+
 
 def answers(cards: Sequence[Sequence[CardView]]) -> list[AnswerView]:
     """The answers of a mission, the one that most marks give first.

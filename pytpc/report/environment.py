@@ -27,8 +27,11 @@ def environment() -> Environment:
     )
 
 
+def seen(text: str) -> str:
+    """``text`` with a sign for what cannot be seen."""
+    return _UNSEEN.sub("\N{REPLACEMENT CHARACTER}", text)
+
+
 def _seen(value: object) -> object:
     """Texts with a sign for what cannot be seen; Markup is ours and stays."""
-    if isinstance(value, str) and not isinstance(value, Markup):
-        return _UNSEEN.sub("\N{REPLACEMENT CHARACTER}", value)
-    return value
+    return seen(value) if isinstance(value, str) and not isinstance(value, Markup) else value

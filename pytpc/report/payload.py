@@ -18,6 +18,7 @@ from markupsafe import Markup
 from pytpc.columns import Floats
 from pytpc.events import Events
 from pytpc.marks import MarkType
+from pytpc.report.environment import seen
 from pytpc.report.series import gap_after, lane, runs, thin
 from pytpc.scoring.curves import RankCurves
 
@@ -104,7 +105,11 @@ def finite(value: float | None) -> float | None:
 
 
 def calm(text: str) -> str:
-    """``text`` in which Bokeh finds no formula: for one it would ask the network for MathJax."""
+    """``text`` as it may be drawn: seen, and without what Bokeh takes for a formula.
+
+    For a formula it would ask the network for MathJax.
+    """
+    text = seen(text)
     for start in ("$$", "\\[", "\\("):
         text = text.replace(start, f"{start[0]}\N{WORD JOINER}{start[1]}")
     return text

@@ -26,6 +26,7 @@ from matplotlib.ticker import MaxNLocator
 
 from pytpc.events import Floats
 from pytpc.marks import MarkType
+from pytpc.report.environment import seen
 from pytpc.report.series import Evidence
 
 # Stand-ins, none of which matplotlib would write of itself.
@@ -275,7 +276,7 @@ def svg_of(figure: Figure, ident: str, label: str) -> str:
     FigureCanvasSVG(figure)
     figure.savefig(stream, format="svg", metadata={"Date": None})
     text = stream.getvalue()
-    text = text[text.index("<svg") :].rstrip()
+    text = seen(text[text.index("<svg") :].rstrip())
     text = re.sub(r"<(metadata|style)\b.*?</\1>\s*", "", text, flags=re.DOTALL)
     text = re.sub(r'\bid="', f'id="{ident}-', text)
     text = re.sub(r'(href="#|url\(#)', rf"\g<1>{ident}-", text)
@@ -287,6 +288,6 @@ def svg_of(figure: Figure, ident: str, label: str) -> str:
     view = re.search(r'viewBox="([^"]*)"', head)
     assert view is not None, "matplotlib writes a viewBox"
     return (
-        f'<svg role="img" aria-label="{escape(label)}" viewBox="{view[1]}"'
+        f'<svg role="img" aria-label="{escape(seen(label))}" viewBox="{view[1]}"'
         f' xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink">{body}'
     )

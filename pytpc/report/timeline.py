@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 
 from pytpc.columns import Floats
 from pytpc.marks import MarkType
-from pytpc.report.cards import MissionReport
+from pytpc.report.mission import MissionReport
 from pytpc.report.payload import curves_of, lanes_of
 from pytpc.report.plots import COLOUR, MARK_LINES, drawing, short, svg_of
 from pytpc.report.series import BINS, BOTH, FALSE, TRUE, lane, runs

@@ -17,14 +17,13 @@ from pytpc.complaints import complaints
 from pytpc.marks import MarkType
 from pytpc.report.answer import AnswerView, answers, spoken
 from pytpc.report.cards import (
-    CARDS,
     CardView,
     Figures,
-    MissionReport,
     SuspectView,
     card_view,
     row_view,
 )
+from pytpc.report.mission import CARDS, MissionReport
 from pytpc.report.payload import embedded, marks_of
 from pytpc.report.timeline import timeline
 from pytpc.scoring.clocks import two_clocks

@@ -242,10 +242,10 @@ const tpcFigures = (() => {
     const mission = missionOf(host.dataset.mission);
     const card = mission.cards[host.dataset.card];
     const series = seriesOf(mission, card.series);
-    const whole = [Math.min(0, card.begin), Math.max(mission.seconds, card.end)];
     const margin = (card.end - card.begin || 1) * 0.01;
     const home = [card.begin - margin, card.end + margin];
-    const range = new Bokeh.Range1d({ start: home[0], end: home[1] });
+    const whole = [Math.min(0, home[0]), Math.max(mission.seconds, home[1])];
+    const range = new Bokeh.Range1d({ start: home[0], end: home[1], bounds: whole });
     const scale = new Bokeh.Range1d({ start: card.low, end: card.high });
     const common = { x_range: range, min_border_left: 64, min_border_right: 12 };
     const upper = withoutTimes(figureOf({ ...common, height: 230, y_range: scale }));

@@ -4,7 +4,7 @@ const tpcTimeline = (() => {
   const { paint, unpacked, missionOf, place, figureOf, withoutTimes, verticals, steer, readout } = tpcFigures;
   const HEIGHTS = { 1: 0.08, 2: 0.62, 3: 0.34 }; // false, true, both
   const DASHES = [[], [7, 3], [2, 3], [9, 3, 2, 3], [4, 4], [12, 3], [2, 6], [7, 2, 2, 2]];
-  const MOST = 2400;
+  const MOST = 1500; // steps of a curve: one for each column of pixels
   const LANE = 24;
 
   const shortened = (text, most) => (text.length <= most ? text : `${text.slice(0, most - 1)}…`);
@@ -59,7 +59,7 @@ const tpcTimeline = (() => {
       ...common, height: type === "II" ? 146 : 120,
       y_range: new Bokeh.Range1d({ start: -0.04, end: 1.06 }), y_axis_label: `rank, type ${type}`,
     });
-    figure.left[0].ticker = new Bokeh.FixedTicker({ ticks: [0, 0.5, 1] });
+    figure.left[0].ticker = figure.center[1].ticker = new Bokeh.FixedTicker({ ticks: [0, 0.5, 1] });
     const lines = curves[type].map((packed, row) => {
       const values = Float64Array.from(unpacked(packed, Uint16Array), (rank) => rank / 65535);
       const source = new Bokeh.ColumnDataSource({ data: { x: [], y: [] } });
@@ -76,7 +76,7 @@ const tpcTimeline = (() => {
   };
 
   // A key to the curves: a press shows one curve alone, another press all of them again.
-  const keyOf = (host, mission, groups) => {
+  const keyOf = (host, mission, groups, moved) => {
     const { labels, accent, culprit } = mission.timeline;
     const key = document.createElement("div");
     key.className = "curve-key";
@@ -99,6 +99,7 @@ const tpcTimeline = (() => {
         for (const lines of groups) {
           lines.forEach(({ renderer }, place) => { renderer.visible = !alone || place === row; });
         }
+        moved();
       });
       key.append(button);
     });
@@ -111,7 +112,7 @@ const tpcTimeline = (() => {
     const narrow = host.clientWidth < 640;
     const margin = (mission.seconds || 1) * 0.006;
     const home = [-margin, (mission.seconds || 1) + margin];
-    const range = new Bokeh.Range1d({ start: home[0], end: home[1] });
+    const range = new Bokeh.Range1d({ start: home[0], end: home[1], bounds: home });
     const common = { x_range: range, min_border_left: narrow ? 110 : 190, min_border_right: 12 };
     const lanes = lanesOf(mission, common, narrow);
     const figures = [lanes];
@@ -133,18 +134,23 @@ const tpcTimeline = (() => {
       const first = Math.max(0, place(times, range.start) - 1);
       const end = Math.min(times.length, place(times, range.end) + 1);
       const stride = Math.max(1, Math.ceil((end - first) / MOST));
-      const x = [];
-      for (let i = first; i < end; i += stride) x.push(times[i]);
       for (const lines of groups) {
-        for (const { values, source } of lines) {
+        for (const { values, source, renderer } of lines) {
+          if (!renderer.visible) continue;
+          // A rank stays for a while: of a step line its steps are all that is to be drawn.
+          const x = [];
           const y = [];
-          for (let i = first; i < end; i += stride) y.push(values[i]);
+          for (let i = first; i < end; i += stride) {
+            if (i > first && values[i] === y[y.length - 1] && i + stride < end) continue;
+            x.push(times[i]);
+            y.push(values[i]);
+          }
           source.data = { x, y };
         }
       }
     };
     steer(host, figures, range, home, home, moved);
-    if (curves) keyOf(host, mission, groups);
+    if (curves) keyOf(host, mission, groups, moved);
     readout(host, figures, (x) => {
       const after = mission.marks.findIndex((mark) => mark.t > x);
       const count = after === -1 ? mission.marks.length : after;

@@ -1,0 +1,49 @@
+"""What the report page is made from: one mission, ranked."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from pytpc.advice.declared import Declared
+from pytpc.ingest.recording import Recording
+from pytpc.parameters import same_parameter
+from pytpc.scoring.ranking import MarkRanking
+from pytpc.scoring.scores import WINDOW_S
+from pytpc.static_info import StaticInfo
+from pytpc.values.origins import Origin
+
+CARDS = 3
+"""Suspects of a mark that are shown with their evidence."""
+
+
+@dataclass(frozen=True)
+class MissionReport:
+    """One mission for the page.
+
+    ``rankings`` are ``rank_marks``' answer for ``recording`` and ``static_info``. ``treatment``
+    says what was done to the robot, and ``changed_parameter`` which parameter was changed, where
+    that is known (in a study); it is shown in red. ``origins`` are where the values came from,
+    ``declared`` the ranges that are declared of parameters; both may be empty. ``window_s`` is the
+    window with which the marks were ranked, ``top`` how many suspects have a card.
+    """
+
+    name: str
+    recording: Recording
+    static_info: StaticInfo
+    rankings: list[MarkRanking]
+    treatment: str = ""
+    changed_parameter: str | None = None
+    origins: Mapping[str, Origin] = field(default_factory=dict)
+    declared: Sequence[Declared] = ()
+    window_s: float = WINDOW_S
+    top: int = CARDS
+
+    def is_changed(self, parameter: str) -> bool:
+        """True where ``parameter``, as in the source, is the one that was changed."""
+        changed = self.changed_parameter
+        return changed is not None and same_parameter(changed, parameter)
+
+    def seconds(self, time_ns: int) -> float:
+        """A time of the recording's clock as seconds since the recording began."""
+        return (time_ns - self.recording.start_ns) / 1e9

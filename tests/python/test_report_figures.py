@@ -1,0 +1,145 @@
+"""The figures of the report page: those that stand still, and the numbers of those that move."""
+
+from __future__ import annotations
+
+import base64
+import json
+import math
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from mission_samples import comparison, events, key, ns, static_info
+from report_samples import Page, mission, written
+
+from pytpc.ingest import Recording
+from pytpc.marks import Mark
+from pytpc.report.html import MissionReport
+from pytpc.report.series import FALSE, TRUE
+from pytpc.scoring.ranking import rank_marks
+
+NAN = math.nan
+
+
+@pytest.fixture(scope="module")
+def page_text(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("page")
+    return written(folder, mission(folder))
+
+
+def values_that_break_plots():
+    return [
+        [(t, 0, t % 2, value, limit) for t in range(10)]
+        for value, limit in [
+            (NAN, NAN),
+            (math.inf, 1),
+            (1e308, -1e308),
+            (5e-324, 0),
+            (1, 1),
+            (1e6 + 0.1, 1e6),
+        ]
+    ]
+
+
+# DBL_MAX is what a node often starts with ("no distance yet"). 98 values of 1 to 2 against a
+# threshold of 3 must stay readable beside it: the axis does not reach 1e308.
+def test_an_outlier_does_not_flatten_the_plot(tmp_path):
+    rows = [(t / 10, 0, t % 2, 1 + t % 2, 3) for t in range(98)] + [(9.9, 0, 1, 1.7e308, 3)]
+    recording = Recording("far", events(rows), (Mark(ns(10), "I"),), 0, ns(10))
+    static = static_info(comparison(0, "x"))
+    report = MissionReport("far", recording, static, rank_marks(recording, static))
+    labels = re.findall("<text[^>]*>([^<]*)</text>", written(tmp_path, report))
+    assert "some values are beyond this plot" in labels
+    assert {"1.2", "1.8", "2.4", "3.0"} <= set(labels)
+    assert not any("e+" in label for label in labels)
+
+
+@pytest.mark.parametrize("rows", values_that_break_plots())
+def test_odd_values_are_drawn_without_a_word(tmp_path, rows):
+    recording = Recording("odd", events(rows), (Mark(ns(9), "I"),), 0, ns(9))
+    static = static_info(comparison(0, "x" * 60))
+    report = MissionReport("odd", recording, static, rank_marks(recording, static))
+    assert Page(written(tmp_path, report)).tags["svg"] == 3
+
+
+def numbers_of(text, mission="m1"):
+    block = re.search(
+        f'<script type="application/json" id="{mission}-numbers">(.*?)</script>', text
+    )
+    assert block is not None
+    return json.loads(block[1])
+
+
+def unpacked(text, kind):
+    return np.frombuffer(base64.b64decode(text), dtype=kind)
+
+
+# Mark 2 is at 35 s of 40: shown from 15 s to the end, the window from 23 s, and what would do is
+# all below 0.5. Coverage t/60 stays at 0.5 from 30 s on; it is never above its limit of 0.6, which
+# never changes, so that it is told once.
+def test_the_numbers_of_the_moving_figures(page_text):
+    numbers = numbers_of(page_text)
+    assert numbers["seconds"] == 40
+    assert numbers["marks"] == [
+        {"t": 31, "type": "I"},
+        {"t": 35, "type": "II"},
+        {"t": 36, "type": ""},
+    ]
+    card = numbers["cards"]["m1-2-1"]
+    assert (card["begin"], card["end"], card["mark"], card["window"]) == (15, 40, 35, 23)
+    assert (card["feasible"], card["suggested"], card["culprit"]) == ([[None, 0.5]], 0.499, True)
+    series = numbers["series"][card["series"]]
+    assert series["of"] == 400
+    times = unpacked(series["t"], "<f4")
+    assert (times.size, times[0], times[-1]) == (400, 0, np.float32(39.9))
+    values = unpacked(series["c"], "<f8")
+    assert (values[60], values[300], values.max()) == (6 / 60, 0.5, 0.5)
+    assert not unpacked(series["r"], "u1").any()
+    assert unpacked(series["lt"], "<f8").tolist() == [0]
+    assert unpacked(series["lv"], "<f8").tolist() == [0.6]
+
+
+# Each of 6000 columns is 1/150 s: an evaluation each tenth of a second holds for 15 of them. faces
+# is false up to 30 s and true from then on, the last evaluation at 39.9 s for its own column.
+def test_the_lanes_of_the_moving_figure(page_text):
+    timeline = numbers_of(page_text)["timeline"]
+    assert timeline["labels"][0] == "coverage"
+    assert timeline["labels"][timeline["accent"]] == "coverage"
+    place = timeline["labels"].index("faces")
+    states = unpacked(timeline["runs"][place], "<i4").reshape(-1, 3).tolist()
+    assert states == [[FALSE, 0, 4500], [TRUE, 4500, 1486]]
+
+
+# faces first flops at 30 s; from then on it has a score of type I: rank 1 of 4 parameters while
+# 2 * (t - 30) is less than NASTY's. Before that it has none: rank 0.
+def test_the_curves_of_the_moving_figure(page_text):
+    timeline = numbers_of(page_text)["timeline"]
+    curves = timeline["curves"]
+    times = unpacked(curves["t"], "<f8")
+    assert (times.size, times[1], times[-1]) == (401, 0.1, 40)
+    ranks = unpacked(curves["I"][timeline["labels"].index("faces")], "<u2")
+    assert (ranks[299], ranks[310]) == (0, 65535)
+
+
+@pytest.mark.parametrize(
+    ("name", "shown"),
+    [
+        ("</script><b>", "</script><b>"),
+        ("<!--<script>", "<!--<script>"),
+        # Bokeh would look for a formula, and for MathJax on the network.
+        ("$$x$$", "$\N{WORD JOINER}$x$\N{WORD JOINER}$"),
+        ("\\[x\\]", "\\\N{WORD JOINER}[x\\]"),
+        # What nobody sees could make a name pass for another.
+        ("a\u202eb\x00c\u2028", "a\ufffdb\ufffdc\ufffd"),
+    ],
+)
+def test_names_stay_names_in_the_figures(tmp_path, name, shown):
+    plain = mission(tmp_path)
+    found = plain.static_info.comparisons[key(0)]
+    static = static_info(replace(found, source=name), source_root=str(tmp_path))
+    report = replace(plain, static_info=static, rankings=rank_marks(plain.recording, static))
+    text = written(tmp_path, report)
+    assert numbers_of(text)["timeline"]["labels"] == [shown]
+    assert Page(text).tags["b"] == 0
+    assert not set("\x00\u202e\u2028") & set(text)
