@@ -45,7 +45,10 @@ def mark_command(*, bag: Path | None, observer: str, output: Path | None) -> Non
     if bag is None:
         mission: Mission = GraphMarks(os.environ.get("ROS_MASTER_URI") or MASTER, observer)
     else:
-        mission = recorded(recording_of(bag), bag)
+        recording = recording_of(bag)
+        mission = recorded(recording, bag)
+        for note in recording.notes:
+            warn(plain(note))
     mark_in_terminal(mission, observer, path)
 
 
@@ -68,15 +71,13 @@ def marks_path(bag: Path | None, observer: str, output: Path | None) -> Path:
 
 
 def recorded(recording: Recording, source: Path) -> RecordedMission:
-    """The clock that goes through a recording; what is to be known of the recording is said.
+    """The clock that goes through a recording.
 
     Raises:
         InputError: it has no length.
     """
     if recording.end_ns <= recording.start_ns:
         raise InputError("nothing in it takes any time", source)
-    for note in recording.notes:
-        warn(plain(note))
     return RecordedMission(plain(source.name), recording.start_ns, recording.end_ns)
 
 

@@ -20,18 +20,31 @@ from pytpc.cli.mark_commands import (
     marks_path,
     recorded,
 )
-from pytpc.cli.options import JSON, PATH, STATIC, TYPES, WINDOW, check_reports, recording_of
+from pytpc.cli.options import (
+    JSON,
+    PATH,
+    STATIC,
+    TYPES,
+    WINDOW,
+    check_reports,
+    recording_of,
+    warn_about,
+)
 from pytpc.cli.sources import static_of
 from pytpc.errors import InputError, RunError
+from pytpc.ingest import Recording
 from pytpc.marking.graph import GraphMarks
 from pytpc.marking.live_mission import Feed, GraphFeed, RecordedFeed, WatchedMission
 from pytpc.marking.session import clock_text
 from pytpc.marking.terminal import Mission
 from pytpc.marking.watch_screen import LAYOUTS, Options, Status, table
 from pytpc.marking.watching import KINDS, Look, Row, Watching
+from pytpc.scoring.clocks import two_clocks
 from pytpc.scoring.live import LiveRanking
 from pytpc.scoring.ranking import Types
 from pytpc.signals import signals_end
+from pytpc.static_info import StaticInfo
+from pytpc.words import plain
 
 _ONCE_S = 5.0
 _TURN_S = 0.1
@@ -104,9 +117,18 @@ def _opened(recording: Path | None, observer: str, fresh: Watching) -> tuple[Mis
     if recording is None:
         master = os.environ.get("ROS_MASTER_URI") or MASTER
         return GraphMarks(master, observer, what="watching"), GraphFeed(master, fresh)
-    found = recording_of(recording)
-    check_reports(found, fresh.static_info, recording)
+    found = _read(recording, fresh.static_info)
     return recorded(found, recording), RecordedFeed(found, fresh)
+
+
+def _read(source: Path, static: StaticInfo) -> Recording:
+    """A recording, with what is wrong with it said."""
+    recording = recording_of(source)
+    check_reports(recording, static, source)
+    warn_about(recording, static)
+    for clocks in two_clocks(recording):
+        warn(f"{plain(recording.name)}: {plain(clocks)}")
+    return recording
 
 
 def _once(
@@ -119,8 +141,7 @@ def _once(
 ) -> None:
     """Listen for a while, or go to a place in the recording; then print what is known."""
     if recording is not None:
-        found = recording_of(recording)
-        check_reports(found, fresh.static_info, recording)
+        found = _read(recording, fresh.static_info)
         far = round(seconds * 1e9) if seconds is not None else found.end_ns - found.start_ns
         now_ns = min(found.end_ns, found.start_ns + far)
         feed: Feed = RecordedFeed(found, fresh)

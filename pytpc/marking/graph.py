@@ -110,7 +110,7 @@ class GraphMarks:
         status = f"{self._fault or 'connected'}; {heard}; {clock}"
         return View(f"{self._what}{who} on {self._master}", (status,), start_ns, now_ns)
 
-    def send(self, change: Change) -> None:
+    def send(self, change: Change) -> str:
         """Tell the graph what happened to the marks."""
         before, after = change
         if after is None and before is not None:
@@ -119,6 +119,7 @@ class GraphMarks:
             self._say(NOTE_TOPIC, encode_string(note_text(after.time_ns, after.note)))
         elif after is not None:
             self._publish(topic_for(after), encode_time(after.time_ns))
+        return ""
 
     def tick(self) -> None:
         """Send what nobody heard to who has come since, in its order."""

@@ -257,12 +257,14 @@ class WatchedMission:
         """What the mission shows of itself."""
         return self._mission.view()
 
-    def send(self, change: Change) -> None:
-        """Keep the ranking of this instant, and tell the mission."""
+    def send(self, change: Change) -> str:
+        """Keep the ranking of this instant, tell the mission, and say who is suspected."""
         self.take()
         self.kept.follow(change, self.watching, believe=self._believe)
         self._options = self._options._replace(back=None)
         self._mission.send(change)
+        made = change.after is not None and change.before is None
+        return self.kept[-1].words() if made else ""
 
     def tick(self) -> None:
         """Take in what has come."""
@@ -297,6 +299,7 @@ class WatchedMission:
             nodes=len(self.watching.nodes),
             unknown=len(self.watching.unknown),
             lost=self._feed.lost(),
+            late=self.watching.late,
             fault=self._feed.fault(),
         )
 

@@ -62,8 +62,8 @@ class Mission(Protocol):
     def view(self) -> View:
         """What is to be shown of it."""
 
-    def send(self, change: Change) -> None:
-        """Something happened to the marks."""
+    def send(self, change: Change) -> str:
+        """Something happened to the marks; what the observer is to be told of it, or nothing."""
 
     def tick(self) -> None:
         """Called several times a second."""
@@ -101,8 +101,9 @@ class RecordedMission:
         status = f"{at} of {whole}, {state}, speed {player.speed:g}"
         return View(self._title, (status,), player.start_ns, self.now_ns(), PLAYER_HELP)
 
-    def send(self, change: Change) -> None:
+    def send(self, change: Change) -> str:
         """Nobody else is to know."""
+        return ""
 
     def tick(self) -> None:
         """The clock goes by itself."""
@@ -161,7 +162,9 @@ def run(
                     session, change = press(session, key, mission.now_ns())
                     if change is not None:
                         file.take(change)
-                        mission.send(change)
+                        told = mission.send(change)
+                        if told:
+                            session = replace(session, said=f"{session.said}: {told}")
                         session = _saved(session, file)
                 mission.tick()
                 session = _saved(session, file)
@@ -239,7 +242,7 @@ def _shown(
         said = session.said if session.typing is None else "note (Enter ends it):"
         if told is None:
             lines = paint(session, view, _DUMB_WIDTH, _DUMB_HEIGHT, utf8=False)
-            print("\n".join(line.plain for line in lines), flush=True)
+            print("\n".join(line.plain for line in lines if line.plain), flush=True)
         elif said and told != (len(session.marks), said):
             print(said, flush=True)
         told = len(session.marks), said

@@ -14,7 +14,7 @@ from rich.cells import cell_len
 from rich.text import Text
 
 from pytpc.marking.session import Session, View, clock_text, cut, folded
-from pytpc.marking.watching import Kept, KeptRankings, Look, Part, Row
+from pytpc.marking.watching import KeptRankings, Look, Part, Row
 from pytpc.marks import Mark, MarkType
 from pytpc.words import exact, many, plain
 
@@ -39,7 +39,6 @@ _LEAST_NAME = 12
 _RECENT_S = 3.0
 _BARS = {True: "▁▂▃▄▅▆▇█", False: "_.-=+*%#"}
 _FLOP = "x"
-_LEAST_ROWS = 3
 _WIDEST_NOW = 24
 _ROOMY = 20
 _LEGEND = "Trend of the window: a low bar is near the threshold, an x is a flop. Bold: just flopped"
@@ -57,13 +56,15 @@ class Options(NamedTuple):
 
 class Status(NamedTuple):
     """What has come in: reports, how many in a second (None of a recording), nodes, keys that are
-    not known, what was lost, and what is wrong (empty where nothing)."""
+    not known, what was lost, what came too late to count, and what is wrong (empty where nothing).
+    """
 
     reports: int = 0
     rate: float | None = None
     nodes: int = 0
     unknown: int = 0
     lost: int = 0
+    late: int = 0
     fault: str = ""
 
     def words(self) -> str:
@@ -73,6 +74,8 @@ class Status(NamedTuple):
             text += f", {self.rate:,.0f}/s"
         if self.lost:
             text += f", {self.lost:,} lost"
+        if self.late:
+            text += f", {self.late:,} too late"
         if self.unknown:
             text += f"; {many(self.unknown, 'key')} not in the static information (another build?)"
         return f"{self.fault}; {text}" if self.fault else text
@@ -106,7 +109,8 @@ def watch_screen(session: Session, view: View, panel: Panel, width: int, height:
     if session.typing is not None:
         foot += _plain([f"note: {session.typing}_"], width, "bold")
     elif session.said:
-        foot += _plain([session.said], width, "bold")
+        said = [session.said] if height >= _ROOMY else [cut(session.said, width)]
+        foot += _plain(said, width, "bold")
     if height >= _ROOMY:
         head.append(Text())
     room = height - len(head) - len(foot)
@@ -216,19 +220,11 @@ def _marks(session: Session, view: View, panel: Panel, width: int, room: int) ->
     lines = [Text(cut(f"{many(len(session.marks), 'mark')}:", width), style="bold")]
     for mark in shown:
         when = clock_text(mark.time_ns - view.start_ns)
-        text = f"{when:>9}  {mark.type or '-':2}  {_first(panel.kept.of(mark))}{_note(mark)}"
+        kept = panel.kept.of(mark)
+        named = "made earlier" if kept is None else kept.words()
+        text = f"{when:>9}  {mark.type or '-':2}  {named}{_note(mark)}"
         lines.append(Text(cut(text.rstrip(), width), style=_COLOURS[mark.type]))
     return lines
-
-
-def _first(kept: Kept | None) -> str:
-    """The first suspects at a mark, in a few words."""
-    if kept is None:
-        return "made earlier"
-    (kind,) = kept.look.rows
-    rows = kept.look.rows[kind][:_LEAST_ROWS]
-    words = [f"{row.suspect.position} {row.suspect.parameter}" for row in rows]
-    return ", ".join(words) or kept.look.reasons[kind] or "no parameter has a score"
 
 
 def _note(mark: Mark) -> str:

@@ -24,6 +24,8 @@ from pytpc.summaries import Summary
 BINS = 8
 """So many parts of the window are shown of each comparison, the last of them now."""
 
+_NAMED = 3
+
 KINDS: tuple[MarkType | None, ...] = ("I", "II", None)
 
 
@@ -116,6 +118,11 @@ class Watching:
         self.last_ns: int | None = None
         self.nodes: set[str] = set()
         self.unknown: dict[str, int] = {}
+
+    @property
+    def late(self) -> int:
+        """How many evaluations came too late to be ranked."""
+        return self._engine.scores.late
 
     def take(self, seen: Seen) -> None:
         """Take in an evaluation; one of a comparison that is not known is counted."""
@@ -224,6 +231,12 @@ class Kept(NamedTuple):
     mark: Mark
     ranking: MarkRanking
     look: Look
+
+    def words(self) -> str:
+        """The first suspects, or why there is none."""
+        (rows,), (reason,) = self.look.rows.values(), self.look.reasons.values()
+        named = [f"{row.suspect.position} {row.suspect.parameter}" for row in rows[:_NAMED]]
+        return ", ".join(named) or reason or "no parameter has a score"
 
 
 class KeptRankings:

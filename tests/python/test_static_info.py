@@ -339,7 +339,8 @@ def test_a_broken_merged_document_is_located(
 
 # Passed on together with its sources, wherever it is unpacked.
 def test_a_source_root_may_be_relative_to_the_merged_document(tmp_path: Path) -> None:
-    document = StaticInfo.of([LinkUnit.from_json(unit(comparisons=[comparison()]), tmp_path)]).to_json()
+    one = LinkUnit.from_json(unit(comparisons=[comparison()]), tmp_path)
+    document = StaticInfo.of([one]).to_json()
     document["units"][0]["source_root"] = "../sources/a"
     path = write(tmp_path / "static" / "static.json", document)
     static = read_static(path)

@@ -113,7 +113,7 @@ def test_the_terminal_changes_its_size(mission: Path):
         assert all(len(line) <= 60 for line in screen.lines)
         screen.resize(10, 3)
         screen.press("2")
-        screen.wait_for("type II")
+        screen.wait_for("marked: t~")
         screen.resize(120, 36)
         screen.wait_for("Trend of the window", "1:00.0  II")
         end(screen)
@@ -125,6 +125,18 @@ def test_a_terminal_without_utf8(mission: Path, encoding: str):
         screen.press("\x1b[A")
         screen.wait_for("1:00.0 of", "~min_coverage_limit  ")
         assert screen.text.isascii()
+        end(screen)
+
+
+# Without a cursor that can be moved: what is new is said, line by line.
+def test_a_dumb_terminal(mission: Path):
+    with watch(mission, TERM="dumb") as screen:
+        terminal = screen.terminal
+        terminal.wait_for("Type II: what is near its threshold")
+        terminal.press("\x1b[A2")
+        terminal.wait_for("marked: type II: 1 ~min_coverage_limit, 2 ~")
+        terminal.press("u")
+        terminal.wait_for("taken back: type II")
         end(screen)
 
 

@@ -10,7 +10,7 @@ from rich.cells import cell_len
 from rich.text import Text
 
 from pytpc.ingest.recording import Recording
-from pytpc.marking.live_mission import RecordedFeed
+from pytpc.marking.live_mission import GraphFeed, RecordedFeed
 from pytpc.marking.publisher import encode_string
 from pytpc.marking.reports import Reports
 from pytpc.marking.session import Change, Session, View
@@ -306,3 +306,33 @@ def test_going_back_in_a_recording_is_never_having_been_further():
     assert look_after(1, 20, 31, 62, 100, 40) == there[0]
     assert look_after(35, 80, 0) == there[1]
     assert look_after(35, 80, 0, 70, 30, 119) == there[2]
+
+
+class Feeding(GraphFeed):
+    """A feed of a graph that is not there; what came is put into it."""
+
+    def put(self, *items: Seen) -> None:
+        self._items.extend(items)
+
+
+# Now is 110 s. A report without a stamp is of now; one of 10^9 s is of another clock.
+def test_the_clock_of_a_graph():
+    feed = Feeding("http://127.0.0.1:9", watching())
+    try:
+        feed.put(EVENTS[0])
+        assert feed.take(None)[1] == ()
+        feed.put(EVENTS[1]._replace(time_ns=0), EVENTS[2]._replace(time_ns=10**18))
+        found, items = feed.take(110 * S)
+        assert items == [EVENTS[0], EVENTS[1]._replace(time_ns=110 * S)]
+        assert "1 by another clock left out" in feed.fault()
+        for item in items:
+            assert isinstance(item, Seen)
+            found.take(item)
+        # 101 s is out of order, 50 s is another run: what was before is no part of it.
+        assert feed.take(101 * S)[0] is found
+        again, _ = feed.take(50 * S)
+        assert (again.reports, found.reports) == (0, 2)
+        assert "the clock was put back" in feed.fault()
+        assert "http://127.0.0.1:9 does not answer" in feed.fault()
+    finally:
+        feed.close()
