@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import overload
 
@@ -20,6 +20,7 @@ from pytpc import tables
 from pytpc.advice.advise import Advice, advise
 from pytpc.advice.counterfactual import WhatIf
 from pytpc.advice.counterfactual import what_if as replay
+from pytpc.advice.declared import Declared, declared_in
 from pytpc.errors import InputError
 from pytpc.ingest import Recording
 from pytpc.ingest import read as read_recording
@@ -34,6 +35,8 @@ from pytpc.static_info import StaticInfo, read_static
 from pytpc.stats.missions import load_missions
 from pytpc.stats.study import NUMBERS
 from pytpc.stats.study import study_tables as tables_of_study
+from pytpc.treatment import TREATMENT_FILE, load_treatment
+from pytpc.values.origins import read_origins
 from pytpc.words import Number, exact, show
 
 __all__ = ["Advices", "Rankings", "StudyTable", "curves", "load_static", "rank", "read"]
@@ -49,12 +52,14 @@ class Rankings(Sequence[MarkRanking]):
     """The rankings of one mission, one for each mark, in the order of the marks.
 
     A sequence of `pytpc.scoring.ranking.MarkRanking`; ``recording`` and ``static_info`` are what
-    was ranked. ``table`` has the first suspects of each mark.
+    was ranked, ``source`` where the mission was read from, if it was ranked by its path: what else
+    is in its folder is in the report then. ``table`` has the first suspects of each mark.
     """
 
     rankings: tuple[MarkRanking, ...]
     recording: Recording
     static_info: StaticInfo
+    source: Path | None = None
 
     def __len__(self) -> int:
         """The number of marks."""
@@ -258,7 +263,8 @@ def rank(
     if not recording.marks:
         raise InputError("no marks; `pytpc mark` makes some beside it", recording.name)
     found = rank_marks(recording, static, types=types, window_s=window_s)
-    return Rankings(tuple(found), recording, static)
+    source = None if isinstance(mission, Recording) else Path(mission)
+    return Rankings(tuple(found), recording, static, source)
 
 
 def curves(
@@ -277,9 +283,21 @@ def curves(
     return rank_curves(read(mission), static, step_s=step_s, window_s=window_s)
 
 
-def suggest(rankings: Rankings, mark: int = 1, *, top: int = _SHOWN) -> Advices:
-    """What to do with the first ``top`` suspects of a mark (counted from 1), and what it would
-    have changed in the recorded run.
+def suggest(
+    rankings: Rankings,
+    mark: int = 1,
+    *,
+    top: int = _SHOWN,
+    declared: Sequence[Declared] | None = None,
+) -> Advices:
+    """What to do with suspects at a mark, and what it would have changed in the recorded run.
+
+    Args:
+        rankings: what ``rank`` gave.
+        mark: which of them, counted from 1.
+        top: how many suspects.
+        declared: the declared ranges of parameters; None: they are looked for in the sources of the
+            static information, and in the mission where it was ranked by its path.
 
     Raises:
         IndexError: there is no such mark.
@@ -287,7 +305,10 @@ def suggest(rankings: Rankings, mark: int = 1, *, top: int = _SHOWN) -> Advices:
     if not 1 <= mark <= len(rankings):
         raise IndexError(f"mark {mark} of {len(rankings)}")
     ranking = rankings[mark - 1]
-    found = advise(rankings.recording, rankings.static_info, ranking, top=top)
+    static = rankings.static_info
+    if declared is None:
+        declared = declared_in(static, [rankings.source] if rankings.source else [])
+    found = advise(rankings.recording, static, ranking, top=top, declared=declared)
     return Advices(tuple(found), ranking)
 
 
@@ -344,15 +365,28 @@ def study_tables(
 def write_report(path: Source, *rankings: Rankings, title: str = "Suspected parameters") -> Path:
     """Write the report page of one or several missions: one HTML file that opens offline.
 
+    A mission that was ranked by its path is shown with what else is in its folder: where values
+    came from (origins.json), and what had been done to the robot (treatment.json).
+
     Returns:
         Its path.
 
     Raises:
         TpcError: it cannot be written.
     """
-    missions = [
-        MissionReport(one.recording.name, one.recording, one.static_info, list(one.rankings))
-        for one in rankings
-    ]
-    write_page(Path(path), missions, title=title)
+    write_page(Path(path), [_for_report(one) for one in rankings], title=title)
     return Path(path)
+
+
+def _for_report(rankings: Rankings) -> MissionReport:
+    """A mission with what its folder says of it: where values came from, what had been changed."""
+    source, recording = rankings.source, rankings.recording
+    given = MissionReport(recording.name, recording, rankings.static_info, list(rankings.rankings))
+    if source is None:
+        return given
+    folder = source if source.is_dir() else source.parent
+    known = replace(given, origins=read_origins(source), name=source.absolute().name)
+    if not (folder / TREATMENT_FILE).is_file():
+        return known
+    treatment = load_treatment(folder)
+    return replace(known, treatment=treatment.effect, changed_parameter=treatment.parameter)
