@@ -14,7 +14,7 @@ from pytpc.marking.live_mission import GraphFeed, RecordedFeed
 from pytpc.marking.publisher import encode_string
 from pytpc.marking.reports import Reports
 from pytpc.marking.session import Change, Session, View
-from pytpc.marking.watch_screen import LAYOUTS, Options, Panel, Status, watch_screen
+from pytpc.marking.watch_screen import LAYOUTS, Options, Panel, Status, table, watch_screen
 from pytpc.marking.watching import BINS, KeptRankings, Look, Seen, Watching
 from pytpc.marks import Mark
 from pytpc.scoring.live import LiveRanking
@@ -336,3 +336,23 @@ def test_the_clock_of_a_graph():
         assert "http://127.0.0.1:9 does not answer" in feed.fault()
     finally:
         feed.close()
+
+
+# The number takes 4 columns, the names 6. Score, Now ("8 > 10") and Flop take 6 + 2, Trend 8 + 2.
+# So all need 4 + 6 + 8 + 8 + 10 + 8 = 44, and of 45 the names get 7; without Flop 36, without Trend
+# 26, without Now 18. At 12 the names get all that is left, which is 8.
+@pytest.mark.parametrize(
+    ("width", "headings"),
+    [
+        (45, ["#", "Parame~", "Score", "Now", "Trend", "Flop"]),
+        (43, ["#", "Parameter", "Score", "Now", "Trend"]),
+        (30, ["#", "Parameter", "Score", "Now"]),
+        (21, ["#", "Parameter", "Score"]),
+        (12, ["#", "Paramet~"]),
+    ],
+)
+def test_columns_go_one_by_one_as_room_goes(width: int, headings: list[str]):
+    look = watching(*EVENTS).look(110 * S, 5)
+    lines = texts(table(look, "II", width, 5, utf8=True))
+    assert lines[1].split() == headings
+    assert lines[2].split()[1] == "~speed"
