@@ -38,6 +38,7 @@ from pytpc.summaries import Summaries
 from pytpc.words import Number, exact, show
 
 Direction = Literal["raise", "lower", "switch"]
+_CLOSE, _TINY = 1e-9, 1e-12
 _EQUALITIES = frozenset({"==", "!="})
 
 
@@ -219,7 +220,9 @@ def _feasible(case: _Case, thresholds: Intervals) -> Intervals:
     found = case.how.parameters(thresholds)
     if holds(found, case.present):
         # What the program rounds otherwise than we do must not come out as "leave it".
-        found = tuple(part for part in found if not part.holds(case.present))
+        slack = max(abs(case.present) * _CLOSE, _TINY)
+        beside = [Interval.below(case.present - slack), Interval.above(case.present + slack)]
+        found = intersection(found, beside)
     if found:
         return found
     if case.relation in _EQUALITIES:
@@ -277,8 +280,6 @@ def _choice_of(case: _Case, feasible: Intervals, declared: Declared) -> Suggesti
     up = float(value) > case.present
     boundary = inside.low if up else inside.high
     inclusive = inside.low_inclusive if up else inside.high_inclusive
-    if math.isinf(boundary):
-        boundary, inclusive = float(value), True
     source = parameter_name(case.comparison)
     now, then = (_names(declared, (number,)) for number in (case.current, value))
     text = f"switch {source} from {now} to {then}"
@@ -320,9 +321,7 @@ def _switch(case: _Case, kind: MarkType) -> Suggestion:
         return _switched(case, bool(other))
     values = case.how.parameters((Interval.point(other),))
     if not values:
-        raise NoneBecauseError(
-            "no value of the parameter gives the value that it was compared with"
-        )
+        raise NoneBecauseError("no value of the parameter gives the threshold before the change")
     value = min((part.first() for part in values), key=lambda one: abs(one - case.present))
     return _switched(case, case.number(value))
 

@@ -420,3 +420,52 @@ def does(cmps, thresh, relation, unit, kind, *, value):
         return any(a != b for a, b in zip(now, then, strict=True))
     flop = max(i for i in range(1, len(now)) if now[i] != now[i - 1])
     return then[flop] == then[flop - 1] == now[flop - 1]
+
+
+# mode == 5 was True of 5, and is False of 7: no mode is both. floor(x) is never 2.5.
+def test_equality_that_nothing_meets():
+    found = ask([(1, 5, 5), (2, 7, 5)], "I", "==", default=5)
+    assert found.reason == "no value is equal to both compared values of the last change"
+    how = Transform("expression", text="floor(x)", tree=("floor", "x"))
+    found = ask([(99, 2.5, 3)], "II", "==", type="derived", transform=how)
+    assert found.reason == "no value of the parameter gives the compared value exactly"
+
+
+# 3 > 2 was True; with the limit of 5 by now it is False, and what came since was no number.
+def test_a_window_that_would_do_by_now():
+    found = ask([(95, 3, 2), (99, NAN, 5)], "II")
+    assert found.reason == "the threshold has changed since, and would do as it is now"
+
+
+# 1e-300 * limit is at most 1.8e8 of doubles: never 1e10.
+def test_a_threshold_out_of_reach():
+    how = Transform("affine", 1e-300, 0.0, "1e-300 * x")
+    found = ask([(1, 0, 1), (2, 1e10, 1)], "I", type="derived", transform=how)
+    assert found.reason == "no finite threshold would change the outcome"
+
+
+# a || flag: a alone changed at 2 s; the flag was switched on at 2 s and off again at 3 s.
+def test_flags_that_are_not_to_blame():
+    flag = comparison(0, "limit", "flag")
+    alone = events([(1, 0, False, 1, 1), (2, 0, True, 1, 1)])
+    found = suggest(alone, flag, ns(9), "I")
+    assert found.reason == "another comparison of the same condition changed, not the flag"
+    back = events([(1, 0, False, 0, 0), (2, 0, True, 1, 1), (3, 0, True, 0, 0)])
+    assert suggest(back, flag, ns(9), "I").reason == "the flag has changed back since"
+    how = Transform("expression", text="floor(x)", tree=("floor", "x"))
+    odd = comparison(0, "limit", "flag", type="derived", transform=how, default=3)
+    table = events([(1, 0, False, 2.5, 2.5), (2, 0, True, 3, 3)])
+    found = suggest(table, odd, ns(9), "I")
+    assert found.reason == "no value of the parameter gives the threshold before the change"
+
+
+# The default 5 is taken for the parameter, though 5 * 0.2 is not just the threshold that was logged
+# (another compiler's rounding); 1 > 1.0000000000000002 is False, and True with 1. "Leave it at 5"
+# is no suggestion: a little less is.
+def test_rounding_leaves_something_to_do():
+    how = Transform("affine", 0.2, 0.0, "0.2 * x")
+    logged = math.nextafter(1, 2)
+    found = ask([(1, 1, logged)], "II", ">=", at=2, type="derived", transform=how, default=5.0)
+    assert found.current == 5
+    assert found.direction == "lower"
+    assert 4.99 <= found.value < 5

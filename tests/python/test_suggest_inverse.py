@@ -42,6 +42,14 @@ from pytpc.arithmetic import evaluate
         (("ceil", "x"), Interval.point(-2), "above -3 to -2"),
         # 100 div n of whole numbers: 100 div 4 = 25, 100 div 5 = 20.
         (("div", 100.0, "x"), Interval(20, 21, True, False), "above 4.7619 to 5"),
+        # 64 >> 2 = 16, and 2.9 is 2 when it is shifted by.
+        (("shr", 64.0, "x"), Interval.above(16, True), "from 0 to below 3"),
+        (("shr", "x", 2.0), Interval.point(3), "from 12 to below 16"),
+        # Of 10 rem x only what is asked about is known: 10 rem 1 = 0.
+        (("rem", 10.0, "x"), Interval.point(0), "exactly 1"),
+        (("pow", 0.5, "x"), Interval.above(4), "below -2"),
+        (("pow", -2.0, "x"), Interval.above(4), "no value"),
+        (("asin", "x"), Interval.above(0, True), "from 0 to 1"),
         # 2 * (x - 1)^2 <= 8: |x - 1| <= 2.
         (("*", 2.0, ("pow", ("+", "x", -1.0), 2.0)), Interval.below(8, True), "from -1 to 3"),
     ],
@@ -70,6 +78,14 @@ def test_what_begins_anew():
     for number in (0.6, 2.6, 0.6 + 2 * math.pi):
         assert holds(waves, number)
     assert not holds(waves, 2.7)
+    # cos x <= 0 from pi / 2 to 3 pi / 2.
+    half = preimage(("cos", "x"), (Interval.below(0, True),), 1.0)
+    assert holds(half, 1.6)
+    assert holds(half, 4.7)
+    assert not holds(half, 1.5)
+    assert not holds(half, 4.8)
+    # Where the present value has no remainder, nothing is known.
+    assert preimage(("rem", ("log", "x"), 2.0), (Interval.above(1),), -1.0) == ()
 
 
 # 0.1f is 0.100000001490116...: of a float the double 0.1 is not below that, as a float it is it.
