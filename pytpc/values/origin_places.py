@@ -129,16 +129,17 @@ class Places:
         of_tag = int(setting["lineno"])
         if setting.get("from") == "file":
             path, first = Path(setting["yaml"]), 0
-            found = self._files.settings(path, 0).get(below)
+            known = self._files.settings(path, 0)
             unknown = self._at(name, path, None, setting)
             unknown = replace(unknown, kind="yaml", via=(*unknown.via, f"{launch}:{of_tag}"))
         else:
             path, first = launch, 0
             span = self._files.text_of(launch, int(setting["offset"]))
-            found = None if span is None else self._files.settings(path, *span).get(below)
+            known = {} if span is None else self._files.settings(path, *span)
             if span is not None:
                 first = self._files.data(path)[: span[0]].count(b"\n")
             unknown = self._at(name, path, of_tag, setting)
+        found = known.get(below, known.get(name))
         if found is None:
             return replace(unknown, note="the line in it is not known")
         lineno = first + found.node.lineno
@@ -191,8 +192,11 @@ class Places:
 
 
 def _joined(keys: Sequence[str]) -> str:
-    """Keys of YAML as ROS joins them to a name; a key may have slashes itself."""
-    return "/".join(key.strip("/") for key in keys if key.strip("/"))
+    """Keys of YAML as ROS joins them to a name: one with a slash in front begins anew."""
+    name = ""
+    for key in keys:
+        name = key if key.startswith("/") or not name else f"{name.rstrip('/')}/{key}"
+    return name.rstrip("/")
 
 
 def keys_below(name: str, base: str) -> str:

@@ -60,7 +60,7 @@ def origins_of(
     launched: dict[str, Origin] = {}
     if trace is not None:
         for name, origin in Places(trace).origins().items():
-            for full, value in _leaves(name_on_server(name, at_end), origin.value):
+            for full, value in leaves(name_on_server(name, at_end), origin.value):
                 launched[full] = replace(origin, name=full, value=value)
     found = {}
     for name in sorted({*at_end, *launched}):
@@ -69,11 +69,11 @@ def origins_of(
     return found
 
 
-def _leaves(name: str, value: object) -> list[tuple[str, object]]:
+def leaves(name: str, value: object) -> list[tuple[str, object]]:
     """A ``<param type="yaml">`` may be a map: below the name there are several parameters."""
     if not isinstance(value, dict) or not value:
         return [(name, value)]
-    return [leaf for key, below in value.items() for leaf in _leaves(f"{name}/{key}", below)]
+    return [leaf for key, below in value.items() for leaf in leaves(f"{name}/{key}", below)]
 
 
 def _origin(

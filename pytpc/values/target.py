@@ -15,7 +15,7 @@ from pytpc.values.launch_xml import read_tags
 from pytpc.values.new_value import Refused, guessed, read_value
 from pytpc.values.origin_places import IN_ARGS
 from pytpc.values.origins import ORIGINS_FILE, Origin, origins_file, read_document, read_origins
-from pytpc.values.recording import origins_of
+from pytpc.values.recording import leaves, origins_of
 from pytpc.values.scalars import type_of
 from pytpc.values.trace import LaunchNode, trace_launch
 from pytpc.values.yaml_edit import all_settings, edit_yaml
@@ -64,9 +64,12 @@ def read_target(path: Path, args: Mapping[str, str], env: Mapping[str, str]) -> 
             )
         return _of_mission(path)
     trace = trace_launch(env, path, args)
-    values = {name: settings[-1].get("value") for name, settings in trace.settings.items()}
-    flat = {name: value for name, value in values.items() if not isinstance(value, dict)}
-    return Target(origins_of(trace, flat), trace.nodes, trace.launch)
+    values = dict(
+        leaf
+        for name, settings in trace.settings.items()
+        for leaf in leaves(name, settings[-1].get("value"))
+    )
+    return Target(origins_of(trace, values), trace.nodes, trace.launch)
 
 
 def _of_mission(path: Path) -> Target:

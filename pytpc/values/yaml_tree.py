@@ -8,7 +8,7 @@ resolves it, with ``deg()`` and ``rad()``.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
@@ -166,43 +166,48 @@ def _gather(
 ) -> None:
     if id(node) in open_maps:
         return
-    for key, value, way in _pairs(node, open_maps):
-        name = key.behind.text
+    for name, pair in _last_pairs(node).items():
         place = (*keys, name)
-        how = way or shared or ("alias" if value.kind == "alias" else "")
-        below = value.behind
+        how = pair.shared or shared or ("alias" if pair.value.kind == "alias" else "")
+        below = pair.value.behind
         if below.kind == "map":
-            if below.pairs:
-                _gather(below, place, how, found, (*open_maps, id(node)))
-            continue
-        before = found.pop(place, None)
-        earlier = () if before is None else (*before.earlier, before.node.lineno)
-        found[place] = Setting(place, key, below, value, how, earlier)
+            _gather(below, place, how, found, (*open_maps, id(node)))
+        else:
+            found[place] = Setting(place, pair.key, below, pair.value, how, pair.earlier)
 
 
-def _pairs(node: YamlNode, open_maps: tuple[int, ...]) -> Iterator[tuple[YamlNode, YamlNode, str]]:
-    """The pairs of a map in the order in which later ones override: merged ones come first."""
-    own: list[tuple[YamlNode, YamlNode, str]] = []
+@dataclass(frozen=True, slots=True)
+class _Pair:
+    """A pair of a map; ``earlier`` are the lines of equal keys that are written before it."""
+
+    key: YamlNode
+    value: YamlNode
+    shared: str = ""
+    earlier: tuple[int, ...] = ()
+
+
+def _last_pairs(node: YamlNode, open_maps: tuple[int, ...] = ()) -> dict[str, _Pair]:
+    """The pairs of a map that count: own ones before merged ones, of equal keys the last.
+
+    A value that does not count is replaced as a whole: maps are not merged into one another.
+    """
+    own: dict[str, _Pair] = {}
     merged: list[YamlNode] = []
     for key, value in node.pairs:
         if _is_merge(key):
             behind = value.behind
             merged += [behind] if behind.kind == "map" else [item.behind for item in behind.items]
         elif key.behind.kind == "scalar":
-            own.append((key, value, ""))
+            before = own.pop(key.behind.text, None)
+            earlier = () if before is None else (*before.earlier, before.key.lineno)
+            own[key.behind.text] = _Pair(key, value, earlier=earlier)
+    pairs: dict[str, _Pair] = {}
     # Of several merged maps the first holds.
     for below in reversed(merged):
         if id(below) not in open_maps:
-            for key, value, _ in _pairs(below, (*open_maps, id(node))):
-                yield key, value, "merge"
-    # Of equal keys PyYAML keeps the last, and of a map none of what an earlier one had.
-    last = {key.behind.text: index for index, (key, _, _) in enumerate(own)}
-    for index, pair in enumerate(own):
-        whole = (
-            pair[1].behind.kind == "map" or own[last[pair[0].behind.text]][1].behind.kind == "map"
-        )
-        if not whole or last[pair[0].behind.text] == index:
-            yield pair
+            for name, pair in _last_pairs(below, (*open_maps, id(node))).items():
+                pairs[name] = _Pair(pair.key, pair.value, "merge")
+    return {**pairs, **own}
 
 
 def _is_merge(key: YamlNode) -> bool:
@@ -215,15 +220,18 @@ def value_of(node: YamlNode) -> object:
     """What rosparam makes of a node.
 
     Raises:
-        ValueError: a tag that rosparam does not know, or a value that does not fit it.
+        ValueError: a tag that rosparam does not know, a value that does not fit it, or a list that
+            contains itself.
     """
-    node = node.behind
+    try:
+        return _value_of(node.behind)
+    except RecursionError:
+        raise ValueError(f"line {node.lineno}: it contains itself") from None
+
+
+def _value_of(node: YamlNode) -> object:
     if node.kind == "map":
-        return {key: value_of(value) for key, value in _last_pairs(node).items()}
+        return {name: _value_of(pair.value.behind) for name, pair in _last_pairs(node).items()}
     if node.kind == "list":
-        return [value_of(item) for item in node.items]
+        return [_value_of(item.behind) for item in node.items]
     return plain_value(node.text, node.tag, quoted=bool(node.style))
-
-
-def _last_pairs(node: YamlNode) -> Mapping[str, YamlNode]:
-    return {key.behind.text: value for key, value, _ in _pairs(node, ())}

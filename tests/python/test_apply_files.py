@@ -1,0 +1,150 @@
+"""``pytpc apply``: installed copies and their sources, and the notes for undo."""
+
+from __future__ import annotations
+
+import base64
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+from launch_samples import MANIFEST, needs_roslaunch
+
+from pytpc.cli.main import main
+from pytpc.errors import TpcError
+from pytpc.values.apply import Change, apply_change, replace_file
+from pytpc.values.installed import is_installed, of_the_system, source_of
+from pytpc.values.journal import Journal, folder_of
+
+PARAMS = "# mine\nmission:\n  limit: 0.058  # too high\n  other: 3\n"
+
+
+@pytest.fixture
+def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path))
+
+    def invoke(*words: object, status: int = 0) -> Result:
+        done = CliRunner().invoke(main, ["apply", *map(str, words)])
+        assert done.exit_code == status, done.output
+        return done
+
+    return invoke
+
+
+@pytest.fixture
+def params(tmp_path: Path) -> Path:
+    path = tmp_path / "params.yaml"
+    path.write_text(PARAMS)
+    return path
+
+
+# --- installed copies
+
+
+def workspace(tmp_path: Path) -> tuple[Path, Path]:
+    """A workspace with a source and its installed copy; returns both parameter files."""
+    source = tmp_path / "ws/src/group/robot"
+    share = tmp_path / "ws/install/robot/share/robot"
+    for folder in (source, share):
+        (folder / "config").mkdir(parents=True)
+        (folder / "package.xml").write_text(MANIFEST)
+        (folder / "config/p.yaml").write_text("limit: 0.5\n")
+    return source / "config/p.yaml", share / "config/p.yaml"
+
+
+@needs_roslaunch
+def test_the_source_of_an_installed_copy_is_changed(run, tmp_path: Path) -> None:
+    source, copy = workspace(tmp_path)
+    launch = tmp_path / "a.launch"
+    launch.write_text(f'<launch><rosparam file="{copy}"/></launch>')
+    done = run(launch, "limit", "0.25")
+    assert (source.read_text(), copy.read_text()) == ("limit: 0.25\n", "limit: 0.5\n")
+    assert f"the robot reads the installed copy {copy}" in done.stderr
+    assert "build the workspace again" in done.stderr
+    again = run(launch, "limit", "0.75")
+    assert "older or newer" in again.stderr
+    assert "the robot had 0.5; the file was changed since" in again.stderr
+
+
+@needs_roslaunch
+def test_an_installed_launch_file(run, tmp_path: Path) -> None:
+    source, copy = workspace(tmp_path)
+    text = '<launch>\n  <param name="limit" value="0.5"/>\n</launch>\n'
+    files = [folder.parent.parent / "launch/a.launch" for folder in (source, copy)]
+    for file in files:
+        file.parent.mkdir()
+        file.write_text(text)
+    run(files[1], "limit", "0.25")
+    assert [file.read_text() for file in files] == [text.replace("0.5", "0.25"), text]
+
+
+def test_sources(tmp_path: Path) -> None:
+    source, copy = workspace(tmp_path)
+    assert source_of(copy) == source
+    assert source_of(source) is None
+    assert (is_installed(copy), is_installed(source)) == (True, False)
+    # As `colcon build --symlink-install` leaves it.
+    copy.unlink()
+    copy.symlink_to(source)
+    assert source_of(copy) == source
+    # The package puts its files elsewhere than they stand.
+    moved = copy.parent.parent / "p.yaml"
+    moved.write_text("limit: 0.5\n")
+    assert source_of(moved) == source
+    # Without the sources.
+    alone = tmp_path / "alone/share/robot"
+    alone.mkdir(parents=True)
+    (alone / "package.xml").write_text(MANIFEST)
+    (alone / "p.yaml").write_text("a: 1\n")
+    assert source_of(alone / "p.yaml") is None
+    assert of_the_system(Path("/usr/share/robot/p.yaml"))
+    assert not of_the_system(Path("/usr/local/share/robot/p.yaml"))
+
+
+# --- the journal
+
+
+def test_a_change_that_somebody_was_faster_with(params: Path, tmp_path: Path) -> None:
+    journal = Journal(tmp_path / "journal")
+    change = Change("/a", params, b"older", b"newer", 1, 2, 1)
+    with pytest.raises(TpcError, match="somebody else has just changed it"):
+        apply_change(change, journal)
+    assert journal.entries() == []
+
+
+def test_without_a_note_nothing_is_written(run, params: Path, tmp_path: Path) -> None:
+    (tmp_path / "state").write_text("a file where the folder should be")
+    assert "cannot be noted for --undo" in run(params, "limit", "0.035", status=1).output
+    assert params.read_text() == PARAMS
+
+
+def test_a_note(run, params: Path, tmp_path: Path) -> None:
+    run(params, "limit", "0.035")
+    (note,) = (tmp_path / "state/tpc/applied").glob("*.json")
+    document = json.loads(note.read_text())
+    assert base64.b64decode(document["before"]) == PARAMS.encode()
+    # What stood in the file may be nobody else's business.
+    assert note.stat().st_mode & 0o777 == 0o600
+    note.write_text('{"schema": 9}')
+    assert f"{note}: not a change that was noted" in run("--list", status=1).output
+
+
+def test_where_the_notes_are(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("HOME", str(tmp_path))
+    home = tmp_path / ".local/state/tpc/applied"
+    assert folder_of({}) == home
+    # The standard says that a relative one does not count.
+    assert folder_of({"XDG_STATE_HOME": "relative"}) == home
+    assert folder_of({"XDG_STATE_HOME": "/x"}) == Path("/x/tpc/applied")
+
+
+def test_a_full_disk_leaves_the_file_as_it_was(params: Path, monkeypatch) -> None:
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("pytpc.atomic.os.fsync", full)
+    with pytest.raises(TpcError, match="No space left"):
+        replace_file(params, b"new")
+    assert params.read_text() == PARAMS
+    assert [path.name for path in params.parent.glob(".params*")] == []
