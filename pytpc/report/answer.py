@@ -17,7 +17,7 @@ class AnswerView:
 
     Of the values that the marks suggest it is the one that answers most of them, and among these
     the one that changes least elsewhere. ``numbers`` are the marks' numbers from 1, ``marks`` says
-    in words which they are.
+    in words which they are, ``types`` by which scores it comes first there.
     """
 
     numbers: tuple[int, ...]
@@ -25,6 +25,7 @@ class AnswerView:
     card: CardView
     plot: Markup
     others: list[CardView]
+    types: str
 
     @property
     def mark(self) -> str:
@@ -49,9 +50,15 @@ def answers(cards: Sequence[Sequence[CardView]]) -> list[AnswerView]:
     for places in groups.values():
         chosen = cards[min(places, key=lambda place: _worth(cards[place][0]))]
         numbers = tuple(place + 1 for place in places)
+        types = sorted({cards[place][0].row.type for place in places})
         found.append(
             AnswerView(
-                numbers, _marks(numbers, len(cards)), chosen[0], _copy(chosen[0]), [*chosen[1:]]
+                numbers=numbers,
+                marks=_marks(numbers, len(cards)),
+                card=chosen[0],
+                plot=_copy(chosen[0]),
+                others=[*chosen[1:]],
+                types=" and ".join(types),
             )
         )
     return sorted(found, key=lambda answer: (-len(answer.numbers), answer.numbers))

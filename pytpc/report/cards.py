@@ -6,7 +6,6 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-import numpy as np
 from markupsafe import Markup
 
 from pytpc.advice.advise import Advice, alternatives
@@ -18,12 +17,13 @@ from pytpc.marks import Mark
 from pytpc.report.mission import MissionReport
 from pytpc.report.payload import finite, series_of
 from pytpc.report.plots import EvidenceStyle, evidence_svg, span_of
+from pytpc.report.reasons import why
 from pytpc.report.series import Evidence, evidence
 from pytpc.report.source import LONGEST_LINE, Line, StepView, source_lines, way_of
 from pytpc.scoring.ranking import MarkRanking, Suspect
 from pytpc.static_info import Comparison
 from pytpc.values.origins import origin_for
-from pytpc.words import exact, many, show
+from pytpc.words import exact, show
 
 _PARTS = 2
 
@@ -79,6 +79,7 @@ class CardView:
     exposed: str
     others: int
     limit_name: str
+    kept: bool
     plot: Markup
     alone: str
     source: list[Line]
@@ -104,9 +105,8 @@ class Figures:
     def add(self, ident: str, key: str, card: dict[str, object]) -> None:
         """Keep a card's figure, and the evaluations of its TPC where they are not kept yet."""
         if key not in self._numbers:
-            recording = self._mission.recording
             self._numbers[key] = len(self.series)
-            self.series.append(series_of(recording.events, key, recording.start_ns))
+            self.series.append(series_of(self._mission.recording, key))
         self.cards[ident] = {**card, "series": self._numbers[key]}
 
 
@@ -172,6 +172,7 @@ def card_view(
         exposed=_exposed(found),
         others=len(suspect.keys) - 1,
         limit_name=found.name or suspect.parameter,
+        kept=bool(data.kept.size),
         # Made of matplotlib's own XML, in which it escapes every text.
         plot=Markup(evidence_svg(data, style, ident, label)),
         alone=label,
@@ -184,45 +185,6 @@ def card_view(
         what_if=advice.what_if,
         alternatives=_alternatives(mission, ranking, suspect),
     )
-
-
-def why(mission: MissionReport, suspect: Suspect, mark: Mark) -> str:
-    """What the suspect's comparison did before the mark, in one sentence; empty where nothing.
-
-    Type I: its last flop. Type II: its results in the window, and the evaluation that came nearest
-    to going the other way.
-    """
-    events = mission.recording.events
-    rows = events.by_key.rows(events.keys.index(suspect.key))
-    rows = rows[events.time_ns[rows] <= mark.time_ns]
-    flag = suspect.comparison.relation == "flag"
-    if suspect.type == "I":
-        flops = rows[events.flop[rows]]
-        if not flops.size:
-            return ""
-        row = int(flops[-1])
-        age = (mark.time_ns - int(events.time_ns[row])) / 1e9
-        with_what = "" if flag else f", with {show(float(events.cmp[row]))}"
-        against = "" if flag else f" against {show(float(events.thresh[row]))}"
-        truth = "true" if events.result[row] else "false"
-        return f"It became {truth} {age:.2f} s before the mark{with_what}{against}."
-    rows = rows[events.time_ns[rows] >= mark.time_ns - round(mission.window_s * 1e9)]
-    if not rows.size:
-        return ""
-    true = int(events.result[rows].sum())
-    times = many(int(rows.size), "time")
-    counted = (
-        f"{'true' if true else 'false'} each of {times}"
-        if true in (0, rows.size)
-        else f"true {true:,} of {times}"
-    )
-    text = f"In the {mission.window_s:g} s before the mark it was {counted}"
-    away = np.abs(events.cmp[rows] - events.thresh[rows])
-    if flag or not np.any(np.isfinite(away)):
-        return f"{text}."
-    nearest = int(rows[int(np.nanargmin(away))])
-    cmp, thresh = float(events.cmp[nearest]), float(events.thresh[nearest])
-    return f"{text}; the compared value came as near as {show(cmp)} to {show(thresh)}."
 
 
 def _evidence(mission: MissionReport, advice: Advice, mark: Mark) -> tuple[Evidence, EvidenceStyle]:
@@ -238,7 +200,10 @@ def _evidence(mission: MissionReport, advice: Advice, mark: Mark) -> tuple[Evide
         culprit=mission.is_changed(suspect.parameter),
         feasible=_feasible_thresholds(found, advice.suggestion),
     )
-    return evidence(recording.events, suspect.key, mark.time_ns, start, end), style
+    data = evidence(
+        recording.events, suspect.key, mark.time_ns, start, end, summaries=recording.summaries
+    )
+    return data, style
 
 
 def _figure(data: Evidence, style: EvidenceStyle, suspect: Suspect) -> dict[str, object]:
@@ -255,6 +220,7 @@ def _figure(data: Evidence, style: EvidenceStyle, suspect: Suspect) -> dict[str,
         "suggested": finite(style.suggested),
         "feasible": [[finite(low), finite(high)] for low, high in style.feasible],
         "culprit": style.culprit,
+        "kept": bool(data.kept.size),
         "flag": suspect.comparison.relation == "flag",
     }
 

@@ -16,10 +16,10 @@ import numpy.typing as npt
 from markupsafe import Markup
 
 from pytpc.columns import Floats
-from pytpc.events import Events
+from pytpc.ingest.recording import Recording
 from pytpc.marks import MarkType
 from pytpc.report.environment import seen
-from pytpc.report.series import gap_after, lane, runs, thin
+from pytpc.report.series import gap_after, kept_of, lane, rows_of, runs, thin
 from pytpc.scoring.curves import RankCurves
 
 KEPT = 200_000
@@ -46,15 +46,18 @@ def packed(values: npt.NDArray[np.generic]) -> str:
     ).decode("ascii")
 
 
-def series_of(events: Events, key: str, start_ns: int) -> dict[str, object]:
+def series_of(recording: Recording, key: str) -> dict[str, object]:
     """All evaluations of one TPC.
 
     Returns:
         ``t`` float32 seconds since the recording began, ``c`` float64 compared values, ``r`` uint8
         results, ``lt`` and ``lv`` float64 when the threshold became what it is, ``gap`` seconds
-        after which a line is not drawn on, ``of`` how many evaluations there were.
+        after which a line is not drawn on, ``of`` how many evaluations there were, ``kept`` the
+        four columns of `kept_of`.
     """
-    rows = events.by_key.rows(events.keys.index(key))
+    events, start_ns = recording.events, recording.start_ns
+    rows = rows_of(events, key)
+    spans = kept_of(recording.summaries, key, start_ns)
     seconds = (events.time_ns[rows] - start_ns) / 1e9
     kept = rows[thin(seconds, events.cmp[rows], KEPT)]
     limit = events.thresh[rows]
@@ -69,19 +72,30 @@ def series_of(events: Events, key: str, start_ns: int) -> dict[str, object]:
         "lv": packed(limit[change]),
         "gap": gap_after(seconds),
         "of": int(rows.size),
+        "kept": [packed(column) for column in spans],
     }
 
 
-def lanes_of(
-    events: Events, lanes: Sequence[tuple[str, str]], start_ns: int, end_ns: int
-) -> dict[str, object]:
+def lanes_of(recording: Recording, lanes: Sequence[tuple[str, str]]) -> dict[str, object]:
     """The lanes of the timeline, from pairs of (label, key)."""
-    states = [runs(lane(events, key, start_ns, end_ns, FINE)) for _, key in lanes]
+    found = [lane_of(recording, key, FINE) for _, key in lanes]
     return {
         "labels": [calm(label) for label, _ in lanes],
         "columns": FINE,
-        "runs": [packed(np.array(found, dtype=np.int32).reshape(-1)) for found in states],
+        "runs": [packed(np.array(runs(states), dtype=np.int32).reshape(-1)) for states in found],
     }
+
+
+def lane_of(recording: Recording, key: str, bins: int) -> npt.NDArray[np.int8]:
+    """int8[bins]: the states of one lane, see `pytpc.report.series.lane`."""
+    return lane(
+        recording.events,
+        key,
+        recording.start_ns,
+        recording.end_ns,
+        bins=bins,
+        summaries=recording.summaries,
+    )
 
 
 def curves_of(curves: RankCurves, names: Sequence[str], start_ns: int) -> dict[str, object]:

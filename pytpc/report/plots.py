@@ -128,6 +128,10 @@ def _values(axes: Axes, data: Evidence, style: EvidenceStyle) -> None:
     colour = COLOUR["culprit" if style.culprit else "value"]
     finite, limit = _drawable(data.cmp), _drawable(data.thresh)
     axes.plot(data.time, finite, color=colour, linewidth=1.4)
+    for begin, end, lowest, highest in data.kept.T:
+        axes.fill_between(
+            [begin, max(end, begin + 1e-3)], lowest, highest, color=colour, alpha=0.35, linewidth=1
+        )
     # A parameter keeps its value while nothing compares with it.
     known = np.flatnonzero(np.isfinite(data.time))
     around = [*known[:1], *known, *known[-1:]]
@@ -196,7 +200,8 @@ def span_of(data: Evidence, style: EvidenceStyle) -> tuple[float, float, bool]:
     """The ends of the axis of values, and whether values lie beyond them."""
     suggested = np.nan if style.suggested is None else style.suggested
     limits = np.append(_drawable(data.thresh), suggested)
-    low, high, beyond = _span(_drawable(data.cmp), limits)
+    values = np.concatenate([data.cmp, data.kept[2], data.kept[3]])
+    low, high, beyond = _span(_drawable(values), limits)
     margin = 0.08 * (high - low)
     return low - margin, high + margin + _HEADROOM * (high - low), beyond
 

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pytpc.events import Bools, Events, Floats, Int64s
+from pytpc.summaries import Summaries
 
 POINTS = 1200
 """The most points of a line; a plot is about 600 pixels wide."""
@@ -32,7 +33,8 @@ class Evidence:
     ``time``, ``cmp`` and ``thresh`` are float64[n], n at most ``POINTS`` and the gaps: where the
     TPC was not evaluated for a while stands a NaN. ``steps`` float64[k] and ``outcome`` bool[k]
     are the times at which the result began to be what it is, ``evaluations`` the number of
-    evaluations that they stand for, and ``ends`` when those end.
+    evaluations that they stand for, and ``ends`` when those end. ``kept`` float64[4, k] are the
+    summaries, as `kept_of` has them.
     """
 
     time: Floats
@@ -45,12 +47,46 @@ class Evidence:
     evaluations: int
     begin: float
     end: float
+    kept: Floats
 
 
-def evidence(events: Events, key: str, mark_ns: int, start_ns: int, end_ns: int) -> Evidence:
+def rows_of(events: Events, key: str) -> Int64s:
+    """The rows of a TPC; none where the events do not know it, for all of it is in summaries."""
+    if key not in events.keys:
+        return np.empty(0, dtype=np.int64)
+    return events.by_key.rows(events.keys.index(key))
+
+
+def kept_of(summaries: Summaries, key: str, start_ns: int) -> Floats:
+    """float64[4, k]: begin and end of each summary of a TPC, lowest and highest compared value.
+
+    Times are seconds since the recording began; what had no finite value is left out.
+    """
+    code = summaries.keys.index(key) if key in summaries.keys else -1
+    own = summaries.take(summaries.key == code)
+    found = np.stack(
+        [
+            (own.begin_ns - start_ns) / 1e9,
+            (own.end_ns - start_ns) / 1e9,
+            own.thresh + own.diff_min,
+            own.thresh + own.diff_max,
+        ]
+    )
+    return found[:, np.isfinite(found).all(axis=0)]
+
+
+def evidence(
+    events: Events,
+    key: str,
+    mark_ns: int,
+    start_ns: int,
+    end_ns: int,
+    *,
+    summaries: Summaries | None = None,
+) -> Evidence:
     """The evaluations from 20 s before a mark, or from the last flop if that is earlier, to 6 s
     after it, within the recording."""
-    rows = events.by_key.rows(events.keys.index(key))
+    rows = rows_of(events, key)
     times = events.time_ns[rows]
     begin = mark_ns - round(_AROUND_S[0] * 1e9)
     flops = times[events.flop[rows]]
@@ -67,6 +103,9 @@ def evidence(events: Events, key: str, mark_ns: int, start_ns: int, end_ns: int)
     change = np.flatnonzero(np.concatenate([[True], result[1:] != result[:-1]])[: result.size])
     kept_changes = change[thin(seconds[change], result[change].astype(np.float64), POINTS)]
     shown = flops[(flops >= begin) & (flops <= end)]
+    kept_spans = kept_of(summaries if summaries is not None else Summaries.empty(), key, start_ns)
+    from_to = (begin - start_ns) / 1e9, (end - start_ns) / 1e9
+    touching = (kept_spans[1] >= from_to[0]) & (kept_spans[0] <= from_to[1])
     return Evidence(
         time=lines[0],
         cmp=lines[1],
@@ -76,8 +115,9 @@ def evidence(events: Events, key: str, mark_ns: int, start_ns: int, end_ns: int)
         ends=float(seconds[-1]) if seconds.size else 0.0,
         flops=(shown - start_ns) / 1e9,
         evaluations=int(inside.size),
-        begin=(begin - start_ns) / 1e9,
-        end=(end - start_ns) / 1e9,
+        begin=from_to[0],
+        end=from_to[1],
+        kept=kept_spans[:, touching],
     )
 
 
@@ -112,15 +152,22 @@ def gap_after(time: Floats) -> float:
 
 
 def lane(
-    events: Events, key: str, start_ns: int, end_ns: int, bins: int = BINS
+    events: Events,
+    key: str,
+    start_ns: int,
+    end_ns: int,
+    *,
+    bins: int = BINS,
+    summaries: Summaries | None = None,
 ) -> npt.NDArray[np.int8]:
     """int8[bins]: what the TPC ``key`` gave in each of equal spans of the mission.
 
     A result holds until the next one, if that comes within 2 s and three usual periods of the TPC:
-    a slow one is not a row of dots, and a pause stays a pause.
+    a slow one is not a row of dots, and a pause stays a pause. A summary with flops is both in all
+    of its period.
     """
     states = np.zeros(bins, dtype=np.int8)
-    rows = events.by_key.rows(events.keys.index(key))
+    rows = rows_of(events, key)
     times, result = events.time_ns[rows], events.result[rows]
     place = (times - start_ns) * bins // max(1, end_ns - start_ns)
     place = np.clip(place, 0, bins - 1)
@@ -131,6 +178,13 @@ def lane(
         usual = min(_GAP_S * 1e9, _HOLD_PERIODS * float(np.median(steps)))
         for row in np.flatnonzero((np.diff(place) > 1) & (steps <= usual)):
             states[place[row] + 1 : place[row + 1]] = TRUE if result[row] else FALSE
+    if summaries is not None and key in summaries.keys:
+        own = summaries.take(summaries.key == summaries.keys.index(key))
+        ends = np.stack([own.begin_ns, own.end_ns]) - start_ns
+        spans = np.clip(ends * bins // max(1, end_ns - start_ns), 0, bins - 1)
+        known = np.where(own.flops > 0, BOTH, np.where(own.result, TRUE, FALSE))
+        for first, last, state in zip(*spans.tolist(), known.tolist(), strict=True):
+            states[first : last + 1] |= state
     return states
 
 

@@ -17,9 +17,9 @@ from matplotlib.figure import Figure
 from pytpc.columns import Floats
 from pytpc.marks import MarkType
 from pytpc.report.mission import MissionReport
-from pytpc.report.payload import curves_of, lanes_of
+from pytpc.report.payload import curves_of, lane_of, lanes_of
 from pytpc.report.plots import COLOUR, MARK_LINES, drawing, short, svg_of
-from pytpc.report.series import BINS, BOTH, FALSE, TRUE, lane, runs
+from pytpc.report.series import BINS, BOTH, FALSE, TRUE, runs
 from pytpc.scoring.curves import STEP_S, RankCurves, rank_curves
 
 _LANES = 8
@@ -70,10 +70,10 @@ def timeline(mission: MissionReport, ident: str) -> tuple[Markup, dict[str, obje
         order[-1] = changed
     if not order:
         return Markup(""), None
-    events, start, end = recording.events, recording.start_ns, recording.end_ns
+    start = recording.start_ns
     accent = order.index(changed) if changed is not None else 0
     lanes = [
-        Lane(name, lane(events, best[name][1], start, end), row == accent, name == changed)
+        Lane(name, lane_of(recording, best[name][1], BINS), row == accent, name == changed)
         for row, name in enumerate(order)
     ]
     marks = [(mission.seconds(mark.time_ns), mark.type) for mark in recording.marks]
@@ -94,7 +94,7 @@ def timeline(mission: MissionReport, ident: str) -> tuple[Markup, dict[str, obje
         ident=f"{ident}-t",
         label=f"{label} {len(marks)} marks",
     )
-    moving = lanes_of(events, [(name, best[name][1]) for name in order], start, end)
+    moving = lanes_of(recording, [(name, best[name][1]) for name in order])
     moving["curves"] = curves_of(curves, order, start)
     moving["accent"] = accent
     moving["culprit"] = changed is not None

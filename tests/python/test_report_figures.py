@@ -18,6 +18,7 @@ from pytpc.marks import Mark
 from pytpc.report.html import MissionReport
 from pytpc.report.series import FALSE, TRUE
 from pytpc.scoring.ranking import rank_marks
+from pytpc.summaries import Summary, SummaryBuilder
 
 NAN = math.nan
 
@@ -143,3 +144,49 @@ def test_names_stay_names_in_the_figures(tmp_path, name, shown):
     assert numbers_of(text)["timeline"]["labels"] == [shown]
     assert Page(text).tags["b"] == 0
     assert not set("\x00\u202e\u2028") & set(text)
+
+
+# Under the policy edges a report is made of the first evaluation alone, where nothing flops; the
+# summary from 20 to 30 s has 100 evaluations of 2 to 2.5 against 3, the one from 40 s on lies after
+# the mark. 2.5 is the nearest. Nothing of the second comparison is in the events.
+def test_summaries_are_drawn_as_spans(tmp_path):
+    def kept(number, begin, end):
+        return Summary(
+            *(key(number), "/node", ns(begin), ns(end), 100, 0, 100, 0, False, False),
+            *(2.4, 3.0, -1.0, -0.5, -0.7, 0.7, 2.0, 3.0),
+        )
+
+    builder = SummaryBuilder()
+    for one in (kept(0, 20, 30), kept(0, 40, 50), kept(1, 20, 30)):
+        builder.add(one)
+    rows = [(1, 0, False, 2.0, 3.0)]
+    recording = Recording(
+        "edges",
+        events(rows),
+        (Mark(ns(31), "II"),),
+        0,
+        ns(60),
+        summaries=builder.build(),
+    )
+    static = static_info(comparison(0, "a"), comparison(1, "b"))
+    report = MissionReport("edges", recording, static, rank_marks(recording, static))
+    text = written(tmp_path, report)
+    numbers = numbers_of(text)
+    cards = [numbers["cards"][f"m1-1-{place}"] for place in (1, 2)]
+    assert [card["kept"] for card in cards] == [True, True]
+    spans = [
+        [unpacked(column, "<f8").tolist() for column in numbers["series"][card["series"]]["kept"]]
+        for card in cards
+    ]
+    assert spans == [[[20, 40], [30, 50], [2, 2], [2.5, 2.5]], [[20], [30], [2], [2.5]]]
+    # 6000 columns of a hundredth of a second; the first evaluation stands alone at 1 s.
+    lanes = dict(zip(numbers["timeline"]["labels"], numbers["timeline"]["runs"], strict=True))
+    assert unpacked(lanes["b"], "<i4").tolist() == [FALSE, 2000, 1001]
+    assert unpacked(lanes["a"], "<i4").reshape(-1, 3).tolist() == [
+        [FALSE, 100, 1],
+        [FALSE, 2000, 1001],
+        [FALSE, 4000, 1001],
+    ]
+    shown = " ".join("".join(Page(text).text).split())
+    said = "In the 12 s before the mark it was false each of 100 times; the compared value came as"
+    assert f"{said} near as 2.5 to 3." in shown

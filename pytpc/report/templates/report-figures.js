@@ -30,6 +30,13 @@ const tpcFigures = (() => {
     return new Kind(bytes.buffer);
   };
 
+  const longer = (values, last) => {
+    const all = new Float64Array(values.length + 1);
+    all.set(values);
+    all[values.length] = last;
+    return all;
+  };
+
   const missionOf = (ident) => {
     if (!missions.has(ident)) {
       missions.set(ident, JSON.parse(document.getElementById(`${ident}-numbers`).textContent));
@@ -44,9 +51,10 @@ const tpcFigures = (() => {
       kept.c = unpacked(kept.c, Float64Array);
       kept.r = unpacked(kept.r, Uint8Array);
       // A parameter keeps its value up to the end.
-      kept.lt = Float64Array.of(...unpacked(kept.lt, Float64Array), mission.seconds);
       const values = unpacked(kept.lv, Float64Array);
-      kept.lv = Float64Array.of(...values, values[values.length - 1]);
+      kept.lt = longer(unpacked(kept.lt, Float64Array), mission.seconds);
+      kept.lv = longer(values, values.length ? values[values.length - 1] : NaN);
+      kept.kept = kept.kept.map((column) => unpacked(column, Float64Array));
     }
     return kept;
   };
@@ -291,6 +299,16 @@ const tpcFigures = (() => {
       renderer.nonselection_glyph = null;
       paint(renderer.glyph, properties);
     };
+    if (card.kept) {
+      // Of what is only in summaries the outermost values are known.
+      const [left, right, bottom, top] = series.kept.map((column) => Array.from(column));
+      const glyph = new Bokeh.Quad({
+        left: { field: "left" }, right: { field: "right" }, bottom: { field: "bottom" }, top: { field: "top" },
+        fill_alpha: 0.3,
+      });
+      draw(upper, glyph, new Bokeh.ColumnDataSource({ data: { left, right, bottom, top } }),
+        { fill_color: value, line_color: value });
+    }
     draw(upper, new Bokeh.Line({ ...at, line_width: 1.6 }), sources.line, { line_color: value });
     draw(upper, new Bokeh.Step({ ...at, mode: "after", line_width: 1.8, line_dash: [8, 3] }),
       sources.limit, { line_color: "limit" });

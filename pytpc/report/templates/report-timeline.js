@@ -34,10 +34,11 @@ const tpcTimeline = (() => {
       }
       const glyph = new Bokeh.Quad({
         left: { field: "left" }, right: { field: "right" }, top: { field: "top" }, bottom: { field: "bottom" },
-        line_color: null,
+        line_width: 1.2, // so that a single evaluation is seen in a long mission
       });
       const renderer = figure.add_glyph(glyph, new Bokeh.ColumnDataSource({ data }));
-      paint(renderer.glyph, { fill_color: row === accent ? (culprit ? "culprit" : "value") : "lane" });
+      const name = row === accent ? (culprit ? "culprit" : "value") : "lane";
+      paint(renderer.glyph, { fill_color: name, line_color: name });
     });
     const numbers = new Bokeh.ColumnDataSource({
       data: {
