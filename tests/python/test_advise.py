@@ -148,6 +148,29 @@ def test_marks_that_say_something_else_stay_apart():
     assert groups[1].reasons == ("nothing",)
 
 
+# At both marks ~cover is first; ~limit is second at 16 s and not among the first at 20 s. In the
+# mean of both ~cover is before it.
+def test_the_order_of_joined_suspects():
+    recording, rankings = mission()
+    cover, faces = one(rankings, 1, "~cover").suspects[0], one(rankings, 1, "~limit").suspects[0]
+    both = (replace(cover, position=1), replace(faces, position=2))
+    first = replace(rankings[1], suspects=both)
+    (group,) = join_advice(recording, STATIC, [first, one(rankings, 2, "~cover")], top=2)
+    names = [(one.advice.suspect.parameter, one.named) for one in group.suspects]
+    assert names == [("~cover", 2), ("~limit", 1)]
+    (group,) = join_advice(recording, STATIC, [first], top=2)
+    assert [one.advice.suspect.parameter for one in group.suspects] == ["~cover", "~limit"]
+
+
+# Two marks at which the same would do: the advice is that of the earlier one.
+def test_of_advice_as_good_the_first():
+    recording, rankings = mission((Mark(ns(15), "II"), Mark(ns(16), "II")))
+    same = [one(rankings, 0, "~cover"), one(rankings, 1, "~cover")]
+    (group,) = join_advice(recording, STATIC, same)
+    assert group.suspects[0].advice.suspect == same[0].suspects[0]
+    assert group.suspects[0].agreed == 2
+
+
 # Where the range leaves a value at neither mark there is still one that says why.
 def test_joined_without_a_value():
     recording, rankings = mission()

@@ -135,11 +135,17 @@ def test_files_that_are_no_such_thing(tmp_path):
     (tmp_path / "build").mkdir()
     (tmp_path / "build" / "Copy.cfg").write_text(HEAD + "gen.add('a', bool_t, 0, '', True)\n")
     (tmp_path / "Huge.cfg").write_bytes(HEAD.encode() + b"#" * (1 << 20))
+    (tmp_path / "Loop.cfg").symlink_to(tmp_path / "Loop.cfg")
     said = []
     assert read_declared([tmp_path, tmp_path / "gone"], said.append) == []
-    assert [line.rpartition("/")[2].split(": ")[0] for line in said] == ["Huge.cfg", "Old.cfg:4"]
+    assert [line.rpartition("/")[2].split(": ")[0] for line in said] == [
+        "Huge.cfg",
+        "Loop.cfg",
+        "Old.cfg:4",
+    ]
     assert said[0].endswith("too large")
-    assert "not Python 3" in said[1]
+    assert said[1].endswith("Too many levels of symbolic links")
+    assert "not Python 3" in said[2]
 
 
 def suspect(parameter, node="/node"):
@@ -251,6 +257,14 @@ def test_descriptions_in_a_bag(tmp_path):
         for time in (1, 2):
             raw = store.serialize_ros1(description(store), kind)
             writer.write(connection, time, raw)
+        # A topic of that name of another type, and one of that type with another name.
+        wrong = writer.add_connection(
+            "/n/parameter_descriptions", "std_msgs/msg/String", typestore=STORE, callerid="/n"
+        )
+        text = STORE.types["std_msgs/msg/String"](data="x")
+        writer.write(wrong, 3, STORE.serialize_ros1(text, "std_msgs/msg/String"))
+        relayed = writer.add_connection("/relayed", kind, typestore=store, callerid="/relay")
+        writer.write(relayed, 3, store.serialize_ros1(description(store), kind))
         other = writer.add_connection("/x", "std_msgs/msg/String", typestore=STORE, callerid="/x")
         text = STORE.types["std_msgs/msg/String"](data="x")
         writer.write(other, 3, STORE.serialize_ros1(text, "std_msgs/msg/String"))
