@@ -198,7 +198,23 @@ def _edit_attribute(
     text = launch_text(new, given, kind, old_text)
     piece = _encoded(written(text, attribute.quote), encoding_of(data))
     result = data[: attribute.start] + piece + data[attribute.end :]
+    _check(data, result, (tag.offset, attribute.name), text)
     return LaunchEdit(result, old, new, _line_at(data, attribute.start), tuple(notes))
+
+
+def _check(data: bytes, result: bytes, place: tuple[int, str], text: str) -> None:
+    """See that the new file says what it should: this attribute is new, and no other one."""
+    before, after = tags_of(data), tags_of(result)
+    wanted = [
+        {
+            name: text if (tag.offset, name) == place else attribute.value
+            for name, attribute in tag.attributes.items()
+        }
+        for tag in before
+    ]
+    found = [{name: one.value for name, one in tag.attributes.items()} for tag in after]
+    if found != wanted or [tag.name for tag in before] != [tag.name for tag in after]:
+        raise Refused("it cannot be written without changing something else")
 
 
 def _typed(given: str, kind: str) -> object:

@@ -183,23 +183,25 @@ def _check(
 
     ``changed`` has them by the number of the document and the keys.
     """
-    after = all_settings(text)
-    wanted: dict[tuple[int, Keys], object] = {
-        (number, keys): _value(setting.node)
-        for number, document in enumerate(before)
-        for keys, setting in document.items()
-    }
-    wanted.update(changed)
-    found = {
-        (number, keys): _value(setting.node)
-        for number, document in enumerate(after)
-        for keys, setting in document.items()
-    }
-    # repr tells 1 from 1.0 and takes NaN for NaN.
-    if {place: repr(value) for place, value in found.items()} != {
-        place: repr(value) for place, value in wanted.items()
-    }:
+    wanted, found = _all_values(before), _all_values(all_settings(text))
+    for place, value in changed.items():
+        wanted[place] = (repr(value), wanted[place][1])
+    if found != wanted:
         raise Refused("it cannot be written without changing something else")
+
+
+def _all_values(
+    documents: list[Mapping[Keys, Setting]],
+) -> dict[tuple[int, Keys], tuple[str, int]]:
+    """The values of all documents, each with how often its keys stand before it.
+
+    As text, which tells 1 from 1.0 and takes NaN for NaN.
+    """
+    return {
+        (number, keys): (repr(_value(setting.node)), len(setting.earlier))
+        for number, document in enumerate(documents)
+        for keys, setting in document.items()
+    }
 
 
 def _value(node: YamlNode) -> object:

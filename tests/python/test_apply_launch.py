@@ -58,6 +58,14 @@ def test_a_param_that_is_refused(attributes: str, given: str, said: str) -> None
     assert said in str(refused.value)
 
 
+@pytest.mark.parametrize("text", ['8"/><param name="y" value="9', '8" b="9', "8<", "9 "])
+def test_a_text_that_would_say_something_else_is_not_written(monkeypatch, text: str) -> None:
+    """The net below all else: whatever the new file is, it is read before it is written."""
+    monkeypatch.setattr("pytpc.values.launch_edit.written", lambda *_: text)
+    with pytest.raises(Refused, match=r"cannot be written without changing|not XML"):
+        edit_param(param('name="x" value="7"').encode(), "/x", 3, "8")
+
+
 def test_what_roslaunch_works_out_is_replaced_by_force() -> None:
     data = param('name="x" value="$(eval 1+2)"').encode()
     edit = edit_param(data, "/n/x", 3, "0.5", force=True)

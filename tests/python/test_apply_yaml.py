@@ -122,6 +122,14 @@ def test_refused(text: str, name: str, given: str, said: str) -> None:
     assert said in str(refused.value)
 
 
+@pytest.mark.parametrize("written", ["2.5, b: 7", "2.5, c: 7", "3.5", "2.5 # ", "'2.5'"])
+def test_a_text_that_would_say_something_else_is_not_written(monkeypatch, written: str) -> None:
+    """The net below all else: whatever the new text is, it is read before it is written."""
+    monkeypatch.setattr("pytpc.values.yaml_edit.yaml_text", lambda *_, **__: written)
+    with pytest.raises(Refused, match=r"cannot be written without changing|not YAML"):
+        edit_yaml("{a: 1.5, b: 2}", ("a",), "2.5")
+
+
 FORCED = [
     ("a: 25\n", "a", "2.5", "a: 2.5\n"),
     ("a: 2.5\n", "a", "high", "a: high\n"),

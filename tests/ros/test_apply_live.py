@@ -190,6 +190,20 @@ def test_an_end_of_the_name(apply, graph: RosGraph) -> None:
     assert apply("--undo").exit_code == 0
 
 
+def test_the_node_ends_before_the_undo(apply, graph: RosGraph) -> None:
+    node = graph.start("gone", ["/usr/bin/python3", "-c", NODE, "__name:=gone"])
+    deadline = time.monotonic() + 20
+    while "/gone/set_parameters" not in json.dumps(graph.call("getSystemState")):
+        assert time.monotonic() < deadline, "the node does not come up"
+        time.sleep(0.1)
+    assert "goes on without a restart" in apply("--live", "/gone/limit", "0.75").output
+    graph.stop(node)
+    # What the next node will read is set back all the same.
+    undone = apply("--undo")
+    assert undone.exit_code == 0, undone.output
+    assert graph.call("getParam", "/gone/limit") == 0.5
+
+
 def test_no_master(apply, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ROS_MASTER_URI", "http://127.0.0.1:9")
     done = apply("--live", "/plain/gain", "3")
