@@ -321,10 +321,13 @@ def test_where_the_value_came_from_is_on_the_card(tmp_path):
     assert "loaded by /launch/robot.launch:3instead of /else/where.yaml:9" in text
 
 
+# Below 0.5 would do; the highest of 0, 0.05, 0.1, ... below it is 0.45.
 def test_what_is_declared_is_on_the_card(tmp_path):
-    declared = Declared("coverage", "double", 0.0, 0.55, 0.05, 0.5, (), "how much", "cfg/A.cfg:4")
+    place = f"{tmp_path}/src/cfg/A.cfg:4"
+    declared = Declared("coverage", "double", 0.0, 0.55, 0.05, 0.5, (), "how much", place)
     text = "".join(Page(written(tmp_path, mission(tmp_path, declared=[declared]))).text)
-    assert "double from 0 to 0.55, in steps of 0.05 cfg/A.cfg:4" in text
+    assert f"double from 0 to 0.55, in steps of 0.05 {place}" in text
+    assert "Lower coverage changed from 0.6 to 0.45" in " ".join(text.split())
 
 
 def test_the_package_brings_its_templates():
