@@ -206,7 +206,23 @@ class StaticInfo:
         data = parse_json(path)
         if isinstance(data, dict) and "link_unit" in data:
             return cls.of([load_link_unit(path)], path)
-        return cls.from_json(data, path)
+        return cls.from_json(_rooted(data, path.absolute().parent), path)
+
+
+def _rooted(data: object, folder: Path) -> object:
+    """The document with sources that are given relative to its ``folder`` as absolute paths.
+
+    Static information that is passed on together with the sources says so.
+    """
+    if not isinstance(data, dict) or not isinstance(data.get("units"), list):
+        return data
+    units = [
+        {**unit, "source_root": os.path.normpath(folder / unit["source_root"])}
+        if isinstance(unit, dict) and isinstance(unit.get("source_root"), str)
+        else unit
+        for unit in data["units"]
+    ]
+    return {**data, "units": units}
 
 
 def load_link_unit(path: Path) -> LinkUnit:

@@ -5,7 +5,9 @@ from __future__ import annotations
 from importlib import import_module
 
 import click
+from click.shell_completion import CompletionItem
 
+from pytpc.cli.completion_commands import completing
 from pytpc.errors import TpcError
 
 INTERRUPTED = 130
@@ -16,6 +18,7 @@ SUMMARIES = {
     "blind-spots": ("explain_commands", "List the places behind which the analysis does not see."),
     "build": ("workspace_commands", "Build a workspace with analysis and instrumentation."),
     "collect": ("static_commands", "Merge the static information of link units into one file."),
+    "completion": ("completion_commands", "Print what makes bash, zsh or fish complete pytpc."),
     "convert": ("event_commands", "Read bags, binary files, logs or CSV into Parquet."),
     "doctor": ("machine_commands", "Say what is wrong with this machine, or with a workspace."),
     "explain": ("explain_commands", "Show the way from a parameter to what is exposed."),
@@ -33,8 +36,10 @@ SUMMARIES = {
     "show": ("static_commands", "Show all that is known about a comparison."),
     "sink": ("graph_commands", "Show and change where running nodes report to."),
     "stats": ("stats_commands", "Tables and figures of a study from recorded missions."),
+    "suggest": ("advice_commands", "Say what to do with the suspects, and what it would change."),
     "survey": ("survey_commands", "Build source trees with and without TPC; tables."),
     "toolchain": ("machine_commands", "Print what to type to build with TPC by another tool."),
+    "watch": ("watch_commands", "Show the suspected parameters while the robot runs; mark."),
 }
 
 
@@ -53,7 +58,16 @@ class _Commands(click.Group):
         commands: list[click.Command] = import_module(
             f"pytpc.cli.{SUMMARIES[cmd_name][0]}"
         ).COMMANDS
-        return next(command for command in commands if command.name == cmd_name)
+        return completing(next(command for command in commands if command.name == cmd_name))
+
+    def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
+        """The commands that begin so; none is imported for it."""
+        found = [
+            CompletionItem(name, help=summary)
+            for name, (_, summary) in SUMMARIES.items()
+            if name.startswith(incomplete)
+        ]
+        return [*found, *click.Command.shell_complete(self, ctx, incomplete)]
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         with formatter.section("Commands"):

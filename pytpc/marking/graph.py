@@ -54,10 +54,12 @@ class GraphMarks:
     Args:
         master: URI of the ROS master.
         observer: namespace of the topics, empty for none.
+        what: what the observer is doing, for the title.
     """
 
-    def __init__(self, master: str, observer: str) -> None:
+    def __init__(self, master: str, observer: str, what: str = "marking") -> None:
         """See the class; connects in the background."""
+        self._what = what
         self._master = master
         self._observer = observer
         self._name = f"/tpc_mark_{os.getpid()}_{secrets.token_hex(3)}"
@@ -106,9 +108,9 @@ class GraphMarks:
         clock = "simulated time" if self._clock_ns is not None else "wall time"
         clock = "no /clock yet" if now_ns is None else clock
         status = f"{self._fault or 'connected'}; {heard}; {clock}"
-        return View(f"marking{who} on {self._master}", (status,), start_ns, now_ns)
+        return View(f"{self._what}{who} on {self._master}", (status,), start_ns, now_ns)
 
-    def send(self, change: Change) -> None:
+    def send(self, change: Change) -> str:
         """Tell the graph what happened to the marks."""
         before, after = change
         if after is None and before is not None:
@@ -117,6 +119,7 @@ class GraphMarks:
             self._say(NOTE_TOPIC, encode_string(note_text(after.time_ns, after.note)))
         elif after is not None:
             self._publish(topic_for(after), encode_time(after.time_ns))
+        return ""
 
     def tick(self) -> None:
         """Send what nobody heard to who has come since, in its order."""

@@ -191,16 +191,16 @@ def screen(session: Session, view: View, width: int, height: int) -> list[str]:
     keys = [f"{key} {MEANINGS[kind]}" for key, kind in _KEYS.items()]
     more = "  ".join(key.replace(" ", _NO_BREAK) for key in (*_OTHER_KEYS, *view.help))
     above = [view.title, *view.status, *keys, more]
-    lines = [part for line in above for part in _folded(line, width)]
+    lines = [part for line in above for part in folded(line, width)]
     foot = [session.said]
     if session.typing is not None:
         foot = [f"note: {session.typing}_"]
-    foot = [part for line in foot for part in _folded(line, width)]
+    foot = [part for line in foot for part in folded(line, width)]
     room = max(1, height - len(lines) - len(foot) - 1)
     shown = session.marks[-room:]
     of_all = f"{len(session.marks)} marks" if len(session.marks) != 1 else "1 mark"
-    lines.append(_cut(of_all + (":" if shown else ""), width))
-    lines += [_cut(_line(mark, view), width) for mark in shown]
+    lines.append(cut(of_all + (":" if shown else ""), width))
+    lines += [cut(_line(mark, view), width) for mark in shown]
     return (lines + foot)[:height]
 
 
@@ -219,14 +219,14 @@ def _line(mark: Mark, view: View) -> str:
     return f"{clock_text(mark.time_ns - view.start_ns):>9}  {kind:2}  {mark.note}".rstrip()
 
 
-def _folded(line: str, width: int) -> list[str]:
+def folded(line: str, width: int) -> list[str]:
     """The line in pieces that fit, what belongs together if possible in one piece."""
     parts = textwrap.wrap(line, max(1, width), subsequent_indent="  " if width > 10 else "")
-    return [_cut(part.replace(_NO_BREAK, " "), width) for part in parts or [""]]
+    return [cut(part.replace(_NO_BREAK, " "), width) for part in parts or [""]]
 
 
-def _cut(line: str, width: int) -> str:
-    """``width`` columns of it; some characters take two."""
+def cut(line: str, width: int) -> str:
+    """At most ``width`` columns of it; some characters take two."""
     line = plain(line)
     if cell_len(line) <= width:
         return line

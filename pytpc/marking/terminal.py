@@ -5,7 +5,7 @@ from __future__ import annotations
 import select
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from typing import Protocol
@@ -62,8 +62,8 @@ class Mission(Protocol):
     def view(self) -> View:
         """What is to be shown of it."""
 
-    def send(self, change: Change) -> None:
-        """Something happened to the marks."""
+    def send(self, change: Change) -> str:
+        """Something happened to the marks; what the observer is to be told of it, or nothing."""
 
     def tick(self) -> None:
         """Called several times a second."""
@@ -101,8 +101,9 @@ class RecordedMission:
         status = f"{at} of {whole}, {state}, speed {player.speed:g}"
         return View(self._title, (status,), player.start_ns, self.now_ns(), PLAYER_HELP)
 
-    def send(self, change: Change) -> None:
+    def send(self, change: Change) -> str:
         """Nobody else is to know."""
+        return ""
 
     def tick(self) -> None:
         """The clock goes by itself."""
@@ -111,8 +112,38 @@ class RecordedMission:
         """There is nothing to end."""
 
 
-def run(session: Session, mission: Mission, file: MarksFile) -> Session:
+class Paint(Protocol):
+    """Makes the lines of a screen; ``utf8`` says whether the terminal takes more than ASCII."""
+
+    def __call__(
+        self, session: Session, view: View, width: int, height: int, *, utf8: bool
+    ) -> Sequence[Text]:
+        """At most ``height`` lines, none wider than ``width``."""
+
+
+def paint_marks(
+    session: Session, view: View, width: int, height: int, *, utf8: bool
+) -> Sequence[Text]:
+    """The screen of ``mark``."""
+    return [Text(line) for line in screen(session, view, width, height)]
+
+
+def run(
+    session: Session,
+    mission: Mission,
+    file: MarksFile,
+    *,
+    paint: Paint = paint_marks,
+    full: bool = False,
+) -> Session:
     """Mark until the observer ends it, or a signal does; the marks are in the file then.
+
+    Args:
+        session: with the marks of before.
+        mission: what is marked.
+        file: where the marks are kept.
+        paint: makes the screen.
+        full: take the whole screen, and leave what stood there as it was.
 
     Raises:
         RunError: standard input is no terminal.
@@ -122,7 +153,7 @@ def run(session: Session, mission: Mission, file: MarksFile) -> Session:
         raise RunError("the keys are read from a terminal, and standard input is none")
     console = Console()
     try:
-        with signals_end(), _keys() as read, _shown(console) as show:
+        with signals_end(), _keys() as read, _shown(console, paint, full=full) as show:
             while not session.ended:
                 show(session, mission.view())
                 for key in read():
@@ -131,7 +162,9 @@ def run(session: Session, mission: Mission, file: MarksFile) -> Session:
                     session, change = press(session, key, mission.now_ns())
                     if change is not None:
                         file.take(change)
-                        mission.send(change)
+                        told = mission.send(change)
+                        if told:
+                            session = replace(session, said=f"{session.said}: {told}")
                         session = _saved(session, file)
                 mission.tick()
                 session = _saved(session, file)
@@ -186,15 +219,18 @@ def _named(pressed: KeyPress) -> list[str]:
 
 
 @contextmanager
-def _shown(console: Console) -> Iterator[Callable[[Session, View], None]]:
+def _shown(
+    console: Console, paint: Paint, *, full: bool
+) -> Iterator[Callable[[Session, View], None]]:
     """A function that shows the session: in place, or where that is not possible, line by line
     what is new."""
     if console.is_terminal and not console.is_dumb_terminal:
-        with Live(console=console, auto_refresh=False, transient=True) as live:
+        utf8 = console.encoding.startswith("utf")
+        with Live(console=console, auto_refresh=False, transient=not full, screen=full) as live:
 
             def draw(session: Session, view: View) -> None:
-                lines = screen(session, view, console.width, console.height)
-                text = Text("\n".join(lines), no_wrap=True, overflow="crop")
+                lines = paint(session, view, console.width, console.height, utf8=utf8)
+                text = Text("\n", no_wrap=True, overflow="crop").join(lines)
                 live.update(text, refresh=True)
 
             yield draw
@@ -205,7 +241,8 @@ def _shown(console: Console) -> Iterator[Callable[[Session, View], None]]:
         nonlocal told
         said = session.said if session.typing is None else "note (Enter ends it):"
         if told is None:
-            print("\n".join(screen(session, view, _DUMB_WIDTH, _DUMB_HEIGHT)), flush=True)
+            lines = paint(session, view, _DUMB_WIDTH, _DUMB_HEIGHT, utf8=False)
+            print("\n".join(line.plain for line in lines if line.plain), flush=True)
         elif said and told != (len(session.marks), said):
             print(said, flush=True)
         told = len(session.marks), said

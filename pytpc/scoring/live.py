@@ -307,10 +307,14 @@ class LiveRanking:
 
         Where the mark is older than what is kept, there is not enough evidence any more.
         """
+        return self.rankings_at(mark.time_ns, [mark])[0]
+
+    def rankings_at(self, mark_ns: int, marks: Sequence[Mark]) -> list[MarkRanking]:
+        """The same for several marks of one time, whose scores are worked out once."""
         try:
-            first, second = self.scores.scores_at(mark.time_ns)
+            first, second = self.scores.scores_at(mark_ns)
         except TooOldError:
             reason = f"the mark is more than {LATE_S:g} s older than the newest reports"
-            return MarkRanking(mark, (), len(self._tpcs.names), False, reason)
+            return [MarkRanking(one, (), len(self._tpcs.names), False, reason) for one in marks]
         tables = parameter_tables(self._tpcs, TpcScores(first[np.newaxis], second[np.newaxis]))
-        return self._ranker.ranking(mark, tables, 0)
+        return [self._ranker.ranking(mark, tables, 0) for mark in marks]

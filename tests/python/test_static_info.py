@@ -337,6 +337,20 @@ def test_a_broken_merged_document_is_located(
     assert str(caught.value).startswith(f"{path}: {expected}")
 
 
+# Passed on together with its sources, wherever it is unpacked.
+def test_a_source_root_may_be_relative_to_the_merged_document(tmp_path: Path) -> None:
+    one = LinkUnit.from_json(unit(comparisons=[comparison()]), tmp_path)
+    document = StaticInfo.of([one]).to_json()
+    document["units"][0]["source_root"] = "../sources/a"
+    path = write(tmp_path / "static" / "static.json", document)
+    static = read_static(path)
+    assert static.units[0].source_root == str(tmp_path / "sources/a")
+    found = static.comparisons[KEYS[0]]
+    assert static.source_path(KEYS[0]) == tmp_path / "sources/a" / found.file
+    # A link unit's own file has an absolute one, as before.
+    assert "source_root" in message(write(tmp_path / "a.json", unit(source_root="a")))
+
+
 def test_read_static_takes_every_form(tmp_path: Path) -> None:
     base = two_packages(tmp_path / ".tpc" / "build")
     expected = collect(base)

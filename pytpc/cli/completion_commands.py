@@ -1,0 +1,130 @@
+"""Commands for the shell: ``completion``."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable
+from pathlib import Path
+
+import click
+from click.shell_completion import CompletionItem, get_completion_class, split_arg_string
+
+from pytpc.paths import MERGED_FILE, OWN_FOLDER
+
+_VARIABLE = "_PYTPC_COMPLETE"
+_SHELLS = ("bash", "zsh", "fish")
+_WHERE = {
+    "bash": 'eval "$(pytpc completion bash)"   # in ~/.bashrc',
+    "zsh": 'eval "$(pytpc completion zsh)"   # in ~/.zshrc, after compinit',
+    "fish": "pytpc completion fish > ~/.config/fish/completions/pytpc.fish",
+}
+_LARGEST = 64 << 20
+# What arguments and options are called that take a parameter of the robot, alone or among others.
+_NAMES_A_PARAMETER = {"parameter", "parameters", "question", "words"}
+
+
+@click.command("completion")
+@click.argument("shell", type=click.Choice(_SHELLS))
+def completion_command(shell: str) -> None:
+    """Print what makes a shell complete pytpc's commands, options, files and parameters.
+
+    \b
+    bash:  eval "$(pytpc completion bash)"   in ~/.bashrc
+    zsh:   eval "$(pytpc completion zsh)"    in ~/.zshrc, after compinit
+    fish:  pytpc completion fish > ~/.config/fish/completions/pytpc.fish
+    """
+    found = get_completion_class(shell)
+    assert found is not None, "click has these three"
+    root = click.get_current_context().find_root().command
+    script = found(root, {}, "pytpc", _VARIABLE).source()
+    click.echo(f"# {_WHERE[shell]}\n{script}")
+
+
+class ParameterName(click.types.StringParamType):
+    """A parameter of the robot: any text; those of the static information are offered.
+
+    They are looked for where the command's own option ``--static`` says, else among its other
+    arguments, else here. What cannot be read offers nothing: completion never complains.
+    """
+
+    name = "parameter"
+
+    def shell_complete(
+        self, ctx: click.Context, param: click.Parameter, incomplete: str
+    ) -> list[CompletionItem]:
+        """The names that begin like what was typed, or do so without their ``~``; else files."""
+        return _offered(ctx, incomplete)
+
+
+class SourceOrParameter(click.Path):
+    """A path where a parameter of the robot may stand as well, behind any number of paths."""
+
+    def __init__(self) -> None:
+        """Paths are given as ``Path``."""
+        super().__init__(path_type=Path)
+
+    def shell_complete(
+        self, ctx: click.Context, param: click.Parameter, incomplete: str
+    ) -> list[CompletionItem]:
+        """As that of ``ParameterName``."""
+        return _offered(ctx, incomplete)
+
+
+def completing(command: click.Command) -> click.Command:
+    """The command, completing parameters of the robot wherever it takes one."""
+    named = [one for one in command.params if one.name in _NAMES_A_PARAMETER]
+    for param in named:
+        if isinstance(param.type, click.types.StringParamType):
+            param.type = ParameterName()
+    for param in command.params:
+        if named and param.name == "sources" and isinstance(param.type, click.Path):
+            param.type = SourceOrParameter()
+    return command
+
+
+def _offered(ctx: click.Context, incomplete: str) -> list[CompletionItem]:
+    names = [
+        CompletionItem(name)
+        for name in parameter_names(_sources(ctx))
+        if name.startswith(incomplete) or name.lstrip("~/").startswith(incomplete)
+    ]
+    # The shells' scripts take either words or files.
+    return names or [CompletionItem(incomplete, type="file")]
+
+
+def parameter_names(sources: Iterable[Path]) -> list[str]:
+    """The names of the first source that has any, sorted. Fast: nothing is checked but its form."""
+    for source in sources:
+        for path in (source, source / OWN_FOLDER / MERGED_FILE, source / MERGED_FILE):
+            names = _names_in(path)
+            if names:
+                return names
+    return []
+
+
+def _sources(ctx: click.Context) -> list[Path]:
+    """Where the static information may be, the likeliest first."""
+    static = ctx.params.get("static_source")
+    found = [Path(static)] if static else []
+    for value in ctx.params.values():
+        values = value if isinstance(value, tuple) else (value,)
+        found += [Path(one) for one in values if isinstance(one, str | os.PathLike)]
+    # Behind an option that still wants its value click has not read the arguments.
+    found += [Path(word) for word in split_arg_string(os.environ.get("COMP_WORDS", ""))[2:]]
+    return [*found, Path()]
+
+
+def _names_in(path: Path) -> list[str]:
+    try:
+        if not path.is_file() or path.stat().st_size > _LARGEST:
+            return []
+        document = json.loads(path.read_bytes())
+        units = document.get("units", [document])
+        names = {found["source"] for unit in units for found in unit["comparisons"]}
+        return sorted(name for name in names if isinstance(name, str))
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        return []
+
+
+COMMANDS: list[click.Command] = [completion_command]

@@ -1,0 +1,253 @@
+"""Commands about what runs: ``watch``."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import time
+from pathlib import Path
+
+import click
+from rich.console import Console
+
+from pytpc.cli.console import warn
+from pytpc.cli.mark_commands import (
+    MASTER,
+    OBSERVER,
+    check_observer,
+    mark_in_terminal,
+    marks_path,
+    recorded,
+)
+from pytpc.cli.options import (
+    JSON,
+    PATH,
+    STATIC,
+    TYPES,
+    WINDOW,
+    check_reports,
+    recording_of,
+    warn_about,
+)
+from pytpc.cli.sources import static_of
+from pytpc.errors import InputError, RunError
+from pytpc.ingest import Recording
+from pytpc.marking.graph import GraphMarks
+from pytpc.marking.live_mission import Feed, GraphFeed, RecordedFeed, WatchedMission
+from pytpc.marking.session import clock_text
+from pytpc.marking.terminal import Mission
+from pytpc.marking.watch_screen import LAYOUTS, Options, Status, table
+from pytpc.marking.watching import KINDS, Look, Row, Watching
+from pytpc.scoring.clocks import two_clocks
+from pytpc.scoring.live import LiveRanking
+from pytpc.scoring.ranking import Types
+from pytpc.signals import signals_end
+from pytpc.static_info import StaticInfo
+from pytpc.words import plain
+
+_ONCE_S = 5.0
+_TURN_S = 0.1
+
+
+@click.command("watch")
+@click.argument("recording", type=PATH, required=False)
+@STATIC
+@OBSERVER
+@click.option("-o", "--output", type=PATH, help="CSV of the marks, as with `mark`.")
+@WINDOW
+@click.option(
+    "--top",
+    type=click.IntRange(min=1),
+    default=10,
+    show_default=True,
+    metavar="N",
+    help="How many suspects are shown, where there is room.",
+)
+@TYPES
+@click.option("--once", is_flag=True, help="Print one table, without keys, and end.")
+@click.option(
+    "--seconds",
+    type=click.FloatRange(min=0.0, max=86400.0),
+    metavar="N",
+    help="With --once: how long to listen (5), or how far into RECORDING (to its end).",
+)
+@JSON
+def watch_command(
+    *,
+    recording: Path | None,
+    static_source: Path,
+    observer: str,
+    output: Path | None,
+    window_s: float,
+    top: int,
+    types: Types,
+    once: bool,
+    seconds: float | None,
+    as_json: bool,
+) -> None:
+    """Show the suspected parameters while the robot runs, and mark.
+
+    The reports are those of the graph of ROS_MASTER_URI; ROS itself is not needed on this machine.
+    With RECORDING, a clock goes through it. The keys are those of `mark`; the ranking at each mark
+    is kept. --json prints what --once prints, for programs.
+    """
+    check_observer(observer)
+    static = static_of([static_source])
+    if not static.thresholds:
+        raise InputError("no comparison with a parameter was found there", static_source)
+    # Where types are ignored, the tables of both are there to be chosen all the same.
+    engine = LiveRanking(static, window_s, types="doubt" if types == "doubt" else "believe")
+    fresh = Watching(engine, static, window_s)
+    layout = (None,) if types == "ignore" else LAYOUTS[0]
+    options = Options(layout=layout, top=top)
+    if once or as_json:
+        _once(recording, fresh, options, seconds, as_json=as_json)
+        return
+    if not sys.stdin.isatty():
+        raise RunError("the keys are read from a terminal, and standard input is none; see --once")
+    path = marks_path(recording, observer, output)
+    mission, feed = _opened(recording, observer, fresh)
+    watched = WatchedMission(mission, feed, options, believe=types != "ignore")
+    mark_in_terminal(watched, observer, path, paint=watched.paint, full=True)
+
+
+def _opened(recording: Path | None, observer: str, fresh: Watching) -> tuple[Mission, Feed]:
+    """What is marked and what is watched."""
+    if recording is None:
+        master = os.environ.get("ROS_MASTER_URI") or MASTER
+        return GraphMarks(master, observer, what="watching"), GraphFeed(master, fresh)
+    found = _read(recording, fresh.static_info)
+    return recorded(found, recording), RecordedFeed(found, fresh)
+
+
+def _read(source: Path, static: StaticInfo) -> Recording:
+    """A recording, with what is wrong with it said."""
+    recording = recording_of(source)
+    check_reports(recording, static, source)
+    warn_about(recording, static)
+    for clocks in two_clocks(recording):
+        warn(f"{plain(recording.name)}: {plain(clocks)}")
+    return recording
+
+
+def _once(
+    recording: Path | None,
+    fresh: Watching,
+    options: Options,
+    seconds: float | None,
+    *,
+    as_json: bool,
+) -> None:
+    """Listen for a while, or go to a place in the recording; then print what is known."""
+    if recording is not None:
+        found = _read(recording, fresh.static_info)
+        far = round(seconds * 1e9) if seconds is not None else found.end_ns - found.start_ns
+        now_ns = min(found.end_ns, found.start_ns + far)
+        feed: Feed = RecordedFeed(found, fresh)
+        watched = WatchedMission(_Still(recorded(found, recording), now_ns), feed, options)
+        watched.take()
+        start_ns = found.start_ns
+    else:
+        mission, feed = _opened(None, "", fresh)
+        watched = WatchedMission(mission, feed, options)
+        _listen(watched, _ONCE_S if seconds is None else seconds)
+        now_ns = watched.now_ns() or 0
+        start_ns = 0
+    look = watched.watching.look(now_ns, options.top, KINDS)
+    status = watched.status()
+    watched.close()
+    if recording is None and not status.reports:
+        if status.fault:
+            raise RunError(status.fault)
+        warn("no report came: is a node built with TPC running?")
+    if as_json:
+        document = _json_of(look, status, now_ns - start_ns if recording is not None else None)
+        click.echo(json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False))
+        return
+    console = Console(width=None if sys.stdout.isatty() else 120)
+    when = f"at {clock_text(now_ns - start_ns)}: " if recording is not None else ""
+    console.print(f"{when}{status.words()}", highlight=False, markup=False)
+    utf8 = console.encoding.startswith("utf")
+    for kind in options.layout:
+        console.print()
+        for line in table(look, kind, console.width, options.top, utf8=utf8):
+            console.print(line, highlight=False, soft_wrap=True)
+
+
+def _listen(watched: WatchedMission, seconds: float) -> None:
+    until = time.monotonic() + seconds
+    try:
+        with signals_end():
+            watched.status()
+            while time.monotonic() < until:
+                time.sleep(_TURN_S)
+                watched.tick()
+    except BaseException:
+        watched.close()
+        raise
+
+
+class _Still:
+    """A recording whose clock stands."""
+
+    def __init__(self, mission: Mission, now_ns: int) -> None:
+        self._now_ns = now_ns
+        self.press, self.view = mission.press, mission.view
+        self.send, self.tick, self.close = mission.send, mission.tick, mission.close
+
+    def now_ns(self) -> int | None:
+        return self._now_ns
+
+
+def _json_of(look: Look, status: Status, into_ns: int | None) -> dict[str, object]:
+    return {
+        "time_ns": look.now_ns,
+        "seconds": None if into_ns is None else into_ns / 1e9,
+        "reports": status.reports,
+        "nodes": status.nodes,
+        "unknown_keys": status.unknown,
+        "lost": status.lost,
+        "fault": status.fault,
+        "parameters": look.parameters,
+        "rankings": {
+            kind or "combined": {
+                "reason": look.reasons[kind],
+                "suspects": [_suspect(row) for row in rows],
+            }
+            for kind, rows in look.rows.items()
+        },
+    }
+
+
+def _suspect(row: Row) -> dict[str, object]:
+    suspect, last = row.suspect, row.last
+    found = suspect.comparison
+    return {
+        "position": suspect.position,
+        "tied": suspect.tied,
+        "parameter": suspect.parameter,
+        "key": suspect.key,
+        "score": suspect.score,
+        "score_type": suspect.type,
+        "rank": suspect.rank,
+        "rank1": suspect.rank1,
+        "rank2": suspect.rank2,
+        "cmp": None if last is None else _finite(last.cmp),
+        "relation": found.relation,
+        "thresh": None if last is None else _finite(last.thresh),
+        "result": None if last is None else last.result,
+        "node": None if last is None else last.node,
+        "seconds_since_flop": row.flop_s,
+        "topic": found.topic,
+        "file": found.file,
+        "lineno": found.lineno,
+    }
+
+
+def _finite(value: float) -> float | None:
+    """JSON has neither NaN nor infinity."""
+    return value if abs(value) < float("inf") else None
+
+
+COMMANDS: list[click.Command] = [watch_command]

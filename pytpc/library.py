@@ -1,0 +1,392 @@
+"""TPC as a library: what the command line does, for a notebook or a program of one's own.
+
+Every function takes what another one gave, or the path of it: ``rank("mission.bag", "my_ws")`` is
+``rank(read("mission.bag"), load_static("my_ws"))``. What they give prints as a table, is one in a
+notebook (all texts from the robot escaped), and holds typed objects of the parts it came from.
+docs/tutorial.md shows each at work, and is run by the tests.
+
+Errors are `pytpc.errors.TpcError`: one line that names the file.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import overload
+
+from pytpc import tables
+from pytpc.advice.advise import Advice, advise
+from pytpc.advice.counterfactual import WhatIf
+from pytpc.advice.counterfactual import what_if as replay
+from pytpc.advice.declared import Declared, declared_in
+from pytpc.errors import InputError
+from pytpc.ingest import Recording
+from pytpc.ingest import read as read_recording
+from pytpc.marks import Mark, MarkType
+from pytpc.notebook import Table
+from pytpc.report.html import MissionReport
+from pytpc.report.html import write_report as write_page
+from pytpc.scoring.curves import STEP_S, RankCurves, rank_curves
+from pytpc.scoring.ranking import MarkRanking, Types, rank_marks
+from pytpc.scoring.scores import WINDOW_S
+from pytpc.static_info import StaticInfo, read_static
+from pytpc.stats.missions import load_missions
+from pytpc.stats.study import NUMBERS
+from pytpc.stats.study import study_tables as tables_of_study
+from pytpc.treatment import TREATMENT_FILE, load_treatment
+from pytpc.values.origins import read_origins
+from pytpc.words import Number, exact, show
+
+__all__ = ["Advices", "Rankings", "StudyTable", "curves", "load_static", "rank", "read"]
+__all__ += ["study_tables", "suggest", "what_if", "write_report"]
+
+Source = str | os.PathLike[str]
+
+_SHOWN = 5
+
+
+@dataclass(frozen=True, slots=True)
+class Rankings(Sequence[MarkRanking]):
+    """The rankings of one mission, one for each mark, in the order of the marks.
+
+    A sequence of `pytpc.scoring.ranking.MarkRanking`; ``recording`` and ``static_info`` are what
+    was ranked, ``source`` where the mission was read from, if it was ranked by its path: what else
+    is in its folder is in the report then. ``table`` has the first suspects of each mark.
+    """
+
+    rankings: tuple[MarkRanking, ...]
+    recording: Recording
+    static_info: StaticInfo
+    source: Path | None = None
+
+    def __len__(self) -> int:
+        """The number of marks."""
+        return len(self.rankings)
+
+    @overload
+    def __getitem__(self, index: int) -> MarkRanking: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> tuple[MarkRanking, ...]: ...
+
+    def __getitem__(self, index: int | slice) -> MarkRanking | tuple[MarkRanking, ...]:
+        """The ranking of a mark."""
+        return self.rankings[index]
+
+    def __iter__(self) -> Iterator[MarkRanking]:
+        """The rankings in the order of the marks."""
+        return iter(self.rankings)
+
+    def rows(self, top: int = _SHOWN) -> list[dict[str, object]]:
+        """The first ``top`` suspects of each mark, flat; ``pandas.DataFrame(rankings.rows())``.
+
+        Each has ``mark`` (from 1), ``seconds`` into the mission, ``type``, ``position``,
+        ``parameter``, ``rank``, ``score``, ``score_type``, ``place`` (``file:line``) and ``key``.
+        """
+        return [
+            {
+                "mark": number,
+                "seconds": (ranking.mark.time_ns - self.recording.start_ns) / 1e9,
+                "type": ranking.mark.type,
+                "position": suspect.position,
+                "parameter": suspect.parameter,
+                "rank": suspect.rank,
+                "score": suspect.score,
+                "score_type": suspect.type,
+                "place": f"{suspect.comparison.file}:{suspect.comparison.lineno}",
+                "key": suspect.key,
+            }
+            for number, ranking in enumerate(self.rankings, start=1)
+            for suspect in ranking.suspects[:top]
+        ]
+
+    def table(self, top: int = _SHOWN) -> Table:
+        """The same to look at; a mark at which nothing could be ranked has a row that says so."""
+        rows = []
+        for number, ranking in enumerate(self.rankings, start=1):
+            seconds = (ranking.mark.time_ns - self.recording.start_ns) / 1e9
+            mark = (str(number), f"{seconds:.1f} s", ranking.mark.type or "-")
+            if not ranking.suspects:
+                why = ranking.reason or "no parameter has a score here"
+                rows.append((*mark, "", why, "", "", ""))
+            rows += [
+                (
+                    *mark,
+                    f"{suspect.position}{'=' if suspect.tied else ''}",
+                    suspect.parameter,
+                    f"{suspect.rank:.2f}",
+                    f"{suspect.score:.3g}",
+                    f"{suspect.comparison.file}:{suspect.comparison.lineno}",
+                )
+                for suspect in ranking.suspects[:top]
+            ]
+        headings = ("mark", "at", "type", "#", "parameter", "rank", "score", "compared at")
+        return Table(headings, tuple(rows), frozenset({0, 1, 3, 5, 6}))
+
+    def __str__(self) -> str:
+        """The table as text."""
+        return str(self.table())
+
+    def _repr_html_(self) -> str:
+        """The table for a notebook, escaped."""
+        return self.table()._repr_html_()
+
+
+@dataclass(frozen=True, slots=True)
+class Advices(Sequence[Advice]):
+    """What to do with the suspects at one mark, in their order.
+
+    A sequence of `pytpc.advice.advise.Advice`: suspect, suggestion, what it would have changed.
+    """
+
+    advices: tuple[Advice, ...]
+    ranking: MarkRanking
+
+    def __len__(self) -> int:
+        """The number of suspects."""
+        return len(self.advices)
+
+    @overload
+    def __getitem__(self, index: int) -> Advice: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> tuple[Advice, ...]: ...
+
+    def __getitem__(self, index: int | slice) -> Advice | tuple[Advice, ...]:
+        """The advice for a suspect."""
+        return self.advices[index]
+
+    def __iter__(self) -> Iterator[Advice]:
+        """The advices in the order of the suspects."""
+        return iter(self.advices)
+
+    def table(self) -> Table:
+        """A row for each suspect."""
+        rows = []
+        for advice in self.advices:
+            suggestion = advice.suggestion
+            what = f"{suggestion.direction} to {exact(suggestion.value)}"
+            rows.append(
+                (
+                    f"{advice.suspect.position}{'=' if advice.suspect.tied else ''}",
+                    advice.suspect.parameter,
+                    show(suggestion.current),
+                    what if suggestion.direction else f"none: {suggestion.reason}",
+                    advice.what_if.text if advice.what_if else "",
+                )
+            )
+        headings = ("#", "parameter", "value", "suggestion", "in the recorded run")
+        return Table(headings, tuple(rows), frozenset({0, 2}))
+
+    def __str__(self) -> str:
+        """The table as text."""
+        return str(self.table())
+
+    def _repr_html_(self) -> str:
+        """The table for a notebook, escaped."""
+        return self.table()._repr_html_()
+
+
+@dataclass(frozen=True, slots=True)
+class StudyTable:
+    """A table of `pytpc.tables` that prints, and shows itself in a notebook."""
+
+    table: tables.Table
+
+    def rows(self) -> list[dict[str, object]]:
+        """The rows with their numbers in full; ``pandas.DataFrame(table.rows())``."""
+        return [dict(row) for row in tables.as_json(self.table)["rows"]]
+
+    def shown(self) -> Table:
+        """The same as a person reads it, with the statistics below."""
+        headings = [f"{column.group} {column.heading}".strip() for column in self.table.columns]
+        rows = [(name, *tables.shown(self.table, cells)) for name, cells in self.table.rows]
+        rows += [
+            (name, *tables.shown(self.table, cells, statistic=True))
+            for name, cells in self.table.summary
+        ]
+        right = frozenset(range(1, len(headings) + 1))
+        return Table((self.table.first, *headings), tuple(rows), right, self.table.title)
+
+    def __str__(self) -> str:
+        """The table as text."""
+        return str(self.shown())
+
+    def _repr_html_(self) -> str:
+        """The table for a notebook, escaped."""
+        return self.shown()._repr_html_()
+
+
+def load_static(source: StaticInfo | Source) -> StaticInfo:
+    """The static information of a workspace that ``pytpc build`` built, or of a static.json.
+
+    Raises:
+        InputError: there is none, or it is broken.
+    """
+    return source if isinstance(source, StaticInfo) else read_static(Path(source))
+
+
+def read(source: Recording | Source) -> Recording:
+    """A recorded mission: a bag of ROS 1 or 2, a file or folder of any kind that ``convert`` takes.
+
+    Its ``events`` are columns of numpy (`pytpc.events.Events`); ``events.to_arrow().to_pandas()``
+    makes a data frame of them.
+
+    Raises:
+        InputError: it cannot be read.
+    """
+    return source if isinstance(source, Recording) else read_recording(Path(source))
+
+
+def rank(
+    mission: Recording | Source,
+    static_info: StaticInfo | Source,
+    *,
+    types: Types = "believe",
+    window_s: float = WINDOW_S,
+) -> Rankings:
+    """The suspected parameters at each mark, most suspicious first.
+
+    Args:
+        mission: the mission with its marks.
+        static_info: what the analysis found.
+        types: ``believe`` the observer's types, ``doubt`` them (the other type's suspects stay
+            rivals) or ``ignore`` them.
+        window_s: the window of type II, in seconds.
+
+    Raises:
+        InputError: the mission has no marks, or something cannot be read.
+    """
+    recording, static = read(mission), load_static(static_info)
+    if not recording.marks:
+        raise InputError("no marks; `pytpc mark` makes some beside it", recording.name)
+    found = rank_marks(recording, static, types=types, window_s=window_s)
+    source = None if isinstance(mission, Recording) else Path(mission)
+    return Rankings(tuple(found), recording, static, source)
+
+
+def curves(
+    mission: Recording | Source,
+    static_info: StaticInfo | Source,
+    *,
+    step_s: float = STEP_S,
+    window_s: float = WINDOW_S,
+) -> RankCurves:
+    """Scores and ranks of all parameters over the mission, every ``step_s`` seconds.
+
+    Raises:
+        InputError: something cannot be read.
+    """
+    static = load_static(static_info)
+    return rank_curves(read(mission), static, step_s=step_s, window_s=window_s)
+
+
+def suggest(
+    rankings: Rankings,
+    mark: int = 1,
+    *,
+    top: int = _SHOWN,
+    declared: Sequence[Declared] | None = None,
+) -> Advices:
+    """What to do with suspects at a mark, and what it would have changed in the recorded run.
+
+    Args:
+        rankings: what ``rank`` gave.
+        mark: which of them, counted from 1.
+        top: how many suspects.
+        declared: the declared ranges of parameters; None: they are looked for in the sources of the
+            static information, and in the mission where it was ranked by its path.
+
+    Raises:
+        IndexError: there is no such mark.
+    """
+    if not 1 <= mark <= len(rankings):
+        raise IndexError(f"mark {mark} of {len(rankings)}")
+    ranking = rankings[mark - 1]
+    static = rankings.static_info
+    if declared is None:
+        declared = declared_in(static, [rankings.source] if rankings.source else [])
+    found = advise(rankings.recording, static, ranking, top=top, declared=declared)
+    return Advices(tuple(found), ranking)
+
+
+def what_if(
+    mission: Recording | Source,
+    static_info: StaticInfo | Source,
+    parameter: str,
+    value: Number,
+    *,
+    kind: MarkType | None = None,
+    marks: Sequence[Mark] | None = None,
+    window_s: float = WINDOW_S,
+) -> WhatIf:
+    """What another value of a parameter would have changed in a recorded run.
+
+    Args:
+        mission: the run.
+        static_info: what the analysis found.
+        parameter: its name as in the source, or as a user gives it.
+        value: in the parameter's own unit.
+        kind: the type of error that the question is about; None: of each mark its own.
+        marks: those to answer; None: the mission's, of that type or without one.
+        window_s: how long before a mark counts as near to it, in seconds.
+
+    Raises:
+        InputError: no comparison is with that parameter, or something cannot be read.
+    """
+    recording, static = read(mission), load_static(static_info)
+    return replay(recording, static, parameter, value, kind=kind, marks=marks, window_s=window_s)
+
+
+def study_tables(
+    missions: Source | Sequence[Source],
+    static_info: StaticInfo | Source,
+    names: Sequence[str] = tuple(NUMBERS),
+) -> dict[str, StudyTable]:
+    """The tables of a study (6.12 to 6.16 of the thesis), by name.
+
+    Args:
+        missions: folders or files of recorded missions; a folder of them stands for all.
+        static_info: of the build that was recorded.
+        names: which, of ``runtime``, ``confusion``, ``delays``, ``marks`` and ``found``.
+
+    Raises:
+        InputError: a mission cannot be read.
+        KeyError: there is no table of such a name.
+    """
+    given = [missions] if isinstance(missions, str | os.PathLike) else missions
+    found = load_missions([Path(one) for one in given])
+    made = tables_of_study(found, load_static(static_info), names)
+    return {name: StudyTable(table) for name, table in zip(names, made, strict=True)}
+
+
+def write_report(path: Source, *rankings: Rankings, title: str = "Suspected parameters") -> Path:
+    """Write the report page of one or several missions: one HTML file that opens offline.
+
+    A mission that was ranked by its path is shown with what else is in its folder: where values
+    came from (origins.json), and what had been done to the robot (treatment.json).
+
+    Returns:
+        Its path.
+
+    Raises:
+        TpcError: it cannot be written.
+    """
+    write_page(Path(path), [_for_report(one) for one in rankings], title=title)
+    return Path(path)
+
+
+def _for_report(rankings: Rankings) -> MissionReport:
+    """A mission with what its folder says of it: where values came from, what had been changed."""
+    source, recording = rankings.source, rankings.recording
+    given = MissionReport(recording.name, recording, rankings.static_info, list(rankings.rankings))
+    if source is None:
+        return given
+    folder = source if source.is_dir() else source.parent
+    known = replace(given, origins=read_origins(source), name=source.absolute().name)
+    if not (folder / TREATMENT_FILE).is_file():
+        return known
+    treatment = load_treatment(folder)
+    return replace(known, treatment=treatment.effect, changed_parameter=treatment.parameter)

@@ -1,0 +1,357 @@
+"""What is watched: the reports of a running graph, or those of a recording as its clock goes.
+
+``GraphFeed`` needs no ROS on the observer's machine. What it hears is read by ``reports``.
+"""
+
+from __future__ import annotations
+
+import os
+import secrets
+import threading
+import time
+from collections import deque
+from collections.abc import Iterator, Sequence
+from typing import Protocol, cast
+
+import numpy as np
+from rich.text import Text
+
+from pytpc.errors import RunError
+from pytpc.ingest.recording import Recording
+from pytpc.marking.publisher import own_address
+from pytpc.marking.reports import Item, Reports
+from pytpc.marking.session import Change, Session, View
+from pytpc.marking.terminal import Mission
+from pytpc.marking.watch_screen import LAYOUTS, Options, Panel, Status, watch_screen
+from pytpc.marking.watching import KeptRankings, Look, Seen, Watching
+from pytpc.relay import ROSOUT, TOPIC
+from pytpc.summaries import Summary
+from pytpc.tcpros import RawSubscriber
+
+_LOOK_S = 1.0
+_POLL_S = 0.2
+_RATE_S = 5.0
+# Ranking a hundred comparisons takes a few hundredths of a second.
+_RANK_S = 0.4
+_SNAPSHOT_NS = 30 * 10**9
+# What comes from several nodes is out of order by less than this; more is a clock put back.
+_BACK_NS = 5 * 10**9
+# While the graph has no time; older ones go.
+_MOST_WAITING = 200_000
+
+
+class Feed(Protocol):
+    """Where evaluations come from; ``live`` where they come by themselves."""
+
+    live: bool
+
+    def take(self, now_ns: int | None) -> tuple[Watching, Sequence[Item]]:
+        """What is to be taken in now, and into what: another than before where time went back."""
+
+    def fault(self) -> str:
+        """What is wrong, in a few words; empty where nothing."""
+
+    def lost(self) -> int:
+        """How many messages never came."""
+
+    def close(self) -> None:
+        """No more is wanted."""
+
+
+class GraphFeed:
+    """The reports of the graph of a master, which may come late, go and come again.
+
+    Args:
+        master: URI of the ROS master.
+        fresh: what nothing was taken into; a copy of it is used anew when the clock is put back.
+    """
+
+    live = True
+
+    def __init__(self, master: str, fresh: Watching) -> None:
+        """See the class; listens in a thread of its own."""
+        self._master = master
+        self._fresh = fresh
+        self._watching = fresh.snapshot()
+        self._reports = Reports()
+        self._items: deque[Item] = deque(maxlen=_MOST_WAITING)
+        self._other_clock = 0
+        self._connected = False
+        self._restarted = ""
+        self._ended = threading.Event()
+        self._thread = threading.Thread(target=self._listen, daemon=True)
+        self._thread.start()
+
+    def take(self, now_ns: int | None) -> tuple[Watching, Sequence[Item]]:
+        """What has come since; nothing while the graph has no time."""
+        if now_ns is None:
+            return self._watching, ()
+        last_ns = self._watching.last_ns
+        if last_ns is not None and now_ns < last_ns - 2 * _BACK_NS:
+            # Another run of the simulator, or of a bag: what was before is no part of it.
+            self._watching = self._fresh.snapshot()
+            self._restarted = "the clock was put back: began anew"
+        found = []
+        for _ in range(len(self._items)):
+            item = self._items.popleft()
+            if isinstance(item, Seen) and item.time_ns == 0:
+                # A node that has not heard of /clock yet.
+                item = item._replace(time_ns=now_ns)
+            if _time_of(item) <= now_ns + _BACK_NS:
+                found.append(item)
+            else:
+                self._other_clock += 1
+        return self._watching, found
+
+    def fault(self) -> str:
+        """What is wrong with the connection, and what was broken."""
+        gone = f"the ROS master at {self._master} does not answer"
+        words = [] if self._connected else [gone]
+        words += [self._restarted] if self._restarted else []
+        if self._reports.malformed:
+            words.append(f"{self._reports.malformed:,} broken")
+        if self._other_clock:
+            words.append(f"{self._other_clock:,} by another clock left out")
+        return ", ".join(words)
+
+    def lost(self) -> int:
+        """How many messages never came, by their numbers."""
+        return self._reports.lost
+
+    def close(self) -> None:
+        """Leave the graph."""
+        self._ended.set()
+        self._thread.join(3.0)
+
+    def _listen(self) -> None:
+        name = f"/tpc_watch_{os.getpid()}_{secrets.token_hex(3)}"
+        subscriber = RawSubscriber(self._master, name, own_address(self._master), [])
+        looks = threading.Thread(target=self._keep_registered, args=(subscriber,), daemon=True)
+        looks.start()
+        try:
+            while not self._ended.is_set():
+                for source, data in subscriber.poll(_POLL_S):
+                    self._items += self._reports.read(source, data, time.monotonic())
+                self._items += self._reports.due(time.monotonic())
+        finally:
+            self._ended.set()
+            looks.join(1.0)
+            subscriber.close()
+
+    def _keep_registered(self, subscriber: RawSubscriber) -> None:
+        """A master that was started anew knows nobody; one that is dead answers late."""
+        while True:
+            try:
+                state = cast(
+                    list[list[tuple[str, list[str]]]], subscriber.call_master("getSystemState")
+                )
+                known = {topic for topic, nodes in state[1] if subscriber.name in nodes}
+                for topic in (ROSOUT, TOPIC):
+                    if topic not in known:
+                        subscriber.subscribe(topic)
+                self._connected = True
+            except RunError:
+                self._connected = False
+            if self._ended.wait(_LOOK_S):
+                return
+
+
+class RecordedFeed:
+    """The reports of a recording up to where its clock is, which may go back.
+
+    Args:
+        recording: the mission.
+        fresh: what nothing was taken into.
+    """
+
+    live = False
+
+    def __init__(self, recording: Recording, fresh: Watching) -> None:
+        """The clock is at the beginning. Copies of what was known are kept every half a minute,
+        so that going back is not going through all again."""
+        self._recording = recording
+        self._ends = np.argsort(recording.summaries.end_ns, kind="stable")
+        self._watching = fresh.snapshot()
+        self._place = 0, 0
+        self._at_ns = recording.start_ns - 1
+        self._copies = [(self._at_ns, self._place, fresh)]
+
+    def take(self, now_ns: int | None) -> tuple[Watching, Sequence[Item]]:
+        """What happened since where the clock was."""
+        if now_ns is None:
+            return self._watching, ()
+        if now_ns < self._at_ns:
+            at_ns, self._place, copy = max(
+                (one for one in self._copies if one[0] <= now_ns),
+                key=lambda one: one[0],
+                default=self._copies[0],
+            )
+            self._at_ns, self._watching = at_ns, copy.snapshot()
+        elif self._at_ns >= self._copies[-1][0] + _SNAPSHOT_NS:
+            self._copies.append((self._at_ns, self._place, self._watching.snapshot()))
+        first, second = self._place
+        events, summaries = self._recording.events, self._recording.summaries
+        last = int(np.searchsorted(events.time_ns, now_ns, side="right"))
+        ends = summaries.end_ns[self._ends]
+        end = int(np.searchsorted(ends, now_ns, side="right"))
+        items: list[Item] = list(_seen(self._recording, first, last))
+        items += [_summary(self._recording, int(row)) for row in self._ends[second:end]]
+        self._place, self._at_ns = (last, end), now_ns
+        return self._watching, items
+
+    def fault(self) -> str:
+        """Nothing can be wrong any more."""
+        return ""
+
+    def lost(self) -> int:
+        """How many messages never came to the recorder."""
+        return sum(self._recording.lost.values())
+
+    def close(self) -> None:
+        """There is nothing to end."""
+
+
+class WatchedMission:
+    """A mission of ``pytpc.marking.terminal`` with its live ranking.
+
+    Args:
+        mission: the graph or the recording that is marked.
+        feed: where its evaluations come from.
+        options: what is to be shown.
+        believe: whether a mark's type chooses the ranking that is kept at it.
+    """
+
+    def __init__(
+        self, mission: Mission, feed: Feed, options: Options, *, believe: bool = True
+    ) -> None:
+        """See the class."""
+        self._mission = mission
+        self._feed = feed
+        self._options = options
+        self._believe = believe
+        self._rates: deque[tuple[float, int]] = deque()
+        self._look: tuple[float, Look, tuple[object, ...]] | None = None
+        self.kept = KeptRankings(options.top)
+        self.watching, _ = feed.take(None)
+
+    def now_ns(self) -> int | None:
+        """The time that a mark would have now."""
+        return self._mission.now_ns()
+
+    def press(self, key: str) -> bool:
+        """``v`` changes the tables, ``m`` looks back at the marks, the rest is the mission's."""
+        self._look = None
+        options = self._options
+        if key == "v":
+            place = LAYOUTS.index(options.layout) + 1
+            self._options = options._replace(layout=LAYOUTS[place % len(LAYOUTS)], back=None)
+            return True
+        if key == "m":
+            newest = len(self.kept) - 1
+            back = newest if options.back is None else options.back - 1
+            self._options = options._replace(back=back if back >= 0 else None)
+            return True
+        return self._mission.press(key)
+
+    def view(self) -> View:
+        """What the mission shows of itself."""
+        return self._mission.view()
+
+    def send(self, change: Change) -> str:
+        """Keep the ranking of this instant, tell the mission, and say who is suspected."""
+        self.take()
+        self.kept.follow(change, self.watching, believe=self._believe)
+        self._options = self._options._replace(back=None)
+        self._mission.send(change)
+        made = change.after is not None and change.before is None
+        return self.kept[-1].words() if made else ""
+
+    def tick(self) -> None:
+        """Take in what has come."""
+        self._mission.tick()
+        self.take()
+
+    def take(self) -> None:
+        """Take in what has come up to now."""
+        self.watching, items = self._feed.take(self.now_ns())
+        for item in items:
+            if isinstance(item, Seen):
+                self.watching.take(item)
+            else:
+                self.watching.take_summary(item)
+
+    def close(self) -> None:
+        """Leave the graph."""
+        self._feed.close()
+        self._mission.close()
+
+    def status(self) -> Status:
+        """What has come in."""
+        steady_s, reports = time.monotonic(), self.watching.reports
+        self._rates.append((steady_s, reports))
+        while self._rates[0][0] < steady_s - _RATE_S:
+            self._rates.popleft()
+        since, before = self._rates[0]
+        rate = max(0, reports - before) / (steady_s - since) if steady_s > since else 0.0
+        return Status(
+            reports=reports,
+            rate=rate if self._feed.live else None,
+            nodes=len(self.watching.nodes),
+            unknown=len(self.watching.unknown),
+            lost=self._feed.lost(),
+            late=self.watching.late,
+            fault=self._feed.fault(),
+        )
+
+    def panel(self, now_ns: int, *, utf8: bool) -> Panel:
+        """What is to be shown of an instant."""
+        options = self._options._replace(utf8=utf8)
+        return Panel(self._look_at(now_ns), self.kept, self.status(), options)
+
+    def _look_at(self, now_ns: int) -> Look:
+        """The look of now: worked out where anything is new, and some time has gone since."""
+        options = self._options
+        of = (now_ns, self.watching, self.watching.reports, options.top, options.layout)
+        steady_s = time.monotonic()
+        if self._look is not None:
+            since, look, before = self._look
+            if of == before or steady_s < since + _RANK_S:
+                return look
+        look = self.watching.look(now_ns, options.top, options.layout)
+        self._look = steady_s, look, of
+        return look
+
+    def paint(
+        self, session: Session, view: View, width: int, height: int, *, utf8: bool
+    ) -> Sequence[Text]:
+        """The screen, for ``pytpc.marking.terminal.run``."""
+        now_ns = view.now_ns if view.now_ns is not None else (self.watching.last_ns or 0)
+        return watch_screen(session, view, self.panel(now_ns, utf8=utf8), width, height)
+
+
+def _time_of(item: Item) -> int:
+    return item.time_ns if isinstance(item, Seen) else item.end_ns
+
+
+def _seen(recording: Recording, first: int, last: int) -> Iterator[Seen]:
+    """Rows ``first`` to ``last`` of the events, as plain numbers."""
+    events = recording.events
+    rows = slice(first, last)
+    columns = (
+        events.time_ns[rows].tolist(),
+        [events.keys[code] for code in events.key[rows].tolist()],
+        [events.nodes[code] for code in events.node[rows].tolist()],
+        events.result[rows].tolist(),
+        events.cmp[rows].tolist(),
+        events.thresh[rows].tolist(),
+        events.res[rows].tolist(),
+    )
+    for values in zip(*columns, strict=True):
+        yield Seen(*values)
+
+
+def _summary(recording: Recording, row: int) -> Summary:
+    table = recording.summaries
+    values = {name: column[row].item() for name, column in table.columns().items()}
+    values["key"], values["node"] = table.keys[table.key[row]], table.nodes[table.node[row]]
+    return Summary(**values)

@@ -1,0 +1,130 @@
+"""Messages of a graph that runs become evaluations and summaries, each once.
+
+The forms are those of docs/formats.md: log messages on ``/rosout``, single lines and numbered
+batches on ``/threshold_information``.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, deque
+from typing import NamedTuple
+
+from pytpc.ingest.ros1 import decode_log, decode_string
+from pytpc.ingest.rosout_line import (
+    Malformed,
+    StampedReport,
+    parse_other,
+    parse_report,
+    parse_stamped,
+    parse_stamped_other,
+)
+from pytpc.marking.watching import Seen
+from pytpc.recorder import BatchCounter, LossCounter
+from pytpc.relay import ROSOUT, line_of
+from pytpc.summaries import Summary
+from pytpc.tcpros import Source
+
+Item = Seen | Summary
+
+_BEGIN = b"threshold_"
+_HOLD_S = 0.5
+_FORGET_S = 5.0
+
+
+class _Held(NamedTuple):
+    """A single line that may be the copy of a log message that is still to come."""
+
+    until: float
+    line: str
+    item: Item
+
+
+class Reports:
+    """Messages in, evaluations and summaries out, each once.
+
+    A relay passes the reports of /rosout on under its own name, so a single line on the topic waits
+    a moment: where the same came on /rosout, it is that one.
+    """
+
+    def __init__(self) -> None:
+        """Nothing was read yet."""
+        self._counter = LossCounter()
+        self._batches = BatchCounter(self._counter)
+        self._logged: Counter[str] = Counter()
+        self._order: deque[tuple[float, str]] = deque()
+        self._held: deque[_Held] = deque()
+        self.malformed = 0
+
+    @property
+    def lost(self) -> int:
+        """How many messages never came, by their numbers."""
+        return sum(self._counter.lost.values())
+
+    def read(self, source: Source, data: bytes, steady_s: float) -> list[Item]:
+        """Read a message of either topic; what is broken is counted."""
+        try:
+            if source.topic == ROSOUT:
+                return self._log(source, data, steady_s)
+            return self._text(source, data, steady_s)
+        except ValueError:
+            self.malformed += 1
+            return []
+
+    def due(self, steady_s: float) -> list[Item]:
+        """Lines that have waited long enough and are no copies."""
+        found = []
+        while self._held and self._held[0].until <= steady_s:
+            held = self._held.popleft()
+            if self._logged[held.line] > 0:
+                self._logged[held.line] -= 1
+            else:
+                found.append(held.item)
+        while self._order and self._order[0][0] <= steady_s:
+            line = self._order.popleft()[1]
+            self._logged[line] -= 1
+            if self._logged[line] <= 0:
+                del self._logged[line]
+        return found
+
+    def _log(self, source: Source, data: bytes, steady_s: float) -> list[Item]:
+        self._counter.see(data, source.node)
+        log = decode_log(data)
+        if not log.msg.startswith(_BEGIN):
+            return []
+        text, node = log.msg.decode("utf-8", "replace"), log.node.decode("utf-8", "replace")
+        line = line_of(text, log.stamp_ns)
+        if line is not None:
+            self._logged[line] += 1
+            self._order.append((steady_s + _FORGET_S, line))
+        report = parse_report(text)
+        if isinstance(report, Malformed):
+            self.malformed += 1
+            return []
+        if report is not None:
+            key, result, cmp, thresh, res = report
+            return [Seen(log.stamp_ns, key, node, result, cmp, thresh, res)]
+        other = parse_other(text, node)
+        return [other] if isinstance(other, Summary) else []
+
+    def _text(self, source: Source, data: bytes, steady_s: float) -> list[Item]:
+        self._batches.see(source.node, data)
+        text = decode_string(data).decode("utf-8", "replace")
+        if text.startswith("#"):
+            lines = text.split("\n")[1:]
+            found = [self._line(line, source.node) for line in lines if line]
+            return [item for item in found if item is not None]
+        item = self._line(text, source.node)
+        if item is not None:
+            self._held.append(_Held(steady_s + _HOLD_S, text.rstrip(), item))
+        return []
+
+    def _line(self, line: str, node: str) -> Item | None:
+        other = parse_stamped_other(line, node)
+        if other is not None:
+            return other if isinstance(other, Summary) else None
+        found = parse_stamped(line)
+        if not isinstance(found, StampedReport):
+            self.malformed += 1
+            return None
+        key, result, cmp, thresh, res = found.report
+        return Seen(found.time_ns, key, node, result, cmp, thresh, res)

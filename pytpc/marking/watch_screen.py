@@ -1,0 +1,352 @@
+"""The screen of ``pytpc watch``: what was looked at in, lines of styled text out.
+
+Every line fits its width whatever the robot calls its parameters, and means the same without
+colours and without UTF-8. Columns go as the terminal becomes narrower, the least needed first.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+from rich.cells import cell_len
+from rich.text import Text
+
+from pytpc.marking.session import Session, View, clock_text, cut, folded
+from pytpc.marking.watching import KeptRankings, Look, Part, Row
+from pytpc.marks import Mark, MarkType
+from pytpc.words import exact, many, plain
+
+Layout = tuple[MarkType | None, ...]
+LAYOUTS: tuple[Layout, ...] = (("I", "II"), (None,), ("I",), ("II",))
+"""What can stand side by side, in the order of the key that changes it."""
+
+WATCH_HELP = ("v view", "m marks")
+_SHORT = {"I": "should not have", "II": "should be doing", None: "wrong"}
+_TITLES: dict[MarkType | None, str] = {
+    "I": "Type I: what changed last",
+    "II": "Type II: what is near its threshold",
+    None: "Both types combined",
+}
+# Blue and orange differ for all who see colours; the words say the same.
+_COLOURS: dict[MarkType | None, str] = {"I": "bright_blue", "II": "dark_orange", None: "bold"}
+_GAP = 2
+_NUMBER = 3 + 1
+_BETWEEN = 2
+_LEAST_SIDE = 48
+_LEAST_NAME = 12
+_RECENT_S = 3.0
+_BARS = {True: "▁▂▃▄▅▆▇█", False: "_.-=+*%#"}
+_FLOP = "x"
+_WIDEST_NOW = 24
+_ROOMY = 20
+_LEGEND = "Trend of the window: a low bar is near the threshold, an x is a flop. Bold: just flopped"
+
+
+class Options(NamedTuple):
+    """What the observer has chosen: which tables, how many rows, which mark is looked back at (None
+    for now), and what the terminal can show."""
+
+    layout: Layout = LAYOUTS[0]
+    top: int = 10
+    back: int | None = None
+    utf8: bool = True
+
+
+class Status(NamedTuple):
+    """What has come in: reports, how many in a second (None of a recording), nodes, keys that are
+    not known, what was lost, what came too late to count, and what is wrong (empty where nothing).
+    """
+
+    reports: int = 0
+    rate: float | None = None
+    nodes: int = 0
+    unknown: int = 0
+    lost: int = 0
+    late: int = 0
+    fault: str = ""
+
+    def words(self) -> str:
+        """One line; what is wrong comes first."""
+        text = f"{many(self.reports, 'report')} of {many(self.nodes, 'node')}"
+        if self.rate is not None:
+            text += f", {self.rate:,.0f}/s"
+        if self.lost:
+            text += f", {self.lost:,} lost"
+        if self.late:
+            text += f", {self.late:,} too late"
+        if self.unknown:
+            text += f"; {many(self.unknown, 'key')} not in the static information (another build?)"
+        return f"{self.fault}; {text}" if self.fault else text
+
+
+class Panel(NamedTuple):
+    """What is watched, beside the session and the view of `pytpc.marking.session`."""
+
+    look: Look
+    kept: KeptRankings
+    status: Status
+    options: Options
+
+
+class _Column(NamedTuple):
+    """``need`` orders what goes first where room is short: the highest."""
+
+    heading: str
+    width: int
+    right: bool
+    need: int
+    text: Callable[[Row, bool], str]
+
+
+def watch_screen(session: Session, view: View, panel: Panel, width: int, height: int) -> list[Text]:
+    """The lines to show, none wider than ``width``, at most ``height``: tables, marks, keys."""
+    width, height = max(1, width), max(1, height)
+    head = [Text(cut(view.title, width), style="bold")]
+    head += _plain([*view.status, panel.status.words()], width)
+    foot = _plain([_keys(view)], width, "dim")
+    if session.typing is not None:
+        foot += _plain([f"note: {session.typing}_"], width, "bold")
+    elif session.said:
+        said = [session.said] if height >= _ROOMY else [cut(session.said, width)]
+        foot += _plain(said, width, "bold")
+    if height >= _ROOMY:
+        head.append(Text())
+    room = height - len(head) - len(foot)
+    layout = panel.options.layout
+    stacked = len(layout) > 1 and width < 2 * _LEAST_SIDE + _BETWEEN
+    marks = min(len(session.marks), max(0, room // 4))
+    body = _body(panel, view, width, room - (marks + 1 if marks else 0), stacked)
+    tail = _marks(session, view, panel, width, room - len(body)) if marks else []
+    left = room - len(body) - len(tail)
+    more = _evidence(_shown_look(panel), width) if marks or not session.marks else []
+    more = more if len(more) <= left else []
+    blank = [Text()] * max(0, left - len(more))
+    lines = [*head, *body, *more, *blank, *tail, *foot]
+    if len(lines) > height:
+        # Where there is hardly any room: what is asked or said matters most.
+        lines = [*lines[: max(0, height - 1)], lines[-1]]
+    return [_encodable(line, panel.options.utf8) for line in lines]
+
+
+def table(look: Look, kind: MarkType | None, width: int, rows: int, *, utf8: bool) -> list[Text]:
+    """A table of one type: its title, the headings, then at most ``rows`` suspects."""
+    lines = [Text(cut(_TITLES[kind], width), style=f"bold {_COLOURS[kind]}")]
+    found = look.rows[kind][:rows]
+    if not found:
+        why = look.reasons[kind] or "no parameter has a score yet"
+        return lines + _plain(folded(why, width)[: max(1, rows)], width, "dim")
+    columns, name_width = _columns(kind, width, found)
+    name = _fit("#", 3, right=True) + " " + _fit("Parameter", name_width)
+    heads = [_fit(one.heading, one.width, right=one.right) for one in columns]
+    # Neither underlined nor coloured: bold shows on any terminal.
+    lines.append(Text(cut(_joined([name, *heads]), width), style="bold"))
+    if look.reasons[kind]:
+        lines += _plain([look.reasons[kind]], width, "dim")[:1]
+    for row in found:
+        suspect = row.suspect
+        number = f"{suspect.position}{'=' if suspect.tied else ''}"
+        cells = [_fit(number, 3, right=True) + " " + _fit(suspect.parameter, name_width)]
+        cells += [_fit(one.text(row, utf8), one.width, right=one.right) for one in columns]
+        recent = row.flop_s is not None and row.flop_s < _RECENT_S
+        style = "bold" if recent else ""
+        lines.append(Text(cut(_joined(cells), width), style=style))
+    return lines[: rows + 2]
+
+
+def _shown_look(panel: Panel) -> tuple[Look, Layout]:
+    """What is looked at, of now or of a mark, and its tables."""
+    if panel.options.back is None:
+        return panel.look, panel.options.layout
+    look = panel.kept[panel.options.back].look
+    return look, tuple(look.rows)
+
+
+def _evidence(shown: tuple[Look, Layout], width: int) -> list[Text]:
+    """Where the first suspect of each table is compared, and how to read the bars."""
+    look, layout = shown
+    lines = [Text(), Text(cut(_LEGEND, width), style="dim"), Text()]
+    for row in (look.rows[kind][0] for kind in layout if look.rows[kind]):
+        found = row.suspect.comparison
+        line = Text(f"{row.suspect.position} {row.suspect.parameter}", style="bold")
+        where = f"  {found.file}:{found.lineno}"
+        where += f" in {row.last.node}" if row.last is not None else ""
+        where += f", for {found.topic}" if found.topic else ""
+        line.append(where, style="not bold")
+        line.plain = plain(line.plain)
+        line.truncate(width)
+        lines += [line, Text(cut(f"    {(found.source_code or '').strip()}", width), style="dim")]
+    return lines if len(lines) > 3 else []
+
+
+def _body(panel: Panel, view: View, width: int, room: int, stacked: bool) -> list[Text]:
+    """The tables, side by side or below one another; of now, or of a mark."""
+    options = panel.options
+    look, layout = _shown_look(panel)
+    lines: list[Text] = []
+    if options.back is not None:
+        kept = panel.kept[options.back]
+        stacked = False
+        when = clock_text(kept.mark.time_ns - view.start_ns)
+        text = f"At the mark of {when} ({_named(kept.mark)}); m goes on"
+        lines.append(Text(cut(text, width), style="bold reverse"))
+    room -= len(lines)
+    if stacked:
+        each = max(1, room // len(layout) - 2)
+        rows = min(options.top, each)
+        for kind in layout:
+            lines += table(look, kind, width, rows, utf8=options.utf8)
+        return lines[: max(0, room + 1)]
+    rows = max(1, min(options.top, room - 2))
+    side = (width - _BETWEEN * (len(layout) - 1)) // len(layout)
+    sides = [table(look, kind, side, rows, utf8=options.utf8) for kind in layout]
+    for number in range(max(len(one) for one in sides)):
+        line = Text()
+        for place, one in enumerate(sides):
+            part = one[number] if number < len(one) else Text()
+            line.append_text(part)
+            if place + 1 < len(sides):
+                line.append(" " * (side - cell_len(part.plain) + _BETWEEN))
+        lines.append(line)
+    return lines[: max(0, room + 1)]
+
+
+def _marks(session: Session, view: View, panel: Panel, width: int, room: int) -> list[Text]:
+    """The newest marks, each with its first suspects, below a line that counts them."""
+    shown = session.marks[-max(0, room - 1) :] if room > 1 else ()
+    if not shown:
+        return []
+    lines = [Text(cut(f"{many(len(session.marks), 'mark')}:", width), style="bold")]
+    for mark in shown:
+        when = clock_text(mark.time_ns - view.start_ns)
+        kept = panel.kept.of(mark)
+        named = "made earlier" if kept is None else kept.words()
+        text = f"{when:>9}  {mark.type or '-':2}  {named}{_note(mark)}"
+        lines.append(Text(cut(text.rstrip(), width), style=_COLOURS[mark.type]))
+    return lines
+
+
+def _note(mark: Mark) -> str:
+    return f'  "{mark.note}"' if mark.note else ""
+
+
+def _named(mark: Mark) -> str:
+    return f"type {mark.type}" if mark.type else "wrong"
+
+
+def _keys(view: View) -> str:
+    """What the keys do, in few words; what belongs together stays on one line."""
+    marks = [f"{key} {_SHORT[kind]}" for key, kind in zip("123", ("I", "II", None), strict=True)]
+    others = ("n note", "u undo", "q quit")
+    words = (*marks, *others, *WATCH_HELP, *view.help)
+    return "  ".join(word.replace(" ", "\N{NO-BREAK SPACE}") for word in words)
+
+
+def _columns(kind: MarkType | None, width: int, rows: Sequence[Row]) -> tuple[list[_Column], int]:
+    """The columns that have room, in their order, and how wide the names are."""
+    longest = max(cell_len(plain(row.suspect.parameter)) for row in rows)
+    score = _Column("Score", 6, True, 1, lambda row, _: score_text(row.suspect.score))
+    now = _Column("Now", _now_width(rows), False, 2, lambda row, _: _now(row))
+    parts = _Column("Trend", len(rows[0].parts), False, 3, lambda row, utf8: bars(row.parts, utf8))
+    flop = _Column("Flop", 6, True, 4, lambda row, _: ago(row.flop_s))
+    of = _Column("By", 2, False, 5, lambda row, _: row.suspect.type)
+    if kind == "I":
+        flop, parts = flop._replace(need=0), parts._replace(need=4)
+    chosen = [score, now, parts, flop] + ([of] if kind is None else [])
+    while chosen:
+        left = width - _NUMBER - sum(column.width + _GAP for column in chosen)
+        if left >= min(longest, max(_LEAST_NAME, width // 3)):
+            return chosen, min(left, max(longest, len("Parameter")))
+        chosen.remove(max(chosen, key=lambda column: column.need))
+    return [], max(1, width - _NUMBER)
+
+
+def _now(row: Row) -> str:
+    """What is compared now: ``0.0527 > 0.058``."""
+    if row.last is None:
+        return ""
+    relation = row.suspect.comparison.relation
+    if relation == "flag":
+        return "on" if row.last.result else "off"
+    cmp, thresh = row.last.cmp, row.last.thresh
+    left, right = f"{cmp:.3g}", f"{thresh:.3g}"
+    # What is not equal must not look so.
+    if left == right and cmp != thresh:
+        left, right = exact(cmp), exact(thresh)
+    return f"{left} {relation} {right}"
+
+
+def _now_width(rows: Sequence[Row]) -> int:
+    return min(_WIDEST_NOW, max(3, *(cell_len(_now(row)) for row in rows)))
+
+
+def score_text(score: float) -> str:
+    """Three digits, as far as six characters go.
+
+    >>> score_text(0.06021), score_text(28.16), score_text(1234.5), score_text(2.5e9)
+    ('0.0602', '28.2', '1234', '2e+09')
+    """
+    if 0 < score < 1e-3:
+        return f"{score:.0e}"
+    if score < 1000:
+        return f"{score:.3g}"
+    return f"{score:.0f}" if score < 999_999 else f"{score:.0e}"
+
+
+def ago(seconds: float | None) -> str:
+    """How long ago, in at most six characters.
+
+    >>> ago(None), ago(0.04), ago(75.0), ago(7200.0)
+    ('never', '0.0 s', '75 s', '120 m')
+    """
+    if seconds is None:
+        return "never"
+    if seconds < 10:
+        return f"{seconds:.1f} s"
+    if seconds < 1000:
+        return f"{seconds:.0f} s"
+    minutes = int(seconds / 60)
+    return f"{minutes} m" if minutes < 1000 else f"{minutes // 60} h"
+
+
+def bars(parts: Sequence[Part], utf8: bool) -> str:
+    """How far the value was from its threshold: low bars are near, a cross is a flop.
+
+    >>> bars([Part(0.0, False), Part(1.0, False), Part(0.3, True), Part(math.nan, False)], True)
+    '▁█x '
+    """
+    levels = _BARS[utf8]
+    text = ""
+    for part in parts:
+        if part.flopped:
+            text += _FLOP
+        elif math.isnan(part.distance):
+            text += " "
+        else:
+            text += levels[min(len(levels) - 1, int(part.distance * len(levels)))]
+    return text
+
+
+def _plain(lines: Sequence[str], width: int, style: str = "") -> list[Text]:
+    return [Text(part, style=style) for line in lines for part in folded(line, width)]
+
+
+def _joined(cells: Sequence[str]) -> str:
+    return (" " * _GAP).join(cells).rstrip()
+
+
+def _fit(text: str, width: int, *, right: bool = False) -> str:
+    """Exactly ``width`` columns."""
+    shown = cut(text, width)
+    room = " " * (width - cell_len(shown))
+    return room + shown if right else shown + room
+
+
+def _encodable(line: Text, utf8: bool) -> Text:
+    """Where the terminal has no UTF-8, what is beyond ASCII is a question mark."""
+    if utf8 or line.plain.isascii():
+        return line
+    # One character for one character, so that the styles stay where they are.
+    line.plain = line.plain.encode("ascii", "replace").decode("ascii")
+    return line

@@ -1,0 +1,121 @@
+"""``import pytpc``: what a notebook gets, and what it costs."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from mission_samples import comparison, events, ns, static_info
+
+import pytpc
+from pytpc import library
+from pytpc.errors import InputError
+from pytpc.ingest.recording import Recording
+from pytpc.marks import Mark
+from pytpc.notebook import Table
+
+EXAMPLE = Path(__file__).parents[2] / "examples/recorded_mission"
+BAD = '~a<script>alert("1")</script>\x1b[2J'
+
+# ~limit stays 1 below its 3, then 2 below; ~far 5 below its 9 all the time. Window of the mark at
+# 10 s: ~limit D = ((3-2) + (3-1)) / 2 / (3 - 1) = 0.75; ~far ((9-4) + (9-3)) / 2 / (9 - 3) = 0.917.
+STATIC = static_info(comparison(0, "~limit"), comparison(1, "~far"))
+EVENTS = events([(1, 0, 0, 2, 3), (2, 1, 0, 4, 9), (3, 0, 0, 1, 3), (4, 1, 0, 3, 9)])
+MISSION = Recording("m", EVENTS, (Mark(ns(10), "II"),), 0, ns(12))
+
+
+def test_import_is_lazy():
+    code = "import sys, pytpc; print('numpy' in sys.modules, 'pytpc.library' in sys.modules)"
+    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert said.stdout.split() == ["False", "False"]
+
+
+def test_all_names_are_there_and_documented():
+    assert set(pytpc.__all__) == set(library.__all__)
+    for name in pytpc.__all__:
+        assert getattr(pytpc, name) is getattr(library, name)
+        assert getattr(pytpc, name).__doc__
+        assert name in dir(pytpc)
+    with pytest.raises(AttributeError, match="no_such_name"):
+        pytpc.no_such_name  # noqa: B018
+
+
+# A folder of the package must not stand in the way of a function of the same name.
+def test_no_name_is_that_of_a_module():
+    folder = Path(library.__file__).parent
+    modules = {path.stem for path in folder.iterdir()}
+    assert not modules & set(pytpc.__all__)
+
+
+def test_a_ranking_as_rows_and_as_text():
+    rankings = pytpc.rank(MISSION, STATIC)
+    assert len(rankings) == 1
+    assert rankings[0] is next(iter(rankings))
+    (first, second) = rankings.rows()
+    assert (first["parameter"], second["parameter"]) == ("~limit", "~far")
+    assert first["score"] == pytest.approx(0.75)
+    assert second["score"] == pytest.approx(5.5 / 6)
+    assert (first["mark"], first["seconds"], first["position"]) == (1, 10.0, 1)
+    assert str(rankings).splitlines() == [
+        "mark      at  type  #  parameter  rank  score  compared at",
+        "   1  10.0 s  II    1  ~limit     1.00   0.75  src/node.cpp:10",
+        "   1  10.0 s  II    2  ~far       0.50  0.917  src/node.cpp:11",
+    ]
+    assert rankings[0:1] == (rankings[0],)
+
+
+def test_nothing_is_ranked_without_marks_or_evidence():
+    with pytest.raises(InputError, match="no marks"):
+        pytpc.rank(replace(MISSION, marks=()), STATIC)
+    early = replace(MISSION, marks=(Mark(0, "II"),))
+    text = str(pytpc.rank(early, STATIC))
+    assert pytpc.rank(early, STATIC)[0].reason in text
+
+
+# To go below 2 and 1, ~limit (cmp > 3) has to be lowered; just below 2 is the smallest change.
+def test_suggestions():
+    rankings = pytpc.rank(MISSION, STATIC)
+    (one,) = pytpc.suggest(rankings, 1, top=1)
+    assert one.suggestion.direction == "lower"
+    assert 1 < float(one.suggestion.value or 0) < 2
+    assert "lower to" in str(pytpc.suggest(rankings, 1, top=1))
+    with pytest.raises(IndexError, match="mark 2 of 1"):
+        pytpc.suggest(rankings, 2)
+    then = pytpc.what_if(MISSION, STATIC, "limit", 0.5, kind="II")
+    assert (then.answered, then.marks, then.evaluations) == (1, 1, 2)
+
+
+def test_html_is_escaped():
+    static = static_info(comparison(0, BAD), comparison(1, "~far"))
+    rankings = pytpc.rank(MISSION, static)
+    for html in (rankings._repr_html_(), pytpc.suggest(rankings)._repr_html_()):
+        assert "<script" not in html
+        assert "\x1b" not in html
+        assert "&lt;script&gt;alert(&quot;1&quot;)" in html
+    assert "\x1b" not in str(rankings)
+
+
+def test_a_table_of_wide_characters():
+    table = Table(("a", "n"), (("漢字", "1"), ("x", "10")), frozenset({1}), "t")
+    assert str(table).splitlines() == ["t", "a      n", "漢字   1", "x     10"]
+    assert table._repr_html_().startswith("<table><caption>t</caption>")
+
+
+def test_paths_do_as_well_as_objects(tmp_path: Path):
+    rankings = pytpc.rank(EXAMPLE, str(EXAMPLE / "static.json"), types="doubt")
+    assert len(rankings) == 5
+    # What was changed in this mission, and at how many marks of which type: treatment.json.
+    table = pytpc.study_tables([EXAMPLE], EXAMPLE / "static.json", ["confusion"])["confusion"]
+    assert list(table.rows()[0].values()) == ["Treatment Type II", 1, 4]
+    assert "Treatment Type II" in table._repr_html_()
+    assert "Treatment Type II" in str(table)
+    page = pytpc.write_report(tmp_path / "page.html", rankings)
+    assert "~min_coverage_limit" in page.read_text()
+    # What had been done to the robot is in the mission's folder, and not in the recording.
+    effect = "The UAV hovers in front of the person and never takes the picture."
+    assert effect in page.read_text()
+    read = pytpc.rank(pytpc.read(EXAMPLE), EXAMPLE / "static.json")
+    assert effect not in pytpc.write_report(tmp_path / "other.html", read).read_text()

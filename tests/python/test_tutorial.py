@@ -1,0 +1,61 @@
+"""docs/tutorial.md: what is typed in it does what it says, in Python and on the command line."""
+
+from __future__ import annotations
+
+import doctest
+import os
+import re
+import shlex
+import subprocess
+from pathlib import Path
+
+import pytest
+from terminals import pytpc
+
+ROOT = Path(__file__).parents[2]
+TUTORIAL = ROOT / "docs/tutorial.md"
+CONSOLE = re.compile(r"^```console\n\$ pytpc (.*)\n((?:.*\n)*?)```$", re.MULTILINE)
+FLAGS = doctest.ELLIPSIS | doctest.IGNORE_EXCEPTION_DETAIL
+
+
+@pytest.fixture(autouse=True)
+def _in_the_repository(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.chdir(ROOT)
+
+
+def test_the_python(tmp_path: Path):
+    text = TUTORIAL.read_text()
+    test = doctest.DocTestParser().get_doctest(
+        text, {"folder": tmp_path}, TUTORIAL.name, str(TUTORIAL), 0
+    )
+    assert len(test.examples) > 20
+    failed: list[str] = []
+    runner = doctest.DocTestRunner(optionflags=FLAGS)
+    runner.run(test, out=failed.append)
+    assert not failed, "".join(failed)
+
+
+COMMANDS = CONSOLE.findall(TUTORIAL.read_text())
+
+
+def test_there_are_commands():
+    assert len(COMMANDS) == 2
+
+
+@pytest.mark.parametrize(("command", "shown"), COMMANDS, ids=lambda text: text.split()[0])
+def test_the_command_line(command: str, shown: str):
+    done = subprocess.run(
+        pytpc(*shlex.split(command)),
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=60,
+    )
+    said = "".join(f"{line.rstrip()}\n" for line in done.stdout.splitlines())
+    assert doctest.OutputChecker().check_output(shown, said, FLAGS), said
+
+
+def test_pictures_and_pages_are_there():
+    for target in re.findall(r"\]\(([^)#:]+)\)", TUTORIAL.read_text()):
+        assert (TUTORIAL.parent / target).exists(), target
