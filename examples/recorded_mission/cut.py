@@ -1,7 +1,7 @@
 """Cuts this example from a recorded mission of examples/image_capture: `cut.py MISSION WORKSPACE`.
 
-Three of the robot's five nodes are kept, with the sources that their static information names, so
-that all of it is small enough for the repository.
+Three of the robot's five nodes are kept, so that all of it is small enough for the repository.
+The sources are those beside it.
 """
 
 from __future__ import annotations
@@ -18,8 +18,7 @@ from pytpc.ingest.recording import load_recording, save_recording
 from pytpc.static_info import StaticInfo, read_static
 
 NODES = ("face_detector", "mission", "radio_link")
-SOURCES = "image_capture"
-FILES = ("config/*.yaml", "launch/*.launch", "treatments/type2_min_coverage_limit/*")
+SOURCES = "../image_capture"
 
 
 def main(mission: Path, workspace: Path) -> None:
@@ -37,7 +36,6 @@ def main(mission: Path, workspace: Path) -> None:
     events = events.with_keys(keys)
     save_recording(replace(recording, events=events, notes=()), here)
     write_static(here, cut)
-    copy(here, root, cut)
     treatment = root / "treatments/type2_min_coverage_limit/treatment.json"
     write_atomic(here / "treatment.json", treatment.read_bytes())
     write_atomic(here / "params.yaml", (mission / "params.yaml").read_bytes())
@@ -60,17 +58,6 @@ def write_static(here: Path, static: StaticInfo) -> None:
     # A line for each comparison, so that a difference can be read.
     text = text.replace('{"key":', '\n{"key":')
     write_atomic(here / "static.json", text.encode() + b"\n")
-
-
-def copy(here: Path, root: Path, static: StaticInfo) -> None:
-    """The sources of the comparisons and of their ways, and what sets the parameters."""
-    named = {found.file for found in static.comparisons.values()}
-    named |= {step.file for found in static.comparisons.values() for step in found.path}
-    paths = {root / name for name in named if name and not name.startswith("/")}
-    paths |= {path for pattern in FILES for path in root.glob(pattern)}
-    for path in sorted(paths):
-        write_atomic(here / SOURCES / path.relative_to(root), path.read_bytes())
-    write_atomic(here / SOURCES / "COLCON_IGNORE", b"")
 
 
 if __name__ == "__main__":

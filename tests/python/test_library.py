@@ -119,3 +119,12 @@ def test_paths_do_as_well_as_objects(tmp_path: Path):
     assert effect in page.read_text()
     read = pytpc.rank(pytpc.read(EXAMPLE), EXAMPLE / "static.json")
     assert effect not in pytpc.write_report(tmp_path / "other.html", read).read_text()
+
+
+# The example shows lines of the sources beside it, which may have been edited since.
+def test_the_example_fits_its_sources():
+    static = pytpc.load_static(EXAMPLE / "static.json")
+    assert static.comparisons
+    for key, found in static.comparisons.items():
+        lines = static.source_path(key).read_text().splitlines()
+        assert lines[found.lineno - 1].strip() == found.source_code.strip()
