@@ -11,6 +11,7 @@ import click
 from rich.table import Table
 from rich.text import Text
 
+from pytpc.advice.declared import declared_in
 from pytpc.cli.console import console, warn
 from pytpc.cli.options import (
     JSON,
@@ -77,14 +78,17 @@ def rank_command(
         warn_about(recording, static)
         for clock in two_clocks(recording):
             warn(f"{plain(recording.name)}: {plain(clock)}")
+        declared = declared_in(static, [source], lambda line: warn(plain(line)))
+        shown = [
+            (one, rows_of(one, recording, static, top, declared=declared, window_s=window_s))
+            for one in rankings
+        ]
         if as_json:
-            for ranking in rankings:
-                rows = rows_of(ranking, recording, static, top)
-                items.append(_json_of(ranking, recording, rows))
+            items += [_json_of(ranking, recording, rows) for ranking, rows in shown]
             continue
         if len(recordings) > 1:
             click.echo(f"{plain(str(source))}:\n")
-        print_rankings(console(), recording, static, rankings, top)
+        print_rankings(console(), recording, shown)
     _tell_unmarked(unmarked, len(recordings))
     if as_json:
         click.echo(json.dumps(items, indent=1, ensure_ascii=False))
