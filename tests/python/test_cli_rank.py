@@ -184,6 +184,16 @@ def test_several_missions(files, quiet):
     one_line(run("rank", quiet, quiet, "--static", static), "quiet.bag: no marks", "`pytpc mark`")
 
 
+# Missions are recorded into bags of one name.
+def test_missions_are_called_after_their_folders(files, tmp_path):
+    bag, static = files
+    folders = [tmp_path / "monday", tmp_path / "tuesday"]
+    for folder in folders:
+        assert run("convert", bag, "-o", folder).exit_code == 0
+    items = json.loads(run("rank", *folders, "--static", static, "--json").stdout)
+    assert [item["mission"] for item in items] == ["monday", "monday", "tuesday", "tuesday"]
+
+
 # Comparison 0 reports 200 times, comparison 1 400 times; only 1 is known.
 def test_unknown_keys_are_named_and_the_rest_is_ranked(files, tmp_path):
     bag, _ = files
