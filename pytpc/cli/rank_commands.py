@@ -11,7 +11,7 @@ import click
 from rich.table import Table
 from rich.text import Text
 
-from pytpc.advice.declared import declared_in
+from pytpc.advice.declared import declared_in, read_declared
 from pytpc.cli.console import console, warn
 from pytpc.cli.options import (
     JSON,
@@ -64,6 +64,7 @@ def rank_command(
 ) -> None:
     """Name the suspected parameters at each mark in each RECORDING (any INPUT of `convert`)."""
     static = static_of([static_source])
+    in_sources = declared_in(static, (), _warn_plainly)
     items: list[dict[str, object]] = []
     unmarked: list[Path] = []
     for source in recordings:
@@ -78,7 +79,7 @@ def rank_command(
         warn_about(recording, static)
         for clock in two_clocks(recording):
             warn(f"{plain(recording.name)}: {plain(clock)}")
-        declared = declared_in(static, [source], lambda line: warn(plain(line)))
+        declared = [*in_sources, *read_declared([source], _warn_plainly)]
         shown = [
             (one, rows_of(one, recording, static, top, declared=declared, window_s=window_s))
             for one in rankings
@@ -244,6 +245,10 @@ def _tell_unmarked(unmarked: Sequence[Path], of: int) -> None:
         raise InputError(what, unmarked[0])
     for source in unmarked:
         warn(f"{plain(str(source))}: {what}")
+
+
+def _warn_plainly(line: str) -> None:
+    warn(plain(line))
 
 
 def _json_of(ranking: MarkRanking, recording: Recording, rows: list[Row]) -> dict[str, object]:

@@ -138,12 +138,16 @@ def test_suggestions_keep_to_what_is_declared(files, tmp_path):
         "from dynamic_reconfigure.parameter_generator_catkin import *\n"
         "gen = ParameterGenerator()\n"
         'gen.add("coverage", double_t, 0, "how much", 0.6, 0.55, 1)\n'
+        "add_more(gen)\n"
     )
     known = [comparison(0, "faces", ">=", default=3), comparison(1, "coverage")]
     static_info(*known, source_root=str(tmp_path / "robot")).save(static)
-    coverage = json.loads(run("rank", bag, "--static", static, "--json").stdout)[1]["suspects"][1]
+    result = run("rank", bag, bag, "--static", static, "--json")
+    coverage = json.loads(result.stdout)[1]["suspects"][1]
     assert coverage["direction"] is None
     assert coverage["suggestion"] == "no value in the declared range 0.55..1 would do: below 0.5"
+    # Of two missions the sources are one.
+    assert result.stderr.count("Robot.cfg:4: add_more(gen): the function is not followed") == 1
 
 
 # 14.5 s after the begin at 1 s is 15.5 s: faces has flopped 0.5 s before, 0.5 * 2.
