@@ -53,13 +53,15 @@ class Rankings(Sequence[MarkRanking]):
 
     A sequence of `pytpc.scoring.ranking.MarkRanking`; ``recording`` and ``static_info`` are what
     was ranked, ``source`` where the mission was read from, if it was ranked by its path: what else
-    is in its folder is in the report then. ``table`` has the first suspects of each mark.
+    is in its folder is in the report then. ``window_s`` is the window of type II that ranked them.
+    ``table`` has the first suspects of each mark.
     """
 
     rankings: tuple[MarkRanking, ...]
     recording: Recording
     static_info: StaticInfo
     source: Path | None = None
+    window_s: float = WINDOW_S
 
     def __len__(self) -> int:
         """The number of marks."""
@@ -264,7 +266,7 @@ def rank(
         raise InputError("no marks; `pytpc mark` makes some beside it", recording.name)
     found = rank_marks(recording, static, types=types, window_s=window_s)
     source = None if isinstance(mission, Recording) else Path(mission)
-    return Rankings(tuple(found), recording, static, source)
+    return Rankings(tuple(found), recording, static, source, window_s)
 
 
 def curves(
@@ -308,7 +310,10 @@ def suggest(
     static = rankings.static_info
     if declared is None:
         declared = declared_in(static, [rankings.source] if rankings.source else [])
-    found = advise(rankings.recording, static, ranking, top=top, declared=declared)
+    found = advise(
+        rankings.recording, static, ranking, top=top, declared=declared,
+        window_s=rankings.window_s,
+    )  # fmt: skip
     return Advices(tuple(found), ranking)
 
 
@@ -381,7 +386,10 @@ def write_report(path: Source, *rankings: Rankings, title: str = "Suspected para
 def _for_report(rankings: Rankings) -> MissionReport:
     """A mission with what its folder says of it: where values came from, what had been changed."""
     source, recording = rankings.source, rankings.recording
-    given = MissionReport(recording.name, recording, rankings.static_info, list(rankings.rankings))
+    given = MissionReport(
+        recording.name, recording, rankings.static_info, list(rankings.rankings),
+        window_s=rankings.window_s,
+    )  # fmt: skip
     if source is None:
         return given
     folder = source if source.is_dir() else source.parent

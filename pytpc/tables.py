@@ -111,7 +111,7 @@ def statistics(values: Sequence[Cell]) -> dict[str, float | None]:
 
 def as_csv(table: Table) -> str:
     """A table as CSV: heading, the rows, and the statistics; numbers in full."""
-    heading = (table.first.lower(), *(column.key for column in table.columns))
+    heading = _names(table)
     body = [(name, *map(_full, cells)) for name, cells in (*table.rows, *table.summary)]
     return csv_text([heading, *body])
 
@@ -172,15 +172,10 @@ def as_json(table: Table) -> dict[str, Any]:
 
     What is not known, and what is no finite number, is null.
     """
+    names = _names(table)
 
     def objects(rows: Sequence[tuple[str, tuple[Cell, ...]]]) -> list[dict[str, Cell]]:
-        return [
-            {
-                table.first.lower(): name,
-                **{c.key: _finite(cell) for c, cell in zip(table.columns, cells, strict=True)},
-            }
-            for name, cells in rows
-        ]
+        return [dict(zip(names, (name, *map(_finite, cells)), strict=True)) for name, cells in rows]
 
     return {
         "label": table.label,
@@ -289,6 +284,21 @@ def _full(cell: Cell) -> str:
     if isinstance(cell, float) and cell.is_integer():
         return str(int(cell))
     return str(cell)
+
+
+def _names(table: Table) -> list[str]:
+    """What CSV and JSON call the columns, the names' first; no two alike.
+
+    The last of those that are alike keeps its name: a user ``total`` stands before the totals.
+    """
+    names: list[str] = []
+    for name in (*(column.key for column in reversed(table.columns)), table.first.lower()):
+        count, unique = 1, name
+        while unique in names:
+            count += 1
+            unique = f"{name} {count}"
+        names.append(unique)
+    return names[::-1]
 
 
 def _finite(cell: Cell) -> Cell:

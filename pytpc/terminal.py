@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from rich.console import Console, Group, RenderableType
@@ -9,9 +10,11 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
+from pytpc.advice.declared import Declared, declared_for
 from pytpc.advice.suggest import Suggestion, suggest
 from pytpc.ingest.recording import Recording
 from pytpc.scoring.ranking import MarkRanking, Suspect
+from pytpc.scoring.scores import WINDOW_S
 from pytpc.static_info import StaticInfo
 from pytpc.words import exact, plain, show
 
@@ -32,9 +35,19 @@ class Row:
 
 
 def rows_of(
-    ranking: MarkRanking, recording: Recording, static_info: StaticInfo, top: int
+    ranking: MarkRanking,
+    recording: Recording,
+    static_info: StaticInfo,
+    top: int,
+    *,
+    declared: Sequence[Declared] = (),
+    window_s: float = WINDOW_S,
 ) -> list[Row]:
-    """The first ``top`` suspects at a mark, each with its suggestion."""
+    """The first ``top`` suspects at a mark, each with its suggestion.
+
+    ``declared`` is what is declared of parameters, ``window_s`` the window of type II in seconds:
+    the one that ranked them.
+    """
     return [
         Row(
             suspect,
@@ -44,7 +57,9 @@ def rows_of(
                 ranking.mark.time_ns,
                 suspect.type,
                 unit=static_info.unit_of(suspect.key),
+                window_s=window_s,
                 summaries=recording.summaries,
+                declared=declared_for(declared, suspect, static_info.source_path(suspect.key)),
             ),
         )
         for suspect in ranking.suspects[:top]
@@ -54,13 +69,10 @@ def rows_of(
 def print_rankings(
     console: Console,
     recording: Recording,
-    static_info: StaticInfo,
-    rankings: list[MarkRanking],
-    top: int,
+    rankings: Sequence[tuple[MarkRanking, list[Row]]],
 ) -> None:
     """Print a table for each mark: position, parameter, value, suggestion, source line, score."""
-    for number, ranking in enumerate(rankings, start=1):
-        rows = rows_of(ranking, recording, static_info, top)
+    for number, (ranking, rows) in enumerate(rankings, start=1):
         console.print(_mark(number, ranking, recording, rows), highlight=False)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -166,7 +166,7 @@ def sweep(
         flipped_near,
         flipped - flipped_near,
         unsure,
-        _caveats(tracks, without, recording),
+        (*_caveats(tracks, without, recording), *_long_before(tracks, asked, kind, window_s)),
     )
 
 
@@ -196,6 +196,18 @@ def _stays(tracks: Sequence[Track], values: Floats, mark_ns: int) -> Bools:
     Both of its evaluations have to have the earlier outcome; one that flopped because of another
     comparison of its predicate is not answered.
     """
+    last = _last_flop(tracks, mark_ns)
+    if last is None:
+        return np.zeros(values.size, dtype=np.bool_)
+    track, pair = last
+    logged = np.array([not track.other(pair, t)[0] for t in track.thresholds(values).tolist()])
+    turned = np.array([track.other(pair, t)[1] for t in track.thresholds(values).tolist()])
+    changed = bool(track.res[pair[0]] != track.res[pair[1]])
+    return np.asarray(logged & turned & changed, dtype=np.bool_)
+
+
+def _last_flop(tracks: Sequence[Track], mark_ns: int) -> tuple[Track, Int64s] | None:
+    """The parameter's last flop up to a mark: which track's, and its two places; None for none."""
     last: tuple[int, Track, Int64s] | None = None
     for track in tracks:
         pair = track.flop_before(mark_ns)
@@ -204,13 +216,7 @@ def _stays(tracks: Sequence[Track], values: Floats, mark_ns: int) -> Bools:
         time_ns = int(track.time_ns[pair[1]])
         if last is None or time_ns > last[0]:
             last = (time_ns, track, pair)
-    if last is None:
-        return np.zeros(values.size, dtype=np.bool_)
-    _, track, pair = last
-    logged = np.array([not track.other(pair, t)[0] for t in track.thresholds(values).tolist()])
-    turned = np.array([track.other(pair, t)[1] for t in track.thresholds(values).tolist()])
-    changed = bool(track.res[pair[0]] != track.res[pair[1]])
-    return np.asarray(logged & turned & changed, dtype=np.bool_)
+    return None if last is None else last[1:]
 
 
 def _turns(tracks: Sequence[Track], values: Floats, mark_ns: int, window_s: float) -> Bools:
@@ -271,12 +277,29 @@ def _caveats(
     return (*said, *without)
 
 
+def _long_before(
+    tracks: Sequence[Track], asked: Sequence[Mark], kind: MarkType | None, window_s: float
+) -> Iterator[str]:
+    """A sentence where a mark of type I asks about a flop before its window."""
+    ages = []
+    for mark in asked:
+        last = None if (kind or mark.type) == "II" else _last_flop(tracks, mark.time_ns)
+        if last is not None:
+            ages.append((mark.time_ns - int(last[0].time_ns[last[1][1]])) / 1e9)
+    if max(ages, default=0.0) > window_s:
+        yield (
+            f"the last change was up to {max(ages):.3g} s before the mark; what turns more than"
+            f" {window_s:g} s before it counts as away from marks"
+        )
+
+
 def _some(track: Track) -> bool:
     return track.comparison.relation != "flag" and bool(np.isfinite(track.thresh).any())
 
 
 def _is_switch(track: Track) -> bool:
-    return bool(np.any(track.res != (track.thresh != 0)))
+    kept = track.kept
+    return bool(np.any(track.res != (track.thresh != 0)) or np.any(kept.res != (kept.thresh != 0)))
 
 
 def _sentence(found: WhatIf, kind: MarkType | None) -> str:

@@ -98,8 +98,10 @@ class Track:
             return 0, 0
         size = kept.count - kept.odd
         relation = self.comparison.relation
-        if relation in {"flag", "==", "!="}:
-            return 0, 0 if relation == "flag" else int(size.sum())
+        if relation == "flag":
+            return self._kept_flags(kept, threshold != 0)
+        if relation in {"==", "!="}:
+            return 0, int(size.sum())
         ends = [kept.thresh + kept.diff_min, kept.thresh + kept.diff_max]
         before = [outcomes(relation, diff, 0.0) for diff in (kept.diff_min, kept.diff_max)]
         after = [outcomes(relation, end, threshold) for end in ends]
@@ -111,6 +113,21 @@ class Track:
         some = np.where(sure, 0, np.where(all_before | all_after, 1, 0))
         most = np.where(sure, whole, np.where(all_before | all_after, size - 1, size))
         return int((whole + some).sum()), int(most.sum())
+
+    def _kept_flags(self, kept: Summaries, value: bool) -> tuple[int, int]:
+        """The same of a flag, whose extremes are two of its values; of a switch nothing is known.
+
+        What lies between a negative and a positive value may be 0.
+        """
+        every = self.kept
+        if np.any(every.res != (every.thresh != 0)) or np.any(self.res != (self.thresh != 0)):
+            return 0, 0
+        size = kept.count - kept.odd
+        low, high = (kept.low != 0) != value, (kept.high != 0) != value
+        alike = (kept.low == kept.high) | (kept.low > 0) | (kept.high < 0)
+        least = np.where(alike, low * size, low.astype(np.int64) + high)
+        most = np.where(alike, least, size - ~low - ~high)
+        return int(least.sum()), int(most.sum())
 
     def turned_near(self, near: Bools, thresholds: Floats) -> tuple[Int64s, Int64s]:
         """int64[v] each: how many of ``near``, and of all, would turn; without those summed up."""

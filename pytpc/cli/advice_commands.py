@@ -43,6 +43,7 @@ _WHAT: dict[MarkType | None, str] = {
     None: "no type",
 }
 _TRUTHS = {"true": True, "false": False}
+_LONGEST = 40
 
 
 @click.command("suggest")
@@ -121,18 +122,18 @@ def _number(text: str) -> Number:
     if text.lower() in _TRUTHS:
         return _TRUTHS[text.lower()]
     try:
-        return int(text)
-    except ValueError:
-        pass
-    try:
         value = float(text)
     except ValueError as error:
         raise click.BadParameter(
             f"{text!r} is no number, true or false", param_hint="--value"
         ) from error
     if value - value != 0:
-        raise click.BadParameter(f"{text!r} is not finite", param_hint="--value")
-    return value
+        shown = text if len(text) <= _LONGEST else f"{text[:_LONGEST]}..."
+        raise click.BadParameter(f"{shown!r} is not finite", param_hint="--value")
+    try:
+        return int(text)
+    except ValueError:
+        return value
 
 
 def _declared(static: StaticInfo, source: Path) -> list[Declared]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import TypeVar
 
@@ -100,13 +101,16 @@ def TYPES(command: Command) -> Command:
 
 
 def recording_of(source: Path) -> Recording:
-    """Read a recording, with its progress shown.
+    """Read a recording, with its progress shown; what is in a folder is called after the folder.
+
+    The bags of all missions have the same name, their folders have not.
 
     Raises:
         InputError: it cannot be read.
     """
     with progress(f"reading {source.name}") as advance:
-        return read(source, advance)
+        found = read(source, advance)
+    return replace(found, name=source.absolute().name) if source.is_dir() else found
 
 
 def check_reports(recording: Recording, static: StaticInfo, source: Path) -> None:

@@ -11,6 +11,7 @@ import click
 from rich.table import Table
 from rich.text import Text
 
+from pytpc.advice.declared import declared_in, read_declared
 from pytpc.cli.console import console, warn
 from pytpc.cli.options import (
     JSON,
@@ -63,6 +64,7 @@ def rank_command(
 ) -> None:
     """Name the suspected parameters at each mark in each RECORDING (any INPUT of `convert`)."""
     static = static_of([static_source])
+    in_sources = declared_in(static, (), _warn_plainly)
     items: list[dict[str, object]] = []
     unmarked: list[Path] = []
     for source in recordings:
@@ -77,14 +79,17 @@ def rank_command(
         warn_about(recording, static)
         for clock in two_clocks(recording):
             warn(f"{plain(recording.name)}: {plain(clock)}")
+        declared = [*in_sources, *read_declared([source], _warn_plainly)]
+        shown = [
+            (one, rows_of(one, recording, static, top, declared=declared, window_s=window_s))
+            for one in rankings
+        ]
         if as_json:
-            for ranking in rankings:
-                rows = rows_of(ranking, recording, static, top)
-                items.append(_json_of(ranking, recording, rows))
+            items += [_json_of(ranking, recording, rows) for ranking, rows in shown]
             continue
         if len(recordings) > 1:
             click.echo(f"{plain(str(source))}:\n")
-        print_rankings(console(), recording, static, rankings, top)
+        print_rankings(console(), recording, shown)
     _tell_unmarked(unmarked, len(recordings))
     if as_json:
         click.echo(json.dumps(items, indent=1, ensure_ascii=False))
@@ -240,6 +245,10 @@ def _tell_unmarked(unmarked: Sequence[Path], of: int) -> None:
         raise InputError(what, unmarked[0])
     for source in unmarked:
         warn(f"{plain(str(source))}: {what}")
+
+
+def _warn_plainly(line: str) -> None:
+    warn(plain(line))
 
 
 def _json_of(ranking: MarkRanking, recording: Recording, rows: list[Row]) -> dict[str, object]:

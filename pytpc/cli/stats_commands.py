@@ -110,7 +110,7 @@ def stats_command(  # noqa: PLR0917
     missions = load_missions(paths, treatments, recording_of)
     _check(missions, static)
     with progress("working out tables") as advance:
-        tables = study_tables(missions, static, chosen, advance)
+        tables = study_tables(missions, static, chosen, advance, window_s=window_s)
     if output is None:
         _print(tables, form)
     else:

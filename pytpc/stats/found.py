@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 from pytpc.marks import MARK_TYPES, MarkType
 from pytpc.scoring.ranking import rank_marks
-from pytpc.scoring.scores import NONE
+from pytpc.scoring.scores import NONE, WINDOW_S
 from pytpc.static_info import StaticInfo
 from pytpc.stats.missions import Trial
 from pytpc.tables import Cell, Column, Table, statistics
@@ -44,7 +44,9 @@ class FoundInTrial:
         return sum(1 for mark in self.marks if mark.type == kind)
 
 
-def found_in(trial: Trial, static_info: StaticInfo) -> FoundInTrial | None:
+def found_in(
+    trial: Trial, static_info: StaticInfo, window_s: float = WINDOW_S
+) -> FoundInTrial | None:
     """Rank the changed parameter at each mark; None where the treatment changed none.
 
     A mark without a type has the combined rank, and the score of the type by which it has it.
@@ -53,7 +55,7 @@ def found_in(trial: Trial, static_info: StaticInfo) -> FoundInTrial | None:
     if treatment is None or treatment.parameter is None:
         return None
     marks = []
-    for ranking in rank_marks(trial.mission.recording, static_info):
+    for ranking in rank_marks(trial.mission.recording, static_info, window_s=window_s):
         suspect = ranking.suspect_of(treatment.parameter)
         rank, score = (0.0, NONE) if suspect is None else (suspect.rank, suspect.score)
         marks.append(FoundAtMark(ranking.mark.type, rank, score))

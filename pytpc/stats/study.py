@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from typing import TypeVar
 
 from pytpc.complaints import complaints
 from pytpc.parameters import parameter_name, same_parameter
 from pytpc.scoring.clocks import two_clocks
+from pytpc.scoring.scores import WINDOW_S
 from pytpc.static_info import StaticInfo
 from pytpc.stats.delays import delays_of, delays_table
 from pytpc.stats.found import found_in, found_table
@@ -33,6 +35,8 @@ def study_tables(
     static_info: StaticInfo,
     names: Sequence[str] = tuple(NUMBERS),
     on_progress: Callable[[int, int], None] | None = None,
+    *,
+    window_s: float = WINDOW_S,
 ) -> list[Table]:
     """The tables of a study.
 
@@ -41,6 +45,7 @@ def study_tables(
         static_info: of the build that flew them.
         names: of ``NUMBERS``, in the order in which the tables are wanted.
         on_progress: called with (tables done, tables in all).
+        window_s: the window of type II in seconds, for table 6.16.
 
     Raises:
         KeyError: there is no table of such a name.
@@ -53,7 +58,9 @@ def study_tables(
         "confusion": lambda: confusion_table([MarksOfTrial.of(trial) for trial in trials]),
         "delays": lambda: delays_table(_some(trials, static_info, delays_of), users),
         "marks": lambda: marks_table([MarksOfTrial.of(trial) for trial in trials], users),
-        "found": lambda: found_table(_some(trials, static_info, found_in)),
+        "found": lambda: found_table(
+            _some(trials, static_info, partial(found_in, window_s=window_s))
+        ),
     }
     tables = []
     for number, name in enumerate(names, start=1):

@@ -135,6 +135,7 @@ def test_without_marks(tmp_path, files):
         (["cover", "--value", "much"], 2, "'much' is no number, true or false"),
         (["cover", "--value", "inf"], 2, "'inf' is not finite"),
         (["cover", "--value", "nan"], 2, "'nan' is not finite"),
+        (["cover", "--value", "9" * 400], 2, f"'{'9' * 40}...' is not finite"),
     ],
 )
 def test_errors(files, arguments, status, says):

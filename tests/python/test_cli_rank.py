@@ -121,6 +121,35 @@ def test_another_window(files):
     assert run("rank", bag, "--static", static, "--window", "0").exit_code == 2
 
 
+# 36 s is 15.1 s after the last report: within 20 s coverage was 0.3 and 0.5, which turn below them.
+def test_suggestions_look_at_the_same_window(files, quiet):
+    _, static = files
+    result = run("rank", quiet, "--static", static, "--at", "35", "--window", "20", "--json")
+    suspects = json.loads(result.stdout)[0]["suspects"]
+    (coverage,) = [found for found in suspects if found["parameter"] == "coverage"]
+    assert (coverage["score_type"], coverage["boundary"]) == ("II", 0.5)
+
+
+def test_suggestions_keep_to_what_is_declared(files, tmp_path):
+    bag, static = files
+    (tmp_path / "robot").mkdir()
+    (tmp_path / "robot" / "package.xml").write_text("<package/>")
+    (tmp_path / "robot" / "Robot.cfg").write_text(
+        "from dynamic_reconfigure.parameter_generator_catkin import *\n"
+        "gen = ParameterGenerator()\n"
+        'gen.add("coverage", double_t, 0, "how much", 0.6, 0.55, 1)\n'
+        "add_more(gen)\n"
+    )
+    known = [comparison(0, "faces", ">=", default=3), comparison(1, "coverage")]
+    static_info(*known, source_root=str(tmp_path / "robot")).save(static)
+    result = run("rank", bag, bag, "--static", static, "--json")
+    coverage = json.loads(result.stdout)[1]["suspects"][1]
+    assert coverage["direction"] is None
+    assert coverage["suggestion"] == "no value in the declared range 0.55..1 would do: below 0.5"
+    # Of two missions the sources are one.
+    assert result.stderr.count("Robot.cfg:4: add_more(gen): the function is not followed") == 1
+
+
 # 14.5 s after the begin at 1 s is 15.5 s: faces has flopped 0.5 s before, 0.5 * 2.
 def test_a_time_that_nobody_marked(files, quiet):
     _, static = files
@@ -157,6 +186,16 @@ def test_several_missions(files, quiet):
     items = json.loads(run("rank", bag, quiet, "--static", static, "--json").stdout)
     assert [item["mission"] for item in items] == ["m", "m"]
     one_line(run("rank", quiet, quiet, "--static", static), "quiet.bag: no marks", "`pytpc mark`")
+
+
+# Missions are recorded into bags of one name.
+def test_missions_are_called_after_their_folders(files, tmp_path):
+    bag, static = files
+    folders = [tmp_path / "monday", tmp_path / "tuesday"]
+    for folder in folders:
+        assert run("convert", bag, "-o", folder).exit_code == 0
+    items = json.loads(run("rank", *folders, "--static", static, "--json").stdout)
+    assert [item["mission"] for item in items] == ["monday", "monday", "tuesday", "tuesday"]
 
 
 # Comparison 0 reports 200 times, comparison 1 400 times; only 1 is known.

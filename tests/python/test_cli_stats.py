@@ -88,6 +88,17 @@ def test_tables_are_chosen_by_name_or_number(study):
     assert "0 of 2 marks are of the wrong type." in lines
 
 
+# The mark of the first trial is at 107 s. In the 12 s before it ~limit is 1 and 5 against 9:
+# (8 + 4) / 2 / (9 - 1) = 0.75. In the 2 s before it nothing was compared with it.
+def test_table_6_16_with_another_window(study):
+    def score(*arguments):
+        (table,) = json.loads(stats(study, "--table", "6.16", "--json", *arguments).stdout)
+        return table["rows"][0]["type ii rank"], table["rows"][0]["type ii score"]
+
+    assert score() == (1, 0.75)
+    assert score("--window", "2") == (0, 9999.9)
+
+
 def test_csv_is_one_table_or_a_folder_of_them(study, tmp_path):
     one = stats(study, "--table", "6.14", "--format", "csv")
     rows = list(csv.reader(io.StringIO(one.stdout)))

@@ -273,12 +273,55 @@ def test_summaries():
     # The summary has counted what was reported within it.
     inside = mission([(2.05, 0, 0, 0.5, 0.75)], [Mark(ns(3), "II")], kept(summary(2, 2.1)))
     assert what_if(inside, LIMIT, "limit", 0.3).evaluations == 2
-    # Of equality nothing is known in between; of a flag there is nothing to know.
+    # Of equality nothing is known in between.
     equal = static_info(comparison(0, "~limit", "=="))
     assert what_if(recorded, equal, "limit", 0.4).unsure == 5
     # What was not finite counts as nothing that could turn.
     odd = mission([], [Mark(ns(3), "II")], kept(summary(2, 2.1, count=3, odd=1)))
     assert what_if(odd, LIMIT, "limit", 0.3).flipped_near == 2
+
+
+def flags(begin, end, low, high, **changes):
+    """Three evaluations of a flag, the last of which was ``high``."""
+    same = {"far": 0, "diff_min": 0, "diff_max": 0, "diff_mean": 0, "abs_mean": 0, "count": 3}
+    outcome = {"result": high != 0, "res": high != 0, "cmp": high, "thresh": high}
+    return summary(begin, end, low=low, high=high, **same, **outcome, **changes)
+
+
+# A flag of 1 that is summed up: with 0 all of it turn, with 2 none; near the mark at 3 s are 3, and
+# 3 away. Where it went from 0 to 1 within one, at least one of its three turns and one does not.
+# Between -1 and 1 there may have been a 0: with 0 two turn for certain, and perhaps the third.
+@pytest.mark.parametrize(
+    ("low", "value", "expected"),
+    [(1, 0, (1, 3, 3, 0)), (1, 2, (0, 0, 0, 0)), (0, 0, (1, 3, 1, 1)), (0, 1, (0, 0, 1, 1)),
+     (-1, 0, (1, 3, 2, 1)), (-1, 1, (0, 0, 0, 1))],
+)  # fmt: skip
+def test_summaries_of_a_flag(low, value, expected):
+    static = static_info(comparison(0, "~use", "flag"))
+    table = kept(flags(2, 2.1, 1, 1), flags(30, 31, low, 1))
+    found = what_if(mission([], [Mark(ns(3), "II")], table), static, "use", value)
+    assert (found.evaluations, *counts(found), found.unsure) == (6, *expected)
+
+
+def test_summaries_of_a_switch():
+    static = static_info(comparison(0, "~mode", "flag"))
+    table = kept(flags(2, 2.1, 1, 1), replace(flags(30, 31, 2, 2), res=False, result=False))
+    found = what_if(mission([], [Mark(ns(3), "II")], table), static, "mode", 0)
+    assert (*counts(found), found.unsure) == (0, 0, 0, 0)
+    assert found.caveats[-1].startswith("a switch chooses by it")
+
+
+# From 10 s on 7 > 5: with 7 the mark at 30 s is answered, and [10, 30] turns, of which [18, 30] is
+# its window.
+def test_a_change_long_before_the_mark():
+    rows = greater([(t, 7 if t >= 10 else 1) for t in range(31)])
+    found = what_if(mission(rows, [Mark(ns(30), "I")]), LIMIT, "limit", 7)
+    assert counts(found) == (1, 13, 8)
+    said = "the last change was up to 20 s before the mark; what turns more than 12 s before it"
+    assert found.caveats == (CLOSED_LOOP, f"{said} counts as away from marks")
+    # Type II asks about no change.
+    found = what_if(mission(rows, [Mark(ns(30), "II")]), LIMIT, "limit", 7)
+    assert found.caveats == (CLOSED_LOOP,)
 
 
 CMPS = st.sampled_from([*map(float, range(-3, 4)), 0.5, NAN, INF, -INF])

@@ -27,6 +27,16 @@ EVENTS = events([(1, 0, 0, 2, 3), (2, 1, 0, 4, 9), (3, 0, 0, 1, 3), (4, 1, 0, 3,
 MISSION = Recording("m", EVENTS, (Mark(ns(10), "II"),), 0, ns(12))
 
 
+# The 12 s before 20 s have nothing; the 19 s before it have ~limit's 2 and 1
+# against 3 (D as above), of which 2 > 3 turns below 2.
+def test_advice_looks_at_the_window_that_ranked():
+    later = replace(MISSION, marks=(Mark(ns(20), "II"),))
+    rankings = pytpc.rank(later, STATIC, window_s=19)
+    assert rankings[0].suspects[0].score == 0.75
+    (first, _) = pytpc.suggest(rankings, declared=())
+    assert (first.suggestion.boundary, first.what_if.answered) == (2, 1)
+
+
 def test_import_is_lazy():
     code = "import sys, pytpc; print('numpy' in sys.modules, 'pytpc.library' in sys.modules)"
     said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

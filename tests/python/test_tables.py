@@ -66,6 +66,16 @@ def test_json_has_no_nan():
     assert found["summary"][0]["user_1 type ii"] == 2.5
 
 
+# A user may be called as a column of ours is, or differ from another in capitals alone.
+def test_no_column_takes_the_place_of_another():
+    users = [Column("Type I", 0, group=user) for user in ("Ann", "ann", "total", "Total")]
+    table = Table("marks", "Marks", tuple(users), (("a", (1, 2, 3, 6)),), (), first="Trial")
+    named = {"trial": "a", "ann type i 2": 1, "ann type i": 2, "total type i 2": 3}
+    assert as_json(table)["rows"] == [{**named, "total type i": 6}]
+    heading, _ = csv.reader(io.StringIO(as_csv(table)))
+    assert heading == [*named, "total type i"]
+
+
 def test_markdown():
     assert as_markdown(TABLE).splitlines() == [
         r"| Trial | User\_1 Type I | User\_1 Type II | Share |",
