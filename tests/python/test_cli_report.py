@@ -15,6 +15,8 @@ from report_samples import Page
 from pytpc.cli.main import main
 from pytpc.values.origins import ORIGINS_FILE, Origin, write_origins
 
+ENOUGH = {"enough": True, "reason": ""}
+
 
 @pytest.fixture
 def files(tmp_path):
@@ -59,8 +61,8 @@ def test_a_page_is_written_of_a_folder(files, tmp_path):
         {
             "name": "night flight",
             "marks": [
-                {"seconds": 15.0, "type": "I", "first": "~faces"},
-                {"seconds": 19.0, "type": "II", "first": "~coverage"},
+                {"seconds": 15.0, "type": "I", "first": "~faces", **ENOUGH},
+                {"seconds": 19.0, "type": "II", "first": "~coverage", **ENOUGH},
             ],
         }
     ]
