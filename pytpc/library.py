@@ -16,7 +16,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import overload
 
-from pytpc import tables
 from pytpc.advice.advise import Advice, advise
 from pytpc.advice.counterfactual import WhatIf
 from pytpc.advice.counterfactual import what_if as replay
@@ -25,7 +24,7 @@ from pytpc.errors import InputError
 from pytpc.ingest import Recording
 from pytpc.ingest import read as read_recording
 from pytpc.marks import Mark, MarkType
-from pytpc.notebook import Table
+from pytpc.notebook import StudyTable, Table
 from pytpc.report.html import MissionReport
 from pytpc.report.html import write_report as write_page
 from pytpc.scoring.curves import STEP_S, RankCurves, rank_curves
@@ -53,14 +52,15 @@ class Rankings(Sequence[MarkRanking]):
 
     A sequence of `pytpc.scoring.ranking.MarkRanking`; ``recording`` and ``static_info`` are what
     was ranked, ``source`` where the mission was read from, if it was ranked by its path: what else
-    is in its folder is in the report then. ``window_s`` is the window of type II that ranked them.
-    ``table`` has the first suspects of each mark.
+    is in its folder is in the report then. ``types`` and ``window_s`` are what it was ranked with,
+    and what is made of it uses them, too. ``table`` has the first suspects of each mark.
     """
 
     rankings: tuple[MarkRanking, ...]
     recording: Recording
     static_info: StaticInfo
     source: Path | None = None
+    types: Types = "believe"
     window_s: float = WINDOW_S
 
     def __len__(self) -> int:
@@ -191,36 +191,6 @@ class Advices(Sequence[Advice]):
         return self.table()._repr_html_()
 
 
-@dataclass(frozen=True, slots=True)
-class StudyTable:
-    """A table of `pytpc.tables` that prints, and shows itself in a notebook."""
-
-    table: tables.Table
-
-    def rows(self) -> list[dict[str, object]]:
-        """The rows with their numbers in full; ``pandas.DataFrame(table.rows())``."""
-        return [dict(row) for row in tables.as_json(self.table)["rows"]]
-
-    def shown(self) -> Table:
-        """The same as a person reads it, with the statistics below."""
-        headings = [f"{column.group} {column.heading}".strip() for column in self.table.columns]
-        rows = [(name, *tables.shown(self.table, cells)) for name, cells in self.table.rows]
-        rows += [
-            (name, *tables.shown(self.table, cells, statistic=True))
-            for name, cells in self.table.summary
-        ]
-        right = frozenset(range(1, len(headings) + 1))
-        return Table((self.table.first, *headings), tuple(rows), right, self.table.title)
-
-    def __str__(self) -> str:
-        """The table as text."""
-        return str(self.shown())
-
-    def _repr_html_(self) -> str:
-        """The table for a notebook, escaped."""
-        return self.shown()._repr_html_()
-
-
 def load_static(source: StaticInfo | Source) -> StaticInfo:
     """The static information of a workspace that ``pytpc build`` built, or of a static.json.
 
@@ -266,7 +236,7 @@ def rank(
         raise InputError("no marks; `pytpc mark` makes some beside it", recording.name)
     found = rank_marks(recording, static, types=types, window_s=window_s)
     source = None if isinstance(mission, Recording) else Path(mission)
-    return Rankings(tuple(found), recording, static, source, window_s)
+    return Rankings(tuple(found), recording, static, source, types, window_s)
 
 
 def curves(
@@ -309,11 +279,15 @@ def suggest(
     ranking = rankings[mark - 1]
     static = rankings.static_info
     if declared is None:
-        declared = declared_in(static, [rankings.source] if rankings.source else [])
+        declared = _declared(rankings)
     found = advise(
-        rankings.recording, static, ranking, top=top, declared=declared,
+        rankings.recording,
+        static,
+        ranking,
+        top=top,
+        declared=declared,
         window_s=rankings.window_s,
-    )  # fmt: skip
+    )
     return Advices(tuple(found), ranking)
 
 
@@ -383,17 +357,29 @@ def write_report(path: Source, *rankings: Rankings, title: str = "Suspected para
     return Path(path)
 
 
+def _declared(rankings: Rankings) -> list[Declared]:
+    """The ranges that sources declare, and the mission where it was ranked by its path."""
+    return declared_in(rankings.static_info, [rankings.source] if rankings.source else [])
+
+
 def _for_report(rankings: Rankings) -> MissionReport:
     """A mission with what its folder says of it: where values came from, what had been changed."""
     source, recording = rankings.source, rankings.recording
     given = MissionReport(
-        recording.name, recording, rankings.static_info, list(rankings.rankings),
+        recording.name,
+        recording,
+        rankings.static_info,
+        list(rankings.rankings),
+        declared=_declared(rankings),
         window_s=rankings.window_s,
-    )  # fmt: skip
+        types=rankings.types,
+    )
     if source is None:
         return given
     folder = source if source.is_dir() else source.parent
-    known = replace(given, origins=read_origins(source), name=source.absolute().name)
+    # As on the command line: bags of all missions may have one name, their folders have not.
+    name = source.absolute().name if source.is_dir() else recording.name
+    known = replace(given, origins=read_origins(source), name=name)
     if not (folder / TREATMENT_FILE).is_file():
         return known
     treatment = load_treatment(folder)

@@ -111,7 +111,9 @@ def what_if(
         caveats=found.caveats,
         unsure=int(found.unsure[0]),
     )
-    return replace(result, text=_sentence(result, kind))
+    asked = _asked(recording, kind, marks)
+    mixed = any(mark.type != kind for mark in asked)
+    return replace(result, text=_sentence(result, kind, mixed=mixed))
 
 
 def sweep(
@@ -302,11 +304,14 @@ def _is_switch(track: Track) -> bool:
     return bool(np.any(track.res != (track.thresh != 0)) or np.any(kept.res != (kept.thresh != 0)))
 
 
-def _sentence(found: WhatIf, kind: MarkType | None) -> str:
-    """What to show: ``0.0527 answers 4 of 4 marks and flips 12 of 3,405 decisions elsewhere``."""
+def _sentence(found: WhatIf, kind: MarkType | None, *, mixed: bool) -> str:
+    """What to show: ``0.0527 answers 4 of 4 marks of type II; away from marks it turns ...``.
+
+    ``mixed`` says that not all of the marks are of ``kind``: they are not called so then.
+    """
     if not found.evaluations:
         return "it was not evaluated, so nothing is known of other values"
-    of = "" if kind is None else f" of type {kind}"
+    of = "" if kind is None or mixed else f" of type {kind}"
     away = f"{found.flipped_away:,} of {many(found.evaluations, 'decision')}"
     share = found.flipped_away / found.evaluations
     percent = f" ({100 * share:.2g} %)" if found.flipped_away and math.isfinite(share) else ""

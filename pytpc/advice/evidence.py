@@ -83,12 +83,16 @@ def evidence_of(
     Raises:
         NoneBecauseError: there is nothing.
     """
-    rows = _rows_up_to(events, key, mark_ns)
     kept = _Kept.of(summaries, key, mark_ns, window_s)
-    threshold = float(events.thresh[rows[-1]])
-    if kept is not None and kept.last_ns >= events.time_ns[rows[-1]]:
-        threshold = kept.threshold
+    rows = _rows_up_to(events, key, mark_ns)
+    if kept is None and not rows.size:
+        raise NoneBecauseError("it was not evaluated before the mark")
     seen = events.thresh[rows]
+    if kept is not None and (not rows.size or kept.last_ns >= events.time_ns[rows[-1]]):
+        threshold = kept.threshold
+        seen = np.append(seen, threshold)
+    else:
+        threshold = float(seen[-1])
     if kind == "I":
         pair = last_flop(events, rows)
         return Evidence(events.cmp[pair], events.thresh[pair], threshold, seen, False)
@@ -103,12 +107,10 @@ def evidence_of(
 
 
 def _rows_up_to(events: Events, key: str, mark_ns: int) -> Int64s:
-    if key in events.keys:
-        rows = events.by_key.rows(events.keys.index(key))
-        last = int(np.searchsorted(events.time_ns[rows], mark_ns, side="right"))
-        if last:
-            return rows[:last]
-    raise NoneBecauseError("it was not evaluated before the mark")
+    if key not in events.keys:
+        return np.zeros(0, dtype=np.int64)
+    rows = events.by_key.rows(events.keys.index(key))
+    return rows[: int(np.searchsorted(events.time_ns[rows], mark_ns, side="right"))]
 
 
 def last_flop(events: Events, rows: Int64s) -> Int64s:

@@ -14,7 +14,6 @@ from pytpc.cli.console import progress, warn
 from pytpc.complaints import complaints
 from pytpc.errors import InputError
 from pytpc.ingest import Recording, read
-from pytpc.scoring.ranking import unknown_keys
 from pytpc.scoring.scores import WINDOW_S
 from pytpc.static_info import StaticInfo
 from pytpc.words import plain
@@ -121,13 +120,14 @@ def check_reports(recording: Recording, static: StaticInfo, source: Path) -> Non
     Raises:
         InputError: it has none.
     """
-    if not len(recording.events):
+    reported = {*recording.events.keys, *recording.summaries.keys}
+    if not reported:
         raise InputError(
             "no threshold reports: was /rosout recorded, and the workspace built with TPC? "
             " Files of the sink `file` have to be in the same folder, or in its tpc",
             source,
         )
-    if len(unknown_keys(recording.events, static)) == len(recording.events.keys):
+    if reported.isdisjoint(static.comparisons):
         raise InputError(
             "none of its reports is known to the static information: it is of another build",
             source,

@@ -108,6 +108,7 @@ def _mission(source: Path, static: StaticInfo, types: Types, window_s: float) ->
         origins=read_origins(source),
         declared=declared_in(static, [source], lambda line: warn(plain(line))),
         window_s=window_s,
+        types=types,
     )
 
 
@@ -129,6 +130,8 @@ def _json_of(output: Path, missions: list[MissionReport]) -> dict[str, object]:
                         "seconds": mission.seconds(ranking.mark.time_ns),
                         "type": ranking.mark.type,
                         "first": ranking.suspects[0].parameter if ranking.suspects else None,
+                        "enough": ranking.enough,
+                        "reason": ranking.reason,
                     }
                     for ranking in mission.rankings
                 ],

@@ -235,7 +235,8 @@ class Kept(NamedTuple):
     def words(self) -> str:
         """The first suspects, or why there is none."""
         (rows,), (reason,) = self.look.rows.values(), self.look.reasons.values()
-        named = [f"{row.suspect.position} {row.suspect.parameter}" for row in rows[:_NAMED]]
+        firsts = [row.suspect for row in rows[:_NAMED]]
+        named = [f"{one.position}{'=' if one.tied else ''} {one.parameter}" for one in firsts]
         return ", ".join(named) or reason or "no parameter has a score"
 
 

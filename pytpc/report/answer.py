@@ -17,7 +17,8 @@ class AnswerView:
 
     Of the values that the marks suggest it is the one that answers most of them, and among these
     the one that changes least elsewhere. ``numbers`` are the marks' numbers from 1, ``marks`` says
-    in words which they are, ``types`` by which scores it comes first there.
+    in words which they are, ``types`` by which scores it comes first there. ``reason`` says why the
+    evidence at these marks is not enough to go by the answer; empty where it is.
     """
 
     numbers: tuple[int, ...]
@@ -26,6 +27,7 @@ class AnswerView:
     plot: Markup
     others: list[CardView]
     types: str
+    reason: str = ""
 
     @property
     def mark(self) -> str:
@@ -33,22 +35,25 @@ class AnswerView:
         return self.card.ident.rpartition("-")[0]
 
 
-def answers(cards: Sequence[Sequence[CardView]]) -> list[AnswerView]:
+def answers(cards: Sequence[Sequence[CardView]], reasons: Sequence[str]) -> list[AnswerView]:
     """The answers of a mission, the one that most marks give first.
 
     Nothing is added up over marks: an answer is what one mark says, and how many say the same.
+    Marks at which there is not enough evidence come behind all others, and do not add to them.
 
     Args:
         cards: for each mark those of its first suspects, in order; may be empty.
+        reasons: for each mark why there is not enough evidence; empty where there is.
     """
-    groups: dict[tuple[str, str], list[int]] = {}
+    groups: dict[tuple[str, str, bool], list[int]] = {}
     for place, first in enumerate(cards):
         if first:
-            row = first[0].row
-            groups.setdefault((row.parameter, row.direction), []).append(place)
+            row, lacking = first[0].row, bool(reasons[place])
+            groups.setdefault((row.parameter, row.direction, lacking), []).append(place)
     found = []
     for places in groups.values():
-        chosen = cards[min(places, key=lambda place: _worth(cards[place][0]))]
+        best = min(places, key=lambda place: _worth(cards[place][0]))
+        chosen = cards[best]
         numbers = tuple(place + 1 for place in places)
         types = sorted({cards[place][0].row.type for place in places})
         found.append(
@@ -59,9 +64,10 @@ def answers(cards: Sequence[Sequence[CardView]]) -> list[AnswerView]:
                 plot=_copy(chosen[0]),
                 others=[*chosen[1:]],
                 types=" and ".join(types),
+                reason=reasons[best],
             )
         )
-    return sorted(found, key=lambda answer: (-len(answer.numbers), answer.numbers))
+    return sorted(found, key=lambda one: (bool(one.reason), -len(one.numbers), one.numbers))
 
 
 def spoken(texts: Sequence[str]) -> str:

@@ -47,6 +47,7 @@ class SuspectView:
     relation: str
     type: str
     score: str
+    scored: str
     rank: str
     order: Mapping[str, float | int | str]
 
@@ -110,8 +111,8 @@ class Figures:
         self.cards[ident] = {**card, "series": self._numbers[key]}
 
 
-def row_view(mission: MissionReport, advice: Advice) -> SuspectView:
-    """The row of a suspect."""
+def row_view(mission: MissionReport, advice: Advice, *, mixed: bool = False) -> SuspectView:
+    """The row of a suspect; ``mixed`` where the ranking has scores of both types."""
     suspect, suggestion = advice.suspect, advice.suggestion
     found = suspect.comparison
     current = suggestion.current if suggestion.current is not None else suspect.last.thresh
@@ -132,6 +133,8 @@ def row_view(mission: MissionReport, advice: Advice) -> SuspectView:
         relation=found.relation,
         type=suspect.type,
         score=f"{suspect.score:.3g}",
+        # Scores of both types in one column are no one order.
+        scored=suspect.type if mixed else "",
         rank=f"{suspect.rank:.2f}",
         order={
             "position": suspect.position,

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pytpc.advice.declared import Declared
 from pytpc.ingest.recording import Recording
 from pytpc.parameters import same_parameter
-from pytpc.scoring.ranking import MarkRanking
+from pytpc.scoring.ranking import MarkRanking, Types
 from pytpc.scoring.scores import WINDOW_S
 from pytpc.static_info import StaticInfo
 from pytpc.values.origins import Origin
@@ -25,7 +25,8 @@ class MissionReport:
     says what was done to the robot, and ``changed_parameter`` which parameter was changed, where
     that is known (in a study); it is shown in red. ``origins`` are where the values came from,
     ``declared`` the ranges that are declared of parameters; both may be empty. ``window_s`` is the
-    window with which the marks were ranked, ``top`` how many suspects have a card.
+    window with which the marks were ranked and ``types`` how far their types were believed, ``top``
+    how many suspects have a card.
     """
 
     name: str
@@ -38,6 +39,7 @@ class MissionReport:
     declared: Sequence[Declared] = ()
     window_s: float = WINDOW_S
     top: int = CARDS
+    types: Types = "believe"
 
     def is_changed(self, parameter: str) -> bool:
         """True where ``parameter``, as in the source, is the one that was changed."""

@@ -115,7 +115,12 @@ def evidence_svg(data: Evidence, style: EvidenceStyle, ident: str, label: str) -
             )
             if style.window is not None:
                 axes.axvspan(
-                    max(style.window, data.begin), style.mark, color=COLOUR["span"], linewidth=0
+                    max(style.window, data.begin),
+                    style.mark,
+                    color=COLOUR["span"],
+                    linewidth=0,
+                    # Behind the spans of summaries, too, which are no lines.
+                    zorder=0.5,
                 )
         _name_mark(upper, data, style)
         lower.set_xlabel("seconds since the recording began")

@@ -64,7 +64,8 @@ def _window(mission: MissionReport, suspect: Suspect, mark: Mark) -> str:
                 return f"{_begin(mission)} evaluated {many(count, 'time')}{_near(cmp, thresh)}"
     if not count:
         return ""
-    truth = f"{'true' if true else 'false'} each of {many(count, 'time')}"
+    each = f"each of {many(count, 'time')}" if count > 1 else "the one time it was evaluated"
+    truth = f"{'true' if true else 'false'} {each}"
     counted = truth if one else f"true {true:,} of {many(count, 'time')}"
     flag = suspect.comparison.relation == "flag"
     return f"{_begin(mission)} {counted}{'.' if flag else _near(cmp, thresh)}"

@@ -10,6 +10,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import numpy as np
 from markupsafe import Markup
 
 from pytpc.advice.advise import advise
@@ -27,7 +28,8 @@ from pytpc.report.mission import CARDS, MissionReport
 from pytpc.report.payload import embedded, marks_of
 from pytpc.report.timeline import timeline
 from pytpc.scoring.clocks import two_clocks
-from pytpc.scoring.ranking import MarkRanking
+from pytpc.scoring.ranking import MarkRanking, Types
+from pytpc.words import many
 
 __all__ = ["CARDS", "MissionReport", "MissionView", "figures", "mission_view"]
 
@@ -112,7 +114,7 @@ def mission_view(mission: MissionReport, number: int, on_figure: Callable[[], No
         marks_i=kinds.count("I"),
         marks_ii=kinds.count("II"),
         marks_untyped=kinds.count(None),
-        answers=answers([mark.cards for mark in marks]),
+        answers=answers([mark.cards for mark in marks], [mark.reason for mark in marks]),
         changed_parameter=mission.changed_parameter,
         changed_positions=_positions(mission),
         timeline=still,
@@ -155,6 +157,7 @@ def _mark_view(
         cards.append(card_view(mission, one, ranking, drawn, f"{ident}-{place}"))
         on_figure()
     changed = mission.changed_parameter
+    mixed = len({suspect.type for suspect in ranking.suspects}) > 1
     return MarkView(
         ident=ident,
         number=at[1],
@@ -163,7 +166,7 @@ def _mark_view(
         what=WHAT[mark.type],
         observer=mark.observer,
         note=mark.note,
-        suspects=[row_view(mission, one) for one in advice],
+        suspects=[row_view(mission, one, mixed=mixed) for one in advice],
         cards=cards,
         more=max(0, len(ranking.suspects) - ROWS),
         parameters=ranking.parameters,
@@ -185,19 +188,31 @@ def _positions(mission: MissionReport) -> str:
     return spoken(["-" if position is None else str(position) for position in positions])
 
 
+_BELIEVED: dict[Types, str] = {
+    "believe": "",
+    "doubt": "doubted: the suspects of the other type stay rivals",
+    "ignore": "ignored: ranked by both scores combined",
+}
+
+
 def _facts(mission: MissionReport) -> list[tuple[str, str]]:
     recording, static = mission.recording, mission.static_info
-    events = recording.events
-    seen = sum(
-        1
-        for code, key in enumerate(events.keys)
-        if key in static.thresholds and events.by_key.rows(code).size
-    )
+    events, summaries = recording.events, recording.summaries
+    tables = (events, summaries)
+    keys = {table.keys[code] for table in tables for code in np.unique(table.key)}
+    nodes = {table.nodes[code] for table in tables for code in np.unique(table.node)}
+    seen = len(keys & set(static.thresholds))
     rate = len(events) / recording.seconds if recording.seconds > 0 else math.nan
-    return [
+    reports = f"{len(events):,} ({rate:.0f} per second)"
+    if len(summaries):
+        of = many(int(summaries.count.sum()), "evaluation")
+        reports += f", and summaries of {of}"
+    facts = [
         ("Length", f"{recording.seconds:.1f} s"),
-        ("Reports", f"{len(events):,} ({rate:.0f} per second)"),
+        ("Reports", reports),
         ("Comparisons seen", f"{seen} of {len(static.thresholds)} found in the source"),
         ("Changes of a result", f"{int(events.flop.sum()):,}"),
-        ("Nodes that report", str(len(set(events.node.tolist())))),
+        ("Nodes that report", str(len(nodes))),
     ]
+    believed = _BELIEVED[mission.types]
+    return [*facts, ("Types of the marks", believed)] if believed else facts

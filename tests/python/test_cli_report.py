@@ -9,11 +9,16 @@ from dataclasses import replace
 
 import pytest
 from click.testing import CliRunner
-from mission_samples import BagFile, comparison, line, static_info
+from mission_samples import BagFile, comparison, events, key, line, ns, static_info
 from report_samples import Page
 
 from pytpc.cli.main import main
+from pytpc.ingest.recording import Recording, save_recording
+from pytpc.marks import Mark
+from pytpc.summaries import Summary, SummaryBuilder
 from pytpc.values.origins import ORIGINS_FILE, Origin, write_origins
+
+ENOUGH = {"enough": True, "reason": ""}
 
 
 @pytest.fixture
@@ -59,8 +64,8 @@ def test_a_page_is_written_of_a_folder(files, tmp_path):
         {
             "name": "night flight",
             "marks": [
-                {"seconds": 15.0, "type": "I", "first": "~faces"},
-                {"seconds": 19.0, "type": "II", "first": "~coverage"},
+                {"seconds": 15.0, "type": "I", "first": "~faces", **ENOUGH},
+                {"seconds": 19.0, "type": "II", "first": "~coverage", **ENOUGH},
             ],
         }
     ]
@@ -170,3 +175,28 @@ def test_another_build_is_told(files, tmp_path):
     assert result.exit_code == 1
     assert "none of its reports is known to the static information" in result.stderr
     assert not (tmp_path / "r.html").exists()
+
+
+# Under `edges` a recorder that came late has summaries alone of what does not change.
+def test_a_recording_of_summaries_alone(tmp_path):
+    builder = SummaryBuilder()
+    builder.add(
+        Summary(
+            key=key(0), node="/node", begin_ns=ns(2), end_ns=ns(3), count=2, flops=0, far=2, odd=0,
+            result=False, res=False, cmp=0.375, thresh=0.75, diff_min=-0.375, diff_max=-0.25,
+            diff_mean=-0.3125, abs_mean=0.3125, low=0.375, high=0.75,
+        )
+    )  # fmt: skip
+    marks = (Mark(ns(4), "II"),)
+    recording = Recording("late", events([]), marks, 0, ns(5), summaries=builder.build())
+    save_recording(recording, tmp_path / "late")
+    static_info(comparison(0, "limit")).save(tmp_path / "static.json")
+    static_info(comparison(1, "limit")).save(tmp_path / "other.json")
+    page = tmp_path / "r.html"
+    result = run("report", tmp_path / "late", "--static", tmp_path / "static.json", "-o", page)
+    assert result.exit_code == 0, result.output
+    # 0.5 is the nearest to 0.75.
+    assert "Any value below 0.5 would do" in text_of(page)
+    result = run("report", tmp_path / "late", "--static", tmp_path / "other.json", "-o", page)
+    assert result.exit_code == 1
+    assert "it is of another build" in result.output

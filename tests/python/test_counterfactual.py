@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -87,6 +88,12 @@ def test_the_sentence():
     assert found.text == (
         "7 answers 1 of 1 mark of type I; away from marks it turns 1 of 7 decisions (14 %)"
     )
+    # A mark without a type, or of the other one, is not called one of type I.
+    for other in (None, "II"):
+        asked = what_if(
+            RECORDED, LIMIT, "limit", 7, kind="I", marks=[*RECORDED.marks[:1], Mark(ns(31), other)]
+        )
+        assert re.match("7 answers [0-2] of 2 marks; away", asked.text)
     none = what_if(mission(greater(ROWS), []), LIMIT, "limit", 5)
     assert none.text == "5 is replayed without a mark; away from marks it turns 0 of 7 decisions"
     nothing = what_if(mission([]), LIMIT, "limit", 5)

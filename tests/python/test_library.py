@@ -138,3 +138,27 @@ def test_the_example_fits_its_sources():
     for key, found in static.comparisons.items():
         lines = static.source_path(key).read_text().splitlines()
         assert lines[found.lineno - 1].strip() == found.source_code.strip()
+
+
+# In [2, 10] there is the 1 of ~limit alone: below 1 it goes the other way; in twelve seconds the 2.
+def test_what_is_made_of_a_ranking_has_its_window(tmp_path: Path):
+    rankings = pytpc.rank(MISSION, STATIC, window_s=8, types="ignore")
+    for ranked, boundary in ((rankings, 1), (pytpc.rank(MISSION, STATIC), 2)):
+        found = {one.suspect.parameter: one.suggestion for one in pytpc.suggest(ranked)}
+        assert found["~limit"].boundary == boundary
+    page = pytpc.write_report(tmp_path / "page.html", rankings).read_text()
+    assert "In the 8 s before the mark" in page
+    assert "ignored: ranked by both scores combined" in page
+
+
+# What the packages declare is in the library's page as it is in the command line's.
+def test_declared_ranges_are_on_the_page(tmp_path: Path):
+    (tmp_path / "package.xml").write_text("<package/>")
+    (tmp_path / "node.cfg").write_text(
+        "from dynamic_reconfigure.parameter_generator_catkin import *\n"
+        "gen = ParameterGenerator()\n"
+        'gen.add("limit", double_t, 0, "A limit", 3.0, 1.5, 5.0)\n'
+    )
+    static = static_info(comparison(0, "~limit"), comparison(1, "~far"), source_root=str(tmp_path))
+    page = pytpc.write_report(tmp_path / "page.html", pytpc.rank(MISSION, static)).read_text()
+    assert "double from 1.5 to 5" in page

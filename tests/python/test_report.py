@@ -33,6 +33,7 @@ from pytpc.report.series import (
     with_gaps,
 )
 from pytpc.scoring.ranking import rank_marks
+from pytpc.summaries import Summary, SummaryBuilder
 from pytpc.values.origins import Origin
 
 NAN = math.nan
@@ -337,3 +338,61 @@ def test_the_package_brings_its_templates():
         *("report.js", "report-figures.js", "report-timeline.js"),
         *("tpcs.html.j2", "tpcs.css", "tpcs.js"),
     }
+
+
+# Two comparisons are evaluated up to the marks at 5 and 6 s, one up to the three before: what those
+# say is not what the page begins with, though they are more.
+def test_marks_without_enough_evidence_do_not_make_the_answer(tmp_path):
+    static = static_info(comparison(0, "alone"), comparison(1, "near"))
+    rows = [(t / 10, 0, False, 1 if t < 5 else 0, 3) for t in range(70)]
+    rows += [(t / 10, 1, False, 1 + t / 100, 2) for t in range(45, 70)]
+    kinds = {1: "II", 2: "II", 3: "II", 5: "II", 6: "II"}
+    marks = tuple(Mark(ns(second), kind) for second, kind in kinds.items())
+    recording = Recording("m", events(rows), marks, 0, ns(7))
+    report = MissionReport("m", recording, static, rank_marks(recording, static))
+    text = " ".join("".join(Page(written(tmp_path, report)).text).split())
+    first, _, rest = text.partition("The whole mission")
+    assert first.index("near from") < first.index("alone from")
+    assert "Raise" not in first
+    assert "First suspect at marks 4-5 of 5" in first
+    assert first.count("(not enough evidence)") == 1
+    assert "Not enough evidence: only alone had been compared up to the mark." in rest
+    # Where there are no others it is said before the answer.
+    early = replace(recording, marks=marks[:3])
+    report = replace(report, recording=early, rankings=rank_marks(early, static))
+    text = " ".join("".join(Page(written(tmp_path, report)).text).split())
+    why = "Not enough evidence to go by this: only alone had been compared up to the mark. ▼ Lower"
+    assert why in text
+
+
+# 30 summaries of 10 evaluations each, and no report.
+def test_summaries_count_among_the_facts(tmp_path):
+    builder = SummaryBuilder()
+    for second in range(30):
+        builder.add(
+            Summary(
+                key=key(0), node="/node", begin_ns=ns(second), end_ns=ns(second + 0.9), count=10,
+                flops=0, far=10, odd=0, result=False, res=False, cmp=0.25, thresh=0.5,
+                diff_min=-0.375, diff_max=-0.125, diff_mean=-0.25, abs_mean=0.25, low=0.125,
+                high=0.5,
+            )
+        )  # fmt: skip
+    static = static_info(comparison(0, "limit"), comparison(1, "never"))
+    marks = (Mark(ns(20), "II"),)
+    recording = Recording("m", events([]), marks, 0, ns(30), summaries=builder.build())
+    report = MissionReport("m", recording, static, rank_marks(recording, static))
+    text = " ".join("".join(Page(written(tmp_path, report)).text).split())
+    assert re.search(r"Reports *0 \(0 per second\), and summaries of 300 evaluations", text)
+    assert re.search("Comparisons seen *1 of 2 found in the source", text)
+    assert re.search("Nodes that report *1 ", text)
+
+
+# By both scores the first is faces, by type I, the second the one by type II.
+def test_scores_of_both_types_say_which(tmp_path):
+    report = mission(tmp_path)
+    page = written(tmp_path, report)
+    tables = page.split('<table class="ranking">')[1:]
+    own = [set(re.findall('</span>|<span class="muted">(I+)</span></td>', one)) for one in tables]
+    assert [{kind for kind in kinds if kind} for kinds in own] == [set(), set(), {"I", "II"}]
+    assert "Types of the marks" not in page
+    assert "doubted: the suspects of the other" in written(tmp_path, replace(report, types="doubt"))

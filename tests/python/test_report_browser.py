@@ -372,3 +372,17 @@ def test_many_points_are_thinned_and_extremes_kept(opened):
         "const y = Object.values(Bokeh.index)[0].model.children[0].renderers[0].data_source.data.y;"
         "return y.length > 100 && y.length < 5000 && Math.max(...y.filter(Number.isFinite)) == 3.5",
     )
+
+
+@pytest.mark.parametrize("width", [400, 1280])
+def test_long_names_are_folded(opened, browser, width):
+    names = tuple(letter * 300 for letter in "abc")
+    size = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False}
+    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+    try:
+        opened(mission(names, name=names[0], treatment=names[1], changed_parameter=names[1]))
+        for figure in (ANSWER, TIMELINE):
+            drawn(browser, figure)
+        assert browser.execute_script("return document.documentElement.scrollWidth") <= width
+    finally:
+        browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})

@@ -43,6 +43,11 @@ def test_type2_from_summaries():
     # No value between the ends is known.
     equal = suggest(table, comparison(0, "limit", "=="), ns(3), "II", window_s=2, summaries=kept)
     assert equal.reason == "summaries do not tell which values came near to the threshold"
+    # A recorder that came late has no event of what never changes: the summary is enough.
+    late = suggest(events([]), limit, ns(3), "II", window_s=2, summaries=kept)
+    assert (late.direction, late.boundary, late.current) == ("lower", 0.5, 0.75)
+    first = suggest(events([]), limit, ns(3), "I", summaries=kept)
+    assert first.reason == "its result did not change before the mark"
     # The threshold was changed after the last event: the present one is in the summary.
     early = events([(0.5, 0, 0, 0.25, 0.9)])
     assert suggest(early, limit, ns(3), "II", window_s=2, summaries=kept).current == 0.75

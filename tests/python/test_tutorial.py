@@ -24,7 +24,8 @@ def _in_the_repository(monkeypatch: pytest.MonkeyPatch):
 
 
 def test_the_python(tmp_path: Path):
-    text = TUTORIAL.read_text()
+    # To doctest the end of a fence is output; a line that is empty ends it as well.
+    text = re.sub("^```.*$", "", TUTORIAL.read_text(), flags=re.MULTILINE)
     test = doctest.DocTestParser().get_doctest(
         text, {"folder": tmp_path}, TUTORIAL.name, str(TUTORIAL), 0
     )
@@ -59,3 +60,9 @@ def test_the_command_line(command: str, shown: str):
 def test_pictures_and_pages_are_there():
     for target in re.findall(r"\]\(([^)#:]+)\)", TUTORIAL.read_text()):
         assert (TUTORIAL.parent / target).exists(), target
+
+
+# Outside of a fence, what begins with > is a quotation, and a table in it is one long line.
+def test_all_python_is_shown_as_code():
+    text = re.sub("^```.*?^```$", "", TUTORIAL.read_text(), flags=re.MULTILINE | re.DOTALL)
+    assert ">>>" not in text

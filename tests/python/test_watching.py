@@ -356,3 +356,11 @@ def test_columns_go_one_by_one_as_room_goes(width: int, headings: list[str]):
     lines = texts(table(look, "II", width, 5, utf8=True))
     assert lines[1].split() == headings
     assert lines[2].split()[1] == "~speed"
+
+
+# Both changed at 102 s: (103 - 102) * (1 + 1) = 2 for either.
+def test_ties_are_named_as_ties():
+    events = [seen(at, number, cmp, 1) for at, cmp in ((101, 0), (102, 2)) for number in (0, 1)]
+    kept = KeptRankings(5)
+    kept.follow(Change(None, Mark(103 * S, "I")), watching(*events))
+    assert sorted(kept[0].words().split(", ")) == ["1= ~limit", "1= ~speed"]
