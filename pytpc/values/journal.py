@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import base64
 import contextlib
+import fcntl
 import hashlib
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -68,6 +69,30 @@ class Journal:
     def __init__(self, folder: Path) -> None:
         """The folder need not be there."""
         self._folder = folder
+
+    @contextlib.contextmanager
+    def held(self) -> Iterator[None]:
+        """While it is held no other process changes a file: the second of two waits.
+
+        Raises:
+            TpcError: the folder cannot be written.
+        """
+        try:
+            self._folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+            descriptor = os.open(
+                self._folder / ".lock", os.O_CREAT | os.O_RDWR | os.O_CLOEXEC, 0o600
+            )
+        except OSError as error:
+            raise TpcError(
+                f"the change cannot be noted for --undo: {error.strerror}", self._folder
+            ) from error
+        try:
+            # Some file systems of a network have no locks; then it is as it would be without.
+            with contextlib.suppress(OSError):
+                fcntl.flock(descriptor, fcntl.LOCK_EX)
+            yield
+        finally:
+            os.close(descriptor)
 
     def entries(self) -> list[Entry]:
         """All changes, the oldest first.

@@ -80,10 +80,11 @@ def take_back(
         TpcError: the file, or the robot's value, was changed since.
     """
     if entry.path is not None:
-        change = undo_change(entry, journal)
-        if not dry_run:
-            replace_file(change.path, change.after)
-            journal.remove(entry)
+        with journal.held():
+            change = undo_change(entry, journal)
+            if not dry_run:
+                replace_file(change.path, change.after)
+                journal.remove(entry)
         return change
     live = entry.live
     name, old, new = str(live["name"]), from_json(live["old"]), from_json(live["new"])

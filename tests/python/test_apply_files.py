@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import base64
 import json
+import threading
+import time
 from pathlib import Path
 
 import pytest
@@ -12,6 +14,7 @@ from launch_samples import MANIFEST, needs_roslaunch
 
 from pytpc.cli.main import main
 from pytpc.errors import TpcError
+from pytpc.values import apply
 from pytpc.values.apply import Change, apply_change, replace_file
 from pytpc.values.installed import is_installed, of_the_system, source_of
 from pytpc.values.journal import Journal, folder_of
@@ -148,3 +151,36 @@ def test_a_full_disk_leaves_the_file_as_it_was(params: Path, monkeypatch) -> Non
         replace_file(params, b"new")
     assert params.read_text() == PARAMS
     assert [path.name for path in params.parent.glob(".params*")] == []
+
+
+def test_of_two_changes_at_once_none_is_lost(params: Path, tmp_path: Path, monkeypatch) -> None:
+    """The second waits, sees that the file is another one, and does not overwrite the first."""
+    journal = Journal(tmp_path / "state")
+    before = params.read_bytes()
+
+    def change(old: bytes, new: bytes) -> Change:
+        return Change("/x", params, before, before.replace(old, new), 0, 1, 1)
+
+    writing, errors = threading.Event(), list[TpcError]()
+
+    def second() -> None:
+        assert writing.wait(5.0)
+        try:
+            apply_change(change(b"other: 3", b"other: 4"), journal)
+        except TpcError as error:
+            errors.append(error)
+
+    def slow_replace(path: Path, data: bytes) -> None:
+        writing.set()
+        if data == change(b"0.058", b"0.035").after:
+            time.sleep(0.3)
+        replace_file(path, data)
+
+    monkeypatch.setattr(apply, "replace_file", slow_replace)
+    other = threading.Thread(target=second)
+    other.start()
+    apply_change(change(b"0.058", b"0.035"), journal)
+    other.join()
+    assert params.read_bytes() == before.replace(b"0.058", b"0.035")
+    assert len(errors) == 1
+    assert len(journal.entries()) == 1
