@@ -177,7 +177,7 @@ def _plan(
     origin = chosen(target, parameter)
     if options.add and origin.kind in ("default", "runtime"):
         return plan_addition(origin, target, value)
-    return plan_origin(origin, value, force=options.force)
+    return plan_origin(origin, value, force=options.force, files=target.files)
 
 
 def _write(change: Change, journal: Journal, options: _Options) -> dict[str, object]:
