@@ -118,6 +118,9 @@ def apply_command(
     """
     journal = Journal(folder_of(os.environ))
     options = _Options(dry_run, add, force, as_json)
+    if listing or undo:
+        for error in journal.broken():
+            warn(plain(str(error)))
     if listing:
         _list(journal, as_json)
     elif undo:

@@ -95,16 +95,25 @@ class Journal:
             os.close(descriptor)
 
     def entries(self) -> list[Entry]:
-        """All changes, the oldest first.
+        """All changes that can be read, the oldest first."""
+        return self._all()[0]
 
-        Raises:
-            InputError: one of the files is none of these.
-        """
+    def broken(self) -> list[InputError]:
+        """What is wrong with the notes that cannot be read; the others are good all the same."""
+        return self._all()[1]
+
+    def _all(self) -> tuple[list[Entry], list[InputError]]:
+        entries, errors = list[Entry](), list[InputError]()
         try:
-            paths = [path for path in self._folder.glob("*.json") if path.stem.isdigit()]
+            paths = sorted(path for path in self._folder.glob("*.json") if path.stem.isdigit())
         except OSError:
-            return []
-        return sorted((_read(path) for path in paths), key=lambda entry: entry.number)
+            paths = []
+        for path in paths:
+            try:
+                entries.append(_read(path))
+            except InputError as error:
+                errors.append(error)
+        return sorted(entries, key=lambda entry: entry.number), errors
 
     def add(
         self,

@@ -303,6 +303,20 @@ def _why_not(origin: Origin) -> str:
 
 def _where(path: Path, real: Path) -> tuple[str, ...]:
     """What to know of where a change goes."""
+    return (*_copies(path, real), *_other_names(real))
+
+
+def _other_names(real: Path) -> tuple[str, ...]:
+    try:
+        others = real.stat().st_nlink - 1
+    except OSError:
+        others = 0
+    if others < 1:
+        return ()
+    return (f"{others} other names (hard links) of this file keep the old text",)
+
+
+def _copies(path: Path, real: Path) -> tuple[str, ...]:
     if path.resolve() != real:
         differs = "" if _same_bytes(path, real) else ", which is older or newer than it"
         return (
