@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
 from pathlib import Path
 
-from pytpc.errors import InputError, RunError
+from pytpc.errors import InputError, RunError, TpcError
 from pytpc.values.apply import Change, replace_file, shown, undo_change
 from pytpc.values.journal import Entry, Journal
 from pytpc.values.live import LiveChange, Robot
@@ -33,7 +34,10 @@ def set_live(robot: Robot, change: LiveChange, journal: Journal) -> tuple[Entry,
     try:
         holds, taken = robot.put(change)
     except BaseException:
-        journal.remove(entry)
+        # The node may have taken it all the same, and only its answer did not come.
+        with contextlib.suppress(TpcError):
+            if repr(robot.value(change.name)) == repr(change.old):
+                journal.remove(entry)
         raise
     return entry, holds, taken
 

@@ -13,11 +13,13 @@ from click.testing import CliRunner, Result
 from launch_samples import MANIFEST, needs_roslaunch
 
 from pytpc.cli.main import main
-from pytpc.errors import TpcError
+from pytpc.errors import RunError, TpcError
 from pytpc.values import apply
 from pytpc.values.apply import Change, apply_change, replace_file
 from pytpc.values.installed import is_installed, of_the_system, source_of
 from pytpc.values.journal import Journal, folder_of
+from pytpc.values.live import LiveChange, Robot
+from pytpc.values.undo import set_live
 
 PARAMS = "# mine\nmission:\n  limit: 0.058  # too high\n  other: 3\n"
 
@@ -204,3 +206,18 @@ def test_a_note_that_is_broken_keeps_no_other_from_being_taken_back(
     assert "000009.json: not a change that was noted" in run("--undo").output
     assert params.read_bytes() == before
     assert broken.read_text() == "{"
+
+
+@pytest.mark.parametrize(("now", "kept"), [(0.5, 0), (0.7, 1)])
+def test_the_robot_took_it_and_its_answer_was_lost(tmp_path: Path, now: float, kept: int) -> None:
+    class Lost(Robot):
+        def put(self, change: LiveChange) -> tuple[object, bool]:
+            raise RunError("no answer")
+
+        def value(self, name: str) -> object:
+            return now
+
+    journal = Journal(tmp_path / "state")
+    with pytest.raises(RunError, match="no answer"):
+        set_live(Lost("http://x:1"), LiveChange("http://x:1", "/a", 0.5, 0.7, "", ()), journal)
+    assert len(journal.entries()) == kept
