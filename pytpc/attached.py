@@ -34,7 +34,8 @@ from pytpc.recorder import (
 )
 from pytpc.tcpros import RawSubscriber
 from pytpc.values.origins import START_FILE
-from pytpc.values.recording import NO_LAUNCH, save_origins, try_trace
+from pytpc.values.recording import MISSION_PATIENCE_S, NO_LAUNCH, save_origins, try_trace
+from pytpc.values.trace import Trace
 
 MASTER = "http://localhost:11311"
 _CLOCK = "/clock"
@@ -104,12 +105,12 @@ def record_graph(
     name = f"{NODE_NAME}_{os.getpid()}"
     subscribed = list(dict.fromkeys([*recorded, _CLOCK]))
     subscriber = RawSubscriber(master, name, own_host(env, master), subscribed)
-    trace, reason = (None, NO_LAUNCH) if launch is None else try_trace(env, launch, args or {})
+    beginning = _Beginning(env, out_dir, launch, args or {})
     try:
         bag = BagFile(out_dir / BAG_FILE)
         recorder = Recorder(bag, recorded, until, graph_has_sim_time(subscriber))
         discovery = Discovery(subscriber, recorder, subscribed)
-        _try_dump(env, out_dir / START_FILE)
+        beginning.start()
         ended, told = "", 0.0
         while not ended:
             discovery.look()
@@ -135,11 +136,38 @@ def record_graph(
         subscriber.close()
     bag.close()
     status = recorder.status(closed=True)
+    trace, reason = beginning.ended()
     _try_dump(env, out_dir / PARAMS_FILE)
     run = MissionRun.of(status, out_dir, ended, time.monotonic() - began)
     save_run(run, launch, args or {}, out_dir / RUN_FILE)
     save_origins(out_dir, out_dir / PARAMS_FILE, trace, reason, env)
     return run
+
+
+class _Beginning(threading.Thread):
+    """Asks for the values at the beginning, and reads the launch file, while the bag is written.
+
+    Both may take many seconds, in which the robot goes on.
+    """
+
+    def __init__(
+        self, env: Mapping[str, str], out_dir: Path, launch: Path | None, args: Mapping[str, str]
+    ) -> None:
+        super().__init__(name="beginning", daemon=True)
+        self._env, self._out_dir, self._launch, self._args = env, out_dir, launch, args
+        self._found: tuple[Trace | None, str] | None = None
+
+    def run(self) -> None:
+        _try_dump(self._env, self._out_dir / START_FILE)
+        if self._launch is not None:
+            self._found = try_trace(self._env, self._launch, self._args)
+
+    def ended(self) -> tuple[Trace | None, str]:
+        """What the launch file sets, or why that is not known; waits for it, but not for ever."""
+        self.join(2 * MISSION_PATIENCE_S)
+        if self._launch is None:
+            return None, NO_LAUNCH
+        return self._found or (None, f"{self._launch} was not read in time")
 
 
 def _try_dump(env: Mapping[str, str], path: Path) -> None:

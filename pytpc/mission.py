@@ -163,7 +163,9 @@ def run_mission(
         started = graph.start("roslaunch", command, patience_s=_LAUNCH_PATIENCE_S)
         watch = _Watch(graph, out_dir, began, on_progress)
         watch.wait_for_parameters(trace)
-        dump_params(graph.env, out_dir / START_FILE)
+        # Without it less is known of where values came from, and that is all.
+        with contextlib.suppress(RunError):
+            dump_params(graph.env, out_dir / START_FILE)
         if use_sim_time:
             watch.wait_for_clock()
         ended = watch.wait_for_end(timeout_s, settle_s if use_sim_time else 0.0)

@@ -118,6 +118,9 @@ def apply_command(
     """
     journal = Journal(folder_of(os.environ))
     options = _Options(dry_run, add, force, as_json)
+    if listing or undo:
+        for error in journal.broken():
+            warn(plain(str(error)))
     if listing:
         _list(journal, as_json)
     elif undo:
@@ -177,7 +180,7 @@ def _plan(
     origin = chosen(target, parameter)
     if options.add and origin.kind in ("default", "runtime"):
         return plan_addition(origin, target, value)
-    return plan_origin(origin, value, force=options.force)
+    return plan_origin(origin, value, force=options.force, files=target.files)
 
 
 def _write(change: Change, journal: Journal, options: _Options) -> dict[str, object]:

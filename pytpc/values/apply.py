@@ -80,6 +80,11 @@ def apply_change(change: Change, journal: Journal) -> Entry:
         TpcError: the file changed since the change was worked out, or cannot be written; it is as
             it was.
     """
+    with journal.held():
+        return _apply_change(change, journal)
+
+
+def _apply_change(change: Change, journal: Journal) -> Entry:
     if read_file(change.path) != change.before:
         raise TpcError("somebody else has just changed it; run the command again", change.path)
     entry = journal.add(

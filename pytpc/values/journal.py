@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import base64
 import contextlib
+import fcntl
 import hashlib
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -69,17 +70,50 @@ class Journal:
         """The folder need not be there."""
         self._folder = folder
 
-    def entries(self) -> list[Entry]:
-        """All changes, the oldest first.
+    @contextlib.contextmanager
+    def held(self) -> Iterator[None]:
+        """While it is held no other process changes a file: the second of two waits.
 
         Raises:
-            InputError: one of the files is none of these.
+            TpcError: the folder cannot be written.
         """
         try:
-            paths = [path for path in self._folder.glob("*.json") if path.stem.isdigit()]
+            self._folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+            descriptor = os.open(
+                self._folder / ".lock", os.O_CREAT | os.O_RDWR | os.O_CLOEXEC, 0o600
+            )
+        except OSError as error:
+            raise TpcError(
+                f"the change cannot be noted for --undo: {error.strerror}", self._folder
+            ) from error
+        try:
+            # Some file systems of a network have no locks; then it is as it would be without.
+            with contextlib.suppress(OSError):
+                fcntl.flock(descriptor, fcntl.LOCK_EX)
+            yield
+        finally:
+            os.close(descriptor)
+
+    def entries(self) -> list[Entry]:
+        """All changes that can be read, the oldest first."""
+        return self._all()[0]
+
+    def broken(self) -> list[InputError]:
+        """What is wrong with the notes that cannot be read; the others are good all the same."""
+        return self._all()[1]
+
+    def _all(self) -> tuple[list[Entry], list[InputError]]:
+        entries, errors = list[Entry](), list[InputError]()
+        try:
+            paths = sorted(path for path in self._folder.glob("*.json") if path.stem.isdigit())
         except OSError:
-            return []
-        return sorted((_read(path) for path in paths), key=lambda entry: entry.number)
+            paths = []
+        for path in paths:
+            try:
+                entries.append(_read(path))
+            except InputError as error:
+                errors.append(error)
+        return sorted(entries, key=lambda entry: entry.number), errors
 
     def add(
         self,

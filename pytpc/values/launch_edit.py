@@ -10,9 +10,10 @@ from pytpc.values.launch_value import launch_text, launch_value
 from pytpc.values.launch_xml import Attribute, Tag, encoding_of, inner_text, read_tags, written
 from pytpc.values.new_value import Refused, read_value
 from pytpc.values.scalars import type_of
-from pytpc.values.yaml_edit import edit_yaml
+from pytpc.values.yaml_edit import all_settings, edit_yaml
 
 _LISTED = 5
+_GIVE = "the file was changed since, or has several; give the launch file instead of the mission"
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,12 +42,12 @@ def tags_of(data: bytes) -> list[Tag]:
 def edit_param(
     data: bytes, name: str, lineno: int, given: str, *, force: bool = False
 ) -> LaunchEdit:
-    """Put a value into a ``<param value=...>``, or into the text of a ``<rosparam>``.
+    """Put a value into a ``<param value=...>``.
 
     Args:
         data: the launch file.
         name: the parameter's full name.
-        lineno: the line of the tag, or of the value in a ``<rosparam>``.
+        lineno: the line of the tag; 0 where it is not known.
         given: the new value as typed.
         force: change the type, or replace what roslaunch works out.
 
@@ -57,7 +58,7 @@ def edit_param(
     found = [t for t in tags if t.name == "param" and _names(t, name)]
     here = [tag for tag in found if tag.lineno == lineno] or (found if len(found) == 1 else [])
     if len(here) != 1:
-        raise Refused(f"no <param> for {name} is here any more; give the launch file", lineno)
+        raise Refused(f"no <param> for {name} is here any more; {_GIVE}", lineno or None)
     tag = here[0]
     value = tag.attributes.get("value")
     if value is None:
@@ -94,7 +95,7 @@ def edit_argument(
     found = [t for t in tags if t.name == "arg" and _attribute(t, "name") == name]
     here = [tag for tag in found if tag.lineno == lineno] or (found if len(found) == 1 else [])
     if len(here) != 1:
-        raise Refused(f"no <arg> {name} is here any more; give the launch file", lineno)
+        raise Refused(f"no <arg> {name} is here any more; {_GIVE}", lineno or None)
     tag = here[0]
     value = tag.attributes.get("value") or tag.attributes.get("default")
     if value is None:
@@ -115,25 +116,40 @@ def edit_inline(
 ) -> LaunchEdit:
     """Put a value into the YAML that stands in a ``<rosparam>``.
 
+    ``lineno`` is that of the value, or 0: the only one that sets it is meant.
+
     Raises:
         Refused: see docs/applying.md.
     """
-    for tag in tags_of(data):
-        span = inner_text(tag, data) if tag.name == "rosparam" else None
-        if span is None:
-            continue
-        start, end = span
+    encoding = encoding_of(data)
+    spans = [
+        span
+        for tag in tags_of(data)
+        if tag.name == "rosparam"
+        and (span := inner_text(tag, data)) is not None
+        and (
+            tag.lineno <= lineno <= _line_at(data, span[1])
+            if lineno
+            else _sets(data[span[0] : span[1]].decode(encoding, "replace"), keys)
+        )
+    ]
+    if spans and (lineno or len(spans) == 1):
+        start, end = spans[0]
         first = data[:start].count(b"\n")
-        if not tag.lineno <= lineno <= first + 1 + data[start:end].count(b"\n"):
-            continue
-        encoding = encoding_of(data)
         edit = edit_yaml(data[start:end].decode(encoding), keys, given, force=force)
         in_section = data[:start].endswith(b"<![CDATA[")
         if "]]>" in edit.text if in_section else "<" in edit.text or "&" in edit.text:
             raise Refused("the value has characters that mean something to XML", lineno)
         result = data[:start] + _encoded(edit.text, encoding) + data[end:]
         return LaunchEdit(result, edit.old, edit.new, first + edit.lineno, edit.notes)
-    raise Refused("no <rosparam> with it is here any more; give the launch file", lineno)
+    raise Refused(f"no <rosparam> with it is here any more; {_GIVE}", lineno or None)
+
+
+def _sets(text: str, keys: tuple[str, ...]) -> bool:
+    try:
+        return any(keys in document for document in all_settings(text))
+    except Refused:
+        return False
 
 
 def add_param(data: bytes, offset: int | None, name: str, value: object, given: str) -> LaunchEdit:
@@ -227,14 +243,31 @@ def _typed(given: str, kind: str) -> object:
 def _names(tag: Tag, name: str) -> bool:
     """Whether a tag may set a parameter of this full name."""
     raw = _attribute(tag, "name").strip()
-    if "$(" in raw:
-        pattern = ".+".join(re.escape(part) for part in re.split(r"\$\([^)]*\)", raw.lstrip("~/")))
-        return re.search(f"/{pattern}$", name) is not None
-    return name == raw or (not raw.startswith("/") and name.endswith(f"/{raw.lstrip('~')}"))
+    if name == raw:
+        return True
+    parts, above = [raw.lstrip("~/")], tag.parent
+    if raw.startswith("/") and "$(" not in raw:
+        return False
+    if above is not None and above.name in ("node", "test"):
+        parts.insert(0, _attribute(above, "name").strip())
+    elif raw.startswith("~"):
+        # It is for the nodes that come after it, wherever they are.
+        above = None
+    while above is not None:
+        parts.insert(0, _attribute(above, "ns").strip() if above.name != "launch" else "")
+        above = None if parts[0].startswith("/") else above.parent
+    full = "/".join(part.strip("/") for part in parts if part.strip("/"))
+    pattern = ".*".join(re.escape(part) for part in re.split(r"\$\([^)]*\)", full))
+    return re.search(f"/{pattern}$", name) is not None
 
 
 def _uses(tag: Tag, data: bytes, name: str) -> bool:
-    """Whether an attribute, or the text of a ``<rosparam>``, has an argument in it."""
+    """Whether an attribute, or the text of a ``<rosparam>``, has an argument in it.
+
+    An include that passes all arguments has every one.
+    """
+    if _attribute(tag, "pass_all_args").strip().lower() in ("true", "1"):
+        return True
     texts = [attribute.value for attribute in tag.attributes.values()]
     if tag.name == "rosparam" and not tag.closed:
         texts.append(data[tag.head_end : tag.end].decode("utf-8", "replace"))

@@ -106,7 +106,8 @@ def _read_head(tag: Tag, data: bytes, encoding: str) -> None:
     # All encodings here have one byte for each character of the markup.
     text = data.decode("latin-1")
     head = _TAG_HEAD.match(text)
-    assert head is not None, "expat says that a tag begins here"
+    if head is None:
+        raise ValueError(f"line {tag.lineno}: <{tag.name}> comes out of an entity")
     at = head.end()
     while (found := _ATTRIBUTE.match(text, at)) is not None:
         raw = found[2][1:-1].encode("latin-1").decode(encoding)

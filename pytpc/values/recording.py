@@ -19,6 +19,7 @@ BY_A_NODE = (
     "set by a program, not by the launch file; a node with dynamic_reconfigure writes all of its"
     " values when it starts"
 )
+MISSION_PATIENCE_S = 20.0
 _ENV_NAMES = ("ROS_PACKAGE_PATH", "CMAKE_PREFIX_PATH", "ROS_DISTRO", "ROS_ROOT")
 
 
@@ -111,11 +112,14 @@ def _same(one: object, other: object) -> bool:
 def try_trace(
     env: Mapping[str, str], launch: Path, args: Mapping[str, str]
 ) -> tuple[Trace | None, str]:
-    """``trace_launch``, or why it is not possible: no mission fails for that."""
+    """``trace_launch``, or why it is not possible: no mission fails or waits long for that."""
     try:
-        return trace_launch(env, launch, args), ""
+        return trace_launch(env, launch, args, patience_s=MISSION_PATIENCE_S), ""
     except TpcError as error:
         return None, str(error)
+    except Exception as error:
+        # A mission matters more than its origins.
+        return None, f"{launch} cannot be read: {error!r}"
 
 
 def save_origins(
@@ -131,7 +135,7 @@ def save_origins(
         reason: why there is no trace, empty where there is one.
         env: in which the launch file was read.
 
-    A dump that cannot be read is the ``reason`` why no origin is known: the mission was flown.
+    What goes wrong is the ``reason`` why no origin is known: the mission was flown.
 
     Raises:
         TpcError: the file cannot be written.
@@ -145,6 +149,9 @@ def save_origins(
         origins = origins_of(trace, read_parameters(params), at_start)
     except InputError as error:
         reason = str(error)
+    except Exception as error:
+        # The mission was flown.
+        reason = f"where the values came from cannot be worked out: {error!r}"
     document: dict[str, object] = {
         "launch": None if trace is None else str(trace.launch),
         "args": {} if trace is None else dict(sorted(trace.args.items())),

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from pytpc.errors import InputError
 from pytpc.parameters import same_parameter
 from pytpc.values.apply import Change, decoded, read_file
 from pytpc.values.installed import is_installed, of_the_system, source_of
+from pytpc.values.journal import digest
 from pytpc.values.launch_edit import LaunchEdit, add_param, edit_argument, edit_inline, edit_param
 from pytpc.values.launch_xml import read_tags
 from pytpc.values.new_value import Refused, guessed, read_value
@@ -28,12 +29,14 @@ _LISTED = 8
 class Target:
     """Where values can be looked for: what is known of them, and the nodes of the launch file.
 
-    ``launch`` is the launch file, None where that is not known.
+    ``launch`` is the launch file, None where that is not known. ``files`` has the SHA-256 that the
+    files had when they were read.
     """
 
     origins: Mapping[str, Origin]
     nodes: Sequence[LaunchNode]
     launch: Path | None
+    files: Mapping[str, str] = field(default_factory=dict)
 
 
 def is_yaml(path: Path) -> bool:
@@ -69,7 +72,7 @@ def read_target(path: Path, args: Mapping[str, str], env: Mapping[str, str]) -> 
         for name, settings in trace.settings.items()
         for leaf in leaves(name, settings[-1].get("value"))
     )
-    return Target(origins_of(trace, values), trace.nodes, trace.launch)
+    return Target(origins_of(trace, values), trace.nodes, trace.launch, trace.files)
 
 
 def _of_mission(path: Path) -> Target:
@@ -87,10 +90,11 @@ def _of_mission(path: Path) -> Target:
             )
             for node in document.get("nodes", [])
         ]
-    except (KeyError, TypeError, ValueError) as error:
+        files = {str(name): str(value) for name, value in document.get("files", {}).items()}
+    except (AttributeError, KeyError, TypeError, ValueError) as error:
         raise InputError(f"not a file of origins: {error!r}", file) from error
     launch = document.get("launch")
-    return Target(read_origins(path), nodes, None if launch is None else Path(launch))
+    return Target(read_origins(path), nodes, None if launch is None else Path(launch), files)
 
 
 def chosen(target: Target, parameter: str) -> Origin:
@@ -156,8 +160,17 @@ def plan_yaml(path: Path, parameter: str, given: str, *, force: bool = False) ->
     return Change(name, real, data, after, edit.old, edit.new, edit.lineno, notes)
 
 
-def plan_origin(origin: Origin, given: str, *, force: bool = False) -> Change:
+def plan_origin(
+    origin: Origin, given: str, *, force: bool = False, files: Mapping[str, str] | None = None
+) -> Change:
     """Work out a change of the file that set a value; nothing is written.
+
+    Args:
+        origin: where it stood.
+        given: the new value as typed.
+        force: see ``edit_yaml``.
+        files: path -> SHA-256 of the files as they were then. In one that was changed since, the
+            lines may be others, and a tag is changed only where no other one may be meant.
 
     Raises:
         InputError: no file set it, the file is not here any more, or the change is refused.
@@ -186,7 +199,8 @@ def plan_origin(origin: Origin, given: str, *, force: bool = False) -> Change:
                 LaunchEdit(b"", edit.old, edit.new, edit.lineno, edit.notes),
             )
         else:
-            found = _edit_launch(data, origin, given, force)
+            as_then = (files or {}).get(str(path), digest(data)) == digest(data)
+            found = _edit_launch(data, origin, given, force, as_then=as_then)
             after = found.data
     except Refused as error:
         raise InputError(str(error), file, error.lineno) from error
@@ -196,8 +210,10 @@ def plan_origin(origin: Origin, given: str, *, force: bool = False) -> Change:
     return Change(origin.name, real, data, after, found.old, found.new, found.lineno, tuple(notes))
 
 
-def _edit_launch(data: bytes, origin: Origin, given: str, force: bool) -> LaunchEdit:
-    lineno = origin.lineno or 0
+def _edit_launch(
+    data: bytes, origin: Origin, given: str, force: bool, *, as_then: bool
+) -> LaunchEdit:
+    lineno = (origin.lineno or 0) if as_then else 0
     if origin.argument:
         via = [
             int(line)
@@ -287,6 +303,20 @@ def _why_not(origin: Origin) -> str:
 
 def _where(path: Path, real: Path) -> tuple[str, ...]:
     """What to know of where a change goes."""
+    return (*_copies(path, real), *_other_names(real))
+
+
+def _other_names(real: Path) -> tuple[str, ...]:
+    try:
+        others = real.stat().st_nlink - 1
+    except OSError:
+        others = 0
+    if others < 1:
+        return ()
+    return (f"{others} other names (hard links) of this file keep the old text",)
+
+
+def _copies(path: Path, real: Path) -> tuple[str, ...]:
     if path.resolve() != real:
         differs = "" if _same_bytes(path, real) else ", which is older or newer than it"
         return (

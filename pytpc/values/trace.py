@@ -20,6 +20,7 @@ from pytpc.values import launch_tracer_path
 
 _PATIENCE_S = 60.0
 _SHEBANG_BYTES = 256
+_LONGEST = 600
 # What launch_tracer puts for the random part of $(anon x).
 _ANONYMOUS = "__tpc_anon"
 
@@ -74,7 +75,7 @@ def roslaunch_python(env: Mapping[str, str]) -> str:
             "roslaunch not found; mend it with: apt-get install python3-roslaunch"
         )
     with Path(program).open("rb") as stream:
-        first = stream.read(_SHEBANG_BYTES).splitlines()[0].decode("utf-8", "replace")
+        first = stream.read(_SHEBANG_BYTES).partition(b"\n")[0].decode("utf-8", "replace")
     words = first.removeprefix("#!").split() if first.startswith("#!") else []
     if words and Path(words[0]).name == "env":
         words = [shutil.which(words[-1], path=path) or ""]
@@ -83,13 +84,20 @@ def roslaunch_python(env: Mapping[str, str]) -> str:
     return words[0]
 
 
-def trace_launch(env: Mapping[str, str], launch: Path, args: Mapping[str, str]) -> Trace:
+def trace_launch(
+    env: Mapping[str, str],
+    launch: Path,
+    args: Mapping[str, str],
+    *,
+    patience_s: float = _PATIENCE_S,
+) -> Trace:
     """Read a launch file as roslaunch would, and start nothing.
 
     Args:
         env: the environment of the workspace, in which ``$(find ...)`` finds packages.
         launch: the launch file.
         args: its arguments, as on roslaunch's command line.
+        patience_s: how long it may take.
 
     Raises:
         InputError: roslaunch would not take the file; the message is its own.
@@ -106,18 +114,21 @@ def trace_launch(env: Mapping[str, str], launch: Path, args: Mapping[str, str]) 
             env={**env, "PYTHONDONTWRITEBYTECODE": "1"},
             stdin=subprocess.DEVNULL,
             capture_output=True,
-            timeout=_PATIENCE_S,
+            timeout=patience_s,
             check=False,
         )
     except subprocess.TimeoutExpired as error:
-        raise RunError(f"reading it does not end in {_PATIENCE_S:.0f} s", launch) from error
+        raise RunError(f"reading it does not end in {patience_s:.0f} s", launch) from error
     if ran.returncode != 0:
         said = ran.stderr.decode("utf-8", "replace").strip().splitlines()
         if said and said[-1].startswith("ModuleNotFoundError"):
             raise MissingToolError(
                 f"{command[0]} has no roslaunch; mend it with: apt-get install python3-roslaunch"
             )
-        raise InputError(f"roslaunch cannot read it: {said[-1] if said else 'no reason'}", launch)
+        why = said[-1] if said else "no reason"
+        # Of includes without an end roslaunch names each.
+        why = why if len(why) <= _LONGEST else f"{why[: _LONGEST // 2]} ... {why[-_LONGEST // 2 :]}"
+        raise InputError(f"roslaunch cannot read it: {why}", launch)
     return _trace(launch.absolute(), args, json.loads(ran.stdout))
 
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
 from pathlib import Path
 
-from pytpc.errors import InputError, RunError
+from pytpc.errors import InputError, RunError, TpcError
 from pytpc.values.apply import Change, replace_file, shown, undo_change
 from pytpc.values.journal import Entry, Journal
 from pytpc.values.live import LiveChange, Robot
@@ -33,7 +34,10 @@ def set_live(robot: Robot, change: LiveChange, journal: Journal) -> tuple[Entry,
     try:
         holds, taken = robot.put(change)
     except BaseException:
-        journal.remove(entry)
+        # The node may have taken it all the same, and only its answer did not come.
+        with contextlib.suppress(TpcError):
+            if repr(robot.value(change.name)) == repr(change.old):
+                journal.remove(entry)
         raise
     return entry, holds, taken
 
@@ -80,10 +84,11 @@ def take_back(
         TpcError: the file, or the robot's value, was changed since.
     """
     if entry.path is not None:
-        change = undo_change(entry, journal)
-        if not dry_run:
-            replace_file(change.path, change.after)
-            journal.remove(entry)
+        with journal.held():
+            change = undo_change(entry, journal)
+            if not dry_run:
+                replace_file(change.path, change.after)
+                journal.remove(entry)
         return change
     live = entry.live
     name, old, new = str(live["name"]), from_json(live["old"]), from_json(live["new"])

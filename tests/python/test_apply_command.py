@@ -295,3 +295,35 @@ def test_a_mission(run, tmp_path: Path) -> None:
     assert f"{launch}:13 set it to 0.25" in runtime
     extra.unlink()
     assert f"{extra}: cannot be read" in run(mission, "/mission/limit", "1", status=1).output
+
+
+@needs_roslaunch
+@pytest.mark.parametrize(
+    "setting", ['<param name="limit" value="1.0"/>', "<rosparam>limit: 1.0</rosparam>"]
+)
+@pytest.mark.parametrize("names", [("a", "b"), ("$(arg one)", "$(arg two)")])
+def test_lines_of_a_launch_file_that_moved_since(tmp_path, monkeypatch, setting, names):
+    """Where /b/limit stood there is /a/limit now: that one is never changed."""
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    nodes = "".join(
+        f'<node name="{name}" pkg="p" type="t">\n{setting}\n</node>\n' for name in names
+    )
+    arguments = '<launch><arg name="one" default="a"/><arg name="two" default="b"/>\n'
+    mission, launch = tmp_path / "mission", tmp_path / "two.launch"
+    mission.mkdir()
+    launch.write_text(f"{arguments}{nodes}</launch>\n")
+    (mission / "params.yaml").write_text("a: {limit: 1.0}\nb: {limit: 1.0}\n")
+    trace, reason = try_trace(os.environ, launch, {})
+    save_origins(mission, mission / "params.yaml", trace, reason, os.environ)
+    # Each node has three lines.
+    moved = f"{arguments}<!-- 1 -->\n<!-- 2 -->\n<!-- 3 -->\n{nodes}</launch>\n"
+    launch.write_text(moved)
+    done = CliRunner().invoke(main, ["apply", str(mission), "/b/limit", "9.0"])
+    other = setting.replace("1.0", "9.0").join(moved.rsplit(setting, 1))
+    if done.exit_code:
+        assert "changed since" in done.output
+        assert launch.read_text() == moved
+    else:
+        assert launch.read_text() == other
+    named = names[0] == "a" and "<param" in setting
+    assert done.exit_code == (0 if named else 1)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import base64
 import json
+import threading
+import time
 from pathlib import Path
 
 import pytest
@@ -11,10 +13,13 @@ from click.testing import CliRunner, Result
 from launch_samples import MANIFEST, needs_roslaunch
 
 from pytpc.cli.main import main
-from pytpc.errors import TpcError
+from pytpc.errors import RunError, TpcError
+from pytpc.values import apply
 from pytpc.values.apply import Change, apply_change, replace_file
 from pytpc.values.installed import is_installed, of_the_system, source_of
 from pytpc.values.journal import Journal, folder_of
+from pytpc.values.live import LiveChange, Robot
+from pytpc.values.undo import set_live
 
 PARAMS = "# mine\nmission:\n  limit: 0.058  # too high\n  other: 3\n"
 
@@ -127,7 +132,7 @@ def test_a_note(run, params: Path, tmp_path: Path) -> None:
     # What stood in the file may be nobody else's business.
     assert note.stat().st_mode & 0o777 == 0o600
     note.write_text('{"schema": 9}')
-    assert f"{note}: not a change that was noted" in run("--list", status=1).output
+    assert f"{note}: not a change that was noted" in run("--list").output
 
 
 def test_where_the_notes_are(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -148,3 +153,71 @@ def test_a_full_disk_leaves_the_file_as_it_was(params: Path, monkeypatch) -> Non
         replace_file(params, b"new")
     assert params.read_text() == PARAMS
     assert [path.name for path in params.parent.glob(".params*")] == []
+
+
+def test_of_two_changes_at_once_none_is_lost(params: Path, tmp_path: Path, monkeypatch) -> None:
+    """The second waits, sees that the file is another one, and does not overwrite the first."""
+    journal = Journal(tmp_path / "state")
+    before = params.read_bytes()
+
+    def change(old: bytes, new: bytes) -> Change:
+        return Change("/x", params, before, before.replace(old, new), 0, 1, 1)
+
+    writing, errors = threading.Event(), list[TpcError]()
+
+    def second() -> None:
+        assert writing.wait(5.0)
+        try:
+            apply_change(change(b"other: 3", b"other: 4"), journal)
+        except TpcError as error:
+            errors.append(error)
+
+    def slow_replace(path: Path, data: bytes) -> None:
+        writing.set()
+        if data == change(b"0.058", b"0.035").after:
+            time.sleep(0.3)
+        replace_file(path, data)
+
+    monkeypatch.setattr(apply, "replace_file", slow_replace)
+    other = threading.Thread(target=second)
+    other.start()
+    apply_change(change(b"0.058", b"0.035"), journal)
+    other.join()
+    assert params.read_bytes() == before.replace(b"0.058", b"0.035")
+    assert len(errors) == 1
+    assert len(journal.entries()) == 1
+
+
+def test_hard_links_are_said(run, params: Path, tmp_path: Path) -> None:
+    other = tmp_path / "other.yaml"
+    other.hardlink_to(params)
+    assert "1 other names (hard links)" in run(params, "mission/limit", "0.035").output
+    assert other.read_text() == PARAMS
+
+
+def test_a_note_that_is_broken_keeps_no_other_from_being_taken_back(
+    run, params: Path, tmp_path: Path
+) -> None:
+    before = params.read_bytes()
+    run(params, "mission/limit", "0.035")
+    broken = tmp_path / "state/tpc/applied/000009.json"
+    broken.write_text("{")
+    assert "000009.json: not a change that was noted" in run("--list").output
+    assert "000009.json: not a change that was noted" in run("--undo").output
+    assert params.read_bytes() == before
+    assert broken.read_text() == "{"
+
+
+@pytest.mark.parametrize(("now", "kept"), [(0.5, 0), (0.7, 1)])
+def test_the_robot_took_it_and_its_answer_was_lost(tmp_path: Path, now: float, kept: int) -> None:
+    class Lost(Robot):
+        def put(self, change: LiveChange) -> tuple[object, bool]:
+            raise RunError("no answer")
+
+        def value(self, name: str) -> object:
+            return now
+
+    journal = Journal(tmp_path / "state")
+    with pytest.raises(RunError, match="no answer"):
+        set_live(Lost("http://x:1"), LiveChange("http://x:1", "/a", 0.5, 0.7, "", ()), journal)
+    assert len(journal.entries()) == kept

@@ -118,6 +118,17 @@ def test_an_argument() -> None:
     assert (edit.old, edit.new, edit.lineno) == (4.0, 2.0, 2)
 
 
+def test_an_argument_that_is_passed_on_with_all_others() -> None:
+    before = ARGUMENTS.replace(
+        b"</launch>", b'  <include file="b.launch" pass_all_args="true"/>\n</launch>'
+    )
+    with pytest.raises(Refused, match="<arg> rate is used in line 7, too; --force changes all"):
+        edit_argument(before, "rate", 2, "2", kind="auto", via=[4])
+    # The parameter gets it through that very include.
+    edit = edit_argument(before, "rate", 2, "2", kind="auto", via=[4, 7])
+    assert edit.data == before.replace(b'"4.0"', b'"2.0"')
+
+
 def test_an_argument_that_is_used_elsewhere() -> None:
     with pytest.raises(Refused, match="<arg> seed is used in line 6, too; --force changes all"):
         edit_argument(ARGUMENTS, "seed", 3, "2", kind="auto", via=[5])

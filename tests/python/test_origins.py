@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import json
+import threading
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
 from launch_samples import environment, make_package, needs_roslaunch
 
+from pytpc import attached
 from pytpc.cli.main import main
 from pytpc.errors import InputError
+from pytpc.values import recording
 from pytpc.values.origins import (
     ORIGINS_FILE,
     START_FILE,
@@ -225,3 +228,85 @@ def test_a_mission_that_was_recorded_without(tmp_path):
     done = CliRunner().invoke(main, ["origin", str(tmp_path)])
     assert done.exit_code == 1
     assert f"no {ORIGINS_FILE}" in done.output
+
+
+@needs_roslaunch
+def test_tags_out_of_an_entity_cost_no_mission(tmp_path):
+    launch = tmp_path / "entity.launch"
+    launch.write_text(
+        "<!DOCTYPE launch [<!ENTITY n \"<param name='lim' value='1'/>\">]>\n"
+        "<launch>&n;<rosparam>a: 1</rosparam></launch>\n"
+    )
+    env = environment(tmp_path)
+    trace, reason = try_trace(env, launch, {})
+    assert reason == ""
+    (tmp_path / "params.yaml").write_text("lim: 1\na: 1\n")
+    save_origins(tmp_path, tmp_path / "params.yaml", trace, reason, env)
+    origins = read_origins(tmp_path)
+    assert (origins["/a"].kind, origins["/a"].value) == ("launch", 1)
+
+
+def test_what_nobody_thought_of_costs_no_mission(tmp_path, monkeypatch):
+    def broken(*_args: object, **_options: object) -> None:
+        raise AssertionError("odd")
+
+    monkeypatch.setattr(recording, "trace_launch", broken)
+    trace, reason = try_trace({}, tmp_path / "a.launch", {})
+    assert trace is None
+    assert "odd" in reason
+    monkeypatch.setattr(recording, "origins_of", broken)
+    (tmp_path / "params.yaml").write_text("a: 1\n")
+    save_origins(tmp_path, tmp_path / "params.yaml", None, "", {})
+    assert "odd" in json.loads((tmp_path / ORIGINS_FILE).read_text())["reason"]
+
+
+def test_a_roslaunch_that_is_none_costs_no_mission(tmp_path):
+    program = tmp_path / "roslaunch"
+    program.write_bytes(b"")
+    program.chmod(0o755)
+    launch = tmp_path / "a.launch"
+    launch.write_text("<launch/>")
+    trace, reason = try_trace({"PATH": str(tmp_path)}, launch, {})
+    assert trace is not None or reason
+
+
+def test_recording_goes_on_while_the_launch_file_is_read(tmp_path, monkeypatch):
+    polled, stop = threading.Event(), threading.Event()
+
+    class Subscriber:
+        def __init__(self, *_: object) -> None:
+            pass
+
+        def poll(self, _seconds: float) -> list[object]:
+            polled.set()
+            return []
+
+        def close(self) -> None:
+            pass
+
+    class Nothing:
+        def __init__(self, *_: object) -> None:
+            pass
+
+        def look(self) -> None:
+            pass
+
+    def slow(*_: object) -> tuple[None, str]:
+        read_meanwhile = polled.wait(5.0)
+        stop.set()
+        return None, "read meanwhile" if read_meanwhile else "recorded nothing meanwhile"
+
+    def dump(_env: object, path: Path) -> None:
+        path.write_text("a: 1\n")
+
+    monkeypatch.setattr(attached, "RawSubscriber", Subscriber)
+    monkeypatch.setattr(attached, "Discovery", Nothing)
+    monkeypatch.setattr(attached, "graph_has_sim_time", lambda _: False)
+    monkeypatch.setattr(attached, "drain", lambda *_: None)
+    monkeypatch.setattr(attached, "try_trace", slow)
+    monkeypatch.setattr(attached, "dump_params", dump)
+    env = {"ROS_MASTER_URI": "http://localhost:1"}
+    launch = tmp_path / "a.launch"
+    attached.record_graph(tmp_path / "out", stop=stop, env=env, launch=launch, timeout_s=8.0)
+    document = json.loads((tmp_path / "out" / ORIGINS_FILE).read_text())
+    assert document["reason"] == "read meanwhile"
