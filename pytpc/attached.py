@@ -5,12 +5,10 @@ from __future__ import annotations
 import contextlib
 import os
 import signal
-import socket
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from urllib.parse import urlsplit
 
 from pytpc.errors import MissingToolError, RunError
 from pytpc.ingest.recording import RUN_FILE
@@ -32,7 +30,7 @@ from pytpc.recorder import (
     drain,
     graph_has_sim_time,
 )
-from pytpc.tcpros import RawSubscriber
+from pytpc.tcpros import RawSubscriber, own_host
 from pytpc.values.origins import START_FILE
 from pytpc.values.recording import MISSION_PATIENCE_S, NO_LAUNCH, save_origins, try_trace
 from pytpc.values.trace import Trace
@@ -45,23 +43,6 @@ _TOLD_S = 0.2
 def master_of(env: Mapping[str, str]) -> str:
     """URI of the ROS master."""
     return env.get("ROS_MASTER_URI", MASTER)
-
-
-def own_host(env: Mapping[str, str], master: str) -> str:
-    """The address at which the graph reaches this machine, as ROS finds it: what ROS_HOSTNAME or
-    ROS_IP say, else the address from which the master is reached."""
-    for name in ("ROS_HOSTNAME", "ROS_IP"):
-        if env.get(name):
-            return env[name]
-    host = urlsplit(master).hostname or "localhost"
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        try:
-            # No packet is sent: this only asks which way one would go.
-            probe.connect((host, 11311))
-            address: str = probe.getsockname()[0]
-        except OSError:
-            return "127.0.0.1"
-    return address
 
 
 def record_graph(

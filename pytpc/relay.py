@@ -16,7 +16,7 @@ from typing import cast
 from pytpc.errors import MissingToolError, RunError
 from pytpc.ingest.ros1 import decode_log
 from pytpc.recorder import LossCounter
-from pytpc.tcpros import RawSubscriber
+from pytpc.tcpros import RawSubscriber, own_host
 from pytpc.words import many
 
 ROSOUT = "/rosout"
@@ -147,7 +147,7 @@ def run(arguments: Sequence[str], say: Say) -> None:
     master = os.environ.get("ROS_MASTER_URI", "http://localhost:11311")
     name = _name(arguments)
     # First, because rospy waits for ever for a master.
-    subscriber = RawSubscriber(master, f"{name}_reader", _host(), [ROSOUT])
+    subscriber = RawSubscriber(master, f"{name}_reader", own_host(os.environ, master), [ROSOUT])
     try:
         rospy.init_node(
             name.strip("/"),
@@ -213,10 +213,3 @@ def _name(arguments: Sequence[str]) -> str:
     namespace = given.get("__ns", os.environ.get("ROS_NAMESPACE", "")).strip("/")
     name = given.get("__name", _NODE).strip("/")
     return f"/{namespace}/{name}" if namespace else f"/{name}"
-
-
-def _host() -> str:
-    for variable in ("ROS_IP", "ROS_HOSTNAME"):
-        if os.environ.get(variable):
-            return os.environ[variable]
-    return "127.0.0.1"

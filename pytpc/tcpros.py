@@ -22,6 +22,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from http.client import HTTPException
 from typing import cast
+from urllib.parse import urlsplit
 from xmlrpc.server import SimpleXMLRPCRequestHandler, SimpleXMLRPCServer
 
 from pytpc.errors import RunError
@@ -304,6 +305,25 @@ def _slave_server(host: str, on_publishers: Callable[[str, list[str]], None]) ->
     server = SimpleXMLRPCServer((host, 0), Handler, logRequests=False, allow_none=True)
     server.register_instance(_SlaveApi(on_publishers))
     return server
+
+
+def own_host(env: Mapping[str, str], master: str) -> str:
+    """The address at which the graph of ``master`` reaches this machine, as ROS finds it.
+
+    It is what ROS_HOSTNAME or ROS_IP say, else the address from which the master is reached.
+    """
+    for name in ("ROS_HOSTNAME", "ROS_IP"):
+        if env.get(name):
+            return env[name]
+    parts = urlsplit(master)
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            # No packet is sent: this only asks which way one would go.
+            probe.connect((parts.hostname or "localhost", parts.port or 11311))
+            address: str = probe.getsockname()[0]
+        except OSError:
+            return "127.0.0.1"
+    return address
 
 
 def call(uri: str, method: str, *arguments: object) -> object:

@@ -6,7 +6,6 @@ A treatment is a folder with ``params.yaml``, loaded over the robot's own parame
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,6 +14,7 @@ from typing import Literal, get_args
 from pytpc.atomic import write_atomic
 from pytpc.errors import InputError
 from pytpc.marks import MarkType
+from pytpc.static_json import parse_json
 
 TREATMENT_FILE = "treatment.json"
 OVERLAY_FILE = "params.yaml"
@@ -64,14 +64,7 @@ def load_treatment(folder: Path) -> Treatment:
         InputError: a file is missing, is no JSON, or a field is missing or wrong.
     """
     path = folder / TREATMENT_FILE
-    try:
-        document = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(f"cannot be read: {error.strerror}", path) from error
-    except UnicodeDecodeError as error:
-        raise InputError(f"not JSON: byte {error.start} is not UTF-8", path) from error
-    except json.JSONDecodeError as error:
-        raise InputError(f"not JSON: {error.msg}", path, error.lineno) from error
+    document = parse_json(path)
     overlay = folder / OVERLAY_FILE
     if not overlay.is_file():
         raise InputError("no such file; every treatment has one", overlay)

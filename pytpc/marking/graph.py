@@ -18,7 +18,6 @@ from pytpc.marking.publisher import (
     RawPublisher,
     encode_string,
     encode_time,
-    own_address,
 )
 from pytpc.marking.session import Change, View
 from pytpc.marks import (
@@ -30,7 +29,7 @@ from pytpc.marks import (
     topic_for,
     topic_of_observer,
 )
-from pytpc.tcpros import RawSubscriber
+from pytpc.tcpros import RawSubscriber, own_host
 from pytpc.words import many
 
 _CLOCK = "/clock"
@@ -181,7 +180,7 @@ class _Clock:
     def __init__(self, graph: GraphMarks, master: str, name: str) -> None:
         self._graph = graph
         self._ended = threading.Event()
-        self._subscriber = RawSubscriber(master, name, own_address(master), [_CLOCK])
+        self._subscriber = RawSubscriber(master, name, own_host(os.environ, master), [_CLOCK])
         self._thread = threading.Thread(target=self._listen, daemon=True)
         self._thread.start()
 

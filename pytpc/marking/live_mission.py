@@ -18,7 +18,6 @@ from rich.text import Text
 
 from pytpc.errors import RunError
 from pytpc.ingest.recording import Recording
-from pytpc.marking.publisher import own_address
 from pytpc.marking.reports import Item, Reports
 from pytpc.marking.session import Change, Session, View
 from pytpc.marking.terminal import Mission
@@ -26,7 +25,7 @@ from pytpc.marking.watch_screen import LAYOUTS, Options, Panel, Status, watch_sc
 from pytpc.marking.watching import KeptRankings, Look, Seen, Watching
 from pytpc.relay import ROSOUT, TOPIC
 from pytpc.summaries import Summary
-from pytpc.tcpros import RawSubscriber
+from pytpc.tcpros import RawSubscriber, own_host
 
 _LOOK_S = 1.0
 _POLL_S = 0.2
@@ -125,7 +124,7 @@ class GraphFeed:
 
     def _listen(self) -> None:
         name = f"/tpc_watch_{os.getpid()}_{secrets.token_hex(3)}"
-        subscriber = RawSubscriber(self._master, name, own_address(self._master), [])
+        subscriber = RawSubscriber(self._master, name, own_host(os.environ, self._master), [])
         looks = threading.Thread(target=self._keep_registered, args=(subscriber,), daemon=True)
         looks.start()
         try:

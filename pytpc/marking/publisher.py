@@ -18,11 +18,10 @@ import xmlrpc.client
 from collections.abc import Mapping
 from dataclasses import dataclass
 from http.client import HTTPException
-from urllib.parse import urlsplit
 from xmlrpc.server import SimpleXMLRPCServer
 
 from pytpc.errors import RunError
-from pytpc.tcpros import Handler, call, decode_header, encode_header, receive
+from pytpc.tcpros import Handler, call, decode_header, encode_header, own_host, receive
 
 _LENGTH = struct.Struct("<I")
 _LARGEST_HEADER = 1 << 20
@@ -54,22 +53,6 @@ def encode_string(text: str) -> bytes:
     return _LENGTH.pack(len(data)) + data
 
 
-def own_address(master: str) -> str:
-    """The address at which the graph of ``master`` reaches this machine, as ROS chooses it:
-    ``ROS_HOSTNAME``, ``ROS_IP``, else the one from which the master is reached."""
-    chosen = os.environ.get("ROS_HOSTNAME") or os.environ.get("ROS_IP")
-    if chosen:
-        return chosen
-    parts = urlsplit(master)
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        try:
-            probe.connect((parts.hostname or "127.0.0.1", parts.port or 11311))
-            address: str = probe.getsockname()[0]
-        except OSError:
-            return "127.0.0.1"
-        return address
-
-
 class RawPublisher:
     """Publishes messages that are bytes already. Registers only when told to (``register``).
 
@@ -86,7 +69,7 @@ class RawPublisher:
         self._topics = dict(topics)
         self._lock = threading.Lock()
         self._links: dict[str, list[tuple[str, socket.socket]]] = {topic: [] for topic in topics}
-        self._host = own_address(master)
+        self._host = own_host(os.environ, master)
         self._listener = socket.create_server(("", 0))
         self._server = SimpleXMLRPCServer(("", 0), Handler, logRequests=False, allow_none=True)
         self._server.register_instance(self)

@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
@@ -17,6 +16,7 @@ from pytpc.errors import InputError
 from pytpc.ingest.reading import is_ingested, read
 from pytpc.ingest.recording import RUN_FILE, Recording
 from pytpc.marks import Mark
+from pytpc.static_json import parse_json
 from pytpc.treatment import TREATMENT_FILE, Treatment, TreatmentType, load_treatment
 
 UNNAMED = "unnamed"
@@ -171,14 +171,9 @@ def _run(path: Path) -> dict[str, Any]:
     Raises:
         InputError: it is no JSON.
     """
-    try:
-        document = json.loads(path.read_bytes().decode("utf-8"))
-    except FileNotFoundError:
+    if not path.exists():
         return {}
-    except OSError as error:
-        raise InputError(f"cannot be read: {error.strerror or error}", path) from error
-    except (ValueError, RecursionError) as error:
-        raise InputError(f"not JSON: {error}", path) from error
+    document = parse_json(path)
     if not isinstance(document, dict):
         raise InputError("not about a run: an object is expected", path)
     return document

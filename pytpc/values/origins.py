@@ -12,6 +12,7 @@ from typing import Any, Literal, cast, get_args
 from pytpc.atomic import write_atomic
 from pytpc.errors import InputError
 from pytpc.parameters import DYNAMIC, same_parameter
+from pytpc.static_json import parse_json
 
 ORIGINS_FILE = "origins.json"
 START_FILE = "params_start.yaml"
@@ -90,14 +91,7 @@ def read_document(path: Path) -> dict[str, Any]:
     Raises:
         InputError: it cannot be read, or is of another version.
     """
-    try:
-        document = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(f"cannot be read: {error.strerror}", path) from error
-    except UnicodeDecodeError as error:
-        raise InputError(f"not JSON: byte {error.start} is not UTF-8", path) from error
-    except json.JSONDecodeError as error:
-        raise InputError(f"not JSON: {error.msg}", path, error.lineno) from error
+    document = parse_json(path)
     if not isinstance(document, dict) or document.get("schema") != SCHEMA:
         raise InputError(f"not a file of origins of version {SCHEMA}", path)
     return document

@@ -68,6 +68,8 @@ EXTRA = """mission:
 """
 MANIFEST = "<package><name>robot</name></package>\n"
 
+MISSION_PARAMS = "# mine\nmission:\n  limit: 0.058  # too high\n  other: 3\n"
+
 
 def make_package(folder: Path) -> Path:
     """The package ``robot`` below ``folder``; returns its main launch file."""

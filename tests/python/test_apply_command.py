@@ -7,35 +7,12 @@ import os
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner, Result
-from launch_samples import environment, make_package, needs_roslaunch
+from click.testing import CliRunner
+from launch_samples import MISSION_PARAMS, environment, make_package, needs_roslaunch
 
 from pytpc.cli.main import main
 from pytpc.values.origins import ORIGINS_FILE
 from pytpc.values.recording import save_origins, try_trace
-
-PARAMS = "# mine\nmission:\n  limit: 0.058  # too high\n  other: 3\n"
-
-
-@pytest.fixture
-def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
-    monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path))
-
-    def invoke(*words: object, status: int = 0) -> Result:
-        done = CliRunner().invoke(main, ["apply", *map(str, words)])
-        assert done.exit_code == status, done.output
-        return done
-
-    return invoke
-
-
-@pytest.fixture
-def params(tmp_path: Path) -> Path:
-    path = tmp_path / "params.yaml"
-    path.write_text(PARAMS)
-    return path
-
 
 DIFF = """--- a{path}
 +++ b{path}
@@ -48,44 +25,44 @@ DIFF = """--- a{path}
 """
 
 
-def test_a_yaml_file(run, params: Path) -> None:
-    done = run(params, "/mission/limit", "0.035")
-    assert params.read_text() == PARAMS.replace("0.058", "0.035")
+def test_a_yaml_file(apply, params: Path) -> None:
+    done = apply(params, "/mission/limit", "0.035")
+    assert params.read_text() == MISSION_PARAMS.replace("0.058", "0.035")
     assert done.stdout == (
         DIFF.format(path=params) + f"{params}:3: /mission/limit 0.058 -> 0.035\n"
     )
     assert done.stderr == "to take it back: pytpc apply --undo 1\n"
-    run("--undo")
-    assert params.read_text() == PARAMS
-    assert "nothing to take back" in run("--undo", status=1).output
+    apply("--undo")
+    assert params.read_text() == MISSION_PARAMS
+    assert "nothing to take back" in apply("--undo", status=1).output
 
 
-def test_a_dry_run(run, params: Path) -> None:
-    done = run(params, "limit", "0.035", "--dry-run")
+def test_a_dry_run(apply, params: Path) -> None:
+    done = apply(params, "limit", "0.035", "--dry-run")
     assert done.stdout == (
         DIFF.format(path=params)
         + f"{params}:3: /mission/limit 0.058 -> 0.035 (not written: --dry-run)\n"
     )
-    assert params.read_text() == PARAMS
-    assert json.loads(run("--list", "--json").output) == []
+    assert params.read_text() == MISSION_PARAMS
+    assert json.loads(apply("--list", "--json").output) == []
 
 
-def test_a_negative_value_is_no_option(run, params: Path) -> None:
-    run(params, "limit", "-0.5")
-    assert params.read_text() == PARAMS.replace("0.058", "-0.5")
-    dry = run("--undo", "--dry-run")
+def test_a_negative_value_is_no_option(apply, params: Path) -> None:
+    apply(params, "limit", "-0.5")
+    assert params.read_text() == MISSION_PARAMS.replace("0.058", "-0.5")
+    dry = apply("--undo", "--dry-run")
     assert "(not written: --dry-run)" in dry.output
-    assert params.read_text() == PARAMS.replace("0.058", "-0.5")
+    assert params.read_text() == MISSION_PARAMS.replace("0.058", "-0.5")
 
 
-def test_what_it_is_already(run, params: Path) -> None:
-    done = run(params, "limit", "0.058")
+def test_what_it_is_already(apply, params: Path) -> None:
+    done = apply(params, "limit", "0.058")
     assert done.stdout == f"{params}:3: /mission/limit is 0.058 already\n"
-    assert json.loads(run("--list", "--json").output) == []
+    assert json.loads(apply("--list", "--json").output) == []
 
 
-def test_json(run, params: Path) -> None:
-    answer = json.loads(run(params, "limit", "0.035", "--json").output)["file"]
+def test_json(apply, params: Path) -> None:
+    answer = json.loads(apply(params, "limit", "0.035", "--json").output)["file"]
     assert answer["diff"] == DIFF.format(path=params)
     del answer["diff"]
     assert answer == {
@@ -99,105 +76,105 @@ def test_json(run, params: Path) -> None:
         "written": True,
         "undo": 1,
     }
-    (entry,) = json.loads(run("--list", "--json").output)
+    (entry,) = json.loads(apply("--list", "--json").output)
     assert (entry["number"], entry["old"], entry["path"]) == (1, "0.058", str(params))
-    undone = json.loads(run("--undo", "--json").output)
+    undone = json.loads(apply("--undo", "--json").output)
     assert (undone["undone"], undone["written"]) == (1, True)
 
 
-def test_undo_refuses_a_file_that_was_changed(run, params: Path) -> None:
-    run(params, "limit", "0.035")
+def test_undo_refuses_a_file_that_was_changed(apply, params: Path) -> None:
+    apply(params, "limit", "0.035")
     mine = params.read_text() + "# and mine\n"
     params.write_text(mine)
-    refused = run("--undo", status=1)
+    refused = apply("--undo", status=1)
     assert f"{params}: was changed since: change 1 is not taken back" in refused.output
     assert params.read_text() == mine
 
 
-def test_undo_of_one_of_several(run, params: Path, tmp_path: Path) -> None:
+def test_undo_of_one_of_several(apply, params: Path, tmp_path: Path) -> None:
     second = tmp_path / "second.yaml"
     second.write_text("a: 1\n")
-    run(params, "limit", "0.035")
-    run(params, "other", "4")
-    run(second, "a", "2")
-    listed = run("--list").output
+    apply(params, "limit", "0.035")
+    apply(params, "other", "4")
+    apply(second, "a", "2")
+    listed = apply("--list").output
     assert all(text in listed for text in ("/mission/limit", "/mission/other", "second.yaml"))
     # The first change of this file stands below the second.
-    assert "change 2 came after it" in run("--undo", "1", status=1).output
-    run("--undo", params)
-    assert params.read_text() == PARAMS.replace("0.058", "0.035")
+    assert "change 2 came after it" in apply("--undo", "1", status=1).output
+    apply("--undo", params)
+    assert params.read_text() == MISSION_PARAMS.replace("0.058", "0.035")
     assert second.read_text() == "a: 2\n"
-    run("--undo", "1")
-    run("--undo")
-    assert (params.read_text(), second.read_text()) == (PARAMS, "a: 1\n")
-    assert "no change of 7 is noted" in run("--undo", "7", status=1).output
+    apply("--undo", "1")
+    apply("--undo")
+    assert (params.read_text(), second.read_text()) == (MISSION_PARAMS, "a: 1\n")
+    assert "no change of 7 is noted" in apply("--undo", "7", status=1).output
 
 
-def test_symbolic_links_and_permissions_stay(run, params: Path, tmp_path: Path) -> None:
+def test_symbolic_links_and_permissions_stay(apply, params: Path, tmp_path: Path) -> None:
     params.chmod(0o640)
     link = tmp_path / "link.yaml"
     link.symlink_to(params.name)
-    run(link, "limit", "0.035")
+    apply(link, "limit", "0.035")
     assert link.is_symlink()
-    assert params.read_text() == PARAMS.replace("0.058", "0.035")
+    assert params.read_text() == MISSION_PARAMS.replace("0.058", "0.035")
     assert params.stat().st_mode & 0o777 == 0o640
-    run("--undo", link)
-    assert params.read_text() == PARAMS
+    apply("--undo", link)
+    assert params.read_text() == MISSION_PARAMS
 
 
 @pytest.mark.parametrize(
     ("text", "words", "said"),
     [
-        (PARAMS, ("gone", "1"), "params.yaml: gone does not stand in it"),
+        (MISSION_PARAMS, ("gone", "1"), "params.yaml: gone does not stand in it"),
         ("a: {x: 1}\nb: {x: 2}\n", ("x", "3"), "several values end with x: a/x, b/x"),
-        (PARAMS, ("other", "3.5"), "params.yaml: the parameter is a whole number"),
+        (MISSION_PARAMS, ("other", "3.5"), "params.yaml: the parameter is a whole number"),
         ("a: [\n", ("a", "1"), "not YAML"),
         ("a: caf\xe9\n", ("a", "1"), "params.yaml:1: not UTF-8"),
         ("", ("a", "1"), "a does not stand in it"),
     ],
 )
 def test_one_line_and_nothing_written(
-    run, params: Path, text: str, words: tuple[str, str], said: str
+    apply, params: Path, text: str, words: tuple[str, str], said: str
 ) -> None:
     params.write_bytes(text.encode("latin-1"))
-    done = run(params, *words, status=1)
+    done = apply(params, *words, status=1)
     assert done.stderr.count("\n") == 1
     assert said in done.stderr
     assert params.read_bytes() == text.encode("latin-1")
 
 
-def test_bad_words(run, params: Path, tmp_path: Path) -> None:
-    assert "give TARGET PARAMETER VALUE" in run(params, "limit", status=2).output
-    assert "--add is for launch files" in run(params, "a", "1", "--add", status=2).output
-    assert "give one FILE or number" in run("--undo", "1", "2", status=2).output
-    assert "no such file" in run(tmp_path / "none.launch", "a", "1", status=1).output
-    assert f"no {ORIGINS_FILE}" in run(tmp_path, "a", "1", status=1).output
+def test_bad_words(apply, params: Path, tmp_path: Path) -> None:
+    assert "give TARGET PARAMETER VALUE" in apply(params, "limit", status=2).output
+    assert "--add is for launch files" in apply(params, "a", "1", "--add", status=2).output
+    assert "give one FILE or number" in apply("--undo", "1", "2", status=2).output
+    assert "no such file" in apply(tmp_path / "none.launch", "a", "1", status=1).output
+    assert f"no {ORIGINS_FILE}" in apply(tmp_path, "a", "1", status=1).output
 
 
-def test_a_file_that_cannot_be_written(run, params: Path, monkeypatch) -> None:
+def test_a_file_that_cannot_be_written(apply, params: Path, monkeypatch) -> None:
     monkeypatch.setattr(os, "access", lambda *_: False)
-    assert f"{params}: cannot be written" in run(params, "limit", "0.035", status=1).output
-    assert params.read_text() == PARAMS
-    assert json.loads(run("--list", "--json").output) == []
+    assert f"{params}: cannot be written" in apply(params, "limit", "0.035", status=1).output
+    assert params.read_text() == MISSION_PARAMS
+    assert json.loads(apply("--list", "--json").output) == []
 
 
-def test_hostile_text_is_shown_harmless(run, params: Path) -> None:
+def test_hostile_text_is_shown_harmless(apply, params: Path) -> None:
     params.write_text("mission:\n  # \x1b[2J\n  limit: 0.5\n", newline="")
     # YAML does not take control characters; a launch file's comment may have none either.
-    assert "\x1b" not in run(params, "limit", "0.6", status=1).output
+    assert "\x1b" not in apply(params, "limit", "0.6", status=1).output
 
 
 # --- by origin
 
 
 @needs_roslaunch
-def test_a_launch_file_leads_to_the_yaml_that_set_it(run, tmp_path: Path) -> None:
+def test_a_launch_file_leads_to_the_yaml_that_set_it(apply, tmp_path: Path) -> None:
     launch = make_package(tmp_path)
     extra = tmp_path / "robot/config/extra.yaml"
-    done = run(launch, "/mission/limit", "0.04")
+    done = apply(launch, "/mission/limit", "0.04")
     assert extra.read_text() == "mission:\n  limit: 0.04\n"
     assert f"{extra}:2: /mission/limit 0.058 -> 0.04" in done.output
-    run("--undo")
+    apply("--undo")
     assert extra.read_text() == "mission:\n  limit: 0.058\n"
 
 
@@ -215,57 +192,57 @@ BY_ORIGIN = [
 
 @needs_roslaunch
 @pytest.mark.parametrize("case", BY_ORIGIN, ids=[case[0] for case in BY_ORIGIN])
-def test_each_kind_of_place(run, tmp_path: Path, case: tuple[str, str, str, str, str]) -> None:
+def test_each_kind_of_place(apply, tmp_path: Path, case: tuple[str, str, str, str, str]) -> None:
     name, value, file, old, new = case
     make_package(tmp_path)
     folder = tmp_path / "robot/launch"
     before = {path.stem: path.read_text() for path in folder.iterdir()}
-    run(folder / "main.launch", name, value)
+    apply(folder / "main.launch", name, value)
     after = {path.stem: path.read_text() for path in folder.iterdir()}
     before[file] = before[file].replace(old, new)
     assert after == before
 
 
 @needs_roslaunch
-def test_what_is_refused_by_origin(run, tmp_path: Path) -> None:
+def test_what_is_refused_by_origin(apply, tmp_path: Path) -> None:
     launch = make_package(tmp_path)
     # speed goes to the arm and, through the include, to depth.
     assert (
         "<arg> speed is used in line 22, too"
-        in run(launch, "/left/arm/speed", "2", status=1).output
+        in apply(launch, "/left/arm/speed", "2", status=1).output
     )
-    given = run(launch, "/left/gain", "3", "rate:=8", status=1).output
+    given = apply(launch, "/left/gain", "3", "rate:=8", status=1).output
     assert "rate:=8 on roslaunch's command line; give rate:=VALUE there instead" in given
     assert (
-        "<arg> speed is used in line 12, too" in run(launch, "/right/depth", "2", status=1).output
+        "<arg> speed is used in line 12, too" in apply(launch, "/right/depth", "2", status=1).output
     )
     assert (
         "main.launch:29: /leg/step stands in the args of the node: _step:=0.5"
-        in run(launch, "/leg/step", "2", status=1).output
+        in apply(launch, "/leg/step", "2", status=1).output
     )
-    assert "roslaunch works its value out" in run(launch, "/computed", "2", status=1).output
-    assert "the output of a command" in run(launch, "/text", "2", status=1).output
-    merged = run(launch, "/other/mass", "5", status=1).output
+    assert "roslaunch works its value out" in apply(launch, "/computed", "2", status=1).output
+    assert "the output of a command" in apply(launch, "/text", "2", status=1).output
+    merged = apply(launch, "/other/mass", "5", status=1).output
     assert "config/params.yaml:6: it is the value of arm/mass, too" in merged
-    assert "nobody sets left/arm/nothing" in run(launch, "left/arm/nothing", "2", status=1).output
-    assert "--add puts it" in run(launch, "/left/arm/nothing", "2", status=1).output
-    assert "is not NAME:=VALUE" in run(launch, "/alone", "2", "rate", status=2).output
+    assert "nobody sets left/arm/nothing" in apply(launch, "left/arm/nothing", "2", status=1).output
+    assert "--add puts it" in apply(launch, "/left/arm/nothing", "2", status=1).output
+    assert "is not NAME:=VALUE" in apply(launch, "/alone", "2", "rate", status=2).output
 
 
 @needs_roslaunch
-def test_add(run, tmp_path: Path) -> None:
+def test_add(apply, tmp_path: Path) -> None:
     launch = make_package(tmp_path)
     before = launch.read_text()
-    run(launch, "/left/arm/reach", "0.75", "--add")
+    apply(launch, "/left/arm/reach", "0.75", "--add")
     added = '      <param name="reach" value="0.75" type="double"/>\n    </node>'
     assert launch.read_text() == before.replace("    </node>", added)
     # It is read back by roslaunch.
     done = CliRunner().invoke(main, ["origin", str(launch), "/left/arm/reach"])
     assert f"/left/arm/reach = 0.75: {launch}:19" in done.output
-    run(launch, "/elsewhere", "text", "--add")
+    apply(launch, "/elsewhere", "text", "--add")
     assert '  <param name="/elsewhere" value="text" type="str"/>\n</launch>' in launch.read_text()
-    run("--undo")
-    run("--undo")
+    apply("--undo")
+    apply("--undo")
     assert launch.read_text() == before
 
 
@@ -280,21 +257,21 @@ def mission_of(tmp_path: Path, launch: Path, params: str) -> Path:
 
 
 @needs_roslaunch
-def test_a_mission(run, tmp_path: Path) -> None:
+def test_a_mission(apply, tmp_path: Path) -> None:
     launch = make_package(tmp_path)
     mission = mission_of(tmp_path, launch, "mission: {limit: 0.058}\nleft: {arm: {limit: 0.9}}\n")
     extra = tmp_path / "robot/config/extra.yaml"
     # The file was changed since the mission: the line is another, and the value, too.
     extra.write_text("# new\nmission:\n  limit: 0.05\n")
-    done = run(mission, "/mission/limit", "0.04")
+    done = apply(mission, "/mission/limit", "0.04")
     assert extra.read_text() == "# new\nmission:\n  limit: 0.04\n"
     assert f"{extra}:3: /mission/limit 0.05 -> 0.04" in done.output
     assert "the robot had 0.058; the file was changed since" in done.output
-    runtime = run(mission, "/left/arm/limit", "0.5", status=1).output
+    runtime = apply(mission, "/left/arm/limit", "0.5", status=1).output
     assert "/left/arm/limit was set at runtime" in runtime
     assert f"{launch}:13 set it to 0.25" in runtime
     extra.unlink()
-    assert f"{extra}: cannot be read" in run(mission, "/mission/limit", "1", status=1).output
+    assert f"{extra}: cannot be read" in apply(mission, "/mission/limit", "1", status=1).output
 
 
 @needs_roslaunch

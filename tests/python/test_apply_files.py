@@ -9,10 +9,9 @@ import time
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner, Result
+from conftest import PARAMS
 from launch_samples import MANIFEST, needs_roslaunch
 
-from pytpc.cli.main import main
 from pytpc.errors import RunError, TpcError
 from pytpc.values import apply
 from pytpc.values.apply import Change, apply_change, replace_file
@@ -20,29 +19,6 @@ from pytpc.values.installed import is_installed, of_the_system, source_of
 from pytpc.values.journal import Journal, folder_of
 from pytpc.values.live import LiveChange, Robot
 from pytpc.values.undo import set_live
-
-PARAMS = "# mine\nmission:\n  limit: 0.058  # too high\n  other: 3\n"
-
-
-@pytest.fixture
-def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
-    monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path))
-
-    def invoke(*words: object, status: int = 0) -> Result:
-        done = CliRunner().invoke(main, ["apply", *map(str, words)])
-        assert done.exit_code == status, done.output
-        return done
-
-    return invoke
-
-
-@pytest.fixture
-def params(tmp_path: Path) -> Path:
-    path = tmp_path / "params.yaml"
-    path.write_text(PARAMS)
-    return path
-
 
 # --- installed copies
 
@@ -59,28 +35,28 @@ def workspace(tmp_path: Path) -> tuple[Path, Path]:
 
 
 @needs_roslaunch
-def test_the_source_of_an_installed_copy_is_changed(run, tmp_path: Path) -> None:
+def test_the_source_of_an_installed_copy_is_changed(apply, tmp_path: Path) -> None:
     source, copy = workspace(tmp_path)
     launch = tmp_path / "a.launch"
     launch.write_text(f'<launch><rosparam file="{copy}"/></launch>')
-    done = run(launch, "limit", "0.25")
+    done = apply(launch, "limit", "0.25")
     assert (source.read_text(), copy.read_text()) == ("limit: 0.25\n", "limit: 0.5\n")
     assert f"the robot reads the installed copy {copy}" in done.stderr
     assert "build the workspace again" in done.stderr
-    again = run(launch, "limit", "0.75")
+    again = apply(launch, "limit", "0.75")
     assert "older or newer" in again.stderr
     assert "the robot had 0.5; the file was changed since" in again.stderr
 
 
 @needs_roslaunch
-def test_an_installed_launch_file(run, tmp_path: Path) -> None:
+def test_an_installed_launch_file(apply, tmp_path: Path) -> None:
     source, copy = workspace(tmp_path)
     text = '<launch>\n  <param name="limit" value="0.5"/>\n</launch>\n'
     files = [folder.parent.parent / "launch/a.launch" for folder in (source, copy)]
     for file in files:
         file.parent.mkdir()
         file.write_text(text)
-    run(files[1], "limit", "0.25")
+    apply(files[1], "limit", "0.25")
     assert [file.read_text() for file in files] == [text.replace("0.5", "0.25"), text]
 
 
@@ -118,21 +94,21 @@ def test_a_change_that_somebody_was_faster_with(params: Path, tmp_path: Path) ->
     assert journal.entries() == []
 
 
-def test_without_a_note_nothing_is_written(run, params: Path, tmp_path: Path) -> None:
+def test_without_a_note_nothing_is_written(apply, params: Path, tmp_path: Path) -> None:
     (tmp_path / "state").write_text("a file where the folder should be")
-    assert "cannot be noted for --undo" in run(params, "limit", "0.035", status=1).output
+    assert "cannot be noted for --undo" in apply(params, "limit", "0.035", status=1).output
     assert params.read_text() == PARAMS
 
 
-def test_a_note(run, params: Path, tmp_path: Path) -> None:
-    run(params, "limit", "0.035")
+def test_a_note(apply, params: Path, tmp_path: Path) -> None:
+    apply(params, "limit", "0.035")
     (note,) = (tmp_path / "state/tpc/applied").glob("*.json")
     document = json.loads(note.read_text())
     assert base64.b64decode(document["before"]) == PARAMS.encode()
     # What stood in the file may be nobody else's business.
     assert note.stat().st_mode & 0o777 == 0o600
     note.write_text('{"schema": 9}')
-    assert f"{note}: not a change that was noted" in run("--list").output
+    assert f"{note}: not a change that was noted" in apply("--list").output
 
 
 def test_where_the_notes_are(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -188,22 +164,22 @@ def test_of_two_changes_at_once_none_is_lost(params: Path, tmp_path: Path, monke
     assert len(journal.entries()) == 1
 
 
-def test_hard_links_are_said(run, params: Path, tmp_path: Path) -> None:
+def test_hard_links_are_said(apply, params: Path, tmp_path: Path) -> None:
     other = tmp_path / "other.yaml"
     other.hardlink_to(params)
-    assert "1 other names (hard links)" in run(params, "mission/limit", "0.035").output
+    assert "1 other names (hard links)" in apply(params, "mission/limit", "0.035").output
     assert other.read_text() == PARAMS
 
 
 def test_a_note_that_is_broken_keeps_no_other_from_being_taken_back(
-    run, params: Path, tmp_path: Path
+    apply, params: Path, tmp_path: Path
 ) -> None:
     before = params.read_bytes()
-    run(params, "mission/limit", "0.035")
+    apply(params, "mission/limit", "0.035")
     broken = tmp_path / "state/tpc/applied/000009.json"
     broken.write_text("{")
-    assert "000009.json: not a change that was noted" in run("--list").output
-    assert "000009.json: not a change that was noted" in run("--undo").output
+    assert "000009.json: not a change that was noted" in apply("--list").output
+    assert "000009.json: not a change that was noted" in apply("--undo").output
     assert params.read_bytes() == before
     assert broken.read_text() == "{"
 
