@@ -9,8 +9,7 @@ import time
 from pathlib import Path
 
 import pytest
-from conftest import PARAMS
-from launch_samples import MANIFEST, needs_roslaunch
+from launch_samples import MANIFEST, MISSION_PARAMS, needs_roslaunch
 
 from pytpc.errors import RunError, TpcError
 from pytpc.values import apply
@@ -97,14 +96,14 @@ def test_a_change_that_somebody_was_faster_with(params: Path, tmp_path: Path) ->
 def test_without_a_note_nothing_is_written(apply, params: Path, tmp_path: Path) -> None:
     (tmp_path / "state").write_text("a file where the folder should be")
     assert "cannot be noted for --undo" in apply(params, "limit", "0.035", status=1).output
-    assert params.read_text() == PARAMS
+    assert params.read_text() == MISSION_PARAMS
 
 
 def test_a_note(apply, params: Path, tmp_path: Path) -> None:
     apply(params, "limit", "0.035")
     (note,) = (tmp_path / "state/tpc/applied").glob("*.json")
     document = json.loads(note.read_text())
-    assert base64.b64decode(document["before"]) == PARAMS.encode()
+    assert base64.b64decode(document["before"]) == MISSION_PARAMS.encode()
     # What stood in the file may be nobody else's business.
     assert note.stat().st_mode & 0o777 == 0o600
     note.write_text('{"schema": 9}')
@@ -127,7 +126,7 @@ def test_a_full_disk_leaves_the_file_as_it_was(params: Path, monkeypatch) -> Non
     monkeypatch.setattr("pytpc.atomic.os.fsync", full)
     with pytest.raises(TpcError, match="No space left"):
         replace_file(params, b"new")
-    assert params.read_text() == PARAMS
+    assert params.read_text() == MISSION_PARAMS
     assert [path.name for path in params.parent.glob(".params*")] == []
 
 
@@ -168,7 +167,7 @@ def test_hard_links_are_said(apply, params: Path, tmp_path: Path) -> None:
     other = tmp_path / "other.yaml"
     other.hardlink_to(params)
     assert "1 other names (hard links)" in apply(params, "mission/limit", "0.035").output
-    assert other.read_text() == PARAMS
+    assert other.read_text() == MISSION_PARAMS
 
 
 def test_a_note_that_is_broken_keeps_no_other_from_being_taken_back(
