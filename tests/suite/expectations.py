@@ -7,19 +7,23 @@ An expectation says ``file``, ``line``, ``parameter``, ``type``, ``relation`` an
 plain, ``distance`` and ``transform``. Under ``constants`` stand hard-coded constants, which are
 judged where the node has that key; under ``limits`` what the analysis may or may not find. In a
 node that is ``imprecise`` both answers are right.
+
+Lists of Python nodes (examples/python_nodes) say ``column``, too, where a comparison begins; one that
+is found at another column is another one. ``params`` is what must be set before the node starts.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from pytpc.static_info import Comparison
 
 PACKAGE = Path(__file__).parents[2] / "examples/threshold_nodes"
+PYTHON_PACKAGE = PACKAGE.with_name("python_nodes")
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +39,7 @@ class Entry:
     distance: int | None
     transform: dict[str, float] | str | None
     why: str
+    column: int | None = None
 
     def __str__(self) -> str:
         """One line for a person."""
@@ -54,6 +59,7 @@ class Expectation:
     absent: tuple[Entry, ...]
     imprecise: bool
     nan: bool
+    params: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def entries(self) -> tuple[Entry, ...]:
@@ -101,6 +107,7 @@ def load(node: str, package: Path = PACKAGE) -> Expectation:
         absent=_entries(data.get("absent", [])),
         imprecise=bool(data.get("imprecise", False)),
         nan=bool(data.get("nan", False)),
+        params=data.get("params", {}),
     )
 
 
@@ -116,6 +123,7 @@ def _entries(items: Iterable[dict[str, Any]]) -> tuple[Entry, ...]:
             item.get("distance"),
             item.get("transform"),
             item.get("why", ""),
+            item.get("column"),
         )
         for item in items
     )
@@ -139,7 +147,7 @@ def judge(expectation: Expectation, found: Iterable[Comparison]) -> Verdict:
     total_found = len(wanted) - len(unmet)
     limits_found = 0
     for entry in expectation.limits:
-        near = next((one for one in left if _place(one) == (entry.file, entry.line)), None)
+        near = next((one for one in left if _is_at(entry, one)), None)
         if near is not None:
             left.remove(near)
             limits_found += 1
@@ -160,6 +168,8 @@ def differences(entry: Entry, found: Comparison) -> list[str]:
     wrong = []
     if _place(found) != (entry.file, entry.line):
         wrong.append(f"at {found.file}:{found.lineno}")
+    elif entry.column not in (None, found.column):
+        wrong.append(f"column {found.column}")
     if entry.type != "constant" and found.source != entry.parameter:
         wrong.append(f"parameter '{found.source}'")
     if found.type != entry.type:
@@ -175,6 +185,10 @@ def differences(entry: Entry, found: Comparison) -> list[str]:
 
 def _place(found: Comparison) -> tuple[str, int]:
     return found.file, found.lineno
+
+
+def _is_at(entry: Entry, found: Comparison) -> bool:
+    return _place(found) == (entry.file, entry.line) and entry.column in (None, found.column)
 
 
 def _same_transform(wanted: dict[str, float] | str, found: Comparison) -> bool:
@@ -203,8 +217,6 @@ def _of_missing(entry: Entry, left: Iterable[Comparison]) -> str:
 
 
 def _of_false(found: Comparison, expectation: Expectation) -> str:
-    reasons = [
-        entry.why for entry in expectation.absent if _place(found) == (entry.file, entry.line)
-    ]
+    reasons = [entry.why for entry in expectation.absent if _is_at(entry, found)]
     text = f"{found.file}:{found.lineno} {found.type} '{found.source}' {found.relation}"
     return f"{text} ({reasons[0]})" if reasons else text

@@ -1,0 +1,36 @@
+"""Every node of examples/python_nodes runs on a real roscore, and publishes what it is there for."""
+
+from __future__ import annotations
+
+import signal
+from pathlib import Path
+
+import pytest
+from suite.both_ways import Published
+from suite.expectations import PYTHON_PACKAGE, nodes
+from suite.python_run import VARIANT, missing_modules, run_nodes
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("python-suite")
+
+
+@pytest.fixture(scope="module")
+def results(folder: Path) -> dict[str, Published]:
+    able = [node for node in nodes(PYTHON_PACKAGE) if not missing_modules(node)]
+    return run_nodes(folder, able)
+
+
+@pytest.mark.parametrize("node", nodes(PYTHON_PACKAGE))
+def test_runs(results: dict[str, Published], folder: Path, node: str) -> None:
+    if missing := missing_modules(node):
+        pytest.skip(f"not installed here: {', '.join(missing)}")
+    said = (folder / "out" / f"{VARIANT}-{node}.log").read_text("utf-8")
+    assert "Traceback" not in said
+    # Ended by SIGINT: rospy ends in order, or by a second one that meets the interpreter's exit.
+    assert results[node].status in (0, -signal.SIGINT), said
+    # dynamic_reconfigure publishes below the node's own name whatever happens.
+    assert [topic for topic in results[node].topics if not topic.startswith(f"{node}/")]

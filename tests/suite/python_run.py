@@ -1,0 +1,80 @@
+"""Builds the suite of Python nodes (catkin's devel space) and runs them on a graph of their own."""
+
+from __future__ import annotations
+
+import ast
+import importlib.util
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+from pytpc.build import workspace_env
+from pytpc.colcon import build_environment
+from pytpc.errors import RunError
+from suite.both_ways import Published, Variant, run_all
+from suite.expectations import PYTHON_PACKAGE, nodes
+
+RUN_S = 2.0
+AT_ONCE = 4
+VARIANT = "plain"
+# catkin takes the first python3 of the PATH unless it is told; ROS's Python is the system's.
+_PYTHON = "/usr/bin/python3"
+
+
+def script(node: str) -> Path:
+    """The program of a node: nodes/NAME.py or nodes/NAME/NAME.py."""
+    folder = PYTHON_PACKAGE / "nodes"
+    alone = folder / f"{node}.py"
+    return alone if alone.is_file() else folder / node / f"{node}.py"
+
+
+def missing_modules(node: str) -> list[str]:
+    """Modules that the node's script imports at its beginning and that are not installed here."""
+    tree = ast.parse(script(node).read_text("utf-8"))
+    names = {alias.name for one in tree.body if isinstance(one, ast.Import) for alias in one.names}
+    names |= {one.module or "" for one in tree.body if isinstance(one, ast.ImportFrom)}
+    tops = {name.partition(".")[0] for name in names} - {"python_nodes"}
+    beside = {path.stem for path in script(node).parent.glob("*.py")}
+    return sorted(top for top in tops - beside if importlib.util.find_spec(top) is None)
+
+
+def build_devel(folder: Path) -> Path:
+    """Build the package; its devel space.
+
+    Raises:
+        RunError: it does not build.
+    """
+    build = folder / "build"
+    for command in (
+        ["cmake", "-S", str(PYTHON_PACKAGE), "-B", str(build), f"-DPYTHON_EXECUTABLE={_PYTHON}"],
+        ["cmake", "--build", str(build)],
+    ):
+        ran = subprocess.run(
+            command, env=build_environment(), capture_output=True, text=True, check=False
+        )
+        if ran.returncode:
+            said = (ran.stderr or ran.stdout).strip().splitlines() or ["it says nothing"]
+            raise RunError(f"{' '.join(command[:2])} fails: {said[0]}", PYTHON_PACKAGE)
+    return build / "devel"
+
+
+def run_nodes(folder: Path, names: list[str] | None = None) -> dict[str, Published]:
+    """Run nodes for two seconds each, fed by the suite's input; their output is in folder/out.
+
+    Raises:
+        RunError: the package does not build, a node ends by itself, or never comes up.
+    """
+    env = workspace_env(build_devel(folder))
+    # The nodes run under this interpreter, which has ROS's modules and those of the tests.
+    path = [str(Path(sys.executable).parent), env["PATH"]]
+    modules = [env.get("PYTHONPATH", ""), os.environ.get("PYTHONPATH", "")]
+    variant = Variant(
+        VARIANT,
+        {node: script(node) for node in (nodes(PYTHON_PACKAGE) if names is None else names)},
+        {"PATH": ":".join(path), "PYTHONPATH": ":".join(filter(None, modules))},
+    )
+    results = run_all(
+        [variant], env, folder, package=PYTHON_PACKAGE, at_once=AT_ONCE, least_s=RUN_S
+    )
+    return {node: published[VARIANT] for node, published in results.items()}
