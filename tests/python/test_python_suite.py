@@ -145,7 +145,7 @@ def test_suite_is_large_and_has_both_kinds() -> None:
 
 
 def test_wrong_entries_are_seen() -> None:
-    # ctl_direct_if.py, line 14: `        if msg.data > self.limit:`; the comparison is at column 12.
+    # Line 14 of ctl_direct_if.py is `        if msg.data > self.limit:`; it begins at column 12.
     (right,) = load("ctl_direct_if", PYTHON_PACKAGE).expect
     assert (right.line, right.column, right.relation) == (14, 12, ">")
     assert wrong_with(right) is None

@@ -1,4 +1,4 @@
-"""Every node of examples/python_nodes runs on a real roscore, and publishes what it is there for."""
+"""Every node of examples/python_nodes runs on a real roscore, and publishes."""
 
 from __future__ import annotations
 

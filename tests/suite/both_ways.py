@@ -85,9 +85,7 @@ def input_of(node: str, seed: int, package: Path = PACKAGE) -> dict[str, list[An
 
     folder = package / "nodes"
     sources = [folder / f"{node}{suffix}" for suffix in (".cpp", ".py")]
-    sources += [
-        path for suffix in ("*.cpp", "*.py") for path in sorted((folder / node).glob(suffix))
-    ]
+    sources += [*sorted((folder / node).glob("*.cpp")), *sorted((folder / node).glob("*.py"))]
     known = [path.read_text("utf-8") for path in sources if path.is_file()]
     words = sorted({"", "word", *(word for text in known for word in _WORDS.findall(text))})
     return {
@@ -126,7 +124,7 @@ def run_all(
     with RosGraph(env, folder) as graph:
         for first in range(0, len(names), at_once):
             batch = names[first : first + at_once]
-            results |= _Batch(graph, variants, batch, seed, package, least_s).run()
+            results |= _Batch(graph, variants, batch, seed, package, least_s=least_s).run()
     return results
 
 
@@ -140,6 +138,7 @@ class _Batch:
         names: Sequence[str],
         seed: int,
         package: Path,
+        *,
         least_s: float,
     ) -> None:
         self._graph = graph

@@ -8,8 +8,8 @@ plain, ``distance`` and ``transform``. Under ``constants`` stand hard-coded cons
 judged where the node has that key; under ``limits`` what the analysis may or may not find. In a
 node that is ``imprecise`` both answers are right.
 
-Lists of Python nodes (examples/python_nodes) say ``column``, too, where a comparison begins; one that
-is found at another column is another one. ``params`` is what must be set before the node starts.
+Lists of Python nodes (examples/python_nodes) say ``column``, too, where a comparison begins; one
+that is found at another column is another one. ``params`` must be set before the node starts.
 """
 
 from __future__ import annotations
