@@ -115,7 +115,8 @@ def test_list_is_complete_in_itself(node: str) -> None:
         assert entry.transform is None or entry.type == "derived", entry
     assert all(entry.why for entry in expectation.entries)
     places = Counter(
-        (entry.file, entry.line, entry.column, entry.parameter) for entry in expectation.entries
+        (entry.file, entry.line, entry.column, entry.parameter, entry.relation)
+        for entry in expectation.entries
     )
     assert [place for place, times in places.items() if times > 1] == []
 

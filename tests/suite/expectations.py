@@ -9,7 +9,8 @@ judged where the node has that key; under ``limits`` what the analysis may or ma
 node that is ``imprecise`` both answers are right.
 
 Lists of Python nodes (examples/python_nodes) say ``column``, too, where a comparison begins; one
-that is found at another column is another one. ``params`` must be set before the node starts.
+that is found at another column is another one. ``params`` must be set before the node starts. What
+a ``timed`` node publishes depends on when things happen, too.
 """
 
 from __future__ import annotations
@@ -24,6 +25,8 @@ from pytpc.static_info import Comparison
 
 PACKAGE = Path(__file__).parents[2] / "examples/threshold_nodes"
 PYTHON_PACKAGE = PACKAGE.with_name("python_nodes")
+# The lists say which operator stands in the source; static information has six relations.
+_EQUALITIES = {"is": "==", "is not": "!=", "in": "==", "not in": "!="}
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,6 +63,7 @@ class Expectation:
     imprecise: bool
     nan: bool
     params: Mapping[str, Any] = field(default_factory=dict)
+    timed: bool = False
 
     @property
     def entries(self) -> tuple[Entry, ...]:
@@ -108,6 +112,7 @@ def load(node: str, package: Path = PACKAGE) -> Expectation:
         imprecise=bool(data.get("imprecise", False)),
         nan=bool(data.get("nan", False)),
         params=data.get("params", {}),
+        timed=bool(data.get("timed", False)),
     )
 
 
@@ -174,7 +179,7 @@ def differences(entry: Entry, found: Comparison) -> list[str]:
         wrong.append(f"parameter '{found.source}'")
     if found.type != entry.type:
         wrong.append(f"type {found.type}")
-    if found.relation != entry.relation:
+    if found.relation != _EQUALITIES.get(entry.relation or "", entry.relation):
         wrong.append(f"relation {found.relation}")
     if entry.distance is not None and found.distance != entry.distance:
         wrong.append(f"distance {found.distance}")
