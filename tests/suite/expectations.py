@@ -31,7 +31,10 @@ _EQUALITIES = {"is": "==", "is not": "!=", "in": "==", "not in": "!="}
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """One comparison as the reader wrote it down. ``absent`` entries have a place alone."""
+    """One comparison as the reader wrote it down. ``absent`` entries have a place alone.
+
+    One that is absent and ``decides`` can be seen from outside, but compares no parameter's value.
+    """
 
     file: str
     line: int
@@ -43,6 +46,7 @@ class Entry:
     transform: dict[str, float] | str | None
     why: str
     column: int | None = None
+    decides: bool = False
 
     def __str__(self) -> str:
         """One line for a person."""
@@ -129,6 +133,7 @@ def _entries(items: Iterable[dict[str, Any]]) -> tuple[Entry, ...]:
             item.get("transform"),
             item.get("why", ""),
             item.get("column"),
+            bool(item.get("decides", False)),
         )
         for item in items
     )
