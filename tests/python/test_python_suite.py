@@ -2,80 +2,23 @@
 
 from __future__ import annotations
 
-import ast
 import json
 from collections import Counter
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from static_units import comparison, unit
 from suite.expectations import PYTHON_PACKAGE, Entry, Expectation, judge, load, nodes
+from suite.places import comparisons, values
 from suite.python_run import missing_modules, script
 
 from pytpc.static_info import Comparison, LinkUnit
 
 TYPES = {"parameter", "flag", "derived"}
 MIRRORED = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
-OPERATORS = {
-    ast.Lt: "<",
-    ast.LtE: "<=",
-    ast.Gt: ">",
-    ast.GtE: ">=",
-    ast.Eq: "==",
-    ast.NotEq: "!=",
-    ast.In: "in",
-    ast.NotIn: "not in",
-    ast.Is: "is",
-    ast.IsNot: "is not",
-}
 KEYS = {"about", "expect", "absent", "limits", "constants", "imprecise", "nan", "params", "timed"}
 ENTRY = Entry("nodes/a.py", 12, "x > limit", "~limit", "parameter", ">", 1, None, "", 8)
-
-Place = tuple[int, int]
-
-
-def text_of(source: str, begin: Place, end: Place) -> str:
-    """The source from one (line, offset in bytes) to another, as CPython counts them."""
-    lines = [line.encode() for line in source.splitlines(keepends=True)]
-    (first, left), (last, right) = begin, end
-    if first == last:
-        return lines[first - 1][left:right].decode()
-    middle = lines[first : last - 1]
-    return b"".join([lines[first - 1][left:], *middle, lines[last - 1][:right]]).decode()
-
-
-def begin_of(node: ast.expr) -> Place:
-    return node.lineno, node.col_offset
-
-
-def end_of(node: ast.expr) -> Place:
-    assert node.end_lineno is not None
-    assert node.end_col_offset is not None
-    return node.end_lineno, node.end_col_offset
-
-
-def comparisons(source: str) -> Iterator[tuple[Place, str, str]]:
-    """(line, column from 1), text and operator of every comparison; a chain has several."""
-    for node in ast.walk(ast.parse(source)):
-        if not isinstance(node, ast.Compare):
-            continue
-        operands = [node.left, *node.comparators]
-        for at, operator in enumerate(node.ops):
-            begin = begin_of(node if at == 0 else operands[at])
-            end = end_of(node if at == len(node.ops) - 1 else operands[at + 1])
-            line, offset = begin
-            yield (line, offset + 1), text_of(source, begin, end), OPERATORS[type(operator)]
-
-
-def values(source: str) -> set[tuple[Place, str]]:
-    """(line, column from 1) and text of everything that may be a flag or a bound."""
-    return {
-        ((node.lineno, node.col_offset + 1), text_of(source, begin_of(node), end_of(node)))
-        for node in ast.walk(ast.parse(source))
-        if isinstance(node, ast.Name | ast.Attribute | ast.Subscript | ast.Call)
-    }
 
 
 def wrong_with(entry: Entry) -> str | None:

@@ -21,7 +21,8 @@ from rospy.msg import args_kwds_to_message
 from std_msgs.msg import Float64, String
 
 RECONFIGURED = {"enabled": True, "lower": -4.0, "upper": 4.0, "gain": 1.0}
-_THREADS_S = 0.03
+# How long the node's own threads have to be silent.
+_QUIET_S = 0.2
 
 
 def bytes_of(message: Any) -> bytes:
@@ -70,8 +71,6 @@ class FakeRos:
         # rospy logs what a callback raises, and goes on.
         with contextlib.suppress(Exception):
             callback(*arguments)
-        if threading.active_count() > self._threads:
-            time.sleep(_THREADS_S / 10)
 
     def expose(self, where: str, message: Any) -> None:
         """Keep what the node let others see."""
@@ -93,11 +92,13 @@ class FakeRos:
             self._is_over = True
 
     def spin(self) -> None:
-        """All samples that are left come."""
+        """All samples that are left come, and the node's threads do their work."""
         while not self._is_over:
             self.sleep()
-        if threading.active_count() > self._threads:
-            time.sleep(_THREADS_S)
+        before = -1
+        while threading.active_count() > self._threads and before != len(self.exposed):
+            before = len(self.exposed)
+            time.sleep(_QUIET_S)
 
     def is_shutdown(self) -> bool:
         """Whether no sample is left."""

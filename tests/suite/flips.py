@@ -21,6 +21,7 @@ from types import CodeType, ModuleType
 from suite.both_ways import input_of
 from suite.expectations import PYTHON_PACKAGE, Entry, load, nodes
 from suite.fake_ros import FakeRos
+from suite.places import links, place_of, text_between
 from suite.python_run import missing_modules, script
 
 SAMPLES = 60
@@ -43,33 +44,28 @@ class _Turn(ast.NodeTransformer):
     """Turns the comparison, or the flag, at one place."""
 
     def __init__(self, entry: Entry, source: str) -> None:
-        assert entry.column is not None
-        self._place = entry.line, entry.column - 1
-        self._text = entry.text
+        self._wanted = (entry.line, entry.column), entry.text
         self._source = source
         self.turned = 0
 
     def visit_Compare(self, node: ast.Compare) -> ast.expr:
-        self.generic_visit(node)
-        for at, left in enumerate([node, *node.comparators[:-1]]):
-            if (left.lineno, left.col_offset) != self._place or self.turned:
-                continue
-            if at == 0 and node.left.col_offset == node.col_offset and not self._is_whole(node):
+        for at, link in enumerate(links(self._source, node)):
+            if link != self._wanted:
                 continue
             self.turned += 1
             if len(node.ops) == 1:
                 return _call(node)
             node.ops[at] = _NEGATED[type(node.ops[at])]()
-        return node
+        return self._below(node)
 
     def visit_MatchValue(self, node: ast.MatchValue) -> ast.MatchValue:
-        if self._is_here(node.value):
+        if self._is_wanted(node.value):
             self.turned += 1
             node.value = ast.Constant(987654321)
         return node
 
     def visit_Call(self, node: ast.Call) -> ast.expr:
-        if self._is_here(node) and self._text.startswith("range("):
+        if self._is_wanted(node) and isinstance(node.func, ast.Name) and node.func.id == "range":
             self.turned += 1
             node.args[0] = ast.BinOp(node.args[0], ast.Add(), ast.Constant(1))
             return node
@@ -82,20 +78,17 @@ class _Turn(ast.NodeTransformer):
         return self._value(node)
 
     def _value(self, node: ast.expr) -> ast.expr:
-        if self._is_here(node):
+        if self._is_wanted(node):
             self.turned += 1
             return _call(node)
+        return self._below(node)
+
+    def _below(self, node: ast.expr) -> ast.expr:
         self.generic_visit(node)
         return node
 
-    def _is_here(self, node: ast.expr) -> bool:
-        here = (node.lineno, node.col_offset) == self._place
-        return here and ast.get_source_segment(self._source, node) == self._text
-
-    def _is_whole(self, node: ast.Compare) -> bool:
-        """Not the first part of an entry's own place, as the ``a`` of ``a < b``, when it is."""
-        segment = ast.get_source_segment(self._source, node) or ""
-        return segment.startswith(self._text)
+    def _is_wanted(self, node: ast.expr) -> bool:
+        return (place_of(node), text_between(self._source, node, node)) == self._wanted
 
 
 def _call(node: ast.expr) -> ast.expr:

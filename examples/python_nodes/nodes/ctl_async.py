@@ -18,7 +18,7 @@ class Node:
         self.sub = rospy.Subscriber("input", Float64, self.on_input)
 
     def on_input(self, msg):
-        asyncio.run_coroutine_threadsafe(self.handle(msg.data), self.loop)
+        asyncio.run_coroutine_threadsafe(self.handle(msg.data), self.loop).result()
 
     async def note(self, value):
         await asyncio.sleep(0)
