@@ -5,19 +5,21 @@ from __future__ import annotations
 import ast
 import importlib.util
 import os
+import shlex
 import subprocess
 import sys
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from pytpc.build import workspace_env
 from pytpc.colcon import build_environment
 from pytpc.errors import RunError
-from suite.both_ways import Published, Variant, run_all
-from suite.expectations import PYTHON_PACKAGE, nodes
+from suite.both_ways import Results, Variant, run_all
+from suite.expectations import PYTHON_PACKAGE
 
 RUN_S = 2.0
 AT_ONCE = 4
-VARIANT = "plain"
+PLAIN: Mapping[str, Sequence[str]] = {"plain": ()}
 # catkin takes the first python3 of the PATH unless it is told; ROS's Python is the system's.
 _PYTHON = "/usr/bin/python3"
 
@@ -59,22 +61,46 @@ def build_devel(folder: Path) -> Path:
     return build / "devel"
 
 
-def run_nodes(folder: Path, names: list[str] | None = None) -> dict[str, Published]:
-    """Run nodes for two seconds each, fed by the suite's input; their output is in folder/out.
+def run_nodes(
+    folder: Path,
+    names: Sequence[str],
+    before: Mapping[str, Sequence[str]] = PLAIN,
+    *,
+    env: Mapping[str, str] | None = None,
+    least_s: float = RUN_S,
+) -> Results:
+    """Run nodes, fed by the suite's input; their output is in folder/out/VARIANT-NODE.log.
+
+    Args:
+        folder: for the build, the graph and what the nodes say.
+        names: the nodes.
+        before: the variants; for each the words that stand before the script.
+        env: added to the nodes' environment.
+        least_s: how long each node runs at the least.
 
     Raises:
         RunError: the package does not build, a node ends by itself, or never comes up.
     """
-    env = workspace_env(build_devel(folder))
+    installed = workspace_env(build_devel(folder))
     # The nodes run under this interpreter, which has ROS's modules and those of the tests.
-    path = [str(Path(sys.executable).parent), env["PATH"]]
-    modules = [env.get("PYTHONPATH", ""), os.environ.get("PYTHONPATH", "")]
-    variant = Variant(
-        VARIANT,
-        {node: script(node) for node in (nodes(PYTHON_PACKAGE) if names is None else names)},
-        {"PATH": ":".join(path), "PYTHONPATH": ":".join(filter(None, modules))},
+    path = [str(Path(sys.executable).parent), installed["PATH"]]
+    modules = [installed.get("PYTHONPATH", ""), os.environ.get("PYTHONPATH", "")]
+    added = {"PATH": ":".join(path), "PYTHONPATH": ":".join(filter(None, modules)), **(env or {})}
+    variants = [
+        Variant(name, {node: _program(folder / name, node, words) for node in names}, added)
+        for name, words in before.items()
+    ]
+    return run_all(
+        variants, installed, folder, package=PYTHON_PACKAGE, at_once=AT_ONCE, least_s=least_s
     )
-    results = run_all(
-        [variant], env, folder, package=PYTHON_PACKAGE, at_once=AT_ONCE, least_s=RUN_S
-    )
-    return {node: published[VARIANT] for node, published in results.items()}
+
+
+def _program(folder: Path, node: str, words: Sequence[str]) -> Path:
+    """The script itself, or a program that starts it behind other words."""
+    if not words:
+        return script(node)
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / node
+    path.write_text(f'#!/bin/sh\nexec {shlex.join([*words, str(script(node))])} "$@"\n', "utf-8")
+    path.chmod(0o755)
+    return path
