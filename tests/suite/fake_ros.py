@@ -158,6 +158,7 @@ def _rospy(ros: FakeRos) -> dict[str, Any]:
         "ServiceProxy": lambda name, kind: _Proxy(ros, name, kind),
         "Timer": timer,
         "Rate": lambda hz: ros,
+        "get_name": lambda: "/node",
         "init_node": lambda *_, **__: None,
         "spin": ros.spin,
         "is_shutdown": ros.is_shutdown,

@@ -12,6 +12,7 @@ class Platform:
         self.lowest = rospy.get_param("~lowest", -5.0)
         self.highest = rospy.get_param("~highest", 5.0)
         self.outside = 0
+        self.frame = rospy.get_name()
         self.broadcaster = tf2_ros.TransformBroadcaster()
         self.pub = rospy.Publisher("output", Float64, queue_size=1000)
         self.tf_sub = rospy.Subscriber("/tf", TFMessage, self.on_tf)
@@ -19,13 +20,13 @@ class Platform:
 
     def on_tf(self, msg):
         for sent in msg.transforms:
-            if sent.child_frame_id == "platform":
+            if sent.child_frame_id == self.frame:
                 self.pub.publish(sent.transform.translation.z)
 
     def on_input(self, msg):
         transform = TransformStamped()
         transform.header.frame_id = "base"
-        transform.child_frame_id = "platform"
+        transform.child_frame_id = self.frame
         transform.transform.rotation.w = 1.0
         transform.transform.translation.z = msg.data
         if not self.lowest <= msg.data <= self.highest:
