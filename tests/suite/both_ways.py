@@ -84,7 +84,8 @@ def input_of(node: str, seed: int, package: Path = PACKAGE) -> dict[str, list[An
         return float(round(value)) if draw.random() < 0.3 else value
 
     folder = package / "nodes"
-    sources = [folder / f"{node}.cpp", *sorted((folder / node).glob("*.cpp"))]
+    sources = [folder / f"{node}{suffix}" for suffix in (".cpp", ".py")]
+    sources += [*sorted((folder / node).glob("*.cpp")), *sorted((folder / node).glob("*.py"))]
     known = [path.read_text("utf-8") for path in sources if path.is_file()]
     words = sorted({"", "word", *(word for text in known for word in _WORDS.findall(text))})
     return {
@@ -101,8 +102,19 @@ def run_all(
     *,
     seed: int = 1,
     package: Path = PACKAGE,
+    at_once: int = BATCH,
+    least_s: float = 0.0,
 ) -> Results:
     """Run all nodes that all variants have; ``results[node][variant]``.
+
+    Args:
+        variants: the ways in which they are run.
+        env: the environment of the installed workspace.
+        folder: for ROS's home, its logs and the output of all processes.
+        seed: of the input.
+        package: the suite, with the lists of its nodes.
+        at_once: how many nodes run at the same time.
+        least_s: how long each runs at the least.
 
     Raises:
         RunError: a node ends by itself, or never comes up.
@@ -110,9 +122,9 @@ def run_all(
     names = sorted(set.intersection(*(set(variant.programs) for variant in variants)))
     results: Results = {}
     with RosGraph(env, folder) as graph:
-        for first in range(0, len(names), BATCH):
-            batch = names[first : first + BATCH]
-            results |= _Batch(graph, variants, batch, seed, package).run()
+        for first in range(0, len(names), at_once):
+            batch = names[first : first + at_once]
+            results |= _Batch(graph, variants, batch, seed, package, least_s=least_s).run()
     return results
 
 
@@ -126,12 +138,15 @@ class _Batch:
         names: Sequence[str],
         seed: int,
         package: Path,
+        *,
+        least_s: float,
     ) -> None:
         self._graph = graph
         self._variants = variants
         self._names = names
         self._seed = seed
         self._package = package
+        self._least_s = least_s
         self._results = {
             node: {variant.name: Published() for variant in variants} for node in names
         }
@@ -159,10 +174,13 @@ class _Batch:
         return self._results
 
     def _start(self, variant: Variant, node: str) -> None:
+        space = f"/{variant.name}/{node}"
+        for name, value in load(node, self._package).params.items():
+            self._graph.call("setParam", f"{space}/{name.replace('~', f'{node}/')}", value)
         self._processes[node, variant.name] = self._graph.start(
             f"{variant.name}-{node}",
             [str(variant.programs[node])],
-            env={"ROS_NAMESPACE": f"/{variant.name}/{node}", **variant.env},
+            env={"ROS_NAMESPACE": space, **variant.env},
         )
 
     def _topics(self) -> tuple[dict[str, set[str]], dict[str, set[str]]]:
@@ -248,6 +266,7 @@ class _Batch:
         """Take messages until all variants said the same and nothing more, or nothing comes."""
         latest = time.monotonic()
         fed = latest
+        least = latest + self._least_s
         while True:
             for source, data in subscriber.poll(0.05):
                 if self._take(source, data):
@@ -258,6 +277,8 @@ class _Batch:
             if time.monotonic() - fed > LONGEST_S:
                 raise RunError(f"of {', '.join(self._names)} some publish without end")
             quiet = time.monotonic() - latest
+            if time.monotonic() < least:
+                continue
             if quiet > LATEST_S or (quiet > QUIET_S and not any(self._different())):
                 return
 

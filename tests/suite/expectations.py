@@ -7,24 +7,34 @@ An expectation says ``file``, ``line``, ``parameter``, ``type``, ``relation`` an
 plain, ``distance`` and ``transform``. Under ``constants`` stand hard-coded constants, which are
 judged where the node has that key; under ``limits`` what the analysis may or may not find. In a
 node that is ``imprecise`` both answers are right.
+
+Lists of Python nodes (examples/python_nodes) say ``column``, too, where a comparison begins; one
+that is found at another column is another one. ``params`` must be set before the node starts. What
+a ``timed`` node publishes depends on when things happen, too.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from pytpc.static_info import Comparison
 
 PACKAGE = Path(__file__).parents[2] / "examples/threshold_nodes"
+PYTHON_PACKAGE = PACKAGE.with_name("python_nodes")
+# The lists say which operator stands in the source; static information has six relations.
+_EQUALITIES = {"is": "==", "is not": "!=", "in": "==", "not in": "!="}
 
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """One comparison as the reader wrote it down. ``absent`` entries have a place alone."""
+    """One comparison as the reader wrote it down. ``absent`` entries have a place alone.
+
+    One that is absent and ``decides`` can be seen from outside, but compares no parameter's value.
+    """
 
     file: str
     line: int
@@ -35,6 +45,8 @@ class Entry:
     distance: int | None
     transform: dict[str, float] | str | None
     why: str
+    column: int | None = None
+    decides: bool = False
 
     def __str__(self) -> str:
         """One line for a person."""
@@ -54,6 +66,8 @@ class Expectation:
     absent: tuple[Entry, ...]
     imprecise: bool
     nan: bool
+    params: Mapping[str, Any] = field(default_factory=dict)
+    timed: bool = False
 
     @property
     def entries(self) -> tuple[Entry, ...]:
@@ -101,6 +115,8 @@ def load(node: str, package: Path = PACKAGE) -> Expectation:
         absent=_entries(data.get("absent", [])),
         imprecise=bool(data.get("imprecise", False)),
         nan=bool(data.get("nan", False)),
+        params=data.get("params", {}),
+        timed=bool(data.get("timed", False)),
     )
 
 
@@ -116,6 +132,8 @@ def _entries(items: Iterable[dict[str, Any]]) -> tuple[Entry, ...]:
             item.get("distance"),
             item.get("transform"),
             item.get("why", ""),
+            item.get("column"),
+            bool(item.get("decides", False)),
         )
         for item in items
     )
@@ -139,7 +157,7 @@ def judge(expectation: Expectation, found: Iterable[Comparison]) -> Verdict:
     total_found = len(wanted) - len(unmet)
     limits_found = 0
     for entry in expectation.limits:
-        near = next((one for one in left if _place(one) == (entry.file, entry.line)), None)
+        near = next((one for one in left if _is_at(entry, one)), None)
         if near is not None:
             left.remove(near)
             limits_found += 1
@@ -160,11 +178,13 @@ def differences(entry: Entry, found: Comparison) -> list[str]:
     wrong = []
     if _place(found) != (entry.file, entry.line):
         wrong.append(f"at {found.file}:{found.lineno}")
+    elif entry.column not in (None, found.column):
+        wrong.append(f"column {found.column}")
     if entry.type != "constant" and found.source != entry.parameter:
         wrong.append(f"parameter '{found.source}'")
     if found.type != entry.type:
         wrong.append(f"type {found.type}")
-    if found.relation != entry.relation:
+    if found.relation != _EQUALITIES.get(entry.relation or "", entry.relation):
         wrong.append(f"relation {found.relation}")
     if entry.distance is not None and found.distance != entry.distance:
         wrong.append(f"distance {found.distance}")
@@ -175,6 +195,10 @@ def differences(entry: Entry, found: Comparison) -> list[str]:
 
 def _place(found: Comparison) -> tuple[str, int]:
     return found.file, found.lineno
+
+
+def _is_at(entry: Entry, found: Comparison) -> bool:
+    return _place(found) == (entry.file, entry.line) and entry.column in (None, found.column)
 
 
 def _same_transform(wanted: dict[str, float] | str, found: Comparison) -> bool:
@@ -203,8 +227,6 @@ def _of_missing(entry: Entry, left: Iterable[Comparison]) -> str:
 
 
 def _of_false(found: Comparison, expectation: Expectation) -> str:
-    reasons = [
-        entry.why for entry in expectation.absent if _place(found) == (entry.file, entry.line)
-    ]
+    reasons = [entry.why for entry in expectation.absent if _is_at(entry, found)]
     text = f"{found.file}:{found.lineno} {found.type} '{found.source}' {found.relation}"
     return f"{text} ({reasons[0]})" if reasons else text

@@ -1,3 +1,6 @@
 """The nodes of the suite that the analysis does not get right, and why (analysis-limits.md)."""
 
 KNOWN: dict[str, str] = {}
+
+# The same for Python nodes.
+PYTHON_KNOWN: dict[str, str] = {}

@@ -1,16 +1,21 @@
-"""Prints what the analysis finds of what a reader finds, node by node: ``tools/suite-report``."""
+"""Prints what the analysis finds of what a reader finds, node by node: ``tools/suite-report``.
+
+With ``--python`` it is the suite of Python nodes, which need not be built.
+"""
 
 from __future__ import annotations
 
 import argparse
+import subprocess
+import sys
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from pytpc.errors import TpcError
+from pytpc.errors import RunError, TpcError
 from pytpc.static_info import StaticInfo
 from suite.build import build_suite
-from suite.expectations import Verdict, judge, load, nodes
+from suite.expectations import PYTHON_PACKAGE, Verdict, judge, load, nodes
 
 
 def judge_all(static: StaticInfo, package: Path | None = None) -> list[Verdict]:
@@ -52,9 +57,26 @@ def table(verdicts: Sequence[Verdict], *, only_wrong: bool = False) -> str:
     return "\n".join(lines)
 
 
+def analyse_python(folder: Path) -> StaticInfo:
+    """What ``pytpc analyse`` finds in the Python nodes, constants among it.
+
+    Raises:
+        RunError: the command fails.
+    """
+    output = folder / "static.json"
+    words = ["analyse", str(PYTHON_PACKAGE), "--constants", "-o", str(output)]
+    command = [sys.executable, "-m", "pytpc", *words]
+    ran = subprocess.run(command, capture_output=True, text=True, check=False)
+    if ran.returncode:
+        said = ran.stderr.strip().splitlines() or ["it says nothing"]
+        raise RunError(f"pytpc analyse ended with status {ran.returncode}: {said[-1]}")
+    return StaticInfo.load(output)
+
+
 def main() -> None:
     """Build the suite, or read what was built, and print the table."""
     parser = argparse.ArgumentParser(prog="suite-report", description=__doc__)
+    parser.add_argument("--python", action="store_true", help="the suite of Python nodes")
     parser.add_argument("--static", type=Path, help="static information of an earlier build")
     parser.add_argument("--build-type", default="RelWithDebInfo", help="CMAKE_BUILD_TYPE")
     parser.add_argument("--wrong", action="store_true", help="only the nodes that are not right")
@@ -64,11 +86,15 @@ def main() -> None:
             static = StaticInfo.load(arguments.static)
         else:
             with tempfile.TemporaryDirectory(prefix="tpc-suite-") as folder:
-                built = build_suite(Path(folder) / "ws", arguments.build_type)
-                static = built.result.static
+                where = Path(folder)
+                static = (
+                    analyse_python(where)
+                    if arguments.python
+                    else build_suite(where / "ws", arguments.build_type).result.static
+                )
     except TpcError as error:
         raise SystemExit(f"error: {error}") from error
-    verdicts = judge_all(static)
+    verdicts = judge_all(static, PYTHON_PACKAGE if arguments.python else None)
     print(table(verdicts, only_wrong=arguments.wrong))
     raise SystemExit(any(not verdict.is_right for verdict in verdicts))
 
