@@ -1,0 +1,196 @@
+"""The threshold predicate comparisons: what the two ways, forward and backward, agree on."""
+
+from __future__ import annotations
+
+import hashlib
+import uuid
+from dataclasses import dataclass, field
+from typing import Literal
+
+from pytpc.pynodes.constants import value_stored
+from pytpc.pynodes.follow import Compared, Fact, Follower
+from pytpc.pynodes.ir import Instr
+from pytpc.pynodes.reads import Read
+from pytpc.pynodes.slicing import Slice
+
+RELATIONS = {
+    "Lt": "<", "LtE": "<=", "Gt": ">", "GtE": ">=", "Eq": "==", "NotEq": "!=",
+    "Is": "==", "IsNot": "!=", "In": "==", "NotIn": "!=",
+}  # fmt: skip
+_TURNED = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
+_NAMESPACE = bytes.fromhex("6b0f7a522c9e4d619a378f15c3405ed8")
+
+
+@dataclass
+class Found:
+    """A comparison with one parameter: at one place of the source, for all its copies in blocks."""
+
+    at: Instr
+    operand: int
+    parameter: str
+    facts: list[Fact]
+    predicates: dict[Instr, None] = field(default_factory=dict)
+    distance: int = 0
+    predicate: Instr | None = None
+
+    @property
+    def place(self) -> Instr:
+        """The instruction whose first character is the comparison's."""
+        return self.at.args[0] if self.operand >= 0 else self.at
+
+    @property
+    def end(self) -> Instr:
+        """The instruction whose end is the comparison's."""
+        return self.at.args[1] if self.operand >= 0 else self.at
+
+    @property
+    def reads(self) -> list[Read]:
+        """The reads that give it its value."""
+        return list(dict.fromkeys(fact.read for fact in self.facts))
+
+    @property
+    def relation(self) -> str:
+        """The operator, with the threshold on the right-hand side."""
+        if self.operand < 0:
+            return "flag"
+        sign = RELATIONS[str(self.at.data)]
+        return _TURNED.get(sign, sign) if self.operand == 0 else sign
+
+    @property
+    def type(self) -> Literal["parameter", "flag", "derived"]:
+        """As in the schema."""
+        if not self.facts[0].how.plain:
+            return "derived"
+        return "flag" if self.operand < 0 else "parameter"
+
+
+def position(instr: Instr) -> tuple[int, int]:
+    """Line and column from 1; 0 where there is none."""
+    line = getattr(instr.node, "lineno", 0)
+    column = getattr(instr.node, "col_offset", -1)
+    return line, column + 1
+
+
+def end_position(instr: Instr) -> tuple[int, int]:
+    """Line and column behind the last character, from 1."""
+    return getattr(instr.node, "end_lineno", 0), getattr(instr.node, "end_col_offset", -1) + 1
+
+
+def key_of(parts: list[str]) -> uuid.UUID:
+    """The key of a comparison: a UUID of version 5, as the passes make it."""
+    digest = hashlib.sha1(_NAMESPACE + "\n".join(parts).encode(), usedforsecurity=False).digest()
+    return uuid.UUID(bytes=digest[:16], version=5)
+
+
+class Gatherer:
+    """Joins comparisons of one place, and drops those that are none of a parameter."""
+
+    def __init__(self, follower: Follower, found: Slice) -> None:
+        """Both ways are done."""
+        self.follower = follower
+        self.slice = found
+        self._kinds: dict[Instr, frozenset[str]] = {}
+        self._active: set[Instr] = set()
+
+    def run(self) -> tuple[list[Found], list[Found]]:
+        """The comparisons that decide something exposed, and the others."""
+        joined: dict[tuple[object, ...], Found] = {}
+        both = {each.at for each in self._exposed() if each.operand == 0} & {
+            each.at for each in self._exposed() if each.operand == 1
+        }
+        for compared in self.follower.compared.values():
+            if self._is_measured(compared, both):
+                continue
+            end = compared.at if compared.operand < 0 else compared.at.args[1]
+            start = compared.at if compared.operand < 0 else compared.at.args[0]
+            key = (
+                compared.at.function.module, position(start), end_position(end),
+                compared.operand, compared.fact.name,
+            )  # fmt: skip
+            if key not in joined:
+                joined[key] = Found(compared.at, compared.operand, compared.fact.name, [])
+            joined[key].facts.append(compared.fact)
+            joined[key].predicates.update(dict.fromkeys(compared.predicates))
+        exposed: list[Found] = []
+        others: list[Found] = []
+        for found in joined.values():
+            found.facts.sort(key=lambda fact: (not fact.how.plain, fact.how.inner is not None))
+            (exposed if self._nearest(found) else others).append(found)
+        return exposed, others
+
+    def _exposed(self) -> list[Compared]:
+        distance = self.slice.distance
+        return [
+            each
+            for each in self.follower.compared.values()
+            if any(predicate in distance for predicate in each.predicates)
+        ]
+
+    def _nearest(self, found: Found) -> bool:
+        distance = self.slice.distance
+        near = [predicate for predicate in found.predicates if predicate in distance]
+        if not near:
+            return False
+        found.predicate = min(near, key=lambda each: (distance[each], each.number))
+        found.distance = distance[found.predicate]
+        return True
+
+    def _is_measured(self, compared: Compared, both: set[Instr]) -> bool:
+        """True where the parameter is only one of the things that the operand may be.
+
+        What may be something measured is the threshold only where the other side is measured, too.
+        """
+        if compared.operand < 0:
+            return "other" in self.kinds(compared.at)
+        own = self.kinds(compared.at.args[compared.operand])
+        if "other" not in own:
+            return False
+        other = self.kinds(compared.at.args[1 - compared.operand])
+        return other <= {"const"} or (compared.at in both and "other" not in other)
+
+    def kinds(self, instr: Instr) -> frozenset[str]:
+        """What a value may come from: ``param``, ``const``, ``other``."""
+        if instr in self._kinds:
+            return self._kinds[instr]
+        if instr in self._active:
+            return frozenset()
+        if len(self._active) > 300:
+            return frozenset({"other"})
+        self._active.add(instr)
+        kinds = self._find_kinds(instr)
+        self._active.discard(instr)
+        if not self._active:
+            self._kinds[instr] = kinds
+        return kinds
+
+    def _find_kinds(self, instr: Instr) -> frozenset[str]:
+        if any(
+            fact.before is None or (fact.via is None and fact.before.name != fact.name)
+            for fact in self.follower.facts.get(instr, ())
+        ):
+            return frozenset({"param"})
+        match instr.op:
+            case "const" | "function" | "class" | "module" | "external":
+                return frozenset({"const"})
+            case "binary" | "unary" | "copy":
+                return self._union(instr.args)
+            case "call" if instr in self.follower.facts and not self._is_own(instr):
+                return self._union(instr.args[1:]) or frozenset({"param"})
+            case "build":
+                return self._union(instr.args) or frozenset({"const"})
+        if instr.op == "param" and instr.function in self.follower.flow.points.calls.registered:
+            return frozenset({"other"})
+        sources = list(self.follower.flow.sources(instr))
+        if not sources:
+            known = instr in self.follower.facts
+            return self._union(instr.args[:1]) if known else frozenset({"other"})
+        return self._union(value_stored(each) or each for each in sources)
+
+    def _is_own(self, instr: Instr) -> bool:
+        return instr in self.follower.flow.points.calls.callees
+
+    def _union(self, values: object) -> frozenset[str]:
+        kinds: set[str] = set()
+        for value in values:  # type: ignore[attr-defined]
+            kinds |= self.kinds(value)
+        return frozenset(kinds)

@@ -1,0 +1,350 @@
+"""Which objects a value may be, and what a call calls: a points-to analysis with fields.
+
+L. Andersen, "Program Analysis and Specialization for the C Programming Language", 1994, on demand
+of the call graph: constraints are added as functions and classes come to calls. It does not mind
+the order of statements (``reaching`` does), and tells objects of one class apart by where they are
+made.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Hashable, Iterable
+
+from pytpc.pynodes.calls import Calls
+from pytpc.pynodes.ir import ANY, ClassInfo, Function, Instr, Module, Variable
+from pytpc.pynodes.objects import EVERY, SOME, Field, Heap, Obj, element
+from pytpc.pynodes.program import Program
+from pytpc.pynodes.rules_file import Rules
+
+Node = Hashable
+"""An Instr, a Variable, or a Field."""
+
+
+class PointsTo:
+    """The objects of each value, and the ways on which values are copied.
+
+    ``succ`` and ``pred``: from an Instr, Variable or Field to those that may have its value.
+    ``writers``: the instructions that write a field. ``calls``: who calls whom.
+    """
+
+    def __init__(self, program: Program, rules: Rules) -> None:
+        """Solve all constraints of ``program``."""
+        self.program = program
+        self.rules = rules
+        self.heap = Heap()
+        self.succ: dict[Node, dict[Node, None]] = {}
+        self.pred: dict[Node, dict[Node, None]] = {}
+        self.writers: dict[Field, dict[Instr, None]] = {}
+        self._objects: dict[Node, dict[Obj, None]] = {}
+        self._waiting: deque[tuple[Node, list[Obj]]] = deque()
+        self._when: dict[Node, list[Callable[[Obj], None]]] = {}
+        self._frozen: dict[ClassInfo, list[ClassInfo | str]] = {}
+        self.bases: dict[ClassInfo, dict[Obj, None]] = {}
+        self.class_names: dict[ClassInfo, dict[str, None]] = {}
+        self.class_instr: dict[ClassInfo, Instr] = {}
+        self.instances: dict[ClassInfo, dict[Obj, None]] = {}
+        self.calls = Calls(self)
+        self._late: list[Callable[[], None]] | None = []
+        for instr in program.instructions():
+            self._constrain(instr)
+        self._solve()
+        late, self._late = self._late, None
+        for action in late or ():
+            action()
+        self._solve()
+        self._complete()
+
+    # What is asked
+
+    def of(self, node: Node) -> Iterable[Obj]:
+        """The objects that a value may be, in a fixed order."""
+        return self._objects.get(node, {}).keys()
+
+    def mro(self, info: ClassInfo) -> list[ClassInfo | str]:
+        """The classes in which attributes are looked up, those outside by their dotted names."""
+        if info not in self._frozen:
+            self._frozen[info] = [info]
+            order: dict[ClassInfo | str, None] = {info: None}
+            for base in self.bases.get(info, ()):
+                if base.class_info is not None:
+                    order.update(dict.fromkeys(self.mro(base.class_info)))
+                elif base.path:
+                    order[self.rules.class_of(base.path)] = None
+            self._frozen[info] = list(order)
+        return self._frozen[info]
+
+    def lookup(
+        self, info: ClassInfo, name: str, after: ClassInfo | None = None
+    ) -> ClassInfo | None:
+        """The class of the sources whose body binds ``name``, behind ``after`` if given."""
+        order = self.mro(info)
+        if after in order:
+            order = order[order.index(after) + 1 :]
+        for each in order:
+            if isinstance(each, ClassInfo) and name in self.class_names.get(each, ()):
+                return each
+        return None
+
+    # Constraints
+
+    def add(self, node: Node, found: Iterable[Obj]) -> None:
+        """``node`` may be each of ``found``."""
+        known = self._objects.setdefault(node, {})
+        new = [each for each in found if each not in known]
+        if new:
+            known.update(dict.fromkeys(new))
+            self._waiting.append((node, new))
+
+    def copy(self, source: Node, to: Node) -> None:
+        """``to`` may be what ``source`` is."""
+        known = self.succ.setdefault(source, {})
+        if source is to or to in known:
+            return
+        known[to] = None
+        self.pred.setdefault(to, {})[source] = None
+        if source in self._objects:
+            self.add(to, list(self._objects[source]))
+
+    def when(self, node: Node, action: Callable[[Obj], None]) -> None:
+        """Call ``action`` for each object that ``node`` may be, now and later."""
+        self._when.setdefault(node, []).append(action)
+        for found in list(self._objects.get(node, {})):
+            action(found)
+
+    def write(self, owner: Obj, slot: str, value: Node, writer: Instr) -> None:
+        """``writer`` stores ``value``."""
+        target = self.slot(owner, slot)
+        self.writers.setdefault(target, {})[writer] = None
+        self.copy(value, target)
+
+    def slot(self, owner: Obj, name: str) -> Field:
+        """The field, known from now on."""
+        target = (owner, name)
+        if name not in owner.slots:
+            owner.slots[name] = None
+            if name.startswith("[") and name != EVERY:
+                self.copy(target, self.slot(owner, EVERY))
+        return target
+
+    def read_element(self, owner: Obj, key: object, to: Node) -> None:
+        """``to`` may be an element of ``owner``."""
+        if key is ANY:
+            self.copy(self.slot(owner, EVERY), to)
+            return
+        self.copy(self.slot(owner, element(key)), to)
+        self.copy(self.slot(owner, SOME), to)
+
+    def _solve(self) -> None:
+        while self._waiting:
+            node, new = self._waiting.popleft()
+            for to in list(self.succ.get(node, ())):
+                self.add(to, new)
+            for action in list(self._when.get(node, ())):
+                for found in new:
+                    action(found)
+
+    def _complete(self) -> None:
+        """Make an object of each class that nobody is seen to make."""
+        for module in self.program.modules:
+            for info in module.classes:
+                if not self.instances.get(info):
+                    self.instantiate(info, None)
+        self._solve()
+
+    def instantiate(self, info: ClassInfo, site: Instr | None) -> Obj:
+        """An object of a class; all its methods may be called on it."""
+        made = self.heap.instance(info, site)
+        known = self.instances.setdefault(info, {})
+        if made in known:
+            return made
+        known[made] = None
+        for each in self.mro(info):
+            if not isinstance(each, ClassInfo):
+                continue
+            own = self.heap.class_(each)
+            for name in self.class_names.get(each, ()):
+                self.when((own, name), lambda found: self._own_method(found, made))
+        return made
+
+    def _own_method(self, found: Obj, owner: Obj) -> None:
+        function = found.function if found.kind == "function" else None
+        if function is None or "staticmethod" in function.decorators:
+            return
+        if function.owner is not None and function.param_instrs:
+            first = owner
+            if "classmethod" in function.decorators and owner.class_info is not None:
+                first = self.heap.class_(owner.class_info)
+            self.add(function.param_instrs[0], [first])
+
+    def _constrain(self, instr: Instr) -> None:
+        handle = getattr(self, f"_on_{instr.op}", None)
+        if handle is not None:
+            handle(instr)
+
+    def _on_external(self, instr: Instr) -> None:
+        self.add(instr, [self.heap.external(str(instr.data))])
+
+    def _on_module(self, instr: Instr) -> None:
+        assert isinstance(instr.data, Module)
+        self.add(instr, [self.heap.module(instr.data)])
+
+    def _on_load(self, instr: Instr) -> None:
+        self.copy(instr.data, instr)
+
+    def _on_store(self, instr: Instr) -> None:
+        self.copy(instr.args[0], instr.data)
+
+    def _on_copy(self, instr: Instr) -> None:
+        self.copy(instr.args[0], instr)
+
+    def _on_function(self, instr: Instr) -> None:
+        assert isinstance(instr.data, Function)
+        self.add(instr, [self.heap.function(instr.data)])
+        for place, default in instr.data.defaults.items():
+            if place < len(instr.data.param_instrs):
+                self.copy(instr.args[default], instr.data.param_instrs[place])
+
+    def _on_class(self, instr: Instr) -> None:
+        info = instr.data
+        assert isinstance(info, ClassInfo)
+        self.class_instr[info] = instr
+        self.add(instr, [self.heap.class_(info)])
+        for base in instr.args:
+            self.when(base, lambda found: self.bases.setdefault(info, {}).update({found: None}))
+
+    def _on_setattr(self, instr: Instr) -> None:
+        owner, value = instr.args
+        name = str(instr.data)
+        if isinstance(owner.data, ClassInfo):
+            self.class_names.setdefault(owner.data, {})[name] = None
+        self.when(owner, lambda found: self._store_attribute(found, name, value, instr))
+
+    def _store_attribute(self, owner: Obj, name: str, value: Instr, instr: Instr) -> None:
+        if owner.kind == "module" and isinstance(owner.ref, Module) and owner.ref.body:
+            variable = owner.ref.body.variables.setdefault(name, Variable(name, owner.ref.body))
+            variable.shared = True
+            self.copy(value, variable)
+            self.writers.setdefault((owner, name), {})[instr] = None
+            return
+        if owner.kind == "super" and owner.parent is not None:
+            owner = owner.parent
+        info = owner.class_info if owner.kind == "instance" else None
+        setter = self.lookup(info, f"{name}.setter") if info is not None else None
+        if setter is not None:
+            field = (self.heap.class_(setter), f"{name}.setter")
+            self.when(field, lambda found: self.calls.bound(instr, found, owner, [(None, value)]))
+            return
+        self.write(owner, name, value, instr)
+
+    def _on_attr(self, instr: Instr) -> None:
+        name = str(instr.data)
+        self.when(instr.args[0], lambda found: self._load_attribute(found, name, instr))
+
+    def _load_attribute(self, owner: Obj, name: str, instr: Instr) -> None:
+        if owner.kind == "module" and isinstance(owner.ref, Module):
+            self._module_attribute(owner.ref, name, instr)
+        elif owner.kind == "external":
+            self.add(instr, [self.heap.external(f"{owner.path}.{name}")])
+        elif owner.kind in ("made", "part", "container"):
+            self.copy(self.slot(owner, name), instr)
+            path = self.rules.class_of(owner.path)
+            self.add(instr, [self.heap.part(owner, name, path)])
+        elif owner.kind == "class" and owner.class_info is not None:
+            self.later(lambda: self._class_attribute(owner, name, instr))
+        elif owner.kind == "instance":
+            self.copy(self.slot(owner, name), instr)
+            self._looked_up(owner, owner, None, name, instr)
+        elif owner.kind == "super" and owner.parent is not None:
+            self._looked_up(owner.parent, owner.parent, owner.class_info, name, instr)
+
+    def later(self, action: Callable[[], None]) -> None:
+        """Call ``action`` once the bases of all classes are known."""
+        if self._late is not None:
+            self._late.append(action)
+        else:
+            action()
+
+    def _module_attribute(self, module: Module, name: str, instr: Instr) -> None:
+        if module.body is not None:
+            variable = module.body.variables.setdefault(name, Variable(name, module.body))
+            variable.shared = True
+            self.copy(variable, instr)
+
+    def _class_attribute(self, owner: Obj, name: str, instr: Instr) -> None:
+        info = owner.class_info
+        assert info is not None
+        self.copy(self.slot(owner, name), instr)
+        found = self.lookup(info, name)
+        if found is not None:
+            field = self.slot(self.heap.class_(found), name)
+            self.copy(field, instr)
+            self.when(field, lambda each: self._class_method(each, owner, instr))
+        self._outside(owner, name, instr, info)
+
+    def _class_method(self, found: Obj, owner: Obj, instr: Instr) -> None:
+        function = found.function if found.kind == "function" else None
+        if function is not None and "classmethod" in function.decorators:
+            self.add(instr, [self.heap.method(function, owner)])
+
+    def _looked_up(
+        self, owner: Obj, real: Obj, after: ClassInfo | None, name: str, instr: Instr
+    ) -> None:
+        info = real.class_info
+        if info is None:
+            return
+        found = self.lookup(info, name, after)
+        if found is None:
+            self._outside(owner, name, instr, info)
+            return
+        field = self.slot(self.heap.class_(found), name)
+        self.when(field, lambda each: self._bind(each, owner, field, instr))
+
+    def _bind(self, found: Obj, owner: Obj, field: Field, instr: Instr) -> None:
+        """An attribute of a class as one of its object."""
+        function = found.function if found.kind == "function" else None
+        if function is None or "staticmethod" in function.decorators:
+            self.add(instr, [found])
+        elif "classmethod" in function.decorators and owner.class_info is not None:
+            self.add(instr, [self.heap.method(function, self.heap.class_(owner.class_info))])
+        elif {"property", "cached_property", "getter"} & set(function.decorators):
+            self.calls.bound(instr, found, owner, [])
+        else:
+            self.add(instr, [self.heap.method(function, owner)])
+
+    def _outside(self, owner: Obj, name: str, instr: Instr, info: ClassInfo) -> None:
+        for base in self.mro(info):
+            if isinstance(base, str):
+                self.add(instr, [self.heap.part(owner, name, base)])
+
+    def _on_setitem(self, instr: Instr) -> None:
+        owner, key, value = instr.args
+        slot = element(key.data) if key.op == "const" and key.data is not ANY else SOME
+        self.when(owner, lambda found: self.write(found, slot, value, instr))
+
+    def _on_item(self, instr: Instr) -> None:
+        owner, key = instr.args
+        known = key.data if key.op == "const" else ANY
+        if isinstance(known, int) and not isinstance(known, bool) and known < 0:
+            known = ANY
+        self.when(owner, lambda found: self.read_element(found, known, instr))
+        if key.op == "build" and key.data == "slice":
+            self.copy(owner, instr)
+
+    def _on_next(self, instr: Instr) -> None:
+        source = instr.args[0].args[0]
+        self.when(source, lambda found: self.read_element(found, ANY, instr))
+
+    def _on_build(self, instr: Instr) -> None:
+        if instr.data in ("text", "slice"):
+            return
+        if instr.data == "exception":
+            self.add(instr, [self.heap.made("<exception>", instr)])
+            return
+        made = self.heap.container(str(instr.data), instr)
+        self.add(instr, [made])
+        for place, value in enumerate(instr.args):
+            self.write(made, element(place), value, instr)
+
+    def _on_call(self, instr: Instr) -> None:
+        self.when(instr.args[0], lambda found: self.later(lambda: self.calls.call(instr, found)))

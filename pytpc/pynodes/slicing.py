@@ -1,0 +1,116 @@
+"""Backward: from the exposing statements over data and control dependence, by rounds.
+
+The thesis's algorithm 3 (SPEC 3). Round 1 holds the exposing statements. What an expression
+computes in passing belongs to the round of its statement; stores, arguments, results and branches
+are a round each.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from pytpc.pynodes.control import control_dependence
+from pytpc.pynodes.flow import Flow
+from pytpc.pynodes.ir import Block, Function, Instr
+from pytpc.pynodes.reads import Exposed
+
+
+@dataclass
+class Slice:
+    """``distance``: branch -> distance. ``nearest``: instruction -> the exposing statements.
+
+    ``because``: instruction -> the one that brought it into the slice, and how (``control``,
+    ``data``, ``call``).
+    """
+
+    distance: dict[Instr, int] = field(default_factory=dict)
+    nearest: dict[Instr, Exposed] = field(default_factory=dict)
+    because: dict[Instr, tuple[Instr, str] | None] = field(default_factory=dict)
+
+
+class Slicer:
+    """Makes the slice of a program."""
+
+    def __init__(self, flow: Flow) -> None:
+        """Nothing is in the slice yet."""
+        self.flow = flow
+        self.slice = Slice()
+        self._control: dict[Function, dict[Block, list[Block]]] = {}
+
+    def run(self, exposed: list[Exposed]) -> Slice:
+        """The slice from all of ``exposed``."""
+        result = self.slice
+        current: list[Instr] = []
+        for each in exposed:
+            if each.instr not in result.nearest:
+                result.nearest[each.instr] = each
+                result.because[each.instr] = None
+                current.append(each.instr)
+        number = 1
+        starting = True
+        while current:
+            further: list[Instr] = []
+            for instr in current:
+                self._controlled(instr, number, further)
+                self._used(instr, further, starting)
+            current, number, starting = further, number + 1, False
+        return result
+
+    def controlling(self, instr: Instr) -> list[Instr]:
+        """The branches that decide in its function whether ``instr`` runs."""
+        function = instr.function
+        if function not in self._control:
+            self._control[function] = control_dependence(function)
+        blocks = self._control[function].get(instr.block, [])
+        return [block.instrs[-1] for block in blocks if block.instrs]
+
+    def _enter(self, instr: Instr, after: Instr, how: str, further: list[Instr]) -> None:
+        if instr in self.slice.because:
+            return
+        self.slice.because[instr] = (after, how)
+        self.slice.nearest[instr] = self.slice.nearest[after]
+        further.append(instr)
+
+    def _controlled(self, instr: Instr, number: int, further: list[Instr]) -> None:
+        branches = self.controlling(instr)
+        for branch in branches:
+            if branch.op == "branch":
+                self.slice.distance.setdefault(branch, number)
+            self._enter(branch, instr, "control", further)
+        if branches:
+            return
+        calls = self.flow.points.calls
+        for table in (calls.callers, calls.registered):
+            for call in table.get(instr.function, ()):
+                self._enter(call, instr, "call", further)
+
+    def _used(self, instr: Instr, further: list[Instr], starting: bool) -> None:
+        """What defines the values that ``instr`` uses."""
+        seen = {instr}
+        waiting = [instr]
+        while waiting:
+            here = waiting.pop()
+            if here is not instr and here.op == "call" and self._is_own(here):
+                # Its arguments matter where the function uses them.
+                self._enter(here, instr, "data", further)
+            for source in self.flow.sources(here):
+                self._enter(source, instr, "data", further)
+            if starting or here.op in ("call", "return", "iter"):
+                for arg in here.args:
+                    for writer in self.flow.contents(arg):
+                        self._enter(writer, instr, "data", further)
+            for arg in self._operands(here):
+                if arg not in seen:
+                    seen.add(arg)
+                    waiting.append(arg)
+
+    def _is_own(self, call: Instr) -> bool:
+        return call in self.flow.points.calls.callees
+
+    def _operands(self, instr: Instr) -> tuple[Instr, ...]:
+        """The operands whose values make the instruction's."""
+        if instr.op == "call" and self._is_own(instr):
+            return instr.args[:1]
+        if instr.op in ("function", "class"):
+            return ()
+        return instr.args
