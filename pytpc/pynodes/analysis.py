@@ -24,6 +24,7 @@ from pytpc.pynodes.ir import Instr
 from pytpc.pynodes.packages import Entry
 from pytpc.pynodes.pointsto import PointsTo
 from pytpc.pynodes.program import Loader, Program
+from pytpc.pynodes.raising import add_raising_calls
 from pytpc.pynodes.reads import Exposed, Read, find_exposing, find_reads
 from pytpc.pynodes.rules_file import Rules
 from pytpc.pynodes.slicing import Slice, Slicer
@@ -48,14 +49,16 @@ class Analysed:
 
 def analyse(program: Program, rules: Rules) -> Analysed:
     """Run all passes on a program."""
-    flow = Flow(PointsTo(program, rules))
+    points = PointsTo(program, rules)
+    raising = add_raising_calls(points)
+    flow = Flow(points)
     constants = Constants(flow)
     reads = find_reads(flow, constants, rules)
     exposed = find_exposing(flow, constants, rules)
     follower = Follower(flow, constants, rules)
     follower.run(reads)
     follower.decide()
-    found_slice = Slicer(flow).run(exposed)
+    found_slice = Slicer(flow, raising).run(exposed)
     found, others = Gatherer(follower, found_slice).run()
     return Analysed(program, rules, flow, reads, exposed, follower, found_slice, found, others)
 

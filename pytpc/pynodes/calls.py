@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from pytpc.pynodes.ir import ANY, ClassInfo, Function, Instr, Shape
@@ -21,6 +22,7 @@ _COPYING = {
     f"builtins.{name}"
     for name in ("list", "tuple", "set", "sorted", "reversed", "iter", "dict", "frozenset")
 } | {"copy.copy", "copy.deepcopy", "collections.deque", "collections.OrderedDict"}
+_CHOOSING = {f"builtins.{name}" for name in ("any", "all", "sum", "min", "max", "next")}
 _RUNNING = {"target", "args", "kwargs", "callback_args", "function"}
 
 
@@ -41,6 +43,8 @@ class Calls:
         self.outside: dict[Instr, dict[tuple[str, Obj | None], None]] = {}
         self.registered: dict[Function, dict[Instr, None]] = {}
         self.callbacks: dict[Instr, dict[Function, None]] = {}
+        self._given: dict[tuple[Instr, Instr], list[Instr]] = {}
+        self._awaiting: dict[tuple[Instr, Instr], list[Callable[[Instr], None]]] = {}
         self._done: set[tuple[Instr, Obj]] = set()
 
     @staticmethod
@@ -107,6 +111,19 @@ class Calls:
         if self.flow.lookup(info, "__post_init__") is not None:
             self._call_method(instr, made, "__post_init__", [])
 
+    def when_given(self, site: Instr, param: Instr, action: Callable[[Instr], None]) -> None:
+        """Call ``action`` for each value that the call ``site`` gives to ``param``."""
+        self._awaiting.setdefault((site, param), []).append(action)
+        for value in list(self._given.get((site, param), ())):
+            action(value)
+
+    def _give(self, site: Instr, param: Instr, value: Instr) -> None:
+        known = self._given.setdefault((site, param), [])
+        if value not in known:
+            known.append(value)
+            for action in list(self._awaiting.get((site, param), ())):
+                action(value)
+
     # Calls of functions of the sources
 
     def _link(
@@ -146,6 +163,7 @@ class Calls:
         for keyword, value in given:
             if keyword is None and place < last:
                 flow.copy(value, params[place])
+                self._give(instr, params[place], value)
                 place += 1
             elif keyword is None:
                 self._collect(function.vararg, function, value, instr, SOME)
@@ -157,8 +175,18 @@ class Calls:
                 self._unpack_names(value, function, first)
             elif keyword in names:
                 flow.copy(value, params[names[keyword]])
+                self._give(instr, params[names[keyword]], value)
             else:
                 self._collect(function.kwarg, function, value, instr, f"[{keyword!r}]")
+        unpacked = any(keyword in ("*", "**") for keyword, _ in given)
+        for number, param in enumerate(params):
+            if (instr, param) in self._given or number < first:
+                continue
+            # Its default; or what is unpacked, which all calls share.
+            if unpacked or instr.op != "call":
+                self._give(instr, param, param)
+            for default in flow.defaults.get(param, ()):
+                self._give(instr, param, default)
 
     def _collect(
         self, place: int | None, function: Function, value: Instr, instr: Instr, slot: str
@@ -213,6 +241,9 @@ class Calls:
             return
         elif path in _COPYING:
             self._copied(instr, given)
+        elif path in _CHOOSING:
+            for _, value in given:
+                flow.when(value, lambda found: flow.read_element(found, ANY, instr))
         elif name == "__enter__" and owner is not None:
             flow.add(instr, [owner])
         elif owner is not None:

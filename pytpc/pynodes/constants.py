@@ -43,15 +43,6 @@ class Unknown:
 UNKNOWN = Unknown()
 
 
-def value_stored(writer: Instr) -> Instr | None:
-    """The value that a store of any kind writes, where it writes one."""
-    if writer.op == "store":
-        return writer.args[0]
-    if writer.op in ("setattr", "setitem"):
-        return writer.args[-1]
-    return None
-
-
 class Constants:
     """Folds constants over variables, attributes, arguments and results."""
 
@@ -168,23 +159,9 @@ class Constants:
         found: list[object] = []
         if instr.op == "param" and instr.function in self.flow.points.calls.registered:
             found.append(UNKNOWN)
-        for source in self.flow.sources(instr):
-            if source.op in ("store", "setattr", "setitem"):
-                stored = value_stored(source)
-                found += self.values(stored) if stored is not None else [UNKNOWN]
-            elif source.op == "build":
-                found += self._elements(source, instr)
-            else:
-                found += self.values(source)
+        for origin in self.flow.origins(instr):
+            found += self.values(origin)
         return found or [UNKNOWN]
-
-    def _elements(self, built: Instr, reader: Instr) -> list[object]:
-        """The elements of a container that ``reader`` may get."""
-        key = reader.args[1] if reader.op == "item" else None
-        place = key.data if key is not None and key.op == "const" else None
-        if isinstance(place, int) and 0 <= place < len(built.args):
-            return list(self.values(built.args[place]))
-        return [each for part in built.args for each in self.values(part)]
 
 
 def _shown(value: object) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from pytpc.pynodes.effects import effects_of_calls
-from pytpc.pynodes.ir import Instr, Variable
+from pytpc.pynodes.ir import Block, Instr, Variable
 from pytpc.pynodes.objects import Field, Obj
 from pytpc.pynodes.pointsto import PointsTo
 from pytpc.pynodes.reaching import Reaching, reaching_definitions
@@ -17,8 +17,6 @@ class Flow:
     def __init__(self, points: PointsTo) -> None:
         """Work out which loads see which stores."""
         self.points = points
-        effects = effects_of_calls(points)
-        self.reaching: Reaching = reaching_definitions(points.program.functions, effects)
         self.users: dict[Instr, list[Instr]] = {}
         self.stores_of: dict[Variable, list[Instr]] = {}
         self.loads_of: dict[Variable, list[Instr]] = {}
@@ -29,9 +27,24 @@ class Flow:
             if isinstance(instr.data, Variable) and instr.op in ("store", "load"):
                 table = self.stores_of if instr.op == "store" else self.loads_of
                 table.setdefault(instr.data, []).append(instr)
+        self.reaching: Reaching = reaching_definitions(
+            points.program.functions, effects_of_calls(points), self._escaping()
+        )
         for load, stores in self.reaching.stores.items():
             for store in stores:
                 self._seen_by.setdefault(store, []).append(load)
+
+    def _escaping(self) -> set[Instr]:
+        """Loads whose value is used for more than an attribute: others may look at the object."""
+        return {
+            load
+            for loads in self.loads_of.values()
+            for load in loads
+            if any(
+                user.op not in ("attr", "setattr") or user.args[0] is not load
+                for user in self.users.get(load, ())
+            )
+        }
 
     # Forward
 
@@ -138,6 +151,32 @@ class Flow:
                     if user.op == "setattr" and user.args[1] is before:
                         yield user
 
+    def origins(self, instr: Instr) -> Iterator[Instr]:
+        """The values that come to ``instr`` by one copy."""
+        if instr.op == "load":
+            for source in self.sources(instr):
+                yield source.args[-1] if source.op in ("store", "setattr") else source
+            return
+        for store in self.reaching.stores.get(instr, ()):
+            yield store.args[-1]
+        if instr in self.reaching.stores and instr not in self.reaching.open:
+            return
+        seen: set[object] = {instr}
+        waiting: list[object] = [instr]
+        while waiting:
+            here = waiting.pop()
+            for before in self.points.pred.get(here, ()):
+                if isinstance(before, Instr):
+                    hidden = isinstance(here, tuple) and self._open_writer(here, before) is False
+                    if not hidden:
+                        yield before
+                elif isinstance(before, Variable):
+                    for store in self._visible(before):
+                        yield store.args[-1]
+                elif before not in seen:
+                    seen.add(before)
+                    waiting.append(before)
+
     def writers(self, field: object) -> Iterator[Instr]:
         """What writes a field, and the fields that are copied into it."""
         seen = {field}
@@ -152,10 +191,42 @@ class Flow:
                     seen.add(before)
                     waiting.append(before)
 
-    def contents(self, instr: Instr) -> Iterator[Instr]:
-        """What writes the objects that are reachable from a value: messages, lists, dicts."""
+    def objects(self, instr: Instr) -> list[Obj]:
+        """The objects that a value may be, of a local variable those that are stored before."""
+        if instr.op == "load" and instr in self.reaching.stores:
+            closed = instr not in self.reaching.open or not getattr(instr.data, "shared", True)
+            stores = self.reaching.stores[instr]
+            if closed:
+                return list(
+                    dict.fromkeys(
+                        found for each in stores for found in self.points.of(each.args[0])
+                    )
+                )
+        return list(self.points.of(instr))
+
+    def _before(self, writer: Instr, owner: Obj, user: Instr) -> bool:
+        """False where ``writer`` is known to write another object than ``user`` uses, or later."""
+        if writer.op in ("setattr", "setitem"):
+            named = writer.args[0]
+            if owner in self.points.of(named) and owner not in self.objects(named):
+                return False
+        function = user.function
+        here = owner.site is not None and owner.site.function is function
+        if not here or writer.function is not function or owner.kind == "instance":
+            return True
+        if writer.block is user.block and writer.number < user.number:
+            return True
+        return user.block in _following(writer.block)
+
+    def contents(self, instr: Instr, user: Instr) -> Iterator[Instr]:
+        """What writes the objects that are reachable from a value: messages, lists, dicts.
+
+        Args:
+            instr: the value.
+            user: the instruction for which it is asked.
+        """
         seen: dict[Obj, None] = {}
-        waiting = list(self.points.of(instr))
+        waiting = self.objects(instr)
         while waiting:
             found = waiting.pop()
             if found in seen or found.kind in ("class", "function", "method", "module", "external"):
@@ -163,5 +234,20 @@ class Flow:
             seen[found] = None
             waiting += found.parts.values()
             for slot in found.slots:
-                yield from self.writers((found, slot))
+                for writer in self.writers((found, slot)):
+                    if self._before(writer, found, user):
+                        yield writer
                 waiting += self.points.of((found, slot))
+
+
+def _following(block: Block) -> set[Block]:
+    """The blocks that may run after ``block``."""
+    reached: set[Block] = set()
+    waiting = [*block.successors, *(handler.block for handler in block.handlers)]
+    while waiting:
+        after = waiting.pop()
+        if after not in reached:
+            reached.add(after)
+            waiting += after.successors
+            waiting += [handler.block for handler in after.handlers]
+    return reached

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import hashlib
 import uuid
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Literal
 
-from pytpc.pynodes.constants import value_stored
 from pytpc.pynodes.follow import Compared, Fact, Follower
 from pytpc.pynodes.ir import Instr
 from pytpc.pynodes.reads import Read
@@ -180,17 +180,17 @@ class Gatherer:
                 return self._union(instr.args) or frozenset({"const"})
         if instr.op == "param" and instr.function in self.follower.flow.points.calls.registered:
             return frozenset({"other"})
-        sources = list(self.follower.flow.sources(instr))
-        if not sources:
+        origins = list(self.follower.flow.origins(instr))
+        if not origins:
             known = instr in self.follower.facts
             return self._union(instr.args[:1]) if known else frozenset({"other"})
-        return self._union(value_stored(each) or each for each in sources)
+        return self._union(origins)
 
     def _is_own(self, instr: Instr) -> bool:
         return instr in self.follower.flow.points.calls.callees
 
-    def _union(self, values: object) -> frozenset[str]:
+    def _union(self, values: Iterable[Instr]) -> frozenset[str]:
         kinds: set[str] = set()
-        for value in values:  # type: ignore[attr-defined]
+        for value in values:
             kinds |= self.kinds(value)
         return frozenset(kinds)

@@ -56,9 +56,10 @@ class Instr:
     more      args: the ``iter``; true while there is a next one
     match     what of the pattern is tested, without a value; args: subject
     branch    None; args: the condition. Last of its block: successors are true, false
+    dispatch  at the end of a ``finally``; args: how it was come to. Last of its block
     return    args: value
     yield     args: value
-    raise     args: what there is
+    raise     name of the class, where one stands there; args: what there is
     copy      args: a value that is handed on (``await``, a star)
     ========  =======================================================================
     """

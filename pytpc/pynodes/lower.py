@@ -1,17 +1,18 @@
 """From the syntax tree of a module to instructions: functions, statements, control flow.
 
-A ``finally`` is lowered once for each way out of its ``try``, as CPython's compiler does. Calls are
-not taken to raise here: ``raising`` adds what calls of functions that do raise lead to.
+A ``finally`` is lowered once: a variable of its own says how it was come to, and a dispatch at its
+end goes on accordingly. Calls are not taken to raise here: ``raising`` adds where those lead to
+that do.
 """
 
 from __future__ import annotations
 
 import ast
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from pytpc.pynodes.exceptions import ALL, names_taken, taken_by
-from pytpc.pynodes.ir import Block, ClassInfo, Function, Handler, Instr, Module, Shape
+from pytpc.pynodes.ir import Block, ClassInfo, Function, Handler, Instr, Module, Shape, Variable
 from pytpc.pynodes.lower_expressions import ExpressionLowering, Resolver
 from pytpc.pynodes.lower_match import lower_match
 from pytpc.pynodes.scopes import Names, Scope, names_of
@@ -28,8 +29,12 @@ class _Loop:
 
 @dataclass
 class _Finally:
-    body: Sequence[ast.stmt]
+    """``exits``: where the dispatch at its end goes on, by the number in ``way``."""
+
+    entry: Block
+    way: Variable
     handlers: tuple[Handler, ...]
+    exits: list[Block] = field(default_factory=list)
 
 
 def lower_module(module: Module, resolve: Resolver, numbers: list[int]) -> None:
@@ -96,8 +101,8 @@ class Lowering(ExpressionLowering):
     def _do_Expr(self, node: ast.Expr) -> None:
         value = self.value(node.value)
         if isinstance(node.value, ast.Call) and ast.unparse(node.value.func) in _ENDING:
+            self.emit("raise", node, value, data="SystemExit")
             self._leave_by_raise("SystemExit")
-        del value
 
     def _do_Assign(self, node: ast.Assign) -> None:
         value = self.value(node.value)
@@ -188,15 +193,15 @@ class Lowering(ExpressionLowering):
         after, failed = self.new_block(), self.new_block()
         self.condition(node.test, after, failed)
         self.block = failed
-        self.emit("raise", node)
+        self.emit("raise", node, data="AssertionError")
         self._leave_by_raise("AssertionError")
         self.block = after
 
     def _do_Raise(self, node: ast.Raise) -> None:
         values = [self.value(part) for part in (node.exc, node.cause) if part]
-        self.emit("raise", node, *values)
         made = node.exc.func if isinstance(node.exc, ast.Call) else node.exc
         name = ast.unparse(made).rsplit(".", 1)[-1] if made is not None else None
+        self.emit("raise", node, *values, data=name)
         self._leave_by_raise(name)
 
     def _leave_by_raise(self, name: str | None) -> None:
@@ -220,12 +225,17 @@ class Lowering(ExpressionLowering):
         for index in range(len(frames) - 1, depth - 1, -1):
             frame = frames[index]
             if isinstance(frame, _Finally):
-                self._frames, self.handlers = frames[:index], frame.handlers
-                after = self.new_block()
-                self.jump(after)
-                self.block = after
-                self.statements(frame.body)
-        self._frames, self.handlers = frames, handlers
+                self.handlers = frame.handlers
+                self._through(frame)
+        self.handlers = handlers
+
+    def _through(self, frame: _Finally) -> None:
+        """Go through a ``finally``, and on in a new block behind it."""
+        number = self.emit("const", ast.Pass(), data=len(frame.exits))
+        self.emit("store", ast.Pass(), number, data=frame.way)
+        self.jump(frame.entry)
+        self.block = self.new_block()
+        frame.exits.append(self.block)
 
     def _do_Break(self, _: ast.Break) -> None:
         self._leave_loop(to_head=False)
@@ -330,8 +340,10 @@ class Lowering(ExpressionLowering):
         outer = self.handlers
         opened, after = self.block, self.new_block()
         if node.finalbody:
-            self.handlers = (Handler(self._finally_block(node, opened), ALL), *outer)
-            self._frames.append(_Finally(node.finalbody, outer))
+            frame = _Finally(self.new_block(), self.temporary(), outer)
+            frame.entry.opened = opened
+            self.handlers = (Handler(self._raised_through(frame, opened), ALL), *outer)
+            self._frames.append(frame)
         around = self.handlers
         handlers = []
         for handler in node.handlers:
@@ -358,22 +370,32 @@ class Lowering(ExpressionLowering):
             self.statements(handler.body)
             self.jump(joined)
         self.handlers = outer
+        self.block = joined
         if node.finalbody:
             self._frames.pop()
-        final = self.new_block()
-        joined.successors.append(final)
-        self._inside(final, node.finalbody, after)
+            self._through(frame)
+            further = self.block
+            self._finally(node, frame)
+            self.block = further
+        self.jump(after)
         self.block = after
 
     _do_TryStar = _do_Try
 
-    def _finally_block(self, node: ast.Try, opened: Block) -> Block:
-        """The ``finally`` where an exception goes on through it."""
+    def _finally(self, node: ast.Try, frame: _Finally) -> None:
+        self.block = frame.entry
+        self.statements(node.finalbody)
+        if len(frame.exits) > 1:
+            self.emit("dispatch", ast.Pass(), self.emit("load", ast.Pass(), data=frame.way))
+        self.block.successors += frame.exits
+
+    def _raised_through(self, frame: _Finally, opened: Block) -> Block:
+        """The block by which an exception comes to a ``finally``; behind it it is raised again."""
         before = self.block
         block = self.new_block()
         block.opened = opened
         self.block = block
-        self.statements(node.finalbody)
+        self._through(frame)
         taken, through = taken_by(self.handlers, None)
         self.block.successors += [handler.block for handler in taken]
         if through:

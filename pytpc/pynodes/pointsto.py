@@ -36,6 +36,8 @@ class PointsTo:
         self.succ: dict[Node, dict[Node, None]] = {}
         self.pred: dict[Node, dict[Node, None]] = {}
         self.writers: dict[Field, dict[Instr, None]] = {}
+        self.defaults: dict[Instr, list[Instr]] = {}
+        self._unbound: set[tuple[Node, Node]] = set()
         self._objects: dict[Node, dict[Obj, None]] = {}
         self._waiting: deque[tuple[Node, list[Obj]]] = deque()
         self._when: dict[Node, list[Callable[[Obj], None]]] = {}
@@ -103,7 +105,7 @@ class PointsTo:
             return
         known[to] = None
         self.pred.setdefault(to, {})[source] = None
-        if source in self._objects:
+        if source in self._objects and (source, to) not in self._unbound:
             self.add(to, list(self._objects[source]))
 
     def when(self, node: Node, action: Callable[[Obj], None]) -> None:
@@ -139,7 +141,8 @@ class PointsTo:
         while self._waiting:
             node, new = self._waiting.popleft()
             for to in list(self.succ.get(node, ())):
-                self.add(to, new)
+                if (node, to) not in self._unbound:
+                    self.add(to, new)
             for action in list(self._when.get(node, ())):
                 for found in new:
                     action(found)
@@ -203,7 +206,9 @@ class PointsTo:
         self.add(instr, [self.heap.function(instr.data)])
         for place, default in instr.data.defaults.items():
             if place < len(instr.data.param_instrs):
-                self.copy(instr.args[default], instr.data.param_instrs[place])
+                param = instr.data.param_instrs[place]
+                self.copy(instr.args[default], param)
+                self.defaults.setdefault(param, []).append(instr.args[default])
 
     def _on_class(self, instr: Instr) -> None:
         info = instr.data
@@ -235,7 +240,14 @@ class PointsTo:
             field = (self.heap.class_(setter), f"{name}.setter")
             self.when(field, lambda found: self.calls.bound(instr, found, owner, [(None, value)]))
             return
-        self.write(owner, name, value, instr)
+        param = _kept_as_given(instr)
+        if param is None or owner.site is None:
+            self.write(owner, name, value, instr)
+            return
+        # Objects of one class are told apart by what each is made with.
+        self.calls.when_given(
+            owner.site, param, lambda given: self.write(owner, name, given, instr)
+        )
 
     def _on_attr(self, instr: Instr) -> None:
         name = str(instr.data)
@@ -298,9 +310,12 @@ class PointsTo:
             self._outside(owner, name, instr, info)
             return
         field = self.slot(self.heap.class_(found), name)
-        self.when(field, lambda each: self._bind(each, owner, field, instr))
+        # Functions are bound to the object; all else is as it is in the class.
+        self._unbound.add((field, instr))
+        self.copy(field, instr)
+        self.when(field, lambda each: self._bind(each, owner, instr))
 
-    def _bind(self, found: Obj, owner: Obj, field: Field, instr: Instr) -> None:
+    def _bind(self, found: Obj, owner: Obj, instr: Instr) -> None:
         """An attribute of a class as one of its object."""
         function = found.function if found.kind == "function" else None
         if function is None or "staticmethod" in function.decorators:
@@ -348,3 +363,26 @@ class PointsTo:
 
     def _on_call(self, instr: Instr) -> None:
         self.when(instr.args[0], lambda found: self.later(lambda: self.calls.call(instr, found)))
+
+
+def _kept_as_given(instr: Instr) -> Instr | None:
+    """The parameter of ``__init__`` whose value ``self.name = parameter`` keeps."""
+    if instr.op != "setattr":
+        return None
+    owner, value = instr.args
+    function = instr.function
+    if function.owner is None or not function.qualname.endswith(".__init__"):
+        return None
+    if owner.op != "load" or value.op != "load" or owner.data is not function.parameters[0]:
+        return None
+    if value.data not in function.parameters:
+        return None
+    stores = [
+        each
+        for each in function.instructions()
+        if each.op == "store" and each.data in (owner.data, value.data)
+    ]
+    if len(stores) != 2:
+        return None
+    place = function.parameters.index(value.data)
+    return None if place in (function.vararg, function.kwarg) else function.param_instrs[place]

@@ -29,11 +29,20 @@ class Reaching:
     hidden: set[Instr] = field(default_factory=set)
 
 
-def reaching_definitions(functions: list[Function], effects: dict[Instr, Effects]) -> Reaching:
-    """Work out ``Reaching`` of all functions, given what their calls read and write."""
+def reaching_definitions(
+    functions: list[Function], effects: dict[Instr, Effects], escaping: set[Instr]
+) -> Reaching:
+    """Work out ``Reaching`` of all functions.
+
+    Args:
+        functions: all of the program.
+        effects: what their calls read and write.
+        escaping: loads of objects that are handed on as a whole; what is stored in their attributes
+            is seen there.
+    """
     result = Reaching()
     for function in functions:
-        _OneFunction(function, effects, result).run()
+        _OneFunction(function, effects, escaping, result).run()
     return result
 
 
@@ -49,9 +58,16 @@ def cell_of(instr: Instr, stable: set[Variable]) -> Cell | None:
 
 
 class _OneFunction:
-    def __init__(self, function: Function, effects: dict[Instr, Effects], result: Reaching) -> None:
+    def __init__(
+        self,
+        function: Function,
+        effects: dict[Instr, Effects],
+        escaping: set[Instr],
+        result: Reaching,
+    ) -> None:
         self.function = function
         self.effects = effects
+        self.escaping = escaping
         self.result = result
         self.stable = _bound_once(function)
         self.stores: list[Instr | None] = []
@@ -122,17 +138,19 @@ class _OneFunction:
                     self._mark_load(instr, now & self.of_cell[self.cell[instr]])
                 seen |= now & self._seen_by(instr)
                 now = self._step(instr, now)
-            if any(handler.block for handler in block.handlers):
-                seen |= 0
         for store, bit in self.bit.items():
             if not bit & seen:
                 self.result.hidden.add(store)
 
     def _seen_by(self, instr: Instr) -> int:
+        seen = 0
+        if instr in self.escaping:
+            for cell, mask in self.of_cell.items():
+                if isinstance(cell, tuple) and cell[0] is instr.data:
+                    seen |= mask
         effects = self.effects.get(instr)
         if effects is None:
-            return 0
-        seen = 0
+            return seen
         for cell, mask in self.of_cell.items():
             if _touches(cell, effects.waits, effects.reads):
                 seen |= mask

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from pytpc.pynodes.control import control_dependence
 from pytpc.pynodes.flow import Flow
 from pytpc.pynodes.ir import Block, Function, Instr
+from pytpc.pynodes.raising import Raising
 from pytpc.pynodes.reads import Exposed
 
 
@@ -31,9 +32,11 @@ class Slice:
 class Slicer:
     """Makes the slice of a program."""
 
-    def __init__(self, flow: Flow) -> None:
+    def __init__(self, flow: Flow, raising: Raising) -> None:
         """Nothing is in the slice yet."""
         self.flow = flow
+        self.raising = raising
+        self._raised: set[Instr] = set()
         self.slice = Slice()
         self._control: dict[Function, dict[Block, list[Block]]] = {}
 
@@ -57,12 +60,28 @@ class Slicer:
         return result
 
     def controlling(self, instr: Instr) -> list[Instr]:
-        """The branches that decide in its function whether ``instr`` runs."""
-        function = instr.function
+        """The branches, and calls that raise, that decide in its function whether it runs."""
+        found: dict[Instr, None] = {}
+        seen = {instr.block}
+        waiting = [instr.block]
+        while waiting:
+            for deciding in self._deciding(waiting.pop()):
+                if deciding.op != "dispatch":
+                    found[deciding] = None
+                    continue
+                # How a `finally` was come to is decided where that is noted.
+                for store in self.flow.sources(deciding.args[0]):
+                    if store.block not in seen:
+                        seen.add(store.block)
+                        waiting.append(store.block)
+        return list(found)
+
+    def _deciding(self, block: Block) -> list[Instr]:
+        function = block.function
         if function not in self._control:
             self._control[function] = control_dependence(function)
-        blocks = self._control[function].get(instr.block, [])
-        return [block.instrs[-1] for block in blocks if block.instrs]
+        blocks = self._control[function].get(block, [])
+        return [each.instrs[-1] for each in blocks if each.instrs]
 
     def _enter(self, instr: Instr, after: Instr, how: str, further: list[Instr]) -> None:
         if instr in self.slice.because:
@@ -76,6 +95,8 @@ class Slicer:
         for branch in branches:
             if branch.op == "branch":
                 self.slice.distance.setdefault(branch, number)
+            else:
+                self._raised.add(branch)
             self._enter(branch, instr, "control", further)
         if branches:
             return
@@ -86,6 +107,12 @@ class Slicer:
 
     def _used(self, instr: Instr, further: list[Instr], starting: bool) -> None:
         """What defines the values that ``instr`` uses."""
+        if instr in self._raised:
+            for function in self.flow.points.calls.callees.get(instr, ()):
+                for leaving in self.raising.leaving.get(function, ()):
+                    if leaving.op != "raise":
+                        self._raised.add(leaving)
+                    self._enter(leaving, instr, "call", further)
         seen = {instr}
         waiting = [instr]
         while waiting:
@@ -96,8 +123,9 @@ class Slicer:
             for source in self.flow.sources(here):
                 self._enter(source, instr, "data", further)
             if starting or here.op in ("call", "return", "iter"):
-                for arg in here.args:
-                    for writer in self.flow.contents(arg):
+                # What publishes is not what is published.
+                for arg in here.args[1:] if starting and here.op == "call" else here.args:
+                    for writer in self.flow.contents(arg, here):
                         self._enter(writer, instr, "data", further)
             for arg in self._operands(here):
                 if arg not in seen:
