@@ -122,9 +122,9 @@ class Slicer:
                 self._enter(here, instr, "data", further)
             for source in self.flow.sources(here):
                 self._enter(source, instr, "data", further)
-            if starting or here.op in ("call", "return", "iter"):
+            if (starting and here is instr) or here.op in ("call", "return", "iter"):
                 # What publishes is not what is published.
-                for arg in here.args[1:] if starting and here.op == "call" else here.args:
+                for arg in here.args[1:] if here is instr and here.op == "call" else here.args:
                     for writer in self.flow.contents(arg, here):
                         self._enter(writer, instr, "data", further)
             for arg in self._operands(here):
