@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 
@@ -16,6 +17,7 @@ from pytpc.link_unit import (
     Place,
     Tool,
 )
+from pytpc.pynodes.constant_finder import find_constants
 from pytpc.pynodes.constants import DYNAMIC, Constants
 from pytpc.pynodes.flow import Flow
 from pytpc.pynodes.follow import Fact, Follower, named_variable
@@ -60,6 +62,8 @@ def analyse(program: Program, rules: Rules) -> Analysed:
     follower.decide()
     found_slice = Slicer(flow, raising).run(exposed)
     found, others = Gatherer(follower, found_slice).run()
+    if rules.constants:
+        found += find_constants(follower, constants, found_slice, [*found, *others])
     return Analysed(program, rules, flow, reads, exposed, follower, found_slice, found, others)
 
 
@@ -69,10 +73,16 @@ def analyse_entry(entry: Entry, rules: Rules) -> LinkUnit:
     Raises:
         InputError: one of its files cannot be read or parsed.
     """
-    program = Loader(Program(entry.name, entry.package, entry.root), list(entry.folders)).load(
-        entry.script
-    )
-    return Writer(analyse(program, rules)).unit()
+    program = Program(entry.name, entry.package, entry.root)
+    collecting = gc.isenabled()
+    # Everything lives to the end, in millions of cycles: to look for garbage doubles the time.
+    gc.disable()
+    try:
+        Loader(program, list(entry.folders)).load(entry.script)
+        return Writer(analyse(program, rules)).unit()
+    finally:
+        if collecting:
+            gc.enable()
 
 
 class Writer:
@@ -99,7 +109,7 @@ class Writer:
             tool=Tool("tpc", _version(), "", self.all.rules.profile, "python"),
             status="ok",
             failure=None,
-            counts=self._counts(len(comparisons), len(not_exposed), len(spots), len(reads)),
+            counts=self._counts(comparisons, len(not_exposed), len(spots), len(reads)),
             parameters=tuple(reads),
             exposing=tuple(self._exposing()),
             comparisons=tuple(comparisons),
@@ -107,7 +117,7 @@ class Writer:
             blind_spots=tuple(spots[:_AT_MOST]),
         )
 
-    def _counts(self, comparisons: int, others: int, spots: int, reads: int) -> Counts:
+    def _counts(self, comparisons: list[Comparison], others: int, spots: int, reads: int) -> Counts:
         predicates = [each for each in self.all.program.instructions() if each.op == "branch"]
         places = {_where(each) for each in predicates}
         within = {_where(each) for each in self.all.slice.distance}
@@ -118,7 +128,8 @@ class Writer:
             predicates_in_slice=len(within),
             parameter_reads=reads,
             exposing_statements=len({_where(each.instr) for each in self.all.exposed}),
-            comparisons=comparisons,
+            comparisons=sum(1 for each in comparisons if each.type != "constant"),
+            constants=sum(1 for each in comparisons if each.type == "constant"),
             dynamic_names=dynamic,
             indirect_calls=len(self._unknown_calls()),
             without_debug_info=0,
@@ -198,9 +209,10 @@ class Writer:
         end_line, end_column = end_position(found.end)
         function = found.at.function
         file = function.module.path
+        what = found.parameter if found.facts else f"constant {found.parameter}"
         parts = (
             program.package, program.name, file, function.qualname, str(line), str(column),
-            found.parameter,
+            what,
         )  # fmt: skip
         ordinal = keys.get(parts, 0)
         keys[parts] = ordinal + 1
@@ -212,8 +224,8 @@ class Writer:
         return Comparison(
             key=str(key),
             type=found.type,
-            name=named_variable(threshold),
-            source=found.parameter,
+            name=named_variable(threshold) if found.facts else found.parameter,
+            source=found.parameter if found.facts else None,
             file=file,
             lineno=line,
             column=column,
@@ -225,9 +237,9 @@ class Writer:
             other_thresholds=others,
             param_reads=tuple(dict.fromkeys(reads)),
             publishes=(self._place(exposed.instr),),
-            transform=found.facts[0].how.to_json(),
-            default=found.facts[0].read.default,
-            read_at=reads[0],
+            transform=found.facts[0].how.to_json() if found.facts else None,
+            default=found.facts[0].read.default if found.facts else None,
+            read_at=reads[0] if reads else None,
             exposed_at=self._place(exposed.instr),
             end_lineno=end_line,
             end_column=end_column,

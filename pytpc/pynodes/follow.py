@@ -12,6 +12,10 @@ from pytpc.pynodes.reads import Read
 from pytpc.pynodes.rules_file import Rules
 from pytpc.pynodes.transform import How, by_function, by_operator
 
+FLAG = -1
+"""In place of an operand: the value itself is the condition."""
+RANGE = -2
+"""The value bounds the ``range`` that a loop runs over."""
 _VARIANTS = 3
 _LONGEST_NAME = 200
 
@@ -33,7 +37,7 @@ class Fact:
 
 @dataclass(eq=False, slots=True)
 class Compared:
-    """A comparison (operand number ``operand``) or, where ``operand`` is -1, a flag at ``at``."""
+    """A comparison ``at`` with the operand number ``operand``, or one of the kinds below."""
 
     at: Instr
     operand: int
@@ -94,9 +98,9 @@ class Follower:
                     if user.args[operand] is fact.at:
                         self._compare(fact, user, operand)
             case "branch":
-                self._compare(fact, fact.at, -1, user)
+                self._compare(fact, fact.at, FLAG, user)
             case "match":
-                self._compare(fact, fact.at, -1)
+                self._compare(fact, fact.at, FLAG)
             case "binary":
                 self._binary(fact, user)
             case "unary":
@@ -210,7 +214,7 @@ class Follower:
         args = user.args[1:]
         if op is None:
             if path == "builtins.range":
-                self._compare(fact, fact.at, -1, *self._loops_over(user))
+                self._compare(fact, user, RANGE, *self._loops_over(user))
             elif path not in self.rules.reads and not self._is_exposing(path):
                 self._lose(fact, user)
             return
@@ -260,9 +264,9 @@ class Follower:
         for compared in self.compared.values():
             if compared.operand >= 0:
                 if compared.at not in known:
-                    known[compared.at] = self._predicates(compared)
+                    known[compared.at] = self.predicates(compared.at)
                 compared.predicates = known[compared.at]
-            else:
+            elif compared.operand == FLAG:
                 compared.predicates += [
                     branch
                     for user in self.flow.users.get(compared.at, ())
@@ -271,9 +275,10 @@ class Follower:
                     if branch.op == "branch" and branch not in compared.predicates
                 ]
 
-    def _predicates(self, compared: Compared) -> list[Instr]:
-        seen = {compared.at: None}
-        waiting = [compared.at]
+    def predicates(self, outcome: Instr) -> list[Instr]:
+        """The branches that the outcome of a comparison decides."""
+        seen = {outcome: None}
+        waiting = [outcome]
         found: dict[Instr, None] = {}
         while waiting:
             value = waiting.pop()

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Literal
 
-from pytpc.pynodes.follow import Compared, Fact, Follower
+from pytpc.pynodes.follow import FLAG, Compared, Fact, Follower
 from pytpc.pynodes.ir import Instr
 from pytpc.pynodes.reads import Read
 from pytpc.pynodes.slicing import Slice
@@ -23,7 +23,10 @@ _NAMESPACE = bytes.fromhex("6b0f7a522c9e4d619a378f15c3405ed8")
 
 @dataclass
 class Found:
-    """A comparison with one parameter: at one place of the source, for all its copies in blocks."""
+    """A comparison with one parameter: at one place of the source, for all its copies in blocks.
+
+    Of one with a constant ``parameter`` is its name, and there are no ``facts``.
+    """
 
     at: Instr
     operand: int
@@ -52,16 +55,18 @@ class Found:
     def relation(self) -> str:
         """The operator, with the threshold on the right-hand side."""
         if self.operand < 0:
-            return "flag"
+            return "flag" if self.operand == FLAG else "<"
         sign = RELATIONS[str(self.at.data)]
         return _TURNED.get(sign, sign) if self.operand == 0 else sign
 
     @property
-    def type(self) -> Literal["parameter", "flag", "derived"]:
+    def type(self) -> Literal["parameter", "flag", "derived", "constant"]:
         """As in the schema."""
+        if not self.facts:
+            return "constant"
         if not self.facts[0].how.plain:
             return "derived"
-        return "flag" if self.operand < 0 else "parameter"
+        return "flag" if self.operand == FLAG else "parameter"
 
 
 def position(instr: Instr) -> tuple[int, int]:
@@ -141,7 +146,7 @@ class Gatherer:
         What may be something measured is the threshold only where the other side is measured, too.
         """
         if compared.operand < 0:
-            return "other" in self.kinds(compared.at)
+            return "other" in self.kinds(compared.fact.at)
         own = self.kinds(compared.at.args[compared.operand])
         if "other" not in own:
             return False

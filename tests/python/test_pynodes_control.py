@@ -269,7 +269,7 @@ BODIES = {
     """,
     "for over range": """
         def cb(msg):
-            for i in range(limit):  #: ~limit flag
+            for i in range(limit):  #: ~limit <
                 pub.publish(i)
     """,
 }
