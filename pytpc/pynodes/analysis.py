@@ -148,9 +148,8 @@ class Writer:
             if each.op == "call" and not list(points.of(each.args[0]))
         ]
 
-    def _source(self, instr: Instr) -> str | None:
+    def _source(self, instr: Instr, number: int) -> str | None:
         lines = self._lines[instr.function.module.path]
-        number = position(instr)[0]
         return lines[number - 1].strip() if 0 < number <= len(lines) else None
 
     def _place(self, instr: Instr) -> Place:
@@ -186,7 +185,7 @@ class Writer:
     def _comparisons(self) -> list[Comparison]:
         conditions: dict[object, set[object]] = {}
         for found in self.all.found:
-            place = (found.at.function.module.path, position(found.place))
+            place = (found.at.function.module.path, found.span)
             conditions.setdefault(self._condition(found), set()).add((place, found.parameter))
         keys: dict[tuple[str, ...], int] = {}
         comparisons = []
@@ -205,8 +204,7 @@ class Writer:
         self, found: Found, others: int, keys: dict[tuple[str, ...], int]
     ) -> Comparison:
         program = self.all.program
-        line, column = position(found.place)
-        end_line, end_column = end_position(found.end)
+        (line, column), (end_line, end_column) = found.span
         function = found.at.function
         file = function.module.path
         what = found.parameter if found.facts else f"constant {found.parameter}"
@@ -233,7 +231,7 @@ class Writer:
             distance=found.distance,
             relation=found.relation,
             topic=exposed.topic,
-            source_code=self._source(found.place),
+            source_code=self._source(found.at, line),
             other_thresholds=others,
             param_reads=tuple(dict.fromkeys(reads)),
             publishes=(self._place(exposed.instr),),
@@ -252,12 +250,12 @@ class Writer:
     def _not_exposed(self) -> list[NotExposed]:
         found = []
         for each in sorted(self.all.others, key=_order):
-            line, column = position(each.place)
+            line, column = each.span[0]
             function = each.at.function
             found.append(
                 NotExposed(
                     each.parameter, function.module.path, line, column, function.qualname,
-                    self._source(each.place),
+                    self._source(each.at, line),
                 )
             )  # fmt: skip
         return list(dict.fromkeys(found))
@@ -282,14 +280,13 @@ class Writer:
         function = at.function
         return BlindSpot(
             kind, parameter, function.module.path, line, column, function.qualname, what,
-            self._source(at),
+            self._source(at, line),
         )  # fmt: skip
 
 
 def _order(found: Found) -> tuple[object, ...]:
     return (
-        found.at.function.module.path, position(found.place), found.parameter, found.operand,
-        end_position(found.end),
+        found.at.function.module.path, found.span, found.parameter, found.operand,
     )  # fmt: skip
 
 

@@ -71,13 +71,15 @@ class Calls:
             case "class" if callee.class_info is not None:
                 self._construct(instr, callee.class_info, given)
             case "instance":
-                self._call_method(instr, callee, "__call__", given)
+                self.run_method(instr, callee, "__call__", given)
             case "external":
                 self._outside(instr, callee.path, None, given)
             case "part":
                 self._outside(instr, callee.path, callee.parent, given)
             case "made" if isinstance(instr.data, Shape) and instr.data.decorates:
                 self.flow.copy(instr.args[1], instr)
+            case "made" if callee.path == "collections.namedtuple" and callee.site is not None:
+                self._named_tuple(instr, callee.site, given)
             case "made":
                 path = self.flow.rules.class_of(callee.path)
                 self._outside(instr, f"{path}.__call__", callee, given)
@@ -89,7 +91,8 @@ class Calls:
         if found.function is not None and found.kind == "function":
             self._link(instr, found.function, owner, given)
 
-    def _call_method(self, instr: Instr, owner: Obj, name: str, given: list[Given]) -> None:
+    def run_method(self, instr: Instr, owner: Obj, name: str, given: list[Given]) -> None:
+        """``instr`` runs the method ``name`` of an object of an own class, where it has one."""
         info = owner.class_info
         found = self.flow.lookup(info, name) if info is not None else None
         if found is not None:
@@ -100,7 +103,7 @@ class Calls:
         made = self.flow.instantiate(info, instr)
         self.flow.add(instr, [made])
         if self.flow.lookup(info, "__init__") is not None:
-            self._call_method(instr, made, "__init__", given)
+            self.run_method(instr, made, "__init__", given)
             return
         order = [each for each in self.flow.mro(info) if isinstance(each, ClassInfo)]
         names = [name for each in reversed(order) if each.is_record for name in each.fields]
@@ -108,8 +111,26 @@ class Calls:
             name = keyword or (names[place] if place < len(names) else None)
             if name in names and name is not None:
                 self.flow.write(made, name, value, instr)
+                self.flow.write(made, f"[{names.index(name)}]", value, instr)
         if self.flow.lookup(info, "__post_init__") is not None:
-            self._call_method(instr, made, "__post_init__", [])
+            self.run_method(instr, made, "__post_init__", [])
+
+    def _named_tuple(self, instr: Instr, site: Instr, given: list[Given]) -> None:
+        """An object of a class that ``collections.namedtuple`` made at ``site``."""
+        names: list[object] = []
+        if len(site.args) > 2:
+            words = site.args[2]
+            names = [part.data for part in words.args]
+            if isinstance(words.data, str) and words.op == "const":
+                names = list(words.data.replace(",", " ").split())
+        made = self.flow.heap.made("collections.namedtuple.__call__", instr)
+        self.flow.add(instr, [made])
+        for place, (keyword, value) in enumerate(given):
+            name = keyword or (names[place] if place < len(names) else None)
+            if isinstance(name, str):
+                self.flow.write(made, name, value, instr)
+            if name in names:
+                self.flow.write(made, f"[{names.index(name)}]", value, instr)
 
     def when_given(self, site: Instr, param: Instr, action: Callable[[Instr], None]) -> None:
         """Call ``action`` for each value that the call ``site`` gives to ``param``."""
@@ -249,9 +270,13 @@ class Calls:
         elif owner is not None:
             self._on_object(instr, name, owner, given)
         if path not in _COPYING and not (owner is not None and owner.kind == "container"):
-            flow.add(instr, [flow.heap.made(flow.rules.class_of(path), instr)])
-        for keyword, value in given:
-            self._hand(instr, path, keyword, value, given)
+            made = flow.heap.made(flow.rules.class_of(path), instr)
+            flow.add(instr, [made])
+            for keyword, value in given:
+                if keyword not in (None, "*", "**"):
+                    flow.write(made, keyword, value, instr)
+        for _, value in given:
+            self._hand(instr, path, value, given)
 
     def _by_name(self, instr: Instr, path: str, given: list[Given]) -> None:
         """``getattr`` and ``setattr`` with a constant name are attributes."""
@@ -303,8 +328,11 @@ class Calls:
         flow = self.flow
         values = [value for keyword, value in given if keyword not in ("*", "**")]
         if name in _MERGING:
-            for value in values:
-                flow.when(value, lambda found: self._merge(found, owner, instr))
+            for keyword, value in given:
+                if keyword in (None, "*", "**"):
+                    flow.when(value, lambda found: self._merge(found, owner, instr))
+                else:
+                    flow.write(owner, f"[{keyword!r}]", value, instr)
         elif name in _PUTTING:
             stored = values[1:] if name in ("insert", "setdefault") else values
             for value in stored:
@@ -336,13 +364,10 @@ class Calls:
             flow.add((made, SOME), [pair])
             flow.slot(made, SOME)
 
-    def _hand(
-        self, instr: Instr, path: str, keyword: str | None, value: Instr, given: list[Given]
-    ) -> None:
+    def _hand(self, instr: Instr, path: str, value: Instr, given: list[Given]) -> None:
         """Functions that are handed to something outside may be run by it."""
         others = [each for each in given if each[1] is not value]
         self.flow.when(value, lambda found: self._register(instr, path, found, others))
-        del keyword
 
     def _register(self, instr: Instr, path: str, found: Obj, others: list[Given]) -> None:
         owner = found.parent

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from pytpc.pynodes.constants import Constants
 from pytpc.pynodes.follow import Follower, named_variable
-from pytpc.pynodes.gather import Found, end_position, position
+from pytpc.pynodes.gather import Found, span_of
 from pytpc.pynodes.ir import Instr, Variable
 from pytpc.pynodes.slicing import Slice
 
@@ -36,7 +36,7 @@ def find_constants(
             near = [each for each in follower.predicates(instr) if each in found_slice.distance]
             if near:
                 predicate = min(near, key=lambda each: (found_slice.distance[each], each.number))
-                key = (instr.function.module, position(instr.args[0]), end_position(instr.args[1]))
+                key = (instr.function.module, span_of(instr, operand))
                 found.setdefault(
                     key,
                     Found(

@@ -283,16 +283,30 @@ class Follower:
         while waiting:
             value = waiting.pop()
             following = [to for to, _ in self.flow.copies(value)]
+            found.update(dict.fromkeys(self._filtering(value)))
             for user in self.flow.users.get(value, ()):
                 if user.op == "branch":
                     found[user] = None
                 elif self._passes(user, value):
                     following.append(user)
             for to in following:
-                if to not in seen:
+                if to.op == "branch":
+                    found[to] = None
+                elif to not in seen:
                     seen[to] = None
                     waiting.append(to)
         return list(found)
+
+    def _filtering(self, value: Instr) -> list[Instr]:
+        """The calls of ``filter`` and its kin to which a function returns ``value``."""
+        if all(user.op != "return" for user in self.flow.users.get(value, ())):
+            return []
+        calls = self.flow.points.calls
+        return [
+            call
+            for call in calls.registered.get(value.function, ())
+            if any(path in self.rules.filters for path, _ in calls.outside.get(call, ()))
+        ]
 
     def _passes(self, user: Instr, value: Instr) -> bool:
         """True where the value of ``user`` says what the outcome ``value`` says."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import hashlib
 import uuid
 from collections.abc import Iterable
@@ -21,6 +22,10 @@ _TURNED = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
 _NAMESPACE = bytes.fromhex("6b0f7a522c9e4d619a378f15c3405ed8")
 
 
+Span = tuple[tuple[int, int], tuple[int, int]]
+"""Line and column of the first character and of the one behind the last, from 1."""
+
+
 @dataclass
 class Found:
     """A comparison with one parameter: at one place of the source, for all its copies in blocks.
@@ -37,14 +42,9 @@ class Found:
     predicate: Instr | None = None
 
     @property
-    def place(self) -> Instr:
-        """The instruction whose first character is the comparison's."""
-        return self.at.args[0] if self.operand >= 0 else self.at
-
-    @property
-    def end(self) -> Instr:
-        """The instruction whose end is the comparison's."""
-        return self.at.args[1] if self.operand >= 0 else self.at
+    def span(self) -> Span:
+        """Where it stands."""
+        return span_of(self.at, self.operand)
 
     @property
     def reads(self) -> list[Read]:
@@ -71,14 +71,34 @@ class Found:
 
 def position(instr: Instr) -> tuple[int, int]:
     """Line and column from 1; 0 where there is none."""
-    line = getattr(instr.node, "lineno", 0)
-    column = getattr(instr.node, "col_offset", -1)
-    return line, column + 1
+    return _start(instr.node)
 
 
 def end_position(instr: Instr) -> tuple[int, int]:
     """Line and column behind the last character, from 1."""
-    return getattr(instr.node, "end_lineno", 0), getattr(instr.node, "end_col_offset", -1) + 1
+    return _end(instr.node)
+
+
+def span_of(at: Instr, operand: int) -> Span:
+    """Where the comparison ``at`` (or a flag) begins and ends.
+
+    The first link of a chain begins where the chain does (with the parentheses around its left
+    operand), the others at their left operand. A value pattern is the whole comparison.
+    """
+    node = at.node
+    if operand < 0 or not isinstance(node, ast.Compare):
+        return _start(node), _end(node)
+    first = at.args[0].node is node.left
+    last = at.args[1].node is node.comparators[-1]
+    return _start(node if first else at.args[0].node), _end(node if last else at.args[1].node)
+
+
+def _start(node: ast.AST) -> tuple[int, int]:
+    return getattr(node, "lineno", 0), getattr(node, "col_offset", -1) + 1
+
+
+def _end(node: ast.AST) -> tuple[int, int]:
+    return getattr(node, "end_lineno", 0), getattr(node, "end_col_offset", -1) + 1
 
 
 def key_of(parts: list[str]) -> uuid.UUID:
@@ -106,10 +126,9 @@ class Gatherer:
         for compared in self.follower.compared.values():
             if self._is_measured(compared, both):
                 continue
-            end = compared.at if compared.operand < 0 else compared.at.args[1]
-            start = compared.at if compared.operand < 0 else compared.at.args[0]
             key = (
-                compared.at.function.module, position(start), end_position(end),
+                compared.at.function.module,
+                span_of(compared.at, compared.operand),
                 compared.operand, compared.fact.name,
             )  # fmt: skip
             if key not in joined:

@@ -42,6 +42,7 @@ class PointsTo:
         self._waiting: deque[tuple[Node, list[Obj]]] = deque()
         self._when: dict[Node, list[Callable[[Obj], None]]] = {}
         self._frozen: dict[ClassInfo, list[ClassInfo | str]] = {}
+        self._always: dict[ClassInfo, set[str]] = {}
         self.bases: dict[ClassInfo, dict[Obj, None]] = {}
         self.class_names: dict[ClassInfo, dict[str, None]] = {}
         self.class_instr: dict[ClassInfo, Instr] = {}
@@ -310,10 +311,26 @@ class PointsTo:
             self._outside(owner, name, instr, info)
             return
         field = self.slot(self.heap.class_(found), name)
-        # Functions are bound to the object; all else is as it is in the class.
-        self._unbound.add((field, instr))
-        self.copy(field, instr)
+        # Functions are bound to the object; all else is as it is in the class, unless the object
+        # has its own.
+        if not self._is_hidden(info, name):
+            self._unbound.add((field, instr))
+            self.copy(field, instr)
         self.when(field, lambda each: self._bind(each, owner, instr))
+
+    def _is_hidden(self, info: ClassInfo, name: str) -> bool:
+        """True where ``__init__`` gives every object an attribute of its own."""
+        if info not in self._always:
+            maker = self.lookup(info, "__init__")
+            self._always[info] = {
+                str(instr.data)
+                for module in self.program.modules
+                for function in module.functions
+                if function.owner is maker is not None and function.qualname.endswith(".__init__")
+                for instr in function.blocks[0].instrs
+                if instr.op == "setattr" and instr.args[0].data is function.parameters[0]
+            }
+        return name in self._always[info]
 
     def _bind(self, found: Obj, owner: Obj, instr: Instr) -> None:
         """An attribute of a class as one of its object."""
@@ -361,8 +378,52 @@ class PointsTo:
         for place, value in enumerate(instr.args):
             self.write(made, element(place), value, instr)
 
+    def _on_compare(self, instr: Instr) -> None:
+        left, right = instr.args
+        own, turned = _METHODS.get(str(instr.data), ("", ""))
+        self._operator(instr, left, own, [right])
+        self._operator(instr, right, turned, [left])
+
+    def _on_binary(self, instr: Instr) -> None:
+        left, right = instr.args
+        name = str(instr.data)
+        word = _WORDS.get(name, name.lower())
+        self._operator(instr, left, f"__{word}__", [right])
+        self._operator(instr, right, f"__r{word}__", [left])
+
+    def _on_branch(self, instr: Instr) -> None:
+        self._operator(instr, instr.args[0], "__bool__", [])
+        self._operator(instr, instr.args[0], "__len__", [])
+
+    def _on_unary(self, instr: Instr) -> None:
+        name = {"Not": "__bool__", "USub": "__neg__"}.get(str(instr.data), "")
+        self._operator(instr, instr.args[0], name, [])
+
+    def _operator(self, instr: Instr, value: Instr, name: str, others: list[Instr]) -> None:
+        """The method of an own class that an operator runs."""
+
+        def run(found: Obj) -> None:
+            if found.kind == "instance" and name:
+                given: list[tuple[str | None, Instr]] = [(None, other) for other in others]
+                self.later(lambda: self.calls.run_method(instr, found, name, given))
+
+        self.when(value, run)
+
     def _on_call(self, instr: Instr) -> None:
         self.when(instr.args[0], lambda found: self.later(lambda: self.calls.call(instr, found)))
+
+
+_METHODS = {
+    "Lt": ("__lt__", "__gt__"),
+    "LtE": ("__le__", "__ge__"),
+    "Gt": ("__gt__", "__lt__"),
+    "GtE": ("__ge__", "__le__"),
+    "Eq": ("__eq__", "__eq__"),
+    "NotEq": ("__ne__", "__ne__"),
+    "In": ("", "__contains__"),
+    "NotIn": ("", "__contains__"),
+}
+_WORDS = {"Mult": "mul", "Div": "truediv", "BitAnd": "and", "BitOr": "or", "BitXor": "xor"}
 
 
 def _kept_as_given(instr: Instr) -> Instr | None:

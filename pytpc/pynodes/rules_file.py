@@ -51,6 +51,7 @@ class Rules:
     waiting: set[str] = field(default_factory=set)
     arithmetic: dict[str, str] = field(default_factory=dict)
     outcomes: set[str] = field(default_factory=set)
+    filters: set[str] = field(default_factory=set)
 
     def class_of(self, path: str) -> str:
         """The class of what calling ``path`` gives, by the one name that the rules use."""
@@ -90,7 +91,7 @@ def _add(rules: Rules, data: dict[str, Any], path: Path) -> None:
         if name == "arithmetic":
             _check(isinstance(rows, dict) and all(map(_is_text, rows.values())), name, path)
             rules.arithmetic.update(rows)
-        elif name in ("waiting", "outcomes"):
+        elif name in ("waiting", "outcomes", "filters"):
             _check(isinstance(rows, list) and all(map(_is_text, rows)), name, path)
             getattr(rules, name).update(rows)
         else:

@@ -37,6 +37,11 @@ class Slicer:
         self.flow = flow
         self.raising = raising
         self._raised: set[Instr] = set()
+        self._filters = {
+            call
+            for call, paths in flow.points.calls.outside.items()
+            if any(path in flow.points.rules.filters for path, _ in paths)
+        }
         self.slice = Slice()
         self._control: dict[Function, dict[Block, list[Block]]] = {}
 
@@ -50,13 +55,12 @@ class Slicer:
                 result.because[each.instr] = None
                 current.append(each.instr)
         number = 1
-        starting = True
         while current:
             further: list[Instr] = []
             for instr in current:
                 self._controlled(instr, number, further)
-                self._used(instr, further, starting)
-            current, number, starting = further, number + 1, False
+                self._used(instr, further, number)
+            current, number = further, number + 1
         return result
 
     def controlling(self, instr: Instr) -> list[Instr]:
@@ -105,7 +109,7 @@ class Slicer:
             for call in table.get(instr.function, ()):
                 self._enter(call, instr, "call", further)
 
-    def _used(self, instr: Instr, further: list[Instr], starting: bool) -> None:
+    def _used(self, instr: Instr, further: list[Instr], number: int) -> None:
         """What defines the values that ``instr`` uses."""
         if instr in self._raised:
             for function in self.flow.points.calls.callees.get(instr, ()):
@@ -122,7 +126,10 @@ class Slicer:
                 self._enter(here, instr, "data", further)
             for source in self.flow.sources(here):
                 self._enter(source, instr, "data", further)
-            if (starting and here is instr) or here.op in ("call", "return", "iter"):
+            if here in self._filters:
+                self.slice.distance.setdefault(here, number)
+                self.slice.nearest.setdefault(here, self.slice.nearest[instr])
+            if (number == 1 and here is instr) or here.op in ("call", "return", "iter"):
                 # What publishes is not what is published.
                 for arg in here.args[1:] if here is instr and here.op == "call" else here.args:
                     for writer in self.flow.contents(arg, here):
