@@ -31,8 +31,9 @@ class Calls:
 
     ``callees``: an instruction -> the functions that it runs. ``callers``: the reverse.
     ``outside``: an instruction -> the dotted names that it calls, each with the object whose method
-    it is. ``registered``: a function -> the calls that hand it to something outside, which may run
-    it later.
+    it is. ``given``: a call and a parameter -> the values that it gives to it, its default among
+    them where it gives none. ``registered``: a function -> the calls that hand it to something
+    outside, which may run it later.
     """
 
     def __init__(self, flow: PointsTo) -> None:
@@ -43,7 +44,7 @@ class Calls:
         self.outside: dict[Instr, dict[tuple[str, Obj | None], None]] = {}
         self.registered: dict[Function, dict[Instr, None]] = {}
         self.callbacks: dict[Instr, dict[Function, None]] = {}
-        self._given: dict[tuple[Instr, Instr], list[Instr]] = {}
+        self.given: dict[tuple[Instr, Instr], list[Instr]] = {}
         self._awaiting: dict[tuple[Instr, Instr], list[Callable[[Instr], None]]] = {}
         self._done: set[tuple[Instr, Obj]] = set()
 
@@ -135,11 +136,11 @@ class Calls:
     def when_given(self, site: Instr, param: Instr, action: Callable[[Instr], None]) -> None:
         """Call ``action`` for each value that the call ``site`` gives to ``param``."""
         self._awaiting.setdefault((site, param), []).append(action)
-        for value in list(self._given.get((site, param), ())):
+        for value in list(self.given.get((site, param), ())):
             action(value)
 
     def _give(self, site: Instr, param: Instr, value: Instr) -> None:
-        known = self._given.setdefault((site, param), [])
+        known = self.given.setdefault((site, param), [])
         if value not in known:
             known.append(value)
             for action in list(self._awaiting.get((site, param), ())):
@@ -201,7 +202,7 @@ class Calls:
                 self._collect(function.kwarg, function, value, instr, f"[{keyword!r}]")
         unpacked = any(keyword in ("*", "**") for keyword, _ in given)
         for number, param in enumerate(params):
-            if (instr, param) in self._given or number < first:
+            if (instr, param) in self.given or number < first:
                 continue
             # Its default; or what is unpacked, which all calls share.
             if unpacked or instr.op != "call":

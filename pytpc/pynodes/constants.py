@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from itertools import product
 
 from pytpc.pynodes.flow import Flow
@@ -51,6 +52,17 @@ class Constants:
         self.flow = flow
         self._known: dict[Instr, tuple[object, ...]] = {}
         self._active: set[Instr] = set()
+        self._given: dict[Instr, tuple[object, ...]] = {}
+
+    @contextmanager
+    def where(self, given: dict[Instr, tuple[object, ...]]) -> Iterator[None]:
+        """Inside, parameters are what ``given`` says."""
+        before = (self._given, self._known, self._active)
+        self._given, self._known, self._active = given, {}, set()
+        try:
+            yield
+        finally:
+            self._given, self._known, self._active = before
 
     def values(self, instr: Instr) -> tuple[object, ...]:
         """All that ``instr`` may be, ``UNKNOWN`` among it where that is not all."""
@@ -157,6 +169,8 @@ class Constants:
 
     def _sources(self, instr: Instr) -> list[object]:
         found: list[object] = []
+        if instr in self._given:
+            return list(self._given[instr])
         if instr.op == "param" and instr.function in self.flow.points.calls.registered:
             found.append(UNKNOWN)
         for origin in self.flow.origins(instr):

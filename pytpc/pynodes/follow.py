@@ -6,6 +6,7 @@ from collections import deque
 from dataclasses import dataclass, field
 
 from pytpc.pynodes.constants import DYNAMIC, Constants
+from pytpc.pynodes.contexts import Stack, moves
 from pytpc.pynodes.flow import Flow
 from pytpc.pynodes.ir import Instr, Variable
 from pytpc.pynodes.reads import Read
@@ -24,13 +25,15 @@ _LONGEST_NAME = 200
 class Fact:
     """``at`` has the value of the parameter ``name``, after ``how``.
 
-    ``before`` is the fact that it follows from, ``via`` the store or call that brought it.
+    ``before`` is the fact that it follows from, ``via`` the store or call that brought it, and
+    ``stack`` the calls by which it came into its function.
     """
 
     at: Instr
     read: Read
     name: str
     how: How
+    stack: Stack = ()
     before: Fact | None = None
     via: Instr | None = None
 
@@ -63,31 +66,36 @@ class Follower:
         self.constants = constants
         self.rules = rules
         self.facts: dict[Instr, list[Fact]] = {}
-        self.compared: dict[tuple[Instr, int, int, str], Compared] = {}
+        self.compared: dict[tuple[Instr, int, int, str, Stack], Compared] = {}
         self.lost: dict[Instr, Lost] = {}
         self._waiting: deque[Fact] = deque()
 
     def run(self, reads: list[Read]) -> None:
         """Follow all reads."""
         for read in reads:
-            self._reach(Fact(read.instr, read, read.name, How()))
+            for stack in read.stacks:
+                self._reach(Fact(read.instr, read, read.name, How(), stack))
         while self._waiting:
             self._step(self._waiting.popleft())
 
     def _reach(self, fact: Fact) -> None:
         known = self.facts.setdefault(fact.at, [])
-        alike = [each for each in known if each.read is fact.read and each.name == fact.name]
+        alike = [
+            each
+            for each in known
+            if each.read is fact.read and each.name == fact.name and each.stack == fact.stack
+        ]
         if len(alike) >= _VARIANTS or any(each.how == fact.how for each in alike):
             return
         known.append(fact)
         self._waiting.append(fact)
 
     def _on(self, fact: Fact, at: Instr, via: Instr | None, how: How | None = None) -> None:
-        self._reach(Fact(at, fact.read, fact.name, how or fact.how, fact, via))
+        self._reach(Fact(at, fact.read, fact.name, how or fact.how, fact.stack, fact, via))
 
     def _step(self, fact: Fact) -> None:
-        for to, via in self.flow.copies(fact.at):
-            self._on(fact, to, via)
+        for to, via, stack in moves(self.flow, fact.at, fact.stack):
+            self._reach(Fact(to, fact.read, fact.name, fact.how, stack, fact, via))
         for user in self.flow.users.get(fact.at, ()):
             self._use(fact, user)
 
@@ -187,7 +195,7 @@ class Follower:
         for key in dict.fromkeys(keys):
             name = f"{fact.name.rstrip('/')}/{key}" if fact.name else key
             if len(name) <= _LONGEST_NAME:
-                self._reach(Fact(user, fact.read, name, fact.how, fact, None))
+                self._reach(Fact(user, fact.read, name, fact.how, fact.stack, fact))
 
     def _call(self, fact: Fact, user: Instr) -> None:
         function = user.args[0]
@@ -250,7 +258,7 @@ class Follower:
     def _compare(self, fact: Fact, at: Instr, operand: int, *branches: Instr) -> None:
         if fact.read.is_table and not fact.name:
             return
-        key = (at, operand, id(fact.read), fact.name)
+        key = (at, operand, id(fact.read), fact.name, fact.stack)
         if key not in self.compared:
             self.compared[key] = Compared(at, operand, fact)
         predicates = self.compared[key].predicates
@@ -260,12 +268,13 @@ class Follower:
 
     def decide(self) -> None:
         """Find the predicates that each comparison's outcome decides."""
-        known: dict[Instr, list[Instr]] = {}
+        known: dict[tuple[Instr, Stack], list[Instr]] = {}
         for compared in self.compared.values():
             if compared.operand >= 0:
-                if compared.at not in known:
-                    known[compared.at] = self.predicates(compared.at)
-                compared.predicates = known[compared.at]
+                way = (compared.at, compared.fact.stack)
+                if way not in known:
+                    known[way] = self.predicates(*way)
+                compared.predicates = known[way]
             elif compared.operand == FLAG:
                 compared.predicates += [
                     branch
@@ -275,26 +284,26 @@ class Follower:
                     if branch.op == "branch" and branch not in compared.predicates
                 ]
 
-    def predicates(self, outcome: Instr) -> list[Instr]:
-        """The branches that the outcome of a comparison decides."""
-        seen = {outcome: None}
-        waiting = [outcome]
+    def predicates(self, outcome: Instr, stack: Stack = ()) -> list[Instr]:
+        """The branches that the outcome of a comparison decides, where it came by ``stack``."""
+        seen = {(outcome, stack)}
+        waiting = [(outcome, stack)]
         found: dict[Instr, None] = {}
         while waiting:
-            value = waiting.pop()
-            following = [to for to, _ in self.flow.copies(value)]
+            value, here = waiting.pop()
+            following = [(to, after) for to, _, after in moves(self.flow, value, here)]
             found.update(dict.fromkeys(self._filtering(value)))
             for user in self.flow.users.get(value, ()):
                 if user.op == "branch":
                     found[user] = None
                 elif self._passes(user, value):
-                    following.append(user)
-            for to in following:
+                    following.append((user, here))
+            for to, after in following:
                 if to.op == "branch":
                     found[to] = None
-                elif to not in seen:
-                    seen[to] = None
-                    waiting.append(to)
+                elif (to, after) not in seen:
+                    seen.add((to, after))
+                    waiting.append((to, after))
         return list(found)
 
     def _filtering(self, value: Instr) -> list[Instr]:

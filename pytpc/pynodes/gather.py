@@ -9,6 +9,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Literal
 
+from pytpc.pynodes.contexts import Stack
 from pytpc.pynodes.follow import FLAG, Compared, Fact, Follower
 from pytpc.pynodes.ir import Instr
 from pytpc.pynodes.reads import Read
@@ -18,6 +19,7 @@ RELATIONS = {
     "Lt": "<", "LtE": "<=", "Gt": ">", "GtE": ">=", "Eq": "==", "NotEq": "!=",
     "Is": "==", "IsNot": "!=", "In": "==", "NotIn": "!=",
 }  # fmt: skip
+_DEEPEST = 300
 _TURNED = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
 _NAMESPACE = bytes.fromhex("6b0f7a522c9e4d619a378f15c3405ed8")
 
@@ -114,8 +116,8 @@ class Gatherer:
         """Both ways are done."""
         self.follower = follower
         self.slice = found
-        self._kinds: dict[Instr, frozenset[str]] = {}
-        self._active: set[Instr] = set()
+        self._kinds: dict[tuple[Instr, Stack], frozenset[str]] = {}
+        self._active: set[tuple[Instr, Stack]] = set()
 
     def run(self) -> tuple[list[Found], list[Found]]:
         """The comparisons that decide something exposed, and the others."""
@@ -165,56 +167,68 @@ class Gatherer:
         What may be something measured is the threshold only where the other side is measured, too.
         """
         if compared.operand < 0:
-            return "other" in self.kinds(compared.fact.at)
-        own = self.kinds(compared.at.args[compared.operand])
+            return "other" in self.kinds(compared.fact.at, compared.fact.stack)
+        stack = compared.fact.stack
+        own = self.kinds(compared.at.args[compared.operand], stack)
         if "other" not in own:
             return False
-        other = self.kinds(compared.at.args[1 - compared.operand])
+        other = self.kinds(compared.at.args[1 - compared.operand], stack)
         return other <= {"const"} or (compared.at in both and "other" not in other)
 
-    def kinds(self, instr: Instr) -> frozenset[str]:
-        """What a value may come from: ``param``, ``const``, ``other``."""
-        if instr in self._kinds:
-            return self._kinds[instr]
-        if instr in self._active:
+    def kinds(self, instr: Instr, stack: Stack) -> frozenset[str]:
+        """What a value may come from, in a function called by ``stack``.
+
+        Returns:
+            Of ``param``, ``const`` and ``other`` those that are possible.
+        """
+        way = (instr, stack)
+        if way in self._kinds:
+            return self._kinds[way]
+        if way in self._active:
             return frozenset()
-        if len(self._active) > 300:
+        if len(self._active) > _DEEPEST:
             return frozenset({"other"})
-        self._active.add(instr)
-        kinds = self._find_kinds(instr)
-        self._active.discard(instr)
+        self._active.add(way)
+        kinds = self._find_kinds(instr, stack)
+        self._active.discard(way)
         if not self._active:
-            self._kinds[instr] = kinds
+            self._kinds[way] = kinds
         return kinds
 
-    def _find_kinds(self, instr: Instr) -> frozenset[str]:
-        if any(
-            fact.before is None or (fact.via is None and fact.before.name != fact.name)
-            for fact in self.follower.facts.get(instr, ())
-        ):
+    def _find_kinds(self, instr: Instr, stack: Stack) -> frozenset[str]:
+        facts = self.follower.facts.get(instr, ())
+        if any(fact.before is None or fact.before.name != fact.name for fact in facts):
             return frozenset({"param"})
         match instr.op:
             case "const" | "function" | "class" | "module" | "external":
                 return frozenset({"const"})
             case "binary" | "unary" | "copy":
-                return self._union(instr.args)
-            case "call" if instr in self.follower.facts and not self._is_own(instr):
-                return self._union(instr.args[1:]) or frozenset({"param"})
+                return self._union(instr.args, stack)
+            case "call" if facts and not self._is_own(instr):
+                return self._union(instr.args[1:], stack) or frozenset({"param"})
             case "build":
-                return self._union(instr.args) or frozenset({"const"})
+                return self._union(instr.args, stack) or frozenset({"const"})
+            case "param" if stack and self._given(instr, stack):
+                return self._union(self._given(instr, stack), stack[:-1])
         if instr.op == "param" and instr.function in self.follower.flow.points.calls.registered:
             return frozenset({"other"})
         origins = list(self.follower.flow.origins(instr))
         if not origins:
-            known = instr in self.follower.facts
-            return self._union(instr.args[:1]) if known else frozenset({"other"})
-        return self._union(origins)
+            return self._union(instr.args[:1], stack) if facts else frozenset({"other"})
+        own = instr.function
+        kinds: set[str] = set()
+        for origin in origins:
+            kinds |= self.kinds(origin, stack if origin.function is own else ())
+        return frozenset(kinds)
+
+    def _given(self, param: Instr, stack: Stack) -> list[Instr]:
+        return self.follower.flow.points.calls.given.get((stack[-1], param), [])
 
     def _is_own(self, instr: Instr) -> bool:
         return instr in self.follower.flow.points.calls.callees
 
-    def _union(self, values: Iterable[Instr]) -> frozenset[str]:
+    def _union(self, values: Iterable[Instr], stack: Stack) -> frozenset[str]:
         kinds: set[str] = set()
         for value in values:
-            kinds |= self.kinds(value)
+            kinds |= self.kinds(value, stack)
         return frozenset(kinds)

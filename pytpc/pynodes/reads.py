@@ -7,17 +7,23 @@ from dataclasses import dataclass
 from pytpc.link_unit import Default
 from pytpc.pynodes.calls import Calls, Given
 from pytpc.pynodes.constants import DYNAMIC, Constants
+from pytpc.pynodes.contexts import Stack
 from pytpc.pynodes.flow import Flow
 from pytpc.pynodes.ir import Function, Instr
 from pytpc.pynodes.objects import Obj
 from pytpc.pynodes.rules_file import Argument, Rules
+
+Context = tuple[Stack, dict[Instr, tuple[object, ...]]]
+_MOST_CONTEXTS = 64
+_DEEPEST = 3
 
 
 @dataclass(eq=False, slots=True)
 class Read:
     """A parameter read: ``instr`` has its value.
 
-    ``is_table``: the value has parameters as its fields (a dynamic_reconfigure config).
+    ``is_table``: the value has parameters as its fields (a dynamic_reconfigure config). ``stacks``:
+    the calls, the innermost last, through which its function reads this name.
     """
 
     name: str
@@ -26,6 +32,7 @@ class Read:
     default: Default = None
     is_table: bool = False
     type: str = ""
+    stacks: tuple[Stack, ...] = ((),)
 
 
 @dataclass(eq=False, slots=True)
@@ -71,10 +78,43 @@ def _read(
     where_name, where_default = rules.reads[path]
     name = argument(given, where_name)
     default = argument(given, where_default)
-    value = _default(constants, default)
-    kind = type(value).__name__ if value is not None else ""
     names = [DYNAMIC] if name is None else constants.names(name)
-    return [Read(each, path, instr, value, type=_TYPES.get(kind, kind)) for each in names]
+    if name is None or (len(names) == 1 and DYNAMIC not in names[0]):
+        return [_made(each, path, instr, _default(constants, default), ((),)) for each in names]
+    # The name is an argument of the function that reads: each call of it reads its own.
+    found: dict[tuple[str, Default], list[Stack]] = {}
+    for stack, known in _contexts(constants, instr.function, _DEEPEST):
+        with constants.where(known):
+            value = _default(constants, default)
+            for each in constants.names(name):
+                found.setdefault((each, value), []).append(stack)
+    return [
+        _made(each, path, instr, value, tuple(stacks)) for (each, value), stacks in found.items()
+    ]
+
+
+def _made(name: str, path: str, instr: Instr, value: Default, stacks: tuple[Stack, ...]) -> Read:
+    kind = type(value).__name__ if value is not None else ""
+    return Read(name, path, instr, value, type=_TYPES.get(kind, kind), stacks=stacks)
+
+
+def _contexts(constants: Constants, function: Function, depth: int) -> list[Context]:
+    """The ways on which ``function`` is called, and what its parameters are on each."""
+    calls = constants.flow.points.calls
+    found: list[Context] = []
+    for site in calls.callers.get(function, ()) if depth else ():
+        for stack, known in _contexts(constants, site.function, depth - 1):
+            with constants.where(known):
+                values = {
+                    param: tuple(
+                        each
+                        for value in calls.given.get((site, param), ())
+                        for each in constants.values(value)
+                    )
+                    for param in function.param_instrs
+                }
+            found.append(((*stack, site), {key: each for key, each in values.items() if each}))
+    return found if 0 < len(found) <= _MOST_CONTEXTS else [((), {})]
 
 
 _TYPES = {"str": "string", "float": "double"}
