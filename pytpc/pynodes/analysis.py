@@ -136,6 +136,7 @@ class Writer:
             outside_sources=0,
             lost_values=len(self.all.follower.lost),
             not_instrumented=0,
+            given_up=len(self.all.flow.points.given_up),
             not_exposed=others,
             blind_spots=spots,
         )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
+from collections.abc import Hashable, Iterable
 from dataclasses import dataclass, field
 
 from pytpc.pynodes.ir import ClassInfo, Function, Instr, Module
@@ -11,7 +11,9 @@ EVERY = "[+]"
 """The slot that stands for all elements of a container, where one is read by an unknown key."""
 SOME = "[*]"
 """The slot of the elements at unknown keys."""
-_DEEPEST = 4
+OTHER = "<other>"
+"""The dotted name of what no rule is about."""
+_DEEPEST = 2
 
 
 @dataclass(eq=False, slots=True)
@@ -57,9 +59,13 @@ Field = tuple[Obj, str]
 class Heap:
     """Makes abstract objects, each once."""
 
-    def __init__(self) -> None:
-        """Nothing is made yet."""
+    def __init__(self, paths: Iterable[str]) -> None:
+        """``paths`` are the dotted names that the rules are about."""
         self._known: dict[Hashable, Obj] = {}
+        self._about = {"collections.namedtuple"}
+        for path in paths:
+            parts = path.split(".")
+            self._about.update(".".join(parts[:end]) for end in range(1, len(parts) + 1))
 
     def _get(
         self,
@@ -100,7 +106,7 @@ class Heap:
 
     def made(self, path: str, site: Instr) -> Obj:
         """What something outside the sources gives when it is called at ``site``."""
-        return self._get("made", path, site=site)
+        return self._get("made", path if path in self._about else OTHER, site=site)
 
     def container(self, kind: str, site: Instr) -> Obj:
         """A list, tuple, set or dict."""
@@ -121,7 +127,10 @@ class Heap:
             depth, above = depth + 1, above.parent
         if depth >= _DEEPEST:
             return owner
-        found = self._get("part", f"{path}.{name}", parent=owner)
+        full = f"{path}.{name}"
+        if full not in self._about and owner.kind != "container":
+            full = f"{OTHER}.{name}"
+        found = self._get("part", full, parent=owner)
         owner.parts[name] = found
         return found
 

@@ -17,6 +17,7 @@ from pytpc.pynodes.objects import EVERY, SOME, Field, Heap, Obj, element
 from pytpc.pynodes.program import Program
 from pytpc.pynodes.rules_file import Rules
 
+_MOST = 64
 Node = Hashable
 """An Instr, a Variable, or a Field."""
 
@@ -32,7 +33,8 @@ class PointsTo:
         """Solve all constraints of ``program``."""
         self.program = program
         self.rules = rules
-        self.heap = Heap()
+        self.heap = Heap(rules.paths)
+        self.given_up: set[Node] = set()
         self.succ: dict[Node, dict[Node, None]] = {}
         self.pred: dict[Node, dict[Node, None]] = {}
         self.writers: dict[Field, dict[Instr, None]] = {}
@@ -95,6 +97,10 @@ class PointsTo:
         """``node`` may be each of ``found``."""
         known = self._objects.setdefault(node, {})
         new = [each for each in found if each not in known]
+        if len(known) > _MOST and new:
+            # Too many to tell apart: what is outside the sources counts no more.
+            self.given_up.add(node)
+            new = [each for each in new if each.kind not in ("made", "part")]
         if new:
             known.update(dict.fromkeys(new))
             self._waiting.append((node, new))

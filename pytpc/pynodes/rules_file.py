@@ -53,6 +53,13 @@ class Rules:
     outcomes: set[str] = field(default_factory=set)
     filters: set[str] = field(default_factory=set)
 
+    @property
+    def paths(self) -> list[str]:
+        """All dotted names that the tables are about."""
+        tables = (self.reads, self.topics, self.makes, self.configs, self.services)
+        named = [name for table in tables for name in table]
+        return [*named, *self.exposing, *self.makes.values()]
+
     def class_of(self, path: str) -> str:
         """The class of what calling ``path`` gives, by the one name that the rules use."""
         return self.makes.get(path, path)
