@@ -23,6 +23,7 @@ _COPYING = {
     for name in ("list", "tuple", "set", "sorted", "reversed", "iter", "dict", "frozenset")
 } | {"copy.copy", "copy.deepcopy", "collections.deque", "collections.OrderedDict"}
 _CHOOSING = {f"builtins.{name}" for name in ("any", "all", "sum", "min", "max", "next")}
+_FEW = 16
 _RUNNING = {"target", "args", "kwargs", "callback_args", "function"}
 
 
@@ -317,7 +318,7 @@ class Calls:
         if source is to:
             return
         flow = self.flow
-        for slot in [*source.slots]:
+        for slot in [*source.slots] if len(source.slots) < _FEW else ():
             if slot != EVERY:
                 flow.write(to, slot, (source, slot), instr)
         if source.kind in ("instance", "made"):

@@ -17,7 +17,11 @@ from pytpc.pynodes.objects import EVERY, SOME, Field, Heap, Obj, element
 from pytpc.pynodes.program import Program
 from pytpc.pynodes.rules_file import Rules
 
-_MOST = 64
+_MOST = 32
+"""With more objects than this, a value's containers and library objects count no more."""
+_STEPS = 20
+_LEAST_STEPS = 100_000
+"""For each instruction, and in any case: how many steps the analysis may take."""
 Node = Hashable
 """An Instr, a Variable, or a Field."""
 
@@ -44,6 +48,7 @@ class PointsTo:
         self._waiting: deque[tuple[Node, list[Obj]]] = deque()
         self._when: dict[Node, list[Callable[[Obj], None]]] = {}
         self._frozen: dict[ClassInfo, list[ClassInfo | str]] = {}
+        self._left = self._left_late = _LEAST_STEPS + _STEPS * len(program.instructions())
         self._always: dict[ClassInfo, set[str]] = {}
         self.bases: dict[ClassInfo, dict[Obj, None]] = {}
         self.class_names: dict[ClassInfo, dict[str, None]] = {}
@@ -97,10 +102,12 @@ class PointsTo:
         """``node`` may be each of ``found``."""
         known = self._objects.setdefault(node, {})
         new = [each for each in found if each not in known]
-        if len(known) > _MOST and new:
-            # Too many to tell apart: what is outside the sources counts no more.
+        self._left -= 1
+        if new and (len(known) > _MOST or self._left < 0):
+            # Too many to tell apart: what only holds or brings others counts no more.
             self.given_up.add(node)
-            new = [each for each in new if each.kind not in ("made", "part")]
+            kept = () if self._left < -self._left_late else ("instance", "function", "method")
+            new = [each for each in new if each.kind in kept]
         if new:
             known.update(dict.fromkeys(new))
             self._waiting.append((node, new))
@@ -129,6 +136,8 @@ class PointsTo:
 
     def slot(self, owner: Obj, name: str) -> Field:
         """The field, known from now on."""
+        if name not in owner.slots and len(owner.slots) > _MOST and name.startswith("["):
+            name = EVERY if name == EVERY else SOME
         target = (owner, name)
         if name not in owner.slots:
             owner.slots[name] = None
