@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from pytpc.pynodes.call_table import CallTable, Given
 from pytpc.pynodes.ir import ANY, ClassInfo, Function, Instr, Shape
 from pytpc.pynodes.objects import EVERY, SOME, Obj
 
 if TYPE_CHECKING:
     from pytpc.pynodes.pointsto import PointsTo
-
-Given = tuple[str | None, Instr]
-"""An argument: its keyword (``*``, ``**``: unpacked; None: positional) and its value."""
 
 _SYNCHRONOUS = ("builtins.", "functools.", "itertools.", "numpy.")
 _PUTTING = {"append", "appendleft", "add", "insert", "put", "put_nowait", "setdefault", "push"}
@@ -27,34 +24,14 @@ _FEW = 16
 _RUNNING = {"target", "args", "kwargs", "callback_args", "function"}
 
 
-class Calls:
-    """Who calls whom.
-
-    ``callees``: an instruction -> the functions that it runs. ``callers``: the reverse.
-    ``outside``: an instruction -> the dotted names that it calls, each with the object whose method
-    it is. ``given``: a call and a parameter -> the values that it gives to it, its default among
-    them where it gives none. ``registered``: a function -> the calls that hand it to something
-    outside, which may run it later.
-    """
+class Calls(CallTable):
+    """Adds to the table what calls do."""
 
     def __init__(self, flow: PointsTo) -> None:
         """Nothing is called yet."""
+        super().__init__()
         self.flow = flow
-        self.callees: dict[Instr, dict[Function, None]] = {}
-        self.callers: dict[Function, dict[Instr, None]] = {}
-        self.outside: dict[Instr, dict[tuple[str, Obj | None], None]] = {}
-        self.registered: dict[Function, dict[Instr, None]] = {}
-        self.callbacks: dict[Instr, dict[Function, None]] = {}
-        self.given: dict[tuple[Instr, Instr], list[Instr]] = {}
-        self._awaiting: dict[tuple[Instr, Instr], list[Callable[[Instr], None]]] = {}
         self._done: set[tuple[Instr, Obj]] = set()
-
-    @staticmethod
-    def arguments(instr: Instr) -> list[Given]:
-        """The arguments of a call as they are written."""
-        shape = instr.data
-        names = shape.names if isinstance(shape, Shape) else ()
-        return list(zip(names, instr.args[1:], strict=True))
 
     def call(self, instr: Instr, callee: Obj) -> None:
         """``instr`` calls ``callee``."""
@@ -134,19 +111,6 @@ class Calls:
             if name in names:
                 self.flow.write(made, f"[{names.index(name)}]", value, instr)
 
-    def when_given(self, site: Instr, param: Instr, action: Callable[[Instr], None]) -> None:
-        """Call ``action`` for each value that the call ``site`` gives to ``param``."""
-        self._awaiting.setdefault((site, param), []).append(action)
-        for value in list(self.given.get((site, param), ())):
-            action(value)
-
-    def _give(self, site: Instr, param: Instr, value: Instr) -> None:
-        known = self.given.setdefault((site, param), [])
-        if value not in known:
-            known.append(value)
-            for action in list(self._awaiting.get((site, param), ())):
-                action(value)
-
     # Calls of functions of the sources
 
     def _link(
@@ -186,7 +150,7 @@ class Calls:
         for keyword, value in given:
             if keyword is None and place < last:
                 flow.copy(value, params[place])
-                self._give(instr, params[place], value)
+                self.give(instr, params[place], value)
                 place += 1
             elif keyword is None:
                 self._collect(function.vararg, function, value, instr, SOME)
@@ -198,7 +162,7 @@ class Calls:
                 self._unpack_names(value, function, first)
             elif keyword in names:
                 flow.copy(value, params[names[keyword]])
-                self._give(instr, params[names[keyword]], value)
+                self.give(instr, params[names[keyword]], value)
             else:
                 self._collect(function.kwarg, function, value, instr, f"[{keyword!r}]")
         unpacked = any(keyword in ("*", "**") for keyword, _ in given)
@@ -207,9 +171,9 @@ class Calls:
                 continue
             # Its default; or what is unpacked, which all calls share.
             if unpacked or instr.op != "call":
-                self._give(instr, param, param)
+                self.give(instr, param, param)
             for default in flow.defaults.get(param, ()):
-                self._give(instr, param, default)
+                self.give(instr, param, default)
 
     def _collect(
         self, place: int | None, function: Function, value: Instr, instr: Instr, slot: str

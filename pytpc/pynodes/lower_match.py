@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 from pytpc.pynodes.ir import Block, Instr
 
 if TYPE_CHECKING:
-    from pytpc.pynodes.lower import Lowering
+    from pytpc.pynodes.lower_statements import StatementLowering
 
 
-def lower_match(lowering: Lowering, node: ast.Match) -> None:
+def lower_match(lowering: StatementLowering, node: ast.Match) -> None:
     """Lower the cases in their order."""
     subject = lowering.value(node.subject)
     after = lowering.new_block()
@@ -29,7 +29,7 @@ def lower_match(lowering: Lowering, node: ast.Match) -> None:
     lowering.block = after
 
 
-def _pattern(lowering: Lowering, pattern: ast.pattern, subject: Instr, no: Block) -> None:
+def _pattern(lowering: StatementLowering, pattern: ast.pattern, subject: Instr, no: Block) -> None:
     """Test and bind; go on in the current block where it matches, at ``no`` where it does not."""
     match pattern:
         case ast.MatchValue(value=value):
@@ -67,7 +67,9 @@ def _pattern(lowering: Lowering, pattern: ast.pattern, subject: Instr, no: Block
             _class(lowering, pattern, subject, no)
 
 
-def _either(lowering: Lowering, patterns: list[ast.pattern], subject: Instr, no: Block) -> None:
+def _either(
+    lowering: StatementLowering, patterns: list[ast.pattern], subject: Instr, no: Block
+) -> None:
     matched = lowering.new_block()
     for pattern in patterns:
         other = no if pattern is patterns[-1] else lowering.new_block()
@@ -77,7 +79,9 @@ def _either(lowering: Lowering, patterns: list[ast.pattern], subject: Instr, no:
     lowering.block = matched
 
 
-def _elements(lowering: Lowering, patterns: list[ast.pattern], subject: Instr, no: Block) -> None:
+def _elements(
+    lowering: StatementLowering, patterns: list[ast.pattern], subject: Instr, no: Block
+) -> None:
     starred = any(isinstance(pattern, ast.MatchStar) for pattern in patterns)
     for index, pattern in enumerate(patterns):
         if starred:
@@ -89,7 +93,7 @@ def _elements(lowering: Lowering, patterns: list[ast.pattern], subject: Instr, n
         _pattern(lowering, pattern, element, no)
 
 
-def _class(lowering: Lowering, pattern: ast.MatchClass, subject: Instr, no: Block) -> None:
+def _class(lowering: StatementLowering, pattern: ast.MatchClass, subject: Instr, no: Block) -> None:
     lowering.value(pattern.cls)
     _test(lowering, pattern, subject, no)
     for index, inner in enumerate(pattern.patterns):
@@ -99,13 +103,13 @@ def _class(lowering: Lowering, pattern: ast.MatchClass, subject: Instr, no: Bloc
         _pattern(lowering, inner, lowering.emit("attr", inner, subject, data=name), no)
 
 
-def _test(lowering: Lowering, pattern: ast.pattern, subject: Instr, no: Block) -> None:
+def _test(lowering: StatementLowering, pattern: ast.pattern, subject: Instr, no: Block) -> None:
     """What a pattern asks of the subject itself decides as a ``switch`` does."""
     outcome = lowering.emit("match", pattern, subject)
     _go_on(lowering, outcome, pattern, no)
 
 
-def _go_on(lowering: Lowering, outcome: Instr, pattern: ast.pattern, no: Block) -> None:
+def _go_on(lowering: StatementLowering, outcome: Instr, pattern: ast.pattern, no: Block) -> None:
     yes = lowering.new_block()
     lowering.branch(outcome, pattern, yes, no)
     lowering.block = yes

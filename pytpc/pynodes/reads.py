@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from pytpc.link_unit import Default
-from pytpc.pynodes.calls import Calls, Given
+from pytpc.pynodes.call_table import CallTable, Given
 from pytpc.pynodes.constants import DYNAMIC, Constants
 from pytpc.pynodes.contexts import Stack
 from pytpc.pynodes.flow import Flow
@@ -63,7 +63,7 @@ def find_reads(flow: Flow, constants: Constants, rules: Rules) -> list[Read]:
     """All reads, in the order of the program; one for each name that a call may read."""
     found: list[Read] = []
     for instr, paths in flow.points.calls.outside.items():
-        given = Calls.arguments(instr)
+        given = CallTable.arguments(instr)
         for path, _ in paths:
             if path in rules.reads:
                 found += _read(instr, path, given, constants, rules)
@@ -179,7 +179,7 @@ def _answers(
     flow: Flow, instr: Instr, path: str, constants: Constants, rules: Rules
 ) -> list[Exposed]:
     """What a service's handler returns."""
-    callback = argument(Calls.arguments(instr), rules.services[path])
+    callback = argument(CallTable.arguments(instr), rules.services[path])
     topic = _topic_of(instr, path, constants, rules)
     found = []
     for each in flow.points.of(callback) if callback is not None else ():
@@ -204,6 +204,6 @@ def _topic(owner: Obj | None, constants: Constants, rules: Rules) -> str | None:
 
 def _topic_of(instr: Instr, path: str, constants: Constants, rules: Rules) -> str | None:
     names = [each for each in (path, rules.class_of(path)) if each in rules.topics]
-    name = argument(Calls.arguments(instr), rules.topics[names[0]]) if names else None
+    name = argument(CallTable.arguments(instr), rules.topics[names[0]]) if names else None
     values = constants.names(name) if name is not None else []
     return values[0] if len(values) == 1 and DYNAMIC not in values[0] else None
