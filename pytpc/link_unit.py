@@ -130,7 +130,10 @@ class BlindSpot:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """One threshold predicate comparison; the fields are those of docs/formats.md."""
+    """One threshold predicate comparison; the fields are those of docs/formats.md.
+
+    The last three are known of Python alone.
+    """
 
     key: str
     type: Literal["parameter", "flag", "derived", "constant"]
@@ -152,20 +155,24 @@ class Comparison:
     read_at: Place | None
     exposed_at: Place
     path: tuple[PathStep, ...] = ()
+    end_lineno: int | None = None
+    end_column: int | None = None
+    operand: Literal["left", "right"] | None = None
 
     def to_json(self) -> dict[str, Any]:
         """The comparison as the JSON object of docs/formats.md."""
-        return _fields(self)
+        return _without_unknown(_fields(self))
 
 
 @dataclass(frozen=True, slots=True)
 class Tool:
-    """What made the file."""
+    """What made the file; ``analysis`` is ``python`` where Python was analysed (no ``llvm``)."""
 
     name: str
     version: str
     llvm: str
     profile: str
+    analysis: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -268,10 +275,22 @@ def _fields(value: DataclassInstance) -> dict[str, object]:
     return {field.name: _plain(getattr(value, field.name)) for field in fields(value)}
 
 
+_OPTIONAL = ("analysis", "end_lineno", "end_column", "operand")
+
+
+def _without_unknown(found: dict[str, object]) -> dict[str, object]:
+    """Fields that only one half of TPC writes are left out by the other."""
+    return {
+        name: value for name, value in found.items() if name not in _OPTIONAL or value is not None
+    }
+
+
 def _plain(value: object) -> object:
     """Dataclasses as dicts and tuples as lists; of a transform what its kind has."""
     if isinstance(value, Transform):
         return value.to_json()
+    if isinstance(value, Tool | Comparison):
+        return _without_unknown(_fields(value))
     if is_dataclass(value) and not isinstance(value, type):
         return _fields(value)
     if isinstance(value, tuple):

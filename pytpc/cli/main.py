@@ -14,6 +14,7 @@ INTERRUPTED = 130
 # Where each command is and what the list of commands says of it: what draws, builds or reads bags
 # takes a second to import, which asking for help, or another command, must not wait for.
 SUMMARIES = {
+    "analyse": ("python_commands", "Find the comparisons of Python nodes."),
     "apply": ("value_commands", "Write a value into the file that set it, or onto the robot."),
     "blind-spots": ("explain_commands", "List the places behind which the analysis does not see."),
     "build": ("workspace_commands", "Build a workspace with analysis and instrumentation."),

@@ -1,0 +1,234 @@
+"""The threshold predicate comparisons: what the two ways, forward and backward, agree on."""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+import uuid
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Literal
+
+from pytpc.pynodes.contexts import Stack
+from pytpc.pynodes.follow import FLAG, Compared, Fact, Follower
+from pytpc.pynodes.ir import Instr
+from pytpc.pynodes.reads import Read
+from pytpc.pynodes.slicing import Slice
+
+RELATIONS = {
+    "Lt": "<", "LtE": "<=", "Gt": ">", "GtE": ">=", "Eq": "==", "NotEq": "!=",
+    "Is": "==", "IsNot": "!=", "In": "==", "NotIn": "!=",
+}  # fmt: skip
+_DEEPEST = 300
+_TURNED = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
+_NAMESPACE = bytes.fromhex("6b0f7a522c9e4d619a378f15c3405ed8")
+
+
+Span = tuple[tuple[int, int], tuple[int, int]]
+"""Line and column of the first character and of the one behind the last, from 1."""
+
+
+@dataclass
+class Found:
+    """A comparison with one parameter: at one place of the source, for all its copies in blocks.
+
+    Of one with a constant ``parameter`` is its name, and there are no ``facts``.
+    """
+
+    at: Instr
+    operand: int
+    parameter: str
+    facts: list[Fact]
+    predicates: dict[Instr, None] = field(default_factory=dict)
+    distance: int = 0
+    predicate: Instr | None = None
+
+    @property
+    def span(self) -> Span:
+        """Where it stands."""
+        return span_of(self.at, self.operand)
+
+    @property
+    def reads(self) -> list[Read]:
+        """The reads that give it its value."""
+        return list(dict.fromkeys(fact.read for fact in self.facts))
+
+    @property
+    def relation(self) -> str:
+        """The operator, with the threshold on the right-hand side."""
+        if self.operand < 0:
+            return "flag" if self.operand == FLAG else "<"
+        sign = RELATIONS[str(self.at.data)]
+        return _TURNED.get(sign, sign) if self.operand == 0 else sign
+
+    @property
+    def type(self) -> Literal["parameter", "flag", "derived", "constant"]:
+        """As in the schema."""
+        if not self.facts:
+            return "constant"
+        if not self.facts[0].how.plain:
+            return "derived"
+        return "flag" if self.operand == FLAG else "parameter"
+
+
+def position(instr: Instr) -> tuple[int, int]:
+    """Line and column from 1; 0 where there is none."""
+    return _start(instr.node)
+
+
+def end_position(instr: Instr) -> tuple[int, int]:
+    """Line and column behind the last character, from 1."""
+    return _end(instr.node)
+
+
+def span_of(at: Instr, operand: int) -> Span:
+    """Where the comparison ``at`` (or a flag) begins and ends.
+
+    The first link of a chain begins where the chain does (with the parentheses around its left
+    operand), the others at their left operand. A value pattern is the whole comparison.
+    """
+    node = at.node
+    if operand < 0 or not isinstance(node, ast.Compare):
+        return _start(node), _end(node)
+    first = at.args[0].node is node.left
+    last = at.args[1].node is node.comparators[-1]
+    return _start(node if first else at.args[0].node), _end(node if last else at.args[1].node)
+
+
+def _start(node: ast.AST) -> tuple[int, int]:
+    return getattr(node, "lineno", 0), getattr(node, "col_offset", -1) + 1
+
+
+def _end(node: ast.AST) -> tuple[int, int]:
+    return getattr(node, "end_lineno", 0), getattr(node, "end_col_offset", -1) + 1
+
+
+def key_of(parts: list[str]) -> uuid.UUID:
+    """The key of a comparison: a UUID of version 5, as the passes make it."""
+    digest = hashlib.sha1(_NAMESPACE + "\n".join(parts).encode(), usedforsecurity=False).digest()
+    return uuid.UUID(bytes=digest[:16], version=5)
+
+
+class Gatherer:
+    """Joins comparisons of one place, and drops those that are none of a parameter."""
+
+    def __init__(self, follower: Follower, found: Slice) -> None:
+        """Both ways are done."""
+        self.follower = follower
+        self.slice = found
+        self._kinds: dict[tuple[Instr, Stack], frozenset[str]] = {}
+        self._active: set[tuple[Instr, Stack]] = set()
+
+    def run(self) -> tuple[list[Found], list[Found]]:
+        """The comparisons that decide something exposed, and the others."""
+        joined: dict[tuple[object, ...], Found] = {}
+        both = {each.at for each in self._exposed() if each.operand == 0} & {
+            each.at for each in self._exposed() if each.operand == 1
+        }
+        for compared in self.follower.compared.values():
+            if self._is_measured(compared, both):
+                continue
+            key = (
+                compared.at.function.module,
+                span_of(compared.at, compared.operand),
+                compared.operand, compared.fact.name,
+            )  # fmt: skip
+            if key not in joined:
+                joined[key] = Found(compared.at, compared.operand, compared.fact.name, [])
+            joined[key].facts.append(compared.fact)
+            joined[key].predicates.update(dict.fromkeys(compared.predicates))
+        exposed: list[Found] = []
+        others: list[Found] = []
+        for found in joined.values():
+            found.facts.sort(key=lambda fact: (not fact.how.plain, fact.how.inner is not None))
+            (exposed if self._nearest(found) else others).append(found)
+        return exposed, others
+
+    def _exposed(self) -> list[Compared]:
+        distance = self.slice.distance
+        return [
+            each
+            for each in self.follower.compared.values()
+            if any(predicate in distance for predicate in each.predicates)
+        ]
+
+    def _nearest(self, found: Found) -> bool:
+        distance = self.slice.distance
+        near = [predicate for predicate in found.predicates if predicate in distance]
+        if not near:
+            return False
+        found.predicate = min(near, key=lambda each: (distance[each], each.number))
+        found.distance = distance[found.predicate]
+        return True
+
+    def _is_measured(self, compared: Compared, both: set[Instr]) -> bool:
+        """True where the parameter is only one of the things that the operand may be.
+
+        What may be something measured is the threshold only where the other side is measured, too.
+        """
+        if compared.operand < 0:
+            return "other" in self.kinds(compared.fact.at, compared.fact.stack)
+        stack = compared.fact.stack
+        own = self.kinds(compared.at.args[compared.operand], stack)
+        if "other" not in own:
+            return False
+        other = self.kinds(compared.at.args[1 - compared.operand], stack)
+        return other <= {"const"} or (compared.at in both and "other" not in other)
+
+    def kinds(self, instr: Instr, stack: Stack) -> frozenset[str]:
+        """What a value may come from, in a function called by ``stack``.
+
+        Returns:
+            Of ``param``, ``const`` and ``other`` those that are possible.
+        """
+        way = (instr, stack)
+        if way in self._kinds:
+            return self._kinds[way]
+        if way in self._active:
+            return frozenset()
+        if len(self._active) > _DEEPEST:
+            return frozenset({"other"})
+        self._active.add(way)
+        kinds = self._find_kinds(instr, stack)
+        self._active.discard(way)
+        if not self._active:
+            self._kinds[way] = kinds
+        return kinds
+
+    def _find_kinds(self, instr: Instr, stack: Stack) -> frozenset[str]:
+        facts = self.follower.facts.get(instr, ())
+        if any(fact.before is None or fact.before.name != fact.name for fact in facts):
+            return frozenset({"param"})
+        match instr.op:
+            case "const" | "function" | "class" | "module" | "external":
+                return frozenset({"const"})
+            case "binary" | "unary" | "copy":
+                return self._union(instr.args, stack)
+            case "call" if facts and not self._is_own(instr):
+                return self._union(instr.args[1:], stack) or frozenset({"param"})
+            case "build":
+                return self._union(instr.args, stack) or frozenset({"const"})
+            case "param" if stack and self._given(instr, stack):
+                return self._union(self._given(instr, stack), stack[:-1])
+        if instr.op == "param" and instr.function in self.follower.flow.points.calls.registered:
+            return frozenset({"other"})
+        origins = list(self.follower.flow.origins(instr))
+        if not origins:
+            return self._union(instr.args[:1], stack) if facts else frozenset({"other"})
+        own = instr.function
+        kinds: set[str] = set()
+        for origin in origins:
+            kinds |= self.kinds(origin, stack if origin.function is own else ())
+        return frozenset(kinds)
+
+    def _given(self, param: Instr, stack: Stack) -> list[Instr]:
+        return self.follower.flow.points.calls.given.get((stack[-1], param), [])
+
+    def _is_own(self, instr: Instr) -> bool:
+        return instr in self.follower.flow.points.calls.callees
+
+    def _union(self, values: Iterable[Instr], stack: Stack) -> frozenset[str]:
+        kinds: set[str] = set()
+        for value in values:
+            kinds |= self.kinds(value, stack)
+        return frozenset(kinds)

@@ -1,0 +1,200 @@
+"""A Python function as blocks of instructions: what the analyses of this room work on.
+
+Every subexpression is one instruction and stands for its own value. Conditions are branches at the
+end of a block, one for each operand of ``and``, ``or`` and ``not`` and each link of a chain.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+
+@dataclass(eq=False, slots=True)
+class Variable:
+    """A name of a function (or of a module, whose body is a function).
+
+    ``shared``: another function than ``owner`` uses it.
+    """
+
+    name: str
+    owner: Function
+    shared: bool = False
+
+    def __repr__(self) -> str:
+        """For people who debug."""
+        return f"{self.owner.qualname}:{self.name}"
+
+
+@dataclass(eq=False, slots=True)
+class Instr:
+    """One instruction; ``args`` are the instructions whose values it uses.
+
+    ``op`` and what ``data`` is:
+
+    ========  =======================================================================
+    const     the value
+    external  dotted name of something outside the sources
+    module    a ``Module`` of the sources
+    param     number of the parameter in ``Function.parameters``
+    load      a ``Variable``
+    store     a ``Variable``; args: value
+    attr      attribute's name; args: object
+    setattr   attribute's name; args: object, value
+    item      args: object, key
+    setitem   args: object, key, value
+    call      a ``Shape``; args: function, arguments
+    binary    name of the operator's class in ``ast``; args: two
+    unary     the same; args: one
+    compare   the same; args: two
+    build     ``list``, ``tuple``, ``set``, ``dict`` (args: keys and values in turn) or ``text``
+    function  a ``Function``; args: defaults
+    class     a ``ClassInfo``; args: bases
+    iter      args: what is iterated over
+    next      args: the ``iter``
+    more      args: the ``iter``; true while there is a next one
+    match     what of the pattern is tested, without a value; args: subject
+    branch    None; args: the condition. Last of its block: successors are true, false
+    dispatch  at the end of a ``finally``; args: how it was come to. Last of its block
+    return    args: value
+    yield     args: value
+    raise     name of the class, where one stands there; args: what there is
+    copy      args: a value that is handed on (``await``, a star)
+    ========  =======================================================================
+    """
+
+    op: str
+    args: tuple[Instr, ...]
+    data: object
+    node: ast.AST
+    block: Block
+    number: int
+
+    def __repr__(self) -> str:
+        """For people who debug."""
+        return f"%{self.number}:{self.op}@{getattr(self.node, 'lineno', 0)}"
+
+    @property
+    def function(self) -> Function:
+        """The function that it is in."""
+        return self.block.function
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """How the arguments of a call stand: keywords by name, ``*`` and ``**`` for unpacked ones.
+
+    ``names`` has one entry for each argument: None for a positional one. ``decorates``: the call
+    of a decorator.
+    """
+
+    names: tuple[str | None, ...]
+    decorates: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Handler:
+    """An ``except``; ``names`` are the classes that it names, None where it takes all."""
+
+    block: Block
+    names: tuple[str, ...] | None
+
+
+@dataclass(eq=False, slots=True)
+class Block:
+    """Instructions that run one after another.
+
+    ``handlers`` are where an exception in it may go on, the innermost first;
+    ``opened`` is, for the first block of a handler, the block in which its ``try`` begins.
+    """
+
+    function: Function
+    number: int
+    instrs: list[Instr] = field(default_factory=list)
+    successors: list[Block] = field(default_factory=list)
+    handlers: tuple[Handler, ...] = ()
+    opened: Block | None = None
+
+    def __repr__(self) -> str:
+        """For people who debug."""
+        return f"{self.function.qualname}#{self.number}"
+
+
+@dataclass(eq=False, slots=True)
+class Function:
+    """A function, a lambda, or the body of a module (``<module>``).
+
+    ``defaults``: the number of a parameter -> that of its default among the defaults.
+    ``conditions``: an expression -> the whole condition that it is an operand of.
+    """
+
+    qualname: str
+    module: Module
+    node: ast.AST
+    parameters: list[Variable] = field(default_factory=list)
+    param_instrs: list[Instr] = field(default_factory=list)
+    defaults: dict[int, int] = field(default_factory=dict)
+    vararg: int | None = None
+    kwarg: int | None = None
+    keyword_only: int | None = None
+    blocks: list[Block] = field(default_factory=list)
+    exit: Block | None = None
+    variables: dict[str, Variable] = field(default_factory=dict)
+    owner: ClassInfo | None = None
+    decorators: tuple[str, ...] = ()
+    is_generator: bool = False
+    conditions: dict[ast.AST, ast.AST] = field(default_factory=dict)
+
+    def instructions(self) -> Iterator[Instr]:
+        """All of them, block by block."""
+        for block in self.blocks:
+            yield from block.instrs
+
+    def __repr__(self) -> str:
+        """For people who debug."""
+        return self.qualname
+
+
+@dataclass(eq=False, slots=True)
+class ClassInfo:
+    """A class of the sources; ``fields`` are its annotated names in order (dataclasses)."""
+
+    qualname: str
+    module: Module
+    node: ast.ClassDef
+    fields: list[str] = field(default_factory=list)
+    is_record: bool = False
+
+    def __repr__(self) -> str:
+        """For people who debug."""
+        return self.qualname
+
+
+@dataclass(eq=False, slots=True)
+class Module:
+    """A source file; ``names`` are the dotted names under which it is imported."""
+
+    name: str
+    path: str
+    source: str
+    tree: ast.Module
+    is_package: bool = False
+    body: Function | None = None
+    functions: list[Function] = field(default_factory=list)
+    classes: list[ClassInfo] = field(default_factory=list)
+
+    def __repr__(self) -> str:
+        """For people who debug."""
+        return self.name
+
+
+class _Any:
+    """A key that is not known."""
+
+    def __repr__(self) -> str:
+        """For people who debug."""
+        return "<any>"
+
+
+ANY = _Any()

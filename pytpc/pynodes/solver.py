@@ -1,0 +1,104 @@
+"""The solver of the points-to analysis: objects spread over copies until nothing changes."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Hashable, Iterable
+
+from pytpc.pynodes.ir import ANY, Instr
+from pytpc.pynodes.objects import EVERY, SOME, Field, Obj, element
+
+Node = Hashable
+"""An Instr, a Variable, or a Field."""
+_MOST = 32
+"""With more objects than this, a value's containers and library objects count no more."""
+
+
+class Solver:
+    """The objects of each value, and the ways on which values are copied.
+
+    ``succ`` and ``pred``: from an Instr, Variable or Field to those that may have its value.
+    ``writers``: the instructions that write a field. ``given_up``: values of which not all objects
+    are known, because there were too many, or too many steps.
+    """
+
+    def __init__(self, steps: int) -> None:
+        """After ``steps`` only own objects and functions are followed, after twice as many none."""
+        self.given_up: set[Node] = set()
+        self.succ: dict[Node, dict[Node, None]] = {}
+        self.pred: dict[Node, dict[Node, None]] = {}
+        self.writers: dict[Field, dict[Instr, None]] = {}
+        self._unbound: set[tuple[Node, Node]] = set()
+        self._objects: dict[Node, dict[Obj, None]] = {}
+        self._waiting: deque[tuple[Node, list[Obj]]] = deque()
+        self._when: dict[Node, list[Callable[[Obj], None]]] = {}
+        self._left = self._left_late = steps
+
+    def of(self, node: Node) -> Iterable[Obj]:
+        """The objects that a value may be, in a fixed order."""
+        return self._objects.get(node, {}).keys()
+
+    def add(self, node: Node, found: Iterable[Obj]) -> None:
+        """``node`` may be each of ``found``."""
+        known = self._objects.setdefault(node, {})
+        new = [each for each in found if each not in known]
+        self._left -= 1
+        if new and (len(known) > _MOST or self._left < 0):
+            # Too many to tell apart: what only holds or brings others counts no more.
+            self.given_up.add(node)
+            kept = () if self._left < -self._left_late else ("instance", "function", "method")
+            new = [each for each in new if each.kind in kept]
+        if new:
+            known.update(dict.fromkeys(new))
+            self._waiting.append((node, new))
+
+    def copy(self, source: Node, to: Node) -> None:
+        """``to`` may be what ``source`` is."""
+        known = self.succ.setdefault(source, {})
+        if source is to or to in known:
+            return
+        known[to] = None
+        self.pred.setdefault(to, {})[source] = None
+        if source in self._objects and (source, to) not in self._unbound:
+            self.add(to, list(self._objects[source]))
+
+    def when(self, node: Node, action: Callable[[Obj], None]) -> None:
+        """Call ``action`` for each object that ``node`` may be, now and later."""
+        self._when.setdefault(node, []).append(action)
+        for found in list(self._objects.get(node, {})):
+            action(found)
+
+    def write(self, owner: Obj, slot: str, value: Node, writer: Instr) -> None:
+        """``writer`` stores ``value``."""
+        target = self.slot(owner, slot)
+        self.writers.setdefault(target, {})[writer] = None
+        self.copy(value, target)
+
+    def slot(self, owner: Obj, name: str) -> Field:
+        """The field, known from now on."""
+        if name not in owner.slots and len(owner.slots) > _MOST and name.startswith("["):
+            name = EVERY if name == EVERY else SOME
+        target = (owner, name)
+        if name not in owner.slots:
+            owner.slots[name] = None
+            if name.startswith("[") and name != EVERY:
+                self.copy(target, self.slot(owner, EVERY))
+        return target
+
+    def read_element(self, owner: Obj, key: object, to: Node) -> None:
+        """``to`` may be an element of ``owner``."""
+        if key is ANY:
+            self.copy(self.slot(owner, EVERY), to)
+            return
+        self.copy(self.slot(owner, element(key)), to)
+        self.copy(self.slot(owner, SOME), to)
+
+    def _solve(self) -> None:
+        while self._waiting:
+            node, new = self._waiting.popleft()
+            for to in list(self.succ.get(node, ())):
+                if (node, to) not in self._unbound:
+                    self.add(to, new)
+            for action in list(self._when.get(node, ())):
+                for found in new:
+                    action(found)

@@ -1,0 +1,179 @@
+"""What was done to a parameter's value before it was compared: scale * inner + offset."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+from pytpc.arithmetic import Tree
+from pytpc.link_unit import Transform
+
+_SIGNS = {"/": " / ", "rem": " rem ", "shr": " >> ", "and": " & "}
+_DEEPEST = 12
+
+
+@dataclass(frozen=True)
+class How:
+    """``inner`` is None for the parameter itself."""
+
+    scale: float = 1.0
+    offset: float = 0.0
+    inner: Application | None = None
+
+    @property
+    def plain(self) -> bool:
+        """True where nothing was done."""
+        return self == How()
+
+    @property
+    def depth(self) -> int:
+        """How many functions were applied."""
+        return 0 if self.inner is None else 1 + self.inner.of.depth
+
+    def times(self, factor: float) -> How:
+        """Multiplied by a number."""
+        return replace(self, scale=self.scale * factor, offset=self.offset * factor)
+
+    def plus(self, term: float) -> How:
+        """A number added."""
+        return replace(self, offset=self.offset + term)
+
+    def call(self, op: str, constant: float | None = None, first: bool = False) -> How | None:
+        """``op`` of it, ``constant`` behind or ``first``; None where that is too much."""
+        if self.depth >= _DEEPEST:
+            return None
+        return How(inner=Application(op, self, constant, first))
+
+    def tree(self) -> Tree:
+        """The form of docs/formats.md."""
+        found: Tree = "x"
+        if self.inner is not None:
+            parts: list[Tree] = [self.inner.of.tree()]
+            if self.inner.constant is not None:
+                parts.insert(0 if self.inner.first else 1, self.inner.constant)
+            found = (self.inner.op, *parts)
+        if self.scale != 1:
+            found = ("*", self.scale, found)
+        return found if self.offset == 0 else ("+", found, self.offset)
+
+    def text(self) -> str:
+        """For people: ``2 * sqrt(x + 1)``."""
+        text = "x" if self.inner is None else self.inner.text()
+        if (
+            self.inner is not None
+            and self.inner.op in _SIGNS
+            and not (self.scale == 1 and self.offset == 0)
+        ):
+            text = f"({text})"
+        if self.scale == -1 and self.inner is not None:
+            text = f"-{text}"
+        elif self.scale != 1:
+            text = f"{_number(self.scale)} * {text}"
+        if self.offset:
+            text += f" {'-' if self.offset < 0 else '+'} {_number(abs(self.offset))}"
+        return text
+
+    def operand(self) -> str:
+        """Its text beside an operator."""
+        simple = self.scale == 1 and self.offset == 0
+        inner = self.inner
+        if simple and (inner is None or not (inner.op in _SIGNS or inner.is_square)):
+            return self.text()
+        return f"({self.text()})"
+
+    def to_json(self) -> Transform | None:
+        """As static information has it; None where nothing was done."""
+        if self.plain:
+            return None
+        if self.inner is None:
+            return Transform("affine", self.scale, self.offset, self.text())
+        return Transform("expression", text=self.text(), tree=self.tree())
+
+
+@dataclass(frozen=True)
+class Application:
+    """One function of a transform."""
+
+    op: str
+    of: How
+    constant: float | None
+    first: bool
+
+    @property
+    def is_square(self) -> bool:
+        """True for ``x^2``."""
+        return self.op == "pow" and not self.first and self.constant == 2
+
+    def text(self) -> str:
+        """For people."""
+        if self.is_square:
+            return f"{self.of.operand()}^2"
+        if self.constant is None:
+            return f"{self.op}({self.of.text()})"
+        sign = _SIGNS.get(self.op)
+        own = self.of.text() if sign is None else self.of.operand()
+        parts = [own, _number(self.constant)]
+        if self.first:
+            parts.reverse()
+        return f"{self.op}({', '.join(parts)})" if sign is None else sign.join(parts)
+
+
+def _number(value: float) -> str:
+    return str(int(value)) if value.is_integer() and abs(value) < 1e15 else repr(value)
+
+
+def by_operator(how: How, op: str, constant: float, left: bool) -> How | None:
+    """``how`` after a binary operator of Python with a number.
+
+    Args:
+        how: what was done before.
+        op: the class's name in ``ast``.
+        constant: the other operand.
+        left: the number stands on the left.
+    """
+    if not math.isfinite(constant):
+        return None
+    match op:
+        case "Add":
+            return how.plus(constant)
+        case "Sub":
+            return how.times(-1.0).plus(constant) if left else how.plus(-constant)
+        case "Mult":
+            return how.times(constant)
+        case "Div" if left:
+            return how.call("/", constant, first=True)
+        case "Div":
+            return how.times(1.0 / constant) if constant else None
+        case "FloorDiv" if not left and constant:
+            return how.times(1.0 / constant).call("floor")
+        case "Pow":
+            return how.call("pow", constant, first=left)
+        case "BitAnd":
+            return how.call("and", constant)
+        case "RShift" if not left:
+            return how.call("shr", constant)
+        case "LShift" if not left:
+            return how.times(2.0**constant)
+        case _:
+            return None
+
+
+def by_function(how: How, op: str, constant: float | None, left: bool) -> How | None:
+    """``how`` after a function of the rules' table ``arithmetic``; arguments as above."""
+    match op:
+        case "same":
+            return how
+        case "radians":
+            return how.times(math.pi / 180)
+        case "degrees":
+            return how.times(180 / math.pi)
+        case "square":
+            return how.call("pow", 2.0)
+        case "round" if constant not in (None, 0.0):
+            return how
+        case "log" if constant is not None:
+            return None
+        case "min" | "max" | "pow":
+            return None if constant is None else how.call(op, constant, left and op == "pow")
+        case _:
+            return how.call(op)

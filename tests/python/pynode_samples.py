@@ -1,0 +1,50 @@
+"""Small rospy nodes as text, and what the analysis says about them.
+
+A sample is the body of a module; ``PRELUDE`` stands before it. What must be found stands beside
+each line as ``#: PARAMETER RELATION [TYPE]``, several divided by commas, none where there is none.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from textwrap import dedent
+
+from pytpc.link_unit import Comparison, LinkUnit
+from pytpc.pynodes.analysis import analyse_entry
+from pytpc.pynodes.packages import entry_of
+from pytpc.pynodes.rules_file import load_rules
+
+PRELUDE = "import rospy\nfrom std_msgs.msg import Float64\npub = rospy.Publisher('out', Float64)\n"
+_MARK = re.compile(r"#: (.*)$")
+
+
+def analysed(text: str, folder: Path, **rules: str) -> LinkUnit:
+    """Analyse a script with the text ``PRELUDE + text``; the JSON is checked on the way."""
+    script = folder / "node.py"
+    script.write_text(PRELUDE + dedent(text))
+    unit = analyse_entry(entry_of(script), load_rules(**rules))
+    return LinkUnit.from_json(unit.to_json(), script)
+
+
+def marked(text: str) -> set[tuple[int, str, str, str]]:
+    """What the marks of a sample ask for: (line, parameter, relation, type)."""
+    wanted = set()
+    for lineno, line in enumerate((PRELUDE + dedent(text)).splitlines(), start=1):
+        mark = _MARK.search(line)
+        for each in mark[1].split(",") if mark else ():
+            parameter, relation, *rest = each.split()
+            kind = rest[0] if rest else ("flag" if relation == "flag" else "parameter")
+            wanted.add((lineno, parameter, relation, kind))
+    return wanted
+
+
+def found(unit: LinkUnit) -> set[tuple[int, str, str, str]]:
+    """The comparisons in the same form."""
+    return {(c.lineno, c.source or "", c.relation, c.type) for c in unit.comparisons}
+
+
+def only(unit: LinkUnit) -> Comparison:
+    """The one comparison that there is."""
+    (comparison,) = unit.comparisons
+    return comparison
