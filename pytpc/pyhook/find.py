@@ -44,28 +44,33 @@ class Found(NamedTuple):
     """What is to be rewritten.
 
     ``links``: comparison -> number of the link -> what it reports. ``flags``: expression -> what it
-    reports. ``loops``: the iterated expression of a ``for`` -> what it reports.
+    reports. ``loops``: the iterated expression of a ``for`` -> what it reports. ``subjects``: the
+    subject of a ``match`` -> what it reports. ``patterns``: a value in a ``case`` -> what it
+    reports. ``missing``: what is not there; ``unsupported``: what is, where it cannot be reported.
     """
 
     links: dict[ast.Compare, dict[int, list[Place]]]
     flags: dict[ast.expr, list[Place]]
     loops: dict[ast.expr, list[Place]]
     subjects: dict[ast.expr, list[Place]]
+    patterns: dict[ast.expr, list[Place]]
+    unsupported: list[Listed]
     missing: list[Listed]
 
     def total(self) -> int:
         """How many listed comparisons were found."""
         links = sum(len(places) for link in self.links.values() for places in link.values())
-        others = (self.flags, self.loops, self.subjects)
+        others = (self.flags, self.loops, self.subjects, self.patterns)
         return links + sum(len(places) for kind in others for places in kind.values())
 
 
 def find(tree: ast.Module, listed: Sequence[Listed]) -> Found:
     """Where each of ``listed`` is in ``tree``."""
     index = _Index(tree)
-    found = Found({}, {}, {}, {}, [])
+    found = Found({}, {}, {}, {}, {}, [], [])
     for one in listed:
-        if not (_as_link(index, found, one) or _as_flag(index, found, one)):
+        ways = (_as_link, _as_pattern, _as_loop, _as_flag)
+        if not any(way(index, found, one) for way in ways):
             found.missing.append(one)
     return found
 
@@ -127,6 +132,8 @@ class _Index:
         self.operands: dict[Position, list[ast.expr]] = {}
         self.loops: dict[Position, list[ast.expr]] = {}
         self.subjects: dict[Position, list[ast.expr]] = {}
+        self.patterns: dict[Position, list[ast.expr]] = {}
+        self.inner_patterns: set[Position] = set()
         self.names: dict[Position, list[ast.expr]] = {}
         for node in ast.walk(tree):
             self._add(node)
@@ -145,10 +152,25 @@ class _Index:
         if type(node).__name__ == "Match":
             subject: ast.expr = node.subject  # type: ignore[attr-defined]
             self.subjects.setdefault(_position(subject), []).append(subject)
+        if type(node).__name__ == "match_case":
+            for value in values_of(node.pattern):  # type: ignore[attr-defined]
+                self.patterns.setdefault(_position(value), []).append(value)
+        if type(node).__name__ == "MatchValue":
+            self.inner_patterns.add(_position(node.value))  # type: ignore[attr-defined]
         if isinstance(node, (ast.Name, ast.Attribute, ast.Subscript, ast.Call)):
             is_read = isinstance(getattr(node, "ctx", ast.Load()), ast.Load)
             if is_read:
                 self.names.setdefault(_position(node), []).append(node)
+
+
+def values_of(pattern: ast.AST) -> list[ast.expr]:
+    """The values of a pattern that is nothing but a value, or several with ``|`` between them."""
+    if type(pattern).__name__ == "MatchValue":
+        return [pattern.value]  # type: ignore[attr-defined]
+    if type(pattern).__name__ == "MatchOr":
+        parts = [values_of(part) for part in pattern.patterns]  # type: ignore[attr-defined]
+        return [value for part in parts for value in part] if all(parts) else []
+    return []
 
 
 def _position(node: ast.expr) -> Position:
@@ -205,7 +227,7 @@ def _as_link(index: _Index, found: Found, listed: Listed) -> bool:
         ends = _ends(node.comparators[link], listed) or _ends(node, listed)
         candidates.append((not ends, not is_own, len(candidates), node, link))
     if not candidates:
-        return _as_loop(index, found, listed)
+        return False
     _, _, _, node, link = min(candidates, key=lambda candidate: candidate[:3])
     place = Place(listed, _is_swapped(node, link, listed))
     found.links.setdefault(node, {}).setdefault(link, []).append(place)
@@ -245,6 +267,16 @@ def _text(node: ast.expr) -> str:
     return ""
 
 
+def _as_pattern(index: _Index, found: Found, listed: Listed) -> bool:
+    position = (listed.lineno, listed.column)
+    patterns = index.patterns.get(position, [])
+    if patterns:
+        found.patterns.setdefault(patterns[0], []).append(Place(listed, False))
+    elif position in index.inner_patterns:
+        found.unsupported.append(listed)
+    return bool(patterns) or position in index.inner_patterns
+
+
 def _as_loop(index: _Index, found: Found, listed: Listed) -> bool:
     loops = index.loops.get((listed.lineno, listed.column), [])
     if not loops:
@@ -263,7 +295,7 @@ def _as_flag(index: _Index, found: Found, listed: Listed) -> bool:
     if not operands and listed.relation == "flag":
         operands = index.names.get(position, [])
     if not operands:
-        return listed.relation == "flag" and _as_loop(index, found, listed)
+        return False
     exact = [node for node in operands if _ends(node, listed)]
     chosen = max(exact or operands, key=_length)
     found.flags.setdefault(chosen, []).append(Place(listed, False))

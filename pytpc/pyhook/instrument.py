@@ -61,6 +61,9 @@ class Instrument:
                 f"{path}:{first.lineno}: {many(missing, 'comparison')} not where the static"
                 " information says, and not reported; analyse it again"
             )
+        for listed in rewritten.unsupported:
+            warn(f"{path}:{listed.lineno}: a value within a pattern is not reported")
+        missing += len(rewritten.unsupported)
         self.done.append(Done(path, rewritten.instrumented, missing))
         return rewritten.code
 

@@ -14,7 +14,6 @@ import mmap
 import os
 import socket
 import struct
-import sys
 import threading
 from collections.abc import Callable
 from itertools import count
@@ -22,43 +21,49 @@ from time import monotonic_ns, time_ns
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from pytpc.pyhook.config import Config
+from pytpc.pyhook.log_layout import (
+    CHUNK,
+    CHUNK_BYTES,
+    CHUNK_HEADER_BYTES,
+    CLOSED,
+    DROPPED,
+    EDGE_BIT,
+    HEADER,
+    HEADER_BYTES,
+    LONGEST_KEY,
+    LOST_AT,
+    MAGIC,
+    NODE_AT,
+    NODE_BYTES,
+    OPEN,
+    POLICY,
+    REASONS,
+    RECORD_BYTES,
+    RECORDS_OF_CHUNK,
+    SECOND,
+    SIMULATED,
+    SITE,
+    STATE_AT,
+    STOPPED,
+    SYNC,
+    SYSTEM_CHUNK,
+    THREAD_CHUNK,
+    WHATS,
+    bounded,
+    created,
+    pack_integers,
+    pack_report,
+    program,
+)
 from pytpc.pyhook.words import warn
 
 if TYPE_CHECKING:
     from pytpc.pyhook.sites import Reported, Take
 
-MAGIC = b"TPCLOG1\n"
-HEADER_BYTES = 4096
-RECORD_BYTES = 32
-CHUNK_BYTES = 65536
-CHUNK_HEADER_BYTES = 64
-RECORDS_OF_CHUNK = (CHUNK_BYTES - CHUNK_HEADER_BYTES) // RECORD_BYTES
-
-OPEN, CLOSED, STOPPED = 0, 1, 2
-THREAD_CHUNK, SYSTEM_CHUNK, LIVE_CHUNK = 1, 2, 3
-REPORT, SITE, SYNC, SIMULATED, SUMMARY, DROPPED, POLICY = range(1, 8)
-RESULT_BIT, OUTCOME_BIT, EDGE_BIT = 1 << 8, 1 << 9, 1 << 10
-REASONS = {"site": 1, "process": 2, "nested": 3, "stopped": 4}
-
 _EXTENT_BYTES = 1 << 20
 # Mappings are never given back, because other threads may write to them, and each takes a
 # descriptor: they grow, so that 4 GiB are some 70 of them.
 _LARGEST_EXTENT = 64 << 20
-_LONGEST_KEY = 4096
-_SECOND = 1_000_000_000
-
-_HEADER = struct.Struct("<8sIIIIqqIIQII256s256s1024s")
-_STATE_AT, _LOST_AT, _NODE_AT, _NODE_BYTES = 40, 48, 64, 256
-_CHUNK = struct.Struct("<IQQ")
-_REPORT = struct.Struct("<Iqdd").pack_into
-_INTEGERS = struct.Struct("<Iqqq").pack_into
-
-# What holds of what is reported: 4 for the pairs of outcomes.
-_WHATS = tuple(
-    REPORT | (RESULT_BIT if result else 0) | (OUTCOME_BIT if res else 0)
-    for result in (False, True)
-    for res in (False, True)
-)
 
 
 class Now(NamedTuple):
@@ -147,7 +152,7 @@ class LogFile:
         self._is_closed = False
         self._is_node_known = False
         self.is_simulated = False
-        self.path, self._descriptor = _created(config, now().node)
+        self.path, self._descriptor = created(config, now().node)
         its = os.fstat(self._descriptor)
         self._identity = (its.st_dev, its.st_ino)
         try:
@@ -164,7 +169,7 @@ class LogFile:
 
     def _taker(self) -> Take:
         """What takes a report, with all that it needs at hand."""
-        local, whats, pack, steady = self._local, _WHATS, _REPORT, monotonic_ns
+        local, whats, pack, steady = self._local, WHATS, pack_report, monotonic_ns
 
         def take(one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> None:
             try:
@@ -209,7 +214,7 @@ class LogFile:
         if sim_ns == place.sim_ns:
             return at
         place.sim_ns = sim_ns
-        _INTEGERS(place.bytes, at + 4, 0, now, sim_ns, 0)
+        pack_integers(place.bytes, at + 4, 0, now, sim_ns, 0)
         place.words[at >> 2] = SIMULATED
         at = place.claim()
         while at >= place.end:
@@ -224,8 +229,8 @@ class LogFile:
         now = monotonic_ns()
         at = self._prepared(place, one, place.claim(), now)
         if at >= 0:
-            _REPORT(place.bytes, at + 4, one.number, now, cmp, thresh)
-            place.words[at >> 2] = _WHATS[result * 2 + res] | EDGE_BIT
+            pack_report(place.bytes, at + 4, one.number, now, cmp, thresh)
+            place.words[at >> 2] = WHATS[result * 2 + res] | EDGE_BIT
 
     # --- threads and chunks
 
@@ -283,7 +288,7 @@ class LogFile:
             extent = self._extents[-1]
             begin = (self._used - before) * CHUNK_BYTES
             self._used += 1
-            _CHUNK.pack_into(extent.bytes, begin + 4, thread, first, _thread.get_native_id())
+            CHUNK.pack_into(extent.bytes, begin + 4, thread, first, _thread.get_native_id())
             extent.words[begin >> 2] = kind
             return extent, begin
 
@@ -344,7 +349,7 @@ class LogFile:
         os.posix_fallocate(self._descriptor, 0, HEADER_BYTES)
         self._header = mmap.mmap(self._descriptor, HEADER_BYTES)
         node = self._now().node
-        _HEADER.pack_into(
+        HEADER.pack_into(
             self._header,
             0,
             b"",
@@ -359,9 +364,9 @@ class LogFile:
             0,
             parent,
             0,
-            _bounded(node, _NODE_BYTES),
-            _bounded(socket.gethostname(), 256),
-            _bounded(program(), 1024),
+            bounded(node, NODE_BYTES),
+            bounded(socket.gethostname(), 256),
+            bounded(program(), 1024),
         )
         self._header[:8] = MAGIC
         self._is_node_known = bool(node)
@@ -369,17 +374,17 @@ class LogFile:
         self.look(monotonic_ns())
 
     def _put_state(self, state: int) -> None:
-        struct.pack_into("<I", self._header, _STATE_AT, state)
+        struct.pack_into("<I", self._header, STATE_AT, state)
 
     def _count_lost(self) -> None:
         with self._lock:
-            (lost,) = struct.unpack_from("<Q", self._header, _LOST_AT)
-            struct.pack_into("<Q", self._header, _LOST_AT, lost + 1)
+            (lost,) = struct.unpack_from("<Q", self._header, LOST_AT)
+            struct.pack_into("<Q", self._header, LOST_AT, lost + 1)
 
     def _set_node(self, name: str) -> None:
-        raw = _bounded(name, _NODE_BYTES)
-        self._header[_NODE_AT + 1 : _NODE_AT + len(raw)] = raw[1:]
-        self._header[_NODE_AT : _NODE_AT + 1] = raw[:1]
+        raw = bounded(name, NODE_BYTES)
+        self._header[NODE_AT + 1 : NODE_AT + len(raw)] = raw[1:]
+        self._header[NODE_AT : NODE_AT + 1] = raw[:1]
         self._is_node_known = True
 
     # --- what is of the system
@@ -405,14 +410,14 @@ class LogFile:
             found = self._records(1)
             if found is not None:
                 extent, at = found
-                _INTEGERS(extent.bytes, at + 4, site, now, first, second)
+                pack_integers(extent.bytes, at + 4, site, now, first, second)
                 extent.words[at >> 2] = what
 
     def _announce(self, one: Reported) -> None:
         with self._lock:
             if one.file is self:
                 return
-            raw = one.key.encode("utf-8")[:_LONGEST_KEY]
+            raw = one.key.encode("utf-8")[:LONGEST_KEY]
             blocks = -(-max(0, len(raw) - 16) // RECORD_BYTES)
             found = self._records(1 + blocks)
             if found is None:
@@ -433,7 +438,7 @@ class LogFile:
         with self._lock:
             if now < self._sync_at:
                 return
-            self._sync_at = now + _SECOND
+            self._sync_at = now + SECOND
             known = self._now()
             self.is_simulated = known.is_simulated
             self._look_at = 0 if self.is_simulated else self._sync_at
@@ -458,49 +463,3 @@ class LogFile:
                 extent, at = found
                 extent.bytes[at + 4 : at + 4 + len(raw)] = raw
                 extent.words[at >> 2] = what
-
-
-def _bounded(text: str, size: int) -> bytes:
-    """UTF-8 with room for a NUL behind it, not cut within a character."""
-    return text.encode("utf-8", "replace")[: size - 1].decode("utf-8", "ignore").encode("utf-8")
-
-
-def program() -> str:
-    """The script that runs, else the interpreter."""
-    script = getattr(sys.modules.get("__main__"), "__file__", None)
-    return os.path.abspath(script) if isinstance(script, str) else sys.executable or "python"
-
-
-def folder_of(config: Config) -> str:
-    """Where files are made."""
-    if config.folder:
-        return config.folder
-    home = os.environ.get("ROS_HOME")
-    if home:
-        return os.path.join(home, "tpc")
-    return os.path.join(os.environ.get("HOME") or "/tmp", ".ros", "tpc")
-
-
-def _created(config: Config, node: str) -> tuple[str, int]:
-    """The path of a new file, and the descriptor of the same with ``.new`` behind it.
-
-    It gets its name when it can be read. Until then the other one keeps out whoever has the same
-    number in another container, and so the same names.
-    """
-    folder = folder_of(config)
-    os.makedirs(folder, exist_ok=True)
-    name = (node or os.path.basename(program())).lstrip("/")
-    name = "".join(c if c.isascii() and (c.isalnum() or c in "_-") else "_" for c in name)[:100]
-    stem = os.path.join(folder, f"{name or 'process'}-{os.getpid()}-{time_ns() // _SECOND}")
-    for number in range(1, 1000):
-        path = f"{stem}-{number}.tpc" if number > 1 else f"{stem}.tpc"
-        flags = os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC
-        try:
-            descriptor = os.open(f"{path}.new", flags, 0o666)
-        except FileExistsError:
-            continue
-        if not os.path.exists(path):
-            return path, descriptor
-        os.close(descriptor)
-        os.unlink(f"{path}.new")
-    raise FileExistsError(17, "File exists", stem)

@@ -16,7 +16,8 @@ import ast
 from types import CodeType
 from typing import TYPE_CHECKING, NamedTuple
 
-from pytpc.pyhook.find import Found, Place, find
+from pytpc.pyhook.control_sites import Loop, Subject
+from pytpc.pyhook.find import Found, Place, find, values_of
 from pytpc.pyhook.listed import Listed
 from pytpc.pyhook.sites import Comparison, Flag, Reported
 
@@ -29,11 +30,12 @@ _MARK = "\0tpc constant "
 
 
 class Rewritten(NamedTuple):
-    """A module's code, how many comparisons report, and those that are not in the module."""
+    """A module's code, how many comparisons report, those that are not in it, or cannot report."""
 
     code: CodeType
     instrumented: int
     missing: list[Listed]
+    unsupported: list[Listed]
 
 
 def rewrite(
@@ -56,7 +58,9 @@ def rewrite(
     constants: dict[str, object] = {}
     _Rewriter(found, register, constants).module(tree)
     code = compile(tree, path, "exec", dont_inherit=True, optimize=optimize)
-    return Rewritten(with_constants(code, constants), found.total(), found.missing)
+    return Rewritten(
+        with_constants(code, constants), found.total(), found.missing, found.unsupported
+    )
 
 
 def constant_text(number: int) -> str:
@@ -119,9 +123,73 @@ class _Rewriter:
                 self._fields(value)
 
     def _other(self, item: object) -> object:
-        if isinstance(item, ast.AST):
+        if type(item).__name__ == "Match":
+            self._match(item)  # type: ignore[arg-type]
+        elif isinstance(item, ast.AST):
             self._fields(item)
         return item
+
+    def _match(self, node: ast.Match) -> None:
+        """A ``match`` of a parameter, or with a parameter among its values.
+
+        ``case VALUE`` becomes ``case _ if subject == VALUE``, which is what it means. Each guard
+        ends with a call that says that the case is taken, and a last case says that none was.
+        """
+        compared = [
+            [value for value in values_of(case.pattern) if value in self._found.patterns]
+            for case in node.cases
+        ]
+        places = self._found.subjects.get(node.subject, [])
+        original = node.subject
+        self._fields(node)
+        if not places and not any(compared):
+            return
+        subject = Subject(tuple(self._register(place) for place in places))
+        node.subject = self._call(
+            self._constant(subject, _first(original)), "hold", [node.subject], node.subject
+        )
+        for case, values in zip(node.cases, compared):
+            is_last = case is node.cases[-1]
+            is_default = (
+                isinstance(case.pattern, ast.MatchAs)
+                and case.pattern.pattern is None
+                and case.guard is None
+            )
+            if is_default and not is_last:
+                # Not allowed, as the compiler will say.
+                continue
+            where = ast.copy_location(ast.Constant(value=True, kind=None), case.pattern)
+            said = self._call(
+                self._constant(subject, where), "default" if is_default else "taken", [], where
+            )
+            guards = [self._equality(case, subject, where)] if values else []
+            guards += [case.guard] if case.guard is not None else []
+            case.guard = self._joined(ast.And(), [*guards, said], where)
+        last = node.cases[-1].pattern
+        where = ast.copy_location(ast.Constant(value=True, kind=None), last)
+        none = self._call(self._constant(subject, where), "none", [], where)
+        nothing = ast.copy_location(ast.Pass(), last)
+        anything = ast.copy_location(ast.MatchAs(), last)
+        node.cases.append(ast.match_case(pattern=anything, guard=none, body=[nothing]))
+
+    def _equality(self, case: ast.match_case, subject: Subject, where: ast.expr) -> ast.expr:
+        """The pattern of a case as a condition; in its place there is one that takes everything."""
+        conditions = []
+        for value in values_of(case.pattern):
+            held = self._call(self._constant(subject, where), "held", [], value)
+            equal = ast.copy_location(
+                ast.Compare(left=held, ops=[ast.Eq()], comparators=[value]), value
+            )
+            links = {0: self._found.patterns.get(value, [])}
+            conditions.append(self._chain(_Chain(equal, links, True), 0, held, held))
+        case.pattern = ast.copy_location(ast.MatchAs(), case.pattern)
+        return self._joined(ast.Or(), conditions, where)
+
+    @staticmethod
+    def _joined(operator: ast.boolop, parts: list[ast.expr], where: ast.expr) -> ast.expr:
+        if len(parts) == 1:
+            return parts[0]
+        return ast.copy_location(ast.BoolOp(op=operator, values=parts), where)
 
     def _expression(self, node: ast.expr, asked: bool) -> ast.expr:
         flags = self._found.flags.get(node)
@@ -132,6 +200,10 @@ class _Rewriter:
             new = self._chain(_Chain(node, links, asked), 0, node.left, _first(node.left))
         if flags is not None:
             new = self._flag(new, flags, asked)
+        loops = self._found.loops.get(node)
+        if loops is not None:
+            loop = Loop(tuple(self._register(place) for place in loops))
+            new = self._call(self._constant(loop, _first(node)), "over", [new], node)
         return new
 
     def _parts(self, node: ast.expr, asked: bool) -> None:

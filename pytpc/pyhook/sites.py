@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     Operator = Callable[[Any, Any], Any]
+    Held = dict[int, tuple[object, object]]
     Take = Callable[["Reported", bool, float, float, bool], None]
 
 TRUE = repeat(True)
@@ -150,53 +151,36 @@ def _values(cmp: object, thresh: object, outcome: bool) -> tuple[float, float]:
     return left, right
 
 
-class _Held(threading.local):
-    """What the links of chained comparisons hand on: (frame, right operand, outcome)."""
-
-    def __init__(self) -> None:
-        self.stack: list[tuple[int, Any, Any]] = []
-
-
-_held = _Held()
-
-
-def _popped(frame: int) -> tuple[Any, Any]:
-    """What the link before handed on; what an exception between the two left over is dropped."""
-    stack = _held.stack
-    while True:
-        of, right, outcome = stack.pop()
-        if of == frame:
-            return right, outcome
-
-
 class Comparison:
-    """One link of a comparison. See the module's text."""
+    """One link of a comparison. See the module's text.
 
-    __slots__ = ("compare", "link", "truth")
+    A link that others follow keeps its right operand and its outcome, by the frame in which it was
+    evaluated, until one of `right`, `outcome` and `failed` asks for them, which it does at once.
+    """
+
+    __slots__ = ("_held", "compare", "link", "truth")
 
     def __init__(self, operation: str, reported: tuple[Reported, ...]) -> None:
         """``operation`` is the name of the class of the operator in `ast`."""
+        self._held: Held = {}
         self.compare, self.truth = _comparer(operation, reported)
-        self.link = _linker(operation, reported)
+        self.link = _linker(operation, reported, self._held)
 
-    @staticmethod
-    def right() -> object:
+    def right(self) -> object:
         """The right operand of the link that was just evaluated in the calling frame."""
-        return _popped(id(sys._getframe(1)))[0]
+        return self._held.pop(id(sys._getframe(1)))[0]
 
-    @staticmethod
-    def outcome() -> object:
+    def outcome(self) -> object:
         """Its outcome."""
-        return _popped(id(sys._getframe(1)))[1]
+        return self._held.pop(id(sys._getframe(1)))[1]
 
-    @staticmethod
-    def failed() -> bool:
+    def failed(self) -> bool:
         """False in the place of an outcome that was false and is only asked for its truth."""
-        _popped(id(sys._getframe(1)))
+        del self._held[id(sys._getframe(1))]
         return False
 
 
-def _logger(reported: tuple[Reported, ...]) -> Callable[[Any, Any, bool], None]:
+def logger(reported: tuple[Reported, ...]) -> Callable[[Any, Any, bool], None]:
     """Reports an outcome under each key."""
 
     def log(a: object, b: object, outcome: bool) -> None:
@@ -226,7 +210,7 @@ def _comparer(
     # `in` has no numbers on its right.
     plain: Operator = _PLAIN_OPERATIONS.get(operation, operator.eq)
     numbers = _NUMBERS if operation in _PLAIN_OPERATIONS else frozenset()
-    log = _logger(reported)
+    log = logger(reported)
     log_numbers = _number_logger(reported)
 
     def later(a: object, b: object, outcome: object) -> object:
@@ -257,10 +241,10 @@ def _comparer(
 def _number_logger(reported: tuple[Reported, ...]) -> Callable[[Any, Any, bool], None]:
     """The same as `_logger` for int, float and bool; the shortest way for a single key."""
     if len(reported) != 1:
-        return _logger(reported)
+        return logger(reported)
     (one,) = reported
     swapped = one.swapped
-    slowly = _logger(reported)
+    slowly = logger(reported)
 
     def log(a: float, b: float, outcome: bool) -> None:
         try:
@@ -276,18 +260,20 @@ def _number_logger(reported: tuple[Reported, ...]) -> Callable[[Any, Any, bool],
     return log
 
 
-def _linker(operation: str, reported: tuple[Reported, ...]) -> Callable[[Any, Any], Iterator[bool]]:
+def _linker(
+    operation: str, reported: tuple[Reported, ...], held: Held
+) -> Callable[[Any, Any], Iterator[bool]]:
     """`link`: a link of a chain that others follow. Its iterator gives the truth.
 
     It hands the right operand on to the next link, which asks for it by `Comparison.right`, or,
     where the chain ends, its own outcome, by `Comparison.outcome`. One of the two follows at once.
     """
     lazy = _LAZY_OPERATIONS[operation]
-    log = _logger(reported)
+    log = logger(reported)
 
-    def later(_a: object, b: object, outcome: object, truth: bool) -> bool:
-        log(_a, b, truth)
-        _held.stack.append((id(sys._getframe(1)), b, outcome))
+    def later(a: object, b: object, outcome: object, truth: bool) -> bool:
+        log(a, b, truth)
+        held[id(sys._getframe(1))] = b, outcome
         return truth
 
     def link(a: object, b: object) -> Iterator[bool]:
@@ -311,7 +297,7 @@ def _flagger(
     reported: tuple[Reported, ...],
 ) -> tuple[Callable[[Any], Iterator[bool]], Callable[[Any], Any]]:
     """`truth` where the program asks for the truth alone; `value`, which gives the value back."""
-    log = _logger(reported)
+    log = logger(reported)
 
     def later(value: object, truth: bool) -> bool:
         log(value, value, truth)
