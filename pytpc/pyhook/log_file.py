@@ -18,8 +18,9 @@ import threading
 from collections.abc import Callable
 from itertools import count
 from time import monotonic_ns, time_ns
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
+from pytpc.pyhook import ros_state
 from pytpc.pyhook.config import Config
 from pytpc.pyhook.log_layout import (
     CHUNK,
@@ -30,6 +31,7 @@ from pytpc.pyhook.log_layout import (
     EDGE_BIT,
     HEADER,
     HEADER_BYTES,
+    LIVE_CHUNK,
     LONGEST_KEY,
     LOST_AT,
     MAGIC,
@@ -43,6 +45,8 @@ from pytpc.pyhook.log_layout import (
     SECOND,
     SIMULATED,
     SITE,
+    SLOT_BYTES,
+    SLOTS_OF_CHUNK,
     STATE_AT,
     STOPPED,
     SYNC,
@@ -64,14 +68,6 @@ _EXTENT_BYTES = 1 << 20
 # Mappings are never given back, because other threads may write to them, and each takes a
 # descriptor: they grow, so that 4 GiB are some 70 of them.
 _LARGEST_EXTENT = 64 << 20
-
-
-class Now(NamedTuple):
-    """What the process knows of ROS: the node's name, and its time (0: not known)."""
-
-    node: str
-    ros_ns: int
-    is_simulated: bool
 
 
 class _Extent:
@@ -128,7 +124,7 @@ class _Owner:
 class LogFile:
     """One file. Errors while it is written stop the recording, and never the program."""
 
-    def __init__(self, config: Config, parent: int, now: Callable[[], Now]) -> None:
+    def __init__(self, config: Config, parent: int, each_second: Callable[[], None]) -> None:
         """Make the file in its folder.
 
         Raises:
@@ -136,7 +132,7 @@ class LogFile:
         """
         self._limit = config.file_limit << 20
         self._reserve = config.file_reserve << 20
-        self._now = now
+        self._each_second = each_second
         self._lock = threading.RLock()
         self._local = threading.local()
         self._extents: list[_Extent] = []
@@ -145,6 +141,7 @@ class LogFile:
         self._threads = 0
         self._free: list[_Place] = []
         self._system: _SystemChunk | None = None
+        self._live: tuple[tuple[_Extent, int], int] | None = None
         self._sync_at = 0
         # When a report has to look about: at the next second, or at once in simulated time.
         self._look_at = 0
@@ -152,7 +149,7 @@ class LogFile:
         self._is_closed = False
         self._is_node_known = False
         self.is_simulated = False
-        self.path, self._descriptor = created(config, now().node)
+        self.path, self._descriptor = created(config, ros_state.now().node)
         its = os.fstat(self._descriptor)
         self._identity = (its.st_dev, its.st_ino)
         try:
@@ -198,6 +195,7 @@ class LogFile:
         """A place for a report where something stands in the way; -1 where there is none."""
         if now >= self._sync_at:
             self.look(now)
+            self._each_second()
         if one.file is not self:
             self._announce(one)
         while at >= place.end:
@@ -210,7 +208,7 @@ class LogFile:
 
     def _simulated(self, place: _Place, at: int, now: int) -> int:
         """Write the simulated time where it has changed; the place behind it."""
-        sim_ns = self._now().ros_ns if self.is_simulated else -1
+        sim_ns = ros_state.now().ros_ns if self.is_simulated else -1
         if sim_ns == place.sim_ns:
             return at
         place.sim_ns = sim_ns
@@ -348,7 +346,7 @@ class LogFile:
     def _begin(self, parent: int) -> None:
         os.posix_fallocate(self._descriptor, 0, HEADER_BYTES)
         self._header = mmap.mmap(self._descriptor, HEADER_BYTES)
-        node = self._now().node
+        node = ros_state.now().node
         HEADER.pack_into(
             self._header,
             0,
@@ -413,6 +411,19 @@ class LogFile:
                 pack_integers(extent.bytes, at + 4, site, now, first, second)
                 extent.words[at >> 2] = what
 
+    def new_slot(self) -> tuple[Any, Any, int] | None:
+        """Room for a live summary: the bytes and words of its part of the file, and its place."""
+        with self._lock:
+            if self._live is None or self._live[1] == SLOTS_OF_CHUNK:
+                found = self.new_chunk(LIVE_CHUNK, self.thread_number(), 0)
+                if found is None:
+                    return None
+                self._live = (found, 0)
+            (extent, begin), used = self._live
+            self._live = ((extent, begin), used + 1)
+            at = begin + CHUNK_HEADER_BYTES + used * SLOT_BYTES
+            return extent.bytes, extent.words, at
+
     def _announce(self, one: Reported) -> None:
         with self._lock:
             if one.file is self:
@@ -439,7 +450,7 @@ class LogFile:
             if now < self._sync_at:
                 return
             self._sync_at = now + SECOND
-            known = self._now()
+            known = ros_state.now()
             self.is_simulated = known.is_simulated
             self._look_at = 0 if self.is_simulated else self._sync_at
             if known.node and not self._is_node_known:

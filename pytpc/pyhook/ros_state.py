@@ -3,9 +3,17 @@
 from __future__ import annotations
 
 import sys
-from typing import Any
+from time import time_ns
+from typing import Any, NamedTuple
 
-from pytpc.pyhook.log_file import Now
+
+class Now(NamedTuple):
+    """What the process knows of ROS: the node's name, and its time (0: not known)."""
+
+    node: str
+    ros_ns: int
+    is_simulated: bool
+
 
 _UNKNOWN = Now("", 0, False)
 
@@ -28,6 +36,17 @@ def is_shut_down() -> bool:
         return bool(core is not None and core.is_shutdown() and core.get_node_uri() is not None)
     except AttributeError:
         return False
+
+
+def is_imported() -> bool:
+    """Whether the program may have a node yet."""
+    return "rospy" in sys.modules
+
+
+def time_now_ns() -> int:
+    """The node's time where it is simulated, else the wall's."""
+    known = now()
+    return known.ros_ns if known.is_simulated else time_ns()
 
 
 def now() -> Now:
