@@ -77,13 +77,13 @@ def static_of_environment() -> list[str]:
     return [path for path in os.environ.get("TPC_STATIC", "").split(os.pathsep) if path]
 
 
-def prepared(static: list[str]) -> Instrument:
-    """Read the static information and install the hook.
+def prepared(static: list[str], script: str) -> Instrument:
+    """Read the static information of a script and install the hook.
 
     Raises:
         InputError: a file cannot be read.
     """
-    table = read_table(static) if static else Table([])
+    table = read_table(static, script) if static else Table([])
     instrument = Instrument(table, RUNTIME.register)
     if len(table):
         install(instrument)
@@ -99,7 +99,7 @@ def main(words: list[str] | None = None) -> None:
         if given is None:
             sys.stdout.write(USAGE)
             return
-        instrument = prepared(given.static)
+        instrument = prepared(given.static, given.script)
         # What `-m` or the path of this file has put there is not the program's.
         del sys.path[0]
         if given.verbose:

@@ -236,8 +236,8 @@ def _as_link(index: _Index, found: Found, listed: Listed) -> bool:
 
 def _is_swapped(node: ast.Compare, link: int, listed: Listed) -> bool:
     """Whether the threshold is the left operand: the relation has it on the right-hand side."""
-    if listed.side is not None:
-        return listed.side == "left"
+    if listed.operand is not None:
+        return listed.operand == "left"
     relation = _RELATIONS[type(node.ops[link]).__name__]
     if relation not in ("==", "!="):
         return listed.relation != relation

@@ -18,6 +18,9 @@ from pytpc.errors import InputError
 _PLACES = ("*.json", "tpc/*.json", "*/tpc/*.json", "build/tpc/*.json", "build/*/tpc/*.json")
 
 
+_NOT_PYTHON = (".c", ".cc", ".cpp", ".cxx", ".h", ".hh", ".hpp", ".hxx")
+
+
 class Listed(NamedTuple):
     """One comparison of the static information; lines from 1, columns in bytes from 1."""
 
@@ -28,7 +31,7 @@ class Listed(NamedTuple):
     end_lineno: int | None
     end_column: int | None
     name: str | None
-    side: str | None
+    operand: str | None
     source_code: str | None
 
 
@@ -83,33 +86,73 @@ class Table:
         return [exact] if exact is not None else named
 
 
-def read_table(paths: Iterable[str]) -> Table:
+class _Unit(NamedTuple):
+    """One link unit: a script with the modules that it imports."""
+
+    name: str
+    root: str
+    files: list[ListedFile]
+
+
+def read_table(paths: Iterable[str], script: str | None = None) -> Table:
     """Read files of static information, merged ones, and folders that hold such files.
+
+    Args:
+        paths: what is read.
+        script: the program that is to run. A module of several programs has a key for each of them;
+            those of ``script`` count, where there are any, because they tell who reports.
 
     Raises:
         InputError: a file cannot be read, or is no static information; a folder has none.
     """
-    files: list[ListedFile] = []
+    units = _all_units(paths)
+    if script is not None:
+        units = _of_script(units, script)
+    return Table(file for unit in units for file in unit.files)
+
+
+def names_script(paths: Iterable[str], script: str) -> bool:
+    """Whether the static information has a link unit of this script's name.
+
+    Raises:
+        InputError: as `read_table`.
+    """
+    stem = _stem(script)
+    return any(unit.name == stem and unit.files for unit in _all_units(paths))
+
+
+def _stem(script: str) -> str:
+    name = os.path.basename(script)
+    return name[:-3] if name.endswith(".py") else name
+
+
+def _all_units(paths: Iterable[str]) -> list[_Unit]:
+    units: list[_Unit] = []
     for path in paths:
-        if os.path.isdir(path):
-            files.extend(_of_folder(path))
-        else:
-            files.extend(_of_file(path))
-    return Table(files)
+        units.extend(_of_folder(path) if os.path.isdir(path) else _of_document(path))
+    return units
 
 
-def _of_folder(folder: str) -> list[ListedFile]:
+def _of_script(units: list[_Unit], script: str) -> list[_Unit]:
+    stem = _stem(script)
+    real = os.path.realpath(script)
+    named = [unit for unit in units if unit.name == stem]
+    inside = [unit for unit in named if real.startswith(os.path.realpath(unit.root) + os.sep)]
+    return inside or named or units
+
+
+def _of_folder(folder: str) -> list[_Unit]:
     found = sorted({path for place in _PLACES for path in glob.glob(os.path.join(folder, place))})
-    files: list[ListedFile] = []
+    units: list[_Unit] = []
     is_any = False
     for path in found:
         document = _document(path)
         if isinstance(document, dict) and ("comparisons" in document or "units" in document):
             is_any = True
-            files.extend(_of_document(document, path))
+            units.extend(_units(document, path))
     if not is_any:
         raise InputError("no static information below this folder; run pytpc analyse", folder)
-    return files
+    return units
 
 
 def _document(path: str) -> Any:  # noqa: ANN401
@@ -122,24 +165,25 @@ def _document(path: str) -> Any:  # noqa: ANN401
         raise InputError(f"no JSON: {error}", path) from error
 
 
-def _of_file(path: str) -> list[ListedFile]:
-    return _of_document(_document(path), path)
+def _of_document(path: str) -> list[_Unit]:
+    return _units(_document(path), path)
 
 
-def _of_document(document: Any, path: str) -> list[ListedFile]:  # noqa: ANN401
+def _units(document: Any, path: str) -> list[_Unit]:  # noqa: ANN401
+    units = []
     try:
-        units = document.get("units", [document])
-        files: dict[str, list[Listed]] = {}
-        for unit in units:
-            root = unit["source_root"]
+        for unit in document.get("units", [document]):
+            files: dict[str, list[Listed]] = {}
             for comparison in unit["comparisons"]:
-                if comparison["file"].endswith((".c", ".cc", ".cpp", ".cxx", ".h", ".hh", ".hpp")):
+                if comparison["file"].endswith(_NOT_PYTHON):
                     continue
-                file = os.path.normpath(os.path.join(root, comparison["file"]))
+                file = os.path.normpath(os.path.join(unit["source_root"], comparison["file"]))
                 files.setdefault(file, []).append(_listed(comparison))
+            listed = [ListedFile(file, tuple(found)) for file, found in files.items()]
+            units.append(_Unit(unit["link_unit"], unit["source_root"], listed))
     except (KeyError, TypeError, AttributeError) as error:
         raise InputError(f"no static information ({type(error).__name__}: {error})", path) from None
-    return [ListedFile(file, tuple(listed)) for file, listed in files.items()]
+    return units
 
 
 def _listed(comparison: dict[str, Any]) -> Listed:
@@ -151,6 +195,6 @@ def _listed(comparison: dict[str, Any]) -> Listed:
         end_lineno=comparison.get("end_lineno"),
         end_column=comparison.get("end_column"),
         name=comparison["name"],
-        side=comparison.get("side"),
+        operand=comparison.get("operand"),
         source_code=comparison["source_code"],
     )

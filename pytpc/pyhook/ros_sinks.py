@@ -158,8 +158,8 @@ class TopicSink(Sink):
         self._expected = _subscribers(ros)
         self._gather_until = monotonic_ns() + _GATHER_NS
         self._publisher = ros.Publisher(TOPIC, String, queue_size=_QUEUE_MESSAGES)
-        # While the node shuts down its topics are still open in these hooks.
-        ros.core.add_preshutdown_hook(lambda _reason: self._send(at_once=True))
+        # While the node shuts down its topics are still open in these hooks, and in no later ones.
+        ros.on_shutdown(lambda: self._send(at_once=True))
 
     def _send(self, *, at_once: bool) -> None:
         connected = self._publisher.get_num_connections()

@@ -27,8 +27,8 @@ def trigger() -> tuple[Any, Any]:
         """No fields."""
 
         _md5sum, _type, _has_header, _full_text = _MD5, f"{_TYPE}Request", False, ""
-        __slots__: list[str] = []
-        _slot_types: list[str] = []
+        __slots__ = ()
+        _slot_types = ()
 
         def serialize(self, buff: BytesIO) -> None:
             """Write nothing."""
@@ -42,8 +42,8 @@ def trigger() -> tuple[Any, Any]:
 
         _md5sum, _type, _has_header = _MD5, f"{_TYPE}Response", False
         _full_text = "bool success\nstring message\n"
-        __slots__ = ["message", "success"]  # noqa: RUF023
-        _slot_types = ["string", "bool"]
+        __slots__ = ("message", "success")
+        _slot_types = ("string", "bool")
 
         def __init__(self, success: bool = False, message: str = "") -> None:
             self.success = success
