@@ -13,6 +13,7 @@ in the compiled code.
 from __future__ import annotations
 
 import ast
+import sys
 from types import CodeType
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
 
     Register = Callable[[Place], Reported]
 
+# Python 3.11 says of a failed `assert` that it is where the comparison in it is, if there is one.
+_ASSERTS_AT_COMPARISON = sys.version_info[:2] == (3, 11)
 _MARK = "\0tpc constant "
 
 
@@ -198,6 +201,10 @@ class _Rewriter:
         new: ast.expr = node
         if links is not None and isinstance(node, ast.Compare):
             new = self._chain(_Chain(node, links, asked), 0, node.left, _first(node.left))
+            if asked and _ASSERTS_AT_COMPARISON:
+                true = ast.copy_location(ast.Constant(value=True, kind=None), node)
+                still = ast.Compare(left=new, ops=[ast.Is()], comparators=[true])
+                new = ast.copy_location(still, node)
         if flags is not None:
             new = self._flag(new, flags, asked)
         loops = self._found.loops.get(node)
