@@ -101,7 +101,8 @@ def static_of(script: Path) -> str:
         "operand": "right",
         "source_code": LINE.strip(),
     }
-    unit = {"link_unit": script.stem, "source_root": str(script.parent), "comparisons": [comparison]}
+    root = str(script.parent)
+    unit = {"link_unit": script.stem, "source_root": root, "comparisons": [comparison]}
     return json.dumps({"schema": 1, "units": [unit]})
 
 

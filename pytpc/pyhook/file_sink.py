@@ -18,24 +18,28 @@ _SUMMARY = struct.Struct("<IqddqIIQQQddddddQqq16x")
 _COUNT_AT, _BEGUN_AT = 48, 160
 
 
-def packed(kept: Summary, count: int) -> bytes:
+def packed(kept: Summary, count: int, *, is_open: bool = False) -> bytes:
     """A summary as it is in the file, but for its first word."""
     return _SUMMARY.pack(
         kept.one.number,
         kept.begin_ns,
         kept.cmp,
         kept.thresh,
-        kept.end_ns,
+        0 if is_open else kept.end_ns,
         kept.period,
         kept.thread,
         count,
         kept.odd,
         kept.far,
-        *kept.diff,
-        *kept.span,
+        kept.least,
+        kept.largest,
+        kept.total,
+        kept.absolute,
+        kept.low,
+        kept.high,
         kept.flops,
         kept.begin_ros_ns,
-        kept.end_ros_ns,
+        0 if is_open else kept.end_ros_ns,
     )
 
 
@@ -108,7 +112,7 @@ class LiveSlot:
             return
         at = self._at
         struct.pack_into("<Q", self._bytes, at + _BEGUN_AT, kept.evaluations)
-        raw = packed(kept._replace(end_ns=0, end_ros_ns=0), kept.evaluations - 1)
+        raw = packed(kept, kept.evaluations - 1, is_open=True)
         self._bytes[at + 4 : at + 4 + len(raw)] = raw
         self._words[at >> 2] = what_of(kept)
         struct.pack_into("<Q", self._bytes, at + _COUNT_AT, kept.evaluations)

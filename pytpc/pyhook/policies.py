@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import threading
-from math import inf, isfinite
 from time import monotonic_ns
 from typing import TYPE_CHECKING
 
@@ -18,8 +17,6 @@ if TYPE_CHECKING:
     from pytpc.pyhook.sites import Reported
 
 _SECOND = 1_000_000_000
-# |cmp - thresh| above which an evaluation is far (SPEC 7).
-_FAR = 1e-4
 
 
 class Caps:
@@ -110,41 +107,26 @@ class Edges:
         with self._lock:
             key = (thread, one)
             held = self._open.get(key)
-            if held is not None and held.kept.evaluations and held.kept.period != period:
+            if held is None:
+                held = self._open[key] = self._new(thread & 0xFFFFFFFF, one)
+            kept = held.kept
+            if kept.evaluations and kept.period != period:
                 self._close(held)
-            if held is None or not held.kept.evaluations:
-                held = self._begin(key, held, period, now, ros)
-            flops = held.kept.flops + self._edge(one, result, cmp, thresh, res)
-            held.kept = _added(held.kept, result, cmp, thresh, res)._replace(
-                flops=flops, end_ns=now, end_ros_ns=ros
-            )
+            if not kept.evaluations:
+                kept.begin(period, now, ros)
+            kept.flops += self._edge(one, result, cmp, thresh, res)
+            kept.add(result, cmp, thresh, res)
+            kept.end_ns, kept.end_ros_ns = now, ros
             if held.slot is not None:
-                held.slot.write(held.kept)
+                held.slot.write(kept)
 
-    def _begin(
-        self, key: tuple[int, Reported], held: _Open | None, period: int, now: int, ros: int
-    ) -> _Open:
-        thread, one = key
-        kept = Summary(
-            one,
-            thread & 0xFFFFFFFF,
-            period,
-            *(False, False, 0.0, 0.0),
-            *(0, 0, 0, 0),
-            (inf, -inf, 0.0, 0.0),
-            (inf, -inf),
-            *(now, now, ros, ros),
-        )
-        if held is None:
-            slot = None
-            if self._file is not None:
-                self._file.announce(one)
-                slot = LiveSlot(self._file)
-            held = self._open[key] = _Open(kept, slot)
-        held.kept = kept
-        if held.slot is not None:
-            held.slot.begin()
-        return held
+    def _new(self, thread: int, one: Reported) -> _Open:
+        """A comparison that is new to its thread."""
+        slot = None
+        if self._file is not None:
+            self._file.announce(one)
+            slot = LiveSlot(self._file)
+        return _Open(Summary(one, thread), slot)
 
     def _edge(self, one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> int:
         """Report it where the predicate came to something else than the last time."""
@@ -158,7 +140,7 @@ class Edges:
 
     def _close(self, held: _Open) -> None:
         self._sink.summary(held.kept)
-        held.kept = held.kept._replace(evaluations=0)
+        held.kept.evaluations = 0
         if held.slot is not None:
             held.slot.begin()
 
@@ -169,32 +151,6 @@ class Edges:
             for held in self._open.values():
                 if held.kept.evaluations and (all_of_them or held.kept.period != period):
                     self._close(held)
-
-
-def _added(kept: Summary, result: bool, cmp: float, thresh: float, res: bool) -> Summary:
-    """A summary with one more evaluation."""
-    diff = cmp - thresh
-    if not isfinite(diff):
-        return kept._replace(
-            result=result,
-            res=res,
-            cmp=cmp,
-            thresh=thresh,
-            evaluations=kept.evaluations + 1,
-            odd=kept.odd + 1,
-        )
-    least, largest, total, absolute = kept.diff
-    low, high = kept.span
-    return kept._replace(
-        result=result,
-        res=res,
-        cmp=cmp,
-        thresh=thresh,
-        evaluations=kept.evaluations + 1,
-        far=kept.far + (abs(diff) > _FAR),
-        diff=(min(least, diff), max(largest, diff), total + diff, absolute + abs(diff)),
-        span=(min(low, cmp, thresh), max(high, cmp, thresh)),
-    )
 
 
 def forget(reported: Iterable[Reported]) -> None:

@@ -45,8 +45,14 @@ def is_imported() -> bool:
 
 def time_now_ns() -> int:
     """The node's time where it is simulated, else the wall's."""
-    known = now()
-    return known.ros_ns if known.is_simulated else time_ns()
+    rostime = sys.modules.get("rospy.rostime")
+    try:
+        if rostime is None or rostime.is_wallclock():
+            return time_ns()
+    except Exception:
+        # It is being imported, or has no time yet.
+        return time_ns()
+    return now().ros_ns
 
 
 def now() -> Now:

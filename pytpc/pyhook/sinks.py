@@ -2,32 +2,78 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from math import inf, isfinite, nan
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from pytpc.pyhook.sites import Reported
 
 
-class Summary(NamedTuple):
-    """All evaluations of one comparison in one thread and period. Times in ns."""
+# |cmp - thresh| above which an evaluation is far (SPEC 7).
+_FAR = 1e-4
 
-    one: Reported
-    thread: int
-    period: int
-    result: bool
-    res: bool
-    cmp: float
-    thresh: float
-    evaluations: int
-    odd: int
-    far: int
-    flops: int
-    diff: tuple[float, float, float, float]
-    span: tuple[float, float]
-    begin_ns: int
-    end_ns: int
-    begin_ros_ns: int
-    end_ros_ns: int
+
+class Summary:
+    """All evaluations of one comparison in one thread and period, as they come. Times in ns."""
+
+    __slots__ = (
+        "absolute",
+        "begin_ns",
+        "begin_ros_ns",
+        "cmp",
+        "end_ns",
+        "end_ros_ns",
+        "evaluations",
+        "far",
+        "flops",
+        "high",
+        "largest",
+        "least",
+        "low",
+        "odd",
+        "one",
+        "period",
+        "res",
+        "result",
+        "thread",
+        "thresh",
+        "total",
+    )
+
+    def __init__(self, one: Reported, thread: int) -> None:
+        """Nothing was evaluated yet."""
+        self.one = one
+        self.thread = thread
+        self.begin(0, 0, 0)
+
+    def begin(self, period: int, now_ns: int, ros_ns: int) -> None:
+        """A new period, in which nothing was evaluated yet."""
+        self.period = period
+        self.result = self.res = False
+        self.cmp = self.thresh = 0.0
+        self.evaluations = self.odd = self.far = self.flops = 0
+        self.least = self.low = inf
+        self.largest = self.high = -inf
+        self.total = self.absolute = 0.0
+        self.begin_ns = self.end_ns = now_ns
+        self.begin_ros_ns = self.end_ros_ns = ros_ns
+
+    def add(self, result: bool, cmp: float, thresh: float, res: bool) -> None:
+        """One evaluation."""
+        self.evaluations += 1
+        self.result, self.res, self.cmp, self.thresh = result, res, cmp, thresh
+        diff = cmp - thresh
+        if not isfinite(diff):
+            self.odd += 1
+            return
+        size = abs(diff)
+        self.far += size > _FAR
+        self.total += diff
+        self.absolute += size
+        self.least = min(self.least, diff)
+        self.largest = max(self.largest, diff)
+        self.low = min(self.low, cmp, thresh)
+        self.high = max(self.high, cmp, thresh)
 
 
 class Sink:
@@ -82,9 +128,9 @@ def seconds(ns: int, decimals: int) -> str:
 def summary_line(kept: Summary) -> str:
     """The same with count, flops, and so on."""
     usable = kept.evaluations - kept.odd
-    least, largest, total, absolute = kept.diff if usable else (float("nan"),) * 4
-    low, high = kept.span if usable else (float("nan"),) * 2
-    means = [number(x / usable) if usable else "nan" for x in (total, absolute)]
+    numbers = (kept.least, kept.largest, kept.total, kept.absolute, kept.low, kept.high)
+    least, largest, total, absolute, low, high = numbers if usable else (nan,) * 6
+    means = [number(x / max(usable, 1)) for x in (total, absolute)]
     return (
         f"{report_line(kept.one, kept.result, kept.cmp, kept.thresh, kept.res)}"
         f",count:{kept.evaluations},flops:{kept.flops}"
