@@ -34,6 +34,7 @@ SUMMARIES = {
     "record": ("mission_commands", "Record the running graph, or a launch file's mission."),
     "relay": ("graph_commands", "Pass reports on from /rosout to /threshold_information."),
     "report": ("report_commands", "Write a page with the suspects at each mark, and why."),
+    "run": ("run_commands", "Run a Python node whose comparisons report."),
     "show": ("static_commands", "Show all that is known about a comparison."),
     "sink": ("graph_commands", "Show and change where running nodes report to."),
     "stats": ("stats_commands", "Tables and figures of a study from recorded missions."),

@@ -1,0 +1,178 @@
+"""What a report costs a Python node: by the hook's sinks, and by a publish per comparison.
+
+One loop compares numbers with a parameter. It runs plainly, under the hook with each sink, and with
+a report in the source that makes and publishes a std_msgs/String each, as the thesis's Python nodes
+do. All are rospy nodes on one roscore, with one subscriber on /threshold_information. A cost is the
+time of a comparison less that of the plain loop in the same round; the figure is the median of the
+rounds, which take turns. Start-up is a script that does nothing, with the hook and without it.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+from figures import figure
+
+from pytpc.graph import RosGraph
+
+TOPIC = "python-cost"
+ROOT = Path(__file__).resolve().parents[1]
+RUN = str(ROOT / "pytpc/run.py")
+# The interpreter that Debian's rospy is for.
+PYTHON = "/usr/bin/python3"
+ROUNDS = 5
+STARTS = 15
+KEY = "00000001-0000-5000-8000-000000000001"
+LINE = "        if number > limit:"
+LOOP = f"""\
+import sys, time
+import rospy
+from std_msgs.msg import String
+rospy.init_node("loop")
+limit = rospy.get_param("~limit", 50.0)
+count, numbers = int(sys.argv[1]), [float(number) for number in range(100)]
+def compare():
+    hits = 0
+    for number in numbers:
+{LINE}
+            hits += 1
+    return hits
+publisher = rospy.Publisher("/threshold_information", String, queue_size=100)
+def publish(number, outcome):
+    publisher.publish(String("%.7f,{KEY},%s,cmp:%r,thresh:%r,res:%s"
+                             % (time.time(), outcome, number, limit, outcome)))
+    return outcome
+def by_publish():
+    hits = 0
+    for number in numbers:
+        if publish(number, number > limit):
+            hits += 1
+    return hits
+body = by_publish if len(sys.argv) > 2 else compare
+body()
+if len(sys.argv) > 2:
+    while not publisher.get_num_connections():
+        time.sleep(0.01)
+else:
+    time.sleep(1.0)
+begin = time.perf_counter_ns()
+for _ in range(count // 100):
+    body()
+print((time.perf_counter_ns() - begin) / (count // 100 * 100))
+"""
+LISTENER = """\
+import rospy
+from std_msgs.msg import String
+rospy.init_node("listener")
+rospy.Subscriber("/threshold_information", String, lambda message: None, queue_size=1000)
+rospy.spin()
+"""
+# Name -> (sink, policy, comparisons); "" is the plain loop, None the publish in the source.
+WAYS: Mapping[str, tuple[str | None, str, int]] = {
+    "plain": ("", "", 2_000_000),
+    "off": ("off", "every", 1_000_000),
+    "file": ("file", "every", 500_000),
+    "file_edges": ("file", "edges", 100_000),
+    "topic": ("topic", "every", 50_000),
+    "publish": (None, "", 10_000),
+}
+
+
+def static_of(script: Path) -> str:
+    """The static information of the loop."""
+    lineno = LOOP.splitlines().index(LINE) + 1
+    comparison = {
+        "key": KEY,
+        "relation": ">",
+        "file": script.name,
+        "lineno": lineno,
+        "column": LINE.index("number") + 1,
+        "name": "limit",
+        "operand": "right",
+        "source_code": LINE.strip(),
+    }
+    root = str(script.parent)
+    unit = {"link_unit": script.stem, "source_root": root, "comparisons": [comparison]}
+    return json.dumps({"schema": 1, "units": [unit]})
+
+
+def nanoseconds(folder: Path, env: Mapping[str, str], way: str) -> float:
+    """Of one comparison, in a process of its own."""
+    sink, policy, count = WAYS[way]
+    words = [str(folder / "loop.py"), str(count)]
+    settings = dict(env)
+    if sink is None:
+        words.append("publish")
+    elif sink:
+        words = [RUN, "--static", str(folder / "static.json"), *words]
+        settings.update(TPC_SINK=sink, TPC_POLICY=policy, TPC_FOLDER=str(folder / "tpc"))
+    done = subprocess.run(
+        [PYTHON, *words], env=settings, check=True, capture_output=True, text=True, timeout=300
+    )
+    return float(done.stdout.split()[-1])
+
+
+@contextlib.contextmanager
+def listening(env: Mapping[str, str]) -> Iterator[None]:
+    """A subscriber, as long as the ``with`` lasts."""
+    with subprocess.Popen([PYTHON, "-c", LISTENER], env=env) as listener:
+        time.sleep(1.0)
+        try:
+            yield
+        finally:
+            listener.terminate()
+
+
+def starting(folder: Path) -> tuple[float, float]:
+    """Milliseconds of a script that does nothing: plainly, and under the hook (medians)."""
+    script = folder / "nothing.py"
+    script.write_text("pass\n")
+    static = str(folder / "static.json")
+    ways = ([PYTHON, str(script)], [PYTHON, RUN, "--static", static, str(script)])
+    took: tuple[list[float], list[float]] = ([], [])
+    for _ in range(STARTS):
+        for command, times in zip(ways, took, strict=True):
+            begin = time.perf_counter()
+            subprocess.run(command, check=True)
+            times.append((time.perf_counter() - begin) * 1e3)
+    return statistics.median(took[0]), statistics.median(took[1])
+
+
+def main() -> None:
+    """Measure all, and print a line for each figure."""
+    costs: dict[str, list[float]] = defaultdict(list)
+    ratios: list[float] = []
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "loop.py").write_text(LOOP)
+        (folder / "static.json").write_text(static_of(folder / "loop.py"))
+        plain_ms, hook_ms = starting(folder)
+        with RosGraph(dict(os.environ), folder / "graph") as graph:
+            env = {**os.environ, "ROS_MASTER_URI": graph.uri, "ROS_IP": "127.0.0.1"}
+            with listening(env):
+                for number in range(ROUNDS):
+                    took = {way: nanoseconds(folder, env, way) for way in WAYS}
+                    print(f"round {number + 1}: {took}", file=sys.stderr)
+                    for way, ns in took.items():
+                        costs[way].append(ns - took["plain"] if way != "plain" else ns)
+                    ratios.append(costs["file"][-1] / costs["publish"][-1])
+    for way, values in costs.items():
+        figure(TOPIC, way, statistics.median(values), unit="ns", target="none", hit=True)
+    ratio = statistics.median(ratios)
+    figure(TOPIC, "file_to_publish", ratio, unit="ratio", target="<=0.1", hit=ratio <= 0.1)
+    figure(TOPIC, "start_plain", plain_ms, unit="ms", target="none", hit=True)
+    figure(TOPIC, "start_added", hook_ms - plain_ms, unit="ms", target="none", hit=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,85 @@
+"""What a process reports, and where to: the same settings as those of the C++ runtime.
+
+docs/running.md has them. A setting that is no value of it gets a warning and is left as it was: a
+node is never stopped for this.
+"""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from pytpc.pyhook.words import warn
+
+SINKS = ("rosout", "topic", "file", "off")
+POLICIES = ("every", "edges")
+NAMES = (
+    "sink",
+    "policy",
+    "period",
+    "site_cap",
+    "process_cap",
+    "folder",
+    "file_limit",
+    "file_reserve",
+)
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    Value = Any
+
+_LARGEST = 1 << 40
+
+
+class Config(NamedTuple):
+    """All settings. Caps are reports a second, limits MiB; 0 is none."""
+
+    sink: str = "rosout"
+    policy: str = "every"
+    period_ns: int = 100_000_000
+    site_cap: int = 0
+    process_cap: int = 0
+    folder: str = ""
+    file_limit: int = 4096
+    file_reserve: int = 256
+
+
+def parsed(name: str, text: str) -> tuple[dict[str, Value] | None, str]:
+    """What ``name`` being ``text`` changes in a `Config`; or None, and why, in one clause."""
+    choices = {"sink": SINKS, "policy": POLICIES}.get(name)
+    if choices is not None:
+        return ({name: text}, "") if text in choices else (None, f"is none of {', '.join(choices)}")
+    if name == "period":
+        seconds = _number(text)
+        if seconds is None or not 1e-3 <= seconds <= 3600:
+            return None, "is no number of seconds from 0.001 to 3600"
+        return {"period_ns": int(seconds * 1e9)}, ""
+    if name == "folder":
+        return {name: text}, ""
+    if name in NAMES:
+        is_count = text.isascii() and text.isdigit() and int(text) <= _LARGEST
+        return ({name: int(text)}, "") if is_count else (None, "is no whole number")
+    return None, "is no setting"
+
+
+def _number(text: str) -> float | None:
+    try:
+        return float(text)
+    except ValueError:
+        return None
+
+
+def of_environment(environment: Mapping[str, str] = os.environ) -> Config:
+    """The defaults and ``TPC_SINK`` and its kind."""
+    config = Config()
+    for name in NAMES:
+        variable = f"TPC_{name.upper()}"
+        text = environment.get(variable, "")
+        if not text:
+            continue
+        change, why = parsed(name, text)
+        if change is None:
+            warn(f"{variable}={text} {why}; it is left as it was")
+        else:
+            config = config._replace(**change)
+    return config

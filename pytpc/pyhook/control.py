@@ -1,0 +1,87 @@
+"""The settings of a running node: parameters of ROS, and the service that takes them over."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from pytpc.pyhook.config import NAMES, Config, parsed
+from pytpc.pyhook.trigger import trigger
+from pytpc.pyhook.words import warn
+
+if TYPE_CHECKING:
+    from pytpc.pyhook.runtime import Runtime
+
+_PLACES = ("/tpc", "~tpc")
+_SERVICE = "~tpc/reload"
+
+
+class Control:
+    """Takes over ``/tpc/NAME`` and ``~tpc/NAME``, the node's own last."""
+
+    def __init__(self, runtime: Runtime, ros: Any) -> None:  # noqa: ANN401
+        """``ros`` is rospy, with a node that is up."""
+        self._runtime = runtime
+        self._ros = ros
+        self._of_environment = runtime.config
+
+    def begin(self) -> None:
+        """Take the parameters over once, and serve ``~tpc/reload``.
+
+        Raises:
+            Exception: as rospy has it, where the master does not answer.
+        """
+        for complaint in self.take_over():
+            warn(complaint)
+        service, answer = trigger()
+
+        def reload(_request: object) -> object:
+            complaints = self.take_over()
+            for complaint in complaints:
+                warn(complaint)
+            message = "".join(f"{complaint}; " for complaint in complaints)
+            return answer(not complaints, message + self._runtime.status())
+
+        self._ros.Service(_SERVICE, service, reload)
+
+    def take_over(self) -> list[str]:
+        """Let the parameters hold; what is wrong with them."""
+        complaints: list[str] = []
+        now = self._runtime.config
+        new = self._of_environment
+        for place in _PLACES:
+            folder = self._ros.resolve_name(place)
+            found = self._ros.get_param(place, None)
+            if found is None:
+                continue
+            if not isinstance(found, dict):
+                complaints.append(f"the parameter {folder} is no folder of parameters; left out")
+                continue
+            for name, value in sorted(found.items()):
+                new, complaint = _changed(new, now, name, value)
+                if complaint:
+                    complaints.append(f"the parameter {folder}/{name} is left out: {complaint}")
+        if not self._runtime.apply(new):
+            complaints.append("what is set cannot be had; left as it was")
+        return complaints
+
+
+def _changed(new: Config, now: Config, name: str, value: object) -> tuple[Config, str]:
+    """``new`` with one setting more; what holds now, and why, where the parameter is wrong."""
+    if name not in NAMES:
+        return new, "there is no such setting"
+    text = _text(name, value)
+    change, why = (None, "it is of the wrong type") if text is None else parsed(name, text)
+    if change is not None:
+        return new._replace(**change), ""
+    field = "period_ns" if name == "period" else name
+    held: dict[str, Any] = {field: getattr(now, field)}
+    return new._replace(**held), why
+
+
+def _text(name: str, value: object) -> str | None:
+    """A value of the parameter server as a word of the environment. YAML takes `off` for false."""
+    if isinstance(value, bool):
+        return "off" if name == "sink" and not value else None
+    if isinstance(value, (str, int)):
+        return str(value)
+    return repr(value) if isinstance(value, float) else None

@@ -1,0 +1,200 @@
+"""Which comparisons are to report: read from the static information.
+
+The hook does not check the files against the schema; what it cannot use is an error that names the
+file.
+"""
+
+from __future__ import annotations
+
+import glob
+import json
+import os
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+from pytpc.errors import InputError
+
+# Where static information lies below a workspace, a build folder or a folder of packages.
+_PLACES = ("*.json", "tpc/*.json", "*/tpc/*.json", "build/tpc/*.json", "build/*/tpc/*.json")
+
+
+_NOT_PYTHON = (".c", ".cc", ".cpp", ".cxx", ".h", ".hh", ".hpp", ".hxx")
+
+
+class Listed(NamedTuple):
+    """One comparison of the static information; lines from 1, columns in bytes from 1."""
+
+    key: str
+    relation: str
+    lineno: int
+    column: int
+    end_lineno: int | None
+    end_column: int | None
+    name: str | None
+    operand: str | None
+    source_code: str | None
+
+
+class ListedFile(NamedTuple):
+    """A source file and its comparisons. ``path`` is absolute, as the analysis saw it."""
+
+    path: str
+    comparisons: tuple[Listed, ...]
+
+
+class Table:
+    """The source files with comparisons, found by the last part of their names."""
+
+    def __init__(self, files: Iterable[ListedFile]) -> None:
+        """Keep ``files``; several of one path are one."""
+        merged: dict[str, dict[tuple[str, int, int, str], Listed]] = {}
+        for file in files:
+            into = merged.setdefault(file.path, {})
+            for listed in file.comparisons:
+                into[(listed.key, listed.lineno, listed.column, listed.relation)] = listed
+        self.by_name: dict[str, list[ListedFile]] = {}
+        for path, found in sorted(merged.items()):
+            entry = ListedFile(path, tuple(found.values()))
+            self.by_name.setdefault(os.path.basename(path), []).append(entry)
+        self._by_real = {
+            os.path.realpath(file.path): file
+            for files_of_name in self.by_name.values()
+            for file in files_of_name
+        }
+
+    def __len__(self) -> int:
+        """How many files."""
+        return len(self._by_real)
+
+    def is_exact(self, path: str) -> bool:
+        """Whether it is one of the files themselves, and no copy."""
+        return os.path.realpath(path) in self._by_real
+
+    def candidates(self, path: str) -> list[ListedFile]:
+        """The files that the one at ``path`` may be a copy of; the very file alone where it is one.
+
+        A file that was installed, or lies on another machine, is told by its text: see
+        `pytpc.pyhook.find.matching`.
+        """
+        named = self.by_name.get(os.path.basename(path), [])
+        if not named:
+            real = os.path.realpath(path)
+            named = self.by_name.get(os.path.basename(real), [])
+            if not named:
+                return []
+        exact = self._by_real.get(os.path.realpath(path))
+        return [exact] if exact is not None else named
+
+
+class _Unit(NamedTuple):
+    """One link unit: a script with the modules that it imports."""
+
+    name: str
+    root: str
+    files: list[ListedFile]
+
+
+def read_table(paths: Iterable[str], script: str | None = None) -> Table:
+    """Read files of static information, merged ones, and folders that hold such files.
+
+    Args:
+        paths: what is read.
+        script: the program that is to run. A module of several programs has a key for each of them;
+            those of ``script`` count, where there are any, because they tell who reports.
+
+    Raises:
+        InputError: a file cannot be read, or is no static information; a folder has none.
+    """
+    units = _all_units(paths)
+    if script is not None:
+        units = _of_script(units, script)
+    return Table(file for unit in units for file in unit.files)
+
+
+def names_script(paths: Iterable[str], script: str) -> bool:
+    """Whether the static information has a link unit of this script's name.
+
+    Raises:
+        InputError: as `read_table`.
+    """
+    stem = _stem(script)
+    return any(unit.name == stem and unit.files for unit in _all_units(paths))
+
+
+def _stem(script: str) -> str:
+    name = os.path.basename(script)
+    return name[:-3] if name.endswith(".py") else name
+
+
+def _all_units(paths: Iterable[str]) -> list[_Unit]:
+    units: list[_Unit] = []
+    for path in paths:
+        units.extend(_of_folder(path) if os.path.isdir(path) else _of_document(path))
+    return units
+
+
+def _of_script(units: list[_Unit], script: str) -> list[_Unit]:
+    stem = _stem(script)
+    real = os.path.realpath(script)
+    named = [unit for unit in units if unit.name == stem]
+    inside = [unit for unit in named if real.startswith(os.path.realpath(unit.root) + os.sep)]
+    return inside or named or units
+
+
+def _of_folder(folder: str) -> list[_Unit]:
+    found = sorted({path for place in _PLACES for path in glob.glob(os.path.join(folder, place))})
+    units: list[_Unit] = []
+    is_any = False
+    for path in found:
+        document = _document(path)
+        if isinstance(document, dict) and ("comparisons" in document or "units" in document):
+            is_any = True
+            units.extend(_units(document, path))
+    if not is_any:
+        raise InputError("no static information below this folder; run pytpc analyse", folder)
+    return units
+
+
+def _document(path: str) -> Any:  # noqa: ANN401
+    try:
+        with open(path, "rb") as stream:
+            return json.loads(stream.read().decode("utf-8"))
+    except OSError as error:
+        raise InputError(f"cannot be read: {error.strerror or error}", path) from error
+    except ValueError as error:
+        raise InputError(f"no JSON: {error}", path) from error
+
+
+def _of_document(path: str) -> list[_Unit]:
+    return _units(_document(path), path)
+
+
+def _units(document: Any, path: str) -> list[_Unit]:  # noqa: ANN401
+    units = []
+    try:
+        for unit in document.get("units", [document]):
+            files: dict[str, list[Listed]] = {}
+            for comparison in unit["comparisons"]:
+                if comparison["file"].endswith(_NOT_PYTHON):
+                    continue
+                file = os.path.normpath(os.path.join(unit["source_root"], comparison["file"]))
+                files.setdefault(file, []).append(_listed(comparison))
+            listed = [ListedFile(file, tuple(found)) for file, found in files.items()]
+            units.append(_Unit(unit["link_unit"], unit["source_root"], listed))
+    except (KeyError, TypeError, AttributeError) as error:
+        raise InputError(f"no static information ({type(error).__name__}: {error})", path) from None
+    return units
+
+
+def _listed(comparison: dict[str, Any]) -> Listed:
+    return Listed(
+        key=comparison["key"],
+        relation=comparison["relation"],
+        lineno=comparison["lineno"],
+        column=comparison["column"],
+        end_lineno=comparison.get("end_lineno"),
+        end_column=comparison.get("end_column"),
+        name=comparison["name"],
+        operand=comparison.get("operand"),
+        source_code=comparison["source_code"],
+    )

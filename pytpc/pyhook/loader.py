@@ -1,0 +1,111 @@
+"""The import hook: a finder that looks at what the others found, and a loader that compiles anew.
+
+Only modules whose file has the name of one with listed comparisons are looked at. Their bytecode is
+not cached, so that nothing of ours gets into ``__pycache__`` and nothing from there hides a report.
+"""
+
+from __future__ import annotations
+
+import importlib.machinery
+import os
+import sys
+from collections.abc import Sequence
+from types import CodeType, ModuleType
+from typing import Any
+
+from pytpc.pyhook.instrument import Instrument
+from pytpc.pyhook.relay import relayed
+from pytpc.pyhook.words import warn
+
+
+class ReportingLoader(importlib.machinery.SourceFileLoader):
+    """Loads a module from its source; all else, as ``inspect.getsource``, is as of its base."""
+
+    def __init__(self, fullname: str, path: str, instrument: Instrument) -> None:
+        """As the base; ``instrument`` compiles."""
+        super().__init__(fullname, path)
+        self._instrument = instrument
+
+    def get_code(self, fullname: str) -> CodeType:
+        """The rewritten code; the ordinary one where the module has nothing to report."""
+        path = self.get_filename(fullname)
+        data = self.get_data(path)
+        code = self._instrument.code(data, path) or relayed(data, path, self._instrument)
+        if code is not None:
+            return code
+        ordinary = super().get_code(fullname)
+        assert ordinary is not None
+        return ordinary
+
+
+class ReportingFinder:
+    """Stands before the finders that there are, and asks them."""
+
+    def __init__(self, instrument: Instrument) -> None:
+        """Packages are known by their folder's name."""
+        self._instrument = instrument
+        self._names = _module_names(instrument.table.by_name, instrument)
+        self._asked: set[str] = set()
+
+    def find_spec(
+        self,
+        fullname: str,
+        path: Sequence[str] | None = None,
+        target: ModuleType | None = None,
+    ) -> importlib.machinery.ModuleSpec | None:
+        """What another finder gives, with our loader where the module may have comparisons."""
+        if fullname.rpartition(".")[2] not in self._names:
+            return None
+        spec = self._other(fullname, path, target)
+        if spec is None or not spec.origin or not isinstance(spec.origin, str):
+            return spec
+        loader = spec.loader
+        if not isinstance(loader, importlib.machinery.SourceFileLoader):
+            if self._instrument.table.is_exact(spec.origin):
+                warn(f"{spec.origin}: not loaded from its source, and not reported")
+            return spec
+        is_init = os.path.basename(spec.origin) == "__init__.py"
+        if type(loader) is not importlib.machinery.SourceFileLoader:
+            if self._instrument.table.is_exact(spec.origin):
+                warn(
+                    f"{spec.origin}: loaded by {type(loader).__qualname__}, which may change it,"
+                    " and not reported"
+                )
+        elif is_init or self._instrument.knows(spec.origin):
+            spec.loader = ReportingLoader(fullname, spec.origin, self._instrument)
+        return spec
+
+    @staticmethod
+    def invalidate_caches() -> None:
+        """There are none."""
+
+    def _other(
+        self, fullname: str, path: Sequence[str] | None, target: ModuleType | None
+    ) -> importlib.machinery.ModuleSpec | None:
+        for finder in list(sys.meta_path):
+            find: Any = getattr(finder, "find_spec", None)
+            if finder is self or find is None:
+                continue
+            spec: importlib.machinery.ModuleSpec | None = find(fullname, path, target)
+            if spec is not None:
+                return spec
+        return None
+
+
+def _module_names(by_name: dict[str, Any], instrument: Instrument) -> set[str]:
+    """The last parts of the names of modules that may have comparisons."""
+    names = set()
+    for base, files in by_name.items():
+        stem = base[:-3] if base.endswith(".py") else base
+        names.add(stem)
+        for file in files:
+            if stem == "__init__":
+                names.add(os.path.basename(os.path.dirname(file.path)))
+    return names
+
+
+def install(instrument: Instrument) -> ReportingFinder:
+    """Let modules that are imported from now on report."""
+    finder = ReportingFinder(instrument)
+    sys.meta_path.insert(0, finder)
+    return finder

@@ -1,0 +1,357 @@
+"""The binary file of reports (docs/formats.md), written straight into mapped memory.
+
+The kernel keeps what was written whatever happens to the process. Space is allocated on the disk
+before it is mapped, so that a full disk is an error and no signal. Each thread has chunks of its
+own; a place in one is claimed by one call of C, so that a signal's handler, or a finaliser, that
+reports in the middle of a report gets another place. ``what`` of a record is written last.
+"""
+
+from __future__ import annotations
+
+import struct
+import threading
+from collections.abc import Callable
+from itertools import count
+from time import monotonic_ns, time_ns
+from typing import TYPE_CHECKING, Any
+
+from pytpc.pyhook import ros_state
+from pytpc.pyhook.config import Config
+from pytpc.pyhook.log_layout import (
+    CHUNK_BYTES,
+    CHUNK_HEADER_BYTES,
+    DROPPED,
+    EDGE_BIT,
+    LIVE_CHUNK,
+    LONGEST_KEY,
+    NODE_AT,
+    NODE_BYTES,
+    POLICY,
+    REASONS,
+    RECORD_BYTES,
+    RECORDS_OF_CHUNK,
+    SECOND,
+    SIMULATED,
+    SITE,
+    SLOT_BYTES,
+    SLOTS_OF_CHUNK,
+    SYNC,
+    SYSTEM_CHUNK,
+    THREAD_CHUNK,
+    WHATS,
+    bounded,
+    pack_integers,
+    pack_report,
+)
+from pytpc.pyhook.log_room import Extent, Room
+
+if TYPE_CHECKING:
+    from pytpc.pyhook.sites import Reported, Take
+
+
+class _Chunk:
+    """Records of one thread. ``claim()`` gives the byte of one; it may be behind ``end``."""
+
+    __slots__ = ("bytes", "claim", "end", "words")
+
+    def __init__(self, extent: Extent, begin: int) -> None:
+        self.bytes = extent.bytes
+        self.words = extent.words
+        self.claim = count(begin + CHUNK_HEADER_BYTES, RECORD_BYTES).__next__
+        self.end = begin + CHUNK_BYTES
+
+
+class _NoChunk(_Chunk):
+    """Before the first one, and where there is no more room."""
+
+    __slots__ = ()
+
+    def __init__(self) -> None:
+        self.claim = count().__next__
+        self.end = 0
+
+
+class _Place:
+    """Where a thread writes: its chunk, and how many records were in those before."""
+
+    __slots__ = ("chunk", "is_changing", "number", "sim_ns", "written")
+
+    def __init__(self, number: int) -> None:
+        self.number = number
+        self.written = 0
+        self.sim_ns = -1
+        self.is_changing = False
+        self.chunk: _Chunk = _NoChunk()
+
+
+class _SystemChunk:
+    """Where records of the system are written: in ``extent`` from byte ``at`` to ``end``."""
+
+    __slots__ = ("at", "end", "extent", "first")
+
+    def __init__(self, extent: Extent, begin: int, first: int) -> None:
+        self.extent = extent
+        self.at = begin + CHUNK_HEADER_BYTES
+        self.end = begin + CHUNK_BYTES
+        self.first = first
+
+
+class _Owner:
+    """A thread's hold on its place: when the thread ends, the next one takes it over."""
+
+    __slots__ = ("_free", "_place")
+
+    def __init__(self, place: _Place, free: list[_Place]) -> None:
+        self._place = place
+        self._free = free
+
+    def __del__(self) -> None:
+        self._free.append(self._place)
+
+
+class LogFile(Room):
+    """One file, and what is written to it."""
+
+    def __init__(self, config: Config, parent: int, each_second: Callable[[], None]) -> None:
+        """Make the file in its folder.
+
+        Raises:
+            OSError: it cannot be made.
+        """
+        node = ros_state.now().node
+        super().__init__(config, parent, node)
+        self._each_second = each_second
+        self._local = threading.local()
+        self._threads = 0
+        self._free: list[_Place] = []
+        self._system: _SystemChunk | None = None
+        self._live: tuple[tuple[Extent, int], int] | None = None
+        self._sync_at = 0
+        # When a report has to look about: at the next second, or at once in simulated time.
+        self._look_at = 0
+        self._is_node_known = bool(node)
+        self._nested = 0
+        self.is_simulated = False
+        self.look(monotonic_ns())
+        self.take: Take = self._taker()
+
+    # --- reports
+
+    def _taker(self) -> Take:
+        """What takes a report, with all that it needs at hand."""
+        local, whats, pack, steady = self._local, WHATS, pack_report, monotonic_ns
+
+        def take(one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> None:
+            try:
+                place = local.place
+            except AttributeError:
+                place = self._new_place()
+            # A signal's handler may change the chunk at any time: it is looked at once.
+            chunk = place.chunk
+            at = chunk.claim()
+            now = steady()
+            if at >= chunk.end or one.file is not self or now >= self._look_at:
+                found = self._prepared(place, one, chunk, at, now)
+                if found is None:
+                    return
+                chunk, at = found
+            what = whats[result * 2 + res]
+            try:
+                pack(chunk.bytes, at + 4, one.number, now, cmp, thresh)
+                chunk.words[at >> 2] = what
+            except BaseException:
+                # What stays empty hides all that follow; Ctrl-C may come at any time.
+                chunk.words[at >> 2] = what
+                raise
+
+        return take
+
+    def _prepared(
+        self, place: _Place, one: Reported, chunk: _Chunk, at: int, now: int
+    ) -> tuple[_Chunk, int] | None:
+        """Where to write where something stands in the way; None where there is no room."""
+        if now >= self._sync_at:
+            self.look(now)
+            self._each_second()
+        if one.file is not self:
+            self._announce(one)
+        found = (chunk, at) if at < chunk.end else self._claimed(place)
+        if found is not None and (self.is_simulated or place.sim_ns != -1):
+            return self._simulated(place, found, now)
+        return found
+
+    def _claimed(self, place: _Place) -> tuple[_Chunk, int] | None:
+        """The next record of the calling thread, in a new chunk where its own is full."""
+        while True:
+            chunk = place.chunk
+            at = chunk.claim()
+            if at < chunk.end:
+                return chunk, at
+            if place.is_changing:
+                # From within the change itself.
+                self._nested += 1
+                return None
+            if not self._next_chunk(place):
+                return None
+
+    def _simulated(
+        self, place: _Place, found: tuple[_Chunk, int], now: int
+    ) -> tuple[_Chunk, int] | None:
+        """Write the simulated time where it has changed; the record behind it."""
+        chunk, at = found
+        sim_ns = ros_state.now().ros_ns if self.is_simulated else -1
+        if sim_ns == place.sim_ns:
+            return found
+        place.sim_ns = sim_ns
+        pack_integers(chunk.bytes, at + 4, 0, now, sim_ns, 0)
+        chunk.words[at >> 2] = SIMULATED
+        return self._claimed(place)
+
+    def edge(self, one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> None:
+        """A report of the policy ``edges``."""
+        place = self._place()
+        now = monotonic_ns()
+        chunk = place.chunk
+        found = self._prepared(place, one, chunk, chunk.claim(), now)
+        if found is not None:
+            chunk, at = found
+            pack_report(chunk.bytes, at + 4, one.number, now, cmp, thresh)
+            chunk.words[at >> 2] = WHATS[result * 2 + res] | EDGE_BIT
+
+    # --- threads and chunks
+
+    def _new_place(self) -> _Place:
+        """The calling thread's place: a new one, or that of a thread that has ended."""
+        try:
+            place = self._free.pop()
+        except IndexError:
+            with self._lock:
+                self._threads += 1
+                place = _Place(self._threads)
+        self._local.owner = _Owner(place, self._free)
+        self._local.place = place
+        return place
+
+    def _place(self) -> _Place:
+        try:
+            return self._local.place  # type: ignore[no-any-return]
+        except AttributeError:
+            return self._new_place()
+
+    def thread_number(self) -> int:
+        """The number of the calling thread in this file, from 1."""
+        return self._place().number
+
+    def _next_chunk(self, place: _Place) -> bool:
+        place.is_changing = True
+        try:
+            if place.chunk.end:
+                place.written += RECORDS_OF_CHUNK
+            found = self.new_chunk(THREAD_CHUNK, place.number, place.written)
+            place.chunk = _NoChunk() if found is None else _Chunk(*found)
+        finally:
+            place.is_changing = False
+        if found is None:
+            self._count_lost()
+        return found is not None
+
+    # --- the header
+
+    def _set_node(self, name: str) -> None:
+        raw = bounded(name, NODE_BYTES)
+        self._header[NODE_AT + 1 : NODE_AT + len(raw)] = raw[1:]
+        self._header[NODE_AT : NODE_AT + 1] = raw[:1]
+        self._is_node_known = True
+
+    # --- what is of the system
+
+    def _records(self, number: int) -> tuple[Extent, int] | None:
+        """Room for so many records in a row; the lock is held.
+
+        What is left over at the end of a chunk counts as used.
+        """
+        chunk = self._system
+        if chunk is None or chunk.at + number * RECORD_BYTES > chunk.end:
+            first = 0 if chunk is None else chunk.first + RECORDS_OF_CHUNK
+            found = self.new_chunk(SYSTEM_CHUNK, 0, first)
+            if found is None:
+                return None
+            chunk = self._system = _SystemChunk(*found, first)
+        at = chunk.at
+        chunk.at += number * RECORD_BYTES
+        return chunk.extent, at
+
+    def _integers(self, what: int, site: int, now: int, first: int, second: int) -> None:
+        with self._lock:
+            found = self._records(1)
+            if found is not None:
+                extent, at = found
+                pack_integers(extent.bytes, at + 4, site, now, first, second)
+                extent.words[at >> 2] = what
+
+    def new_slot(self) -> tuple[Any, Any, int] | None:
+        """Room for a live summary: the bytes and words of its part of the file, and its place."""
+        with self._lock:
+            if self._live is None or self._live[1] == SLOTS_OF_CHUNK:
+                found = self.new_chunk(LIVE_CHUNK, self.thread_number(), 0)
+                if found is None:
+                    return None
+                self._live = (found, 0)
+            (extent, begin), used = self._live
+            self._live = ((extent, begin), used + 1)
+            at = begin + CHUNK_HEADER_BYTES + used * SLOT_BYTES
+            return extent.bytes, extent.words, at
+
+    def _announce(self, one: Reported) -> None:
+        with self._lock:
+            if one.file is self:
+                return
+            raw = one.key.encode("utf-8")[:LONGEST_KEY]
+            blocks = -(-max(0, len(raw) - 16) // RECORD_BYTES)
+            found = self._records(1 + blocks)
+            if found is None:
+                return
+            extent, at = found
+            extent.bytes[at + 16 : at + 16 + len(raw)] = raw
+            struct.pack_into("<Iq", extent.bytes, at + 4, one.number, len(raw))
+            extent.words[at >> 2] = SITE
+            one.file = self
+
+    def announce(self, one: Reported) -> None:
+        """Say what the number of a key is."""
+        if one.file is not self:
+            self._announce(one)
+
+    def look(self, now: int) -> None:
+        """What is done once a second: the clocks against one another, and what ROS says."""
+        with self._lock:
+            if now < self._sync_at:
+                return
+            self._sync_at = now + SECOND
+            known = ros_state.now()
+            self.is_simulated = known.is_simulated
+            self._look_at = 0 if self.is_simulated else self._sync_at
+            if known.node and not self._is_node_known:
+                self._set_node(known.node)
+            before, real, after = monotonic_ns(), time_ns(), monotonic_ns()
+            nested, self._nested = self._nested, 0
+            if nested:
+                self.write_dropped(0, nested, 0, "nested")
+            self._integers(SYNC, 0, before + (after - before) // 2, real, known.ros_ns)
+
+    def write_policy(self, config: Config) -> None:
+        """From here on this policy holds."""
+        self._integers(POLICY, config.policy == "edges", monotonic_ns(), config.period_ns, 0)
+
+    def write_dropped(self, one: int, number: int, flops: int, why: str) -> None:
+        """So many reports of a comparison (0: not known which) were dropped."""
+        self._integers(DROPPED | REASONS[why] << 16, one, monotonic_ns(), number, flops)
+
+    def write_summary(self, raw: bytes, what: int) -> None:
+        """A summary without its first word."""
+        with self._lock:
+            found = self._records(5)
+            if found is not None:
+                extent, at = found
+                extent.bytes[at + 4 : at + 4 + len(raw)] = raw
+                extent.words[at >> 2] = what

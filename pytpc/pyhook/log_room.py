@@ -1,0 +1,188 @@
+"""The room in a file of reports: space on the disk, mapped, handed out in chunks."""
+
+from __future__ import annotations
+
+import _thread
+import contextlib
+import mmap
+import os
+import socket
+import struct
+import threading
+from time import monotonic_ns, time_ns
+from typing import TYPE_CHECKING
+
+from pytpc.pyhook.log_layout import (
+    CHUNK,
+    CHUNK_BYTES,
+    CLOSED,
+    HEADER,
+    HEADER_BYTES,
+    LOST_AT,
+    MAGIC,
+    NODE_BYTES,
+    OPEN,
+    RECORD_BYTES,
+    STATE_AT,
+    STOPPED,
+    bounded,
+    created,
+    program,
+)
+from pytpc.pyhook.words import warn
+
+if TYPE_CHECKING:
+    from pytpc.pyhook.config import Config
+
+_EXTENT_BYTES = 1 << 20
+# Mappings are never given back, because other threads may write to them, and each takes a
+# descriptor: they grow, so that 4 GiB are some 70 of them.
+_LARGEST_EXTENT = 64 << 20
+
+
+class Extent:
+    """A mapped part of the file, as bytes and as words of 32 bits."""
+
+    __slots__ = ("base", "bytes", "chunks", "words")
+
+    def __init__(self, mapped: mmap.mmap, size: int) -> None:
+        """``mapped`` is of ``size`` bytes."""
+        self.bytes = mapped
+        self.words = memoryview(mapped).cast("I")
+        self.chunks = size // CHUNK_BYTES
+
+
+class Room:
+    """One file. Errors while it is written stop the recording, and never the program."""
+
+    def __init__(self, config: Config, parent: int, node: str) -> None:
+        """Make the file in its folder; nothing but its header is in it.
+
+        Raises:
+            OSError: it cannot be made.
+        """
+        self._limit = config.file_limit << 20
+        self._reserve = config.file_reserve << 20
+        self._lock = threading.RLock()
+        self._extents: list[Extent] = []
+        self._size = HEADER_BYTES
+        self._used = 0
+        self._is_stopped = False
+        self._is_closed = False
+        self.path, self._descriptor = created(config, node)
+        its = os.fstat(self._descriptor)
+        self._identity = (its.st_dev, its.st_ino)
+        try:
+            self._begin(parent, node)
+            os.rename(f"{self.path}.new", self.path)
+        except BaseException:
+            with contextlib.suppress(OSError):
+                os.unlink(f"{self.path}.new")
+            os.close(self._descriptor)
+            raise
+
+    def new_chunk(self, kind: int, thread: int, first: int) -> tuple[Extent, int] | None:
+        """A chunk, and its first byte in its extent; None where there is no room."""
+        with self._lock:
+            if self._is_stopped or self._is_closed:
+                return None
+            before = sum(extent.chunks for extent in self._extents)
+            if self._used == before:
+                try:
+                    self._grow()
+                except OSError as error:
+                    self._stop(error.strerror or str(error))
+                    return None
+                before = sum(extent.chunks for extent in self._extents[:-1])
+            else:
+                before -= self._extents[-1].chunks
+            extent = self._extents[-1]
+            begin = (self._used - before) * CHUNK_BYTES
+            self._used += 1
+            CHUNK.pack_into(extent.bytes, begin + 4, thread, first, _thread.get_native_id())
+            extent.words[begin >> 2] = kind
+            return extent, begin
+
+    def _grow(self) -> None:
+        if not self._is_mine():
+            raise OSError(0, "the program has closed its descriptor")
+        size = min(_LARGEST_EXTENT, max(_EXTENT_BYTES, self._size - HEADER_BYTES))
+        end = self._size + size
+        if self._limit and end > self._limit:
+            size = _EXTENT_BYTES
+            end = self._size + size
+            if end > self._limit:
+                what = f"its limit of {self._limit >> 20} MiB (TPC_FILE_LIMIT) is reached"
+                raise OSError(0, what)
+        disk = os.fstatvfs(self._descriptor)
+        if self._reserve and disk.f_bavail * disk.f_frsize < self._reserve + size:
+            what = f"the disk has less than {self._reserve >> 20} MiB left (TPC_FILE_RESERVE)"
+            raise OSError(0, what)
+        os.posix_fallocate(self._descriptor, self._size, size)
+        self._extents.append(Extent(mmap.mmap(self._descriptor, size, offset=self._size), size))
+        self._size = end
+
+    def _is_mine(self) -> bool:
+        """A program that closes all descriptors may have opened a file of its own in its place."""
+        try:
+            its = os.fstat(self._descriptor)
+        except OSError:
+            return False
+        return (its.st_dev, its.st_ino) == self._identity
+
+    def _stop(self, why: str) -> None:
+        if not self._is_stopped:
+            self._is_stopped = True
+            self._put_state(STOPPED)
+            warn(f"{self.path}: {why}; nothing more is recorded, the program goes on as if it were")
+
+    @property
+    def is_stopped(self) -> bool:
+        """Whether the disk is full, or a limit reached."""
+        return self._is_stopped
+
+    def close(self) -> None:
+        """Give back what was not used. Threads may write on in the chunks that they have."""
+        with self._lock:
+            if self._is_closed:
+                return
+            self._is_closed = True
+            if self._is_mine():
+                with contextlib.suppress(OSError):
+                    os.ftruncate(self._descriptor, HEADER_BYTES + self._used * CHUNK_BYTES)
+                os.close(self._descriptor)
+            if not self._is_stopped:
+                self._put_state(CLOSED)
+
+    def _put_state(self, state: int) -> None:
+        struct.pack_into("<I", self._header, STATE_AT, state)
+
+    def _count_lost(self) -> None:
+        with self._lock:
+            (lost,) = struct.unpack_from("<Q", self._header, LOST_AT)
+            struct.pack_into("<Q", self._header, LOST_AT, lost + 1)
+
+    def _begin(self, parent: int, node: str) -> None:
+        os.posix_fallocate(self._descriptor, 0, HEADER_BYTES)
+        self._header = mmap.mmap(self._descriptor, HEADER_BYTES)
+        HEADER.pack_into(
+            self._header,
+            0,
+            b"",
+            HEADER_BYTES,
+            RECORD_BYTES,
+            CHUNK_BYTES,
+            os.getpid(),
+            monotonic_ns(),
+            time_ns(),
+            OPEN,
+            0,
+            0,
+            parent,
+            0,
+            bounded(node, NODE_BYTES),
+            bounded(socket.gethostname(), 256),
+            bounded(program(), 1024),
+        )
+        self._header[:8] = MAGIC
+        self._grow()

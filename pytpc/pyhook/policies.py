@@ -1,0 +1,161 @@
+"""What stands between a report and its sink: caps, and the policy ``edges``."""
+
+from __future__ import annotations
+
+import threading
+from time import monotonic_ns
+from typing import TYPE_CHECKING
+
+from pytpc.pyhook import ros_state
+from pytpc.pyhook.file_sink import FileSink, LiveSlot
+from pytpc.pyhook.sinks import Sink, Summary
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from pytpc.pyhook.config import Config
+    from pytpc.pyhook.sites import Reported
+
+_SECOND = 1_000_000_000
+
+
+class Caps:
+    """Reports a second, of a comparison and of the process; what is beyond is counted."""
+
+    def __init__(self, config: Config, sink: Sink) -> None:
+        """0 is no cap."""
+        self._site, self._process = config.site_cap, config.process_cap
+        self._sink = sink
+        self._lock = threading.RLock()
+        self._second = 0
+        self._used = 0
+        self._over: dict[Reported, list[int]] = {}
+        self.dropped_in_all = 0
+
+    def take(self, one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> None:
+        """The policy ``every`` under caps."""
+        with self._lock:
+            is_flop = one.last >= 0 and one.last != result
+            one.last = int(result)
+        if not self.is_over(one, is_flop):
+            self._sink.take(one, result, cmp, thresh, res)
+
+    def is_over(self, one: Reported, is_flop: bool) -> bool:
+        """Whether a report is one too many; then it is counted."""
+        if not (self._site or self._process):
+            return False
+        second = monotonic_ns() // _SECOND
+        with self._lock:
+            if second != self._second:
+                self._second, self._used = second, 0
+                self.account()
+            if one.meter[0] != second:
+                one.meter[:] = [second, 0]
+            if self._site and one.meter[1] >= self._site:
+                why = 0
+            elif self._process and self._used >= self._process:
+                why = 2
+            else:
+                one.meter[1] += 1
+                self._used += 1
+                return False
+            over = self._over.setdefault(one, [0, 0, 0, 0])
+            over[why] += 1
+            over[why + 1] += is_flop
+            self.dropped_in_all += 1
+            return True
+
+    def account(self) -> None:
+        """Say what was dropped since the last time."""
+        with self._lock:
+            over, self._over = self._over, {}
+        for one, counts in over.items():
+            for why, at in (("site", 0), ("process", 2)):
+                if counts[at]:
+                    self._sink.dropped(one, counts[at], counts[at + 1], why)
+
+
+class _Open:
+    """The open period of one comparison in one thread."""
+
+    __slots__ = ("kept", "slot")
+
+    def __init__(self, kept: Summary, slot: LiveSlot | None) -> None:
+        self.kept = kept
+        self.slot = slot
+
+
+class Edges:
+    """Each flop is reported, and of all evaluations a summary for each thread and period."""
+
+    def __init__(self, config: Config, sink: Sink, caps: Caps) -> None:
+        """Periods begin now."""
+        self._sink = sink
+        self._caps = caps
+        self._period_ns = config.period_ns
+        self._start = monotonic_ns()
+        self._lock = threading.RLock()
+        self._open: dict[tuple[int, Reported], _Open] = {}
+        self._file = sink.file if isinstance(sink, FileSink) else None
+
+    def take(self, one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> None:
+        """Take in one evaluation."""
+        now = monotonic_ns()
+        ros = ros_state.time_now_ns()
+        period = (now - self._start) // self._period_ns + 1 & 0xFFFFFFFF
+        thread = self._file.thread_number() if self._file is not None else threading.get_ident()
+        with self._lock:
+            key = (thread, one)
+            held = self._open.get(key)
+            if held is None:
+                held = self._open[key] = self._new(thread & 0xFFFFFFFF, one)
+            kept = held.kept
+            if kept.evaluations and kept.period != period:
+                self._close(held)
+            if not kept.evaluations:
+                kept.begin(period, now, ros)
+            kept.flops += self._edge(one, result, cmp, thresh, res)
+            kept.add(result, cmp, thresh, res)
+            kept.end_ns, kept.end_ros_ns = now, ros
+            if held.slot is not None:
+                held.slot.write(kept)
+
+    def _new(self, thread: int, one: Reported) -> _Open:
+        """A comparison that is new to its thread."""
+        slot = None
+        if self._file is not None:
+            self._file.announce(one)
+            slot = LiveSlot(self._file)
+        return _Open(Summary(one, thread), slot)
+
+    def _edge(self, one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> int:
+        """Report it where the predicate came to something else than the last time."""
+        last, one.last = one.last, int(result)
+        if last == result:
+            return 0
+        is_flop = last >= 0
+        if not self._caps.is_over(one, is_flop):
+            self._sink.edge(one, result, cmp, thresh, res)
+        return int(is_flop)
+
+    def _close(self, held: _Open) -> None:
+        self._sink.summary(held.kept)
+        held.kept.evaluations = 0
+        if held.slot is not None:
+            held.slot.begin()
+
+    def flush(self, *, all_of_them: bool) -> None:
+        """Hand on the summaries of periods that are over, or those of the open ones, too."""
+        period = (monotonic_ns() - self._start) // self._period_ns + 1 & 0xFFFFFFFF
+        with self._lock:
+            for held in self._open.values():
+                if held.kept.evaluations and (all_of_them or held.kept.period != period):
+                    self._close(held)
+
+
+def forget(reported: Iterable[Reported]) -> None:
+    """Nothing was evaluated yet: what holds after a fork, or when the policy is changed."""
+    for one in reported:
+        one.last = -1
+        one.meter[:] = [0, 0]
+        one.file = None

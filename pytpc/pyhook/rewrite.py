@@ -1,0 +1,332 @@
+"""Rewrites a module so that its listed comparisons report.
+
+Text -> syntax tree -> the same tree with calls in it -> code. Each subexpression stays where it
+was, is evaluated exactly once and in the original order, by the program's own frame: ``yield``,
+``await`` and ``:=`` in an operand are as before. What was rewritten has the position that the
+comparison had, so that tracebacks, debuggers and coverage see the lines and columns of the source.
+
+The calls go to an object (`pytpc.pyhook.sites`) that is a constant of the code: nothing is added to
+any namespace. `ast` knows no such constants, so a text stands in the tree for each, and is replaced
+in the compiled code.
+"""
+
+from __future__ import annotations
+
+import ast
+import sys
+from types import CodeType
+from typing import TYPE_CHECKING, NamedTuple
+
+from pytpc.pyhook.control_sites import Loop, Subject
+from pytpc.pyhook.find import Found, Place, find, values_of
+from pytpc.pyhook.listed import Listed
+from pytpc.pyhook.sites import Comparison, Flag, Reported
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    Register = Callable[[Place], Reported]
+
+# Python 3.11 says of a failed `assert` that it is where the comparison in it is, if there is one.
+_ASSERTS_AT_COMPARISON = sys.version_info[:2] == (3, 11)
+_MARK = "\0tpc constant "
+
+
+class Rewritten(NamedTuple):
+    """A module's code, how many comparisons report, those that are not in it, or cannot report."""
+
+    code: CodeType
+    instrumented: int
+    missing: list[Listed]
+    unsupported: list[Listed]
+
+
+def rewrite(
+    source: object, path: str, listed: tuple[Listed, ...], register: Register, *, optimize: int = -1
+) -> Rewritten:
+    """Compile a module with reports in it.
+
+    Args:
+        source: its text or bytes, or anything else that ``compile`` takes.
+        path: what tracebacks call it.
+        listed: the comparisons of this module.
+        register: gives the report of a place.
+        optimize: as of ``compile``; -1 for what the interpreter was started with.
+
+    Raises:
+        SyntaxError: as ``compile`` has it.
+    """
+    tree = compile(source, path, "exec", ast.PyCF_ONLY_AST, dont_inherit=True)  # type: ignore[call-overload]
+    found = find(tree, listed)
+    constants: dict[str, object] = {}
+    _Rewriter(found, register, constants).module(tree)
+    code = compile(tree, path, "exec", dont_inherit=True, optimize=optimize)
+    return Rewritten(
+        with_constants(code, constants), found.total(), found.missing, found.unsupported
+    )
+
+
+def constant_text(number: int) -> str:
+    """What stands in a tree for an object that is a constant of the code."""
+    return f"{_MARK}{number}"
+
+
+def with_constants(code: CodeType, constants: dict[str, object]) -> CodeType:
+    """The objects in the places of the texts that stand for them, in all nested code too."""
+
+    def replaced(constant: object) -> object:
+        if isinstance(constant, CodeType):
+            return with_constants(constant, constants)
+        if type(constant) is str and constant.startswith(_MARK):
+            return constants[constant]
+        return constant
+
+    consts = tuple(replaced(constant) for constant in code.co_consts)
+    if all(new is old for new, old in zip(consts, code.co_consts)):
+        return code
+    return code.replace(co_consts=consts)
+
+
+class _Chain(NamedTuple):
+    """A comparison, which of its links report what, and whether its truth alone is asked for."""
+
+    node: ast.Compare
+    links: dict[int, list[Place]]
+    asked: bool
+
+
+class _Rewriter:
+    """Changes a tree in place.
+
+    An expression is visited with what the program does with it: ``asked`` where it asks for its
+    truth, once, and for nothing else.
+    """
+
+    def __init__(self, found: Found, register: Register, constants: dict[str, object]) -> None:
+        self._found = found
+        self._register = register
+        self._constants = constants
+
+    def module(self, tree: ast.AST) -> None:
+        """Rewrite all of a module."""
+        self._fields(tree)
+
+    def _fields(self, node: ast.AST) -> None:
+        for name, value in ast.iter_fields(node):
+            if isinstance(value, ast.expr):
+                setattr(node, name, self._expression(value, _is_asked(node, name)))
+            elif isinstance(value, list):
+                value[:] = [
+                    self._expression(item, _is_asked(node, name))
+                    if isinstance(item, ast.expr)
+                    else self._other(item)
+                    for item in value
+                ]
+            elif isinstance(value, ast.AST):
+                self._fields(value)
+
+    def _other(self, item: object) -> object:
+        if type(item).__name__ == "Match":
+            self._match(item)  # type: ignore[arg-type]
+        elif isinstance(item, ast.AST):
+            self._fields(item)
+        return item
+
+    def _match(self, node: ast.Match) -> None:
+        """A ``match`` of a parameter, or with a parameter among its values.
+
+        ``case VALUE`` becomes ``case _ if subject == VALUE``, which is what it means. Each guard
+        ends with a call that says that the case is taken, and a last case says that none was.
+        """
+        compared = [
+            [value for value in values_of(case.pattern) if value in self._found.patterns]
+            for case in node.cases
+        ]
+        places = self._found.subjects.get(node.subject, [])
+        original = node.subject
+        self._fields(node)
+        if not places and not any(compared):
+            return
+        subject = Subject(tuple(self._register(place) for place in places))
+        node.subject = self._call(
+            self._constant(subject, _first(original)), "hold", [node.subject], node.subject
+        )
+        for case, values in zip(node.cases, compared):
+            is_last = case is node.cases[-1]
+            is_default = (
+                isinstance(case.pattern, ast.MatchAs)
+                and case.pattern.pattern is None
+                and case.guard is None
+            )
+            if is_default and not is_last:
+                # Not allowed, as the compiler will say.
+                continue
+            where = ast.copy_location(ast.Constant(value=True, kind=None), case.pattern)
+            said = self._call(
+                self._constant(subject, where), "default" if is_default else "taken", [], where
+            )
+            guards = [self._equality(case, subject, where)] if values else []
+            guards += [case.guard] if case.guard is not None else []
+            case.guard = self._joined(ast.And(), [*guards, said], where)
+        last = node.cases[-1].pattern
+        where = ast.copy_location(ast.Constant(value=True, kind=None), last)
+        none = self._call(self._constant(subject, where), "none", [], where)
+        nothing = ast.copy_location(ast.Pass(), last)
+        anything = ast.copy_location(ast.MatchAs(), last)
+        node.cases.append(ast.match_case(pattern=anything, guard=none, body=[nothing]))
+
+    def _equality(self, case: ast.match_case, subject: Subject, where: ast.expr) -> ast.expr:
+        """The pattern of a case as a condition; in its place there is one that takes everything."""
+        conditions = []
+        for value in values_of(case.pattern):
+            held = self._call(self._constant(subject, where), "held", [], value)
+            equal = ast.copy_location(
+                ast.Compare(left=held, ops=[ast.Eq()], comparators=[value]), value
+            )
+            links = {0: self._found.patterns.get(value, [])}
+            conditions.append(self._chain(_Chain(equal, links, True), 0, held, held))
+        case.pattern = ast.copy_location(ast.MatchAs(), case.pattern)
+        return self._joined(ast.Or(), conditions, where)
+
+    @staticmethod
+    def _joined(operator: ast.boolop, parts: list[ast.expr], where: ast.expr) -> ast.expr:
+        if len(parts) == 1:
+            return parts[0]
+        return ast.copy_location(ast.BoolOp(op=operator, values=parts), where)
+
+    def _expression(self, node: ast.expr, asked: bool) -> ast.expr:
+        flags = self._found.flags.get(node)
+        links = self._found.links.get(node) if isinstance(node, ast.Compare) else None
+        self._parts(node, asked and not flags)
+        new: ast.expr = node
+        if links is not None and isinstance(node, ast.Compare):
+            new = self._chain(_Chain(node, links, asked), 0, node.left, _first(node.left))
+            if asked and _ASSERTS_AT_COMPARISON:
+                true = ast.copy_location(ast.Constant(value=True, kind=None), node)
+                still = ast.Compare(left=new, ops=[ast.Is()], comparators=[true])
+                new = ast.copy_location(still, node)
+        if flags is not None:
+            new = self._flag(new, flags, asked)
+        loops = self._found.loops.get(node)
+        if loops is not None:
+            loop = Loop(tuple(self._register(place) for place in loops))
+            new = self._call(self._constant(loop, _first(node)), "over", [new], node)
+        return new
+
+    def _parts(self, node: ast.expr, asked: bool) -> None:
+        """Rewrite the operands. What is asked of ``and``, ``or``, ``not``, ``? :`` is of theirs."""
+        if isinstance(node, ast.BoolOp):
+            node.values[:] = [self._expression(value, asked) for value in node.values]
+        elif isinstance(node, ast.IfExp):
+            node.test = self._expression(node.test, True)
+            node.body = self._expression(node.body, asked)
+            node.orelse = self._expression(node.orelse, asked)
+        elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.Not):
+            # As a value `not (x and y)` asks twice for the truth of what decides it.
+            is_simple = not isinstance(node.operand, (ast.BoolOp, ast.IfExp))
+            node.operand = self._expression(node.operand, asked or is_simple)
+        else:
+            self._fields(node)
+
+    def _constant(self, value: object, where: ast.expr) -> ast.expr:
+        mark = constant_text(len(self._constants))
+        self._constants[mark] = value
+        return _at(ast.Constant(value=mark, kind=None), where)
+
+    def _call(
+        self, site: ast.expr, method: str, arguments: list[ast.expr], to: ast.expr
+    ) -> ast.expr:
+        attribute = ast.Attribute(value=site, attr=method, ctx=ast.Load())
+        _at(attribute, site)
+        return ast.copy_location(ast.Call(func=attribute, args=arguments, keywords=[]), to)
+
+    def _evaluated(self, call: ast.expr, to: ast.expr) -> ast.expr:
+        """``call.__next__()``, whose attribute must not end on a line of its own.
+
+        A call is on the line on which its attribute ends, where that is another one.
+        """
+        attribute = ast.Attribute(value=call, attr="__next__", ctx=ast.Load())
+        ast.copy_location(attribute, to)
+        attribute.end_lineno, attribute.end_col_offset = to.lineno, to.col_offset
+        return ast.copy_location(ast.Call(func=attribute, args=[], keywords=[]), to)
+
+    def _chain(self, chain: _Chain, link: int, left: ast.expr, first: ast.expr) -> ast.expr:
+        """The comparison from ``link`` on, with ``left`` as its left operand.
+
+        ``first`` is where its evaluation begins. The links behind the last one that reports stay as
+        they are.
+        """
+        node, links = chain.node, chain.links
+        if link > max(links):
+            rest = ast.Compare(left=left, ops=node.ops[link:], comparators=node.comparators[link:])
+            return ast.copy_location(rest, node)
+        reported = tuple(self._register(place) for place in links.get(link, ()))
+        comparison = Comparison(type(node.ops[link]).__name__, reported)
+        right = node.comparators[link]
+        is_last = link + 1 == len(node.ops)
+        method = "link" if not is_last else "truth" if chain.asked else "compare"
+        site = self._constant(comparison, first)
+        this = self._evaluated(self._call(site, method, [left, right], node), node)
+        if is_last:
+            return this
+        handed = self._call(self._constant(comparison, node), "right", [], node)
+        ending = "failed" if chain.asked else "outcome"
+        ended = self._call(self._constant(comparison, node), ending, [], node)
+        body = self._chain(chain, link + 1, handed, node)
+        return ast.copy_location(ast.IfExp(test=this, body=body, orelse=ended), node)
+
+    def _flag(self, node: ast.expr, places: list[Place], asked: bool) -> ast.expr:
+        flag = Flag(tuple(self._register(place) for place in places))
+        call = self._call(
+            self._constant(flag, _first(node)), "truth" if asked else "value", [node], node
+        )
+        return self._evaluated(call, node) if asked else call
+
+
+_ASKING = {
+    "If": ("test",),
+    "While": ("test",),
+    "Assert": ("test",),
+    "comprehension": ("ifs",),
+    "match_case": ("guard",),
+}
+# What an expression evaluates first.
+_FIRST = {
+    "Attribute": "value",
+    "Await": "value",
+    "BinOp": "left",
+    "Call": "func",
+    "Compare": "left",
+    "IfExp": "test",
+    "NamedExpr": "value",
+    "Starred": "value",
+    "Subscript": "value",
+    "UnaryOp": "operand",
+}
+
+
+def _is_asked(node: ast.AST, field: str) -> bool:
+    return field in _ASKING.get(type(node).__name__, ())
+
+
+def _first(node: ast.expr) -> ast.expr:
+    """The part of an expression that is evaluated first, which is where tracing sees it begin."""
+    while True:
+        field = _FIRST.get(type(node).__name__)
+        if field is not None:
+            node = getattr(node, field)
+        elif isinstance(node, (ast.List, ast.Tuple, ast.Set)) and node.elts:
+            node = node.elts[0]
+        elif isinstance(node, (ast.BoolOp, ast.JoinedStr)) and node.values:
+            node = node.values[0]
+        elif isinstance(node, ast.Dict) and node.keys and node.keys[0] is not None:
+            node = node.keys[0]
+        else:
+            return node
+
+
+def _at(node: ast.expr, where: ast.expr) -> ast.expr:
+    """``node`` with no width, where ``where`` begins."""
+    ast.copy_location(node, where)
+    node.end_lineno, node.end_col_offset = node.lineno, node.col_offset
+    return node

@@ -1,0 +1,234 @@
+"""The sinks that speak ROS, through the rospy that the program has imported."""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections import deque
+from time import monotonic_ns
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from pytpc.pyhook import ros_state
+from pytpc.pyhook.sinks import (
+    Sink,
+    Summary,
+    dropped_line,
+    report_line,
+    seconds,
+    summary_line,
+)
+from pytpc.pyhook.words import many, warn
+
+if TYPE_CHECKING:
+    from pytpc.pyhook.sites import Reported
+
+TOPIC = "/threshold_information"
+_MOST_WAITING = 65536
+_MESSAGE_BYTES = 64 * 1024
+_QUEUE_MESSAGES = 512
+_BATCH_NS = 190_000_000
+# The first message waits for the subscribers that the master knows: each takes its time to connect.
+_GATHER_NS = 1_000_000_000
+
+
+class RosoutSink(Sink):
+    """One line each by rospy's log, which is on /rosout: the thesis's sink for C++ nodes."""
+
+    def __init__(self) -> None:
+        """Nothing is sent yet."""
+        self._inside = threading.local()
+        self._lost = 0
+
+    def take(self, one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> None:
+        """One line."""
+        self._send(f"threshold_information:{report_line(one, result, cmp, thresh, res)}", 1)
+
+    def summary(self, summary: Summary) -> None:
+        """One line."""
+        self._send(f"threshold_summary:{summary_line(summary)}", summary.evaluations)
+
+    def dropped(self, one: Reported | None, count: int, flops: int, why: str) -> None:
+        """One line."""
+        self._send(f"threshold_dropped:{dropped_line(one, count, flops, why)}", 0)
+
+    def _send(self, line: str, evaluations: int) -> None:
+        ros = ros_state.rospy()
+        # A handler of the program's log may itself compare.
+        if ros is None or ros.is_shutdown() or getattr(self._inside, "is_inside", False):
+            self._lost += evaluations
+            return
+        self._inside.is_inside = True
+        try:
+            ros.loginfo(line)
+        finally:
+            self._inside.is_inside = False
+
+    def status(self) -> str:
+        """How much did not get there."""
+        return f"not_sent={self._lost}" if self._lost else ""
+
+    def end(self) -> None:
+        """Say how much did not get there."""
+        lost, self._lost = self._lost, 0
+        if lost:
+            warn(
+                f"{many(lost, 'evaluation')} came before rospy.init_node, after the node's end, or"
+                " from within its log: not on /rosout"
+            )
+
+
+class _Waiting(NamedTuple):
+    """A line that is not made yet: a report, or a finished line. ``at_ns`` is ROS time."""
+
+    at_ns: int
+    one: Reported | None
+    report: tuple[bool, float, float, bool] | None
+    line: str
+
+
+class TopicSink(Sink):
+    """Batches on /threshold_information, made by the helper thread (docs/formats.md)."""
+
+    def __init__(self) -> None:
+        """Nothing is advertised yet."""
+        self._waiting: deque[_Waiting] = deque()
+        self._lock = threading.RLock()
+        self._publisher: Any = None
+        self._message: Any = None
+        self._expected = 0
+        self._gather_until = 0
+        self._oldest_at = 0
+        self._sent = 0
+        self._evicted: dict[Reported, list[int]] = {}
+        self._last_evicted: dict[Reported, bool] = {}
+        self._dropped_in_all = 0
+
+    def take(self, one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> None:
+        """Keep it until the next batch."""
+        self._keep(_Waiting(ros_state.time_now_ns(), one, (result, cmp, thresh, res), ""))
+
+    def summary(self, summary: Summary) -> None:
+        """Keep it until the next batch."""
+        line = f"threshold_summary:{summary_line(summary)}"
+        self._keep(_Waiting(summary.end_ros_ns, None, None, line))
+
+    def dropped(self, one: Reported | None, count: int, flops: int, why: str) -> None:
+        """Keep it until the next batch."""
+        line = f"threshold_dropped:{dropped_line(one, count, flops, why)}"
+        self._dropped_in_all += count
+        self._keep(_Waiting(ros_state.time_now_ns(), None, None, line))
+
+    def _keep(self, waiting: _Waiting) -> None:
+        with self._lock:
+            if not self._waiting:
+                self._oldest_at = monotonic_ns()
+            self._waiting.append(waiting)
+            if len(self._waiting) > _MOST_WAITING:
+                self._evict(self._waiting.popleft())
+
+    def _evict(self, oldest: _Waiting) -> None:
+        """What made room for others is counted for each comparison."""
+        if oldest.one is None or oldest.report is None:
+            return
+        counts = self._evicted.setdefault(oldest.one, [0, 0])
+        last = self._last_evicted.get(oldest.one)
+        self._last_evicted[oldest.one] = oldest.report[0]
+        counts[0] += 1
+        counts[1] += last is not None and last != oldest.report[0]
+        self._dropped_in_all += 1
+
+    def wants_turns(self) -> bool:
+        """Always: subscribers come and go."""
+        return True
+
+    def turn(self) -> None:
+        """Advertise, and send what has waited for a batch's time."""
+        ros = ros_state.rospy()
+        if ros is None or ros.is_shutdown():
+            return
+        if self._publisher is None:
+            self._advertise(ros)
+            return
+        self._send(at_once=False)
+
+    def _advertise(self, ros: Any) -> None:  # noqa: ANN401
+        from std_msgs.msg import String  # noqa: PLC0415
+
+        self._message = String
+        self._expected = _subscribers(ros)
+        self._gather_until = monotonic_ns() + _GATHER_NS
+        self._publisher = ros.Publisher(TOPIC, String, queue_size=_QUEUE_MESSAGES)
+        # While the node shuts down its topics are still open in these hooks, and in no later ones.
+        ros.on_shutdown(lambda: self._send(at_once=True))
+
+    def _send(self, *, at_once: bool) -> None:
+        connected = self._publisher.get_num_connections()
+        now = monotonic_ns()
+        if not connected or (
+            not at_once and connected < self._expected and now < self._gather_until
+        ):
+            return
+        with self._lock:
+            if not self._waiting or (not at_once and now - self._oldest_at < _BATCH_NS):
+                return
+            batch, self._waiting = self._waiting, deque()
+            evicted, self._evicted = self._evicted, {}
+            dropped = self._dropped_in_all
+        at_ns = ros_state.time_now_ns()
+        for one, (count, flops) in evicted.items():
+            line = f"threshold_dropped:{dropped_line(one, count, flops, 'process')}"
+            batch.append(_Waiting(at_ns, None, None, line))
+        for reports, text in _messages(batch):
+            head = (
+                f"#seq:{self._sent},count:{reports},dropped:{dropped},pid:{os.getpid()}"
+                f",steady:{seconds(monotonic_ns(), 9)}"
+            )
+            self._sent += reports
+            self._publisher.publish(self._message(data=head + text))
+
+    def status(self) -> str:
+        """How many were sent, and whether somebody listens."""
+        is_heard = self._publisher is not None and self._publisher.get_num_connections() > 0
+        return (
+            f"sent={self._sent} waiting={'yes' if self._waiting else 'no'}"
+            f" subscribed={'yes' if is_heard else 'no'}"
+        )
+
+    def end(self) -> None:
+        """Say what was not sent."""
+        with self._lock:
+            unsent = sum(1 for waiting in self._waiting if waiting.report is not None)
+            self._waiting.clear()
+        if unsent:
+            warn(
+                f"{many(unsent, 'evaluation')} were not sent on {TOPIC}: nobody listened, or the"
+                " node was shut down"
+            )
+
+
+def _messages(batch: deque[_Waiting]) -> list[tuple[int, str]]:
+    """The texts of messages of about 64 KiB, and how many of their lines are numbered reports."""
+    messages: list[tuple[int, str]] = []
+    lines: list[str] = []
+    count = size = 0
+    for waiting in batch:
+        line = waiting.line
+        if waiting.one is not None and waiting.report is not None:
+            line = report_line(waiting.one, *waiting.report)
+        lines.append(f"\n{seconds(waiting.at_ns, 7)},{line}")
+        count += not line.startswith("threshold_dropped:")
+        size += len(lines[-1])
+        if size >= _MESSAGE_BYTES:
+            messages.append((count, "".join(lines)))
+            lines, count, size = [], 0, 0
+    return [*messages, (count, "".join(lines))] if lines else messages
+
+
+def _subscribers(ros: Any) -> int:  # noqa: ANN401
+    """How many subscribers of the topic the master knows."""
+    try:
+        _, _, state = ros.get_master().getSystemState()
+        return sum(len(nodes) for topic, nodes in state[1] if topic == TOPIC)
+    except Exception:
+        # The master does not answer: nobody is waited for.
+        return 0

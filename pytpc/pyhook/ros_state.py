@@ -1,0 +1,69 @@
+"""What rospy knows, where the program has imported it. Nothing here imports it."""
+
+from __future__ import annotations
+
+import sys
+from time import time_ns
+from typing import Any, NamedTuple
+
+
+class Now(NamedTuple):
+    """What the process knows of ROS: the node's name, and its time (0: not known)."""
+
+    node: str
+    ros_ns: int
+    is_simulated: bool
+
+
+_UNKNOWN = Now("", 0, False)
+
+
+def rospy() -> Any:  # noqa: ANN401
+    """The module, once the program has a node that was initialised; else None."""
+    module = sys.modules.get("rospy")
+    core = sys.modules.get("rospy.core")
+    try:
+        return module if core is not None and core.is_initialized() else None
+    except AttributeError:
+        # It is being imported.
+        return None
+
+
+def is_shut_down() -> bool:
+    """Whether the node was, and has ended."""
+    core = sys.modules.get("rospy.core")
+    try:
+        return bool(core is not None and core.is_shutdown() and core.get_node_uri() is not None)
+    except AttributeError:
+        return False
+
+
+def is_imported() -> bool:
+    """Whether the program may have a node yet."""
+    return "rospy" in sys.modules
+
+
+def time_now_ns() -> int:
+    """The node's time where it is simulated, else the wall's."""
+    rostime = sys.modules.get("rospy.rostime")
+    try:
+        if rostime is None or rostime.is_wallclock():
+            return time_ns()
+    except Exception:
+        # It is being imported, or has no time yet.
+        return time_ns()
+    return now().ros_ns
+
+
+def now() -> Now:
+    """The node, and its time in ns."""
+    ros = rospy()
+    if ros is None:
+        return _UNKNOWN
+    try:
+        rostime = sys.modules["rospy.rostime"]
+        simulated = not rostime.is_wallclock()
+        return Now(str(ros.get_name()), int(ros.get_rostime().to_nsec()), simulated)
+    except Exception:
+        # Its time is not initialised yet, or no longer.
+        return _UNKNOWN

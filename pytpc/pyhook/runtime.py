@@ -1,0 +1,277 @@
+"""What is chosen for this process, and what a report meets.
+
+Nothing happens until the first report. Where the program has imported rospy there is then one
+helper thread, which waits for its node, takes over its parameters, and sends what the sinks keep.
+For the sink ``file`` it ends after that: what is due once a second is done by the report that finds
+it due. A child after a fork goes on with the settings that held and begins a file of its own.
+"""
+
+from __future__ import annotations
+
+import _thread
+import atexit
+import os
+import threading
+import time
+from typing import TYPE_CHECKING
+
+from pytpc.pyhook import ros_state, sites
+from pytpc.pyhook.config import Config, of_environment
+from pytpc.pyhook.control import Control
+from pytpc.pyhook.file_sink import FileSink
+from pytpc.pyhook.log_file import LogFile
+from pytpc.pyhook.policies import Caps, Edges, forget
+from pytpc.pyhook.ros_sinks import RosoutSink, TopicSink
+from pytpc.pyhook.sinks import Sink
+from pytpc.pyhook.sites import Reported
+from pytpc.pyhook.words import warn
+
+if TYPE_CHECKING:
+    from pytpc.pyhook.find import Place
+
+_TURN_S = 0.02
+_LATE_S = 0.25
+
+
+class Runtime:
+    """All that changes seldom. There is one, `RUNTIME`."""
+
+    def __init__(self) -> None:
+        """Nothing is started."""
+        self._lock = threading.RLock()
+        self._reported: dict[str, Reported] = {}
+        self._config: Config | None = None
+        self._is_started = False
+        self._parent = 0
+        self._was_node = False
+        self._has_helper = False
+        self._is_served = False
+        self._sink = Sink()
+        self._caps = Caps(Config(), self._sink)
+        self._edges: Edges | None = None
+        self.file: LogFile | None = None
+        sites.set_take(self._first)
+        # Handlers run in the reverse order of their registration: this one is among the last.
+        atexit.register(self.end)
+        os.register_at_fork(
+            before=self._before_fork,
+            after_in_parent=self._parent_goes_on,
+            after_in_child=self._child,
+        )
+
+    def register(self, place: Place) -> Reported:
+        """The report of a place; one for each key and side."""
+        key = place.listed.key
+        with self._lock:
+            known = self._reported.get(key)
+            if known is None:
+                known = Reported(key, len(self._reported) + 1, place.swapped)
+                self._reported[key] = known
+        if known.swapped == place.swapped:
+            return known
+        return Reported(key, known.number, place.swapped)
+
+    def all_reported(self) -> list[Reported]:
+        """Every key that may report."""
+        with self._lock:
+            return list(self._reported.values())
+
+    @property
+    def config(self) -> Config:
+        """What holds."""
+        with self._lock:
+            if self._config is None:
+                self._config = of_environment()
+            return self._config
+
+    def _first(self, one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> None:
+        """The first report, before anything is chosen."""
+        self.start()
+        if self._is_started:
+            sites.take(one, result, cmp, thresh, res)
+
+    def start(self) -> None:
+        """Choose what the environment says, or what held before a fork."""
+        with self._lock:
+            if self._is_started:
+                return
+            self._is_started = True
+            config = self.config
+            if not self._choose(config):
+                self._config = config._replace(sink="off")
+                self._choose(self._config)
+            if ros_state.is_imported() and not self._is_served and not self._has_helper:
+                self._start_helper()
+
+    def apply(self, config: Config) -> bool:
+        """Let ``config`` hold from now on; False where its file cannot be had: nothing changes."""
+        self.start()
+        with self._lock:
+            if config == self.config:
+                return True
+            if not self._choose(config):
+                return False
+            self._config = config
+            if self._sink.wants_turns() and not self._has_helper and not self._was_node:
+                self._start_helper()
+            return True
+
+    def _choose(self, config: Config) -> bool:
+        """Make ``config`` what a report meets; False where its file cannot be had."""
+        self._flush()
+        sink = self._sink_of(config)
+        if sink is None:
+            return False
+        former, self._sink = self._sink, sink
+        if former is not sink and not isinstance(former, FileSink):
+            former.end()
+        self._caps = Caps(config, sink)
+        is_on = config.sink != "off"
+        self._edges = (
+            Edges(config, sink, self._caps) if config.policy == "edges" and is_on else None
+        )
+        if self._edges is not None:
+            for one in self.all_reported():
+                one.last = -1
+            sites.set_take(self._edges.take)
+        elif (config.site_cap or config.process_cap) and is_on:
+            sites.set_take(self._caps.take)
+        else:
+            sites.set_take(sink.take)
+        return True
+
+    def _sink_of(self, config: Config) -> Sink | None:
+        """The sink of these settings, the one that there is where it is that."""
+        if config.sink == "file":
+            return self._file_sink(config)
+        if self.file is not None:
+            self.file.close()
+            self.file = None
+        if config.sink == "off":
+            return Sink()
+        if self._was_node:
+            topic = "/rosout" if config.sink == "rosout" else "/threshold_information"
+            warn(
+                f"a process that was forked from a node reports nothing on {topic}; TPC_SINK=file"
+                " works in it"
+            )
+            return Sink()
+        kind = RosoutSink if config.sink == "rosout" else TopicSink
+        return self._sink if isinstance(self._sink, kind) else kind()
+
+    def _file_sink(self, config: Config) -> Sink | None:
+        held = self.config
+        same = (held.folder, held.file_limit) == (config.folder, config.file_limit)
+        if self.file is None or self.file.is_stopped or not same:
+            try:
+                new = LogFile(config, self._parent, self._look)
+            except OSError as error:
+                place = error.filename or config.folder
+                warn(f"{place}: {error.strerror or error}; no reports are written to a file")
+                return None
+            if self.file is not None:
+                self.file.close()
+            self.file = new
+        self.file.write_policy(config)
+        is_it = isinstance(self._sink, FileSink) and self._sink.file is self.file
+        return self._sink if is_it else FileSink(self.file)
+
+    def _flush(self) -> None:
+        """What was kept until now goes where it was meant to go."""
+        if self._edges is not None:
+            self._edges.flush(all_of_them=True)
+        self._caps.account()
+
+    def _look(self) -> None:
+        """Once a second, from within a report to the file: has the program imported rospy?"""
+        if not self._has_helper and not self._is_served and ros_state.is_imported():
+            self._start_helper()
+
+    # --- the helper thread
+
+    def _start_helper(self) -> None:
+        """Start it. It is no thread of `threading`, which a program may wait for, or count."""
+        self._has_helper = True
+        try:
+            _thread.start_new_thread(self._help, ())
+        except RuntimeError:
+            warn("no thread could be made: settings cannot be changed while the node runs")
+
+    def _help(self) -> None:
+        """Serve the node's settings, and give the sinks their turns, as long as there is any."""
+        process = os.getpid()
+        retry_at = 0.0
+        while self._has_helper and os.getpid() == process:
+            ros = ros_state.rospy()
+            if ros is not None and not self._is_served and time.monotonic() >= retry_at:
+                try:
+                    Control(self, ros).begin()
+                    self._is_served = True
+                except Exception as error:
+                    retry_at = time.monotonic() + 2.0
+                    if not ros.is_shutdown():
+                        warn(f"the settings of {ros.get_name()} come later: {error}")
+            sink, edges = self._sink, self._edges
+            is_busy = sink.wants_turns() or (edges is not None and self.file is None)
+            if self._is_served and not is_busy:
+                break
+            if edges is not None and self.file is None:
+                edges.flush(all_of_them=False)
+            sink.turn()
+            time.sleep(_TURN_S if is_busy or ros is not None else _LATE_S)
+        self._has_helper = False
+
+    def status(self) -> str:
+        """What holds, in words with ``=`` in them, as C++ nodes answer."""
+        with self._lock:
+            config = self.config
+            words = [f"sink={config.sink}", f"policy={config.policy}"]
+            if config.policy == "edges":
+                words.append(f"period={config.period_ns / 1e9:.6f}")
+            if config.site_cap:
+                words.append(f"site_cap={config.site_cap}")
+            if config.process_cap:
+                words.append(f"process_cap={config.process_cap}")
+            words += [f"sites={len(self._reported)}", f"dropped={self._caps.dropped_in_all}"]
+            words.append(self._sink.status())
+            return " ".join(word for word in words if word)
+
+    def end(self) -> None:
+        """The process ends by itself."""
+        with self._lock:
+            self._has_helper = False
+            self._flush()
+            self._sink.end()
+
+    # --- fork
+
+    def _before_fork(self) -> None:
+        self._lock.acquire()
+
+    def _parent_goes_on(self) -> None:
+        self._lock.release()
+
+    def _child(self) -> None:
+        """In the child: the file is the parent's, other threads are gone, and the locks are new."""
+        self._lock = threading.RLock()
+        if self.file is not None:
+            # Never unmapped: its descriptors may be others' by now.
+            _FORMER.append(self.file)
+        self._was_node = self._was_node or ros_state.rospy() is not None
+        if self._is_started:
+            self._parent = os.getppid()
+        self.file = None
+        self._sink = Sink()
+        self._edges = None
+        self._caps = Caps(Config(), self._sink)
+        self._has_helper = False
+        # There is no node in a child, and so no settings but those that held.
+        self._is_served = self._is_served or self._was_node
+        self._is_started = False
+        forget(self.all_reported())
+        sites.set_take(self._first)
+
+
+_FORMER: list[LogFile] = []
+
+RUNTIME = Runtime()

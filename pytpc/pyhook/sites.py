@@ -1,0 +1,317 @@
+"""What a rewritten comparison calls.
+
+``a < b`` has become ``SITE.compare(a, b).__next__()``, with SITE among the constants of the code.
+`compare` gives an iterator, and ``__next__`` of it the outcome. The reason for the detour: where
+``a < b`` runs code of the program, or may raise, it has to run without a frame of ours between the
+program and its method, so that tracebacks, ``sys._getframe`` and the depth of recursion are as they
+were. ``map(report, (a,), (b,), map(operator.lt, (a,), (b,)))`` is all C until ``report`` is called
+with the outcome. For numbers and texts of the language itself, whose comparison neither runs code
+nor raises, `compare` does it at once and gives one of two iterators that stand for True and False.
+
+A report never calls anything of the program's objects: numbers are read by the methods of the base
+classes, and what has none is reported by its outcome alone.
+"""
+
+from __future__ import annotations
+
+import math
+import operator
+import sys
+import threading
+from itertools import repeat, tee
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    Operator = Callable[[Any, Any], Any]
+    Held = dict[int, tuple[object, object]]
+    Take = Callable[["Reported", bool, float, float, bool], None]
+
+TRUE = repeat(True)
+FALSE = repeat(False)
+
+
+class Reported:
+    """One key that reports: what the sinks keep for it."""
+
+    __slots__ = ("file", "key", "last", "lock", "meter", "number", "over", "swapped")
+
+    def __init__(self, key: str, number: int, swapped: bool) -> None:
+        """``swapped``: the threshold is the left operand. Numbers begin with 1."""
+        self.key = key
+        self.number = number
+        self.swapped = swapped
+        self.file: object = None
+        self.last = -1
+        self.lock = threading.Lock()
+        self.meter = [0, 0]
+        self.over = [0, 0, 0, 0]
+
+
+def _ordinary(function: Operator) -> Operator:
+    return lambda a, b: map(function, (a,), (b,))
+
+
+_PLAIN_OPERATIONS: dict[str, Operator] = {
+    "Lt": operator.lt,
+    "LtE": operator.le,
+    "Gt": operator.gt,
+    "GtE": operator.ge,
+    "Eq": operator.eq,
+    "NotEq": operator.ne,
+    "Is": operator.is_,
+    "IsNot": operator.is_not,
+}
+# Name of the operator in `ast` -> what gives an iterator over its outcome, in C throughout.
+_LAZY_OPERATIONS: dict[str, Operator] = {
+    **{name: _ordinary(function) for name, function in _PLAIN_OPERATIONS.items()},
+    "In": lambda a, b: map(operator.contains, (b,), (a,)),
+    "NotIn": lambda a, b: map(operator.not_, map(operator.contains, (b,), (a,))),
+}
+
+# Whose comparison with one another neither raises nor runs code of the program.
+_NUMBERS = frozenset({int, float, bool})
+# Whose truth does neither.
+_PLAIN = frozenset(
+    {int, float, bool, str, bytes, type(None), list, tuple, dict, set, frozenset, complex, range}
+)
+_DURATIONS = frozenset({"genpy.rostime", "rospy.rostime"})
+
+
+def nothing(_reported: Reported, _result: bool, _cmp: float, _thresh: float, _res: bool) -> None:
+    """What takes reports where none are wanted."""
+
+
+_take: Take = nothing
+_counts = {"unknown_outcomes": 0}
+
+
+def set_take(take: Take) -> None:
+    """What every report is handed to from now on."""
+    global _take  # noqa: PLW0603
+    _take = take
+
+
+def take(one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> None:
+    """Hand a report to what takes reports now."""
+    _take(one, result, cmp, thresh, res)
+
+
+def unknown_outcomes() -> int:
+    """Evaluations that were not reported, because only the program may ask for their truth."""
+    return _counts["unknown_outcomes"]
+
+
+def number_of(value: Any) -> float | None:  # noqa: ANN401
+    """What ``value`` is as a number; None for what is none, or could say so only by its own code.
+
+    Numbers are those of the language and of classes derived from them (by the base's method),
+    numpy's scalars, and ROS's times and durations in seconds.
+    """
+    try:
+        return _number_of(value, type(value))
+    except OverflowError:
+        return math.inf if int.__gt__(value, 0) else -math.inf
+    except Exception:
+        return None
+
+
+def _number_of(value: Any, kind: type) -> float | None:  # noqa: ANN401
+    found: float | None = None
+    if issubclass(kind, float):
+        found = float.__float__(value)
+    elif issubclass(kind, int):
+        found = int.__float__(value)
+    elif kind.__module__ == "numpy":
+        # An array of one element has __float__ too, but is no number of the program.
+        is_scalar = hasattr(kind, "dtype") and kind.__name__ not in ("ndarray", "matrix")
+        found = float(value) if is_scalar else None
+    elif kind.__module__ in _DURATIONS:
+        found = float(value.secs) + value.nsecs * 1e-9
+    return found
+
+
+def truth_of(value: object) -> bool | None:
+    """The truth of ``value`` where asking runs no code of the program, else None."""
+    if value is True or value is False:
+        return bool(value)
+    kind = type(value)
+    if kind in _PLAIN or (kind.__module__ == "numpy" and kind.__name__ in ("bool_", "bool")):
+        return bool(value)
+    return None
+
+
+def _values(cmp: object, thresh: object, outcome: bool) -> tuple[float, float]:
+    left = number_of(cmp)
+    right = number_of(thresh)
+    if left is None or right is None:
+        # As for texts: the outcome stands for both.
+        return float(outcome), float(outcome)
+    return left, right
+
+
+class Comparison:
+    """One link of a comparison. See the module's text.
+
+    A link that others follow keeps its right operand and its outcome, by the frame in which it was
+    evaluated, until one of `right`, `outcome` and `failed` asks for them, which it does at once.
+    """
+
+    __slots__ = ("_held", "compare", "link", "truth")
+
+    def __init__(self, operation: str, reported: tuple[Reported, ...]) -> None:
+        """``operation`` is the name of the class of the operator in `ast`."""
+        self._held: Held = {}
+        self.compare, self.truth = _comparer(operation, reported)
+        self.link = _linker(operation, reported, self._held)
+
+    def right(self) -> object:
+        """The right operand of the link that was just evaluated in the calling frame."""
+        return self._held.pop(id(sys._getframe(1)))[0]
+
+    def outcome(self) -> object:
+        """Its outcome."""
+        return self._held.pop(id(sys._getframe(1)))[1]
+
+    def failed(self) -> bool:
+        """False in the place of an outcome that was false and is only asked for its truth."""
+        del self._held[id(sys._getframe(1))]
+        return False
+
+
+def logger(reported: tuple[Reported, ...]) -> Callable[[Any, Any, bool], None]:
+    """Reports an outcome under each key."""
+
+    def log(a: object, b: object, outcome: bool) -> None:
+        try:
+            left, right = _values(a, b, outcome)
+            for one in reported:
+                if one.swapped:
+                    _take(one, outcome, right, left, outcome)
+                else:
+                    _take(one, outcome, left, right, outcome)
+        except Exception:
+            # A report that cannot be made is not worth a node.
+            return
+
+    return log
+
+
+def _comparer(
+    operation: str, reported: tuple[Reported, ...]
+) -> tuple[Callable[[Any, Any], Iterator[Any]], Callable[[Any, Any], Iterator[Any]]]:
+    """`compare`, whose iterator gives the outcome itself, and `truth`, which gives its truth.
+
+    Where the program asks for nothing but the truth of a comparison, and asks once, ``truth``
+    asks, in C, so that the report knows it.
+    """
+    lazy = _LAZY_OPERATIONS[operation]
+    # `in` has no numbers on its right.
+    plain: Operator = _PLAIN_OPERATIONS.get(operation, operator.eq)
+    numbers = _NUMBERS if operation in _PLAIN_OPERATIONS else frozenset()
+    log = logger(reported)
+    log_numbers = _number_logger(reported)
+
+    def later(a: object, b: object, outcome: object) -> object:
+        truth = truth_of(outcome)
+        if truth is None:
+            _counts["unknown_outcomes"] += 1
+        else:
+            log(a, b, truth)
+        return outcome
+
+    def compare(a: object, b: object) -> Iterator[Any]:
+        if type(a) in numbers and type(b) in numbers:
+            outcome = plain(a, b)
+            log_numbers(a, b, outcome)
+            return TRUE if outcome else FALSE
+        return map(later, (a,), (b,), lazy(a, b))
+
+    def truth(a: object, b: object) -> Iterator[Any]:
+        if type(a) in numbers and type(b) in numbers:
+            outcome = plain(a, b)
+            log_numbers(a, b, outcome)
+            return TRUE if outcome else FALSE
+        return map(later, (a,), (b,), map(operator.truth, lazy(a, b)))
+
+    return compare, truth
+
+
+def _number_logger(reported: tuple[Reported, ...]) -> Callable[[Any, Any, bool], None]:
+    """The same as `_logger` for int, float and bool; the shortest way for a single key."""
+    if len(reported) != 1:
+        return logger(reported)
+    (one,) = reported
+    swapped = one.swapped
+    slowly = logger(reported)
+
+    def log(a: float, b: float, outcome: bool) -> None:
+        try:
+            if swapped:
+                _take(one, outcome, b + 0.0, a + 0.0, outcome)
+            else:
+                _take(one, outcome, a + 0.0, b + 0.0, outcome)
+        except OverflowError:
+            slowly(a, b, outcome)
+        except Exception:
+            return
+
+    return log
+
+
+def _linker(
+    operation: str, reported: tuple[Reported, ...], held: Held
+) -> Callable[[Any, Any], Iterator[bool]]:
+    """`link`: a link of a chain that others follow. Its iterator gives the truth.
+
+    It hands the right operand on to the next link, which asks for it by `Comparison.right`, or,
+    where the chain ends, its own outcome, by `Comparison.outcome`. One of the two follows at once.
+    """
+    lazy = _LAZY_OPERATIONS[operation]
+    log = logger(reported)
+
+    def later(a: object, b: object, outcome: object, truth: bool) -> bool:
+        log(a, b, truth)
+        held[id(sys._getframe(1))] = b, outcome
+        return truth
+
+    def link(a: object, b: object) -> Iterator[bool]:
+        outcome, again = tee(lazy(a, b))
+        return map(later, (a,), (b,), outcome, map(operator.truth, again))
+
+    return link
+
+
+class Flag:
+    """A parameter that is a condition by itself."""
+
+    __slots__ = ("truth", "value")
+
+    def __init__(self, reported: tuple[Reported, ...]) -> None:
+        """All keys of the place."""
+        self.truth, self.value = _flagger(reported)
+
+
+def _flagger(
+    reported: tuple[Reported, ...],
+) -> tuple[Callable[[Any], Iterator[bool]], Callable[[Any], Any]]:
+    """`truth` where the program asks for the truth alone; `value`, which gives the value back."""
+    log = logger(reported)
+
+    def later(value: object, truth: bool) -> bool:
+        log(value, value, truth)
+        return truth
+
+    def truth(value: object) -> Iterator[bool]:
+        return map(later, (value,), map(operator.truth, (value,)))
+
+    def value(value: object) -> object:
+        known = truth_of(value)
+        if known is None:
+            _counts["unknown_outcomes"] += 1
+        else:
+            log(value, value, known)
+        return value
+
+    return truth, value

@@ -1,0 +1,127 @@
+"""Runs a Python node with reports: ``python -m pytpc.run [--static FILE]... node.py ARGS...``.
+
+It runs under the node's own interpreter, Python 3.8 or newer, which need not have TPC installed:
+``python /path/to/pytpc/run.py`` does the same. ``pytpc run`` finds the interpreter of a node and
+starts this.
+"""
+
+from __future__ import annotations
+
+import atexit
+import os
+import sys
+from typing import NamedTuple
+
+if __name__ == "__main__" and not __package__:
+    # Started by its path: beside it are modules that are not for the program.
+    sys.path[0] = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+
+from pytpc.errors import InputError, TpcError
+from pytpc.pyhook.instrument import Instrument
+from pytpc.pyhook.listed import Table, read_table
+from pytpc.pyhook.loader import install
+from pytpc.pyhook.runtime import RUNTIME
+from pytpc.pyhook.script import run_script
+from pytpc.pyhook.words import many, warn
+
+USAGE = """\
+usage: python -m pytpc.run [--static FILE]... [--verbose] NODE.py [ARGUMENT]...
+
+Runs a Python node; the comparisons of the static information report.
+
+  --static FILE  static information (JSON), or a folder that has some; may be given
+                 several times. Else TPC_STATIC, several with colons between them.
+  --verbose      say at the end which files report, and what was not reported
+"""
+
+
+class Words(NamedTuple):
+    """The command line."""
+
+    static: list[str]
+    verbose: bool
+    script: str
+    arguments: list[str]
+
+
+def parsed(words: list[str]) -> Words | None:
+    """What the command line says; None where help is asked for.
+
+    Raises:
+        InputError: it says nothing that can be done.
+    """
+    static: list[str] = []
+    verbose = False
+    rest = list(words)
+    while rest and rest[0].startswith("-"):
+        word = rest.pop(0)
+        if word in ("-h", "--help"):
+            return None
+        if word == "--":
+            break
+        if word == "--verbose":
+            verbose = True
+        elif word == "--static" and rest:
+            static.append(rest.pop(0))
+        elif word.startswith("--static="):
+            static.append(word.partition("=")[2])
+        else:
+            raise InputError(f"{word}: no such option, or its value is missing; see --help")
+    if not rest:
+        raise InputError("which script is to be run? see --help")
+    return Words(static or static_of_environment(), verbose, rest[0], rest[1:])
+
+
+def static_of_environment() -> list[str]:
+    """The static information that ``TPC_STATIC`` names."""
+    return [path for path in os.environ.get("TPC_STATIC", "").split(os.pathsep) if path]
+
+
+def prepared(static: list[str], script: str) -> Instrument:
+    """Read the static information of a script and install the hook.
+
+    Raises:
+        InputError: a file cannot be read.
+    """
+    table = read_table(static, script) if static else Table([])
+    instrument = Instrument(table, RUNTIME.register)
+    if len(table):
+        install(instrument)
+    else:
+        warn("no comparisons of Python files: --static, or TPC_STATIC, names no file that has some")
+    return instrument
+
+
+def main(words: list[str] | None = None) -> None:
+    """Run a node; ends with status 1 and one line where it cannot be."""
+    try:
+        given = parsed(sys.argv[1:] if words is None else words)
+        if given is None:
+            sys.stdout.write(USAGE)
+            return
+        instrument = prepared(given.static, given.script)
+        # What `-m` or the path of this file has put there is not the program's.
+        del sys.path[0]
+        if given.verbose:
+            _tell_at_end(instrument)
+        run_script(given.script, given.arguments, instrument)
+    except TpcError as error:
+        sys.stderr.write(f"pytpc: error: {error}\n")
+        sys.exit(1)
+
+
+def _tell_at_end(instrument: Instrument) -> None:
+    def tell() -> None:
+        for done in instrument.done:
+            warn(
+                f"{done.path}: {many(done.instrumented, 'comparison')} reported,"
+                f" {done.missing} not found"
+            )
+        if RUNTIME.file is not None:
+            warn(f"reports are in {RUNTIME.file.path}")
+
+    atexit.register(tell)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,122 @@
+"""Programs under the hook, within the test's own process."""
+
+from __future__ import annotations
+
+import ast
+import re
+import sys
+import traceback
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from types import CodeType, FrameType
+from typing import Any
+
+from pytpc.pyhook import sites
+from pytpc.pyhook.find import Place, every_comparison
+from pytpc.pyhook.listed import Listed
+from pytpc.pyhook.rewrite import rewrite
+from pytpc.pyhook.sites import Reported
+
+PATH = "/somewhere/program.py"
+
+
+def listed(lineno: int, column: int, relation: str, **changes: Any) -> Listed:
+    """A comparison of the static information; its key is its place, unless it is named."""
+    plain = {
+        "key": f"{lineno}:{column}",
+        "relation": relation,
+        "lineno": lineno,
+        "column": column,
+        "end_lineno": None,
+        "end_column": None,
+        "name": None,
+        "operand": None,
+        "source_code": None,
+    }
+    return Listed(**{**plain, **changes})
+
+
+@dataclass
+class Taken:
+    """Reports in their order, as (key, result, cmp, thresh, res)."""
+
+    rows: list[tuple[str, bool, float, float, bool]] = field(default_factory=list)
+
+    def take(self, one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> None:
+        self.rows.append((one.key, result, cmp, thresh, res))
+
+
+@contextmanager
+def taking() -> Iterator[Taken]:
+    """All reports of this process, as long as the ``with`` lasts."""
+    taken = Taken()
+    before = sites._take
+    sites.set_take(taken.take)
+    try:
+        yield taken
+    finally:
+        sites.set_take(before)
+
+
+def register(place: Place) -> Reported:
+    return Reported(place.listed.key, 1, place.swapped)
+
+
+def instrumented(source: str, *places: Listed) -> CodeType:
+    """The code of a program that reports; all of ``places`` must be in it."""
+    rewritten = rewrite(source, PATH, places, register)
+    assert not rewritten.missing
+    assert not rewritten.unsupported
+    assert rewritten.instrumented == len(places)
+    return rewritten.code
+
+
+def everywhere(source: str) -> CodeType:
+    """The code of a program of which every comparison reports."""
+    return instrumented(source, *every_comparison(ast.parse(source)))
+
+
+def reports(source: str, *places: Listed, **names: object) -> list[tuple[Any, ...]]:
+    """What a program reports."""
+    with taking() as taken:
+        exec(instrumented(source, *places), dict(names))
+    return taken.rows
+
+
+def without_addresses(text: str) -> str:
+    """Where an object is in memory is no part of what a program does."""
+    return re.sub(r"0x[0-9a-f]+", "0x", text)
+
+
+def outcome(code: CodeType, names: dict[str, object]) -> tuple[object, ...]:
+    """What a program does: how it ends, where its error comes from, and the lines that it runs.
+
+    Frames of the hook are left out: they are no part of the program.
+    """
+    lines: list[tuple[str, int]] = []
+
+    def local(frame: FrameType, event: str, _: object) -> object:
+        if event == "line":
+            lines.append((frame.f_code.co_name, frame.f_lineno))
+        return local
+
+    def trace(frame: FrameType, event: str, _: object) -> object:
+        return local if frame.f_code.co_filename == PATH else None
+
+    ended: tuple[object, ...] = ("done",)
+    before = sys.gettrace()
+    sys.settrace(trace)
+    try:
+        exec(code, names)
+    except Exception as error:
+        stack = traceback.TracebackException.from_exception(error).stack
+        frames = [
+            (frame.name, frame.lineno, frame.end_lineno, frame.colno, frame.end_colno)
+            for frame in stack[1:]
+        ]
+        files = {frame.filename for frame in stack[1:]}
+        ended = (type(error).__name__, without_addresses(str(error)), frames, files)
+    finally:
+        sys.settrace(before)
+    return ended, lines
