@@ -30,9 +30,8 @@ public:
   explicit Slope(double share) : smooth_(share) {}
 
   double update(double sample, double interval) {
-    const double change = primed_ && interval > 0.0
-                              ? (sample - last_) / interval
-                              : 0.0;
+    const double change =
+        primed_ && interval > 0.0 ? (sample - last_) / interval : 0.0;
     last_ = sample;
     primed_ = true;
     return smooth_.update(change);

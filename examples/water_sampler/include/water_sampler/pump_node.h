@@ -1,4 +1,5 @@
-// The pump control: the probe's and the flow meter's readings in, the motor out.
+// The pump control: the probe's and the flow meter's readings in, the motor
+// out.
 #ifndef WATER_SAMPLER_PUMP_NODE_H
 #define WATER_SAMPLER_PUMP_NODE_H
 

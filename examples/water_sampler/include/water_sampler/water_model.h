@@ -16,7 +16,7 @@ namespace water_sampler {
 
 class WaterModel {
 public:
-  WaterModel(ros::NodeHandle &private_nh, std::uint32_t seed);
+  explicit WaterModel(std::uint32_t seed);
 
   void step(const UavState &uav, const PumpDrive &drive, double interval);
   SamplerSensors sense(const ros::Time &stamp);
@@ -41,19 +41,6 @@ private:
   double vial_ = 0.0;        ///< ml
   bool in_water_ = false;
   bool pump_running_ = false;
-
-  double tank_x_;
-  double tank_y_;
-  double tank_radius_;
-  double water_level_;
-  double tube_length_;
-  double tube_sway_time_;
-  double water_conductivity_;
-  double spray_lowest_;
-  double spray_highest_;
-  double spray_pause_;
-  double pump_rate_;
-  double vial_capacity_;
 };
 
 } // namespace water_sampler

@@ -17,7 +17,7 @@ constexpr double LongestHold = 0.5;
 
 SimulatorNode::SimulatorNode(ros::NodeHandle &nh, ros::NodeHandle &private_nh,
                              std::uint32_t seed)
-    : dynamics_(private_nh, seed), water_(private_nh, seed + 1000u) {
+    : dynamics_(private_nh, seed), water_(seed + 1000u) {
   private_nh.param("rate", rate_, 4.0);
   private_nh.param("sensor_period", sensor_period_, 0.06);
   private_nh.param("sampler_period", sampler_period_, 0.1);
