@@ -21,6 +21,7 @@ from rosbags.highlevel import AnyReader
 from pytpc.attached import record_graph
 from pytpc.cli.mission_commands import record_command, sink_settings
 from pytpc.demo import TreatedMission, failures, result_table
+from pytpc.demo_examples import IMAGE_CAPTURE, WATER_SAMPLER, Example
 from pytpc.errors import InputError, RunError
 from pytpc.graph import GraphProcess
 from pytpc.ingest import Recording
@@ -480,10 +481,17 @@ TYPE1 = Treatment("low", "type1", "limit", "/m", 20, 3, {}, "It lands.", Path("p
 CLEAN = Treatment("clean", "clean", None, None, None, None, {}, "It works.", Path("params.yaml"))
 
 
-def flown(treatment: Treatment, run: MissionRun, marks: list[Mark], rows: list) -> TreatedMission:
+def flown(
+    treatment: Treatment,
+    run: MissionRun,
+    marks: list[Mark],
+    rows: list,
+    example: Example = IMAGE_CAPTURE,
+) -> TreatedMission:
     """A mission with the given evaluations: (seconds, number of the key, result, cmp, thresh)."""
     recording = Recording(treatment.name, events(rows), tuple(marks), 0, ns(40.0))
-    return TreatedMission(treatment, 1, run, recording, rank_marks(recording, STATIC))
+    rankings = rank_marks(recording, STATIC)
+    return TreatedMission(example, treatment, 1, run, recording, rankings)
 
 
 # Type I scores are (mark - last flop) * (1 + flops). At 10 s: the limit flopped once at 9 s, which
@@ -535,6 +543,20 @@ def test_a_mission_that_did_not_go_as_demanded_is_a_failure(tmp_path):
     type2 = replace(TYPE1, name="high", type="type2")
     assert failures(flown(type2, mission_run(tmp_path), [Mark(ns(9.5), "II")], LIMIT_ROWS)) == [
         "high: a picture was taken"
+    ]
+
+
+def test_a_filled_vial_is_a_failure_under_each_treatment_that_changes_something(tmp_path):
+    filled = mission_run(tmp_path, messages={"/truth/vial_filled": 1})
+    empty = mission_run(tmp_path, messages={"/camera/picture": 1})
+    mark = [Mark(ns(10.0), "I")]
+    assert failures(flown(TYPE1, filled, mark, LIMIT_ROWS, WATER_SAMPLER)) == [
+        "low: the vial was filled"
+    ]
+    assert failures(flown(TYPE1, empty, mark, LIMIT_ROWS, WATER_SAMPLER)) == []
+    assert failures(flown(CLEAN, filled, [], LIMIT_ROWS, WATER_SAMPLER)) == []
+    assert failures(flown(CLEAN, empty, [], LIMIT_ROWS, WATER_SAMPLER)) == [
+        "clean: the vial was not filled"
     ]
 
 

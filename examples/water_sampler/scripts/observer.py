@@ -166,7 +166,6 @@ def main() -> None:
     import rospy  # noqa: PLC0415
     from geometry_msgs.msg import PoseStamped  # noqa: PLC0415
     from std_msgs.msg import Time  # noqa: PLC0415
-
     from water_sampler.msg import SamplerTruth  # noqa: PLC0415
 
     parser = argparse.ArgumentParser(description="scripted observer")

@@ -56,7 +56,8 @@ class Mission:
     def step(self, now):
         """One step of the state machine."""
         if self._state is None:
-            self.enter("idle", now)
+            self._state = self._states["idle"]
+            self._state.enter(now)
         following = self.emergency(now) or self._state.step(now)
         if following is not None:
             self.enter(following, now)
