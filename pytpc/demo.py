@@ -116,10 +116,11 @@ def run_treatment(
 
 def failures(mission: TreatedMission) -> list[str]:
     """What is wrong with a mission or its ranking, in sentences; empty where nothing is."""
-    return [*_gone_wrong(mission), *_not_named(mission)]
+    return [*gone_wrong(mission), *_not_named(mission)]
 
 
-def _gone_wrong(mission: TreatedMission) -> list[str]:
+def gone_wrong(mission: TreatedMission) -> list[str]:
+    """Where a mission did not go as its treatment demands, in sentences."""
     example, treatment, run = mission.example, mission.treatment, mission.run
     reached = run.messages.get(example.goal_topic, 0) > 0
     found = []

@@ -47,8 +47,11 @@ from pytpc.scoring.ranking import rank_marks
 from pytpc.tcpros import Source
 from pytpc.treatment import Treatment, load_treatment
 
-EXAMPLE = Path(__file__).parents[2] / "examples/image_capture"
-TREATMENTS = sorted(path.name for path in (EXAMPLE / "treatments").iterdir())
+TREATMENTS = [
+    (example, path.name)
+    for example in (IMAGE_CAPTURE, WATER_SAMPLER)
+    for path in sorted((example.folder / "treatments").iterdir())
+]
 
 CLOCK = Source("/clock", "/sim", "rosgraph_msgs/Clock", "a9c97c1d230cfc112e270351a944ee47", "")
 CHAT = Source(
@@ -377,10 +380,12 @@ def test_tail_of_a_process_prefers_what_tells_of_an_error(tmp_path):
 # --- treatments
 
 
-@pytest.mark.parametrize("name", TREATMENTS)
-def test_treatments_of_the_example_change_what_they_say(name):
-    treatment = load_treatment(EXAMPLE / "treatments" / name)
-    own = yaml.safe_load((EXAMPLE / "config/params.yaml").read_text())
+@pytest.mark.parametrize(
+    ("example", "name"), TREATMENTS, ids=lambda each: getattr(each, "name", each)
+)
+def test_treatments_of_the_examples_change_what_they_say(example, name):
+    treatment = example.treatment(name)
+    own = yaml.safe_load((example.folder / "config/params.yaml").read_text())
     overlay = yaml.safe_load(treatment.overlay.read_text())
     changed = {
         (node, parameter, own[node][parameter], value)
