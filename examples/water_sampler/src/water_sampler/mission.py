@@ -15,12 +15,11 @@ from water_sampler.water_watch import WaterWatch
 
 
 class Mission:
-    """Steps at the rate of the flight controller's states, but not faster than ten a second."""
+    """Steps with each state of the flight controller."""
 
     def __init__(self, states=STATES):
         self._mission_timeout = rospy.get_param("~mission_timeout", 75.0)
         self._battery_return_voltage = rospy.get_param("~battery_return_voltage", 11.0)
-        self._control_period = rospy.get_param("~control_period", 0.1)
         self.tank = TankWatch()
         self.water = WaterWatch()
         self.pump = PumpClient()
@@ -30,7 +29,6 @@ class Mission:
         self.started = None
         self._states = {state.name: state(self) for state in states}
         self._state = None
-        self._stepped = None
         self._lock = threading.Lock()
         self._state_pub = rospy.Publisher("/mission/state", MissionState, queue_size=10)
         self._done_pub = rospy.Publisher("/mission/done", Bool, queue_size=1, latch=True)
@@ -47,11 +45,7 @@ class Mission:
         with self._lock:
             self.flight = flight
             self.tank.update(flight)
-            now = flight.header.stamp
-            due = self._stepped is None or (now - self._stepped).to_sec() >= self._control_period
-            if due:
-                self._stepped = now
-                self.step(now)
+            self.step(flight.header.stamp)
 
     def step(self, now):
         """One step of the state machine."""
@@ -70,7 +64,7 @@ class Mission:
             return None
         if self.flight.aborting:
             return "land"
-        if self._state.name in ("go_home", "rise"):
+        if self._state.name in ("drain", "rise", "go_home"):
             return None
         weak = self.flight.battery_voltage < self._battery_return_voltage
         late = (now - self.started).to_sec() > self._mission_timeout

@@ -1,7 +1,7 @@
 """What the mission does in each of its states.
 
-``step`` is called ten times a second with the mission's time; it returns the name of the next
-state, or None to stay.
+``step`` is called with each state of the flight controller and its time; it returns the name of the
+next state, or None to stay.
 """
 
 import rospy
@@ -185,8 +185,25 @@ class Pump(State):
             # The status that is here already is of the time before.
             return "rise" if pump.hopeless else None
         if water.vial_full or water.pump_failed or water.out_of_water(now):
-            return "rise"
-        return "rise" if self.age(now) > self._pump_patience else None
+            return "drain"
+        return "drain" if self.age(now) > self._pump_patience else None
+
+
+class Drain(State):
+    """The pump stands still, and what is in the tube runs into the vial."""
+
+    name = "drain"
+
+    def __init__(self, mission):
+        super().__init__(mission)
+        self._drain_time = rospy.get_param("~drain_time", 4.0)
+
+    def enter(self, now):
+        super().enter(now)
+        self.mission.pump.stop()
+
+    def step(self, now):
+        return "rise" if self.age(now) > self._drain_time else None
 
 
 class Rise(State):
@@ -263,4 +280,4 @@ class Done(State):
         return None
 
 
-STATES = (Idle, Takeoff, Approach, Hold, Lower, Dip, Pump, Rise, GoHome, Land, Done)
+STATES = (Idle, Takeoff, Approach, Hold, Lower, Dip, Pump, Drain, Rise, GoHome, Land, Done)
