@@ -105,6 +105,24 @@ def test_loss_counter_counts_the_numbers_that_are_missing():
     assert counter.missed_before == Counter({"/b": 3})
 
 
+def test_loss_counter_spares_the_number_that_rosout_got_of_a_latched_sender():
+    # 1 | 3: rosout came after 1, and was sent it again as 2. 3 | 5: 4 is missing. /b: no latch.
+    counter = LossCounter()
+    for number in (1, 3, 5):
+        counter.see(log(b"/a", number), "/a", latched=True)
+    for number in (1, 3):
+        counter.see(log(b"/b", number), "/b")
+    assert counter.lost == Counter({"/a": 1, "/b": 1})
+
+
+def test_loss_counter_spares_no_larger_gap():
+    # 1 | 4: 2 and 3 are missing, and only one of them can have gone to rosout.
+    counter = LossCounter()
+    for number in (1, 4):
+        counter.see(log(b"/a", number), "/a", latched=True)
+    assert counter.lost == Counter({"/a": 2})
+
+
 def test_loss_counter_takes_a_restarted_node_for_a_new_beginning():
     counter = LossCounter()
     for number in (8, 9, 0, 1):
