@@ -129,9 +129,20 @@ class Lower(State):
         height = mission.pilot.target.z - self._lower_rate * (now - self._last).to_sec()
         self._last = now
         # Lower down the UAV's feet would get wet.
-        if height > self._min_lower_height and mission.tank.over_tank:
+        if height < self._min_lower_height:
+            return "wait_for_water"
+        if mission.tank.over_tank:
             mission.pilot.climb(height)
         return None
+
+
+class WaitForWater(State):
+    """As low as the UAV may be, with the tip dry."""
+
+    name = "wait_for_water"
+
+    def step(self, now):
+        return "dip" if self.mission.water.in_water else None
 
 
 class Dip(State):
@@ -280,4 +291,18 @@ class Done(State):
         return None
 
 
-STATES = (Idle, Takeoff, Approach, Hold, Lower, Dip, Pump, Drain, Rise, GoHome, Land, Done)
+STATES = (
+    Idle,
+    Takeoff,
+    Approach,
+    Hold,
+    Lower,
+    WaitForWater,
+    Dip,
+    Pump,
+    Drain,
+    Rise,
+    GoHome,
+    Land,
+    Done,
+)

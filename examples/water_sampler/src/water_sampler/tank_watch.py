@@ -11,7 +11,7 @@ class TankWatch:
     def __init__(self):
         self.x = rospy.get_param("~tank_x", 3.0)
         self.y = rospy.get_param("~tank_y", 2.0)
-        self._hold_radius = rospy.get_param("~hold_radius", 0.25)
+        self._hold_radius = rospy.get_param("~hold_radius", 0.35)
         self._hold_time = rospy.get_param("~hold_time", 1.5)
         self.offset = math.inf
         self.over_tank = False
