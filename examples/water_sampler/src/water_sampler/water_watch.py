@@ -11,7 +11,7 @@ class WaterWatch:
     def __init__(self):
         self._wet_readings_needed = rospy.get_param("~wet_readings_needed", 15)
         self._dry_patience = rospy.get_param("~dry_patience", 6.0)
-        self._status_timeout = rospy.get_param("~status_timeout", 2.0)
+        self._status_timeout = rospy.get_param("~status_timeout", 8.0)
         self.status = None
         self.in_water = False
         self._last_wet = None
