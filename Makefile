@@ -1,8 +1,11 @@
-.PHONY: demo test test-llvm22 fuzz setup bench lint
+.PHONY: demo demo-water test test-llvm22 fuzz setup bench lint
 PYTHON = .venv/bin/python
 
 demo: setup   ## a robot with a wrong parameter, and its name
 	$(PYTHON) examples/image_capture/demo.py --out out/demo
+
+demo-water: setup  ## the same with a robot in Python and C++
+	$(PYTHON) examples/water_sampler/demo.py --out out/demo-water
 
 test: setup   ## all tests: passes, Python, a real ROS graph
 	tools/test

@@ -15,6 +15,7 @@ from rich.table import Table
 from rich.text import Text
 
 from pytpc.advice.suggest import suggest
+from pytpc.demo_examples import Example
 from pytpc.errors import RunError
 from pytpc.ingest import Recording, read_bag, save_recording
 from pytpc.ingest.recording import EVENTS_FILE, MARKS_FILE
@@ -28,14 +29,12 @@ from pytpc.treatment import Treatment, save_treatment
 FIRST = 3
 """The changed parameter has to be among so many first suspects."""
 
-PICTURE_TOPIC = "/camera/picture"
-WATCHED = ("/truth/uav", "/truth/person", "/mission/state", PICTURE_TOPIC)
-
 
 @dataclass(frozen=True)
 class TreatedMission:
     """A mission that was run under a treatment, with the suspects at its marks."""
 
+    example: Example
     treatment: Treatment
     seed: int
     run: MissionRun
@@ -61,26 +60,28 @@ class TreatedMission:
 
 
 def run_treatment(
+    example: Example,
     treatment: Treatment,
     *,
     seed: int,
-    launch: Path,
     install_env: Mapping[str, str],
     static_info: StaticInfo,
     out_dir: Path,
     timeout_s: float,
+    launch_args: Mapping[str, str] | None = None,
     on_progress: Callable[[Progress], None] | None = None,
 ) -> TreatedMission:
     """Run one mission under a treatment, record it, and rank the parameters at its marks.
 
     Args:
+        example: the robot.
         treatment: its overlay and launch arguments are handed to the launch file.
         seed: for all noise of the simulation and for the observer.
-        launch: the launch file; it has the arguments ``seed`` and ``treatment``.
         install_env: see ``run_mission``.
-        static_info: of the build that runs.
+        static_info: of the build that runs, and of its nodes in Python.
         out_dir: for the recording and what was read from it.
         timeout_s: wall time after which the mission is ended.
+        launch_args: more arguments for the launch file.
         on_progress: see ``run_mission``.
 
     Raises:
@@ -89,39 +90,52 @@ def run_treatment(
     """
     for stale in (EVENTS_FILE, MARKS_FILE):
         (out_dir / stale).unlink(missing_ok=True)
-    args = {"seed": str(seed), "treatment": str(treatment.overlay.absolute()), **treatment.launch}
+    args = {
+        "seed": str(seed),
+        "treatment": str(treatment.overlay.absolute()),
+        **treatment.launch,
+        **(launch_args or {}),
+    }
     run = run_mission(
-        install_env, launch, args, out_dir, timeout_s, topics=WATCHED, on_progress=on_progress
+        install_env,
+        example.launch,
+        args,
+        out_dir,
+        timeout_s,
+        topics=example.watched,
+        on_progress=on_progress,
     )
     save_treatment(treatment, out_dir)
     recording = read_bag(run.bag)
     if not len(recording.events):
         raise RunError("no node reported a comparison: was the workspace built with TPC?", run.bag)
     save_recording(recording, out_dir)
-    return TreatedMission(treatment, seed, run, recording, rank_marks(recording, static_info))
+    rankings = rank_marks(recording, static_info)
+    return TreatedMission(example, treatment, seed, run, recording, rankings)
 
 
 def failures(mission: TreatedMission) -> list[str]:
     """What is wrong with a mission or its ranking, in sentences; empty where nothing is."""
-    return [*_gone_wrong(mission), *_not_named(mission)]
+    return [*gone_wrong(mission), *_not_named(mission)]
 
 
-def _gone_wrong(mission: TreatedMission) -> list[str]:
-    treatment, run = mission.treatment, mission.run
-    pictures = run.messages.get(PICTURE_TOPIC, 0)
+def gone_wrong(mission: TreatedMission) -> list[str]:
+    """Where a mission did not go as its treatment demands, in sentences."""
+    example, treatment, run = mission.example, mission.treatment, mission.run
+    reached = run.messages.get(example.goal_topic, 0) > 0
     found = []
     if run.ended != "done":
         found.append(f"{treatment.name}: the mission did not end in {run.wall_s:.0f} s")
     if treatment.type == "clean":
         if mission.rankings:
             found.append(f"{treatment.name}: the observer set {len(mission.rankings)} marks")
-        if pictures == 0:
-            found.append(f"{treatment.name}: no picture was taken")
+        if not reached:
+            found.append(f"{treatment.name}: {example.missed}")
     elif treatment.mark_type is not None and not mission.judged:
         kind = treatment.mark_type
         found.append(f"{treatment.name}: the observer set no mark of type {kind}")
-    if treatment.type in ("type2", "fault") and pictures:
-        found.append(f"{treatment.name}: a picture was taken")
+    if treatment.type in example.missed_under and reached:
+        found.append(f"{treatment.name}: {example.reached}")
     lost = sum(run.lost.values())
     if lost:
         found.append(f"{treatment.name}: {lost} log messages were lost by the recorder")

@@ -75,14 +75,16 @@ class LossCounter:
     def __init__(self) -> None:
         """Nothing was seen yet."""
         self._last: dict[str, int] = {}
+        self._spared: set[str] = set()
         self.lost: Counter[str] = Counter()
         self.missed_before: Counter[str] = Counter()
 
-    def see(self, data: bytes, sender: str = "") -> bytes:
+    def see(self, data: bytes, sender: str = "", *, latched: bool = False) -> bytes:
         """Take in one serialized rosgraph_msgs/Log; return its text.
 
         Who sends numbers: ``rosbag play`` does so anew, in one row for all nodes. Where no
-        ``sender`` is known it is the node.
+        ``sender`` is known it is the node. One that is ``latched``, as rospy's, sends its last text
+        anew to each new subscriber, as rosout is one, by a number of its own: no loss, once.
 
         Raises:
             ValueError: the bytes are shorter than such a message.
@@ -100,6 +102,8 @@ class LossCounter:
             # roscpp counts from 0 and rospy from 1, so that 1 may be the first one.
             if sequence > 1:
                 self.missed_before[node] = sequence - 1
+        elif sequence == last + 2 and latched and node not in self._spared:
+            self._spared.add(node)
         elif sequence > last + 1:
             self.lost[node] += sequence - last - 1
         self._last[node] = sequence
@@ -179,6 +183,7 @@ class BagFile:
                 md5sum=source.md5sum,
                 # On /threshold_information nothing else says whose reports these are.
                 callerid=source.node,
+                latching=1 if source.latched else None,
             )
             self._connections[key] = connection
         # A chunk stands in memory until it is full: with marks alone, for the whole mission.
@@ -248,7 +253,8 @@ class Recorder:
         if source.topic in self._topics:
             self._bag.write(source, self.now_ns(), data)
         if source.topic == _ROSOUT:
-            self._reports += self._counter.see(data, source.node).startswith(REPORT)
+            text = self._counter.see(data, source.node, latched=source.latched)
+            self._reports += text.startswith(REPORT)
         elif source.topic == _REPORTS:
             self._reports += self._batches.see(source.node, data)
         elif source.topic == self._until and any(data):

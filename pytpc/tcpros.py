@@ -37,13 +37,17 @@ _MOST_RETRIES = 25
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """Where messages come from: one publisher of one topic, with what it says of their type."""
+    """Where messages come from: one publisher of one topic, with what it says of their type.
+
+    ``latched``: it sends its last message to each new subscriber.
+    """
 
     topic: str
     node: str
     type: str
     md5sum: str
     definition: str
+    latched: bool = False
 
 
 def encode_header(fields: Mapping[str, str]) -> bytes:
@@ -375,7 +379,9 @@ def _open(topic: str, publisher: str, name: str) -> tuple[socket.socket, Source]
         raise
     definition = fields.get("message_definition", "")
     node = fields.get("callerid", "")
-    return connection, Source(topic, node, fields["type"], fields["md5sum"], definition)
+    latched = fields.get("latching") == "1"
+    source = Source(topic, node, fields["type"], fields["md5sum"], definition, latched)
+    return connection, source
 
 
 def receive(connection: socket.socket, count: int) -> bytes:

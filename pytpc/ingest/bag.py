@@ -44,9 +44,10 @@ def read_bag_into(path: Path, gathering: Gathering, on_progress: Progress | None
             gathering.notes += notes
             if index.span is not None:
                 gathering.spans.append(index.span)
-            taken = Messages(gathering, str(path), _DECODERS)
-            total = index.index_pos
             logs = [n for n, connection in wanted.items() if connection.topic == ROSOUT]
+            latched = {wanted[n].caller.encode() for n in logs if wanted[n].latched}
+            taken = Messages(gathering, str(path), _DECODERS, latched=latched)
+            total = index.index_pos
             senders = {n: wanted[n].caller.encode() for n in logs}
             for chunk in messages(stream, index, wanted.keys()) if wanted else ():
                 is_log = np.isin(chunk.connection, logs)

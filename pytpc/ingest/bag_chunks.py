@@ -40,12 +40,16 @@ class BrokenBagError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class BagConnection:
-    """One publisher's topic in the bag; ``type`` in the way of ROS 2 (``std_msgs/msg/String``)."""
+    """One publisher's topic in the bag; ``type`` in the way of ROS 2 (``std_msgs/msg/String``).
+
+    ``latched``: it sent its last message to each new subscriber.
+    """
 
     number: int
     topic: str
     type: str
     caller: str
+    latched: bool
 
 
 @dataclass(frozen=True)
@@ -338,4 +342,6 @@ def _connection(header: dict[bytes, bytes], data: dict[bytes, bytes]) -> BagConn
     package = package.removesuffix("/msg")
     words = "/".join(word for word in topic.split("/") if word)
     topic = f"/{words}" if topic.startswith("/") else words
-    return BagConnection(_number(header, b"conn", 4), topic, f"{package}/msg/{name}", caller)
+    latched = data.get(b"latching") == b"1"
+    kind = f"{package}/msg/{name}"
+    return BagConnection(_number(header, b"conn", 4), topic, kind, caller, latched)

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Set
 from dataclasses import dataclass
 
 import numpy as np
@@ -63,16 +63,20 @@ class _OtherLine:
 
 
 class _Gaps:
-    """Finds what is missing in numbered messages; who is started again counts from the start."""
+    """Finds what is missing in numbered messages; who is started again counts from the start.
 
-    def __init__(self) -> None:
+    One missing number of each that is ``latched`` is no loss: see ``LossCounter.see``.
+    """
+
+    def __init__(self, latched: Set[bytes]) -> None:
         self._last: dict[bytes, int] = {}
+        self._to_spare = set(latched)
         self.lost: Counter[bytes] = Counter()
 
     def see(self, name: bytes, seq: int) -> None:
         last = self._last.get(name)
         if last is not None and seq > last + 1:
-            self.lost[name] += seq - last - 1
+            self._step(name, np.array([seq - last]))
         self._last[name] = seq
 
     def see_all(self, names: list[bytes], seq: Int64s) -> None:
@@ -84,9 +88,15 @@ class _Gaps:
             last = self._last.get(name)
             if last is not None:
                 own = np.concatenate([[last], own])
-            steps = np.diff(own)
-            self.lost[name] += int((steps[steps > 1] - 1).sum())
+            self._step(name, np.diff(own))
             self._last[name] = int(own[-1])
+
+    def _step(self, name: bytes, steps: Int64s) -> None:
+        missing = int((steps[steps > 1] - 1).sum())
+        if name in self._to_spare and (steps == 2).any():
+            self._to_spare.remove(name)
+            missing -= 1
+        self.lost[name] += missing
 
 
 class Messages:
@@ -97,10 +107,17 @@ class Messages:
         source: the file, for messages.
         decoders: for its serialisation.
         numbered: whether log messages have the publisher's own number (ROS 1).
+        latched: who sends the last log message to each new subscriber.
     """
 
     def __init__(
-        self, gathering: Gathering, source: str, decoders: Decoders, *, numbered: bool = True
+        self,
+        gathering: Gathering,
+        source: str,
+        decoders: Decoders,
+        *,
+        numbered: bool = True,
+        latched: Set[bytes] = frozenset(),
     ) -> None:
         """Nothing was taken in yet."""
         self._gathering = gathering
@@ -108,8 +125,8 @@ class Messages:
         self._decoders = decoders
         self._numbered = numbered
         self._batches = Batches(gathering)
-        self._gaps_of_nodes = _Gaps()
-        self._gaps_of_senders = _Gaps()
+        self._gaps_of_nodes = _Gaps(latched)
+        self._gaps_of_senders = _Gaps(latched)
         self._lines: dict[Way, Lines] = {}
         self._channels: dict[Way, Channel] = {}
         self._nodes: dict[bytes, int] = {}

@@ -87,7 +87,7 @@ class Reports:
         return found
 
     def _log(self, source: Source, data: bytes, steady_s: float) -> list[Item]:
-        self._counter.see(data, source.node)
+        self._counter.see(data, source.node, latched=source.latched)
         log = decode_log(data)
         if not log.msg.startswith(_BEGIN):
             return []

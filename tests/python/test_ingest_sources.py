@@ -505,6 +505,29 @@ def test_marks_of_all_kinds(tmp_path):
     assert read([tmp_path / "m.marks.csv"]).marks == (Mark(ns(13), "I"),)
 
 
+# A latched /a sent rosout its first message again as number 2. In the second row 4 is missing, too;
+# in the third 2 and 3 are, of which not both can have gone to rosout; in the fourth 5 and 6.
+@pytest.mark.parametrize("at_once", [False, True])
+@pytest.mark.parametrize(
+    ("numbers", "lost"), [((1, 3), 0), ((1, 3, 5), 1), ((1, 4, 5), 2), ((1, 3, 4, 7), 2)]
+)
+def test_number_that_only_rosout_got_is_no_loss(numbers, lost, at_once):
+    gathering = Gathering()
+    messages = Messages(gathering, "x", _DECODERS, latched={b"/a"})
+    raw = [log(b"/a", number) for number in numbers]
+    if at_once:
+        ends = np.cumsum([len(data) for data in raw])
+        begins = np.concatenate([[0], ends[:-1]])
+        times = np.ones(len(raw), np.int64)
+        chunk = Chunk(b"".join(raw), np.zeros(len(raw), np.int64), times, begins, ends, 0)
+        assert messages.take_logs(chunk, np.ones(len(raw), np.bool_), {0: b"/a"})
+    else:
+        for data in raw:
+            messages.take("/rosout", "/a", 1, data)
+    messages.close()
+    assert gathering.lost.total() == lost
+
+
 # rosbag play numbers the messages of all nodes in one row, rosbag filter names one sender for all:
 # neither is a loss. In the third 3 of /a are missing, however it is counted.
 @pytest.mark.parametrize(

@@ -21,6 +21,7 @@ from rosbags.highlevel import AnyReader
 from pytpc.attached import record_graph
 from pytpc.cli.mission_commands import record_command, sink_settings
 from pytpc.demo import TreatedMission, failures, result_table
+from pytpc.demo_examples import IMAGE_CAPTURE, WATER_SAMPLER, Example
 from pytpc.errors import InputError, RunError
 from pytpc.graph import GraphProcess
 from pytpc.ingest import Recording
@@ -46,8 +47,11 @@ from pytpc.scoring.ranking import rank_marks
 from pytpc.tcpros import Source
 from pytpc.treatment import Treatment, load_treatment
 
-EXAMPLE = Path(__file__).parents[2] / "examples/image_capture"
-TREATMENTS = sorted(path.name for path in (EXAMPLE / "treatments").iterdir())
+TREATMENTS = [
+    (example, path.name)
+    for example in (IMAGE_CAPTURE, WATER_SAMPLER)
+    for path in sorted((example.folder / "treatments").iterdir())
+]
 
 CLOCK = Source("/clock", "/sim", "rosgraph_msgs/Clock", "a9c97c1d230cfc112e270351a944ee47", "")
 CHAT = Source(
@@ -99,6 +103,24 @@ def test_loss_counter_counts_the_numbers_that_are_missing():
     counter.see(log(b"/a", 6))
     assert counter.lost == Counter({"/a": 2})
     assert counter.missed_before == Counter({"/b": 3})
+
+
+def test_loss_counter_spares_the_number_that_rosout_got_of_a_latched_sender():
+    # 1 | 3: rosout came after 1, and was sent it again as 2. 3 | 5: 4 is missing. /b: no latch.
+    counter = LossCounter()
+    for number in (1, 3, 5):
+        counter.see(log(b"/a", number), "/a", latched=True)
+    for number in (1, 3):
+        counter.see(log(b"/b", number), "/b")
+    assert counter.lost == Counter({"/a": 1, "/b": 1})
+
+
+def test_loss_counter_spares_no_larger_gap():
+    # 1 | 4: 2 and 3 are missing, and only one of them can have gone to rosout.
+    counter = LossCounter()
+    for number in (1, 4):
+        counter.see(log(b"/a", number), "/a", latched=True)
+    assert counter.lost == Counter({"/a": 2})
 
 
 def test_loss_counter_takes_a_restarted_node_for_a_new_beginning():
@@ -376,10 +398,12 @@ def test_tail_of_a_process_prefers_what_tells_of_an_error(tmp_path):
 # --- treatments
 
 
-@pytest.mark.parametrize("name", TREATMENTS)
-def test_treatments_of_the_example_change_what_they_say(name):
-    treatment = load_treatment(EXAMPLE / "treatments" / name)
-    own = yaml.safe_load((EXAMPLE / "config/params.yaml").read_text())
+@pytest.mark.parametrize(
+    ("example", "name"), TREATMENTS, ids=lambda each: getattr(each, "name", each)
+)
+def test_treatments_of_the_examples_change_what_they_say(example, name):
+    treatment = example.treatment(name)
+    own = yaml.safe_load((example.folder / "config/params.yaml").read_text())
     overlay = yaml.safe_load(treatment.overlay.read_text())
     changed = {
         (node, parameter, own[node][parameter], value)
@@ -480,10 +504,17 @@ TYPE1 = Treatment("low", "type1", "limit", "/m", 20, 3, {}, "It lands.", Path("p
 CLEAN = Treatment("clean", "clean", None, None, None, None, {}, "It works.", Path("params.yaml"))
 
 
-def flown(treatment: Treatment, run: MissionRun, marks: list[Mark], rows: list) -> TreatedMission:
+def flown(
+    treatment: Treatment,
+    run: MissionRun,
+    marks: list[Mark],
+    rows: list,
+    example: Example = IMAGE_CAPTURE,
+) -> TreatedMission:
     """A mission with the given evaluations: (seconds, number of the key, result, cmp, thresh)."""
     recording = Recording(treatment.name, events(rows), tuple(marks), 0, ns(40.0))
-    return TreatedMission(treatment, 1, run, recording, rank_marks(recording, STATIC))
+    rankings = rank_marks(recording, STATIC)
+    return TreatedMission(example, treatment, 1, run, recording, rankings)
 
 
 # Type I scores are (mark - last flop) * (1 + flops). At 10 s: the limit flopped once at 9 s, which
@@ -535,6 +566,20 @@ def test_a_mission_that_did_not_go_as_demanded_is_a_failure(tmp_path):
     type2 = replace(TYPE1, name="high", type="type2")
     assert failures(flown(type2, mission_run(tmp_path), [Mark(ns(9.5), "II")], LIMIT_ROWS)) == [
         "high: a picture was taken"
+    ]
+
+
+def test_a_filled_vial_is_a_failure_under_each_treatment_that_changes_something(tmp_path):
+    filled = mission_run(tmp_path, messages={"/truth/vial_filled": 1})
+    empty = mission_run(tmp_path, messages={"/camera/picture": 1})
+    mark = [Mark(ns(10.0), "I")]
+    assert failures(flown(TYPE1, filled, mark, LIMIT_ROWS, WATER_SAMPLER)) == [
+        "low: the vial was filled"
+    ]
+    assert failures(flown(TYPE1, empty, mark, LIMIT_ROWS, WATER_SAMPLER)) == []
+    assert failures(flown(CLEAN, filled, [], LIMIT_ROWS, WATER_SAMPLER)) == []
+    assert failures(flown(CLEAN, empty, [], LIMIT_ROWS, WATER_SAMPLER)) == [
+        "clean: the vial was not filled"
     ]
 
 

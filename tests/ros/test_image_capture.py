@@ -17,13 +17,13 @@ import pytest
 
 from pytpc.build import BuildResult, workspace_env
 from pytpc.demo import FIRST, TreatedMission, failures, run_treatment
+from pytpc.demo_examples import IMAGE_CAPTURE
 from pytpc.errors import MissingToolError, RunError
 from pytpc.graph import GRAPH_WORD, RosGraph
 from pytpc.ingest import read_bag
 from pytpc.mission import Progress, run_mission
 from pytpc.paths import cmake_file, log_library, plugin
 from pytpc.scoring.ranking import unknown_keys
-from pytpc.treatment import load_treatment
 
 PACKAGE = Path(__file__).parents[2] / "examples/image_capture"
 SECOND = 10**9
@@ -61,9 +61,9 @@ def leaves_no_process(tmp_path) -> Iterator[None]:
 
 def fly(name: str, seed: int, built: BuildResult, env: dict[str, str], out: Path) -> TreatedMission:
     return run_treatment(
-        load_treatment(PACKAGE / "treatments" / name),
+        IMAGE_CAPTURE,
+        IMAGE_CAPTURE.treatment(name),
         seed=seed,
-        launch=LAUNCH,
         install_env=env,
         static_info=built.static,
         out_dir=out,

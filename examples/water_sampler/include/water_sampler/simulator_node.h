@@ -1,0 +1,56 @@
+// Owns the simulated time: moves the UAV and the water, publishes /clock, the
+// sensors, and the truth that an observer sees.
+#ifndef WATER_SAMPLER_SIMULATOR_NODE_H
+#define WATER_SAMPLER_SIMULATOR_NODE_H
+
+#include <cstdint>
+
+#include <ros/ros.h>
+
+#include "water_sampler/uav_dynamics.h"
+#include "water_sampler/water_model.h"
+
+namespace water_sampler {
+
+class SimulatorNode {
+public:
+  SimulatorNode(ros::NodeHandle &nh, ros::NodeHandle &private_nh,
+                std::uint32_t seed);
+
+  /// Until ROS shuts down, or `max_duration` (s, simulated) is over.
+  void run(ros::NodeHandle &private_nh);
+
+private:
+  void onCommand(const AttitudeCommand &command);
+  void onDrive(const PumpDrive &drive) { drive_ = drive; }
+  void waitForPilot();
+  void waitForController();
+  void tick();
+  void publishTruth();
+  double now() const { return static_cast<double>(ticks_) * Step; }
+  ros::Time stamp() const;
+  bool every(double seconds) const;
+
+  static constexpr double Step = 0.01; ///< of simulated time, s
+
+  UavDynamics dynamics_;
+  WaterModel water_;
+  ros::Publisher clock_pub_, sensors_pub_, sampler_pub_;
+  ros::Publisher uav_truth_pub_, sampler_truth_pub_, filled_pub_;
+  ros::Subscriber command_sub_, drive_sub_;
+
+  AttitudeCommand command_;
+  PumpDrive drive_;
+  std::int64_t ticks_ = 0;
+  std::int64_t sensor_ticks_ = 0;
+  std::int64_t command_ticks_ = -1;
+  double rate_;
+  double sensor_period_;
+  double sampler_period_;
+  double max_command_lag_;
+  bool filled_ = false;
+};
+
+} // namespace water_sampler
+
+#endif // WATER_SAMPLER_SIMULATOR_NODE_H

@@ -1,0 +1,132 @@
+"""The water sampler's sources in two languages fit what stands about them by hand."""
+
+from __future__ import annotations
+
+import ast
+import json
+import re
+from collections import Counter
+from pathlib import Path
+
+import pytest
+import yaml
+
+from pytpc.demo_examples import WATER_SAMPLER
+
+PACKAGE = WATER_SAMPLER.folder
+CPP = json.loads((PACKAGE / "expected_tpcs.json").read_text())
+PYTHON = json.loads((PACKAGE / "expected_python_tpcs.json").read_text())
+CPP_READ = re.compile(r'\b(?:param|getParam)\(\s*"(\w+)"')
+PYTHON_READ = re.compile(r'rospy\.get_param\("~(\w+)"')
+
+# Where the source compares something that is not named as the parameter is.
+OTHER_NAMES = {
+    "height_tolerance_cm": "height_tolerance",
+    "max_pump_requests": "max_requests",
+    "pump_retry_period": "retry_period",
+}
+
+
+def source_files(*endings: str) -> list[Path]:
+    folders = ("include", "src", "nodes")
+    return [
+        path
+        for folder in folders
+        for path in sorted((PACKAGE / folder).rglob("*"))
+        if path.suffix in endings
+    ]
+
+
+def reads(pattern: re.Pattern[str], *endings: str) -> set[str]:
+    return {name for path in source_files(*endings) for name in pattern.findall(path.read_text())}
+
+
+def ident(entry: dict) -> str:
+    return f"{entry['unit']}-{Path(entry['file']).name}:{entry['line']}-{entry['parameter']}"
+
+
+@pytest.mark.parametrize(
+    "entry", [*CPP["tpcs"], *CPP["missed"], *PYTHON["tpcs"], *PYTHON["either"]], ids=ident
+)
+def test_expected_line_compares_the_parameter(entry):
+    line = (PACKAGE / entry["file"]).read_text().splitlines()[entry["line"] - 1]
+    parameter = entry["parameter"].removeprefix("~")
+    assert re.search(rf"(\b|_){OTHER_NAMES.get(parameter, parameter)}(\b|_)", line), line
+    if entry["relation"] != "flag":
+        assert f" {entry['relation']} " in line, line
+
+
+@pytest.mark.parametrize("entry", [*CPP["not_tpcs"], *PYTHON["not_tpcs"]], ids=ident)
+def test_line_of_what_is_no_tpc_names_the_parameter(entry):
+    line = (PACKAGE / entry["file"]).read_text().splitlines()[entry["line"] - 1]
+    parameter = entry["parameter"].removeprefix("~")
+    assert parameter.removeprefix("tank_") in line, line
+
+
+@pytest.mark.parametrize(
+    ("document", "pattern", "endings"),
+    [(CPP, CPP_READ, (".cpp", ".h")), (PYTHON, PYTHON_READ, (".py",))],
+    ids=["C++", "Python"],
+)
+def test_each_parameter_of_the_lists_is_read_and_each_read_one_is_in_a_list(
+    document, pattern, endings
+):
+    entries = [*document["tpcs"], *document.get("missed", ()), *document["not_tpcs"]]
+    listed = {entry["parameter"].removeprefix("~") for entry in entries}
+    reasons = " ".join(entry["reason"] for entry in document["not_tpcs"])
+    for together in re.findall(r"\(so (?:is|are) ([^)]*)\)", reasons):
+        listed |= set(together.split(", "))
+    assert listed == reads(pattern, *endings)
+
+
+def test_fault_differs_in_the_one_relation():
+    def of(unit: str) -> Counter:
+        return Counter(
+            (entry["parameter"], entry["relation"])
+            for entry in PYTHON["tpcs"]
+            if entry["unit"] == unit
+        )
+
+    assert of("mission") - of("mission_fault") == Counter({("~max_dip_depth", "<"): 1})
+    assert of("mission_fault") - of("mission") == Counter({("~max_dip_depth", ">"): 1})
+
+
+def test_configuration_sets_each_parameter_that_a_node_reads():
+    # rate and seed come from the launch file.
+    own = yaml.safe_load((PACKAGE / "config/params.yaml").read_text())
+    in_python = set(own.pop("mission"))
+    in_cpp = {name for parameters in own.values() for name in parameters}
+    assert in_cpp == reads(CPP_READ, ".cpp", ".h") - {"rate", "seed"}
+    assert in_python == reads(PYTHON_READ, ".py")
+
+
+def test_defaults_in_the_source_are_the_configuration():
+    own = yaml.safe_load((PACKAGE / "config/params.yaml").read_text())["mission"]
+    found = {}
+    for path in source_files(".py"):
+        for name, text in re.findall(r'get_param\("~(\w+)", ([^)]+)\)', path.read_text()):
+            found[name] = ast.literal_eval(text)
+    assert found == own
+
+
+def test_both_languages_compare_many_parameters():
+    in_cpp = {entry["parameter"] for entry in CPP["tpcs"]}
+    in_python = {entry["parameter"] for entry in PYTHON["tpcs"]}
+    assert len(in_cpp) >= 25
+    assert len(in_python) >= 20
+
+
+def test_a_parameter_of_each_language_is_changed_in_each_type_of_treatment():
+    changed: dict[str, set[str]] = {"type1": set(), "type2": set()}
+    for folder in sorted((PACKAGE / "treatments").iterdir()):
+        treatment = WATER_SAMPLER.treatment(folder.name)
+        for language, document in (("C++", CPP), ("Python", PYTHON)):
+            compared = {entry["parameter"] for entry in document["tpcs"]}
+            if treatment.parameter in compared:
+                changed[treatment.type].add(language)
+    assert changed == {"type1": {"C++", "Python"}, "type2": {"C++", "Python"}}
+
+
+def test_demonstration_flies_treatments_that_are_there():
+    there = {path.name for path in (PACKAGE / "treatments").iterdir()}
+    assert set(WATER_SAMPLER.shown) == there - {"fault_dip_depth"}
