@@ -112,10 +112,8 @@ def _to_exposing(found: Found, within: Slice) -> list[_Event]:
         after, how = because
         last = within.because.get(after) is None
         if last:
-            exposed = within.nearest[after]
-            on = f" on {exposed.topic}" if exposed.topic else ""
-            events.append(_Event("expose", after, f"{exposed.api.rsplit('.', 1)[-1]}{on}"))
-        elif after.op == "branch":
+            break
+        if after.op == "branch":
             step = "control" if how == "control" else "value"
             what = "guards what follows" if how == "data" else "is guarded by the step before"
             events.append(_Event(step, after, what))
@@ -126,6 +124,10 @@ def _to_exposing(found: Found, within: Slice) -> list[_Event]:
         elif after.op == "return":
             events.append(_Event("return", after, f"returned by {_shown(after.function)}"))
         here = after
+    if found.predicate is not None:
+        exposed = within.nearest[found.predicate]
+        on = f" on {exposed.topic}" if exposed.topic else ""
+        events.append(_Event("expose", exposed.instr, f"{exposed.api.rsplit('.', 1)[-1]}{on}"))
     return events
 
 
