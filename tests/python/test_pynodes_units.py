@@ -16,7 +16,8 @@ from pytpc.pynodes.rules_file import load_rules
 from pytpc.static_info import StaticInfo
 
 MANIFEST = """<package format="2"><name>guard</name><version>0.0.1</version>
-<description>d</description><maintainer email="someone@example.org">x</maintainer><license>BSD</license></package>"""
+<description>d</description><license>BSD</license>
+<maintainer email="someone@example.org">x</maintainer></package>"""
 SCRIPT = """#!/usr/bin/env python3
 import rospy
 from guard import limits
