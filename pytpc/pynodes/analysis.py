@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import gc
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from importlib.metadata import PackageNotFoundError, version
 
 from pytpc.link_unit import (
@@ -24,6 +24,7 @@ from pytpc.pynodes.follow import Fact, Follower, named_variable
 from pytpc.pynodes.gather import Found, Gatherer, end_position, key_of, position
 from pytpc.pynodes.ir import Instr
 from pytpc.pynodes.packages import Entry
+from pytpc.pynodes.path import path_of
 from pytpc.pynodes.pointsto import PointsTo
 from pytpc.pynodes.program import Loader, Program
 from pytpc.pynodes.raising import add_raising_calls
@@ -68,7 +69,7 @@ def analyse(program: Program, rules: Rules) -> Analysed:
 
 
 def analyse_entry(entry: Entry, rules: Rules) -> LinkUnit:
-    """The static information of a script.
+    """The static information of a script; ``failed`` where its expressions are nested too deeply.
 
     Raises:
         InputError: one of its files cannot be read or parsed.
@@ -80,9 +81,20 @@ def analyse_entry(entry: Entry, rules: Rules) -> LinkUnit:
     try:
         Loader(program, list(entry.folders)).load(entry.script)
         return Writer(analyse(program, rules)).unit()
+    except RecursionError:
+        return _failed(program, rules, "expressions or statements are nested too deeply")
     finally:
         if collecting:
             gc.enable()
+
+
+def _failed(program: Program, rules: Rules, why: str) -> LinkUnit:
+    nothing = {field.name: 0 for field in fields(Counts)}
+    tool = Tool("tpc", _version(), "", rules.profile, "python")
+    return LinkUnit(
+        program.name, program.package, str(program.root), tool, "failed", why, Counts(**nothing),
+        (), (), (),
+    )  # fmt: skip
 
 
 class Writer:
@@ -240,6 +252,7 @@ class Writer:
             default=found.facts[0].read.default if found.facts else None,
             read_at=reads[0] if reads else None,
             exposed_at=self._place(exposed.instr),
+            path=path_of(found, self.all.slice, self._source) if found.facts else (),
             end_lineno=end_line,
             end_column=end_column,
             operand=("left", "right")[found.operand] if found.operand >= 0 else None,

@@ -233,6 +233,9 @@ class Calls(CallTable):
                 flow.when(value, lambda found: flow.read_element(found, ANY, instr))
         elif name == "__enter__" and owner is not None:
             flow.add(instr, [owner])
+            # A generator that `contextmanager` made one of: what it yields.
+            if owner.kind == "container":
+                flow.read_element(owner, ANY, instr)
         elif owner is not None:
             self._on_object(instr, name, owner, given)
         if path not in _COPYING and not (owner is not None and owner.kind == "container"):

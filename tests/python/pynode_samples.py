@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 from textwrap import dedent
+from typing import Any
 
 from pytpc.link_unit import Comparison, LinkUnit
 from pytpc.pynodes.analysis import analyse_entry
@@ -19,7 +20,7 @@ PRELUDE = "import rospy\nfrom std_msgs.msg import Float64\npub = rospy.Publisher
 _MARK = re.compile(r"#: (.*)$")
 
 
-def analysed(text: str, folder: Path, **rules: str) -> LinkUnit:
+def analysed(text: str, folder: Path, **rules: Any) -> LinkUnit:
     """Analyse a script with the text ``PRELUDE + text``; the JSON is checked on the way."""
     script = folder / "node.py"
     script.write_text(PRELUDE + dedent(text))

@@ -53,6 +53,7 @@ STATICS: Mapping[str, Sequence[str]] = {
     "watch": (str(EXAMPLE), "--static", INPUT, "--once"),
 }
 FOLDERS: Mapping[str, Sequence[str]] = {
+    "analyse": (INPUT, "-o", "out.json"),
     "apply": (INPUT, "~limit", "1"),
     "build": (INPUT,),
     "collect": (INPUT,),
