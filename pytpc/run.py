@@ -22,6 +22,7 @@ from pytpc.pyhook.listed import Table, read_table
 from pytpc.pyhook.loader import install
 from pytpc.pyhook.runtime import RUNTIME
 from pytpc.pyhook.script import run_script
+from pytpc.pyhook.sites import unknown_outcomes
 from pytpc.pyhook.words import many, warn
 
 USAGE = """\
@@ -117,6 +118,9 @@ def _tell_at_end(instrument: Instrument) -> None:
                 f"{done.path}: {many(done.instrumented, 'comparison')} reported,"
                 f" {done.missing} not found"
             )
+        unknown = unknown_outcomes()
+        if unknown:
+            warn(f"{many(unknown, 'outcome')} without a plain truth, kept as values: not reported")
         if RUNTIME.file is not None:
             warn(f"reports are in {RUNTIME.file.path}")
 

@@ -13,9 +13,7 @@ from pytpc.errors import InputError
 from pytpc.node_program import command_of
 
 
-@click.command(
-    "run", context_settings={"ignore_unknown_options": True, "allow_interspersed_args": False}
-)
+@click.command("run", context_settings={"allow_interspersed_args": False})
 @click.option(
     "--static",
     type=PATH,

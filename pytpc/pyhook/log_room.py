@@ -6,7 +6,6 @@ import _thread
 import contextlib
 import mmap
 import os
-import socket
 import struct
 import threading
 from time import monotonic_ns, time_ns
@@ -181,7 +180,7 @@ class Room:
             parent,
             0,
             bounded(node, NODE_BYTES),
-            bounded(socket.gethostname(), 256),
+            bounded(os.uname().nodename, 256),
             bounded(program(), 1024),
         )
         self._header[:8] = MAGIC

@@ -61,6 +61,7 @@ FOLDERS: Mapping[str, Sequence[str]] = {
     "origin": (INPUT,),
     "patch": (INPUT,),
     "record": (INPUT, "robot.launch", "-o", "out"),
+    "run": (INPUT,),
     "survey": (INPUT,),
 }
 GRAPHS: Mapping[str, Sequence[str]] = {

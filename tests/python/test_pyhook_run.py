@@ -291,6 +291,21 @@ def test_pytpc_run_takes_the_interpreter_of_the_script(package, tmp_path):
     assert "python2.7 is not on this machine" in done.output
 
 
+def test_verbose_says_what_reported_and_what_did_not(package):
+    node = package / "nodes/node.py"
+    text = "class Odd:\n    def __gt__(self, other): return self\nkept = helper.high(Odd())\n"
+    node.write_text(SCRIPT + text)
+    done = run(package, *RUN, "--verbose", node, "a")
+    said = done.stderr.splitlines()
+    assert said[:3] == [
+        f"tpc: {node}: 1 comparison reported, 0 not found",
+        f"tpc: {package / 'src/pkg/helper.py'}: 1 comparison reported, 0 not found",
+        "tpc: 1 outcome without a plain truth, kept as values: not reported",
+    ]
+    assert said[3].startswith("tpc: reports are in ")
+    assert len(said) == 4
+
+
 def test_modules_loaded_twice_and_reloaded(package):
     node = package / "nodes/node.py"
     text = "import importlib\nimportlib.reload(helper)\nhelper.high(0)\nprint(helper.source)\n"
