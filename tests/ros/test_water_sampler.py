@@ -27,6 +27,8 @@ try:
 except MissingToolError as error:
     pytest.skip(f"the C++ half is not installed: {error}", allow_module_level=True)
 
+pytestmark = pytest.mark.slow
+
 needs_python_half = pytest.mark.skipif(
     not has_python_half(), reason="TPC's Python half is not there"
 )
