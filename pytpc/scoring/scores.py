@@ -193,19 +193,6 @@ def ranks(scores: Floats) -> Floats:
     return result
 
 
-def ordering(
-    scores: Floats, distance: npt.ArrayLike | None = None, keys: Sequence[str] | None = None
-) -> Int64s:
-    """int64[marks, n]: the columns by ascending score, then those without.
-
-    Equal scores are ordered by ``distance``, then by ``keys``, then by column.
-    """
-    n = scores.shape[1]
-    ties = _tie_order(n, distance, keys)
-    values = np.where(scores == NONE, np.inf, scores)[:, ties]
-    return ties[np.argsort(values, axis=1, kind="stable")]
-
-
 class ParameterScores(NamedTuple):
     """Scores by parameter: ``names`` sorted; ``scores`` float64[marks, parameters]; ``best``
     int64[marks, parameters], the column of the TPC that has that score."""

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from mission_samples import events, key, ns
 
 from pytpc.events import Events
-from pytpc.scoring.scores import NONE, by_parameter, combined, ordering, ranks, type1, type2
+from pytpc.scoring.scores import NONE, by_parameter, combined, ranks, type1, type2
 
 NAN, INF = math.nan, math.inf
 
@@ -130,14 +130,6 @@ def test_smallest_double_before_the_largest():
 def test_ranks_by_hand():
     scores = np.array([[5.0, NONE, 1.0, 5.0], [5.0, 7.0, 1.0, 5.0]])
     assert ranks(scores).tolist() == [[0.75, 0.0, 1.0, 0.75], [0.75, 0.25, 1.0, 0.75]]
-
-
-# In the order of the scores 1, 5, 5, none; of the two 5s the nearer first, or the smaller key.
-def test_the_order_of_ties():
-    scores = np.array([[5.0, NONE, 1.0, 5.0]])
-    assert ordering(scores, [2, 1, 1, 1], "abcd").tolist() == [[2, 3, 0, 1]]
-    assert ordering(scores, [1, 1, 1, 1], "zbcd").tolist() == [[2, 3, 0, 1]]
-    assert ordering(scores, [1, 1, 1, 1], "abcd").tolist() == [[2, 0, 3, 1]]
 
 
 # A flop 1,000,000 s ago has a score far above 9999.9. It is a score all the same: before "none".
