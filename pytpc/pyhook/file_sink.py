@@ -96,10 +96,6 @@ class LiveSlot:
         if found is not None:
             self._bytes, self._words, self._at = found
 
-    def is_of(self, file: LogFile) -> bool:
-        """Whether it is in this file."""
-        return self._file is file
-
     def begin(self) -> None:
         """An evaluation follows that is the first of a period."""
         if self._bytes is not None:

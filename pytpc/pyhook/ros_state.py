@@ -29,15 +29,6 @@ def rospy() -> Any:  # noqa: ANN401
         return None
 
 
-def is_shut_down() -> bool:
-    """Whether the node was, and has ended."""
-    core = sys.modules.get("rospy.core")
-    try:
-        return bool(core is not None and core.is_shutdown() and core.get_node_uri() is not None)
-    except AttributeError:
-        return False
-
-
 def is_imported() -> bool:
     """Whether the program may have a node yet."""
     return "rospy" in sys.modules
