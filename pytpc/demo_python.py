@@ -17,12 +17,6 @@ from pytpc.paths import project_root
 from pytpc.static_info import StaticInfo
 
 _RUNNER = "pytpc/run.py"
-_ANALYSIS = "pytpc/pynodes"
-
-
-def has_python_half() -> bool:
-    """Whether this TPC can analyse Python nodes and have them report."""
-    return all((project_root() / part).exists() for part in (_RUNNER, _ANALYSIS))
 
 
 def analyse_nodes(example: Example, folder: Path) -> list[StaticInfo]:

@@ -21,7 +21,7 @@ from pytpc.cli.mission_commands import mission_progress
 from pytpc.colcon import BuildError
 from pytpc.demo import TreatedMission, failures, result_table, run_treatment
 from pytpc.demo_examples import Example
-from pytpc.demo_python import analyse_nodes, has_python_half, joined, launch_arguments
+from pytpc.demo_python import analyse_nodes, joined, launch_arguments
 from pytpc.errors import TpcError, WorkspaceError
 from pytpc.report.html import write_report
 from pytpc.static_info import StaticInfo
@@ -124,7 +124,7 @@ def build(example: Example, console: Console, out: Path) -> Built:
             result = build_workspace(workspace)
         tell_found(console, result.static)
     env = workspace_env(result.bases.install)
-    if not (example.python_nodes and has_python_half()):
+    if not example.python_nodes:
         return Built(example, result.static, env, {})
     with step(console, "Analyse the mission's nodes in Python"):
         folder = out / "python"

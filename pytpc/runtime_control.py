@@ -16,20 +16,8 @@ from http.client import HTTPException
 from urllib.parse import urlsplit
 
 from pytpc.errors import RunError
+from pytpc.pyhook.config import NAMES
 from pytpc.tcpros import call, decode_header, encode_header, receive
-
-SINKS = ("rosout", "topic", "file", "off")
-POLICIES = ("every", "edges")
-SETTINGS = (
-    "sink",
-    "policy",
-    "period",
-    "site_cap",
-    "process_cap",
-    "folder",
-    "file_limit",
-    "file_reserve",
-)
 
 _RELOAD = "/tpc/reload"
 _CALLER = "/tpc_sink"
@@ -98,7 +86,7 @@ class Graph:
         Raises:
             RunError: the master does not answer or refuses.
         """
-        for name in SETTINGS:
+        for name in NAMES:
             parameter = f"{node or ''}/{_FOLDER}/{name}"
             if self._call("hasParam", parameter):
                 self._call("deleteParam", parameter)

@@ -13,7 +13,8 @@ from rich.text import Text
 from pytpc import relay
 from pytpc.cli.console import console, progress, warn
 from pytpc.errors import RunError
-from pytpc.runtime_control import POLICIES, SINKS, Graph, NodeStatus, Value, chosen
+from pytpc.pyhook.config import POLICIES, SINKS
+from pytpc.runtime_control import Graph, NodeStatus, Value, chosen
 from pytpc.words import many, plain
 
 _COUNT = click.IntRange(min=0, max=(1 << 31) - 1)

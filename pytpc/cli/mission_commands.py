@@ -19,7 +19,7 @@ from pytpc.errors import InputError
 from pytpc.ingest.reading import opened
 from pytpc.ingest.recording import REPORTS_FOLDER
 from pytpc.mission import DEFAULT_TOPICS, MissionRun, Progress, run_mission
-from pytpc.runtime_control import SETTINGS
+from pytpc.pyhook.config import NAMES
 from pytpc.words import many
 
 _PATH = click.Path(path_type=Path)
@@ -139,7 +139,7 @@ def sink_settings(env: Mapping[str, str]) -> dict[str, str]:
 
     A relative folder is the caller's: the nodes run elsewhere.
     """
-    names = (f"TPC_{name.upper()}" for name in SETTINGS)
+    names = (f"TPC_{name.upper()}" for name in NAMES)
     settings = {name: env[name] for name in names if env.get(name)}
     if "TPC_FOLDER" in settings:
         settings["TPC_FOLDER"] = str(Path(settings["TPC_FOLDER"]).absolute())

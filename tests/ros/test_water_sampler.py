@@ -12,7 +12,7 @@ import pytest
 from pytpc.build import BuildResult, build_workspace, workspace_env
 from pytpc.demo import FIRST, TreatedMission, gone_wrong, run_treatment
 from pytpc.demo_examples import WATER_SAMPLER
-from pytpc.demo_python import analyse_nodes, has_python_half, joined, launch_arguments
+from pytpc.demo_python import analyse_nodes, joined, launch_arguments
 from pytpc.demo_show import link_package
 from pytpc.errors import MissingToolError
 from pytpc.paths import cmake_file, log_library, plugin
@@ -28,10 +28,6 @@ except MissingToolError as error:
     pytest.skip(f"the C++ half is not installed: {error}", allow_module_level=True)
 
 pytestmark = pytest.mark.slow
-
-needs_python_half = pytest.mark.skipif(
-    not has_python_half(), reason="TPC's Python half is not there"
-)
 
 
 @pytest.fixture(scope="module")
@@ -74,7 +70,6 @@ def test_analysis_of_cpp_finds_what_was_expected_by_hand(water):
     assert found(water.static) - wanted == Counter()
 
 
-@needs_python_half
 def test_analysis_of_python_finds_what_was_expected_by_hand(nodes):
     wanted = expected("expected_python_tpcs.json", "tpcs")
     of_nodes = found(*nodes[1])
@@ -134,7 +129,6 @@ def test_fault_in_the_source_looks_like_a_type2_error(water, env, tmp_path):
     assert [ranking for ranking in mission.rankings if ranking.mark.type == "II"]
 
 
-@needs_python_half
 @pytest.mark.parametrize(
     "name",
     [
