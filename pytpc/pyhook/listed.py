@@ -14,6 +14,8 @@ from typing import Any, NamedTuple
 
 from pytpc.errors import InputError
 
+# What `pytpc build` leaves in a workspace; it has all in it.
+_BUILT = os.path.join(".tpc", "static.json")
 # Where static information lies below a workspace, a build folder or a folder of packages.
 _PLACES = ("*.json", "tpc/*.json", "*/tpc/*.json", "build/tpc/*.json", "build/*/tpc/*.json")
 
@@ -87,11 +89,24 @@ class Table:
 
 
 class _Unit(NamedTuple):
-    """One link unit: a script with the modules that it imports."""
+    """One link unit: a script with the modules that it imports.
+
+    ``script`` is its absolute path, None in files of before.
+    """
 
     name: str
+    package: str | None
+    script: str | None
     root: str
     files: list[ListedFile]
+
+    def is_called(self, stem: str) -> bool:
+        """Whether its script, or in files of before itself, has this name, without ``.py``."""
+        return stem in (self.name, _stem(self.script or self.name))
+
+    def is_of(self, real: str) -> bool:
+        """Whether its script is the file with this path, in which no links are."""
+        return self.script is not None and os.path.realpath(self.script) == real
 
 
 def read_table(paths: Iterable[str], script: str | None = None) -> Table:
@@ -112,13 +127,14 @@ def read_table(paths: Iterable[str], script: str | None = None) -> Table:
 
 
 def names_script(paths: Iterable[str], script: str) -> bool:
-    """Whether the static information has a link unit of this script's name.
+    """Whether the static information has comparisons of this script, or of one of its name.
 
     Raises:
         InputError: as `read_table`.
     """
-    stem = _stem(script)
-    return any(unit.name == stem and unit.files for unit in _all_units(paths))
+    stem, real = _stem(script), os.path.realpath(script)
+    units = [unit for unit in _all_units(paths) if unit.files]
+    return any(unit.is_called(stem) or unit.is_of(real) for unit in units)
 
 
 def _stem(script: str) -> str:
@@ -134,14 +150,31 @@ def _all_units(paths: Iterable[str]) -> list[_Unit]:
 
 
 def _of_script(units: list[_Unit], script: str) -> list[_Unit]:
+    """The link units that the running script may be of; all of them where none is.
+
+    It is told by its file. One that was installed is told by its name, and by its package, after
+    which its folder is called.
+    """
     stem = _stem(script)
     real = os.path.realpath(script)
-    named = [unit for unit in units if unit.name == stem]
-    inside = [unit for unit in named if real.startswith(os.path.realpath(unit.root) + os.sep)]
-    return inside or named or units
+    named = [unit for unit in units if unit.is_called(stem)]
+    exact = [unit for unit in units if unit.is_of(real)]
+    inside = [
+        unit
+        for unit in named
+        if unit.script is None and real.startswith(os.path.realpath(unit.root) + os.sep)
+    ]
+    folder = os.path.basename(os.path.dirname(os.path.abspath(script)))
+    of_package = [unit for unit in named if unit.package == folder]
+    return (
+        [unit for unit in exact if unit in named] or exact or inside or of_package or named or units
+    )
 
 
 def _of_folder(folder: str) -> list[_Unit]:
+    built = os.path.join(folder, _BUILT)
+    if os.path.isfile(built):
+        return _of_document(built)
     found = sorted({path for place in _PLACES for path in glob.glob(os.path.join(folder, place))})
     units: list[_Unit] = []
     is_any = False
@@ -180,10 +213,20 @@ def _units(document: Any, path: str) -> list[_Unit]:  # noqa: ANN401
                 file = os.path.normpath(os.path.join(unit["source_root"], comparison["file"]))
                 files.setdefault(file, []).append(_listed(comparison))
             listed = [ListedFile(file, tuple(found)) for file, found in files.items()]
-            units.append(_Unit(unit["link_unit"], unit["source_root"], listed))
+            script, root = unit.get("script"), unit["source_root"]
+            if script is not None:
+                script = os.path.join(root, script)
+            if not _is_compiled(unit):
+                units.append(_Unit(unit["link_unit"], unit.get("package"), script, root, listed))
     except (KeyError, TypeError, AttributeError) as error:
         raise InputError(f"no static information ({type(error).__name__}: {error})", path) from None
     return units
+
+
+def _is_compiled(unit: dict[str, Any]) -> bool:
+    """Whether it is a program or library in C++, which may be called as a script is."""
+    tool = unit.get("tool")
+    return tool is not None and tool.get("analysis") != "python"
 
 
 def _listed(comparison: dict[str, Any]) -> Listed:
