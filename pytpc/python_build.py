@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 from pytpc.link_unit import LinkUnit
@@ -19,7 +19,7 @@ from pytpc.python_units import (
     scripts_of,
     write_units,
 )
-from pytpc.reconcile import known_targets
+from pytpc.reconcile import target_names
 from pytpc.static_info import is_python_file, load_link_unit, python_unit_file, unit_files
 from pytpc.workspace import Package
 
@@ -58,14 +58,14 @@ def python_of_build(
     else:
         scripts = [scripts_of(package.name, package.path, tests=tests) for package in chosen]
         found = analyse_scripts(joined(scripts), rules, on_progress)
-    names = {*taken, *_targets(build_base, chosen)}
+    names = set(taken).union(*(target_names(build_base / package.name) for package in chosen))
     units = write_units(build_base, named_beside(found.units, names))
     written = {python_unit_file(build_base / unit.package, unit.link_unit) for unit in units}
     for package in packages:
         for path in _files(build_base / package.name):
             if package.name not in built:
                 unit = load_link_unit(path)
-                if not script_is_gone(unit):
+                if not _is_gone(unit):
                     units.append(unit)
                     written.add(path)
             if path not in written:
@@ -73,21 +73,9 @@ def python_of_build(
     return PythonUnits(tuple(units), found.left_out)
 
 
-def script_is_gone(unit: LinkUnit) -> bool:
-    """Whether a Python unit's script was removed or renamed.
-
-    Where its package is not there at all, nothing is known: a robot may have what was built without
-    the sources.
-    """
-    root = Path(unit.source_root)
-    return unit.script is not None and root.is_dir() and not (root / unit.script).exists()
-
-
-def _targets(build_base: Path, packages: Iterable[Package]) -> Iterator[Name]:
-    """The targets of CMake's, those among them that are not built at present."""
-    for package in packages:
-        for target in known_targets(build_base / package.name) or ():
-            yield package.name, target.name
+def _is_gone(unit: LinkUnit) -> bool:
+    """Whether the script of a package that is there was removed or renamed."""
+    return unit.script_path is not None and not Path(unit.script_path).exists()
 
 
 def _files(build_folder: Path) -> list[Path]:

@@ -15,11 +15,12 @@ from pytpc.atomic import write_atomic
 from pytpc.errors import InputError
 from pytpc.link_unit import LeftOut, LinkUnit
 from pytpc.pynodes.analysis import analyse_entry
-from pytpc.pynodes.packages import Entry, entries
+from pytpc.pynodes.packages import Entry, entries, entry_of
 from pytpc.pynodes.rules_file import Rules
 from pytpc.static_info import python_unit_file
 from pytpc.static_json import dump_json
 from pytpc.words import plain
+from pytpc.workspace import package_folders, read_manifest
 
 Name = tuple[str, str]
 _TEST_FOLDERS = frozenset({"test", "tests"})
@@ -36,10 +37,14 @@ class Scripts:
 
 @dataclass(frozen=True, slots=True)
 class PythonUnits:
-    """The link units of scripts, and the scripts that could not be analysed, with the reason."""
+    """The link units of scripts, and the scripts that could not be analysed, with the reason.
+
+    ``packages`` are those all of whose scripts are among them.
+    """
 
     units: tuple[LinkUnit, ...] = ()
     left_out: tuple[LeftOut, ...] = ()
+    packages: frozenset[str] = frozenset()
 
 
 def scripts_of(package: str, folder: Path, *, tests: bool = False) -> Scripts:
@@ -57,12 +62,32 @@ def scripts_of(package: str, folder: Path, *, tests: bool = False) -> Scripts:
         script = root if error.path is None else Path(error.path)
         left_out.append(_left_out(package, _inside(script, root), error))
 
-    found: dict[Path, Entry] = {}
+    found: dict[tuple[Path, str], Entry] = {}
     for place in (root, *(_test_folders(root) if tests else ())):
         for entry in entries(place, note):
             if entry.root == root:
-                found.setdefault(entry.script, entry)
+                found.setdefault((entry.script, entry.name), entry)
     return Scripts(tuple(_named_apart(found.values())), tuple(left_out))
+
+
+def scripts_at(path: Path) -> Scripts:
+    """The scripts that a path means: itself, or those of all packages in a folder.
+
+    Raises:
+        InputError: there is no such file or folder.
+    """
+    left_out: list[LeftOut] = []
+
+    def note(error: InputError) -> None:
+        script = path.absolute() if error.path is None else Path(error.path)
+        try:
+            entry = entry_of(script)
+        except InputError:
+            left_out.append(_left_out(script.parent.name, script.name, error))
+        else:
+            left_out.append(_left_out(entry.package, _inside(script, entry.root), error))
+
+    return Scripts(tuple(entries(path, note)), tuple(left_out))
 
 
 def analyse_scripts(
@@ -93,13 +118,53 @@ def analyse_scripts(
     return PythonUnits(tuple(units), tuple(left_out))
 
 
+def analyse_workspaces(
+    folders: Iterable[Path], rules: Rules, on_progress: Callable[[int, int], None] | None = None
+) -> PythonUnits:
+    """Analyse the scripts of all packages in those ``folders`` that are workspaces.
+
+    A package that cannot be read, or whose name one before it has, is left out with the reason. A
+    build folder is no workspace, though tools put manifests there.
+
+    Args:
+        folders: what else is among them, as files, is passed over.
+        rules: what reads and what exposes.
+        on_progress: called with (scripts done, scripts in all).
+    """
+    scripts: dict[str, Scripts] = {}
+    left_out: list[LeftOut] = []
+    roots: dict[str, Path] = {}
+    for folder in folders:
+        if folder.is_dir() and not (folder / "CMakeCache.txt").is_file():
+            roots.update((os.path.realpath(root), root) for root in package_folders(folder))
+    for root in roots.values():
+        try:
+            name = read_manifest(root).name
+        except InputError as error:
+            left_out.append(_left_out(root.name, "Python", error))
+            continue
+        if name in scripts:
+            twice = InputError("another package has this name", root)
+            left_out.append(_left_out(name, "Python", twice))
+        else:
+            scripts[name] = scripts_of(name, root)
+    found = analyse_scripts(joined(scripts.values()), rules, on_progress)
+    return PythonUnits(found.units, (*left_out, *found.left_out), frozenset(scripts))
+
+
 def joined(parts: Iterable[Scripts]) -> Scripts:
-    """The scripts of several packages as one."""
-    parts = list(parts)
-    return Scripts(
-        tuple(entry for part in parts for entry in part.entries),
-        tuple(one for part in parts for one in part.left_out),
-    )
+    """The scripts of several packages, each once."""
+    found: dict[tuple[Path, str], Entry] = {}
+    left_out: dict[LeftOut, None] = {}
+    for part in parts:
+        found.update(((entry.script, entry.name), entry) for entry in part.entries)
+        left_out.update(dict.fromkeys(part.left_out))
+    return Scripts(tuple(found.values()), tuple(left_out))
+
+
+def names_of(units: Iterable[LinkUnit | LeftOut]) -> set[Name]:
+    """Package and name of each."""
+    return {(unit.package, unit.link_unit) for unit in units}
 
 
 def named_beside(units: Iterable[LinkUnit], taken: Collection[Name]) -> list[LinkUnit]:
@@ -138,11 +203,6 @@ def write_units(build_base: Path, units: Iterable[LinkUnit]) -> list[LinkUnit]:
         write_atomic(python_unit_file(folder, unit.link_unit), dump_json(data))
         written.append(replace(unit, build_folder=str(folder.absolute())))
     return written
-
-
-def is_python(unit: LinkUnit) -> bool:
-    """Whether the unit is a script's, and no target of CMake's."""
-    return unit.tool.analysis == "python"
 
 
 def _names(unit: LinkUnit) -> Iterator[str]:
