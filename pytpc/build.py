@@ -169,11 +169,12 @@ def build_workspace(
                 alone.keep()
                 break
         static = _gather(
+            workspace,
             place,
             found,
-            packages_up_to(found, packages),
             alone.reasons,
-            for_python if python else None,
+            chosen=packages_up_to(found, packages),
+            rules=for_python if python else None,
             tests=tests,
             on_scripts=on_scripts,
         )
@@ -280,12 +281,13 @@ def _ask(bases: Bases, packages: Sequence[Package]) -> None:
 
 
 def _gather(
+    workspace: Path,
     bases: Bases,
     packages: Sequence[Package],
-    chosen: Sequence[Package],
     left_alone: Mapping[str, str],
-    rules: Rules | None,
     *,
+    chosen: Sequence[Package],
+    rules: Rules | None,
     tests: bool,
     on_scripts: Callable[[int, int], None] | None,
 ) -> StaticInfo:
@@ -297,11 +299,12 @@ def _gather(
     units = [load_link_unit(path) for folder in folders for path in _compiled(folder)]
     left_out = [*_left_out(folders, left_alone)]
     nodes = python_of_build(
+        workspace,
         bases.build,
         packages,
-        chosen,
-        rules,
         {*names_of(units), *names_of(left_out)},
+        chosen=chosen,
+        rules=rules,
         tests=tests,
         on_progress=on_scripts,
     )

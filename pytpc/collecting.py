@@ -49,7 +49,7 @@ def collect_sources(
             workspace both ``.tpc/build`` and its own ``build`` are read; of a unit that was built
             in both, the later one counts.
         on_progress: called with (files read, files in all).
-        python: what takes the place of the Python units of its packages; see
+        python: what takes the place of all Python units of its folders; see
             `pytpc.python_units.analyse_workspaces`.
 
     Raises:
@@ -58,9 +58,7 @@ def collect_sources(
     """
     fresh = python or PythonUnits()
     files, copies = _read(sources, on_progress, required=not fresh.units)
-    files = [
-        file for file in files if not (file.unit.is_python and file.unit.package in fresh.packages)
-    ]
+    files = [file for file in files if not _is_replaced(file.unit, fresh)]
     folders = sorted({file.build_folder for file in files})
     kept, stale = drop_stale(files, {folder: _built_targets(folder) for folder in folders})
     kept, scriptless = drop_without_scripts(kept, _is_gone)
@@ -81,6 +79,13 @@ def collect_sources(
         (*left_out, *fresh.left_out),
     )
     return Collected(static, (*stale, *scriptless, *orphans, *repeated))
+
+
+def _is_replaced(unit: LinkUnit, fresh: PythonUnits) -> bool:
+    if not unit.is_python:
+        return False
+    root = Path(os.path.realpath(unit.source_root))
+    return any(root.is_relative_to(folder) for folder in fresh.folders)
 
 
 def _read(

@@ -14,7 +14,6 @@ from pytpc.python_units import (
     Name,
     PythonUnits,
     analyse_scripts,
-    joined,
     named_beside,
     scripts_of,
     write_units,
@@ -25,12 +24,13 @@ from pytpc.workspace import Package
 
 
 def python_of_build(
+    workspace: Path,
     build_base: Path,
     packages: Sequence[Package],
-    chosen: Sequence[Package],
-    rules: Rules | None,
     taken: Iterable[Name],
     *,
+    chosen: Sequence[Package],
+    rules: Rules | None,
     tests: bool = False,
     on_progress: Callable[[int, int], None] | None = None,
 ) -> PythonUnits:
@@ -40,11 +40,12 @@ def python_of_build(
     are removed.
 
     Args:
+        workspace: the folder with all packages.
         build_base: with a build folder for each package.
         packages: all of the workspace.
-        chosen: those of them that were built.
-        rules: None to analyse nothing, and to forget what was written of ``chosen``.
         taken: package and name of the link units that are no scripts.
+        chosen: the packages that were built.
+        rules: None to analyse nothing, and to forget what was written of ``chosen``.
         tests: take scripts in folders of tests, too.
         on_progress: called with (scripts done, scripts in all).
 
@@ -56,8 +57,8 @@ def python_of_build(
     if rules is None:
         found = PythonUnits()
     else:
-        scripts = [scripts_of(package.name, package.path, tests=tests) for package in chosen]
-        found = analyse_scripts(joined(scripts), rules, on_progress)
+        scripts = scripts_of(workspace, [package.path for package in chosen], tests=tests)
+        found = analyse_scripts(scripts, rules, on_progress)
     names = set(taken).union(*(target_names(build_base / package.name) for package in chosen))
     units = write_units(build_base, named_beside(found.units, names))
     written = {python_unit_file(build_base / unit.package, unit.link_unit) for unit in units}

@@ -20,7 +20,7 @@ from pytpc.pynodes.rules_file import Rules
 from pytpc.static_info import python_unit_file
 from pytpc.static_json import dump_json
 from pytpc.words import plain
-from pytpc.workspace import package_folders, read_manifest
+from pytpc.workspace import package_folders
 
 Name = tuple[str, str]
 _TEST_FOLDERS = frozenset({"test", "tests"})
@@ -39,55 +39,51 @@ class Scripts:
 class PythonUnits:
     """The link units of scripts, and the scripts that could not be analysed, with the reason.
 
-    ``packages`` are those all of whose scripts are among them.
+    ``folders`` are those of which there is no other script, without links in their paths.
     """
 
     units: tuple[LinkUnit, ...] = ()
     left_out: tuple[LeftOut, ...] = ()
-    packages: frozenset[str] = frozenset()
-
-
-def scripts_of(package: str, folder: Path, *, tests: bool = False) -> Scripts:
-    """The scripts of one package, sorted by path.
-
-    Args:
-        package: its name.
-        folder: its folder; a package within it is none of it.
-        tests: take those in folders called test or tests, too.
-    """
-    root = folder.absolute()
-    left_out: list[LeftOut] = []
-
-    def note(error: InputError) -> None:
-        script = root if error.path is None else Path(error.path)
-        left_out.append(_left_out(package, _inside(script, root), error))
-
-    found: dict[tuple[Path, str], Entry] = {}
-    for place in (root, *(_test_folders(root) if tests else ())):
-        for entry in entries(place, note):
-            if entry.root == root:
-                found.setdefault((entry.script, entry.name), entry)
-    return Scripts(tuple(_named_apart(found.values())), tuple(left_out))
+    folders: tuple[Path, ...] = ()
 
 
 def scripts_at(path: Path) -> Scripts:
-    """The scripts that a path means: itself, or those of all packages in a folder.
+    """The scripts that a path means: itself, or all nodes in a folder.
 
     Raises:
         InputError: there is no such file or folder.
     """
-    left_out: list[LeftOut] = []
+    faults: list[InputError] = []
+    found = entries(path, faults.append)
+    left_out = [_fault(path, error)[1] for error in faults]
+    return Scripts(tuple(found), tuple(dict.fromkeys(left_out)))
 
-    def note(error: InputError) -> None:
-        script = path.absolute() if error.path is None else Path(error.path)
-        try:
-            entry = entry_of(script)
-        except InputError:
-            left_out.append(_left_out(script.parent.name, script.name, error))
-        else:
-            left_out.append(_left_out(entry.package, _inside(script, entry.root), error))
 
-    return Scripts(tuple(entries(path, note)), tuple(left_out))
+def scripts_of(workspace: Path, packages: Iterable[Path], *, tests: bool = False) -> Scripts:
+    """The scripts of packages of a workspace; all of it is looked at for what they import.
+
+    Args:
+        workspace: the folder with all packages.
+        packages: the folders of some.
+        tests: take scripts in folders called test or tests, too.
+
+    Raises:
+        InputError: a package.xml is broken.
+    """
+    roots = {os.path.realpath(package): package.absolute() for package in packages}
+    faults: list[InputError] = []
+    found: dict[tuple[Path, str], Entry] = {}
+    below = (folder for root in roots.values() for folder in _test_folders(root))
+    for place in (workspace, *(below if tests else ())):
+        for entry in entries(place, faults.append):
+            if os.path.realpath(entry.root) in roots:
+                found.setdefault((entry.script, entry.name), entry)
+    left_out = [
+        one
+        for root, one in (_fault(workspace, error) for error in faults)
+        if os.path.realpath(root) in roots
+    ]
+    return Scripts(tuple(_named_apart(found.values())), tuple(dict.fromkeys(left_out)))
 
 
 def analyse_scripts(
@@ -123,33 +119,20 @@ def analyse_workspaces(
 ) -> PythonUnits:
     """Analyse the scripts of all packages in those ``folders`` that are workspaces.
 
-    A package that cannot be read, or whose name one before it has, is left out with the reason. A
-    build folder is no workspace, though tools put manifests there.
+    A build folder is no workspace, though tools put manifests there.
 
     Args:
         folders: what else is among them, as files, is passed over.
         rules: what reads and what exposes.
         on_progress: called with (scripts done, scripts in all).
+
+    Raises:
+        InputError: a package.xml is broken.
     """
-    scripts: dict[str, Scripts] = {}
-    left_out: list[LeftOut] = []
-    roots: dict[str, Path] = {}
-    for folder in folders:
-        if folder.is_dir() and not (folder / "CMakeCache.txt").is_file():
-            roots.update((os.path.realpath(root), root) for root in package_folders(folder))
-    for root in roots.values():
-        try:
-            name = read_manifest(root).name
-        except InputError as error:
-            left_out.append(_left_out(root.name, "Python", error))
-            continue
-        if name in scripts:
-            twice = InputError("another package has this name", root)
-            left_out.append(_left_out(name, "Python", twice))
-        else:
-            scripts[name] = scripts_of(name, root)
-    found = analyse_scripts(joined(scripts.values()), rules, on_progress)
-    return PythonUnits(found.units, (*left_out, *found.left_out), frozenset(scripts))
+    found = [folder for folder in folders if _is_workspace(folder)]
+    scripts = joined(scripts_of(folder, package_folders(folder)) for folder in found)
+    units = analyse_scripts(scripts, rules, on_progress)
+    return replace(units, folders=tuple(Path(os.path.realpath(folder)) for folder in found))
 
 
 def joined(parts: Iterable[Scripts]) -> Scripts:
@@ -215,13 +198,19 @@ def _names(unit: LinkUnit) -> Iterator[str]:
 
 def _named_apart(found: Iterable[Entry]) -> Iterator[Entry]:
     """Scripts of tests get their path for a name where one that is no test has theirs."""
-    used: set[str] = set()
+    used: set[Name] = set()
     for entry in found:
         name = entry.name
-        if name in used:
+        if (entry.package, name) in used:
             name = _inside(entry.script, entry.root)
-        used.add(name)
+        used.add((entry.package, name))
         yield entry if name == entry.name else replace(entry, name=name)
+
+
+def _is_workspace(folder: Path) -> bool:
+    if not folder.is_dir() or (folder / "CMakeCache.txt").is_file():
+        return False
+    return next(package_folders(folder), None) is not None
 
 
 def _test_folders(root: Path) -> Iterator[Path]:
@@ -234,6 +223,16 @@ def _test_folders(root: Path) -> Iterator[Path]:
 
 def _inside(script: Path, root: Path) -> str:
     return str(script.relative_to(root) if script.is_relative_to(root) else script)
+
+
+def _fault(path: Path, error: InputError) -> tuple[Path, LeftOut]:
+    """A file below ``path`` that cannot be read, with the folder of its package."""
+    file = path.absolute() if error.path is None else Path(error.path)
+    try:
+        entry = entry_of(file)
+    except InputError:
+        return file.parent, _left_out(file.parent.name, file.name, error)
+    return entry.root, _left_out(entry.package, _inside(file, entry.root), error)
 
 
 def _left_out(package: str, script: str, error: InputError) -> LeftOut:
