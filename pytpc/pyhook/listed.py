@@ -13,6 +13,7 @@ from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 from pytpc.errors import InputError
+from pytpc.pyhook.entry import Program, program_of
 
 # Where static information lies below a workspace, a build folder or a folder of packages.
 _PLACES = ("*.json", "tpc/*.json", "*/tpc/*.json", "build/tpc/*.json", "build/*/tpc/*.json")
@@ -112,18 +113,12 @@ def read_table(paths: Iterable[str], script: str | None = None) -> Table:
 
 
 def names_script(paths: Iterable[str], script: str) -> bool:
-    """Whether the static information has a link unit of this script's name.
+    """Whether the static information has a link unit of this script, or of what it runs.
 
     Raises:
         InputError: as `read_table`.
     """
-    stem = _stem(script)
-    return any(unit.name == stem and unit.files for unit in _all_units(paths))
-
-
-def _stem(script: str) -> str:
-    name = os.path.basename(script)
-    return name[:-3] if name.endswith(".py") else name
+    return any(unit.files for unit in _units_of(program_of(script), _all_units(paths)))
 
 
 def _all_units(paths: Iterable[str]) -> list[_Unit]:
@@ -134,11 +129,27 @@ def _all_units(paths: Iterable[str]) -> list[_Unit]:
 
 
 def _of_script(units: list[_Unit], script: str) -> list[_Unit]:
-    stem = _stem(script)
     real = os.path.realpath(script)
-    named = [unit for unit in units if unit.name == stem]
+    named = _units_of(program_of(script), units)
     inside = [unit for unit in named if real.startswith(os.path.realpath(unit.root) + os.sep)]
     return inside or named or units
+
+
+def _units_of(program: Program, units: list[_Unit]) -> list[_Unit]:
+    """Those of its name, else those of the module that it runs, by name or by file.
+
+    Scripts of one package that have one name have their folders in the names of their units.
+    """
+    named = [unit for unit in units if _last(unit.name) == program.stem]
+    if program.module is None or any(unit.files for unit in named):
+        return named
+    ends = program.files
+    found = [unit for unit in units if any(file.path.endswith(ends) for file in unit.files)]
+    return [unit for unit in found if _last(unit.name) == _last(program.module, ".")] or found
+
+
+def _last(name: str, separator: str = "/") -> str:
+    return name.rpartition(separator)[2]
 
 
 def _of_folder(folder: str) -> list[_Unit]:
