@@ -35,8 +35,13 @@ class Program(NamedTuple):
 
 def program_of(script: str) -> Program:
     """What the script is called, and what it runs; a script that cannot be read runs itself."""
+    return Program(stem_of(script), _module(script))
+
+
+def stem_of(script: str) -> str:
+    """The name of a script without ``.py``."""
     name = os.path.basename(script)
-    return Program(name[:-3] if name.endswith(".py") else name, _module(script))
+    return name[:-3] if name.endswith(".py") else name
 
 
 def _module(script: str) -> str | None:

@@ -44,27 +44,34 @@ def _script() -> str:
 
 def _may_be_named(script: str, paths: "list[str]") -> bool:
     """Whether the static information, as mere text, has the script's name, or it needs a look."""
-    name = os.path.basename(script)
-    name = name[:-3] if name.endswith(".py") else name
     try:
         with open(script, "rb") as stream:
             head = stream.read(_ENTRY_BYTES + 1)
         if len(head) <= _ENTRY_BYTES and b"sys.exit(" in head:
             return True
-        if not name.isascii() or any(map(os.path.isdir, paths)):
+        names = {os.path.basename(path) for path in (script, os.path.realpath(script))}
+        if any(map(os.path.isdir, paths)) or not all(map(str.isascii, names)):
             return True
         for path in paths:
             with open(path, "rb") as stream:
                 text = stream.read()
-            mark = name.encode() + b'"'
-            place = text.find(mark)
-            while place > 0:
-                if text[place - 1] in b'"/':
-                    return True
-                place = text.find(mark, place + 1)
+            if any(_is_in(text, name.encode()) for name in names):
+                return True
     except OSError:
         # What reads it in earnest says so.
         return True
+    return False
+
+
+def _is_in(text: bytes, name: bytes) -> bool:
+    """Whether a JSON string is this name, or ends with it behind a slash, with .py or without."""
+    stem = name[:-3] if name.endswith(b".py") else name
+    for mark in (stem + b'"', stem + b'.py"'):
+        place = text.find(mark)
+        while place > 0:
+            if text[place - 1] in b'"/':
+                return True
+            place = text.find(mark, place + 1)
     return False
 
 
