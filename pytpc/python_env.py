@@ -56,5 +56,6 @@ def mission_env(env: Mapping[str, str], static: Path) -> dict[str, str]:
 
 
 def _other_folders(env: Mapping[str, str]) -> list[str]:
-    folders = env.get(_MODULES, "").split(os.pathsep)
-    return [folder for folder in folders if folder and folder != str(ON_PATH)]
+    folders = env[_MODULES].split(os.pathsep) if env.get(_MODULES) else []
+    # An empty one is Python's own word for the current folder.
+    return [folder for folder in folders if folder != str(ON_PATH)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 from pathlib import Path
 
 import click
@@ -77,7 +78,8 @@ def static_file(source: Path | None) -> Path:
     if not static.is_file():
         raise WorkspaceError(
             f"no {OWN_FOLDER}/{MERGED_FILE} here; build with `pytpc build`, or make it of what"
-            f" another build left: pytpc collect {source} -o {static}",
+            f" another build left: pytpc collect {shlex.quote(str(source))} -o"
+            f" {shlex.quote(str(static))}",
             source,
         )
     return static

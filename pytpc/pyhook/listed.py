@@ -16,7 +16,7 @@ from pytpc.errors import InputError
 from pytpc.pyhook.entry import program_of, stem_of
 
 # What `pytpc build` leaves in a workspace; it has all in it.
-_BUILT = os.path.join(".tpc", "static.json")
+BUILT = os.path.join(".tpc", "static.json")
 # Where static information lies below a workspace, a build folder or a folder of packages.
 _PLACES = ("*.json", "tpc/*.json", "*/tpc/*.json", "build/tpc/*.json", "build/*/tpc/*.json")
 
@@ -184,7 +184,7 @@ def _of_script(units: list[_Unit], script: str) -> list[_Unit]:
 
 
 def _of_folder(folder: str) -> list[_Unit]:
-    built = os.path.join(folder, _BUILT)
+    built = os.path.join(folder, BUILT)
     if os.path.isfile(built):
         return _of_document(built)
     found = sorted({path for place in _PLACES for path in glob.glob(os.path.join(folder, place))})
