@@ -11,6 +11,7 @@ import pytest
 from click.testing import CliRunner
 
 import pytpc
+from pytpc.cli import mission_commands
 from pytpc.cli.main import main
 from pytpc.errors import InputError
 from pytpc.python_env import has_python, mission_env, with_python, without_python
@@ -171,3 +172,32 @@ def test_setup_is_sourced_in_the_callers_environment(workspace, place):
 
 def test_off_and_setup_do_not_go_together(workspace):
     assert invoke(str(workspace), "--off", "--setup")[0] == 2
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [((), {"PYTHONPATH": ON_PATH, "TPC_PYTHON": "1"}), (("--no-python",), {})],
+)
+def test_record_has_python_nodes_report_unless_it_is_told_not_to(
+    workspace, tmp_path, monkeypatch, words, expected
+):
+    """What the mission's environment is; that its nodes report is tests/ros's."""
+    seen: dict[str, str] = {}
+
+    def run_mission(env: dict[str, str], *_: object, **__: object) -> None:
+        seen.update(env)
+        raise InputError("it is not run here")
+
+    monkeypatch.setattr(mission_commands, "run_mission", run_mission)
+    (workspace / ".tpc/install").mkdir()
+    (workspace / ".tpc/install/setup.bash").write_text("export ROS_PACKAGE_PATH=/ws/share\n")
+    launch = str(tmp_path / "x.launch")
+    done = CliRunner().invoke(
+        main, ["record", str(workspace), launch, "-o", str(tmp_path / "out"), *words]
+    )
+    assert "it is not run here" in done.stderr
+    assert seen["ROS_PACKAGE_PATH"] == "/ws/share"
+    if expected:
+        expected = {**expected, "TPC_STATIC": f"{workspace}/.tpc/static.json"}
+    names = ("PYTHONPATH", "TPC_PYTHON", "TPC_STATIC")
+    assert {name: seen[name] for name in names if name in seen} == expected
