@@ -31,6 +31,7 @@ from pytpc.paths import (
 )
 from pytpc.pynodes.rules_file import Rules, load_rules
 from pytpc.python_build import python_of_build
+from pytpc.python_units import names_of
 from pytpc.reconcile import left_out_units, stale_files
 from pytpc.rules import check_rules
 from pytpc.static_info import (
@@ -167,26 +168,16 @@ def build_workspace(
             else:
                 alone.keep()
                 break
-        folders = [
-            folder for folder in (place.build / one.name for one in found) if folder.is_dir()
-        ]
-        _drop_stale(folders)
-        units = [load_link_unit(path) for folder in folders for path in _compiled(folder)]
-        left_out = [*_left_out(folders, alone.reasons)]
-        nodes = python_of_build(
-            place.build,
+        static = _gather(
+            workspace,
+            place,
             found,
-            packages_up_to(found, packages),
-            for_python if python else None,
-            {
-                *((unit.package, unit.link_unit) for unit in units),
-                *((unit.package, unit.link_unit) for unit in left_out),
-            },
+            alone.reasons,
+            chosen=packages_up_to(found, packages),
+            rules=for_python if python else None,
             tests=tests,
-            on_progress=on_scripts,
+            on_scripts=on_scripts,
         )
-        units += nodes.units
-        static = StaticInfo.of(units, place.build, find_copies(units), (*left_out, *nodes.left_out))
         static.save(place.static_info)
     seconds = time.monotonic() - began
     return BuildResult(place, tuple(chosen), static, alone.reasons, seconds)
@@ -291,6 +282,39 @@ def _ask(bases: Bases, packages: Sequence[Package]) -> None:
     for package in packages:
         if package.cmakelists.is_file():
             ask_for_targets(bases.build / package.name)
+
+
+def _gather(
+    workspace: Path,
+    bases: Bases,
+    packages: Sequence[Package],
+    left_alone: Mapping[str, str],
+    *,
+    chosen: Sequence[Package],
+    rules: Rules | None,
+    tests: bool,
+    on_scripts: Callable[[int, int], None] | None,
+) -> StaticInfo:
+    """What the linker left of all packages, and the Python of those that were built."""
+    folders = [
+        folder for folder in (bases.build / each.name for each in packages) if folder.is_dir()
+    ]
+    _drop_stale(folders)
+    units = [load_link_unit(path) for folder in folders for path in _compiled(folder)]
+    left_out = [*_left_out(folders, left_alone)]
+    nodes = python_of_build(
+        workspace,
+        bases.build,
+        packages,
+        {*names_of(units), *names_of(left_out)},
+        chosen=chosen,
+        rules=rules,
+        tests=tests,
+        on_progress=on_scripts,
+    )
+    units += nodes.units
+    found = (*left_out, *nodes.left_out)
+    return StaticInfo.of(units, bases.build, find_copies(units), found)
 
 
 def _drop_stale(folders: Iterable[Path]) -> None:

@@ -222,6 +222,16 @@ class LinkUnit:
     script: str | None = None
     build_folder: str | None = None
 
+    @property
+    def is_python(self) -> bool:
+        """Whether it is a script with its modules, and no target of CMake's."""
+        return self.tool.analysis == "python"
+
+    @property
+    def script_path(self) -> str | None:
+        """The absolute path of the script; None where it is none, or is not known."""
+        return None if self.script is None else self.absolute(self.script)
+
     def to_json(self) -> dict[str, Any]:
         """The unit as the JSON object of docs/formats.md."""
         return _without_unknown({"schema": SCHEMA_VERSION, **_fields(self)})

@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 from pytpc.link_unit import LinkUnit
@@ -14,23 +14,23 @@ from pytpc.python_units import (
     Name,
     PythonUnits,
     analyse_scripts,
-    joined,
     named_beside,
     scripts_of,
     write_units,
 )
-from pytpc.reconcile import known_targets
+from pytpc.reconcile import target_names
 from pytpc.static_info import is_python_file, load_link_unit, python_unit_file, unit_files
 from pytpc.workspace import Package
 
 
 def python_of_build(
+    workspace: Path,
     build_base: Path,
     packages: Sequence[Package],
-    chosen: Sequence[Package],
-    rules: Rules | None,
     taken: Iterable[Name],
     *,
+    chosen: Sequence[Package],
+    rules: Rules | None,
     tests: bool = False,
     on_progress: Callable[[int, int], None] | None = None,
 ) -> PythonUnits:
@@ -40,11 +40,12 @@ def python_of_build(
     are removed.
 
     Args:
+        workspace: the folder with all packages.
         build_base: with a build folder for each package.
         packages: all of the workspace.
-        chosen: those of them that were built.
-        rules: None to analyse nothing, and to forget what was written of ``chosen``.
         taken: package and name of the link units that are no scripts.
+        chosen: the packages that were built.
+        rules: None to analyse nothing, and to forget what was written of ``chosen``.
         tests: take scripts in folders of tests, too.
         on_progress: called with (scripts done, scripts in all).
 
@@ -56,16 +57,16 @@ def python_of_build(
     if rules is None:
         found = PythonUnits()
     else:
-        scripts = [scripts_of(package.name, package.path, tests=tests) for package in chosen]
-        found = analyse_scripts(joined(scripts), rules, on_progress)
-    names = {*taken, *_targets(build_base, chosen)}
+        scripts = scripts_of(workspace, [package.path for package in chosen], tests=tests)
+        found = analyse_scripts(scripts, rules, on_progress)
+    names = set(taken).union(*(target_names(build_base / package.name) for package in chosen))
     units = write_units(build_base, named_beside(found.units, names))
     written = {python_unit_file(build_base / unit.package, unit.link_unit) for unit in units}
     for package in packages:
         for path in _files(build_base / package.name):
             if package.name not in built:
                 unit = load_link_unit(path)
-                if not script_is_gone(unit):
+                if not _is_gone(unit):
                     units.append(unit)
                     written.add(path)
             if path not in written:
@@ -73,21 +74,9 @@ def python_of_build(
     return PythonUnits(tuple(units), found.left_out)
 
 
-def script_is_gone(unit: LinkUnit) -> bool:
-    """Whether a Python unit's script was removed or renamed.
-
-    Where its package is not there at all, nothing is known: a robot may have what was built without
-    the sources.
-    """
-    root = Path(unit.source_root)
-    return unit.script is not None and root.is_dir() and not (root / unit.script).exists()
-
-
-def _targets(build_base: Path, packages: Iterable[Package]) -> Iterator[Name]:
-    """The targets of CMake's, those among them that are not built at present."""
-    for package in packages:
-        for target in known_targets(build_base / package.name) or ():
-            yield package.name, target.name
+def _is_gone(unit: LinkUnit) -> bool:
+    """Whether the script of a package that is there was removed or renamed."""
+    return unit.script_path is not None and not Path(unit.script_path).exists()
 
 
 def _files(build_folder: Path) -> list[Path]:

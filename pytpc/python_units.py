@@ -15,11 +15,12 @@ from pytpc.atomic import write_atomic
 from pytpc.errors import InputError
 from pytpc.link_unit import LeftOut, LinkUnit
 from pytpc.pynodes.analysis import analyse_entry
-from pytpc.pynodes.packages import Entry, entries
+from pytpc.pynodes.packages import Entry, entries, entry_of
 from pytpc.pynodes.rules_file import Rules
 from pytpc.static_info import python_unit_file
 from pytpc.static_json import dump_json
 from pytpc.words import plain
+from pytpc.workspace import package_folders
 
 Name = tuple[str, str]
 _TEST_FOLDERS = frozenset({"test", "tests"})
@@ -36,33 +37,53 @@ class Scripts:
 
 @dataclass(frozen=True, slots=True)
 class PythonUnits:
-    """The link units of scripts, and the scripts that could not be analysed, with the reason."""
+    """The link units of scripts, and the scripts that could not be analysed, with the reason.
+
+    ``folders`` are those of which there is no other script, without links in their paths.
+    """
 
     units: tuple[LinkUnit, ...] = ()
     left_out: tuple[LeftOut, ...] = ()
+    folders: tuple[Path, ...] = ()
 
 
-def scripts_of(package: str, folder: Path, *, tests: bool = False) -> Scripts:
-    """The scripts of one package, sorted by path.
+def scripts_at(path: Path) -> Scripts:
+    """The scripts that a path means: itself, or all nodes in a folder.
+
+    Raises:
+        InputError: there is no such file or folder.
+    """
+    faults: list[InputError] = []
+    found = entries(path, faults.append)
+    left_out = [_fault(path, error)[1] for error in faults]
+    return Scripts(tuple(found), tuple(dict.fromkeys(left_out)))
+
+
+def scripts_of(workspace: Path, packages: Iterable[Path], *, tests: bool = False) -> Scripts:
+    """The scripts of packages of a workspace; all of it is looked at for what they import.
 
     Args:
-        package: its name.
-        folder: its folder; a package within it is none of it.
-        tests: take those in folders called test or tests, too.
+        workspace: the folder with all packages.
+        packages: the folders of some.
+        tests: take scripts in folders called test or tests, too.
+
+    Raises:
+        InputError: a package.xml is broken.
     """
-    root = folder.absolute()
-    left_out: list[LeftOut] = []
-
-    def note(error: InputError) -> None:
-        script = root if error.path is None else Path(error.path)
-        left_out.append(_left_out(package, _inside(script, root), error))
-
-    found: dict[Path, Entry] = {}
-    for place in (root, *(_test_folders(root) if tests else ())):
-        for entry in entries(place, note):
-            if entry.root == root:
-                found.setdefault(entry.script, entry)
-    return Scripts(tuple(_named_apart(found.values())), tuple(left_out))
+    roots = {os.path.realpath(package): package.absolute() for package in packages}
+    faults: list[InputError] = []
+    found: dict[tuple[Path, str], Entry] = {}
+    below = (folder for root in roots.values() for folder in _test_folders(root))
+    for place in (workspace, *(below if tests else ())):
+        for entry in entries(place, faults.append):
+            if os.path.realpath(entry.root) in roots:
+                found.setdefault((entry.script, entry.name), entry)
+    left_out = [
+        one
+        for root, one in (_fault(workspace, error) for error in faults)
+        if os.path.realpath(root) in roots
+    ]
+    return Scripts(tuple(_named_apart(found.values())), tuple(dict.fromkeys(left_out)))
 
 
 def analyse_scripts(
@@ -93,13 +114,40 @@ def analyse_scripts(
     return PythonUnits(tuple(units), tuple(left_out))
 
 
+def analyse_workspaces(
+    folders: Iterable[Path], rules: Rules, on_progress: Callable[[int, int], None] | None = None
+) -> PythonUnits:
+    """Analyse the scripts of all packages in those ``folders`` that are workspaces.
+
+    A build folder is no workspace, though tools put manifests there.
+
+    Args:
+        folders: what else is among them, as files, is passed over.
+        rules: what reads and what exposes.
+        on_progress: called with (scripts done, scripts in all).
+
+    Raises:
+        InputError: a package.xml is broken.
+    """
+    found = [folder for folder in folders if _is_workspace(folder)]
+    scripts = joined(scripts_of(folder, package_folders(folder)) for folder in found)
+    units = analyse_scripts(scripts, rules, on_progress)
+    return replace(units, folders=tuple(Path(os.path.realpath(folder)) for folder in found))
+
+
 def joined(parts: Iterable[Scripts]) -> Scripts:
-    """The scripts of several packages as one."""
-    parts = list(parts)
-    return Scripts(
-        tuple(entry for part in parts for entry in part.entries),
-        tuple(one for part in parts for one in part.left_out),
-    )
+    """The scripts of several packages, each once."""
+    found: dict[tuple[Path, str], Entry] = {}
+    left_out: dict[LeftOut, None] = {}
+    for part in parts:
+        found.update(((entry.script, entry.name), entry) for entry in part.entries)
+        left_out.update(dict.fromkeys(part.left_out))
+    return Scripts(tuple(found.values()), tuple(left_out))
+
+
+def names_of(units: Iterable[LinkUnit | LeftOut]) -> set[Name]:
+    """Package and name of each."""
+    return {(unit.package, unit.link_unit) for unit in units}
 
 
 def named_beside(units: Iterable[LinkUnit], taken: Collection[Name]) -> list[LinkUnit]:
@@ -140,11 +188,6 @@ def write_units(build_base: Path, units: Iterable[LinkUnit]) -> list[LinkUnit]:
     return written
 
 
-def is_python(unit: LinkUnit) -> bool:
-    """Whether the unit is a script's, and no target of CMake's."""
-    return unit.tool.analysis == "python"
-
-
 def _names(unit: LinkUnit) -> Iterator[str]:
     yield unit.link_unit
     if unit.script is not None:
@@ -155,13 +198,19 @@ def _names(unit: LinkUnit) -> Iterator[str]:
 
 def _named_apart(found: Iterable[Entry]) -> Iterator[Entry]:
     """Scripts of tests get their path for a name where one that is no test has theirs."""
-    used: set[str] = set()
+    used: set[Name] = set()
     for entry in found:
         name = entry.name
-        if name in used:
+        if (entry.package, name) in used:
             name = _inside(entry.script, entry.root)
-        used.add(name)
+        used.add((entry.package, name))
         yield entry if name == entry.name else replace(entry, name=name)
+
+
+def _is_workspace(folder: Path) -> bool:
+    if not folder.is_dir() or (folder / "CMakeCache.txt").is_file():
+        return False
+    return next(package_folders(folder), None) is not None
 
 
 def _test_folders(root: Path) -> Iterator[Path]:
@@ -174,6 +223,16 @@ def _test_folders(root: Path) -> Iterator[Path]:
 
 def _inside(script: Path, root: Path) -> str:
     return str(script.relative_to(root) if script.is_relative_to(root) else script)
+
+
+def _fault(path: Path, error: InputError) -> tuple[Path, LeftOut]:
+    """A file below ``path`` that cannot be read, with the folder of its package."""
+    file = path.absolute() if error.path is None else Path(error.path)
+    try:
+        entry = entry_of(file)
+    except InputError:
+        return file.parent, _left_out(file.parent.name, file.name, error)
+    return entry.root, _left_out(entry.package, _inside(file, entry.root), error)
 
 
 def _left_out(package: str, script: str, error: InputError) -> LeftOut:
