@@ -187,8 +187,8 @@ def pytpc_env(*words: str | Path) -> str:
 
 def test_env_and_roslaunch_in_a_devel_space(devel, tmp_path):
     static = devel / ".tpc/static.json"
-    analysed = CliRunner().invoke(main, ["analyse", str(devel / "src"), "-o", str(static)])
-    assert analysed.exit_code == 0, analysed.output
+    collected = CliRunner().invoke(main, ["collect", str(devel), "-o", str(static)])
+    assert collected.exit_code == 0, collected.output
     words = f"source {shlex.quote(str(devel / 'devel/setup.bash'))}; {pytpc_env(devel)}"
     said = roslaunch(tmp_path, words, devel / LAUNCH)
     assert "tpc:" not in said
