@@ -14,7 +14,8 @@ from pytpc.cli.options import PATH
 from pytpc.errors import InputError
 from pytpc.link_unit import LinkUnit
 from pytpc.pynodes.analysis import analyse_entry
-from pytpc.pynodes.packages import Entry, entries
+from pytpc.pynodes.budget import SECONDS
+from pytpc.pynodes.packages import Entry, NameFault, entries
 from pytpc.pynodes.rules_file import load_rules
 from pytpc.static_info import StaticInfo
 
@@ -33,6 +34,13 @@ from pytpc.static_info import StaticInfo
     help="What counts as exposing; thesis: publish and service calls alone.",
 )
 @click.option("--constants", is_flag=True, help="Comparisons with constants, too.")
+@click.option(
+    "--max-seconds",
+    type=click.FloatRange(min=0),
+    default=SECONDS,
+    show_default=True,
+    help="What the analysis of one script may take; 0: no limit.",
+)
 @click.option("--json", "as_json", is_flag=True, help="Print what is written, too.")
 def analyse_command(
     *,
@@ -41,6 +49,7 @@ def analyse_command(
     own: Path | None,
     profile: str,
     constants: bool,
+    max_seconds: float,
     as_json: bool,
 ) -> None:
     """Find the comparisons of Python nodes; no ROS is needed, and nothing is run.
@@ -49,20 +58,22 @@ def analyse_command(
     its package that it imports. A script that cannot be parsed is left out, with a warning.
     """
     rules = replace(load_rules(profile, own), constants=constants)
-    found: dict[Path, Entry] = {}
+    found: dict[tuple[Path, str], Entry] = {}
+    told = _Once()
     for source in sources:
-        found.update({entry.script: entry for entry in entries(source, warn_of)})
+        for entry in entries(source, told, rules, sources):
+            found[entry.script, entry.name] = entry
     if not found:
         raise InputError("no Python node here: a script with a shebang, or a __main__", sources[0])
     units: list[LinkUnit] = []
     with progress("analysing Python") as advance:
         for number, entry in enumerate(found.values(), start=1):
             try:
-                units.append(analyse_entry(entry, rules))
+                units.append(analyse_entry(entry, rules, max_seconds, told))
             except InputError as error:
                 if len(found) == 1:
                     raise
-                warn_of(error)
+                told(error)
             advance(number, len(found))
     static = StaticInfo.of(_apart(units))
     static.save(output)
@@ -73,9 +84,21 @@ def analyse_command(
     click.echo(f"{found_text(static)}: {output}")
 
 
+class _Once:
+    """Says what is left out; the same fault once, however many scripts meet it."""
+
+    def __init__(self) -> None:
+        self._said: set[str] = set()
+
+    def __call__(self, error: InputError) -> None:
+        if str(error) not in self._said:
+            self._said.add(str(error))
+            warn_of(error)
+
+
 def warn_of(error: InputError) -> None:
-    """A script that is left out."""
-    warn(f"{error}; it is left out")
+    """A script that is left out; or a package.xml that is."""
+    warn(str(error) if isinstance(error, NameFault) else f"{error}; it is left out")
 
 
 def _apart(units: list[LinkUnit]) -> list[LinkUnit]:
