@@ -163,7 +163,7 @@ class Writer:
         dynamic = sum(1 for read in self.all.reads if DYNAMIC in read.name)
         return Counts(
             functions=len(self.all.program.functions),
-            predicates=len(places),
+            predicates=len(places | within),
             predicates_in_slice=len(within),
             parameter_reads=reads,
             exposing_statements=len({_where(each.instr) for each in self.all.exposed}),
@@ -257,12 +257,11 @@ class Writer:
         key = key_of([*parts, str(ordinal)] if ordinal else list(parts))
         assert found.predicate is not None
         exposed = self.all.slice.nearest[found.predicate]
-        threshold = found.at.args[found.operand] if found.operand >= 0 else found.at
         reads = [self._read_place(fact) for fact in found.facts]
         return Comparison(
             key=str(key),
             type=found.type,
-            name=named_variable(threshold) if found.facts else found.parameter,
+            name=named_variable(found.threshold) if found.facts else found.parameter,
             source=found.parameter if found.facts else None,
             file=file,
             lineno=line,
@@ -282,7 +281,7 @@ class Writer:
             path=path_of(found, self.all.slice, self._source) if found.facts else (),
             end_lineno=end_line,
             end_column=end_column,
-            operand=("left", "right")[found.operand] if found.operand >= 0 else None,
+            operand=found.operand_text,
         )
 
     def _read_place(self, fact: Fact) -> Place:
