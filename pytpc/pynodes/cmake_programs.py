@@ -3,7 +3,8 @@
 ``catkin_install_python(PROGRAMS ...)``, ``install(PROGRAMS ...)``, ``ament_python_install_package``
 (and ``catkin_python_setup``, which is for setup.py), in the folders of ``add_subdirectory``, too.
 Variables are known where ``set``, ``list(APPEND)``, ``file(GLOB)`` or ``foreach`` give them from
-constants; branches are taken both ways.
+constants. Branches are taken both ways; but what a branch within a loop installs is not known: it
+chooses among the loop's files.
 """
 
 from __future__ import annotations
@@ -63,6 +64,7 @@ class _Reader:
         self._variables["CMAKE_CURRENT_LIST_DIR"] = [str(folder)]
         self._found = found
         self._on_fault = on_fault
+        self._blocks: list[str] = []
 
     def run(self, depth: int) -> None:
         path = self._folder / "CMakeLists.txt"
@@ -77,11 +79,23 @@ class _Reader:
             return
         for command in commands(data):
             words = self._words(command)
+            self._enter(command.name)
             if command.name == "add_subdirectory" and words and depth < _DEEPEST:
                 below = self._folder / words[0]
                 _Reader(below, self._variables, self._found, self._on_fault).run(depth + 1)
             else:
                 self._command(command.name, words)
+
+    def _enter(self, name: str) -> None:
+        if name in ("foreach", "while", "if"):
+            self._blocks.append(name)
+        elif name in ("endforeach", "endwhile", "endif"):
+            self._blocks.pop()
+
+    def _chooses(self) -> bool:
+        """True in a branch within a loop."""
+        loops = [place for place, name in enumerate(self._blocks) if name != "if"]
+        return bool(loops) and "if" in self._blocks[loops[0] :]
 
     def _command(self, name: str, words: list[str]) -> None:
         match name, words:
@@ -98,6 +112,8 @@ class _Reader:
                 self._variables[variable] = values
             case "file", ["GLOB" | "GLOB_RECURSE" as how, variable, *patterns]:
                 self._add(variable, list(self._matching(how, patterns)))
+            case (("catkin_install_python" | "install"), _) if self._chooses():
+                pass
             case "catkin_install_python", _:
                 self._found.python.extend(self._programs(words))
             case "install", ["PROGRAMS", *_]:

@@ -222,24 +222,39 @@ class _Nodes:
         """All of them: by package and path."""
         files = list(python_files(folder, self._places.on_fault))
         roots = dict.fromkeys([*package_folders(folder), *map(self._places.root_of, files)])
-        declared: dict[Path, None] = {}
+        declared: set[Path] = set()
         begun: dict[Path, list[Entry]] = {}
         for root in roots:
             package = self._places.package(root)
             for entry in self._entry_points(package):
                 if entry.script.is_relative_to(folder):
                     begun.setdefault(entry.script, []).append(entry)
-            declared.update(dict.fromkeys(_declared(package, folder)))
+            declared.update(_declared(package, folder))
+        programs: list[Entry] = []
+        installed: list[Entry] = []
         for script in sorted({*files, *declared, *begun}):
+            entry = self._places.entry(script)
             try:
-                if script in begun:
-                    yield from (e for e in begun[script] if self._scripts.has_to_do_with_ros(e))
-                    continue
-                entry = self._places.entry(script)
-                if self._scripts.is_node(entry, script in declared):
-                    yield entry
+                is_run = self._scripts.is_run(entry)
             except InputError as error:
                 self._places.on_fault(error)
+                continue
+            if script in begun or is_run:
+                programs += begun.get(script, [entry])
+            elif script in declared:
+                installed.append(entry)
+        programs += self._not_imported(installed, programs)
+        programs.sort(key=lambda entry: entry.script)
+        yield from filter(self._scripts.has_to_do_with_ros, programs)
+
+    def _not_imported(self, installed: list[Entry], programs: list[Entry]) -> Iterator[Entry]:
+        """Those of the installed scripts that are no modules of the others."""
+        imported: set[Path] = set()
+        for program in (*programs, *installed) if installed else ():
+            imported.update(
+                each for each in self._scripts.reached(program) if each != program.script
+            )
+        return (entry for entry in installed if entry.script not in imported)
 
     def _entry_points(self, package: _Package) -> Iterator[Entry]:
         modules = self._places.modules(package)

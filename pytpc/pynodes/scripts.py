@@ -98,29 +98,27 @@ class _Facts:
     initialises: bool
 
 
+_NOTHING = _Facts((), frozenset(), False, False)
+
+
 class Scripts:
     """Tells nodes from other scripts; each file is read once."""
 
     def __init__(self, rules: Rules) -> None:
         """``rules`` say which functions are ROS's."""
-        self._known: dict[Path, _Facts | None] = {}
+        self._known: dict[Path, _Facts] = {}
+        self._faulty: set[Path] = set()
         self._libraries = {"rospy", "rclpy", *(path.split(".")[0] for path in rules.paths)}
         self._words = _LIVING | {path.rsplit(".", 1)[-1] for path in rules.paths}
 
-    def is_node(self, program: Program, is_declared: bool) -> bool:
-        """True for a script that is run, and has to do with ROS.
-
-        Args:
-            program: the script.
-            is_declared: its package installs it as a program.
+    def is_run(self, program: Program) -> bool:
+        """True for a script that says by itself that it is run.
 
         Raises:
             InputError: it cannot be read or parsed.
         """
         facts = self._read(program.script)
-        is_run = is_declared or facts.is_guarded
-        is_run = is_run or (facts.initialises and _has_shebang(program.script))
-        return is_run and self.has_to_do_with_ros(program)
+        return facts.is_guarded or (facts.initialises and _has_shebang(program.script))
 
     def has_to_do_with_ros(self, program: Program) -> bool:
         """True where the program, or a module of the workspace that it imports, speaks to ROS.
@@ -132,37 +130,40 @@ class Scripts:
             InputError: the script cannot be read or parsed.
         """
         self._read(program.script)
+        for path in self.reached(program):
+            facts = self._facts(path)
+            roots = {name.split(".")[0] for dots, name in facts.imports if dots == 0}
+            if roots & self._libraries and facts.words & self._words:
+                return True
+        return False
+
+    def reached(self, program: Program) -> Iterator[Path]:
+        """The script, and the files of the workspace that it imports."""
         seen = {program.script}
         waiting = [program.script]
         while waiting:
             here = waiting.pop()
-            facts = self._facts(here)
-            if facts is None:
-                continue
-            roots = {name.split(".")[0] for dots, name in facts.imports if dots == 0}
-            if roots & self._libraries and facts.words & self._words:
-                return True
-            for dots, name in facts.imports:
+            yield here
+            for dots, name in self._facts(here).imports:
                 for path in _meant(program, here, dots, name):
                     if path not in seen:
                         seen.add(path)
                         waiting.append(path)
-        return False
 
     def _read(self, path: Path) -> _Facts:
-        if self._known.get(path) is None:
-            self._known[path] = _facts_of(*parse(path))
-        found = self._known[path]
-        assert found is not None
-        return found
-
-    def _facts(self, path: Path) -> _Facts | None:
         if path not in self._known:
-            try:
-                self._read(path)
-            except InputError:
-                self._known[path] = None
+            self._known[path] = _facts_of(*parse(path))
         return self._known[path]
+
+    def _facts(self, path: Path) -> _Facts:
+        """The same; of a file that cannot be read there are none."""
+        if path in self._faulty:
+            return _NOTHING
+        try:
+            return self._read(path)
+        except InputError:
+            self._faulty.add(path)
+            return _NOTHING
 
 
 def _meant(program: Program, user: Path, dots: int, name: str) -> Iterator[Path]:

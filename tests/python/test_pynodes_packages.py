@@ -167,7 +167,13 @@ file(GLOB FOUND RELATIVE ${PROJECT_SOURCE_DIR} bin/*.py)
 list(APPEND ALL ${FOUND} sh/run.sh)
 foreach(name IN LISTS ALL ITEMS more.py)
   install(PROGRAMS ${name} DESTINATION lib/${PROJECT_NAME})
+  if(name MATCHES x)
+    install(PROGRAMS not/${name} DESTINATION x)
+  endif()
 endforeach()
+if(THERE)
+  install(PROGRAMS last.py DESTINATION x)
+endif()
 install(FILES scripts/no.py DESTINATION x)
 install(TARGETS PROGRAMS)
 add_subdirectory(sub)
@@ -183,7 +189,8 @@ def test_programs_of_cmake(tmp_path: Path) -> None:
     found = read_programs(tmp_path, pytest.fail)
     assert found.python == [tmp_path / "scripts/one.py", tmp_path / "scripts/two"]
     assert found.others == [
-        tmp_path / name for name in ("bin/a.py", "bin/b.py", "sh/run.sh", "more.py", "sub/three.py")
+        tmp_path / name
+        for name in ("bin/a.py", "bin/b.py", "sh/run.sh", "more.py", "last.py", "sub/three.py")
     ]
     assert found.packages == {"guard": tmp_path / "py"}
 
@@ -205,6 +212,15 @@ def test_installed_scripts_are_nodes_without_guard_or_shebang(tmp_path: Path) ->
     put(folder, "scripts/library.py", NODE)
     put(folder, "scripts/run.sh", '#!/bin/sh\necho "$1" now\n')
     put(folder, "more.py", NODE + "main()\n")
+    # What a program imports is a module, though it is installed beside it.
+    put(
+        folder,
+        "CMakeLists.txt",
+        (folder / "CMakeLists.txt").read_text()
+        + "install(PROGRAMS both.py scripts/beside.py DESTINATION x)\n",
+    )
+    put(folder, "scripts/beside.py", NODE)
+    put(folder, "scripts/plain.py", "import beside\n" + NODE + "main()\n")
     faults: list[InputError] = []
     assert [str(e.script.relative_to(folder)) for e in entries(folder, faults.append)] == [
         "scripts/plain", "scripts/plain.py"
