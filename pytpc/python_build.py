@@ -57,7 +57,7 @@ def python_of_build(
     if rules is None:
         found = PythonUnits()
     else:
-        scripts = scripts_of(workspace, [package.path for package in chosen], tests=tests)
+        scripts = scripts_of(workspace, [one.path for one in chosen], rules, tests=tests)
         found = analyse_scripts(scripts, rules, on_progress)
     names = set(taken).union(*(target_names(build_base / package.name) for package in chosen))
     units = write_units(build_base, named_beside(found.units, names))

@@ -9,6 +9,7 @@ the whole condition, or operand of ``and``, ``or`` and ``not``, and not a part o
 from __future__ import annotations
 
 import ast
+import re
 from typing import TYPE_CHECKING, NamedTuple
 
 from pytpc.pyhook.listed import Listed, ListedFile
@@ -108,7 +109,8 @@ def matching(candidates: Sequence[ListedFile], text: str) -> ListedFile | None:
     be the same: a file that was changed a little is still itself, and another one of its name is
     not.
     """
-    lines = text.splitlines()
+    # A form feed, say, ends no line of Python.
+    lines = re.split("\r\n|\r|\n", text)
 
     def is_same(listed: Listed) -> bool:
         inside = 0 < listed.lineno <= len(lines)

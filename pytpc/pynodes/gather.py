@@ -12,6 +12,7 @@ from typing import Literal
 from pytpc.pynodes.contexts import Stack
 from pytpc.pynodes.follow import FLAG, Compared, Fact, Follower
 from pytpc.pynodes.ir import Instr
+from pytpc.pynodes.library_calls import INSIDE, TURNED, Inside
 from pytpc.pynodes.reads import Read
 from pytpc.pynodes.slicing import Slice
 
@@ -20,7 +21,6 @@ RELATIONS = {
     "Is": "==", "IsNot": "!=", "In": "==", "NotIn": "!=",
 }  # fmt: skip
 _DEEPEST = 300
-_TURNED = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
 _NAMESPACE = bytes.fromhex("6b0f7a522c9e4d619a378f15c3405ed8")
 
 
@@ -42,6 +42,7 @@ class Found:
     predicates: dict[Instr, None] = field(default_factory=dict)
     distance: int = 0
     predicate: Instr | None = None
+    inside: Inside | None = None
 
     @property
     def span(self) -> Span:
@@ -56,10 +57,26 @@ class Found:
     @property
     def relation(self) -> str:
         """The operator, with the threshold on the right-hand side."""
+        if self.inside is not None:
+            return self.inside.relation
         if self.operand < 0:
             return "flag" if self.operand == FLAG else "<"
         sign = RELATIONS[str(self.at.data)]
-        return _TURNED.get(sign, sign) if self.operand == 0 else sign
+        return TURNED.get(sign, sign) if self.operand == 0 else sign
+
+    @property
+    def threshold(self) -> Instr:
+        """What the parameter's value is compared as."""
+        if self.inside is not None:
+            return self.at.args[1 + INSIDE - self.operand]
+        return self.at.args[self.operand] if self.operand >= 0 else self.at
+
+    @property
+    def operand_text(self) -> str | None:
+        """Which operand the threshold is, as in the schema."""
+        if self.inside is not None:
+            return self.inside.operand
+        return ("left", "right")[self.operand] if self.operand >= 0 else None
 
     @property
     def type(self) -> Literal["parameter", "flag", "derived", "constant"]:
@@ -135,6 +152,7 @@ class Gatherer:
             )  # fmt: skip
             if key not in joined:
                 joined[key] = Found(compared.at, compared.operand, compared.fact.name, [])
+                joined[key].inside = compared.inside
             joined[key].facts.append(compared.fact)
             joined[key].predicates.update(dict.fromkeys(compared.predicates))
         exposed: list[Found] = []
@@ -166,9 +184,12 @@ class Gatherer:
 
         What may be something measured is the threshold only where the other side is measured, too.
         """
-        if compared.operand < 0:
-            return "other" in self.kinds(compared.fact.at, compared.fact.stack)
         stack = compared.fact.stack
+        if compared.inside is not None:
+            others = self._union(compared.inside.others, stack)
+            return "other" in self.kinds(compared.fact.at, stack) and others <= {"const"}
+        if compared.operand < 0:
+            return "other" in self.kinds(compared.fact.at, stack)
         own = self.kinds(compared.at.args[compared.operand], stack)
         if "other" not in own:
             return False
