@@ -2,28 +2,15 @@
 
 from __future__ import annotations
 
-import importlib.util
 import statistics
-import sys
 from collections.abc import Iterable
-from pathlib import Path
-from types import ModuleType
 
 import pytest
+from observer_scripts import load_observer
 
-SCRIPT = Path(__file__).parents[2] / "examples/image_capture/scripts/observer.py"
+from pytpc.demo_examples import IMAGE_CAPTURE
 
-
-def load() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("observer", SCRIPT)
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules["observer"] = module
-    spec.loader.exec_module(module)
-    return module
-
-
-observer = load()
+observer = load_observer(IMAGE_CAPTURE)
 PERSON = (0.0, 3.0)
 
 
