@@ -140,8 +140,8 @@ def main() -> None:
         sight = Sight(time, place.x, place.y, place.z, yaw, head.x, head.y)
         keys.press(observer.see(sight))
 
-    rospy.Subscriber("/truth/person", PoseStamped, on_person, queue_size=10)
-    rospy.Subscriber("/truth/uav", PoseStamped, on_uav, queue_size=10)
+    rospy.Subscriber("/truth/person", PoseStamped, on_person, queue_size=100)
+    rospy.Subscriber("/truth/uav", PoseStamped, on_uav, queue_size=100)
     rospy.Subscriber("/camera/picture", Picture, lambda _: observer.shutter(), queue_size=4)
     rospy.spin()
 

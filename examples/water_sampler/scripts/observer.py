@@ -139,8 +139,8 @@ def main() -> None:
         )
         keys.press(observer.see(sight))
 
-    rospy.Subscriber("/truth/uav", PoseStamped, on_uav, queue_size=10)
-    rospy.Subscriber("/truth/sampler", SamplerTruth, on_sampler, queue_size=10)
+    rospy.Subscriber("/truth/uav", PoseStamped, on_uav, queue_size=100)
+    rospy.Subscriber("/truth/sampler", SamplerTruth, on_sampler, queue_size=100)
     rospy.spin()
 
 

@@ -27,9 +27,9 @@ SimulatorNode::SimulatorNode(ros::NodeHandle &nh, ros::NodeHandle &private_nh,
   observation_pub_ = nh.advertise<Observation>("/camera/observation", 10);
   picture_pub_ = nh.advertise<Picture>("/camera/picture", 4);
   preview_pub_ = nh.advertise<Picture>("/camera/preview", 4);
-  uav_truth_pub_ = nh.advertise<geometry_msgs::PoseStamped>("/truth/uav", 20);
+  uav_truth_pub_ = nh.advertise<geometry_msgs::PoseStamped>("/truth/uav", 100);
   person_truth_pub_ =
-      nh.advertise<geometry_msgs::PoseStamped>("/truth/person", 20);
+      nh.advertise<geometry_msgs::PoseStamped>("/truth/person", 100);
   command_sub_ = nh.subscribe("/uav/command", 10, &SimulatorNode::onCommand,
                               this, ros::TransportHints().tcpNoDelay());
   capture_server_ =

@@ -20,8 +20,8 @@ SimulatorNode::SimulatorNode(ros::NodeHandle &nh, ros::NodeHandle &private_nh,
   private_nh.param("max_command_lag", max_command_lag_, 0.12);
   sensors_pub_ = nh.advertise<UavSensors>("/uav/sensors", 10);
   sampler_pub_ = nh.advertise<SamplerSensors>("/sampler/sensors", 10);
-  uav_truth_pub_ = nh.advertise<geometry_msgs::PoseStamped>("/truth/uav", 20);
-  sampler_truth_pub_ = nh.advertise<SamplerTruth>("/truth/sampler", 20);
+  uav_truth_pub_ = nh.advertise<geometry_msgs::PoseStamped>("/truth/uav", 100);
+  sampler_truth_pub_ = nh.advertise<SamplerTruth>("/truth/sampler", 100);
   filled_pub_ = nh.advertise<std_msgs::Float64>("/truth/vial_filled", 2, true);
   command_sub_ = nh.subscribe("/uav/command", 10, &SimulatorNode::onCommand,
                               this, ros::TransportHints().tcpNoDelay());
@@ -48,9 +48,11 @@ void SimulatorNode::run(ros::NodeHandle &private_nh) {
 }
 
 void SimulatorNode::waitForPilot() {
-  // The time begins when the UAV and the pump have someone who reads them.
+  // The time begins when the UAV and the pump have someone who reads them, and
+  // the mission has begun.
   while (ros::ok() && (sensors_pub_.getNumSubscribers() < 2 ||
-                       sampler_pub_.getNumSubscribers() == 0)) {
+                       sampler_pub_.getNumSubscribers() == 0 ||
+                       waypose_sub_.getNumPublishers() == 0)) {
     ros::WallDuration(0.02).sleep();
     ros::spinOnce();
   }
