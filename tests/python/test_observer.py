@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import re
 import statistics
 from collections.abc import Iterable
 
 import pytest
 from observer_scripts import load_observer
 
-from pytpc.demo_examples import IMAGE_CAPTURE
+from pytpc.demo_examples import IMAGE_CAPTURE, WATER_SAMPLER
 
 observer = load_observer(IMAGE_CAPTURE)
 PERSON = (0.0, 3.0)
@@ -141,3 +142,17 @@ def test_same_seed_same_marks():
     phases = [*BEGIN, (60.0, 0, 0.8, 1.6, LOOK_AT, 0.0)]
     assert watch(phases, seed=5) == watch(phases, seed=5)
     assert watch(phases, seed=5) != watch(phases, seed=6)
+
+
+@pytest.mark.parametrize(
+    ("example", "seen"),
+    [
+        (IMAGE_CAPTURE, {"/truth/uav", "/truth/person", "/camera/picture"}),
+        (WATER_SAMPLER, {"/truth/uav", "/truth/sampler"}),
+    ],
+    ids=lambda value: getattr(value, "name", ""),
+)
+def test_observer_is_told_nothing_but_what_a_person_sees(example, seen):
+    script = (example.folder / "scripts/observer.py").read_text()
+    assert set(re.findall(r'"(/[^"]+)"', script)) == seen
+    assert "param" not in re.sub(r"no parameter", "", script)
