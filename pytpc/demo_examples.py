@@ -9,6 +9,9 @@ from pathlib import Path
 from pytpc.paths import project_root
 from pytpc.treatment import Treatment, TreatmentType, load_treatment
 
+SHARED_PACKAGE = project_root() / "examples" / "simulated_world"
+"""The catkin package that the robots' simulators and observers share."""
+
 
 @dataclass(frozen=True)
 class Example:

@@ -20,7 +20,7 @@ from pytpc.cli.console import progress
 from pytpc.cli.mission_commands import mission_progress
 from pytpc.colcon import BuildError
 from pytpc.demo import TreatedMission, failures, result_table, run_treatment
-from pytpc.demo_examples import Example
+from pytpc.demo_examples import SHARED_PACKAGE, Example
 from pytpc.demo_python import analyse_nodes, joined, launch_arguments
 from pytpc.errors import TpcError, WorkspaceError
 from pytpc.report.html import write_report
@@ -136,21 +136,22 @@ def build(example: Example, console: Console, out: Path) -> Built:
 
 
 def link_package(example: Example, workspace: Path) -> None:
-    """Put a link to the example into a workspace.
+    """Put links to the example, and to what the examples share, into a workspace.
 
     Raises:
-        WorkspaceError: it cannot be made.
+        WorkspaceError: one cannot be made.
     """
-    link = workspace / "src" / example.name
-    if link.resolve() == example.folder:
-        return
-    # What stands there is the link of an earlier checkout.
-    try:
-        link.parent.mkdir(parents=True, exist_ok=True)
-        link.unlink(missing_ok=True)
-        link.symlink_to(example.folder)
-    except OSError as error:
-        raise WorkspaceError(f"cannot be made: {error.strerror}", link) from error
+    for package in (example.folder, SHARED_PACKAGE):
+        link = workspace / "src" / package.name
+        if link.resolve() == package:
+            continue
+        # What stands there is the link of an earlier checkout.
+        try:
+            link.parent.mkdir(parents=True, exist_ok=True)
+            link.unlink(missing_ok=True)
+            link.symlink_to(package)
+        except OSError as error:
+            raise WorkspaceError(f"cannot be made: {error.strerror}", link) from error
 
 
 def tell_found(console: Console, static: StaticInfo) -> None:

@@ -10,7 +10,7 @@ import pytest
 from mission_samples import comparison, link_unit, static_info
 
 from pytpc import demo_python
-from pytpc.demo_examples import IMAGE_CAPTURE, WATER_SAMPLER
+from pytpc.demo_examples import IMAGE_CAPTURE, SHARED_PACKAGE, WATER_SAMPLER
 from pytpc.demo_python import joined, launch_arguments, static_file
 from pytpc.demo_show import can_be_named, link_package
 from pytpc.errors import InputError, RunError, WorkspaceError
@@ -94,10 +94,13 @@ def test_package_is_linked_anew_where_an_old_link_stands(tmp_path):
     link = tmp_path / "src" / "water_sampler"
     link.parent.mkdir()
     link.symlink_to(tmp_path / "gone")
-    link_package(WATER_SAMPLER, tmp_path)
-    assert link.resolve() == WATER_SAMPLER.folder
-    link_package(WATER_SAMPLER, tmp_path)
-    assert link.resolve() == WATER_SAMPLER.folder
+    for _ in range(2):
+        link_package(WATER_SAMPLER, tmp_path)
+        linked = {path.name: path.resolve() for path in (tmp_path / "src").iterdir()}
+        assert linked == {
+            "water_sampler": WATER_SAMPLER.folder,
+            "simulated_world": SHARED_PACKAGE,
+        }
 
 
 def test_a_folder_in_the_links_place_is_an_error(tmp_path):
