@@ -114,6 +114,13 @@ def analyse_scripts(
     return PythonUnits(tuple(units), tuple(left_out))
 
 
+def analysis_files() -> list[Path]:
+    """The files that the analysis consists of, sorted: as they change, its results may."""
+    own = Path(__file__).parent / "pynodes"
+    found = (path for end in ("*.py", "*.json") for path in own.rglob(end))
+    return sorted([Path(__file__), *found])
+
+
 def analyse_workspaces(
     folders: Iterable[Path], rules: Rules, on_progress: Callable[[int, int], None] | None = None
 ) -> PythonUnits:
