@@ -55,7 +55,7 @@ def fly(robot, tmp_path_factory: pytest.TempPathFactory) -> Fly:
             static_info=robot.static,
             out_dir=tmp_path_factory.mktemp(name),
             timeout_s=150.0,
-            launch_args={**robot.launch_args, "rate": RATE},
+            launch_args={"rate": RATE},
         )
 
     return once
