@@ -208,9 +208,10 @@ class Gatherer:
                 return {"const"}, []
             case "binary" | "unary" | "copy":
                 return set(), [(value, stack) for value in instr.args]
-            case "call" if facts and not self._is_own(instr):
+            case "call" if not self._is_own(instr) and (facts or self._computes(instr)):
                 values = instr.args[1:]
-                return set() if values else {"param"}, [(value, stack) for value in values]
+                alone = {"param"} if facts else {"const"}
+                return set() if values else alone, [(value, stack) for value in values]
             case "build":
                 values = instr.args
                 return set() if values else {"const"}, [(value, stack) for value in values]
@@ -227,6 +228,12 @@ class Gatherer:
 
     def _given(self, param: Instr, stack: Stack) -> list[Instr]:
         return self.follower.flow.points.calls.given.get((stack[-1], param), [])
+
+    def _computes(self, instr: Instr) -> bool:
+        """True for a call that makes a value of its arguments alone: ``abs``, ``max``."""
+        flow = self.follower.flow
+        paths = flow.points.calls.outside.get(instr, {})
+        return any(path in self.follower.rules.arithmetic for path, _ in paths)
 
     def _is_own(self, instr: Instr) -> bool:
         return instr in self.follower.flow.points.calls.callees

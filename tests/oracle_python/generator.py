@@ -175,7 +175,7 @@ class Generator(Statements):
         inner.numbers += ["message.data"] * 6
         inner.texts += ["message.text"]
         with self.lines.block("def callback(self, message):"):
-            self.body(inner.inner(), 7)
+            self.body(inner.inner(), 6)
         del inner.numbers[-6:]
         inner.texts.pop()
         inner.numbers.append("extra")

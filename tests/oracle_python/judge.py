@@ -8,9 +8,10 @@ from pathlib import Path
 
 from oracle_python.instrument import Place
 from oracle_python.runner import Compiled, Outcome, Run
-from pytpc.link_unit import Comparison, LinkUnit
-from pytpc.pynodes.analysis import analyse_entry
+from pytpc.pynodes.analysis import analyse
+from pytpc.pynodes.gather import Found, span_of
 from pytpc.pynodes.packages import entry_of
+from pytpc.pynodes.program import Loader, Program
 from pytpc.pynodes.rules_file import load_rules
 
 INPUTS = (1, 2, 3)
@@ -25,19 +26,26 @@ Key = tuple[str, tuple[int, int, int, int], str, str, str]
 class Verdict:
     """``wanted``: shown by runs. ``missed``: of these, what the analysis does not say.
 
-    ``unseen``: what the analysis says of places that were evaluated, where no run had that
+    ``mixed``: wanted and left out, since the operand may be something measured, too: the runs did
+    not come to that. ``unseen``: what the analysis says of places that were evaluated, where no run had that
     parameter. ``is_sound`` is False where the program itself fails.
     """
 
     wanted: set[Key] = field(default_factory=set)
     found: set[Key] = field(default_factory=set)
     unseen: set[Key] = field(default_factory=set)
+    followed: set[Key] = field(default_factory=set)
     is_sound: bool = True
 
     @property
     def missed(self) -> set[Key]:
         """Wanted and not found."""
-        return self.wanted - self.found
+        return self.wanted - self.found - self.followed
+
+    @property
+    def mixed(self) -> set[Key]:
+        """See above."""
+        return self.wanted & self.followed - self.found
 
 
 def judge(modules: Mapping[str, str], folder: Path) -> Verdict:
@@ -52,7 +60,7 @@ def judge(modules: Mapping[str, str], folder: Path) -> Verdict:
     verdict = Verdict(is_sound=all(one.is_whole for one in before.values()))
     if not verdict.is_sound:
         return verdict
-    verdict.found = _answers(modules, folder)
+    _ask(verdict, modules, folder)
     turned: list[Outcome] = []
     for number, place in enumerate(compiled.places):
         keys = set(_shown(number, place, before.values()))
@@ -62,19 +70,28 @@ def judge(modules: Mapping[str, str], folder: Path) -> Verdict:
     return verdict
 
 
-def _answers(modules: Mapping[str, str], folder: Path) -> set[Key]:
+def _ask(verdict: Verdict, modules: Mapping[str, str], folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     for name, source in modules.items():
         (folder / f"{name}.py").write_text(source)
-    unit: LinkUnit = analyse_entry(entry_of(folder / "node.py"), load_rules())
-    return {_key(each) for each in unit.comparisons}
+    entry = entry_of(folder / "node.py")
+    program = Program(entry.name, entry.package, entry.root)
+    Loader(program, list(entry.folders)).load(entry.script)
+    analysed = analyse(program, load_rules())
+    verdict.found = {_key(each) for each in analysed.found}
+    distance = analysed.slice.distance
+    verdict.followed = {
+        _key(Found(each.at, each.operand, each.fact.name, [each.fact]))
+        for each in analysed.follower.compared.values()
+        if any(predicate in distance for predicate in each.predicates)
+    }
 
 
-def _key(found: Comparison) -> Key:
-    span = (found.lineno, found.column, found.end_lineno or 0, found.end_column or 0)
-    return (
-        found.file, span, found.operand or "-", found.source or "", found.relation,
-    )  # fmt: skip
+def _key(found: Found) -> Key:
+    start, end = span_of(found.at, found.operand)
+    operand = ("left", "right")[found.operand] if found.operand >= 0 else "-"
+    file = found.at.function.module.path
+    return file, (*start, *end), operand, found.parameter, found.relation
 
 
 def _keys(place: Place, side: int, parameters: set[str]) -> Iterator[Key]:

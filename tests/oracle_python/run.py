@@ -21,7 +21,7 @@ def main() -> int:
     parser.add_argument("--most", type=int, default=3, help="programs to make smaller")
     parser.add_argument("--unseen", action="store_true", help="show what no run has seen")
     options = parser.parse_args()
-    totals = {"programs": 0, "wanted": 0, "found": 0, "missed": 0, "unseen": 0}
+    totals = {"programs": 0, "wanted": 0, "found": 0, "missed": 0, "mixed": 0, "unseen": 0}
     shown = 0
     with tempfile.TemporaryDirectory() as folder:
         for seed in range(options.seed, options.seed + options.runs):
@@ -29,7 +29,7 @@ def main() -> int:
             if not verdict.is_sound:
                 continue
             totals["programs"] += 1
-            for name in ("wanted", "found", "missed", "unseen"):
+            for name in ("wanted", "found", "missed", "mixed", "unseen"):
                 totals[name] += len(getattr(verdict, name))
             wrong = verdict.unseen if options.unseen else verdict.missed
             if wrong:

@@ -20,35 +20,38 @@ def shrink(
     while again:
         again = False
         for name in current:
-            at = 0
+            at, size = 0, 16
             while time.monotonic() < end:
-                source = _without(current[name], at)
-                if source is None:
+                source = _without(current[name], at, size)
+                if source is None and size == 1:
                     break
+                if source is None:
+                    at, size = 0, size // 2
+                    continue
                 smaller = {**current, name: source}
                 if source != current[name] and _holds(smaller, is_wrong):
                     current, again = smaller, True
                 else:
-                    at += 1
+                    at += size
     return current
 
 
 def _holds(modules: dict[str, str], is_wrong: Callable[[dict[str, str]], bool]) -> bool:
     try:
         return is_wrong(modules)
-    except (SyntaxError, AssertionError):
+    except (SyntaxError, AssertionError, NameError):
         return False
 
 
-def _without(source: str, at: int) -> str | None:
-    """The change number ``at``: a statement is left out, or its body takes its place."""
+def _without(source: str, at: int, size: int) -> str | None:
+    """The change number ``at``: statements are left out, or the body of one takes its place."""
     tree = ast.parse(source)
     places = list(_places(tree))
-    if at >= 2 * len(places):
+    if at >= len(places) + (len(places) if size == 1 else 0):
         return None
-    body, index = places[at // 2]
-    if at % 2 == 0:
-        body[index : index + 1] = []
+    body, index = places[at % len(places)]
+    if at < len(places):
+        body[index : index + size] = []
     else:
         inner = getattr(body[index], "body", None)
         if not isinstance(inner, list) or isinstance(body[index], ast.FunctionDef | ast.ClassDef):

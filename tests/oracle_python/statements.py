@@ -18,7 +18,7 @@ class Statements(Expressions):
 
     def body(self, scope: Scope, most: int = 4, depth: int = 0) -> None:
         """Some statements."""
-        for _ in range(self.random.randint(1, most)):
+        for _ in range(self.random.randint(1, max(1, most - depth))):
             self.statement(scope, depth)
 
     def _block(self, head: str, scope: Scope, depth: int) -> None:
