@@ -185,8 +185,9 @@ class Gatherer:
         """
         stack = compared.fact.stack
         if compared.inside is not None:
-            others = self._union(compared.inside.others, stack)
-            return "other" in self.kinds(compared.fact.at, stack) and others <= {"const"}
+            others = (self.kinds(each, stack) for each in compared.inside.others)
+            only = frozenset[str]().union(*others) <= {"const"}
+            return only and "other" in self.kinds(compared.fact.at, stack)
         if compared.operand < 0:
             return "other" in self.kinds(compared.fact.at, stack)
         own = self.kinds(compared.at.args[compared.operand], stack)
