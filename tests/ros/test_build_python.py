@@ -36,7 +36,7 @@ PLACES = [
 
 @pytest.fixture(scope="module")
 def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    workspace = make_mixed(tmp_path_factory.mktemp("built") / "a workspace")
+    workspace = make_mixed(tmp_path_factory.mktemp("built"))
     build_workspace(workspace)
     return workspace
 
@@ -98,7 +98,7 @@ def test_collect_of_the_build_folder_is_what_was_built(built: Path, tmp_path: Pa
 
 def test_a_build_of_ones_own_is_joined_with_python(tmp_path: Path) -> None:
     workspace = make_mixed(tmp_path)
-    patch.run(workspace, program="test")
+    patch.run(workspace)
     command = ["colcon", "build", "--cmake-args", "-DPYTHON_EXECUTABLE=/usr/bin/python3"]
     subprocess.run(command, cwd=workspace, env=build_environment(), check=True, capture_output=True)
     output = tmp_path / "out.json"
