@@ -11,15 +11,15 @@ import json
 import os
 import sys
 from collections.abc import Iterable, Iterator
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 
 from pytpc.atomic import write_atomic
 from pytpc.errors import InputError
-from pytpc.link_unit import LeftOut
+from pytpc.link_unit import LeftOut, LinkUnit
 from pytpc.pynodes.rules_file import Rules
 from pytpc.python_units import PythonUnits, analysis_files
-from pytpc.static_info import load_link_unit, python_unit_file
+from pytpc.static_info import python_unit_file
 from pytpc.static_json import dump_json, parse_json
 
 KEPT_FILE = "python.json"
@@ -55,26 +55,39 @@ def load_kept(path: Path, build_base: Path, digest: str) -> PythonUnits | None:
         data = parse_json(path)
         if not isinstance(data, dict) or data["digest"] != digest:
             return None
-        files = [python_unit_file(build_base / package, name) for package, name in data["written"]]
-        units = tuple(load_link_unit(file) for file in files)
+        units = tuple(_unit(build_base / package, *which) for package, *which in data["written"])
         return PythonUnits(units, tuple(LeftOut(*left_out) for left_out in data["left_out"]))
-    except (InputError, KeyError, TypeError, ValueError):
+    except (OSError, InputError, KeyError, TypeError, ValueError):
         # It was never written, or somebody changed it: everything is analysed again.
         return None
 
 
-def save_kept(path: Path, digest: str, found: PythonUnits) -> None:
+def _unit(folder: Path, name: str, digest: str) -> LinkUnit:
+    """A unit as it was written: what has not changed need not be checked again.
+
+    Raises:
+        OSError: the file is gone.
+        ValueError: it has changed.
+    """
+    data = python_unit_file(folder, name).read_bytes()
+    if hashlib.sha256(data).hexdigest() != digest:
+        raise ValueError("not as it was written")
+    return replace(LinkUnit.from_checked(json.loads(data)), build_folder=str(folder.absolute()))
+
+
+def save_kept(path: Path, build_base: Path, digest: str, found: PythonUnits) -> None:
     """Remember what was written.
 
     Raises:
         TpcError: the file cannot be written.
+        OSError: one of the units' files cannot be read.
     """
-    data = {
-        "digest": digest,
-        "written": [[unit.package, unit.link_unit] for unit in found.units],
-        "left_out": [[one.package, one.link_unit, one.reason] for one in found.left_out],
-    }
-    write_atomic(path, dump_json(data))
+    written = []
+    for unit in found.units:
+        data = python_unit_file(build_base / unit.package, unit.link_unit).read_bytes()
+        written.append([unit.package, unit.link_unit, hashlib.sha256(data).hexdigest()])
+    left_out = [[one.package, one.link_unit, one.reason] for one in found.left_out]
+    write_atomic(path, dump_json({"digest": digest, "written": written, "left_out": left_out}))
 
 
 def _read_files(root: Path) -> Iterator[Path]:
