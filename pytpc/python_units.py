@@ -6,7 +6,7 @@ The room between ``pynodes``, which analyses one script, and what builds and col
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import count
 from pathlib import Path
@@ -80,8 +80,10 @@ def scripts_of(
     roots = {os.path.realpath(package): package.absolute() for package in packages}
     faults: list[InputError] = []
     found: dict[tuple[Path, str], Entry] = {}
-    below = (folder for root in roots.values() for folder in _test_folders(root))
-    for place in (workspace, *(below if tests else ())):
+    places = [workspace, *_linked(workspace, roots)]
+    if tests:
+        places += [folder for root in roots.values() for folder in _test_folders(root)]
+    for place in places:
         for entry in entries(place, faults.append, rules, [workspace]):
             if os.path.realpath(entry.root) in roots:
                 found.setdefault((entry.script, entry.name), entry)
@@ -115,7 +117,6 @@ def analyse_scripts(
             faults: list[InputError] = []
             unit = replace(analyse_entry(entry, rules, seconds, faults.append), script=script)
             # A text of the source that no JSON can have would stop the whole build.
-            LinkUnit.from_json(unit.to_json(), entry.script)
             dump_json(unit.to_json())
         except InputError as error:
             left_out[_left_out(entry.package, script, error)] = None
@@ -228,6 +229,14 @@ def _is_workspace(folder: Path) -> bool:
     if not folder.is_dir() or (folder / "CMakeCache.txt").is_file():
         return False
     return next(package_folders(folder), None) is not None
+
+
+def _linked(workspace: Path, roots: Mapping[str, Path]) -> Iterator[Path]:
+    """The packages, by their real paths, that are reached by a symbolic link in the workspace."""
+    real_workspace = Path(os.path.realpath(workspace))
+    for real, root in roots.items():
+        if Path(real) != real_workspace / root.relative_to(workspace.absolute()):
+            yield root
 
 
 def _test_folders(root: Path) -> Iterator[Path]:
