@@ -54,6 +54,12 @@ class Details:
         return self.nearest.source_code or f"{self.tpc.relation} {self.nearest.name or self.title}"
 
     @property
+    def shown_defaults(self) -> tuple[str, ...]:
+        """The defaults as the source has them."""
+        python = self.unit.is_python
+        return tuple(shown_default(each, python=python) for each in self.defaults)
+
+    @property
     def meaning(self) -> str:
         """The type in words."""
         return meaning(self.nearest)
@@ -124,12 +130,12 @@ def in_words(transform: Transform) -> str:
     return words
 
 
-def shown_default(default: Default) -> str:
-    """A default as C++ has it; no default is said so."""
+def shown_default(default: Default, *, python: bool = False) -> str:
+    """A default as C++ has it, or Python; no default is said so."""
     if default is None:
         return "none in the source"
     if isinstance(default, bool):
-        return "true" if default else "false"
+        return str(default) if python else str(default).lower()
     return f'"{default}"' if isinstance(default, str) else exact(default)
 
 

@@ -13,7 +13,7 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 from urllib.parse import quote
 
-from pytpc.details import Details, shown_default
+from pytpc.details import Details
 from pytpc.link_unit import LinkUnit, PathStep
 from pytpc.static_info import StaticInfo
 
@@ -195,7 +195,8 @@ def _message(each: Details) -> str:
     topics = list(dict.fromkeys(at.topic for at in each.exposed if at.topic))
     what = f"what is sent on {', '.join(topics)}" if topics else "what the robot sees of this node"
     by = f"on constant {each.title}" if each.tpc.type == "constant" else f"on {each.title}"
-    defaults = [shown_default(default) for default in each.defaults if default is not None]
+    pairs = zip(each.defaults, each.shown_defaults, strict=True)
+    defaults = [shown for default, shown in pairs if default is not None]
     default = f" (default {', '.join(defaults)})" if defaults else ""
     text = " ".join(each.source_text.split())
     return f"{text}: {what} depends {by}{default}."

@@ -27,7 +27,7 @@ from pytpc.cli.sources import PATH, SOURCES, static_of, tell_dropped
 from pytpc.collecting import collect_sources
 from pytpc.condition_lookup import look_up_conditions
 from pytpc.conditions import lines_of
-from pytpc.details import Details, details, shown_default
+from pytpc.details import Details, details
 from pytpc.explain import Explanation, look_up, why_no_comparison
 from pytpc.places import Tpc
 from pytpc.pynodes.rules_file import load_rules
@@ -281,7 +281,7 @@ def _facts(each: Details) -> list[tuple[str, Text]]:
         ("Condition", _origin(each)),
         ("Compared", f"{tpc.relation} {each.nearest.name or each.title}, {each.meaning}"),
         ("Type", tpc.type),
-        ("Default", ", ".join(map(shown_default, each.defaults))),
+        ("Default", ", ".join(each.shown_defaults)),
         ("Read at", ", ".join(each.reads) or "nowhere: it is a constant"),
         (
             "Exposed at",

@@ -14,7 +14,7 @@ from itertools import groupby
 from pathlib import Path
 
 from pytpc.atomic import write_atomic
-from pytpc.details import Details, shown_default
+from pytpc.details import Details
 from pytpc.report.environment import environment
 from pytpc.report.source import LONGEST_LINE, StepView, read_lines, way_of
 from pytpc.static_info import StaticInfo
@@ -129,7 +129,7 @@ def _view(each: Details, ident: str) -> TpcView:
     ]
     facts = [
         ("Compared", f"{tpc.relation} {each.nearest.name or each.title}, {each.meaning}"),
-        ("Default", ", ".join(map(shown_default, each.defaults))),
+        ("Default", ", ".join(each.shown_defaults)),
         ("Read at", ", ".join(each.reads)),
         (
             "Exposed at",

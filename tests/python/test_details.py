@@ -36,6 +36,14 @@ def test_defaults_as_they_are_written(default: Any, shown: str) -> None:
     assert shown_default(default) == shown
 
 
+def test_a_default_in_python_is_as_python_has_it() -> None:
+    assert shown_default(True, python=True) == "True"
+    data = unit(comparisons=[comparison(default=False)])
+    data["tool"] = {**data["tool"], "analysis": "python"}
+    static = StaticInfo.of([LinkUnit.from_json(data, Path("x"))])
+    assert details(static, static.tpcs[0], Answer(None)).shown_defaults == ("False",)
+
+
 def test_what_the_units_say_differently_is_all_there() -> None:
     read = [{"file": "src/detector.cpp", "lineno": 12}, {"file": "src/main.cpp", "lineno": 3}]
     at = {"file": "src/main.cpp", "lineno": 9}

@@ -15,6 +15,7 @@ from click.testing import CliRunner
 from pytpc.cli.main import main
 from pytpc.ingest import read
 from pytpc.node_program import command_of, interpreter_of
+from pytpc.pyhook.listed import names_script, read_table
 
 ROOT = Path(__file__).parents[2]
 RUN = [sys.executable, str(ROOT / "pytpc/run.py")]
@@ -215,6 +216,58 @@ def test_a_relay_of_catkin(package, tmp_path):
     done = run(package, *RUN, relay, "a")
     assert plain.returncode == 0
     assert (done.stdout, done.stderr) == (plain.stdout, plain.stderr)
+    assert reported(package) == BOTH
+
+
+def keys_of(script: Path, *units: dict) -> list[str]:
+    """The keys that count where ``script`` runs, from static information with these units."""
+    static = Path(units[0]["source_root"]) / "units.json"
+    static.write_text(json.dumps({"schema": 1, "units": list(units)}))
+    table = read_table([str(static)], str(script))
+    files = [file for named in table.by_name.values() for file in named]
+    return sorted(one.key for file in files for one in file.comparisons)
+
+
+PYTHON, CPP = {"tool": {"analysis": "python"}}, {"tool": {"llvm": "19"}}
+
+
+def test_a_script_is_told_by_its_file_whatever_its_unit_is_called(tmp_path):
+    def of(key: str, name: str, script: str, **more: object) -> dict:
+        found = comparison(key, "src/lib.py", 1, 1, "x")
+        return {**unit(tmp_path, name, found), **PYTHON, "script": script, **more}
+
+    (tmp_path / "scripts").mkdir()
+    own = tmp_path / "scripts/mission.py"
+    own.touch()
+    (tmp_path / "link").symlink_to(own)
+    cpp = {**unit(tmp_path, "mission", comparison("C++", "src/mission.cpp", 1, 1, "x")), **CPP}
+    units = [
+        cpp,
+        of("own", "scripts/mission.py", "scripts/mission.py", package="one"),
+        of("other", "mission", "nodes/mission.py", package="two"),
+        of("third", "third", "scripts/third.py", package="one"),
+    ]
+    assert keys_of(own, *units) == ["own"]
+    assert keys_of(tmp_path / "link", *units) == ["own"]
+    # Installed: by its name, and its package, which its folder is called after.
+    assert keys_of(tmp_path / "install/lib/two/mission.py", *units) == ["other"]
+    assert keys_of(tmp_path / "install/lib/two/mission", *units) == ["other"]
+    assert keys_of(tmp_path / "copy/mission.py", *units) == ["other", "own"]
+    assert keys_of(tmp_path / "copy/unknown.py", *units) == ["other", "own", "third"]
+    static = [str(tmp_path / "units.json")]
+    assert names_script(static, str(tmp_path / "link"))
+    assert names_script(static, "copy/mission.py")
+    assert not names_script(static, "copy/unknown.py")
+
+
+def test_a_workspace_that_was_built_is_one_source(package, tmp_path):
+    (tmp_path / ".tpc").mkdir()
+    (tmp_path / "static.json").rename(tmp_path / ".tpc/static.json")
+    # What lies about in the workspace is not asked.
+    (tmp_path / "broken.json").write_text("{")
+    node = package / "nodes/node.py"
+    done = run(package, *RUN, "--static", tmp_path, node, "a", TPC_STATIC="")
+    assert (done.returncode, done.stderr) == (0, "")
     assert reported(package) == BOTH
 
 
