@@ -6,7 +6,7 @@ The room between ``pynodes``, which analyses one script, and what builds and col
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import count
 from pathlib import Path
@@ -73,8 +73,10 @@ def scripts_of(workspace: Path, packages: Iterable[Path], *, tests: bool = False
     roots = {os.path.realpath(package): package.absolute() for package in packages}
     faults: list[InputError] = []
     found: dict[tuple[Path, str], Entry] = {}
-    below = (folder for root in roots.values() for folder in _test_folders(root))
-    for place in (workspace, *(below if tests else ())):
+    places = [workspace, *_linked(workspace, roots)]
+    if tests:
+        places += [folder for root in roots.values() for folder in _test_folders(root)]
+    for place in places:
         for entry in entries(place, faults.append):
             if os.path.realpath(entry.root) in roots:
                 found.setdefault((entry.script, entry.name), entry)
@@ -218,6 +220,14 @@ def _is_workspace(folder: Path) -> bool:
     if not folder.is_dir() or (folder / "CMakeCache.txt").is_file():
         return False
     return next(package_folders(folder), None) is not None
+
+
+def _linked(workspace: Path, roots: Mapping[str, Path]) -> Iterator[Path]:
+    """The packages, by their real paths, that are reached by a symbolic link in the workspace."""
+    real_workspace = Path(os.path.realpath(workspace))
+    for real, root in roots.items():
+        if Path(real) != real_workspace / root.relative_to(workspace.absolute()):
+            yield root
 
 
 def _test_folders(root: Path) -> Iterator[Path]:

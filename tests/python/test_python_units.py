@@ -171,6 +171,14 @@ def test_only_the_scripts_of_packages_are_a_workspaces(workspace: Path) -> None:
     assert len(built(workspace).units) == 3
 
 
+def test_a_package_that_is_reached_by_a_link(workspace: Path) -> None:
+    (workspace / "src/camera").rename(workspace.parent / "camera")
+    (workspace / "src/camera").symlink_to(workspace.parent / "camera")
+    roots = {each.link_unit: each.source_root for each in built(workspace).units}
+    assert sorted(roots) == ["node", "pump", "scripts/mission.py"]
+    assert roots["node"] == str(workspace / "src/camera")
+
+
 def collected(workspace: Path, *sources: Path) -> tuple[list[str], list[str]]:
     """Names and what was dropped, where the Python of the workspace is analysed."""
     every = [workspace, *sources]
