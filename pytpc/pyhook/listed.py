@@ -213,6 +213,8 @@ def _document(path: str) -> Any:  # noqa: ANN401
             return json.loads(stream.read().decode("utf-8"))
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror or error}", path) from error
+    except json.JSONDecodeError as error:
+        raise InputError(f"no JSON: {error.msg}", path, error.lineno) from error
     except ValueError as error:
         raise InputError(f"no JSON: {error}", path) from error
 

@@ -85,8 +85,8 @@ def test_without_python_nothing_is_set(tmp_path):
     assert mission_env(env, static) == env
     static.write_text(static_text("nodes/node.py"))
     assert mission_env(env, static)["TPC_STATIC"] == str(static)
-    static.write_text("{")
-    with pytest.raises(InputError, match=r"static\.json: no JSON"):
+    static.write_text('{"units": [\n')
+    with pytest.raises(InputError, match=r"static\.json:2: no JSON"):
         mission_env(env, static)
 
 
