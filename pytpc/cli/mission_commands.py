@@ -12,7 +12,7 @@ import click
 from rich.console import Console
 
 from pytpc.attached import master_of, record_graph, stop_on_signals
-from pytpc.build import workspace_env
+from pytpc.build import installed, workspace_env
 from pytpc.colcon import Bases
 from pytpc.complaints import complaints
 from pytpc.errors import InputError
@@ -82,10 +82,9 @@ def record_command(
         raise click.UsageError("give both WORKSPACE and LAUNCH, or neither of them")
     else:
         launch_arguments = _launch_arguments(args)
-        bases = Bases.of(workspace)
-        env = {**workspace_env(bases.install), **sink_settings(os.environ)}
+        env = {**workspace_env(installed(workspace)), **sink_settings(os.environ)}
         if not no_python:
-            env = mission_env(env, bases.static_info)
+            env = mission_env(env, Bases.of(workspace).static_info)
         with mission_progress(launch.stem) as advance:
             run = run_mission(
                 env,
