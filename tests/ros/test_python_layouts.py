@@ -75,10 +75,11 @@ if __name__ == "__main__":
         if x < lowest:
             out.publish(-x)
     done.publish(True)
-    rospy.sleep(rospy.get_param("~stay"))
+    if rospy.get_param("~stay"):
+        rospy.spin()
 """,
     "launch/talk.launch": """<launch>
-  <arg name="stay" default="0.5"/>
+  <arg name="stay" default="false"/>
   <node pkg="talk" type="talker.py" name="talker" required="true" output="screen">
     <param name="stay" value="$(arg stay)"/>
     <param name="limit" value="3.0"/>
@@ -155,8 +156,8 @@ def check(reports: Path, static: Path) -> None:
 def test_record_has_the_reports_of_python_nodes(name, request, tmp_path):
     workspace: Path = request.getfixturevalue(name)
     out = tmp_path / "out"
-    command = ["record", str(workspace), str(workspace / LAUNCH), "stay:=60", "-o", str(out)]
-    options = ["--until", "/mission/done", "--wall-time", "--timeout", "60"]
+    command = ["record", str(workspace), str(workspace / LAUNCH), "stay:=true", "-o", str(out)]
+    options = ["--until", "/mission/done", "--wall-time", "--timeout", str(PATIENCE_S)]
     env = {"TPC_SINK": "file", "TPC_FILE_RESERVE": "0"}
     done = CliRunner().invoke(main, [*command, *options], env=env)
     assert done.exit_code == 0, done.output
