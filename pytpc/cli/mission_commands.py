@@ -82,12 +82,9 @@ def record_command(
         raise click.UsageError("give both WORKSPACE and LAUNCH, or neither of them")
     else:
         launch_arguments = _launch_arguments(args)
-        env = {**workspace_env(installed(workspace)), **sink_settings(os.environ)}
-        if not no_python:
-            env = mission_env(env, Bases.of(workspace).static_info)
         with mission_progress(launch.stem) as advance:
             run = run_mission(
-                env,
+                _env_of(workspace, python=not no_python),
                 launch,
                 launch_arguments,
                 output,
@@ -116,6 +113,11 @@ def record_command(
         for complaint in complaints(recording):
             click.echo(f"warning: {complaint}", err=True)
         click.echo(f"{many(outcome.events, 'report')} in Parquet: {output}")
+
+
+def _env_of(workspace: Path, *, python: bool) -> dict[str, str]:
+    env = {**workspace_env(installed(workspace)), **sink_settings(os.environ)}
+    return mission_env(env, Bases.of(workspace).static_info) if python else env
 
 
 def _record_graph(
