@@ -24,6 +24,7 @@ from pytpc.left_alone import LeftAlone
 from pytpc.paths import (
     SYSTEM_PATH,
     cmake_file,
+    cmake_place,
     log_library,
     plugin,
     require_ros,
@@ -229,6 +230,10 @@ def workspace_env(install_base: Path, begin: Mapping[str, str] | None = None) ->
 
 def _require_all(packages: Sequence[Package]) -> Path:
     """See that everything is there before anything is written; returns tpc.cmake."""
+    if not any(package.cmakelists.is_file() for package in packages):
+        # Nothing is compiled: colcon is all that a workspace in Python alone needs.
+        require_tools(["colcon"])
+        return cmake_place()
     require_tools()
     if any(package.build_type == "catkin" for package in packages):
         require_ros()

@@ -6,6 +6,7 @@ Field names of the classes are the names in the JSON (docs/formats.md).
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -252,7 +253,12 @@ class LinkUnit:
         Raises:
             InputError: the object breaks the schema; the message has the JSON pointer.
         """
-        unit = dict(check_unit(data, path, pointer))
+        return cls.from_checked(check_unit(data, path, pointer))
+
+    @classmethod
+    def from_checked(cls, data: Mapping[str, Any]) -> LinkUnit:
+        """Build a unit from JSON of which it is known that it keeps to the schema."""
+        unit = dict(data)
         del unit["schema"]
         unit["tool"] = Tool(**unit["tool"])
         unit["counts"] = Counts(**unit["counts"])

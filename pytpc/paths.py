@@ -28,6 +28,7 @@ BUILD_TOOLS: Mapping[str, str] = {
 }
 ROS_PACKAGES = "ros-core-dev libroscpp-dev"
 ROS_PREFIXES = [*sorted(Path("/opt/ros").glob("*")), Path("/usr")]
+_CMAKE_FILE = "share/tpc/cmake/tpc.cmake"
 _ROS_PLACES = {
     "catkin": "share/catkin/cmake/catkinConfig.cmake",
     "roscpp": "include/ros/ros.h",
@@ -54,7 +55,12 @@ def cmake_file() -> Path:
     Raises:
         MissingToolError: it is not there; the message says how to install it.
     """
-    return _installed("share/tpc/cmake/tpc.cmake")
+    return _installed(_CMAKE_FILE)
+
+
+def cmake_place() -> Path:
+    """Where tpc.cmake is, or would be: it need not exist."""
+    return prefix() / _CMAKE_FILE
 
 
 def plugin() -> Path:

@@ -5,11 +5,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 
 from pytpc.link_unit import LinkUnit
 from pytpc.pynodes.rules_file import Rules
+from pytpc.python_kept import KEPT_FILE, digest_of, load_kept, save_kept
 from pytpc.python_units import (
     Name,
     PythonUnits,
@@ -36,8 +37,8 @@ def python_of_build(
 ) -> PythonUnits:
     """Analyse the scripts of ``chosen``; of the other packages take what was written before.
 
-    Each unit is written to its file below ``build_base``, and files of scripts that are no more
-    are removed.
+    Where nothing has changed since, what was written of ``chosen`` is taken, too. Each unit is
+    written to its file below ``build_base``, and files of scripts that are no more are removed.
 
     Args:
         workspace: the folder with all packages.
@@ -53,25 +54,43 @@ def python_of_build(
         InputError: a file of an earlier build is broken.
         TpcError: a file cannot be written.
     """
-    built = {package.name for package in chosen}
+    kept_file = build_base.parent / KEPT_FILE
     if rules is None:
+        kept_file.unlink(missing_ok=True)
         found = PythonUnits()
     else:
-        scripts = scripts_of(workspace, [package.path for package in chosen], tests=tests)
-        found = analyse_scripts(scripts, rules, on_progress)
-    names = set(taken).union(*(target_names(build_base / package.name) for package in chosen))
-    units = write_units(build_base, named_beside(found.units, names))
-    written = {python_unit_file(build_base / unit.package, unit.link_unit) for unit in units}
+        names = set(taken).union(*(target_names(build_base / package.name) for package in chosen))
+        chosen_names = [package.name for package in chosen]
+        asked = (str(build_base), str(tests), str(chosen_names), str(sorted(names)))
+        digest = digest_of([package.path for package in packages], rules, asked)
+        kept = load_kept(kept_file, build_base, digest)
+        if kept is not None:
+            found = kept
+        else:
+            scripts = scripts_of(workspace, [package.path for package in chosen], tests=tests)
+            fresh = analyse_scripts(scripts, rules, on_progress)
+            units = write_units(build_base, named_beside(fresh.units, names))
+            found = PythonUnits(tuple(units), fresh.left_out)
+            save_kept(kept_file, build_base, digest, found)
+    others = _others(build_base, packages, chosen, found)
+    return PythonUnits((*found.units, *others), found.left_out)
+
+
+def _others(
+    build_base: Path, packages: Iterable[Package], chosen: Iterable[Package], found: PythonUnits
+) -> Iterator[LinkUnit]:
+    """What stays of packages that were not built; files of scripts that are no more are removed."""
+    built = {package.name for package in chosen}
+    written = {python_unit_file(build_base / each.package, each.link_unit) for each in found.units}
     for package in packages:
         for path in _files(build_base / package.name):
-            if package.name not in built:
-                unit = load_link_unit(path)
-                if not _is_gone(unit):
-                    units.append(unit)
-                    written.add(path)
-            if path not in written:
+            if path in written:
+                continue
+            unit = None if package.name in built else load_link_unit(path)
+            if unit is None or _is_gone(unit):
                 path.unlink()
-    return PythonUnits(tuple(units), found.left_out)
+            else:
+                yield unit
 
 
 def _is_gone(unit: LinkUnit) -> bool:

@@ -105,7 +105,6 @@ def analyse_scripts(
         try:
             unit = replace(analyse_entry(entry, rules), script=script)
             # A text of the source that no JSON can have would stop the whole build.
-            LinkUnit.from_json(unit.to_json(), entry.script)
             dump_json(unit.to_json())
         except InputError as error:
             left_out.append(_left_out(entry.package, script, error))

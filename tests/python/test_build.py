@@ -286,6 +286,19 @@ def test_python_nodes_are_analysed_behind_the_build(workspace: Path, colcon: Fak
     assert [found.link_unit for found in without.units] == ["mission"]
 
 
+def test_python_alone_needs_neither_a_compiler_nor_our_half_in_c(
+    tmp_path: Path, colcon: FakeColcon, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    workspace = make_mixed(tmp_path / "ws")
+    shutil.rmtree(workspace / "src/mission")
+    monkeypatch.setenv("TPC_PREFIX", str(tmp_path / "none"))
+    asked: list[str] = []
+    monkeypatch.setattr(build, "require_tools", asked.extend)
+    colcon.logs(OK_EVENTS)
+    assert [found.link_unit for found in build_workspace(workspace).units] == ["node"]
+    assert asked == ["colcon"]
+
+
 def test_broken_rules_for_python_end_a_build_before_it_begins(workspace: Path) -> None:
     rules = workspace / "python.json"
     rules.write_text('{"reeds": []}', encoding="utf-8")

@@ -57,6 +57,7 @@ def test_build_hands_over_its_options_and_shows_the_result(
             left_out=[LeftOut("face", "thin", "it is a test")],
         )
         alone = {"leg": "a.cpp:1: error: no"}
+        options["on_scripts"](1, 2)
         return BuildResult(options["bases"], (), static, alone, 12.34)
 
     monkeypatch.setattr(workspace_commands, "build_workspace", fake)

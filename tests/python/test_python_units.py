@@ -4,17 +4,21 @@
 """
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
-from mixed_workspace import BROKEN_TEXT, PUMP_PY, make_mixed
+from mixed_workspace import BROKEN_TEXT, CAMERA, PUMP_PY, make_mixed
 from static_units import unit
 
+from pytpc import python_units
 from pytpc.cli.main import main
 from pytpc.collecting import collect_sources
 from pytpc.link_unit import LinkUnit
-from pytpc.pynodes.rules_file import load_rules
+from pytpc.pynodes.analysis import analyse_entry
+from pytpc.pynodes.packages import Entry
+from pytpc.pynodes.rules_file import Rules, load_rules
 from pytpc.python_build import python_of_build
 from pytpc.python_units import PythonUnits, analyse_workspaces, named_beside
 from pytpc.static_info import StaticInfo, load_link_unit, unit_files
@@ -169,6 +173,68 @@ def test_only_the_scripts_of_packages_are_a_workspaces(workspace: Path) -> None:
     loose.mkdir(parents=True)
     (loose / "loose.py").write_text(PUMP_PY, encoding="utf-8")
     assert len(built(workspace).units) == 3
+
+
+@pytest.fixture
+def analysed(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The scripts that were analysed, one after another."""
+    log: list[str] = []
+
+    def analyse(entry: Entry, rules: Rules) -> LinkUnit:
+        log.append(entry.name)
+        return analyse_entry(entry, rules)
+
+    monkeypatch.setattr(python_units, "analyse_entry", analyse)
+    return log
+
+
+ONCE = ["node", "mission", "pump"]
+
+
+def test_what_has_not_changed_is_not_analysed_again(workspace: Path, analysed: list[str]) -> None:
+    first = built(workspace)
+    (workspace / "src/mission/src/mission.cpp").write_text("int x;", encoding="utf-8")
+    assert built(workspace) == first
+    assert analysed == ONCE
+
+
+def no_shebang(workspace: Path) -> None:
+    """A script without a suffix, which is none any more."""
+    (workspace / "src/mission/scripts/bare").write_text("nothing", encoding="utf-8")
+
+
+CHANGES: dict[str, Callable[[Path], object]] = {
+    "a module": lambda ws: (ws / "src/mission/src/sampling/limits.py").write_text("x = 1"),
+    "a new module": lambda ws: (ws / "src/mission/scripts/rospy.py").write_text("x = 1"),
+    "a broken script": lambda ws: (ws / "src/mission/scripts/broken.py").write_text("x = 1"),
+    "a script without a suffix": no_shebang,
+    "a package": lambda ws: (ws / "src/camera/package.xml").write_text(CAMERA + "<!-- -->"),
+    "a file of ours": lambda ws: (ws / ".tpc/build/camera/tpc/node@python.json").unlink(),
+    "a broken file of ours": lambda ws: (ws / ".tpc/python.json").write_text("[]"),
+}
+
+
+@pytest.mark.parametrize("change", CHANGES)
+def test_what_has_changed_is_analysed_again(
+    workspace: Path, analysed: list[str], change: str
+) -> None:
+    bare = workspace / "src/mission/scripts/bare"
+    bare.write_text("#!/usr/bin/python3\n", encoding="utf-8")
+    built(workspace)
+    CHANGES[change](workspace)
+    built(workspace)
+    assert len(analysed) == 6
+
+
+def test_other_wishes_are_analysed_again(workspace: Path, analysed: list[str]) -> None:
+    built(workspace)
+    built(workspace, taken=())
+    built(workspace, "camera", tests=True)
+    assert len(analysed) == 9
+    built(workspace, python=False)
+    assert files(workspace) == []
+    built(workspace, "camera", tests=True)
+    assert len(analysed) == 12
 
 
 def test_a_package_that_is_reached_by_a_link(workspace: Path) -> None:
