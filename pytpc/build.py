@@ -184,6 +184,16 @@ def build_workspace(
     return BuildResult(place, tuple(chosen), static, alone.reasons, seconds)
 
 
+def installed(workspace: Path) -> Path:
+    """The folder whose ``setup.bash`` is a workspace's: of ``pytpc build``, else of another build.
+
+    Of these ``install`` comes before ``devel``. That of ``pytpc build`` where there is none.
+    """
+    ours = Bases.of(workspace).install
+    places = (ours, workspace / "install", workspace / "devel")
+    return next((place for place in places if (place / "setup.bash").is_file()), ours)
+
+
 def workspace_env(install_base: Path, begin: Mapping[str, str] | None = None) -> dict[str, str]:
     """The environment in which the nodes of an installed workspace run.
 

@@ -8,15 +8,13 @@ from pathlib import Path
 
 import click
 
-from pytpc.build import workspace_env
+from pytpc.build import installed, workspace_env
 from pytpc.cli.console import warn
 from pytpc.cli.options import PATH
 from pytpc.errors import InputError, WorkspaceError
 from pytpc.paths import MERGED_FILE, OWN_FOLDER
 from pytpc.python_env import has_python, with_python, without_python
 from pytpc.shell_words import SHELLS, Change
-
-_SPACES = (f"{OWN_FOLDER}/install", "install", "devel")
 
 
 @click.command("env")
@@ -53,7 +51,7 @@ def _on(source: Path | None, before: dict[str, str], *, setup: bool) -> dict[str
     static = static_file(source)
     after = before
     if setup:
-        after = {**before, **workspace_env(_installed(source or Path()), before)}
+        after = {**before, **workspace_env(installed(source or Path()), before)}
     if not has_python(static):
         warn(f"{static}: no comparisons in Python, so that there is nothing to set")
         return after
@@ -83,17 +81,6 @@ def static_file(source: Path | None) -> Path:
             source,
         )
     return static
-
-
-def _installed(workspace: Path) -> Path:
-    found = [folder for folder in (workspace / name for name in _SPACES) if _has_setup(folder)]
-    if not found:
-        raise WorkspaceError(f"no setup.bash in {', '.join(_SPACES)}", workspace)
-    return found[0]
-
-
-def _has_setup(folder: Path) -> bool:
-    return (folder / "setup.bash").is_file()
 
 
 COMMANDS: list[click.Command] = [env_command]

@@ -12,7 +12,7 @@ import click
 from rich.console import Console
 
 from pytpc.attached import master_of, record_graph, stop_on_signals
-from pytpc.build import workspace_env
+from pytpc.build import installed, workspace_env
 from pytpc.colcon import Bases
 from pytpc.complaints import complaints
 from pytpc.errors import InputError
@@ -82,13 +82,9 @@ def record_command(
         raise click.UsageError("give both WORKSPACE and LAUNCH, or neither of them")
     else:
         launch_arguments = _launch_arguments(args)
-        bases = Bases.of(workspace)
-        env = {**workspace_env(bases.install), **sink_settings(os.environ)}
-        if not no_python:
-            env = mission_env(env, bases.static_info)
         with mission_progress(launch.stem) as advance:
             run = run_mission(
-                env,
+                _env_of(workspace, python=not no_python),
                 launch,
                 launch_arguments,
                 output,
@@ -117,6 +113,11 @@ def record_command(
         for complaint in complaints(recording):
             click.echo(f"warning: {complaint}", err=True)
         click.echo(f"{many(outcome.events, 'report')} in Parquet: {output}")
+
+
+def _env_of(workspace: Path, *, python: bool) -> dict[str, str]:
+    env = {**workspace_env(installed(workspace)), **sink_settings(os.environ)}
+    return mission_env(env, Bases.of(workspace).static_info) if python else env
 
 
 def _record_graph(

@@ -14,9 +14,8 @@ from rich.table import Table
 from rich.text import Text
 
 from pytpc.attached import master_of
-from pytpc.build import workspace_env
+from pytpc.build import installed, workspace_env
 from pytpc.cli.console import console, progress, warn
-from pytpc.colcon import Bases
 from pytpc.errors import InputError
 from pytpc.values.apply import Change, apply_change, change_as_json, diff_of, shown
 from pytpc.values.journal import Entry, Journal, folder_of
@@ -154,7 +153,7 @@ def _target(path: Path, words: Sequence[str], workspace: Path | None) -> Target:
     }
     env: Mapping[str, str] = os.environ
     if workspace is not None:
-        env = workspace_env(Bases.of(workspace).install)
+        env = workspace_env(installed(workspace))
     if is_yaml(path):
         raise InputError("a YAML file says nothing of where else values come from", path)
     with progress(f"reading {path.name}"):

@@ -69,7 +69,8 @@ def build_command(
 ) -> None:
     """Build a workspace with analysis and instrumentation; its files stay as they are.
 
-    Its Python nodes are analysed, too; they report when they are run by `pytpc run` or `record`.
+    Its Python nodes are analysed, too; they report when `pytpc record` starts them, or a shell that
+    did what `pytpc env` prints.
     """
     bases = Bases(base.absolute()) if base is not None else None
     try:

@@ -146,7 +146,10 @@ def names_script(paths: Iterable[str], script: str) -> bool:
     program, real = program_of(script), os.path.realpath(script)
     units = [unit for unit in _all_units(paths) if unit.files]
     return any(
-        unit.is_called(program.stem) or unit.is_of(real) or unit.has(program.files)
+        unit.is_called(program.stem)
+        or unit.is_of(real)
+        or unit.runs(program.files)
+        or unit.has(program.files)
         for unit in units
     )
 
@@ -166,9 +169,13 @@ def _of_script(units: list[_Unit], script: str) -> list[_Unit]:
     """
     program = program_of(script)
     real = os.path.realpath(script)
-    running = [unit for unit in units if unit.has(program.files)]
-    if running:
-        return [unit for unit in running if unit.runs(program.files)] or running
+    if program.module is not None:
+        running = [unit for unit in units if unit.runs(program.files)]
+        # A module may have several entry points, whose units are called after them.
+        begun = [unit for unit in running if unit.name == program.stem]
+        others = [unit for unit in units if unit.has(program.files)]
+        if begun or running or others:
+            return begun or running or others
     named = [unit for unit in units if unit.is_called(program.stem)]
     exact = [unit for unit in units if unit.is_of(real)]
     inside = [
@@ -206,6 +213,8 @@ def _document(path: str) -> Any:  # noqa: ANN401
             return json.loads(stream.read().decode("utf-8"))
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror or error}", path) from error
+    except json.JSONDecodeError as error:
+        raise InputError(f"no JSON: {error.msg}", path, error.lineno) from error
     except ValueError as error:
         raise InputError(f"no JSON: {error}", path) from error
 

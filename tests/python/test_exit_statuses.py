@@ -58,6 +58,7 @@ FOLDERS: Mapping[str, Sequence[str]] = {
     "build": (INPUT,),
     "collect": (INPUT,),
     "doctor": (INPUT,),
+    "env": (INPUT,),
     "origin": (INPUT,),
     "patch": (INPUT,),
     "record": (INPUT, "robot.launch", "-o", "out"),

@@ -150,10 +150,32 @@ def test_scripts_of_other_packages_entry_points_are_none_of_ours(static, tmp_pat
     assert names_script([str(static)], str(script(tmp_path, "import talk\n", "tool.py")))
 
 
-def test_an_entry_point_has_the_keys_of_its_module(static, tmp_path):
-    table = read_table([str(static)], str(script(tmp_path, BY_PIP)))
-    keys = {one.key for files in table.by_name.values() for f in files for one in f.comparisons}
-    assert keys == {"of talk/talker.py"}
+def keys_of(static: Path, path: Path) -> set[str]:
+    files = [
+        file for named in read_table([str(static)], str(path)).by_name.values() for file in named
+    ]
+    return {one.key for file in files for one in file.comparisons}
+
+
+def test_an_entry_point_has_the_keys_of_its_unit(static, tmp_path):
+    path = script(tmp_path, BY_PIP)
+    assert keys_of(static, path) == {"of talk/talker.py"}
+    # Another entry point begins in the same module, at another function.
+    document = json.loads(static.read_text())
+    second = unit(tmp_path / "src/talk", "talker_node", "talk/talker.py")
+    second["comparisons"][0]["key"] = "of talker_node"
+    document["units"].append(second)
+    static.write_text(json.dumps(document))
+    assert keys_of(static, path) == {"of talker_node"}
+    # Only a module that it imports has comparisons: it is a node all the same.
+    for one in document["units"]:
+        one["comparisons"][0]["file"] = "talk/limits.py"
+    static.write_text(json.dumps({**document, "units": document["units"][1:2]}))
+    assert names_script([str(static)], str(path))
+    # Without the unit of its own, those that share the module.
+    document["units"] = [unit(tmp_path / "src/talk", "tool", "scripts/tool.py")]
+    static.write_text(json.dumps(document))
+    assert keys_of(static, path) == {"of scripts/tool.py"}
 
 
 @pytest.mark.parametrize(
@@ -211,6 +233,6 @@ def test_a_workspace_that_is_found_broken_ends_no_program(static, tmp_path):
     built.write_text("{")
     off = {"TPC_STATIC": "", "TPC_PYTHON": ""}
     said = run(static, sys.executable, RUN, script(tmp_path, BY_PIP), "a", "b", cwd=tmp_path, **off)
-    assert said.splitlines()[0].startswith(f"tpc: {built}: no JSON")
+    assert said.splitlines()[0].startswith(f"tpc: {built}:1: no JSON")
     assert said.splitlines()[-1] == "many"
     assert reported(static) == []

@@ -11,6 +11,7 @@ import pytest
 from click.testing import CliRunner
 
 import pytpc
+from pytpc.build import installed
 from pytpc.cli import mission_commands
 from pytpc.cli.main import main
 from pytpc.errors import InputError
@@ -85,8 +86,8 @@ def test_without_python_nothing_is_set(tmp_path):
     assert mission_env(env, static) == env
     static.write_text(static_text("nodes/node.py"))
     assert mission_env(env, static)["TPC_STATIC"] == str(static)
-    static.write_text("{")
-    with pytest.raises(InputError, match=r"static\.json: no JSON"):
+    static.write_text('{"units": [\n')
+    with pytest.raises(InputError, match=r"static\.json:2: no JSON"):
         mission_env(env, static)
 
 
@@ -157,7 +158,8 @@ def test_a_workspace_without_python_sets_nothing(workspace):
 @pytest.mark.parametrize("place", [".tpc/install", "install", "devel"])
 def test_setup_is_sourced_in_the_callers_environment(workspace, place):
     status, _, said = invoke(str(workspace), "--setup")
-    assert (status, "no setup.bash in .tpc/install, install, devel" in said) == (1, True)
+    assert status == 1
+    assert f"{workspace}/.tpc/install: no setup.bash here: build the workspace first" in said
     (workspace / place).mkdir(parents=True)
     (workspace / place / "setup.bash").write_text(
         'export PYTHONPATH="/ws/lib:$PYTHONPATH"; export ROS_PACKAGE_PATH=/ws/share; echo said\n'
@@ -168,6 +170,15 @@ def test_setup_is_sourced_in_the_callers_environment(workspace, place):
     assert found["set"]["ROS_PACKAGE_PATH"] == "/ws/share"
     assert set(found["set"]) == {"PYTHONPATH", "ROS_PACKAGE_PATH", "TPC_PYTHON", "TPC_STATIC"}
     assert found["unset"] == []
+
+
+def test_the_space_of_a_workspace(tmp_path):
+    """That of `pytpc build` before those of other builds; and what is told where there is none."""
+    assert installed(tmp_path) == tmp_path / ".tpc/install"
+    for place in ("devel", "install", ".tpc/install"):
+        (tmp_path / place).mkdir(parents=True)
+        (tmp_path / place / "setup.bash").touch()
+        assert installed(tmp_path) == tmp_path / place
 
 
 def test_off_and_setup_do_not_go_together(workspace):

@@ -158,6 +158,29 @@ def test_landing_without_having_pumped_is_type1():
     assert marks[0].time > 15.5
 
 
+def test_waiting_for_a_moment_does_not_change_how_fast_a_person_is():
+    # The pump stops at 21 s with a third of a vial. Before, the UAV goes evenly down, or stands
+    # twice on its way, for 1.5 s: nobody loses patience, which is over 5 s.
+    pumping = [
+        (17.0, AT_TANK, 1.5, True, 0.0),
+        (21.0, AT_TANK, 1.5, True, 0.33),
+        *home(21.0, 0.33),
+    ]
+    evenly = [*BEGIN, (16.0, AT_TANK, 1.5, False, 0.0), *pumping]
+    standing = [
+        *BEGIN,
+        (9.5, AT_TANK, 2.2, False, 0.0),
+        (11.0, AT_TANK, 2.2, False, 0.0),
+        (13.0, AT_TANK, 1.8, False, 0.0),
+        (14.5, AT_TANK, 1.8, False, 0.0),
+        (16.0, AT_TANK, 1.5, False, 0.0),
+        *pumping,
+    ]
+    for seed in range(20):
+        assert watch(evenly, seed) == watch(standing, seed)
+        assert len(watch(evenly, seed)) == 1
+
+
 def test_same_seed_same_marks():
     phases = [*BEGIN, (60.0, AT_TANK, 2.4, False, 0.0)]
     assert watch(phases, seed=5) == watch(phases, seed=5)

@@ -75,10 +75,11 @@ if __name__ == "__main__":
         if x < lowest:
             out.publish(-x)
     done.publish(True)
-    rospy.sleep(rospy.get_param("~stay"))
+    if rospy.get_param("~stay"):
+        rospy.spin()
 """,
     "launch/talk.launch": """<launch>
-  <arg name="stay" default="0.5"/>
+  <arg name="stay" default="false"/>
   <node pkg="talk" type="talker.py" name="talker" required="true" output="screen">
     <param name="stay" value="$(arg stay)"/>
     <param name="limit" value="3.0"/>
@@ -113,7 +114,7 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def devel(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A workspace that catkin_make built, without anything of TPC."""
+    """A workspace that catkin_make built without anything of TPC, and its static information."""
     workspace = write_workspace(tmp_path_factory.mktemp("devel"))
     ran = subprocess.run(
         ["catkin_make"],
@@ -125,6 +126,9 @@ def devel(tmp_path_factory: pytest.TempPathFactory) -> Path:
         timeout=PATIENCE_S,
     )
     assert ran.returncode == 0, ran.stderr
+    static = str(workspace / ".tpc/static.json")
+    collected = CliRunner().invoke(main, ["collect", str(workspace), "-o", static])
+    assert collected.exit_code == 0, collected.output
     return workspace
 
 
@@ -148,14 +152,17 @@ def check(reports: Path, static: Path) -> None:
     assert (found.malformed, found.notes) == (0, ())
 
 
-def test_record_has_the_reports_of_an_installed_node(built, tmp_path):
-    command = ["record", str(built), str(built / LAUNCH), "stay:=60", "-o", str(tmp_path / "out")]
-    options = ["--until", "/mission/done", "--wall-time", "--timeout", "60"]
+@pytest.mark.parametrize("name", ["built", "devel"])
+def test_record_has_the_reports_of_python_nodes(name, request, tmp_path):
+    workspace: Path = request.getfixturevalue(name)
+    out = tmp_path / "out"
+    command = ["record", str(workspace), str(workspace / LAUNCH), "stay:=true", "-o", str(out)]
+    options = ["--until", "/mission/done", "--wall-time", "--timeout", str(PATIENCE_S)]
     env = {"TPC_SINK": "file", "TPC_FILE_RESERVE": "0"}
     done = CliRunner().invoke(main, [*command, *options], env=env)
     assert done.exit_code == 0, done.output
     assert "(done)" in done.output
-    check(tmp_path / "out/tpc", built / ".tpc/static.json")
+    check(out / "tpc", workspace / ".tpc/static.json")
 
 
 def roslaunch(tmp_path: Path, words: str, launch: Path) -> str:
@@ -186,13 +193,10 @@ def pytpc_env(*words: str | Path) -> str:
 
 
 def test_env_and_roslaunch_in_a_devel_space(devel, tmp_path):
-    static = devel / ".tpc/static.json"
-    collected = CliRunner().invoke(main, ["collect", str(devel), "-o", str(static)])
-    assert collected.exit_code == 0, collected.output
     words = f"source {shlex.quote(str(devel / 'devel/setup.bash'))}; {pytpc_env(devel)}"
     said = roslaunch(tmp_path, words, devel / LAUNCH)
     assert "tpc:" not in said
-    check(tmp_path / "tpc", static)
+    check(tmp_path / "tpc", devel / ".tpc/static.json")
 
 
 def test_env_with_setup_in_an_install_space(built, tmp_path):

@@ -91,8 +91,9 @@ def test_mission_goes_as_its_treatment_demands(robot, fly, name):
     reporting = {robot.static.unit_of(key).link_unit for key in events.keys}
     python_node = "mission_fault" if name == "fault_dip_depth" else "mission"
     assert reporting == IN_CPP | {python_node}
-    # What the thesis saw is 126 to 456 comparisons a second (SPEC 11).
-    assert 300.0 < mission.run.reports / mission.run.sim_s < 600.0
+    # What the thesis saw is 126 to 456 comparisons a second (SPEC 11). The seconds in which a busy
+    # machine ends the graph count, too.
+    assert 150.0 < mission.run.reports / mission.run.sim_s < 600.0
 
 
 def test_many_parameters_act_in_a_clean_mission(robot, fly):

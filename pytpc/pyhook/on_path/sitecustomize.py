@@ -66,12 +66,12 @@ def _may_be_named(script: str, paths: "list[str]") -> bool:
 def _is_in(text: bytes, name: bytes) -> bool:
     """Whether a JSON string is this name, or ends with it behind a slash, with .py or without."""
     stem = name[:-3] if name.endswith(b".py") else name
-    for mark in (stem + b'"', stem + b'.py"'):
-        place = text.find(mark)
-        while place > 0:
-            if text[place - 1] in b'"/':
-                return True
-            place = text.find(mark, place + 1)
+    place = text.find(stem)
+    while place > 0:
+        end = place + len(stem)
+        if text[place - 1] in b'"/' and text.startswith((b'"', b'.py"'), end):
+            return True
+        place = text.find(stem, end)
     return False
 
 

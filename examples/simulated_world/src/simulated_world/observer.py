@@ -57,7 +57,9 @@ class Person(Generic[SightT]):
 
     def __init__(self, seed: int) -> None:
         """``seed`` is for the delays of this person."""
-        self._random = random.Random(seed)
+        # Apart, so that a moment's hesitation does not change how fast this person is later.
+        self._reaction = random.Random(seed)
+        self._patience = random.Random(f"patience {seed}")
         self._pending: list[Mark] = []
         self._waiting_until: float | None = None
         self.recent: deque[SightT] = deque()
@@ -78,7 +80,7 @@ class Person(Generic[SightT]):
 
     def press(self, topic: str, cause: float, reason: str) -> None:
         """Press a key, a reaction's time after the cause."""
-        delay = self._random.lognormvariate(math.log(REACTION_MEDIAN_S), REACTION_SIGMA)
+        delay = self._reaction.lognormvariate(math.log(REACTION_MEDIAN_S), REACTION_SIGMA)
         self._pending.append(Mark(cause + delay, topic, reason))
 
     def wait(self, sight: SightT, waiting: bool, reason: str) -> None:
@@ -92,12 +94,12 @@ class Person(Generic[SightT]):
             self._waiting_until = None
             return
         if self._waiting_until is None:
-            patience = max(self.least_patience_s, self._random.gauss(*PATIENCE_S))
+            patience = max(self.least_patience_s, self._patience.gauss(*PATIENCE_S))
             self._waiting_until = sight.time + patience
         if sight.time < self._waiting_until:
             return
         self.press(TYPE_II, sight.time, reason)
-        self._waiting_until = sight.time + self._random.uniform(*REPEAT_S)
+        self._waiting_until = sight.time + self._patience.uniform(*REPEAT_S)
 
     def give_up(self) -> None:
         """What was waited for came, or can come no more."""

@@ -53,7 +53,8 @@ bool WaterModel::aboveTank() const {
 }
 
 void WaterModel::spray(double interval) {
-  // The rotors' wind throws drops at the tip when the UAV is low over water.
+  // The rotors' wind throws drops at the tip when the UAV is low over water;
+  // lower still, it presses the water flat.
   const double above = tip_z_ - WaterLevel;
   if (!aboveTank() || above < SprayLowest || above > SprayHighest) {
     spray_left_ = 0.0;
