@@ -29,12 +29,23 @@ from pytpc.paths import (
     require_ros,
     require_tools,
 )
+from pytpc.pynodes.rules_file import Rules, load_rules
+from pytpc.python_build import python_of_build
+from pytpc.python_units import names_of
 from pytpc.reconcile import left_out_units, stale_files
 from pytpc.rules import check_rules
-from pytpc.static_info import LeftOut, LinkUnit, StaticInfo, collect, unit_files
+from pytpc.static_info import (
+    LeftOut,
+    LinkUnit,
+    StaticInfo,
+    is_python_file,
+    load_link_unit,
+    unit_files,
+)
 from pytpc.workspace import (
     Package,
     find_packages,
+    packages_up_to,
     read_cmakelists,
     refuse_cycles,
     select_packages,
@@ -73,10 +84,15 @@ def build_workspace(
     tests: bool = False,
     fallback: bool = True,
     retry: bool = False,
+    python: bool = True,
+    python_rules: Path | None = None,
     bases: Bases | None = None,
     on_output: Callable[[str], None] | None = None,
+    on_scripts: Callable[[int, int], None] | None = None,
 ) -> BuildResult:
     """Build a workspace with analysis and instrumentation, and read what the analysis found.
+
+    The Python nodes are analysed when the packages are built; nothing is done to them.
 
     Args:
         workspace: folder with packages; no file of theirs is changed.
@@ -86,11 +102,14 @@ def build_workspace(
         cmake_args: further arguments for each package's CMake.
         colcon_args: further arguments for colcon.
         constants: have comparisons with constants reported, too.
-        tests: have test programs analysed and reporting, too.
+        tests: have test programs analysed and reporting, too; and scripts in folders of tests.
         fallback: build a package that does not build with TPC without it.
         retry: try the packages again that earlier builds left alone.
+        python: analyse Python nodes; without, those of an earlier build are forgotten.
+        python_rules: the user's own rules for Python.
         bases: where everything is put; ``.tpc`` in the workspace by default.
         on_output: called with each line that colcon writes.
+        on_scripts: called with (scripts analysed, scripts in all).
 
     Raises:
         WorkspaceError: no packages, an unknown name, a folder that cannot be written or that
@@ -111,6 +130,7 @@ def build_workspace(
         read_cmakelists(package)
     if rules is not None:
         check_rules(rules)
+    for_python = _python_rules(python_rules, (*cmake_args, *colcon_args), constants=constants)
     toolchain = _require_all(found)
     place = bases if bases is not None else Bases.of(workspace)
     with_ours = not any("CMAKE_TOOLCHAIN_FILE" in one for one in (*cmake_args, *colcon_args))
@@ -148,24 +168,28 @@ def build_workspace(
             else:
                 alone.keep()
                 break
-        folders = [
-            folder for folder in (place.build / one.name for one in found) if folder.is_dir()
-        ]
-        _drop_stale(folders)
-        units = [unit for folder in folders for unit in collect(folder).units]
-        static = StaticInfo.of(
-            units, place.build, find_copies(units), _left_out(folders, alone.reasons)
+        static = _gather(
+            workspace,
+            place,
+            found,
+            alone.reasons,
+            chosen=packages_up_to(found, packages),
+            rules=for_python if python else None,
+            tests=tests,
+            on_scripts=on_scripts,
         )
         static.save(place.static_info)
     seconds = time.monotonic() - began
     return BuildResult(place, tuple(chosen), static, alone.reasons, seconds)
 
 
-def workspace_env(install_base: Path) -> dict[str, str]:
+def workspace_env(install_base: Path, begin: Mapping[str, str] | None = None) -> dict[str, str]:
     """The environment in which the nodes of an installed workspace run.
 
-    It is what a fresh login would have after sourcing ``setup.bash``: of the caller's own
-    environment only home, user, language, terminal and time zone are in it.
+    Args:
+        install_base: the folder with ``setup.bash``.
+        begin: the environment in which that is sourced. None: that of a fresh login; of the
+            caller's own only home, user, language, terminal and time zone are in it.
 
     Raises:
         WorkspaceError: the folder is not an install base.
@@ -174,11 +198,13 @@ def workspace_env(install_base: Path) -> dict[str, str]:
     script = install_base.absolute() / "setup.bash"
     if not script.is_file():
         raise WorkspaceError("no setup.bash here: build the workspace first", install_base)
-    kept = ("HOME", "USER", "LOGNAME", "LANG", "LC_ALL", "TERM", "TZ", "TMPDIR")
-    clean = {name: os.environ[name] for name in kept if name in os.environ}
+    if begin is None:
+        kept = ("HOME", "USER", "LOGNAME", "LANG", "LC_ALL", "TERM", "TZ", "TMPDIR")
+        clean = {name: os.environ[name] for name in kept if name in os.environ}
+        begin = {**clean, "PATH": SYSTEM_PATH}
     ran = subprocess.run(
         ["/bin/bash", "--norc", "--noprofile", "-c", 'source "$1" >&2 && env -0', "bash", script],
-        env={**clean, "PATH": SYSTEM_PATH},
+        env=dict(begin),
         stdin=subprocess.DEVNULL,
         capture_output=True,
         check=False,
@@ -258,10 +284,54 @@ def _ask(bases: Bases, packages: Sequence[Package]) -> None:
             ask_for_targets(bases.build / package.name)
 
 
+def _gather(
+    workspace: Path,
+    bases: Bases,
+    packages: Sequence[Package],
+    left_alone: Mapping[str, str],
+    *,
+    chosen: Sequence[Package],
+    rules: Rules | None,
+    tests: bool,
+    on_scripts: Callable[[int, int], None] | None,
+) -> StaticInfo:
+    """What the linker left of all packages, and the Python of those that were built."""
+    folders = [
+        folder for folder in (bases.build / each.name for each in packages) if folder.is_dir()
+    ]
+    _drop_stale(folders)
+    units = [load_link_unit(path) for folder in folders for path in _compiled(folder)]
+    left_out = [*_left_out(folders, left_alone)]
+    nodes = python_of_build(
+        workspace,
+        bases.build,
+        packages,
+        {*names_of(units), *names_of(left_out)},
+        chosen=chosen,
+        rules=rules,
+        tests=tests,
+        on_progress=on_scripts,
+    )
+    units += nodes.units
+    found = (*left_out, *nodes.left_out)
+    return StaticInfo.of(units, bases.build, find_copies(units), found)
+
+
 def _drop_stale(folders: Iterable[Path]) -> None:
     for folder in folders:
-        for stale in stale_files(folder, unit_files(folder)):
+        for stale in stale_files(folder, _compiled(folder)):
             stale.unlink()
+
+
+def _compiled(folder: Path) -> list[Path]:
+    """The files of what CMake links; those of scripts are `pytpc.python_build`'s."""
+    return [path for path in unit_files(folder) if not is_python_file(path)]
+
+
+def _python_rules(own: Path | None, arguments: Sequence[str], *, constants: bool) -> Rules:
+    """The rules for Python: constants and profile are those that C++ is analysed with."""
+    profile = "thesis" if "-DTPC_PROFILE=thesis" in arguments else "default"
+    return replace(load_rules(profile, own), constants=constants)
 
 
 def _left_out(folders: Iterable[Path], left_alone: Mapping[str, str]) -> Iterator[LeftOut]:

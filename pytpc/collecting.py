@@ -13,13 +13,15 @@ from pathlib import Path
 from pytpc.errors import WorkspaceError
 from pytpc.link_unit import LeftOut, LinkUnit
 from pytpc.paths import OWN_FOLDER
-from pytpc.reconcile import build_folders, known_targets, left_out_units
+from pytpc.python_units import PythonUnits, named_beside, names_of
+from pytpc.reconcile import build_folders, known_targets, left_out_units, target_names
 from pytpc.stale import (
     BuiltTarget,
     Stale,
     UnitFile,
     drop_repeated,
     drop_stale,
+    drop_without_scripts,
     drop_without_sources,
 )
 from pytpc.static_info import StaticInfo, load_link_unit, unit_files
@@ -36,7 +38,9 @@ class Collected:
 
 
 def collect_sources(
-    sources: Sequence[Path], on_progress: Callable[[int, int], None] | None = None
+    sources: Sequence[Path],
+    on_progress: Callable[[int, int], None] | None = None,
+    python: PythonUnits | None = None,
 ) -> Collected:
     """Read, sort out and merge the files of all link units below ``sources``.
 
@@ -45,10 +49,58 @@ def collect_sources(
             workspace both ``.tpc/build`` and its own ``build`` are read; of a unit that was built
             in both, the later one counts.
         on_progress: called with (files read, files in all).
+        python: what takes the place of all Python units of its folders; see
+            `pytpc.python_units.analyse_workspaces`.
 
     Raises:
         InputError: no such folder, a file that is broken, or a key that occurs twice.
         WorkspaceError: there is no static information in one of them.
+    """
+    fresh = python or PythonUnits()
+    files, copies = _read(sources, on_progress, required=not fresh.units)
+    files = [file for file in files if not _is_replaced(file.unit, fresh)]
+    folders = sorted({file.build_folder for file in files})
+    kept, stale = drop_stale(files, {folder: _built_targets(folder) for folder in folders})
+    kept, scriptless = drop_without_scripts(kept, _is_gone)
+    workspaces = [os.path.abspath(source) for source in sources if source.is_dir()]  # noqa: PTH100
+    kept, orphans = drop_without_sources(kept, workspaces, _is_gone)
+    kept, repeated = drop_repeated(kept)
+    compiled = [file.unit for file in kept if not file.unit.is_python]
+    nodes = [*(file.unit for file in kept if file.unit.is_python), *fresh.units]
+    every = _cmake_folders(sources).union(folders)
+    left_out = _left_out(every, compiled)
+    taken = names_of(compiled).union(*(target_names(folder) for folder in every))
+    units = [*compiled, *named_beside(nodes, taken)]
+    copies.update(find_copies(units))
+    static = StaticInfo.of(
+        units,
+        sources[0] if len(sources) == 1 else None,
+        copies,
+        (*left_out, *fresh.left_out),
+    )
+    return Collected(static, (*stale, *scriptless, *orphans, *repeated))
+
+
+def _is_replaced(unit: LinkUnit, fresh: PythonUnits) -> bool:
+    if not unit.is_python:
+        return False
+    root = Path(os.path.realpath(unit.source_root))
+    return any(root.is_relative_to(folder) for folder in fresh.folders)
+
+
+def _read(
+    sources: Sequence[Path], on_progress: Callable[[int, int], None] | None, *, required: bool
+) -> tuple[list[UnitFile], dict[str, str]]:
+    """All files of link units, and the copies that documents know.
+
+    Args:
+        sources: as for ``collect_sources``.
+        on_progress: the same.
+        required: whether a folder must have static information.
+
+    Raises:
+        InputError: a file is broken.
+        WorkspaceError: a folder is without.
     """
     copies: dict[str, str] = {}
     files: list[UnitFile] = []
@@ -61,39 +113,27 @@ def collect_sources(
             files += [UnitFile(source.absolute(), unit, written) for unit in document.units]
             continue
         below = [path.absolute() for base in _build_bases(source) for path in unit_files(base)]
-        if not below:
+        if not below and required:
             raise WorkspaceError("no static information here; build with `pytpc build`", source)
         paths.update(below)
     for number, path in enumerate(sorted(paths), start=1):
         files.append(UnitFile(path, load_link_unit(path), path.stat().st_mtime_ns))
         if on_progress is not None:
             on_progress(number, len(paths))
-    folders = sorted({file.build_folder for file in files})
-    kept, stale = drop_stale(files, {folder: _built_targets(folder) for folder in folders})
-    workspaces = [os.path.abspath(source) for source in sources if source.is_dir()]  # noqa: PTH100
-    kept, orphans = drop_without_sources(kept, workspaces, _is_gone)
-    kept, repeated = drop_repeated(kept)
-    units = [file.unit for file in kept]
-    copies.update(find_copies(units))
-    static = StaticInfo.of(
-        units,
-        sources[0] if len(sources) == 1 else None,
-        copies,
-        _left_out(sources, folders, units),
-    )
-    return Collected(static, (*stale, *orphans, *repeated))
+    return files, copies
 
 
-def _left_out(
-    sources: Sequence[Path], folders: Iterable[Path], units: Iterable[LinkUnit]
-) -> list[LeftOut]:
-    """The link units of all build folders that no file is of, each once."""
+def _cmake_folders(sources: Iterable[Path]) -> set[Path]:
     bases = [base for source in sources if source.is_dir() for base in _build_bases(source)]
-    cmake = {folder.absolute() for base in bases for folder in build_folders(base)}
-    known = {(unit.package, unit.link_unit) for unit in units}
+    return {folder.absolute() for base in bases for folder in build_folders(base)}
+
+
+def _left_out(folders: Iterable[Path], units: Iterable[LinkUnit]) -> list[LeftOut]:
+    """The link units of all build folders that no file is of, each once."""
+    known = names_of(units)
     found = {
         (unit.package, unit.link_unit): unit
-        for folder in sorted(cmake.union(folders))
+        for folder in sorted(folders)
         for unit in left_out_units(folder)
     }
     return [unit for name, unit in found.items() if name not in known]

@@ -19,8 +19,9 @@ from pytpc.conditions import Condition, Macro, Parsed, libclang, parse_condition
 from pytpc.errors import InputError, TpcError
 from pytpc.link_unit import LinkUnit
 from pytpc.places import Tpc
+from pytpc.python_conditions import PythonSource
 from pytpc.reconcile import recorded_units
-from pytpc.static_info import StaticInfo
+from pytpc.static_info import StaticInfo, python_unit_file
 
 _FORMAT = 1
 # How often progress is told while nothing is finished.
@@ -35,6 +36,7 @@ GONE = "the source file is not on this machine"
 CHANGED = "the source file has changed since the build"
 NO_LIBCLANG = "libclang 19 is not on this machine (apt-get install libclang1-19)"
 NOT_FOUND = "clang finds no condition here"
+NOT_IN_PYTHON = "there is no condition here"
 NEWER = "the source file is newer than the build; of these lines only the comparison's is as built"
 WITHOUT_FLAGS = "parsed without the flags of the build"
 
@@ -76,9 +78,9 @@ def look_up_conditions(
 ) -> dict[str, Answer]:
     """The whole condition of each TPC, by its (nearest) key.
 
-    A file is parsed with the flags that it was built with; that takes seconds for one that includes
-    ROS, so answers are kept, and used again while the file, its flags and the headers outside of
-    /usr stay as they are.
+    A file in C++ is parsed with the flags that it was built with; that takes seconds for one that
+    includes ROS, so answers are kept, and used again while the file, its flags and the headers
+    outside of /usr stay as they are. A file in Python is parsed by Python.
 
     Args:
         static: where the TPCs are from.
@@ -86,10 +88,13 @@ def look_up_conditions(
         on_progress: called with (files parsed, files to parse), at least each second.
         cache: folder of the answers; ``pytpc`` in the user's cache by default.
     """
-    answers: dict[str, Answer] = {}
+    tpcs = list(tpcs)
+    answers = _of_python(static, (tpc for tpc in tpcs if static.unit_of(tpc.key).is_python))
     contents: dict[str, bytes | None] = {}
     by_file: dict[str, list[Tpc]] = {}
     for tpc in tpcs:
+        if tpc.key in answers:
+            continue
         data = contents.setdefault(tpc.file, _read(tpc.file))
         why_not = _why_only_line(data, tpc, static.comparisons[tpc.key].source_code)
         if why_not:
@@ -113,11 +118,53 @@ def look_up_conditions(
             notes = [] if condition is not None else [NOT_FOUND]
             notes += [] if flags.of_build else [WITHOUT_FLAGS]
             # The analysis keeps a comparison's own line, which has been looked at already.
-            if condition is not None and condition.lineno != condition.end_lineno:
-                at = built[tpc.keys[0].package, tpc.keys[0].link_unit]
-                notes += [NEWER] if at is not None and _changed_ns(file) > at else []
+            at = built[tpc.keys[0].package, tpc.keys[0].link_unit]
+            notes += [NEWER] if _is_newer(condition, file, at) else []
             answers[tpc.key] = Answer(condition, "; ".join(notes))
     return answers
+
+
+def _of_python(static: StaticInfo, tpcs: Iterable[Tpc]) -> dict[str, Answer]:
+    """The conditions of comparisons in Python; nothing of it is kept: it takes milliseconds."""
+    sources: dict[str, PythonSource | str] = {}
+    answers: dict[str, Answer] = {}
+    for tpc in tpcs:
+        source = sources.get(tpc.file)
+        if source is None:
+            source = sources[tpc.file] = _python_source(tpc.file)
+        found = static.comparisons[tpc.key]
+        if isinstance(source, str):
+            answers[tpc.key] = Answer(None, source)
+        elif not 1 <= tpc.lineno <= len(source.lines) or (
+            found.source_code is not None
+            and source.lines[tpc.lineno - 1].strip() != found.source_code.strip()
+        ):
+            answers[tpc.key] = Answer(None, CHANGED)
+        else:
+            place = (tpc.lineno, tpc.column, found.end_lineno, found.end_column)
+            condition = source.condition(place)
+            newer = _is_newer(condition, tpc.file, _built_ns(static.unit_of(tpc.key)))
+            note = NEWER if newer else ""
+            answers[tpc.key] = Answer(condition, note if condition else NOT_IN_PYTHON)
+    return answers
+
+
+def _python_source(file: str) -> PythonSource | str:
+    """The file parsed, or why that is not possible."""
+    data = _read(file)
+    if data is None:
+        return GONE
+    try:
+        return PythonSource(data)
+    except ValueError:
+        return CHANGED
+
+
+def _is_newer(condition: Condition | None, file: str, built: int | None) -> bool:
+    """Whether lines of the condition may have changed that the analysis did not keep."""
+    if condition is None or condition.lineno == condition.end_lineno or built is None:
+        return False
+    return _changed_ns(file) > built
 
 
 def _by_unit(tpcs: Iterable[Tpc]) -> dict[str, list[Tpc]]:
@@ -250,6 +297,8 @@ def _built_ns(unit: LinkUnit) -> int | None:
     if unit.build_folder is None:
         return None
     folder = Path(unit.build_folder)
+    if unit.is_python:
+        return _changed_ns(str(python_unit_file(folder, unit.link_unit))) or None
     try:
         recorded = {each.name: each.static_info for each in recorded_units(folder) or ()}
     except InputError:

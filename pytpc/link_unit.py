@@ -203,6 +203,7 @@ class LinkUnit:
 
     ``status`` is ``failed``, ``failure`` says why and the lists are empty where the analysis or
     the instrumentation broke down; such a unit runs as its author wrote it and reports nothing.
+    ``script`` is the script of a Python unit, relative to ``source_root``; None of all others.
     ``build_folder`` is CMake's, absolute; None where the unit was not read from its place there.
     """
 
@@ -218,14 +219,22 @@ class LinkUnit:
     comparisons: tuple[Comparison, ...]
     not_exposed: tuple[NotExposed, ...] = ()
     blind_spots: tuple[BlindSpot, ...] = ()
+    script: str | None = None
     build_folder: str | None = None
+
+    @property
+    def is_python(self) -> bool:
+        """Whether it is a script with its modules, and no target of CMake's."""
+        return self.tool.analysis == "python"
+
+    @property
+    def script_path(self) -> str | None:
+        """The absolute path of the script; None where it is none, or is not known."""
+        return None if self.script is None else self.absolute(self.script)
 
     def to_json(self) -> dict[str, Any]:
         """The unit as the JSON object of docs/formats.md."""
-        data = {"schema": SCHEMA_VERSION, **_fields(self)}
-        if self.build_folder is None:
-            del data["build_folder"]
-        return data
+        return _without_unknown({"schema": SCHEMA_VERSION, **_fields(self)})
 
     def absolute(self, file: str) -> str:
         """A ``file`` field of this unit as an absolute path without ``.`` and ``..``."""
@@ -275,11 +284,11 @@ def _fields(value: DataclassInstance) -> dict[str, object]:
     return {field.name: _plain(getattr(value, field.name)) for field in fields(value)}
 
 
-_OPTIONAL = ("analysis", "end_lineno", "end_column", "operand")
+_OPTIONAL = ("analysis", "end_lineno", "end_column", "operand", "script", "build_folder")
 
 
 def _without_unknown(found: dict[str, object]) -> dict[str, object]:
-    """Fields that only one half of TPC writes are left out by the other."""
+    """Fields that only some files have, as those of one half of TPC, are left out by the others."""
     return {
         name: value for name, value in found.items() if name not in _OPTIONAL or value is not None
     }

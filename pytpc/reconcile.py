@@ -87,6 +87,16 @@ def known_targets(build_folder: Path) -> list[LinkTarget] | None:
     return [LinkTarget(unit.name, unit.package, unit.artifact) for unit in recorded]
 
 
+def target_names(build_folder: Path) -> set[tuple[str, str]]:
+    """Package and name of all link units that CMake knows, those not built at present among them.
+
+    Raises:
+        InputError: an answer of CMake, or the record, is broken.
+    """
+    known = (*(link_targets(build_folder) or ()), *(recorded_units(build_folder) or ()))
+    return {(unit.package, unit.name) for unit in known}
+
+
 def left_out_units(build_folder: Path) -> list[LeftOut]:
     """The link units whose file is there and that were not analysed, sorted by package and name.
 

@@ -52,7 +52,8 @@ def drop_stale(
 
     A unit is left out where CMake knows no such target any more, and where the target's file has
     none of the keys that were put into it. It stays where CMake was not asked, where the target is
-    not built at present, and where nothing was put into it that could be looked for.
+    not built at present, where nothing was put into it that could be looked for, and where it is a
+    script's, which is no target.
 
     Args:
         files: of any number of build folders.
@@ -61,7 +62,7 @@ def drop_stale(
     kept: list[UnitFile] = []
     dropped: list[Stale] = []
     for file in files:
-        known = targets.get(file.build_folder)
+        known = None if file.unit.is_python else targets.get(file.build_folder)
         reason = None if known is None else _why_stale(file, known)
         if reason is None:
             kept.append(file)
@@ -99,19 +100,57 @@ def drop_without_sources(
     return kept, dropped
 
 
+def drop_without_scripts(
+    files: Iterable[UnitFile], gone: Callable[[str], bool]
+) -> tuple[list[UnitFile], list[Stale]]:
+    """What is of a script that is still there, or of none, and what is of one that was removed.
+
+    Where the sources are not there at all, a script is not missed: a robot may have what was built
+    without them.
+
+    Args:
+        files: of any number of build folders.
+        gone: whether a file, or a folder, is not there.
+    """
+    kept: list[UnitFile] = []
+    dropped: list[Stale] = []
+    for file in files:
+        script = file.unit.script_path
+        if script is None or not gone(script) or gone(file.unit.source_root):
+            kept.append(file)
+        else:
+            dropped.append(Stale(file, f"its script, {script}, is no more"))
+    return kept, dropped
+
+
 def drop_repeated(files: Iterable[UnitFile]) -> tuple[list[UnitFile], list[Stale]]:
-    """Of each link unit the file that was written last; of two of one time the first by path."""
-    newest: dict[tuple[str, str], UnitFile] = {}
+    """Of each link unit the file that was written last; of two of one time the first by path.
+
+    A script and a target of one name are two.
+    """
+    newest: dict[tuple[str, str, str | None], UnitFile] = {}
     ordered = sorted(files, key=lambda file: (-file.written_ns, file.path))
     for file in ordered:
-        newest.setdefault((file.unit.package, file.unit.link_unit), file)
+        newest.setdefault(_identity(file.unit), file)
     kept = sorted(newest.values(), key=lambda file: file.path)
     dropped = []
     for file in ordered:
-        last = newest[file.unit.package, file.unit.link_unit]
+        last = newest[_identity(file.unit)]
         if last is not file:
             dropped.append(Stale(file, f"built later in {last.build_folder}"))
     return kept, dropped
+
+
+def _identity(unit: LinkUnit) -> tuple[str, str, str | None]:
+    """What two files of one link unit have in common.
+
+    A script's unit is called after its path where a target has its name, and that may change.
+    """
+    if unit.script is None:
+        return unit.package, unit.link_unit, "python" if unit.is_python else None
+    is_path = unit.link_unit.removeprefix("./") == unit.script
+    name = Path(unit.script).name.removesuffix(".py") if is_path else unit.link_unit
+    return unit.package, name, unit.script
 
 
 def _why_stale(file: UnitFile, targets: Sequence[BuiltTarget]) -> str | None:

@@ -6,6 +6,7 @@ of a build base, and ``StaticInfo`` is the merged document that the rest of pytp
 
 from __future__ import annotations
 
+import hashlib
 import os
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass, replace
@@ -13,6 +14,7 @@ from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 from pytpc.atomic import write_atomic
 from pytpc.errors import InputError, WorkspaceError
@@ -52,7 +54,9 @@ __all__ = [
     "Tpc",
     "Transform",
     "collect",
+    "is_python_file",
     "load_link_unit",
+    "python_unit_file",
     "read_static",
     "unit_files",
 ]
@@ -245,7 +249,7 @@ def _build_folder(folder: Path) -> Path:
 
 
 def unit_files(build_base: Path) -> list[Path]:
-    """The files ``<build folder>/tpc/<target>.json`` below ``build_base``, sorted.
+    """The files ``<build folder>/tpc/<link unit>.json`` below ``build_base``, sorted.
 
     A build folder may itself be called ``tpc`` (a package of that name); its JSON files are CMake's
     and colcon's, so a folder with a CMakeCache.txt is not taken for ours.
@@ -262,6 +266,24 @@ def unit_files(build_base: Path) -> list[Path]:
         if here.name == "tpc" and here != build_base and "CMakeCache.txt" not in files:
             found += [here / name for name in files if name.endswith(".json")]
     return sorted(found)
+
+
+_PYTHON_END = "@python.json"
+# A name in a folder has at most 255 bytes, and atomic writing adds some.
+_LONGEST_NAME = 180
+
+
+def python_unit_file(build_folder: Path, link_unit: str) -> Path:
+    """The file of a Python unit, which no target of CMake's can have: their names have no ``@``."""
+    name = quote(link_unit, safe="")
+    if len(name) > _LONGEST_NAME:
+        name = hashlib.sha256(link_unit.encode()).hexdigest()
+    return build_folder / "tpc" / f"{name}{_PYTHON_END}"
+
+
+def is_python_file(path: Path) -> bool:
+    """Whether a file of ``unit_files`` is a Python unit's."""
+    return path.name.endswith(_PYTHON_END)
 
 
 def collect(build_base: Path, on_progress: Callable[[int, int], None] | None = None) -> StaticInfo:

@@ -13,11 +13,11 @@ from pathlib import Path
 from typing import Any
 
 from pytpc.errors import InputError
-from pytpc.source_lines import PYTHON, LineCount, SourceLines
+from pytpc.source_lines import LineCount, SourceLines
 from pytpc.static_info import LinkUnit
 from pytpc.static_json import SURVEY_SCHEMA, check_schema
 
-RESULT_VERSION = 1
+RESULT_VERSION = 2
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,15 +66,17 @@ class Build:
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """What the analysis found in a tree's C++.
+    """What the analysis found in a tree.
 
-    ``comparisons`` counts places in the tree's own files (file, line, column and parameter), each
-    once, in however many link units it is; ``parameters`` distinct names; ``files`` distinct files.
+    ``comparisons`` counts places in the tree's own files in C++ (file, line, column and parameter),
+    each once, in however many link units it is, ``python`` those in Python. ``parameters`` are
+    distinct names, ``files`` distinct files, ``units`` link units, all of both.
     ``failed`` and ``without`` name link units, as ``package/target``: those that the analysis left
     as they were (with its reason), and those that were linked without it.
     """
 
     comparisons: int
+    python: int
     parameters: int
     files: int
     units: int
@@ -87,8 +89,7 @@ class TreeResult:
     """All that is known of one tree.
 
     ``key`` stands for the sources and the tools that gave the result. ``plain`` is None where no
-    plain build was asked for, ``first`` says which build came first. ``python`` is the number of
-    comparisons in Python, None where Python was not analysed.
+    plain build was asked for, ``first`` says which build came first.
     """
 
     name: str
@@ -99,7 +100,6 @@ class TreeResult:
     plain: Build | None
     tpc: Build
     found: Found
-    python: int | None
     lines: SourceLines
 
     @property
@@ -168,7 +168,6 @@ class TreeResult:
                     "without": tuple(found["without"]),
                 }
             ),
-            python=data["python"],
             lines=SourceLines(
                 {name: LineCount(**count) for name, count in lines["languages"].items()},
                 dict(lines["left_out"]),
@@ -184,17 +183,6 @@ def _build(data: Mapping[str, Any]) -> Build:
     return Build(data["wall"], data["processor"], data["compile"], tuple(faults))
 
 
-def python_tpcs(folder: Path, lines: SourceLines) -> int | None:
-    """The comparisons in the Python files of a tree.
-
-    The analysis of Python nodes takes its place here.
-
-    Returns:
-        None: not analysed. 0 where the tree has no Python.
-    """
-    return None if lines.of(PYTHON).files else 0
-
-
 def found_in(
     units: Iterable[LinkUnit],
     tree: Path,
@@ -204,13 +192,13 @@ def found_in(
     """Count what the link units of a tree have.
 
     Args:
-        units: of all packages of the tree.
+        units: of all packages of the tree, and of its scripts.
         tree: the folder; what is outside of it (headers of another tree) is not counted.
         without: link units that have no static information, as ``package/target``.
-        unreadable: those whose static information cannot be read, as ``package/target: why``.
+        unreadable: what cannot be read, as ``package/target: why``: static information, scripts.
     """
     root = os.path.realpath(tree)
-    places: set[tuple[str, int, int, str | None]] = set()
+    places: dict[bool, set[tuple[str, int, int, str | None]]] = {False: set(), True: set()}
     failed = list(unreadable)
     number = 0
     for unit in units:
@@ -222,11 +210,13 @@ def found_in(
             # Joined with an absolute path the root is dropped, as it should be.
             file = os.path.realpath(Path(unit.source_root, one.file))
             if one.type != "constant" and Path(file).is_relative_to(root):
-                places.add((file, one.lineno, one.column, one.source))
+                places[unit.is_python].add((file, one.lineno, one.column, one.source))
+    every = places[False] | places[True]
     return Found(
-        comparisons=len(places),
-        parameters=len({source for _, _, _, source in places}),
-        files=len({file for file, _, _, _ in places}),
+        comparisons=len(places[False]),
+        python=len(places[True]),
+        parameters=len({source for _, _, _, source in every}),
+        files=len({file for file, _, _, _ in every}),
         units=number,
         failed=tuple(sorted(failed)),
         without=tuple(sorted(without)),

@@ -9,8 +9,6 @@ from pytpc.source_lines import CPP, HEADER, PYTHON
 from pytpc.survey import Build, TreeResult
 from pytpc.tables import STATISTICS, Cell, Column, Table, statistics
 
-NOT_ANALYSED = "not analysed"
-
 
 @dataclass(frozen=True, slots=True)
 class Measure:
@@ -105,20 +103,12 @@ def _others(what: str) -> Callable[[TreeResult], Cell]:
     )
 
 
-def _python(result: TreeResult) -> Cell:
-    return NOT_ANALYSED if result.python is None else result.python
-
-
-def _all_comparisons(result: TreeResult) -> Cell:
-    return NOT_ANALYSED if result.python is None else result.found.comparisons + result.python
-
-
 _COMPARISONS = (
     Measure("Time", 1, _time("plain", "processor")),
     _factor("Time Factor", "processor"),
-    Measure("TPCs", 0, _all_comparisons),
+    Measure("TPCs", 0, lambda result: result.found.comparisons + result.found.python),
     Measure("C++", 0, lambda result: result.found.comparisons),
-    Measure("Python", 0, _python),
+    Measure("Python", 0, lambda result: result.found.python),
     Measure("Unique", 0, lambda result: result.found.parameters),
     Measure("Files", 0, lambda result: result.found.files),
     Measure("Packages", 0, lambda result: result.packages),

@@ -14,7 +14,9 @@ from pathlib import Path
 from pytpc.atomic import write_atomic
 from pytpc.colcon import Bases
 from pytpc.errors import InputError, WorkspaceError
-from pytpc.paths import cmake_file, defer_plugin, log_library, plugin, prefix
+from pytpc.paths import cmake_file, defer_plugin, log_library, plugin, prefix, project_root
+from pytpc.pynodes.rules_file import load_rules
+from pytpc.python_units import PythonUnits, analyse_scripts, analysis_files, scripts_at
 from pytpc.source_lines import count_lines, source_files
 from pytpc.static_json import dump_json, parse_json
 from pytpc.survey import (
@@ -24,7 +26,6 @@ from pytpc.survey import (
     build_order,
     found_in,
     needed_trees,
-    python_tpcs,
 )
 from pytpc.survey_build import Measured, measure, read_tree, underlaid
 
@@ -50,13 +51,17 @@ class Options:
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """What is being done: the tree, its number among ``total``, and what; or a line of colcon's."""
+    """What is being done: the tree, its number among ``total``, and what; or a line of colcon's.
+
+    ``far`` says how far it is, where that is known.
+    """
 
     tree: str
     number: int
     total: int
     what: str
     line: str = ""
+    far: str = ""
 
 
 def survey(
@@ -139,8 +144,8 @@ class _Say:
     number: int
     total: int
 
-    def __call__(self, what: str, line: str = "") -> None:
-        self.on_step(Step(self.tree, self.number, self.total, what, line))
+    def __call__(self, what: str, line: str = "", *, far: str = "") -> None:
+        self.on_step(Step(self.tree, self.number, self.total, what, line, far))
 
 
 def _named(folders: Sequence[Path]) -> list[Tree]:
@@ -193,6 +198,8 @@ def _measure_both(
             on_output=partial(say, what),
         )
     with_tpc = measured[TPC]
+    nodes = _python(tree, say)
+    unread = (f"{one.package}/{one.link_unit}: {one.reason}" for one in nodes.left_out)
     return TreeResult(
         name=tree.name,
         path=str(tree.path),
@@ -201,10 +208,25 @@ def _measure_both(
         first=ways[0],
         plain=measured[PLAIN].build if PLAIN in measured else None,
         tpc=with_tpc.build,
-        found=found_in(with_tpc.units, tree.path, with_tpc.without, with_tpc.unreadable),
-        python=python_tpcs(tree.path, lines),
+        found=found_in(
+            (*with_tpc.units, *nodes.units),
+            tree.path,
+            with_tpc.without,
+            (*with_tpc.unreadable, *unread),
+        ),
         lines=lines,
     )
+
+
+def _python(tree: Tree, say: _Say) -> PythonUnits:
+    """The scripts of a tree, analysed when the builds are measured: it is no part of their time."""
+    say("analysing Python")
+
+    def advance(done: int, total: int) -> None:
+        say("analysing Python", far=f"{done:,} of {total:,} scripts")
+
+    rules = load_rules()
+    return analyse_scripts(scripts_at(tree.path, rules), rules, advance)
 
 
 def _known(tree: Tree, options: Options, key: str) -> TreeResult | None:
@@ -238,12 +260,13 @@ def _key(tree: Tree, options: Options, tools: str, before: Sequence[str]) -> str
 
 
 def _digest_of_tpc() -> str:
-    """Stands for the installed half: passes, log library, tpc.cmake and rules."""
+    """Stands for the installed half (passes, log library, tpc.cmake, rules) and ``pynodes``."""
     files = [log_library(), plugin(), defer_plugin(), cmake_file()]
     root = prefix()
     for part in ("lib/tpc", "share/tpc"):
         files += [path for path in (root / part).rglob("*") if path.is_file()]
-    return _digest_of_files(sorted(set(files)), root)
+    own = _digest_of_files(analysis_files(), project_root())
+    return f"{_digest_of_files(sorted(set(files)), root)} {own}"
 
 
 def _digest_of_files(files: Sequence[Path], root: Path) -> str:

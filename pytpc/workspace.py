@@ -101,6 +101,22 @@ def select_packages(packages: Sequence[Package], names: Iterable[str]) -> list[P
     return [package for package in packages if not wanted or package.name in wanted]
 
 
+def packages_up_to(packages: Sequence[Package], names: Iterable[str]) -> list[Package]:
+    """The packages with these names and what they need of ``packages``; all without a name.
+
+    That is what colcon takes for ``--packages-up-to``; the order is that of ``packages``.
+    """
+    by_name = {package.name: package for package in packages}
+    wanted = [name for name in names if name in by_name] or list(by_name)
+    reached: set[str] = set()
+    while wanted:
+        name = wanted.pop()
+        if name not in reached:
+            reached.add(name)
+            wanted += [need for need in by_name[name].needs if need in by_name]
+    return [package for package in packages if package.name in reached]
+
+
 def refuse_cycles(packages: Sequence[Package], workspace: Path) -> None:
     """See that the packages can be ordered.
 

@@ -66,6 +66,11 @@ def show_units(static: StaticInfo) -> None:
     if static.units:
         console().print(_units_table(static), highlight=False)
     warn_of_failed(static)
+    tell_left_out(static)
+
+
+def tell_left_out(static: StaticInfo) -> None:
+    """A line for each link unit that was not analysed."""
     for left_out in static.left_out:
         text = f"{left_out.package}/{left_out.link_unit} reports nothing: {left_out.reason}"
         click.echo(plain(text), err=True)

@@ -30,6 +30,8 @@ from pytpc.conditions import lines_of
 from pytpc.details import Details, details, shown_default
 from pytpc.explain import Explanation, look_up, why_no_comparison
 from pytpc.places import Tpc
+from pytpc.pynodes.rules_file import load_rules
+from pytpc.python_units import PythonUnits, analyse_workspaces
 from pytpc.report.catalogue import write_catalogue
 from pytpc.sarif import sarif_log
 from pytpc.selection import ORDERS, Selection, select
@@ -81,13 +83,29 @@ def _selecting(command: Callable[..., None]) -> Callable[..., None]:
 @click.command("collect")
 @click.argument("sources", type=PATH, nargs=-1, required=True, metavar="SOURCE...")
 @click.option("-o", "--output", type=PATH, default=Path("static.json"), show_default=True)
-def collect_command(sources: tuple[Path, ...], output: Path) -> None:
+@click.option("--no-python", is_flag=True, help="Only what builds have left.")
+@click.option("--python-rules", type=PATH, metavar="FILE", help="Your own rules for Python (JSON).")
+@click.option("--constants", is_flag=True, help="In Python, comparisons with constants, too.")
+def collect_command(
+    sources: tuple[Path, ...],
+    *,
+    output: Path,
+    no_python: bool,
+    python_rules: Path | None,
+    constants: bool,
+) -> None:
     """Merge the static information of all link units below each SOURCE into one file.
 
-    SOURCE is a workspace, a build base or a build folder. What is no longer built is left out.
+    SOURCE is a workspace, a build base, a build folder or such a file. What is no longer built is
+    left out. The Python nodes of a workspace are analysed.
     """
+    rules = replace(load_rules(own=python_rules), constants=constants)
+    python: PythonUnits | None = None
+    if not no_python:
+        with progress("analysing Python scripts") as advance:
+            python = analyse_workspaces(sources, rules, advance)
     with progress("reading static information") as advance:
-        collected = collect_sources(sources, advance)
+        collected = collect_sources(sources, advance, python)
     collected.static.save(output)
     show_units(collected.static)
     tell_dropped(collected.dropped)

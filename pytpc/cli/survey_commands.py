@@ -27,6 +27,7 @@ from pytpc.words import many, plain
 _FOLDER = click.Path(path_type=Path, file_okay=True)
 _JOB_LINE = re.compile(r"^(Starting >>>|Finished <<<|Failed +<<<|Aborted +<<<) (?P<name>\S+)")
 _PIPED_WIDTH = 200
+_SILENT_S = 2.0
 
 
 def _formats(_context: click.Context, _option: click.Parameter, value: str) -> tuple[str, ...]:
@@ -137,7 +138,7 @@ class _Progress:
         self._task = self._bar.add_task("", total=None)
         self._running: list[str] = []
         self._said: tuple[int, str] | None = None
-        self._began = time.monotonic()
+        self._began = self._told = time.monotonic()
 
     def __enter__(self) -> _Progress:
         self._bar.start()
@@ -151,22 +152,30 @@ class _Progress:
         at = (step.number, step.what)
         if at != self._said:
             self._said, self._running = at, []
+            self._told = time.monotonic()
             if not self._console.is_terminal:
                 seconds = time.monotonic() - self._began
                 where = f"{step.number}/{step.total} {plain(step.tree)}"
                 click.echo(f"[{seconds:.0f} s] {where}: {step.what}", err=True)
+        self._say_how_far(step)
         job = _JOB_LINE.match(step.line)
         if job is not None and step.line.startswith("Starting"):
             self._running.append(job["name"])
         elif job is not None and job["name"] in self._running:
             self._running.remove(job["name"])
-        running = f": {', '.join(self._running)}" if self._running else ""
+        running = f": {step.far or ', '.join(self._running)}" if self._running or step.far else ""
         self._bar.update(
             self._task,
             total=step.total,
             completed=step.number - 1,
             description=Text(plain(f"{step.tree}: {step.what}{running}")).markup,
         )
+
+    def _say_how_far(self, step: Step) -> None:
+        """A line every two seconds, where there is no bar."""
+        if step.far and not self._console.is_terminal and time.monotonic() - self._told > _SILENT_S:
+            self._told = time.monotonic()
+            click.echo(f"{plain(step.tree)}: {step.what}: {step.far}", err=True)
 
 
 def _print(results: list[TreeResult]) -> None:

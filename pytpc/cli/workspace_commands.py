@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from contextlib import ExitStack
 from pathlib import Path
 
 import click
@@ -11,7 +12,7 @@ from rich.text import Text
 
 from pytpc import patch
 from pytpc.build import BuildResult, build_workspace
-from pytpc.cli.console import found_text, show_units, warn
+from pytpc.cli.console import Advance, found_text, progress, show_units, warn
 from pytpc.colcon import Bases, BuildError
 
 _FOLDER = click.Path(path_type=Path, file_okay=True)
@@ -39,6 +40,13 @@ def patch_command(workspace: Path, restore: bool, dry_run: bool, packages: tuple
     metavar="FILE",
     help="Your own rules (JSON): what else reads a parameter or exposes.",
 )
+@click.option("--no-python", is_flag=True, help="Leave Python nodes out.")
+@click.option(
+    "--python-rules",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Your own rules for Python (JSON).",
+)
 @click.option("--constants", is_flag=True, help="Report comparisons with constants, too.")
 @click.option("--tests", is_flag=True, help="Have test programs report, too.")
 @click.option("--no-fallback", is_flag=True, help="End where a package does not build with TPC.")
@@ -56,11 +64,16 @@ def build_command(
     tests: bool,
     no_fallback: bool,
     retry: bool,
+    no_python: bool,
+    python_rules: Path | None,
 ) -> None:
-    """Build a workspace with analysis and instrumentation; its files stay as they are."""
+    """Build a workspace with analysis and instrumentation; its files stay as they are.
+
+    Its Python nodes are analysed, too; they report when they are run by `pytpc run` or `record`.
+    """
     bases = Bases(base.absolute()) if base is not None else None
     try:
-        with _Progress() as progress:
+        with _Progress() as shown:
             result = build_workspace(
                 workspace,
                 packages=packages,
@@ -71,8 +84,11 @@ def build_command(
                 tests=tests,
                 fallback=not no_fallback,
                 retry=retry,
+                python=not no_python,
+                python_rules=python_rules,
                 bases=bases,
-                on_output=progress.show,
+                on_output=shown.show,
+                on_scripts=shown.show_scripts,
             )
     except BuildError as error:
         for line in error.tail:
@@ -85,9 +101,14 @@ COMMANDS: list[click.Command] = [patch_command, build_command]
 
 
 class _Progress:
-    """Colcon's output as one moving line on a terminal, and as its own start and end lines else."""
+    """Colcon's output as one moving line on a terminal, and as its own start and end lines else.
+
+    Behind it stands how many scripts are analysed.
+    """
 
     def __init__(self) -> None:
+        self._stack = ExitStack()
+        self._scripts: Advance | None = None
         self._console = Console(stderr=True)
         self._status = self._console.status("finding packages")
         self._running: list[str] = []
@@ -99,6 +120,14 @@ class _Progress:
 
     def __exit__(self, *_: object) -> None:
         self._status.stop()
+        self._stack.close()
+
+    def show_scripts(self, done: int, total: int) -> None:
+        """Say how many scripts are analysed, when colcon is through."""
+        if self._scripts is None:
+            self._status.stop()
+            self._scripts = self._stack.enter_context(progress("analysing Python scripts"))
+        self._scripts(done, total)
 
     def show(self, line: str) -> None:
         """Take one line of colcon's output."""

@@ -1,19 +1,20 @@
 """What a rewritten call of a library function calls, where the function compares inside.
 
-``min(a, b)`` has become ``SITE.call(min, a, b).__next__()``: the function and its arguments are
-evaluated as before, and the function is called by an iterator of C, with no frame of ours between
-the program and what the function runs. See `pytpc.pyhook.sites`.
+``f(a, b, k=c)`` has become ``SITE.call(f, a, b, {"k": c}).__next__()``: the function and its
+arguments are evaluated as before, and the function is called by an iterator of C, with no frame of
+ours between the program and what the function runs. See `pytpc.pyhook.sites`.
 """
 
 from __future__ import annotations
 
 import operator
 from functools import partial
-from itertools import starmap
+from itertools import repeat, starmap
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from pytpc.pyhook import sites
-from pytpc.pyhook.sites import number_of, truth_of
+from pytpc.pyhook.quiet import Site, flat, hidden, is_programs, keep, raising
+from pytpc.pyhook.sites import logger, number_of, truth_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -41,35 +42,53 @@ class Inside(NamedTuple):
     operand: str
 
 
-class LibraryCall:
+class LibraryCall(Site):
     """A call whose function compares; ``inside`` is what it compares."""
 
-    __slots__ = ("_log",)
+    __slots__ = ("call",)
 
     def __init__(self, inside: tuple[Inside, ...]) -> None:
         """All comparisons of the place."""
-        self._log = tuple(map(_logger, inside))
+        logs = tuple(map(_logger, inside))
 
-    def call(self, function: Any, /, *arguments: Any, **keywords: Any) -> Iterator[Any]:  # noqa: ANN401
-        """An iterator that gives what ``function`` returns, and reports."""
-        whole = partial(function, **keywords) if keywords and callable(function) else function
-        later = partial(self._later, (arguments, keywords))
-        return map(later, starmap(whole, (arguments,)))
-
-    def _later(self, given: Given, result: object) -> object:
-        for log in self._log:
+        def later(given: Given, result: object) -> Iterator[object]:
             try:
-                log(given, result)
-            except Exception:
-                # A report that cannot be made is not worth a node.
-                continue
-        return result
+                for log in logs:
+                    _try(log, given, result)
+            except BaseException as error:
+                return raising(error)
+            return repeat(result, 1)
+
+        def call(function: Any, *given: Any) -> Iterator[Any]:  # noqa: ANN401
+            """What the function returns; its keywords come last."""
+            try:
+                arguments, keywords = given[:-1], given[-1]
+                whole = (
+                    partial(function, **keywords) if keywords and callable(function) else function
+                )
+                reporting = hidden(partial(later, (arguments, keywords)))
+                return flat(map(reporting, starmap(whole, (arguments,))))
+            except BaseException as error:
+                return raising(error)
+
+        self.offer(call=call)
+        keep(self)
+
+
+def _try(log: Callable[[Given, object], None], given: Given, result: object) -> None:
+    try:
+        log(given, result)
+    except Exception as error:
+        # A report that cannot be made is not worth a node.
+        if is_programs(error):
+            raise
 
 
 def _logger(one: Inside) -> Callable[[Given, object], None]:
     """What reports one comparison of a call with these arguments and this result."""
     kind, name, *first_alone = one.operand.split()
     compared = _RELATIONS[one.relation]
+    log = logger((one.reported,))
 
     def parts(given: Given) -> tuple[object, list[object]]:
         """The threshold, and what it is compared with."""
@@ -98,7 +117,7 @@ def _logger(one: Inside) -> Callable[[Given, object], None]:
         is_first = name == "1"
         nearest = min if (one.relation == "<") == is_first else max
         cmp, thresh = nearest(values[:-1]), values[-1]
-        _report(one.reported, cmp, thresh, compared(cmp, thresh))
+        log(cmp, thresh, compared(cmp, thresh))
 
     def outcome(given: Given, result: object) -> None:
         """The result says how the comparison went."""
@@ -108,15 +127,10 @@ def _logger(one: Inside) -> Callable[[Given, object], None]:
             return
         threshold, others = parts(given)
         if kind != "within":
-            _report(one.reported, others[0], threshold, truth)
+            log(others[0], threshold, truth)
             return
         left, right = map(number_of, others)
         distance = truth if left is None or right is None else abs(left - right)
-        _report(one.reported, distance, threshold, truth)
+        log(distance, threshold, truth)
 
     return chosen if kind == "choice" else outcome
-
-
-def _report(reported: Reported, cmp: object, thresh: object, outcome: bool) -> None:
-    left, right = sites.values(cmp, thresh, outcome)
-    sites.take(reported, outcome, left, right, outcome)

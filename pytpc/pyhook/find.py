@@ -273,10 +273,15 @@ def _text(node: ast.expr) -> str:
 
 def _as_call(index: _Index, found: Found, listed: Listed) -> bool:
     for node in index.names.get((listed.lineno, listed.column), []):
-        if isinstance(node, ast.Call) and _ends(node, listed):
+        if isinstance(node, ast.Call) and _ends(node, listed) and _has_names(node):
             found.calls.setdefault(node, []).append(Place(listed, False))
             return True
     return False
+
+
+def _has_names(call: ast.Call) -> bool:
+    """Whether each keyword stands there; the analysis lists no others."""
+    return all(keyword.arg is not None for keyword in call.keywords)
 
 
 def _as_pattern(index: _Index, found: Found, listed: Listed) -> bool:

@@ -13,7 +13,10 @@ from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 from pytpc.errors import InputError
+from pytpc.pyhook.entry import program_of, stem_of
 
+# What `pytpc build` leaves in a workspace; it has all in it.
+BUILT = os.path.join(".tpc", "static.json")
 # Where static information lies below a workspace, a build folder or a folder of packages.
 _PLACES = ("*.json", "tpc/*.json", "*/tpc/*.json", "build/tpc/*.json", "build/*/tpc/*.json")
 
@@ -92,11 +95,32 @@ class Table:
 
 
 class _Unit(NamedTuple):
-    """One link unit: a script with the modules that it imports."""
+    """One link unit: a script with the modules that it imports.
+
+    ``script`` is its absolute path, None in files of before.
+    """
 
     name: str
+    package: str | None
+    script: str | None
     root: str
     files: list[ListedFile]
+
+    def is_called(self, stem: str) -> bool:
+        """Whether its script, or in files of before itself, has this name, without ``.py``."""
+        return stem in (self.name, stem_of(self.script or self.name))
+
+    def is_of(self, real: str) -> bool:
+        """Whether its script is the file with this path, in which no links are."""
+        return self.script is not None and os.path.realpath(self.script) == real
+
+    def runs(self, module: tuple[str, ...]) -> bool:
+        """Whether its script is the module whose path may end so."""
+        return self.script is not None and self.script.endswith(module)
+
+    def has(self, module: tuple[str, ...]) -> bool:
+        """Whether there are comparisons in this module."""
+        return any(file.path.endswith(module) for file in self.files)
 
 
 def read_table(paths: Iterable[str], script: str | None = None) -> Table:
@@ -117,18 +141,19 @@ def read_table(paths: Iterable[str], script: str | None = None) -> Table:
 
 
 def names_script(paths: Iterable[str], script: str) -> bool:
-    """Whether the static information has a link unit of this script's name.
+    """Whether the static information has comparisons of this script, or of one of its name.
+
+    Of the script of an entry point those count that are in the module that it runs.
 
     Raises:
         InputError: as `read_table`.
     """
-    stem = _stem(script)
-    return any(unit.name == stem and unit.files for unit in _all_units(paths))
-
-
-def _stem(script: str) -> str:
-    name = os.path.basename(script)
-    return name[:-3] if name.endswith(".py") else name
+    program, real = program_of(script), os.path.realpath(script)
+    units = [unit for unit in _all_units(paths) if unit.files]
+    return any(
+        unit.is_called(program.stem) or unit.is_of(real) or unit.has(program.files)
+        for unit in units
+    )
 
 
 def _all_units(paths: Iterable[str]) -> list[_Unit]:
@@ -139,14 +164,34 @@ def _all_units(paths: Iterable[str]) -> list[_Unit]:
 
 
 def _of_script(units: list[_Unit], script: str) -> list[_Unit]:
-    stem = _stem(script)
+    """The link units that the running script may be of; all of them where none is.
+
+    It is told by its file. One that was installed is told by its name, and by its package, after
+    which its folder is called; that of an entry point by the module that it runs.
+    """
+    program = program_of(script)
     real = os.path.realpath(script)
-    named = [unit for unit in units if unit.name == stem]
-    inside = [unit for unit in named if real.startswith(os.path.realpath(unit.root) + os.sep)]
-    return inside or named or units
+    running = [unit for unit in units if unit.has(program.files)]
+    if running:
+        return [unit for unit in running if unit.runs(program.files)] or running
+    named = [unit for unit in units if unit.is_called(program.stem)]
+    exact = [unit for unit in units if unit.is_of(real)]
+    inside = [
+        unit
+        for unit in named
+        if unit.script is None and real.startswith(os.path.realpath(unit.root) + os.sep)
+    ]
+    folder = os.path.basename(os.path.dirname(os.path.abspath(script)))
+    of_package = [unit for unit in named if unit.package == folder]
+    return (
+        [unit for unit in exact if unit in named] or exact or inside or of_package or named or units
+    )
 
 
 def _of_folder(folder: str) -> list[_Unit]:
+    built = os.path.join(folder, BUILT)
+    if os.path.isfile(built):
+        return _of_document(built)
     found = sorted({path for place in _PLACES for path in glob.glob(os.path.join(folder, place))})
     units: list[_Unit] = []
     is_any = False
@@ -185,10 +230,20 @@ def _units(document: Any, path: str) -> list[_Unit]:  # noqa: ANN401
                 file = os.path.normpath(os.path.join(unit["source_root"], comparison["file"]))
                 files.setdefault(file, []).append(_listed(comparison))
             listed = [ListedFile(file, tuple(found)) for file, found in files.items()]
-            units.append(_Unit(unit["link_unit"], unit["source_root"], listed))
+            script, root = unit.get("script"), unit["source_root"]
+            if script is not None:
+                script = os.path.join(root, script)
+            if not _is_compiled(unit):
+                units.append(_Unit(unit["link_unit"], unit.get("package"), script, root, listed))
     except (KeyError, TypeError, AttributeError) as error:
         raise InputError(f"no static information ({type(error).__name__}: {error})", path) from None
     return units
+
+
+def _is_compiled(unit: dict[str, Any]) -> bool:
+    """Whether it is a program or library in C++, which may be called as a script is."""
+    tool = unit.get("tool")
+    return tool is not None and tool.get("analysis") != "python"
 
 
 def _listed(comparison: dict[str, Any]) -> Listed:

@@ -27,8 +27,8 @@ def build(processor: float, *not_built: NotBuilt) -> Build:
 def found(comparisons: int = 0, **changes: Any) -> Found:
     """What was found: one parameter and one file for every two comparisons."""
     half = (comparisons + 1) // 2
-    fields = {"units": 1, "failed": (), "without": (), **changes}
-    return Found(comparisons, half, half, **fields)
+    fields = {"python": 0, "units": 1, "failed": (), "without": (), **changes}
+    return Found(comparisons, parameters=half, files=half, **fields)
 
 
 def result(
@@ -43,7 +43,6 @@ def result(
         "plain": build(plain) if isinstance(plain, float) else plain,
         "tpc": build(tpc) if isinstance(tpc, float) else tpc,
         "found": found(),
-        "python": None,
         "lines": LINES,
     }
     return TreeResult(name, **{**fields, **changes})

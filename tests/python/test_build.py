@@ -15,6 +15,7 @@ from types import SimpleNamespace
 
 import pytest
 from file_api import reply, target
+from mixed_workspace import make_mixed
 from packages import add_package, install_prefix
 from static_units import comparison, failed_unit, unit
 
@@ -29,7 +30,7 @@ from pytpc.colcon import (
 )
 from pytpc.errors import InputError, MissingToolError, RunError, TpcError, WorkspaceError
 from pytpc.left_alone import LeftAlone
-from pytpc.static_info import LeftOut
+from pytpc.static_info import LeftOut, StaticInfo
 from pytpc.workspace import Package
 
 TOOLCHAIN = Path("/opt/tpc/share/tpc/cmake/tpc.cmake")
@@ -247,6 +248,57 @@ def test_a_build_gives_units_and_what_was_missed(workspace: Path, colcon: FakeCo
     assert [found["link_unit"] for found in saved["units"]] == ["broken", "detector"]
     assert (workspace / ".tpc/.gitignore").read_text(encoding="utf-8") == "*\n"
     assert (workspace / ".tpc/build/arm/.cmake/api/v1/query/codemodel-v2").is_file()
+
+
+FIXED_PY = """import rospy
+if __name__ == "__main__":
+    rospy.init_node("fixed")
+    if rospy.get_time() > 7:
+        rospy.Publisher("late", object).publish()
+"""
+
+
+def test_python_nodes_are_analysed_behind_the_build(workspace: Path, colcon: FakeColcon) -> None:
+    """A target and a script of one name; and a package that C++ left alone."""
+    make_mixed(workspace)
+    fixed = workspace / "src/face/fixed.py"
+    fixed.write_text(FIXED_PY, encoding="utf-8")
+    colcon.writes(
+        "build/mission/tpc/mission.json", json.dumps(unit(package="mission", link_unit="mission"))
+    )
+    fails_with_tpc(colcon)
+    told: list[tuple[int, int]] = []
+    result = build_workspace(workspace, on_scripts=lambda done, total: told.append((done, total)))
+    assert list(result.left_alone) == ["face"]
+    assert [(found.package, found.link_unit) for found in result.units] == [
+        ("camera", "node"),
+        ("face", "fixed"),
+        ("mission", "mission"),
+        ("mission", "pump"),
+        ("mission", "scripts/mission.py"),
+    ]
+    assert told == [(1, 4), (2, 4), (3, 4), (4, 4)]
+    assert [found.link_unit for found in result.static.left_out] == ["scripts/broken.py"]
+    assert StaticInfo.load(result.bases.static_info) == result.static
+    constants = build_workspace(workspace, packages=["face"], constants=True).static
+    assert len(constants.comparisons) == len(result.static.comparisons) + 1
+    without = build_workspace(workspace, python=False)
+    assert [found.link_unit for found in without.units] == ["mission"]
+
+
+def test_broken_rules_for_python_end_a_build_before_it_begins(workspace: Path) -> None:
+    rules = workspace / "python.json"
+    rules.write_text('{"reeds": []}', encoding="utf-8")
+    with pytest.raises(InputError, match=r"python\.json: /reeds: "):
+        build_workspace(workspace, python_rules=rules)
+    assert not (workspace / ".tpc").exists()
+
+
+def test_the_profile_of_cmake_is_that_of_python(workspace: Path, colcon: FakeColcon) -> None:
+    make_mixed(workspace)
+    colcon.logs(OK_EVENTS)
+    result = build_workspace(workspace, colcon_args=["--cmake-args", "-DTPC_PROFILE=thesis"])
+    assert {found.tool.profile for found in result.units} == {"thesis"}
 
 
 def test_the_sources_are_not_touched(workspace: Path, colcon: FakeColcon, tmp_path: Path) -> None:

@@ -63,6 +63,7 @@ def test_build_hands_over_its_options_and_shows_the_result(
     result = run(
         *("build", tmp_path, "--package", "face", "--package", "arm", "--build-type", "Debug"),
         *("--constants", "--base", tmp_path / "own", "--tests", "--no-fallback", "--retry"),
+        *("--no-python", "--python-rules", tmp_path / "rules.json"),
         *("--", "--merge-install", "--cmake-args", "-DX=1"),
     )
     assert result.exit_code == 0, result.output
@@ -71,7 +72,8 @@ def test_build_hands_over_its_options_and_shows_the_result(
     assert given["build_type"] == "Debug"
     assert given["bases"] == Bases(tmp_path / "own")
     assert (given["constants"], given["tests"], given["retry"]) == (True, True, True)
-    assert given["fallback"] is False
+    assert (given["fallback"], given["python"]) == (False, False)
+    assert given["python_rules"] == tmp_path / "rules.json"
     assert given["colcon_args"] == ("--merge-install", "--cmake-args", "-DX=1")
     assert result.stdout.splitlines()[-1] == (
         f"1 comparison in 2 link units, built in 12.3 s: {tmp_path}/own/static.json"

@@ -114,7 +114,8 @@ except StopIteration as error:
 SAME = {
     "t(0, min)(t(1, 5), t(2, 3))": "choice 2",
     "t(0, min)(t(1, 5), t(2, 3), key=t(3, lambda x: -x))": "choice 2",
-    "t(0, min)(*t(1, [5, 3]), **t(2, {}))": "choice 2",
+    "t(0, min)(*t(1, [5, 3]))": "choice 2",
+    "t(0, max)(\n        t(1, 5), t(2, 3),\n        key=t(3,\n              abs))": "choice 2",
     "min(Odd('a'), Odd('b'))": "choice 2",
     "min(Odd('a'), Odd('b', True))": "choice 2",
     "min(\n        Odd('a'),\n        t(1, Odd('b', True)))": "choice 2",

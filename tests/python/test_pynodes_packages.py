@@ -334,7 +334,8 @@ def test_a_broken_manifest_is_one_warning(tmp_path: Path) -> None:
     done = CliRunner().invoke(main, ["analyse", str(source), "-o", str(output)])
     assert done.exit_code == 0
     (line,) = done.stderr.splitlines()
-    assert line.startswith(f"pytpc: warning: {source}/user/package.xml:2: not XML: mismatched tag")
+    where = f"{source}/user/package.xml:2"
+    assert line.startswith(f"user/package.xml reports nothing: {where}: not XML: mismatched tag")
     assert line.endswith("; the folder's name stands for the package's")
     units = StaticInfo.load(output).units
     assert {(unit.package, unit.link_unit) for unit in units} == {

@@ -10,7 +10,6 @@ from static_units import KEYS, comparison, failed_unit, unit
 from survey_samples import AFTER, BAD, build, found, result
 
 from pytpc.errors import InputError
-from pytpc.source_lines import LineCount, SourceLines
 from pytpc.static_info import LinkUnit
 from pytpc.survey import (
     Tree,
@@ -19,7 +18,6 @@ from pytpc.survey import (
     build_order,
     found_in,
     needed_trees,
-    python_tpcs,
 )
 from pytpc.survey_rows import tables
 from pytpc.tables import statistics
@@ -68,21 +66,19 @@ def test_what_is_not_known_is_in_no_statistic() -> None:
 
 def test_the_first_table() -> None:
     results = [
-        result("arm", 10.0, 15.0, found=found(4), python=2),
+        result("arm", 10.0, 15.0, found=found(4, python=2)),
         result("leg", 30.0, 33.0, found=found(1)),
     ]
     table = tables(results)[0]
     headings = [column.heading for column in table.columns]
     assert headings[:7] == ["Time", "Time Factor", "TPCs", "C++", "Python", "Unique", "Files"]
     assert table.rows[0] == ("arm", (10.0, 1.5, 6, 4, 2, 2, 2, 3, 0))
-    # Python of the second was not analysed: neither is its number nor the sum of both.
-    unknown = "not analysed"
-    assert table.rows[1] == ("leg", (30.0, pytest.approx(1.1), unknown, 1, unknown, 1, 1, 3, 0))
+    assert table.rows[1] == ("leg", (30.0, pytest.approx(1.1), 1, 1, 0, 1, 1, 3, 0))
     summary = dict(table.summary)
     assert list(summary) == ["mean", "median", "std", "min", "max", "sum"]
     # The factor of the sums is 48 / 40, not 1.5 + 1.1.
-    assert summary["sum"] == (40.0, pytest.approx(1.2), 6.0, 5.0, 2.0, 3.0, 3.0, 6.0, 0.0)
-    assert summary["mean"][:4] == (20.0, pytest.approx(1.3), 6.0, 2.5)
+    assert summary["sum"] == (40.0, pytest.approx(1.2), 7.0, 5.0, 2.0, 3.0, 3.0, 6.0, 0.0)
+    assert summary["mean"][:4] == (20.0, pytest.approx(1.3), 3.5, 2.5)
 
 
 def test_the_second_table() -> None:
@@ -150,9 +146,27 @@ def test_units_that_were_left_as_they_were_are_named(tmp_path: Path) -> None:
     )
 
 
-def test_python_is_not_a_zero_that_nobody_counted() -> None:
-    assert python_tpcs(Path("/src"), SourceLines({"Python": LineCount(1, 5)}, {})) is None
-    assert python_tpcs(Path("/src"), SourceLines({"C++": LineCount(1, 5)}, {})) == 0
+def test_places_in_python_are_counted_apart(tmp_path: Path) -> None:
+    """Two scripts share a module; the parameter and the file are counted once with C++'s."""
+    tool = {**unit()["tool"], "analysis": "python"}
+    scripts = [
+        unit(
+            source_root=str(tmp_path),
+            tool=tool,
+            link_unit=name,
+            comparisons=[
+                comparison(key=KEYS[0], file="src/limits.py"),
+                comparison(key=KEYS[1], file=f"scripts/{name}.py", source="own", lineno=9),
+                comparison(key=KEYS[2], type="constant", source=None, param_reads=[], read_at=None),
+            ],
+        )
+        for name in ("one", "two")
+    ]
+    counted = found_in(units(unit(source_root=str(tmp_path)), *scripts), tmp_path)
+    # limits.py, and a line of each script.
+    assert (counted.comparisons, counted.python, counted.units) == (1, 3, 3)
+    # min_coverage_limit and own; detector.cpp, limits.py, one.py, two.py.
+    assert (counted.parameters, counted.files) == (2, 4)
 
 
 def test_a_tree_is_built_after_what_it_needs() -> None:

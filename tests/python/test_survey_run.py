@@ -6,6 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from mixed_workspace import BROKEN_TEXT, make_mixed
 from packages import add_package, install_prefix
 from survey_samples import build
 
@@ -103,6 +104,23 @@ def test_a_changed_tree_is_built_again_with_what_stands_on_it(
     (trees[1] / "base/new.cpp").write_text("int x;\n", encoding="utf-8")
     run(output, *trees)
     assert {name for name, _ in built} == {"upper", "lower"}
+
+
+def test_the_python_of_a_tree_is_analysed(tmp_path: Path, built: Log) -> None:
+    """Also where it does not build, and again where it has changed."""
+    tree = make_mixed(tmp_path / "ws")
+    steps: list[Step] = []
+    (found,) = survey([tree], Options(tmp_path / "out", 2), steps.append)
+    assert (found.found.comparisons, found.found.python, found.found.units) == (0, 4, 3)
+    assert found.found.failed == (
+        f"mission/scripts/broken.py: {tree}/src/mission/scripts/broken.py:3: {BROKEN_TEXT}",
+    )
+    told = [step.far for step in steps if step.what == "analysing Python"]
+    assert told == ["", "1 of 3 scripts", "2 of 3 scripts", "3 of 3 scripts"]
+    assert found.tpc == build(2.0)
+    (tree / "src/camera/camera/node.py").write_text("x = 1\n", encoding="utf-8")
+    (found,) = survey([tree], Options(tmp_path / "out", 2), steps.append)
+    assert found.found.python == 3
 
 
 @pytest.mark.parametrize(
@@ -225,6 +243,7 @@ def test_steps_say_which_tree_and_what(
         "counting lines",
         "building without TPC",
         "building with TPC",
+        "analysing Python",
     ]
     assert {(step.tree, step.number, step.total) for step in steps} == {("lower", 1, 1)}
 

@@ -11,17 +11,20 @@ from pytpc.survey_tables import as_csv, as_latex, as_markdown, documents, faults
 
 def test_csv_has_numbers_in_full() -> None:
     results = [
-        result("arm", 10.0, 15.0, found=found(4), python=2),
+        result("arm", 10.0, 15.0, found=found(4, python=2)),
         result("leg", 30.0, 33.0, found=found(1)),
     ]
     rows = list(csv.reader(io.StringIO(as_csv(tables(results)[0]))))
     assert rows[0][:7] == ["name", "time", "time factor", "tpcs", "c++", "python", "unique"]
     assert rows[1] == ["arm", "10", "1.5", "6", "4", "2", "2", "2", "3", "0"]
-    assert rows[2] == ["leg", "30", "1.1", *["not analysed", "1"] * 2, "1", "3", "0"]
+    assert rows[2] == ["leg", "30", "1.1", "1", "1", "0", "1", "1", "3", "0"]
     assert [row[0] for row in rows[3:]] == ["mean", "median", "std", "min", "max", "sum"]
-    # Of one number there is no deviation.
-    assert rows[5][3] == ""
-    assert rows[8][:4] == ["sum", "40", "1.2", "6"]
+    assert rows[8][:4] == ["sum", "40", "1.2", "7"]
+
+
+def test_of_one_number_there_is_no_deviation() -> None:
+    rows = list(csv.reader(io.StringIO(as_csv(tables([result("arm", 10.0, 15.0)])[0]))))
+    assert (rows[4][0], rows[4][3]) == ("std", "")
 
 
 def test_no_two_columns_of_a_csv_have_one_name() -> None:
@@ -34,14 +37,14 @@ def test_markdown() -> None:
     lines = as_markdown(tables([result("a|b_c", 10.0, 12.5)])[0]).splitlines()
     assert lines[0].startswith("| Name | Time | Time Factor | TPCs | C++ |")
     assert lines[1].startswith("| --- | --: |")
-    assert lines[2].startswith(r"| a\|b\_c | 10.0 | 1.25 | not analysed | 0 | not analysed | 0 |")
-    assert lines[3].startswith("| *mean* | 10.0 | 1.25 | - | 0 | - |")
+    assert lines[2].startswith(r"| a\|b\_c | 10.0 | 1.25 | 0 | 0 | 0 | 0 |")
+    assert lines[3].startswith("| *mean* | 10.0 | 1.25 | 0 | 0 | 0 |")
 
 
 def test_a_mean_of_counts_has_a_decimal_place() -> None:
     results = [result("a", 1.0, 1.0, found=found(1)), result("b", 1.0, 1.0, found=found(2))]
     mean = as_markdown(tables(results)[0]).splitlines()[4]
-    assert mean.startswith("| *mean* | 1.0 | 1.00 | - | 1.5 | - | 1 | 1 | 3 | 0 |")
+    assert mean.startswith("| *mean* | 1.0 | 1.00 | 1.5 | 1.5 | 0 | 1 | 1 | 3 | 0 |")
 
 
 def test_latex() -> None:
@@ -50,7 +53,7 @@ def test_latex() -> None:
     heading = r"Name & Time & \shortstack[r]{Time\\Factor} & TPCs & C++ & Python & Unique & Files"
     # On the first page and on those that follow.
     assert text.count(heading) == 2
-    assert r"nav\_core \& 50\% & 10.0 & 1.25 & not analysed & 0" in text
+    assert r"nav\_core \& 50\% & 10.0 & 1.25 & 0 & 0" in text
     for rule in (r"\toprule", r"\midrule", r"\bottomrule", r"\endfirsthead", r"\endlastfoot"):
         assert rule in text
     assert text.endswith("\\end{longtable}\n}\n")

@@ -77,7 +77,7 @@ def test_two_trees_interrupted_and_resumed(tmp_path: Path) -> None:
         assert tree["found"]["comparisons"] == 1
         assert (tree["found"]["parameters"], tree["found"]["files"]) == (1, 1)
         assert tree["found"]["without"] == tree["found"]["failed"] == []
-        assert tree["python"] == 0
+        assert tree["found"]["python"] == 0
         for way in ("plain", "tpc"):
             times = tree[way]
             assert 0 < times["compile"] < times["processor"]
