@@ -71,7 +71,9 @@ def python_of_build(
             fresh = analyse_scripts(scripts, rules, on_progress)
             units = write_units(build_base, named_beside(fresh.units, names))
             found = PythonUnits(tuple(units), fresh.left_out)
-            save_kept(kept_file, build_base, digest, found)
+            # A failure may come of a busy machine: it is tried again.
+            if all(unit.status == "ok" for unit in units):
+                save_kept(kept_file, build_base, digest, found)
     others = _others(build_base, packages, chosen, found)
     return PythonUnits((*found.units, *others), found.left_out)
 

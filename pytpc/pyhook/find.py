@@ -47,7 +47,8 @@ class Found(NamedTuple):
     ``links``: comparison -> number of the link -> what it reports. ``flags``: expression -> what it
     reports. ``loops``: the iterated expression of a ``for`` -> what it reports. ``subjects``: the
     subject of a ``match`` -> what it reports. ``patterns``: a value in a ``case`` -> what it
-    reports. ``missing``: what is not there; ``unsupported``: what is, where it cannot be reported.
+    reports. ``calls``: a call of a function that compares inside -> what it reports.
+    ``missing``: what is not there; ``unsupported``: what is, where it cannot be reported.
     """
 
     links: dict[ast.Compare, dict[int, list[Place]]]
@@ -55,22 +56,23 @@ class Found(NamedTuple):
     loops: dict[ast.expr, list[Place]]
     subjects: dict[ast.expr, list[Place]]
     patterns: dict[ast.expr, list[Place]]
+    calls: dict[ast.expr, list[Place]]
     unsupported: list[Listed]
     missing: list[Listed]
 
     def total(self) -> int:
         """How many listed comparisons were found."""
         links = sum(len(places) for link in self.links.values() for places in link.values())
-        others = (self.flags, self.loops, self.subjects, self.patterns)
+        others = (self.flags, self.loops, self.subjects, self.patterns, self.calls)
         return links + sum(len(places) for kind in others for places in kind.values())
 
 
 def find(tree: ast.Module, listed: Sequence[Listed]) -> Found:
     """Where each of ``listed`` is in ``tree``."""
     index = _Index(tree)
-    found = Found({}, {}, {}, {}, {}, [], [])
+    found = Found({}, {}, {}, {}, {}, {}, [], [])
     for one in listed:
-        ways = (_as_link, _as_pattern, _as_loop, _as_flag)
+        ways = [_as_call] if one.is_inside else [_as_link, _as_pattern, _as_loop, _as_flag]
         if not any(way(index, found, one) for way in ways):
             found.missing.append(one)
     return found
@@ -267,6 +269,19 @@ def _text(node: ast.expr) -> str:
         if isinstance(inner, ast.Constant):
             return f"{_text(node.value)}[{inner.value!r}]"
     return ""
+
+
+def _as_call(index: _Index, found: Found, listed: Listed) -> bool:
+    for node in index.names.get((listed.lineno, listed.column), []):
+        if isinstance(node, ast.Call) and _ends(node, listed) and _has_names(node):
+            found.calls.setdefault(node, []).append(Place(listed, False))
+            return True
+    return False
+
+
+def _has_names(call: ast.Call) -> bool:
+    """Whether each keyword stands there; the analysis lists no others."""
+    return all(keyword.arg is not None for keyword in call.keywords)
 
 
 def _as_pattern(index: _Index, found: Found, listed: Listed) -> bool:

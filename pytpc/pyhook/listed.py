@@ -37,6 +37,11 @@ class Listed(NamedTuple):
     operand: str | None
     source_code: str | None
 
+    @property
+    def is_inside(self) -> bool:
+        """Whether it is inside of the library function that is called there."""
+        return self.operand is not None and self.operand not in ("left", "right")
+
 
 class ListedFile(NamedTuple):
     """A source file and its comparisons. ``path`` is absolute, as the analysis saw it."""

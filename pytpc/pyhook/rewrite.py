@@ -17,6 +17,7 @@ import sys
 from types import CodeType
 from typing import TYPE_CHECKING, NamedTuple
 
+from pytpc.pyhook.call_sites import Inside, LibraryCall
 from pytpc.pyhook.control_sites import Loop, Subject
 from pytpc.pyhook.find import Found, Place, find, values_of
 from pytpc.pyhook.listed import Listed
@@ -205,6 +206,9 @@ class _Rewriter:
                 true = ast.copy_location(ast.Constant(value=True, kind=None), node)
                 still = ast.Compare(left=new, ops=[ast.Is()], comparators=[true])
                 new = ast.copy_location(still, node)
+        calls = self._found.calls.get(node)
+        if calls is not None and isinstance(node, ast.Call):
+            new = self._library_call(node, calls)
         if flags is not None:
             new = self._flag(new, flags, asked)
         loops = self._found.loops.get(node)
@@ -272,6 +276,20 @@ class _Rewriter:
         ended = self._call(self._constant(comparison, node), ending, [], node)
         body = self._chain(chain, link + 1, handed, node)
         return ast.copy_location(ast.IfExp(test=this, body=body, orelse=ended), node)
+
+    def _library_call(self, node: ast.Call, places: list[Place]) -> ast.expr:
+        inside = tuple(
+            Inside(self._register(place), place.listed.relation, place.listed.operand or "")
+            for place in places
+        )
+        names: list[ast.expr | None] = [
+            ast.copy_location(ast.Constant(value=keyword.arg, kind=None), keyword.value)
+            for keyword in node.keywords
+        ]
+        keywords = ast.Dict(keys=names, values=[keyword.value for keyword in node.keywords])
+        ast.copy_location(keywords, node)
+        site = self._constant(LibraryCall(inside), _first(node))
+        return self._call(site, "call", [node.func, *node.args, keywords], node)
 
     def _flag(self, node: ast.expr, places: list[Place], asked: bool) -> ast.expr:
         flag = Flag(tuple(self._register(place) for place in places))

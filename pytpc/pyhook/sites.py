@@ -110,6 +110,11 @@ def unknown_outcomes() -> int:
     return _counts["unknown_outcomes"]
 
 
+def count_unknown() -> None:
+    """An evaluation is not reported, because only the program may ask for what it came to."""
+    _counts["unknown_outcomes"] += 1
+
+
 def number_of(value: Any) -> float | None:  # noqa: ANN401
     """What ``value`` is as a number; None for what is none, or could say so only by its own code.
 
@@ -149,11 +154,11 @@ def truth_of(value: object) -> bool | None:
     return None
 
 
-def _values(cmp: object, thresh: object, outcome: bool) -> tuple[float, float]:
+def values(cmp: object, thresh: object, outcome: bool) -> tuple[float, float]:
+    """What is reported of two values; of what is no number, the outcome stands for both."""
     left = number_of(cmp)
     right = number_of(thresh)
     if left is None or right is None:
-        # As for texts: the outcome stands for both.
         return float(outcome), float(outcome)
     return left, right
 
@@ -201,7 +206,7 @@ def logger(reported: tuple[Reported, ...]) -> Callable[[Any, Any, bool], None]:
 
     def log(a: object, b: object, outcome: bool) -> None:
         try:
-            left, right = _values(a, b, outcome)
+            left, right = values(a, b, outcome)
             for one in reported:
                 if one.swapped:
                     _take(one, outcome, right, left, outcome)
@@ -244,7 +249,7 @@ def _later(reported: tuple[Reported, ...]) -> Function:
         try:
             truth = truth_of(outcome)
             if truth is None:
-                _counts["unknown_outcomes"] += 1
+                count_unknown()
             else:
                 log(a, b, truth)
         except BaseException as error:
@@ -341,7 +346,7 @@ class Flag(Site):
             try:
                 known = truth_of(value)
                 if known is None:
-                    _counts["unknown_outcomes"] += 1
+                    count_unknown()
                 else:
                     log(value, value, known)
             except BaseException as error:

@@ -56,7 +56,7 @@ def compared_inside(flow: Flow, call: Instr) -> dict[int, Inside]:
             "<" if smallest == (place == 0) else ">",
             tuple(arg for other, arg in enumerate(args[:count]) if other != place),
             True,
-            str(place + 1),
+            f"choice {place + 1}",
         )
         for place in range(count if count > 1 else 0)
     }
@@ -88,11 +88,11 @@ def _outcome(
 ) -> dict[int, Inside]:
     left, right = args[:2]
     found = {
-        0: Inside(TURNED.get(relation, relation), (right,), False, "1"),
-        1: Inside(relation, (left,), False, "2"),
+        0: Inside(TURNED.get(relation, relation), (right,), False, "argument 1"),
+        1: Inside(relation, (left,), False, "argument 2"),
     }
     if within is not None and within in names:
-        found[names[within]] = Inside("<=", (left, right), False, within)
+        found[names[within]] = Inside("<=", (left, right), False, f"within {within}")
     return found
 
 
@@ -101,6 +101,6 @@ def _clip(args: tuple[Instr, ...], names: dict[str, int], count: int) -> dict[in
     for place, name, relation in ((1, "a_min", "<"), (2, "a_max", ">")):
         at = place if count > place else names.get(name)
         if at is not None and count > 0:
-            operand = str(place + 1) if count > place else name
+            operand = f"choice {place + 1 if count > place else name} of 1"
             found[at] = Inside(relation, args[:1], True, operand)
     return found

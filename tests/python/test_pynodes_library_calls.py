@@ -37,13 +37,13 @@ SAMPLES = {
     "operator": "if op.le(m.data, p):  #: ~p <=\n        pub.publish(m)",
     "turned": "if operator.ge(p, m.data):  #: ~p <=\n        pub.publish(m)",
     "imported": "if not gt(m.data, p):  #: ~p >\n        pub.publish(m)",
-    "stored": "y = np.greater_equal(m.data, p)  #: ~p >=\n    if np.any(y):\n        pub.publish(m)",
+    "stored": "y = np.greater_equal(m.data, p)  #: ~p >=\n    if np.any(y):\n        pub.publish()",
     "is": "if op.is_not(m.data, p):  #: ~p !=\n        pub.publish(m)",
     "close": "if math.isclose(p, m.data):  #: ~p ==\n        pub.publish(m)",
     "tolerance": "if np.isclose(m.data, 1, atol=p):  #: ~p <=\n        pub.publish(m)",
     "one of two functions": "if own(m.data, p):\n        pub.publish(m)  # own may be two",
     "a constant beside": "if m.data > min(p, 3):  #: ~p > derived, ~p <\n        pub.publish(m)",
-    "only constants beside a measurement": "z = p if m.data else m.data\n    pub.publish(min(z, 3))",
+    "constants beside a measurement": "z = p if m.data else m.data\n    pub.publish(min(z, 3))",
 }
 
 
@@ -58,7 +58,7 @@ def test_place_operand_and_way(tmp_path: Path) -> None:
     one = only(analysed(text, tmp_path))
     # Three lines of the prelude, eight of START; `min` begins behind `    y = `, its call has 14
     # characters.
-    assert (one.lineno, one.column, one.end_column, one.operand) == (12, 9, 23, "2")
+    assert (one.lineno, one.column, one.end_column, one.operand) == (12, 9, 23, "choice 2")
     # The publish, the store of y, the choice.
     assert one.distance == 3
     assert [(step.step, step.lineno) for step in one.path] == [
