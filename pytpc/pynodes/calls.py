@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 from pytpc.pynodes.call_table import CallTable, Given
 from pytpc.pynodes.ir import ANY, ClassInfo, Function, Instr, Shape
-from pytpc.pynodes.objects import EVERY, SOME, Obj
+from pytpc.pynodes.names import NamePattern, attribute_named
+from pytpc.pynodes.objects import ATTRIBUTES, EVERY, SOME, UNNAMED, Obj
 
 if TYPE_CHECKING:
     from pytpc.pynodes.pointsto import PointsTo
@@ -21,6 +22,7 @@ _COPYING = {
 } | {"copy.copy", "copy.deepcopy", "collections.deque", "collections.OrderedDict"}
 _CHOOSING = {f"builtins.{name}" for name in ("any", "all", "sum", "min", "max", "next")}
 _FEW = 16
+_HOLDING = ("container", "namespace")
 _RUNNING = {"target", "args", "kwargs", "callback_args", "function"}
 
 
@@ -87,6 +89,8 @@ class Calls(CallTable):
         order = [each for each in self.flow.mro(info) if isinstance(each, ClassInfo)]
         names = [name for each in reversed(order) if each.is_record for name in each.fields]
         for place, (keyword, value) in enumerate(given):
+            if keyword == "**" and names:
+                self.flow.put_all(made, value, instr)
             name = keyword or (names[place] if place < len(names) else None)
             if name in names and name is not None:
                 self.flow.write(made, name, value, instr)
@@ -226,6 +230,9 @@ class Calls(CallTable):
         elif path in ("builtins.getattr", "builtins.setattr"):
             self._by_name(instr, path, given)
             return
+        elif path == "builtins.vars" and given:
+            flow.when(given[0][1], lambda found: flow._load_attribute(found, "__dict__", instr))
+            return
         elif path in _COPYING:
             self._copied(instr, given)
         elif path in _CHOOSING:
@@ -238,7 +245,7 @@ class Calls(CallTable):
                 flow.read_element(owner, ANY, instr)
         elif owner is not None:
             self._on_object(instr, name, owner, given)
-        if path not in _COPYING and not (owner is not None and owner.kind == "container"):
+        if path not in _COPYING and not (owner is not None and owner.kind in _HOLDING):
             made = flow.heap.made(flow.rules.class_of(path), instr)
             flow.add(instr, [made])
             for keyword, value in given:
@@ -248,18 +255,40 @@ class Calls(CallTable):
             self._hand(instr, path, value, given)
 
     def _by_name(self, instr: Instr, path: str, given: list[Given]) -> None:
-        """``getattr`` and ``setattr`` with a constant name are attributes."""
-        if len(given) < 2 or not isinstance(given[1][1].data, str):
+        """``getattr`` and ``setattr``; by an unknown name all attributes that fit it."""
+        if len(given) < 2:
             return
-        owner, name = given[0][1], given[1][1].data
+        owner, known = given[0][1], attribute_named(given[1][1])
         flow = self.flow
         if path == "builtins.getattr":
-            flow.when(owner, lambda found: flow._load_attribute(found, name, instr))
+            if isinstance(known, str):
+                flow.when(owner, lambda found: flow._load_attribute(found, known, instr))
+            else:
+                flow.when(owner, lambda found: self._any_attribute(found, known, instr))
             if len(given) > 2:
                 flow.copy(given[2][1], instr)
         elif len(given) > 2:
             value = given[2][1]
-            flow.when(owner, lambda found: flow._store_attribute(found, name, value, instr))
+            if isinstance(known, str):
+                flow.when(owner, lambda found: flow._store_attribute(found, known, value, instr))
+            else:
+                flow.when(owner, lambda found: self._set_any(found, value, instr))
+
+    def _set_any(self, owner: Obj, value: Instr, instr: Instr) -> None:
+        if owner.kind == "instance":
+            self.flow.write(owner, UNNAMED, value, instr)
+
+    def _any_attribute(self, owner: Obj, fits: NamePattern, instr: Instr) -> None:
+        """What is read by a name of which only the beginning and the end are known."""
+        if owner.kind != "instance":
+            return
+        flow = self.flow
+        if not fits.start and not fits.end:
+            flow.copy(flow.slot(owner, ATTRIBUTES), instr)
+            return
+        for name in flow.program.attributes:
+            if fits.takes(name):
+                flow._load_attribute(owner, name, instr)
 
     def _super(self, instr: Instr) -> None:
         info = instr.function.owner
@@ -300,6 +329,8 @@ class Calls(CallTable):
             for keyword, value in given:
                 if keyword in (None, "*", "**"):
                     flow.when(value, lambda found: self._merge(found, owner, instr))
+                    if owner.kind in _HOLDING:
+                        flow.put_all(owner, value, instr)
                 else:
                     flow.write(owner, f"[{keyword!r}]", value, instr)
         elif name in _PUTTING:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from pytpc.pynodes.effects import effects_of_calls
 from pytpc.pynodes.ir import Block, Instr, Variable
-from pytpc.pynodes.objects import Field, Obj
+from pytpc.pynodes.objects import UNNAMED, Field, Obj
 from pytpc.pynodes.pointsto import PointsTo
 from pytpc.pynodes.reaching import Reaching, reaching_definitions
 
@@ -190,6 +190,27 @@ class Flow:
                 if isinstance(before, tuple) and before not in seen:
                     seen.add(before)
                     waiting.append(before)
+
+    def is_by_unknown_name(self, attr: Instr, writer: Instr | None) -> bool:
+        """True where ``writer`` sets attributes whose names are not known, and this one has a name.
+
+        What is set by its name, to more than a constant as default, is taken to stay that.
+        """
+        name = str(attr.data)
+        points = self.points
+        for owner in points.of(attr.args[0]) if writer is not None else ():
+            if owner.kind != "instance" or owner.class_info is None:
+                continue
+            if writer not in points.writers.get((owner, UNNAMED), ()):
+                continue
+            holders = [owner]
+            found = points.lookup(owner.class_info, name)
+            if found is not None:
+                holders.append(points.heap.class_(found))
+            named = [each for one in holders for each in points.writers.get((one, name), ())]
+            if any(each.args[-1].op != "const" for each in named):
+                return True
+        return False
 
     def objects(self, instr: Instr) -> list[Obj]:
         """The objects that a value may be, of a local variable those that are stored before."""

@@ -95,9 +95,26 @@ class Follower:
 
     def _step(self, fact: Fact) -> None:
         for to, via, stack in moves(self.flow, fact.at, fact.stack):
+            if to.op == "attr" and self.flow.is_by_unknown_name(to, via):
+                continue
+            if via is not None and (fact.at, via) in self.flow.points.spread:
+                self._entry(fact, to)
+                continue
             self._reach(Fact(to, fact.read, fact.name, fact.how, stack, fact, via))
         for user in self.flow.users.get(fact.at, ()):
             self._use(fact, user)
+
+    def _entry(self, fact: Fact, to: Instr) -> None:
+        """An entry of a table of parameters that became one of another dict, or an attribute."""
+        if to.op == "attr":
+            self._named(fact, to, [str(to.data)])
+        elif to.op == "item":
+            self._item(fact, to, to.args[1])
+        elif to.op == "call" and len(to.args) > 1:
+            # `get` of a dict; `getattr`.
+            self._item(fact, to, to.args[1 if to.args[0].op == "attr" else -1])
+        else:
+            self._on(fact, to, None)
 
     def _use(self, fact: Fact, user: Instr) -> None:
         match user.op:
@@ -193,7 +210,8 @@ class Follower:
     def _named(self, fact: Fact, user: Instr, keys: list[str]) -> None:
         """An entry of a table of parameters."""
         for key in dict.fromkeys(keys):
-            name = f"{fact.name.rstrip('/')}/{key}" if fact.name else key
+            above = fact.name.rstrip("/")
+            name = f"{above}/{key}" if above not in ("", "~") else f"{above}{key}"
             if len(name) <= _LONGEST_NAME:
                 self._reach(Fact(user, fact.read, name, fact.how, fact.stack, fact))
 
@@ -204,6 +222,20 @@ class Follower:
             return
         for path, _ in outside:
             self._argument(fact, user, path)
+        self._unpacked(fact, user)
+
+    def _unpacked(self, fact: Fact, call: Instr) -> None:
+        """``f(**table)``: each entry comes to the parameter of its name."""
+        names = getattr(call.data, "names", ())
+        if not any(n == "**" and v is fact.at for n, v in zip(names, call.args[1:], strict=True)):
+            return
+        for function in self.flow.points.calls.callees.get(call, {}):
+            for place, variable in enumerate(function.parameters):
+                param = function.param_instrs[place]
+                if place == function.kwarg:
+                    self._on(fact, param, None)
+                elif place != function.vararg and variable.name not in names:
+                    self._named(fact, param, [variable.name])
 
     def _method(self, fact: Fact, call: Instr, name: str) -> None:
         """A call of a method of the value."""

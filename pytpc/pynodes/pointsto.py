@@ -216,8 +216,12 @@ class PointsTo(Solver):
             self.add(instr, [self.heap.part(owner, name, path)])
         elif owner.kind == "class" and owner.class_info is not None:
             self.later(lambda: self._class_attribute(owner, name, instr))
+        elif owner.kind == "instance" and name == "__dict__":
+            self.add(instr, [self.heap.namespace(owner)])
+        elif owner.kind == "namespace":
+            self.add(instr, [self.heap.part(owner, name, "builtins.dict")])
         elif owner.kind == "instance":
-            self.copy(self.slot(owner, name), instr)
+            self.read_attribute(owner, name, instr)
             self._looked_up(owner, owner, None, name, instr)
         elif owner.kind == "super" and owner.parent is not None:
             self._looked_up(owner.parent, owner.parent, owner.class_info, name, instr)
