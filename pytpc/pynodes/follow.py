@@ -18,6 +18,8 @@ FLAG = -1
 RANGE = -2
 """The value bounds the ``range`` that a loop runs over."""
 _VARIANTS = 3
+_OF_OUTCOMES = {"any", "all", "sum", "max", "min", "item", "copy", "astype", "tolist"}
+"""Methods of numpy's arrays of outcomes."""
 _LONGEST_NAME = 200
 
 
@@ -58,7 +60,10 @@ class Lost:
 
 
 class Follower:
-    """Follows values from reads; ``compared`` and ``lost`` are what is found."""
+    """Follows values from reads; ``compared`` and ``lost`` are what is found.
+
+    ``selecting``: what chooses by an outcome without a branch, ``scan[scan < limit]``.
+    """
 
     def __init__(self, flow: Flow, constants: Constants, rules: Rules) -> None:
         """Nothing is followed yet."""
@@ -68,6 +73,7 @@ class Follower:
         self.facts: dict[Instr, list[Fact]] = {}
         self.compared: dict[tuple[Instr, int, int, str, Stack], Compared] = {}
         self.lost: dict[Instr, Lost] = {}
+        self.selecting: dict[Instr, None] = {}
         self._waiting: deque[Fact] = deque()
 
     def run(self, reads: list[Read]) -> None:
@@ -326,6 +332,9 @@ class Follower:
             following = [(to, after) for to, _, after in moves(self.flow, value, here)]
             found.update(dict.fromkeys(self._filtering(value)))
             for user in self.flow.users.get(value, ()):
+                if self._selects(user, value):
+                    self.selecting[user] = None
+                    found[user] = None
                 if user.op == "branch":
                     found[user] = None
                 elif self._passes(user, value):
@@ -349,6 +358,13 @@ class Follower:
             if any(path in self.rules.filters for path, _ in calls.outside.get(call, ()))
         ]
 
+    def _selects(self, user: Instr, value: Instr) -> bool:
+        """True where the outcome ``value`` chooses elements: a mask, ``numpy.where``."""
+        if user.op == "item":
+            return user.args[1] is value
+        outside = self.flow.points.calls.outside.get(user, {})
+        return any(path in self.rules.filters for path, _ in outside)
+
     def _passes(self, user: Instr, value: Instr) -> bool:
         """True where the value of ``user`` says what the outcome ``value`` says."""
         match user.op:
@@ -359,7 +375,11 @@ class Follower:
             case "compare":
                 return self._with_truth(user, value)
             case "call":
-                return self._passes_outcome(user)
+                return self._passes_outcome(user, value)
+            case "attr":
+                return str(user.data) in _OF_OUTCOMES and self._is_called(user)
+            case "item":
+                return user.args[0] is value
             case _:
                 return False
 
@@ -368,7 +388,9 @@ class Follower:
         values = self.constants.values(other)
         return bool(values) and all(isinstance(each, bool) for each in values)
 
-    def _passes_outcome(self, call: Instr) -> bool:
+    def _passes_outcome(self, call: Instr, value: Instr) -> bool:
+        if call.args[0] is value:
+            return value.op == "attr"
         outside = self.flow.points.calls.outside.get(call, {})
         return any(path in self.rules.outcomes for path, _ in outside)
 

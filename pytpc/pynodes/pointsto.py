@@ -91,11 +91,15 @@ class PointsTo(Solver):
         if made in known:
             return made
         known[made] = None
+        hidden: set[str] = set()
         for each in self.mro(info):
             if not isinstance(each, ClassInfo):
                 continue
             own = self.heap.class_(each)
-            for name in self.class_names.get(each, ()):
+            # What a subclass overrides is run by `super()` alone, which hands the object over.
+            names = [name for name in self.class_names.get(each, ()) if name not in hidden]
+            hidden.update(names)
+            for name in names:
                 self.when((own, name), lambda found: self._own_method(found, made))
         return made
 
