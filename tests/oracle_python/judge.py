@@ -142,6 +142,4 @@ def _look_for_unseen(verdict: Verdict, compiled: Compiled, runs: list[Outcome]) 
             place = compiled.places[number]
             evaluated.add((place.file, place.span))
             seen.update(_keys(place, side, what.parameters))
-    verdict.unseen = {
-        key for key in verdict.found - seen if (key[0], key[1]) in evaluated
-    }
+    verdict.unseen = {key for key in verdict.found - seen if (key[0], key[1]) in evaluated}

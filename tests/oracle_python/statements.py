@@ -27,7 +27,17 @@ class Statements(Expressions):
 
     def statement(self, scope: Scope, depth: int) -> None:
         """One statement; ``depth`` is that of blocks around it."""
-        simple = ("assign", "assign", "local", "local", "publish", "publish", "truth", "store", "call")
+        simple = (
+            "assign",
+            "assign",
+            "local",
+            "local",
+            "publish",
+            "publish",
+            "truth",
+            "store",
+            "call",
+        )
         compound = ("if", "if", "if", "if", "while", "for", "try", "with", "unpack", "comprehension",
                     "closure", "match", "leave", "leave", "list")  # fmt: skip
         pool = simple if depth >= 3 else simple + compound
@@ -92,7 +102,9 @@ class Statements(Expressions):
         inner.numbers.append(element)
         source = self.one_of(scope.lists or [f"({self.number(scope)}, {self.number(scope)})"])
         test = f" if {self.condition(inner, 1)}" if self.chance(0.6) else ""
-        self.lines.add(f"{name} = [{self.number(inner, 1)} for {element} in {source}{test}] + [0.5]")
+        self.lines.add(
+            f"{name} = [{self.number(inner, 1)} for {element} in {source}{test}] + [0.5]"
+        )
         scope.lists.append(name)
 
     # Compound ones
@@ -145,7 +157,9 @@ class Statements(Expressions):
             self.body(inner, 1, depth + 1)
         has_handler = self.chance(0.8)
         if has_handler:
-            taken = self.one_of(["Fault", "Worse", "(Fault, ValueError)", "Exception", "Fault as fault"])
+            taken = self.one_of(
+                ["Fault", "Worse", "(Fault, ValueError)", "Exception", "Fault as fault"]
+            )
             self._block(f"except {taken}:", scope, depth)
             if self.chance(0.2):
                 self._block("else:", scope, depth)

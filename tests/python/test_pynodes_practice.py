@@ -32,7 +32,8 @@ SAMPLES = {
                 return "done"
         machine = smach.StateMachine(outcomes=["end"])
         with machine:
-            smach.StateMachine.add("CHARGE", Charge(rospy.get_param("~full")), transitions={"full": "end"})
+            charge = Charge(rospy.get_param("~full"))
+            smach.StateMachine.add("CHARGE", charge, transitions={"full": "end"})
             smach.StateMachine.add("DRIVE", Drive(pub, rospy.get_param("~speed")))
         machine.execute()
     """,
@@ -42,7 +43,9 @@ SAMPLES = {
             def __init__(self, name):
                 self.most = rospy.get_param("~most", 3.0)
                 self.tries = rospy.get_param("~tries", 3)
-                self.server = actionlib.SimpleActionServer(name, object, execute_cb=self.run, auto_start=False)
+                self.server = actionlib.SimpleActionServer(
+                    name, object, execute_cb=self.run, auto_start=False
+                )
                 self.server.start()
             def run(self, goal):
                 for attempt in range(self.tries):  #: ~tries <
@@ -345,7 +348,8 @@ SAMPLES = {
         class Guard(Node):
             def __init__(self):
                 super().__init__("guard")
-                self.declare_parameters(namespace="", parameters=[("limit", 2.0), ("low", 1.0), ("top", 3.0)])
+                declared = [("limit", 2.0), ("low", 1.0), ("top", 3.0)]
+                self.declare_parameters(namespace="", parameters=declared)
                 self.low = self.get_parameter("low").get_parameter_value().double_value
                 self.top = self.get_parameter("top").value
                 limits = self.get_parameters(["limit", "low"])
