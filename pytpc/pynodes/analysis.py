@@ -20,9 +20,10 @@ from pytpc.link_unit import (
 from pytpc.pynodes.constant_finder import find_constants
 from pytpc.pynodes.constants import DYNAMIC, Constants
 from pytpc.pynodes.flow import Flow
-from pytpc.pynodes.follow import Fact, Follower, named_variable
+from pytpc.pynodes.follow import Fact, Follower
 from pytpc.pynodes.gather import Found, Gatherer, end_position, key_of, position
 from pytpc.pynodes.ir import Instr
+from pytpc.pynodes.names import named_variable
 from pytpc.pynodes.packages import Entry
 from pytpc.pynodes.path import path_of
 from pytpc.pynodes.pointsto import PointsTo

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from pytpc.pynodes.by_name import by_name
 from pytpc.pynodes.call_table import CallTable, Given
 from pytpc.pynodes.ir import ANY, ClassInfo, Function, Instr, Shape
-from pytpc.pynodes.names import NamePattern, attribute_named
-from pytpc.pynodes.objects import ATTRIBUTES, EVERY, SOME, UNNAMED, Obj
+from pytpc.pynodes.objects import EVERY, SOME, Obj
 
 if TYPE_CHECKING:
     from pytpc.pynodes.pointsto import PointsTo
@@ -228,10 +228,10 @@ class Calls(CallTable):
             flow.when(given[0][1], lambda found: flow.add(instr, [flow.heap.partial(found, instr)]))
             return
         elif path in ("builtins.getattr", "builtins.setattr"):
-            self._by_name(instr, path, given)
+            by_name(flow, instr, path, given)
             return
         elif path == "builtins.vars" and given:
-            flow.when(given[0][1], lambda found: flow._load_attribute(found, "__dict__", instr))
+            flow.when(given[0][1], lambda found: flow.load_attribute(found, "__dict__", instr))
             return
         elif path in _COPYING:
             self._copied(instr, given)
@@ -253,42 +253,6 @@ class Calls(CallTable):
                     flow.write(made, keyword, value, instr)
         for _, value in given:
             self._hand(instr, path, value, given)
-
-    def _by_name(self, instr: Instr, path: str, given: list[Given]) -> None:
-        """``getattr`` and ``setattr``; by an unknown name all attributes that fit it."""
-        if len(given) < 2:
-            return
-        owner, known = given[0][1], attribute_named(given[1][1])
-        flow = self.flow
-        if path == "builtins.getattr":
-            if isinstance(known, str):
-                flow.when(owner, lambda found: flow._load_attribute(found, known, instr))
-            else:
-                flow.when(owner, lambda found: self._any_attribute(found, known, instr))
-            if len(given) > 2:
-                flow.copy(given[2][1], instr)
-        elif len(given) > 2:
-            value = given[2][1]
-            if isinstance(known, str):
-                flow.when(owner, lambda found: flow._store_attribute(found, known, value, instr))
-            else:
-                flow.when(owner, lambda found: self._set_any(found, value, instr))
-
-    def _set_any(self, owner: Obj, value: Instr, instr: Instr) -> None:
-        if owner.kind == "instance":
-            self.flow.write(owner, UNNAMED, value, instr)
-
-    def _any_attribute(self, owner: Obj, fits: NamePattern, instr: Instr) -> None:
-        """What is read by a name of which only the beginning and the end are known."""
-        if owner.kind != "instance":
-            return
-        flow = self.flow
-        if not fits.start and not fits.end:
-            flow.copy(flow.slot(owner, ATTRIBUTES), instr)
-            return
-        for name in flow.program.attributes:
-            if fits.takes(name):
-                flow._load_attribute(owner, name, instr)
 
     def _super(self, instr: Instr) -> None:
         info = instr.function.owner

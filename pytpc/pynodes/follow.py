@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pytpc.pynodes.constants import DYNAMIC, Constants
 from pytpc.pynodes.contexts import Stack, moves
 from pytpc.pynodes.flow import Flow
-from pytpc.pynodes.ir import Instr, Variable
+from pytpc.pynodes.ir import Instr
 from pytpc.pynodes.reads import Read
 from pytpc.pynodes.rules_file import Rules
 from pytpc.pynodes.transform import How, by_function, by_operator
@@ -393,15 +393,3 @@ class Follower:
             return value.op == "attr"
         outside = self.flow.points.calls.outside.get(call, {})
         return any(path in self.rules.outcomes for path, _ in outside)
-
-
-def named_variable(instr: Instr) -> str | None:
-    """The variable or attribute whose value an instruction has."""
-    if instr.op == "load" and isinstance(instr.data, Variable):
-        return None if instr.data.name.startswith("<") else instr.data.name
-    if instr.op == "attr":
-        owner = named_variable(instr.args[0])
-        return f"{owner}.{instr.data}" if owner else str(instr.data)
-    if instr.op in ("copy", "item") and instr.args:
-        return named_variable(instr.args[0])
-    return None

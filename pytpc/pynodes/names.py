@@ -1,10 +1,10 @@
-"""Names of attributes that are put together: what is known of them before anything is solved."""
+"""Names of variables, and of attributes as far as they are known before anything is solved."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from pytpc.pynodes.ir import Instr
+from pytpc.pynodes.ir import Instr, Variable
 
 
 @dataclass(frozen=True)
@@ -34,3 +34,15 @@ def attribute_named(instr: Instr) -> str | NamePattern:
         first if isinstance(first, str) else first.start,
         last if isinstance(last, str) else last.end,
     )
+
+
+def named_variable(instr: Instr) -> str | None:
+    """The variable or attribute whose value an instruction has."""
+    if instr.op == "load" and isinstance(instr.data, Variable):
+        return None if instr.data.name.startswith("<") else instr.data.name
+    if instr.op == "attr":
+        owner = named_variable(instr.args[0])
+        return f"{owner}.{instr.data}" if owner else str(instr.data)
+    if instr.op in ("copy", "item") and instr.args:
+        return named_variable(instr.args[0])
+    return None

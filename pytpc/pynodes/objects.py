@@ -28,9 +28,8 @@ class Obj:
     the object), ``class`` (ClassInfo), ``instance`` (ClassInfo), ``module`` (Module), ``external``
     (by ``path``), ``made`` (by calling what is outside the sources: ``path``), ``part`` (an
     attribute of something made: ``path``, the object), ``container``, ``partial`` (the call that
-    made it, the function), ``super`` (ClassInfo after which is looked up, the object), ``namespace`` (an object's ``__dict__``:
-    the object).
-    ``site`` is the instruction that makes it.
+    made it, the function), ``super`` (ClassInfo after which is looked up, the object),
+    ``namespace`` (an object's ``__dict__``: the object). ``site`` is the instruction that makes it.
     """
 
     kind: str

@@ -83,8 +83,14 @@ class Generator(Statements):
         self._class("Node", "Base", outer, ["common", "own", "last"])
         add(f"node = Node({self.number(outer, 1)}, {self.read()})")
         add(f"other = Node(b={self.literal()})" if self.chance(0.5) else "other = node")
-        add(self.one_of(['rospy.Subscriber("in", float, node.callback)',
-                         'rospy.Subscriber("in", float, lambda message: node.callback(message))']))  # fmt: skip
+        add(
+            self.one_of(
+                [
+                    'rospy.Subscriber("in", float, node.callback)',
+                    'rospy.Subscriber("in", float, lambda message: node.callback(message))',
+                ]
+            )
+        )
         if self.chance(0.5):
             add("rospy.Timer(1.0, functools.partial(node.timer, extra=G))")
         return self.lines.text()
@@ -166,7 +172,8 @@ class Generator(Statements):
                 [
                     f"self.{field} = {self.read()}",
                     f"self.low, self.high = {self.read()}, {self.number(inner, 1)}",
-                    f'for key in ("low", "{field}"):\n            setattr(self, key, rospy.get_param("~" + key, 1.0))',
+                    f'for key in ("low", "{field}"):\n            '
+                    'setattr(self, key, rospy.get_param("~" + key, 1.0))',
                     f'setattr(self, "{field}", {self.read()})',
                     f"self.__dict__.update({field}={self.read()})",
                 ]

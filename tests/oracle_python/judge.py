@@ -26,9 +26,9 @@ Key = tuple[str, tuple[int, int, int, int], str, str, str]
 class Verdict:
     """``wanted``: shown by runs. ``missed``: of these, what the analysis does not say.
 
-    ``mixed``: wanted and left out, since the operand may be something measured, too: the runs did
-    not come to that. ``unseen``: what the analysis says of places that were evaluated, where no run had that
-    parameter. ``is_sound`` is False where the program itself fails.
+    ``mixed``: wanted and left out, since the operand may be something measured, too, to which no
+    run came. ``unseen``: what the analysis says of places that were evaluated, where no run had
+    that parameter. ``is_sound`` is False where the program itself fails.
     """
 
     wanted: set[Key] = field(default_factory=set)

@@ -38,7 +38,8 @@ class Statements(Expressions):
             "store",
             "call",
         )
-        compound = ("if", "if", "if", "if", "while", "for", "try", "with", "unpack", "comprehension",
+        compound = ("if", "if", "if", "if", "while", "for", "try", "with", "unpack",
+                    "comprehension",
                     "closure", "match", "leave", "leave", "list")  # fmt: skip
         pool = simple if depth >= 3 else simple + compound
         getattr(self, f"_do_{self.random.choice(pool)}")(scope, depth)
@@ -100,7 +101,7 @@ class Statements(Expressions):
         name, element = self.fresh("c"), self.fresh("e")
         inner = scope.inner()
         inner.numbers.append(element)
-        source = self.one_of(scope.lists or [f"({self.number(scope)}, {self.number(scope)})"])
+        source = self.one_of(scope.lists or [f"({self.over(scope, 0)}, {self.over(scope, 0)})"])
         test = f" if {self.condition(inner, 1)}" if self.chance(0.6) else ""
         self.lines.add(
             f"{name} = [{self.number(inner, 1)} for {element} in {source}{test}] + [0.5]"
@@ -189,8 +190,8 @@ class Statements(Expressions):
     def _do_closure(self, scope: Scope, depth: int) -> None:
         name, argument = self.fresh("inner"), self.fresh("a")
         inner = Scope(
-            [argument, *scope.numbers], [], list(scope.calls), list(scope.truths), [], list(scope.tables),
-            list(scope.publishers), list(scope.texts), can_return=True,
+            [argument, *scope.numbers], [], list(scope.calls), list(scope.truths), [],
+            list(scope.tables), list(scope.publishers), list(scope.texts), can_return=True,
         )  # fmt: skip
         changed = self.one_of([each for each in scope.targets if each.isidentifier()] or [""])
         is_local = changed.startswith("v")
