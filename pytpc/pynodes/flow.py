@@ -208,7 +208,7 @@ class Flow:
             if found is not None:
                 holders.append(points.heap.class_(found))
             named = [each for one in holders for each in points.writers.get((one, name), ())]
-            if any(each.args[-1].op != "const" for each in named):
+            if not all(_is_literal(each.args[-1]) for each in named):
                 return True
         return False
 
@@ -259,6 +259,13 @@ class Flow:
                     if self._before(writer, found, user):
                         yield writer
                 waiting += self.points.of((found, slot))
+
+
+def _is_literal(value: Instr) -> bool:
+    """True for what stands in the source as a constant, also ``-4.0`` and ``(1, 2)``."""
+    if value.op in ("unary", "binary", "build"):
+        return all(map(_is_literal, value.args))
+    return value.op == "const"
 
 
 def _following(block: Block) -> set[Block]:

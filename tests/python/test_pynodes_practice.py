@@ -121,7 +121,7 @@ SAMPLES = {
     """,
     "__dict__ takes all parameters": """
         class Guard:
-            gain = 1.0
+            gain = -1.0
             def __init__(self):
                 self.most = 3.0
                 self.__dict__.update(rospy.get_param("~"))
