@@ -23,9 +23,10 @@ from pytpc.pynodes.budget import SECONDS, Budget, BudgetSpentError, what_failed
 from pytpc.pynodes.constant_finder import find_constants
 from pytpc.pynodes.constants import DYNAMIC, Constants
 from pytpc.pynodes.flow import Flow
-from pytpc.pynodes.follow import Fact, Follower, named_variable
+from pytpc.pynodes.follow import Fact, Follower
 from pytpc.pynodes.gather import Found, Gatherer, end_position, key_of, position
 from pytpc.pynodes.ir import Instr
+from pytpc.pynodes.names import named_variable
 from pytpc.pynodes.packages import Entry
 from pytpc.pynodes.path import path_of
 from pytpc.pynodes.pointsto import PointsTo
@@ -65,7 +66,7 @@ def analyse(program: Program, rules: Rules) -> Analysed:
     follower = Follower(flow, constants, rules)
     follower.run(reads)
     follower.decide()
-    found_slice = Slicer(flow, raising).run(exposed)
+    found_slice = Slicer(flow, raising, follower.selecting).run(exposed)
     found, others = Gatherer(follower, found_slice).run()
     if rules.constants:
         found += find_constants(follower, constants, found_slice, [*found, *others])

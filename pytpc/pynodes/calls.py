@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from pytpc.pynodes.by_name import by_name
 from pytpc.pynodes.call_table import CallTable, Given
 from pytpc.pynodes.ir import ANY, ClassInfo, Function, Instr, Shape
 from pytpc.pynodes.objects import EVERY, SOME, Obj
@@ -21,6 +22,7 @@ _COPYING = {
 } | {"copy.copy", "copy.deepcopy", "collections.deque", "collections.OrderedDict"}
 _CHOOSING = {f"builtins.{name}" for name in ("any", "all", "sum", "min", "max", "next")}
 _FEW = 16
+_HOLDING = ("container", "namespace")
 _RUNNING = {"target", "args", "kwargs", "callback_args", "function"}
 
 
@@ -87,6 +89,8 @@ class Calls(CallTable):
         order = [each for each in self.flow.mro(info) if isinstance(each, ClassInfo)]
         names = [name for each in reversed(order) if each.is_record for name in each.fields]
         for place, (keyword, value) in enumerate(given):
+            if keyword == "**" and names:
+                self.flow.put_all(made, value, instr)
             name = keyword or (names[place] if place < len(names) else None)
             if name in names and name is not None:
                 self.flow.write(made, name, value, instr)
@@ -224,7 +228,10 @@ class Calls(CallTable):
             flow.when(given[0][1], lambda found: flow.add(instr, [flow.heap.partial(found, instr)]))
             return
         elif path in ("builtins.getattr", "builtins.setattr"):
-            self._by_name(instr, path, given)
+            by_name(flow, instr, path, given)
+            return
+        elif path == "builtins.vars" and given:
+            flow.when(given[0][1], lambda found: flow.load_attribute(found, "__dict__", instr))
             return
         elif path in _COPYING:
             self._copied(instr, given)
@@ -238,7 +245,7 @@ class Calls(CallTable):
                 flow.read_element(owner, ANY, instr)
         elif owner is not None:
             self._on_object(instr, name, owner, given)
-        if path not in _COPYING and not (owner is not None and owner.kind == "container"):
+        if path not in _COPYING and not (owner is not None and owner.kind in _HOLDING):
             made = flow.heap.made(flow.rules.class_of(path), instr)
             flow.add(instr, [made])
             for keyword, value in given:
@@ -246,20 +253,6 @@ class Calls(CallTable):
                     flow.write(made, keyword, value, instr)
         for _, value in given:
             self._hand(instr, path, value, given)
-
-    def _by_name(self, instr: Instr, path: str, given: list[Given]) -> None:
-        """``getattr`` and ``setattr`` with a constant name are attributes."""
-        if len(given) < 2 or not isinstance(given[1][1].data, str):
-            return
-        owner, name = given[0][1], given[1][1].data
-        flow = self.flow
-        if path == "builtins.getattr":
-            flow.when(owner, lambda found: flow._load_attribute(found, name, instr))
-            if len(given) > 2:
-                flow.copy(given[2][1], instr)
-        elif len(given) > 2:
-            value = given[2][1]
-            flow.when(owner, lambda found: flow._store_attribute(found, name, value, instr))
 
     def _super(self, instr: Instr) -> None:
         info = instr.function.owner
@@ -300,6 +293,8 @@ class Calls(CallTable):
             for keyword, value in given:
                 if keyword in (None, "*", "**"):
                     flow.when(value, lambda found: self._merge(found, owner, instr))
+                    if owner.kind in _HOLDING:
+                        flow.put_all(owner, value, instr)
                 else:
                     flow.write(owner, f"[{keyword!r}]", value, instr)
         elif name in _PUTTING:

@@ -7,9 +7,10 @@ A literal, or a name of a module or class that is bound to one number. Not among
 from __future__ import annotations
 
 from pytpc.pynodes.constants import Constants
-from pytpc.pynodes.follow import Follower, named_variable
+from pytpc.pynodes.follow import Follower
 from pytpc.pynodes.gather import Found, span_of
 from pytpc.pynodes.ir import Instr, Variable
+from pytpc.pynodes.names import named_variable
 from pytpc.pynodes.slicing import Slice
 
 

@@ -78,7 +78,7 @@ class Constants:
         unique = tuple({(type(each), each): each for each in found}.values())
         if len(unique) > _MOST:
             unique = (UNKNOWN,)
-        # Within a circle of values only what was asked for is whole; the others are worked out once.
+        # In a circle of values only what was asked for is whole; the others are met once.
         self._meanwhile[instr] = unique
         if not self._active:
             self._known[instr] = unique

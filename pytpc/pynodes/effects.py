@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from pytpc.pynodes.ir import Function, Instr, Variable
+from pytpc.pynodes.names import attribute_named
 from pytpc.pynodes.pointsto import PointsTo
 
+ANY_ATTRIBUTE = "*"
 Name = str | Variable
 """An attribute, whatever its object, or a variable."""
 
@@ -51,7 +53,27 @@ def effects_of_calls(flow: PointsTo) -> dict[Instr, Effects]:
     for instr in flow.calls.outside:
         if _waits(instr, flow):
             found.setdefault(instr, Effects()).waits = True
+        by_name = Effects()
+        _add_by_name(by_name, instr, flow)
+        if by_name.reads or by_name.writes:
+            found.setdefault(instr, Effects()).add(by_name)
     return found
+
+
+def _add_by_name(effects: Effects, instr: Instr, flow: PointsTo) -> None:
+    """``getattr``, ``setattr`` and what is done with ``__dict__``."""
+    for path, owner in flow.calls.outside.get(instr, ()):
+        if path in ("builtins.getattr", "builtins.setattr") and len(instr.args) > 2:
+            name = attribute_named(instr.args[2])
+            names = effects.reads if path == "builtins.getattr" else effects.writes
+            names.add(name if isinstance(name, str) else ANY_ATTRIBUTE)
+        elif owner is not None and owner.kind == "namespace":
+            effects.reads.add(ANY_ATTRIBUTE)
+            effects.writes.add(ANY_ATTRIBUTE)
+
+
+def _is_namespace(value: Instr, flow: PointsTo) -> bool:
+    return any(found.kind == "namespace" for found in flow.of(value))
 
 
 def _own(function: Function, flow: PointsTo) -> Effects:
@@ -64,8 +86,11 @@ def _own(function: Function, flow: PointsTo) -> Effects:
             effects.writes.add(str(instr.data))
         elif instr.op == "attr":
             effects.reads.add(str(instr.data))
-        elif instr.op == "call" and _waits(instr, flow):
-            effects.waits = True
+        elif instr.op == "call":
+            effects.waits = effects.waits or _waits(instr, flow)
+            _add_by_name(effects, instr, flow)
+        elif instr.op == "setitem" and _is_namespace(instr.args[0], flow):
+            effects.writes.add(ANY_ATTRIBUTE)
     return effects
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from pytpc.pynodes.effects import effects_of_calls
 from pytpc.pynodes.ir import Block, Instr, Variable
-from pytpc.pynodes.objects import Field, Obj
+from pytpc.pynodes.objects import UNNAMED, Field, Obj
 from pytpc.pynodes.pointsto import PointsTo
 from pytpc.pynodes.reaching import Reaching, reaching_definitions
 
@@ -191,6 +191,27 @@ class Flow:
                     seen.add(before)
                     waiting.append(before)
 
+    def is_by_unknown_name(self, attr: Instr, writer: Instr | None) -> bool:
+        """True where ``writer`` sets attributes whose names are not known, and this one has a name.
+
+        What is set by its name, to more than a constant as default, is taken to stay that.
+        """
+        name = str(attr.data)
+        points = self.points
+        for owner in points.of(attr.args[0]) if writer is not None else ():
+            if owner.kind != "instance" or owner.class_info is None:
+                continue
+            if writer not in points.writers.get((owner, UNNAMED), ()):
+                continue
+            holders = [owner]
+            found = points.lookup(owner.class_info, name)
+            if found is not None:
+                holders.append(points.heap.class_(found))
+            named = [each for one in holders for each in points.writers.get((one, name), ())]
+            if not all(_is_literal(each.args[-1]) for each in named):
+                return True
+        return False
+
     def objects(self, instr: Instr) -> list[Obj]:
         """The objects that a value may be, of a local variable those that are stored before."""
         if instr.op == "load" and instr in self.reaching.stores:
@@ -238,6 +259,13 @@ class Flow:
                     if self._before(writer, found, user):
                         yield writer
                 waiting += self.points.of((found, slot))
+
+
+def _is_literal(value: Instr) -> bool:
+    """True for what stands in the source as a constant, also ``-4.0`` and ``(1, 2)``."""
+    if value.op in ("unary", "binary", "build"):
+        return all(map(_is_literal, value.args))
+    return value.op == "const"
 
 
 def _following(block: Block) -> set[Block]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pytpc.pynodes.constants import DYNAMIC, Constants
 from pytpc.pynodes.contexts import Stack, moves
 from pytpc.pynodes.flow import Flow
-from pytpc.pynodes.ir import Instr, Variable
+from pytpc.pynodes.ir import Instr
 from pytpc.pynodes.library_calls import INSIDE, Inside, compared_inside
 from pytpc.pynodes.reads import Read
 from pytpc.pynodes.rules_file import Rules
@@ -19,6 +19,8 @@ FLAG = -1
 RANGE = -2
 """The value bounds the ``range`` that a loop runs over."""
 _VARIANTS = 3
+_OF_OUTCOMES = {"any", "all", "sum", "max", "min", "item", "copy", "astype", "tolist"}
+"""Methods of numpy's arrays of outcomes."""
 _LONGEST_NAME = 200
 
 
@@ -63,7 +65,10 @@ class Lost:
 
 
 class Follower:
-    """Follows values from reads; ``compared`` and ``lost`` are what is found."""
+    """Follows values from reads; ``compared`` and ``lost`` are what is found.
+
+    ``selecting``: what chooses by an outcome without a branch, ``scan[scan < limit]``.
+    """
 
     def __init__(self, flow: Flow, constants: Constants, rules: Rules) -> None:
         """Nothing is followed yet."""
@@ -74,6 +79,7 @@ class Follower:
         self.compared: dict[tuple[Instr, int, int, str, Stack], Compared] = {}
         self.lost: dict[Instr, Lost] = {}
         self._inside: dict[Instr, dict[int, Inside]] = {}
+        self.selecting: dict[Instr, None] = {}
         self._waiting: deque[Fact] = deque()
 
     def run(self, reads: list[Read]) -> None:
@@ -101,9 +107,26 @@ class Follower:
 
     def _step(self, fact: Fact) -> None:
         for to, via, stack in moves(self.flow, fact.at, fact.stack):
+            if to.op == "attr" and self.flow.is_by_unknown_name(to, via):
+                continue
+            if via is not None and (fact.at, via) in self.flow.points.spread:
+                self._entry(fact, to)
+                continue
             self._reach(Fact(to, fact.read, fact.name, fact.how, stack, fact, via))
         for user in self.flow.users.get(fact.at, ()):
             self._use(fact, user)
+
+    def _entry(self, fact: Fact, to: Instr) -> None:
+        """An entry of a table of parameters that became one of another dict, or an attribute."""
+        if to.op == "attr":
+            self._named(fact, to, [str(to.data)])
+        elif to.op == "item":
+            self._item(fact, to, to.args[1])
+        elif to.op == "call" and len(to.args) > 1:
+            # `get` of a dict; `getattr`.
+            self._item(fact, to, to.args[1 if to.args[0].op == "attr" else -1])
+        else:
+            self._on(fact, to, None)
 
     def _use(self, fact: Fact, user: Instr) -> None:
         match user.op:
@@ -199,7 +222,8 @@ class Follower:
     def _named(self, fact: Fact, user: Instr, keys: list[str]) -> None:
         """An entry of a table of parameters."""
         for key in dict.fromkeys(keys):
-            name = f"{fact.name.rstrip('/')}/{key}" if fact.name else key
+            above = fact.name.rstrip("/")
+            name = f"{above}/{key}" if above not in ("", "~") else f"{above}{key}"
             if len(name) <= _LONGEST_NAME:
                 self._reach(Fact(user, fact.read, name, fact.how, fact.stack, fact))
 
@@ -210,6 +234,20 @@ class Follower:
             return
         for path, _ in outside:
             self._argument(fact, user, path)
+        self._unpacked(fact, user)
+
+    def _unpacked(self, fact: Fact, call: Instr) -> None:
+        """``f(**table)``: each entry comes to the parameter of its name."""
+        names = getattr(call.data, "names", ())
+        if not any(n == "**" and v is fact.at for n, v in zip(names, call.args[1:], strict=True)):
+            return
+        for function in self.flow.points.calls.callees.get(call, {}):
+            for place, variable in enumerate(function.parameters):
+                param = function.param_instrs[place]
+                if place == function.kwarg:
+                    self._on(fact, param, None)
+                elif place != function.vararg and variable.name not in names:
+                    self._named(fact, param, [variable.name])
 
     def _method(self, fact: Fact, call: Instr, name: str) -> None:
         """A call of a method of the value."""
@@ -324,6 +362,9 @@ class Follower:
             following = [(to, after) for to, _, after in moves(self.flow, value, here)]
             found.update(dict.fromkeys(self._filtering(value)))
             for user in self.flow.users.get(value, ()):
+                if self._selects(user, value):
+                    self.selecting[user] = None
+                    found[user] = None
                 if user.op == "branch":
                     found[user] = None
                 elif self._passes(user, value):
@@ -347,6 +388,13 @@ class Follower:
             if any(path in self.rules.filters for path, _ in calls.outside.get(call, ()))
         ]
 
+    def _selects(self, user: Instr, value: Instr) -> bool:
+        """True where the outcome ``value`` chooses elements: a mask, ``numpy.where``."""
+        if user.op == "item":
+            return user.args[1] is value
+        outside = self.flow.points.calls.outside.get(user, {})
+        return any(path in self.rules.filters for path, _ in outside)
+
     def _passes(self, user: Instr, value: Instr) -> bool:
         """True where the value of ``user`` says what the outcome ``value`` says."""
         match user.op:
@@ -357,7 +405,11 @@ class Follower:
             case "compare":
                 return self._with_truth(user, value)
             case "call":
-                return self._passes_outcome(user)
+                return self._passes_outcome(user, value)
+            case "attr":
+                return str(user.data) in _OF_OUTCOMES and self._is_called(user)
+            case "item":
+                return user.args[0] is value
             case _:
                 return False
 
@@ -366,18 +418,8 @@ class Follower:
         values = self.constants.values(other)
         return bool(values) and all(isinstance(each, bool) for each in values)
 
-    def _passes_outcome(self, call: Instr) -> bool:
+    def _passes_outcome(self, call: Instr, value: Instr) -> bool:
+        if call.args[0] is value:
+            return value.op == "attr"
         outside = self.flow.points.calls.outside.get(call, {})
         return any(path in self.rules.outcomes for path, _ in outside)
-
-
-def named_variable(instr: Instr) -> str | None:
-    """The variable or attribute whose value an instruction has."""
-    if instr.op == "load" and isinstance(instr.data, Variable):
-        return None if instr.data.name.startswith("<") else instr.data.name
-    if instr.op == "attr":
-        owner = named_variable(instr.args[0])
-        return f"{owner}.{instr.data}" if owner else str(instr.data)
-    if instr.op in ("copy", "item") and instr.args:
-        return named_variable(instr.args[0])
-    return None

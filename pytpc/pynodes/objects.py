@@ -11,6 +11,10 @@ EVERY = "[+]"
 """The slot that stands for all elements of a container, where one is read by an unknown key."""
 SOME = "[*]"
 """The slot of the elements at unknown keys."""
+UNNAMED = "<unnamed>"
+"""The slot of an object's attributes that are set by unknown names."""
+ATTRIBUTES = "<attributes>"
+"""The slot that stands for all of them, where one is read by an unknown name."""
 OTHER = "<other>"
 """The dotted name of what no rule is about."""
 _DEEPEST = 2
@@ -24,8 +28,8 @@ class Obj:
     the object), ``class`` (ClassInfo), ``instance`` (ClassInfo), ``module`` (Module), ``external``
     (by ``path``), ``made`` (by calling what is outside the sources: ``path``), ``part`` (an
     attribute of something made: ``path``, the object), ``container``, ``partial`` (the call that
-    made it, the function), ``super`` (ClassInfo after which is looked up, the object).
-    ``site`` is the instruction that makes it.
+    made it, the function), ``super`` (ClassInfo after which is looked up, the object),
+    ``namespace`` (an object's ``__dict__``: the object). ``site`` is the instruction that makes it.
     """
 
     kind: str
@@ -120,6 +124,10 @@ class Heap:
         """``super()`` in a method of ``info`` for the object ``owner``."""
         return self._get("super", ref=info, parent=owner)
 
+    def namespace(self, owner: Obj) -> Obj:
+        """The attributes of ``owner`` as a dict."""
+        return self._get("namespace", parent=owner)
+
     def part(self, owner: Obj, name: str, path: str) -> Obj:
         """The attribute ``name`` of something made outside the sources."""
         depth, above = 0, owner
@@ -128,7 +136,7 @@ class Heap:
         if depth >= _DEEPEST:
             return owner
         full = f"{path}.{name}"
-        if full not in self._about and owner.kind != "container":
+        if full not in self._about and owner.kind not in ("container", "namespace"):
             full = f"{OTHER}.{name}"
         found = self._get("part", full, parent=owner)
         owner.parts[name] = found

@@ -6,9 +6,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from pytpc.link_unit import PathStep
-from pytpc.pynodes.follow import Fact, named_variable
+from pytpc.pynodes.follow import Fact
 from pytpc.pynodes.gather import Found, position
 from pytpc.pynodes.ir import Function, Instr, Variable
+from pytpc.pynodes.names import named_variable
 from pytpc.pynodes.slicing import Slice
 
 _AT_MOST = 32

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from pytpc.pynodes.calls import Calls
+from pytpc.pynodes.given import kept_as_given, unchanged_parameter
 from pytpc.pynodes.ir import ANY, ClassInfo, Function, Instr, Module, Variable
 from pytpc.pynodes.objects import SOME, Heap, Obj, element
 from pytpc.pynodes.program import Program
@@ -91,11 +92,15 @@ class PointsTo(Solver):
         if made in known:
             return made
         known[made] = None
+        hidden: set[str] = set()
         for each in self.mro(info):
             if not isinstance(each, ClassInfo):
                 continue
             own = self.heap.class_(each)
-            for name in self.class_names.get(each, ()):
+            # What a subclass overrides is run by `super()` alone, which hands the object over.
+            names = [name for name in self.class_names.get(each, ()) if name not in hidden]
+            hidden.update(names)
+            for name in names:
                 self.when((own, name), lambda found: self._own_method(found, made))
         return made
 
@@ -152,9 +157,10 @@ class PointsTo(Solver):
         name = str(instr.data)
         if isinstance(owner.data, ClassInfo):
             self.class_names.setdefault(owner.data, {})[name] = None
-        self.when(owner, lambda found: self._store_attribute(found, name, value, instr))
+        self.when(owner, lambda found: self.store_attribute(found, name, value, instr))
 
-    def _store_attribute(self, owner: Obj, name: str, value: Instr, instr: Instr) -> None:
+    def store_attribute(self, owner: Obj, name: str, value: Instr, instr: Instr) -> None:
+        """``instr`` stores ``value`` as the attribute ``name``."""
         if owner.kind == "module" and isinstance(owner.ref, Module) and owner.ref.body:
             variable = owner.ref.body.variables.setdefault(name, Variable(name, owner.ref.body))
             variable.shared = True
@@ -169,7 +175,7 @@ class PointsTo(Solver):
             field = (self.heap.class_(setter), f"{name}.setter")
             self.when(field, lambda found: self.calls.bound(instr, found, owner, [(None, value)]))
             return
-        param = _kept_as_given(instr)
+        param = kept_as_given(instr)
         if param is None or owner.site is None:
             self.write(owner, name, value, instr)
             return
@@ -189,7 +195,7 @@ class PointsTo(Solver):
             return
 
         def handed(given: Instr) -> None:
-            further = _unchanged_parameter(given)
+            further = unchanged_parameter(given)
             if further is None or further is param:
                 self.write(owner, name, given, instr)
             else:
@@ -203,9 +209,10 @@ class PointsTo(Solver):
 
     def _on_attr(self, instr: Instr) -> None:
         name = str(instr.data)
-        self.when(instr.args[0], lambda found: self._load_attribute(found, name, instr))
+        self.when(instr.args[0], lambda found: self.load_attribute(found, name, instr))
 
-    def _load_attribute(self, owner: Obj, name: str, instr: Instr) -> None:
+    def load_attribute(self, owner: Obj, name: str, instr: Instr) -> None:
+        """``instr`` has the value of the attribute ``name``."""
         if owner.kind == "module" and isinstance(owner.ref, Module):
             self._module_attribute(owner.ref, name, instr)
         elif owner.kind == "external":
@@ -216,8 +223,12 @@ class PointsTo(Solver):
             self.add(instr, [self.heap.part(owner, name, path)])
         elif owner.kind == "class" and owner.class_info is not None:
             self.later(lambda: self._class_attribute(owner, name, instr))
+        elif owner.kind == "instance" and name == "__dict__":
+            self.add(instr, [self.heap.namespace(owner)])
+        elif owner.kind == "namespace":
+            self.add(instr, [self.heap.part(owner, name, "builtins.dict")])
         elif owner.kind == "instance":
-            self.copy(self.slot(owner, name), instr)
+            self.read_attribute(owner, name, instr)
             self._looked_up(owner, owner, None, name, instr)
         elif owner.kind == "super" and owner.parent is not None:
             self._looked_up(owner.parent, owner.parent, owner.class_info, name, instr)
@@ -375,31 +386,3 @@ _METHODS = {
     "NotIn": ("", "__contains__"),
 }
 _WORDS = {"Mult": "mul", "Div": "truediv", "BitAnd": "and", "BitOr": "or", "BitXor": "xor"}
-
-
-def _kept_as_given(instr: Instr) -> Instr | None:
-    """The parameter of ``__init__`` whose value ``self.name = parameter`` keeps."""
-    if instr.op != "setattr":
-        return None
-    owner, value = instr.args
-    first = _unchanged_parameter(owner)
-    found = _unchanged_parameter(value)
-    if first is None or first.data != 0:
-        return None
-    return found
-
-
-def _unchanged_parameter(value: Instr) -> Instr | None:
-    """The parameter of an ``__init__`` that a value is, where nothing else is stored in it."""
-    function = value.function
-    if value.op != "load" or value.data not in function.parameters:
-        return None
-    if function.owner is None or not function.qualname.endswith(".__init__"):
-        return None
-    place = function.parameters.index(value.data)
-    if place in (function.vararg, function.kwarg):
-        return None
-    stores = [
-        each for each in function.instructions() if each.op == "store" and each.data is value.data
-    ]
-    return function.param_instrs[place] if len(stores) == 1 else None

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 
 from pytpc.errors import InputError
@@ -36,6 +37,12 @@ class Program:
     def functions(self) -> list[Function]:
         """Those of all modules."""
         return [function for module in self.modules for function in module.functions]
+
+    @cached_property
+    def attributes(self) -> list[str]:
+        """The names of all attributes that are stored into, sorted; for when all is loaded."""
+        names = {str(instr.data) for instr in self.instructions() if instr.op == "setattr"}
+        return sorted(names)
 
     def instructions(self) -> list[Instr]:
         """Those of all functions, in order."""

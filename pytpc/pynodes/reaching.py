@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from pytpc.pynodes.effects import Effects
+from pytpc.pynodes.effects import ANY_ATTRIBUTE, Effects
 from pytpc.pynodes.ir import Block, Function, Instr, Variable
 
 Cell = Variable | tuple[Variable, str]
@@ -174,7 +174,7 @@ class _OneFunction:
 def _touches(cell: Cell, waits: bool, names: set[str | Variable]) -> bool:
     if isinstance(cell, Variable):
         return cell.shared and (waits or cell in names)
-    return waits or cell[1] in names
+    return waits or cell[1] in names or ANY_ATTRIBUTE in names
 
 
 def _bound_once(function: Function) -> set[Variable]:

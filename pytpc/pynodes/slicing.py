@@ -7,6 +7,7 @@ are a round each.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from pytpc.pynodes.control import control_dependence
@@ -35,8 +36,8 @@ class Slice:
 class Slicer:
     """Makes the slice of a program."""
 
-    def __init__(self, flow: Flow, raising: Raising) -> None:
-        """Nothing is in the slice yet."""
+    def __init__(self, flow: Flow, raising: Raising, selecting: Iterable[Instr] = ()) -> None:
+        """Nothing is in the slice yet; ``selecting`` are predicates without a branch."""
         self.flow = flow
         self.raising = raising
         self._raised: set[Instr] = set()
@@ -44,7 +45,7 @@ class Slicer:
             call
             for call, paths in flow.points.calls.outside.items()
             if any(path in flow.points.rules.filters for path, _ in paths)
-        }
+        } | set(selecting)
         self._choosing = choosing_calls(flow)
         self.slice = Slice()
         self._control: dict[Function, dict[Block, list[Block]]] = {}

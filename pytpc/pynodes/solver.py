@@ -6,7 +6,7 @@ from collections import deque
 from collections.abc import Callable, Hashable, Iterable
 
 from pytpc.pynodes.ir import ANY, Instr
-from pytpc.pynodes.objects import EVERY, SOME, Field, Obj, element
+from pytpc.pynodes.objects import ATTRIBUTES, EVERY, SOME, UNNAMED, Field, Obj, element
 
 Node = Hashable
 """An Instr, a Variable, or a Field."""
@@ -19,7 +19,8 @@ class Solver:
 
     ``succ`` and ``pred``: from an Instr, Variable or Field to those that may have its value.
     ``writers``: the instructions that write a field. ``given_up``: values of which not all objects
-    are known, because there were too many, or too many steps.
+    are known, because there were too many, or too many steps. ``spread``: a value, and the call by
+    which its entries become those of another dict, or attributes.
     """
 
     def __init__(self, steps: int) -> None:
@@ -28,6 +29,8 @@ class Solver:
         self.succ: dict[Node, dict[Node, None]] = {}
         self.pred: dict[Node, dict[Node, None]] = {}
         self.writers: dict[Field, dict[Instr, None]] = {}
+        self.spread: set[tuple[Node, Instr]] = set()
+        self._readers: dict[Obj, dict[Instr, None]] = {}
         self._unbound: set[tuple[Node, Node]] = set()
         self._objects: dict[Node, dict[Obj, None]] = {}
         self._waiting: deque[tuple[Node, list[Obj]]] = deque()
@@ -76,14 +79,43 @@ class Solver:
 
     def slot(self, owner: Obj, name: str) -> Field:
         """The field, known from now on."""
+        if owner.kind == "namespace" and owner.parent is not None:
+            owner = owner.parent
+            name = {EVERY: ATTRIBUTES, SOME: UNNAMED}.get(name) or name[1:-1].strip("'")
         if name not in owner.slots and len(owner.slots) > _MOST and name.startswith("["):
             name = EVERY if name == EVERY else SOME
         target = (owner, name)
         if name not in owner.slots:
             owner.slots[name] = None
-            if name.startswith("[") and name != EVERY:
+            if owner.kind == "instance" and not name.startswith("["):
+                self._attribute_slot(owner, name)
+            elif name.startswith("[") and name != EVERY:
                 self.copy(target, self.slot(owner, EVERY))
         return target
+
+    def _attribute_slot(self, owner: Obj, name: str) -> None:
+        """Of an object the slots of all and of unknown attributes are kept where asked for."""
+        if name == ATTRIBUTES:
+            for slot in list(owner.slots):
+                if slot != ATTRIBUTES and not slot.startswith("["):
+                    self.copy((owner, slot), (owner, ATTRIBUTES))
+        elif ATTRIBUTES in owner.slots:
+            self.copy((owner, name), (owner, ATTRIBUTES))
+        if name == UNNAMED:
+            for reader in self._readers.get(owner, ()):
+                self.copy((owner, UNNAMED), reader)
+
+    def read_attribute(self, owner: Obj, name: str, to: Instr) -> None:
+        """``to`` may be an attribute of an object, or one that was set by an unknown name."""
+        self._readers.setdefault(owner, {})[to] = None
+        self.copy(self.slot(owner, name), to)
+        if UNNAMED in owner.slots:
+            self.copy((owner, UNNAMED), to)
+
+    def put_all(self, owner: Obj, value: Instr, writer: Instr) -> None:
+        """The entries of ``value``, whose names are not known, become those of ``owner``."""
+        self.spread.add((value, writer))
+        self.write(owner, UNNAMED if owner.kind == "instance" else SOME, value, writer)
 
     def read_element(self, owner: Obj, key: object, to: Node) -> None:
         """``to`` may be an element of ``owner``."""

@@ -18,6 +18,7 @@ class Expressions:
         self.random = random.Random(seed)
         self.names = 0
         self.parameters = 0
+        self.iterated = 0
 
     def fresh(self, prefix: str) -> str:
         """A name that nothing else has."""
@@ -113,7 +114,14 @@ class Expressions:
 
     def _number_15(self, scope: Scope, depth: int) -> str:
         name = self.fresh("e")
-        return f"[{name} for {name} in ({self.number(scope, depth)},)][0]"
+        return f"[{name} for {name} in ({self.over(scope, depth)},)][0]"
+
+    def over(self, scope: Scope, depth: int) -> str:
+        """A number in what a comprehension runs over: Python allows no ``:=`` there."""
+        self.iterated += 1
+        found = self.number(scope, depth)
+        self.iterated -= 1
+        return found
 
     def _number_16(self, scope: Scope, depth: int) -> str:
         return f"abs({self.number(scope, depth)})"
@@ -133,35 +141,37 @@ class Expressions:
     def condition(self, scope: Scope, depth: int = 0) -> str:
         """What decides."""
         kind = self.random.randrange(16)
+        found = self.comparison(scope, depth)
         if depth >= 2 or kind < 7:
-            return self.comparison(scope, depth)
+            return found
         match kind:
             case 7 | 8:
-                word = self.one_of(["and", "or"])
-                return f"({self.condition(scope, depth + 1)} {word} {self.condition(scope, depth + 1)})"
+                found = f"({found} {self.one_of(['and', 'or'])} {self.condition(scope, depth + 1)})"
             case 9:
-                return f"not {self.condition(scope, depth + 1)}"
+                found = f"not {self.condition(scope, depth + 1)}"
             case 10:
-                return self.one_of(scope.truths or scope.numbers)
+                found = self.one_of(scope.truths or scope.numbers)
             case 11:
-                return self.one_of(scope.numbers)
+                found = self.one_of(scope.numbers)
             case 12 if scope.lists:
                 name = self.fresh("e")
                 inner = scope.inner()
                 inner.numbers = [name, *inner.numbers]
-                word = self.one_of(["any", "all"])
-                of = self.one_of(scope.lists)
-                return f"{word}({self.comparison(inner, 2)} for {name} in {of})"
+                word, of = self.one_of(["any", "all"]), self.one_of(scope.lists)
+                found = f"{word}({self.comparison(inner, 2)} for {name} in {of})"
             case 13:
-                return f"({self.number(scope, 2)} < {self.number(scope, 2)} <= {self.number(scope, 2)})"
+                low, middle, high = (self.number(scope, 2) for _ in range(3))
+                found = f"({low} < {middle} <= {high})"
             case 14 if scope.texts:
-                return f'{self.one_of(scope.texts)} {self.one_of(["==", "!="])} {self.text(scope)}'
-            case 15:
-                name = self.fresh("w")
-                sign = self.one_of(list(_SIGNS))
-                return f"({name} := {self.number(scope, depth + 1)}) {sign} {self.number(scope, 2)}"
+                found = f"{self.one_of(scope.texts)} {self.one_of(['==', '!='])} {self.text(scope)}"
+            case 15 if not self.iterated:
+                name, sign = self.fresh("w"), self.one_of(list(_SIGNS))
+                found = (
+                    f"({name} := {self.number(scope, depth + 1)}) {sign} {self.number(scope, 2)}"
+                )
             case _:
-                return self.comparison(scope, depth)
+                pass
+        return found
 
     def text(self, scope: Scope) -> str:
         """A text."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from oracle_python.scope import Lines, Scope
 from oracle_python.statements import Statements
 
-_HELPERS = '''\
+_HELPERS = """\
 import contextlib
 import functools
 import rospy
@@ -33,13 +33,13 @@ def scaled(by):
             return function(*args, **kwargs)
         return wrapper
     return decorate
-'''
-_FAULTS = '''\
+"""
+_FAULTS = """\
 class Fault(Exception):
     pass
 class Worse(Fault):
     pass
-'''
+"""
 
 
 class Generator(Statements):
@@ -65,7 +65,9 @@ class Generator(Statements):
 
     def _node(self) -> str:
         add = self.lines.add
-        outer = Scope(["G", "H", "helpers.LEVEL"], calls=["helped({0}, b={1})", "helpers.helped({0}, {1})"])
+        outer = Scope(
+            ["G", "H", "helpers.LEVEL"], calls=["helped({0}, b={1})", "helpers.helped({0}, {1})"]
+        )
         outer.publishers = ["pub", 'rospy.Publisher("other", float)']
         outer.tables = ["TABLE"]
         outer.texts = ["MODE"]
@@ -81,10 +83,16 @@ class Generator(Statements):
         self._class("Node", "Base", outer, ["common", "own", "last"])
         add(f"node = Node({self.number(outer, 1)}, {self.read()})")
         add(f"other = Node(b={self.literal()})" if self.chance(0.5) else "other = node")
-        add(self.one_of(['rospy.Subscriber("in", float, node.callback)',
-                         'rospy.Subscriber("in", float, lambda message: node.callback(message))']))  # fmt: skip
+        add(
+            self.one_of(
+                [
+                    'rospy.Subscriber("in", float, node.callback)',
+                    'rospy.Subscriber("in", float, lambda message: node.callback(message))',
+                ]
+            )
+        )
         if self.chance(0.5):
-            add('rospy.Timer(1.0, functools.partial(node.timer, extra=G))')
+            add("rospy.Timer(1.0, functools.partial(node.timer, extra=G))")
         return self.lines.text()
 
     def _ways_to_call(self, name: str) -> list[str]:
@@ -164,7 +172,8 @@ class Generator(Statements):
                 [
                     f"self.{field} = {self.read()}",
                     f"self.low, self.high = {self.read()}, {self.number(inner, 1)}",
-                    f'for key in ("low", "{field}"):\n            setattr(self, key, rospy.get_param("~" + key, 1.0))',
+                    f'for key in ("low", "{field}"):\n            '
+                    'setattr(self, key, rospy.get_param("~" + key, 1.0))',
                     f'setattr(self, "{field}", {self.read()})',
                     f"self.__dict__.update({field}={self.read()})",
                 ]

@@ -77,7 +77,9 @@ class Instrument(ast.NodeTransformer):
                 visited: ast.expr = self.visit(node)
                 return visited
             case _:
-                return _call("__flag__", _constant(self._number(node, node, "flag")), self.visit(node))
+                return _call(
+                    "__flag__", _constant(self._number(node, node, "flag")), self.visit(node)
+                )
 
     def visit_BoolOp(self, node: ast.BoolOp) -> ast.expr:
         """In a value all operands but the last decide."""

@@ -26,9 +26,9 @@ Key = tuple[str, tuple[int, int, int, int], str, str, str]
 class Verdict:
     """``wanted``: shown by runs. ``missed``: of these, what the analysis does not say.
 
-    ``mixed``: wanted and left out, since the operand may be something measured, too: the runs did
-    not come to that. ``unseen``: what the analysis says of places that were evaluated, where no run had that
-    parameter. ``is_sound`` is False where the program itself fails.
+    ``mixed``: wanted and left out, since the operand may be something measured, too, to which no
+    run came. ``unseen``: what the analysis says of places that were evaluated, where no run had
+    that parameter. ``is_sound`` is False where the program itself fails.
     """
 
     wanted: set[Key] = field(default_factory=set)
@@ -142,6 +142,4 @@ def _look_for_unseen(verdict: Verdict, compiled: Compiled, runs: list[Outcome]) 
             place = compiled.places[number]
             evaluated.add((place.file, place.span))
             seen.update(_keys(place, side, what.parameters))
-    verdict.unseen = {
-        key for key in verdict.found - seen if (key[0], key[1]) in evaluated
-    }
+    verdict.unseen = {key for key in verdict.found - seen if (key[0], key[1]) in evaluated}

@@ -19,7 +19,7 @@ def shrink(
     again = True
     while again:
         again = False
-        for name in current:
+        for name in modules:
             at, size = 0, 16
             while time.monotonic() < end:
                 source = _without(current[name], at, size)

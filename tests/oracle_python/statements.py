@@ -27,8 +27,19 @@ class Statements(Expressions):
 
     def statement(self, scope: Scope, depth: int) -> None:
         """One statement; ``depth`` is that of blocks around it."""
-        simple = ("assign", "assign", "local", "local", "publish", "publish", "truth", "store", "call")
-        compound = ("if", "if", "if", "if", "while", "for", "try", "with", "unpack", "comprehension",
+        simple = (
+            "assign",
+            "assign",
+            "local",
+            "local",
+            "publish",
+            "publish",
+            "truth",
+            "store",
+            "call",
+        )
+        compound = ("if", "if", "if", "if", "while", "for", "try", "with", "unpack",
+                    "comprehension",
                     "closure", "match", "leave", "leave", "list")  # fmt: skip
         pool = simple if depth >= 3 else simple + compound
         getattr(self, f"_do_{self.random.choice(pool)}")(scope, depth)
@@ -90,9 +101,11 @@ class Statements(Expressions):
         name, element = self.fresh("c"), self.fresh("e")
         inner = scope.inner()
         inner.numbers.append(element)
-        source = self.one_of(scope.lists or [f"({self.number(scope)}, {self.number(scope)})"])
+        source = self.one_of(scope.lists or [f"({self.over(scope, 0)}, {self.over(scope, 0)})"])
         test = f" if {self.condition(inner, 1)}" if self.chance(0.6) else ""
-        self.lines.add(f"{name} = [{self.number(inner, 1)} for {element} in {source}{test}] + [0.5]")
+        self.lines.add(
+            f"{name} = [{self.number(inner, 1)} for {element} in {source}{test}] + [0.5]"
+        )
         scope.lists.append(name)
 
     # Compound ones
@@ -145,7 +158,9 @@ class Statements(Expressions):
             self.body(inner, 1, depth + 1)
         has_handler = self.chance(0.8)
         if has_handler:
-            taken = self.one_of(["Fault", "Worse", "(Fault, ValueError)", "Exception", "Fault as fault"])
+            taken = self.one_of(
+                ["Fault", "Worse", "(Fault, ValueError)", "Exception", "Fault as fault"]
+            )
             self._block(f"except {taken}:", scope, depth)
             if self.chance(0.2):
                 self._block("else:", scope, depth)
@@ -175,8 +190,8 @@ class Statements(Expressions):
     def _do_closure(self, scope: Scope, depth: int) -> None:
         name, argument = self.fresh("inner"), self.fresh("a")
         inner = Scope(
-            [argument, *scope.numbers], [], list(scope.calls), list(scope.truths), [], list(scope.tables),
-            list(scope.publishers), list(scope.texts), can_return=True,
+            [argument, *scope.numbers], [], list(scope.calls), list(scope.truths), [],
+            list(scope.tables), list(scope.publishers), list(scope.texts), can_return=True,
         )  # fmt: skip
         changed = self.one_of([each for each in scope.targets if each.isidentifier()] or [""])
         is_local = changed.startswith("v")
