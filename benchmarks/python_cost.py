@@ -4,7 +4,8 @@ One loop compares numbers with a parameter. It runs plainly, under the hook with
 a report in the source that makes and publishes a std_msgs/String each, as the thesis's Python nodes
 do. All are rospy nodes on one roscore, with one subscriber on /threshold_information. A cost is the
 time of a comparison less that of the plain loop in the same round; the figure is the median of the
-rounds, which take turns. Start-up is a script that does nothing, with the hook and without it.
+rounds, which take turns. Start-up is a script that does nothing, and one that imports rospy, with
+the hook and without it.
 """
 
 from __future__ import annotations
@@ -32,6 +33,7 @@ RUN = str(ROOT / "pytpc/run.py")
 PYTHON = "/usr/bin/python3"
 ROUNDS = 5
 STARTS = 15
+STARTED = {"start": "pass\n", "start_rospy": "import rospy\n"}
 KEY = "00000001-0000-5000-8000-000000000001"
 LINE = "        if number > limit:"
 LOOP = f"""\
@@ -84,6 +86,7 @@ WAYS: Mapping[str, tuple[str | None, str, int]] = {
     "file": ("file", "every", 500_000),
     "file_edges": ("file", "edges", 100_000),
     "topic": ("topic", "every", 50_000),
+    "rosout": ("rosout", "every", 5_000),
     "publish": (None, "", 10_000),
 }
 
@@ -133,10 +136,10 @@ def listening(env: Mapping[str, str]) -> Iterator[None]:
             listener.terminate()
 
 
-def starting(folder: Path) -> tuple[float, float]:
-    """Milliseconds of a script that does nothing: plainly, and under the hook (medians)."""
-    script = folder / "nothing.py"
-    script.write_text("pass\n")
+def starting(folder: Path, text: str) -> tuple[float, float]:
+    """Milliseconds of a script: plainly, and under the hook (medians)."""
+    script = folder / "start.py"
+    script.write_text(text)
     static = str(folder / "static.json")
     ways = ([PYTHON, str(script)], [PYTHON, RUN, "--static", static, str(script)])
     took: tuple[list[float], list[float]] = ([], [])
@@ -156,7 +159,7 @@ def main() -> None:
         folder = Path(name)
         (folder / "loop.py").write_text(LOOP)
         (folder / "static.json").write_text(static_of(folder / "loop.py"))
-        plain_ms, hook_ms = starting(folder)
+        starts = {name: starting(folder, text) for name, text in STARTED.items()}
         with RosGraph(dict(os.environ), folder / "graph") as graph:
             env = {**os.environ, "ROS_MASTER_URI": graph.uri, "ROS_IP": "127.0.0.1"}
             with listening(env):
@@ -170,8 +173,9 @@ def main() -> None:
         figure(TOPIC, way, statistics.median(values), unit="ns", target="none", hit=True)
     ratio = statistics.median(ratios)
     figure(TOPIC, "file_to_publish", ratio, unit="ratio", target="<=0.1", hit=ratio <= 0.1)
-    figure(TOPIC, "start_plain", plain_ms, unit="ms", target="none", hit=True)
-    figure(TOPIC, "start_added", hook_ms - plain_ms, unit="ms", target="none", hit=True)
+    for name, (plain_ms, hook_ms) in starts.items():
+        figure(TOPIC, f"{name}_plain", plain_ms, unit="ms", target="none", hit=True)
+        figure(TOPIC, f"{name}_added", hook_ms - plain_ms, unit="ms", target="none", hit=True)
 
 
 if __name__ == "__main__":

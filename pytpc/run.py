@@ -13,8 +13,10 @@ import sys
 from typing import NamedTuple
 
 if __name__ == "__main__" and not __package__:
-    # Started by its path: beside it are modules that are not for the program.
-    sys.path[0] = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+    # Started by its path: beside it are modules that are not for the program. Where the interpreter
+    # puts no script's folder there (-I, -P) the first place is another's.
+    is_safe = sys.flags.isolated or getattr(sys.flags, "safe_path", False)
+    sys.path[: 0 if is_safe else 1] = [os.path.dirname(os.path.dirname(os.path.abspath(__file__)))]
 
 from pytpc.errors import InputError, TpcError
 from pytpc.pyhook.instrument import Instrument
@@ -141,12 +143,22 @@ def main(words: list[str] | None = None) -> None:
         instrument = prepared(given)
         # What `-m` or the path of this file has put there is not the program's.
         del sys.path[0]
+        _hide_command(given)
         if given.verbose:
             _tell_at_end(instrument)
         run_script(given.script, given.arguments, instrument)
     except TpcError as error:
         sys.stderr.write(f"pytpc: error: {error}\n")
         sys.exit(1)
+
+
+def _hide_command(given: Words) -> None:
+    """Let ``sys.orig_argv`` have the interpreter, its options, and the script, as if by itself."""
+    words: list[str] | None = getattr(sys, "orig_argv", None)
+    if words is not None:
+        mine = len(words) - len(sys.argv)
+        before = words[: mine - 1 if words[mine - 1] == "-m" else mine]
+        words[:] = [*before, given.script, *given.arguments]
 
 
 def _tell_at_end(instrument: Instrument) -> None:

@@ -18,7 +18,7 @@ _SUMMARY = struct.Struct("<IqddqIIQQQddddddQqq16x")
 _COUNT_AT, _BEGUN_AT = 48, 160
 
 
-def packed(kept: Summary, count: int, *, is_open: bool = False) -> bytes:
+def packed(kept: Summary, *, is_open: bool = False) -> bytes:
     """A summary as it is in the file, but for its first word."""
     return _SUMMARY.pack(
         kept.one.number,
@@ -28,7 +28,7 @@ def packed(kept: Summary, count: int, *, is_open: bool = False) -> bytes:
         0 if is_open else kept.end_ns,
         kept.period,
         kept.thread,
-        count,
+        kept.evaluations,
         kept.odd,
         kept.far,
         kept.least,
@@ -60,7 +60,7 @@ class FileSink(Sink):
     def summary(self, summary: Summary) -> None:
         """Write it among the system's records."""
         self.file.announce(summary.one)
-        self.file.write_summary(packed(summary, summary.evaluations), what_of(summary))
+        self.file.write_summary(packed(summary), what_of(summary))
 
     def dropped(self, one: Reported | None, count: int, flops: int, why: str) -> None:
         """Write the account."""
@@ -81,7 +81,8 @@ class FileSink(Sink):
 class LiveSlot:
     """Where the summary of an open period is kept up to date, so that a killed process loses none.
 
-    ``begun`` counts up before an evaluation is taken in, ``count`` after it.
+    ``begun`` counts up before an evaluation is taken in, ``count`` with it, in one piece: a reader
+    leaves out a summary whose counts contradict one another.
     """
 
     __slots__ = ("_at", "_bytes", "_file", "_words")
@@ -108,7 +109,6 @@ class LiveSlot:
             return
         at = self._at
         struct.pack_into("<Q", self._bytes, at + _BEGUN_AT, kept.evaluations)
-        raw = packed(kept, kept.evaluations - 1, is_open=True)
-        self._bytes[at + 4 : at + 4 + len(raw)] = raw
         self._words[at >> 2] = what_of(kept)
-        struct.pack_into("<Q", self._bytes, at + _COUNT_AT, kept.evaluations)
+        raw = packed(kept, is_open=True)
+        self._bytes[at + 4 : at + 4 + len(raw)] = raw

@@ -39,6 +39,7 @@ class Caps:
             one.last = int(result)
         if not self.is_over(one, is_flop):
             self._sink.take(one, result, cmp, thresh, res)
+        self._sink.settle()
 
     def is_over(self, one: Reported, is_flop: bool) -> bool:
         """Whether a report is one too many; then it is counted."""
@@ -119,6 +120,7 @@ class Edges:
             kept.end_ns, kept.end_ros_ns = now, ros
             if held.slot is not None:
                 held.slot.write(kept)
+        self._sink.settle()
 
     def _new(self, thread: int, one: Reported) -> _Open:
         """A comparison that is new to its thread."""
@@ -151,6 +153,7 @@ class Edges:
             for held in self._open.values():
                 if held.kept.evaluations and (all_of_them or held.kept.period != period):
                     self._close(held)
+        self._sink.settle()
 
 
 def forget(reported: Iterable[Reported]) -> None:

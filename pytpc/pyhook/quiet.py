@@ -1,9 +1,9 @@
 """How the hook stays unseen: by tracers, and where a signal's handler raises within it.
 
 A debugger, a profiler and coverage are told of every Python frame. The functions of the hook are
-Python, but there is one kind of function that CPython runs with tracing off: a hook of ``sys.audit``.
-`Quiet` is a class whose instances are made by C alone: ``Quiet(function, a, b)`` lets the audit hook
-call ``function(a, b)`` and keeps the iterator that it gives.
+Python, but there is one kind of function that CPython runs with tracing off: a hook of
+``sys.audit``. `Quiet` is a class whose instances are made by C alone: ``Quiet(function, a, b)``
+lets the audit hook call ``function(a, b)`` and keeps the iterator that it gives.
 
 Every audit event of a process costs more once it has a hook in Python (some 0.2 us). So there is
 none until the program imports a tracer, or has one; and only when that begins to trace do the sites
@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 from weakref import WeakSet
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Generator, Iterator
     from types import TracebackType
 
     # Gives an iterator, whose next element is what the function comes to, or which raises.
@@ -140,7 +140,7 @@ def caller() -> int:
 # --- what a signal's handler raises
 
 
-def _nothing() -> Iterator[None]:
+def _nothing() -> Generator[None, None, None]:
     return
     yield
 
@@ -178,7 +178,7 @@ def is_programs(error: Exception) -> bool:
     for number in signal.valid_signals():
         handler: Any = signal.getsignal(number)
         handler = getattr(handler, "func", handler)
-        for function in (handler, getattr(type(handler), "__call__", None)):
+        for function in (handler, vars(type(handler)).get("__call__")):
             code = getattr(function, "__code__", None)
             if code is not None:
                 handlers.add(code)

@@ -226,9 +226,8 @@ class _Rewriter:
             node.body = self._expression(node.body, asked)
             node.orelse = self._expression(node.orelse, asked)
         elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.Not):
-            # As a value `not (x and y)` asks twice for the truth of what decides it.
-            is_simple = not isinstance(node.operand, (ast.BoolOp, ast.IfExp))
-            node.operand = self._expression(node.operand, asked or is_simple)
+            # As a value `not x` asks by itself, and what x raises then has the place of `not`.
+            node.operand = self._expression(node.operand, asked)
         else:
             self._fields(node)
 

@@ -38,18 +38,36 @@ class RosoutSink(Sink):
         """Nothing is sent yet."""
         self._inside = threading.local()
         self._lost = 0
+        # Lines, and the evaluations that each stands for.
+        self._waiting: deque[tuple[str, int]] = deque()
 
     def take(self, one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> None:
         """One line."""
         self._send(f"threshold_information:{report_line(one, result, cmp, thresh, res)}", 1)
 
+    def edge(self, one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> None:
+        """One line."""
+        line = f"threshold_information:{report_line(one, result, cmp, thresh, res)}"
+        self._waiting.append((line, 1))
+
     def summary(self, summary: Summary) -> None:
         """One line."""
-        self._send(f"threshold_summary:{summary_line(summary)}", summary.evaluations)
+        line = f"threshold_summary:{summary_line(summary)}"
+        self._waiting.append((line, summary.evaluations))
 
     def dropped(self, one: Reported | None, count: int, flops: int, why: str) -> None:
         """One line."""
-        self._send(f"threshold_dropped:{dropped_line(one, count, flops, why)}", 0)
+        self._waiting.append((f"threshold_dropped:{dropped_line(one, count, flops, why)}", 0))
+
+    def settle(self) -> None:
+        """Send the lines that wait: a log may run the program's code, and that may compare."""
+        while self._waiting:
+            try:
+                line, evaluations = self._waiting.popleft()
+            except IndexError:
+                # Another thread was faster.
+                return
+            self._send(line, evaluations)
 
     def _send(self, line: str, evaluations: int) -> None:
         ros = ros_state.rospy()
@@ -69,6 +87,7 @@ class RosoutSink(Sink):
 
     def end(self) -> None:
         """Say how much did not get there."""
+        self.settle()
         lost, self._lost = self._lost, 0
         if lost:
             warn(

@@ -42,7 +42,8 @@ def run_script(path: str, arguments: list[str], instrument: Instrument) -> None:
         __spec__=None,
     )
     module.__doc__ = None
-    sys.path.insert(0, os.path.dirname(os.path.realpath(path)))
+    if not (sys.flags.isolated or getattr(sys.flags, "safe_path", False)):
+        sys.path.insert(0, os.path.dirname(os.path.realpath(path)))
     sys.modules["__main__"] = module
     try:
         exec(_code(data, path, instrument), module.__dict__)

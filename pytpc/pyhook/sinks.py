@@ -92,6 +92,9 @@ class Sink:
     def dropped(self, one: Reported | None, count: int, flops: int, why: str) -> None:
         """What was not reported since the last account."""
 
+    def settle(self) -> None:
+        """Send what was handed over while a lock of ours was held: no program's code runs then."""
+
     def turn(self) -> None:
         """The helper thread's, some fifty times a second."""
 

@@ -19,6 +19,7 @@ from pytpc.pyhook.rewrite import rewrite
 from pytpc.pyhook.sites import Reported
 
 PATH = "/somewhere/program.py"
+_POSITION = ("name", "lineno", "end_lineno", "colno", "end_colno")
 
 
 def listed(lineno: int, column: int, relation: str, **changes: Any) -> Listed:
@@ -119,9 +120,6 @@ def outcome(code: CodeType, names: dict[str, object]) -> tuple[object, ...]:
 
 def _ended(error: Exception) -> tuple[object, ...]:
     stack = traceback.TracebackException.from_exception(error).stack
-    frames = [
-        (frame.name, frame.lineno, frame.end_lineno, frame.colno, frame.end_colno)
-        for frame in stack[1:]
-    ]
+    frames = [tuple(getattr(frame, name, None) for name in _POSITION) for frame in stack[1:]]
     files = {frame.filename for frame in stack[1:]}
     return type(error).__name__, without_addresses(str(error)), frames, files

@@ -50,7 +50,10 @@ class Finder:
     def find_spec(fullname, path=None, target=None):
         if not fullname.startswith("test.test_") and fullname not in MODULES:
             return None
-        spec = importlib.machinery.PathFinder.find_spec(fullname, path, target)
+        # setuptools has a finder of its own for the tests of distutils.
+        others = (finder for finder in sys.meta_path if finder.find_spec is not Finder.find_spec)
+        specs = (finder.find_spec(fullname, path, target) for finder in others)
+        spec = next((spec for spec in specs if spec is not None), None)
         if spec is not None and type(spec.loader) is importlib.machinery.SourceFileLoader:
             spec.loader = Loader(fullname, spec.origin)
         return spec

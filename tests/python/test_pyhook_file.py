@@ -247,6 +247,37 @@ def test_edges_lose_nothing_by_kill_9(tmp_path):
     assert found.summaries.flops.tolist() == [1]
 
 
+def test_edges_killed_in_the_middle_of_a_summary(tmp_path):
+    run(
+        tmp_path,
+        """
+        one = site("one")
+        over(one, 1, 3)
+        (held,) = RUNTIME._edges._open.values()
+        class Bytes:
+            # Struct's `pack_into` asks for a buffer, and a slice is the summary itself.
+            def __init__(self, real): self.real = real
+            def __setitem__(self, at, raw):
+                self.real[at] = raw
+                os.kill(os.getpid(), 9)
+        import struct
+        from pytpc.pyhook import file_sink
+        real = held.slot._bytes
+        file_sink.struct = type("", (), {"pack_into": staticmethod(
+            lambda form, where, at, value: struct.pack_into(form, real, at, value))})
+        held.slot._bytes = Bytes(real)
+        over(one, 2, 3)
+        """,
+        TPC_POLICY="edges",
+        TPC_PERIOD="3600",
+    )
+    found = recording(tmp_path)
+    assert found.malformed == 0
+    assert found.summaries.count.tolist() == [2]
+    # 1 - 3 and 2 - 3.
+    assert found.summaries.diff_mean.tolist() == [-1.5]
+
+
 def test_caps_count_what_they_drop(tmp_path):
     run(
         tmp_path,

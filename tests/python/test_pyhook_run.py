@@ -367,3 +367,33 @@ def test_modules_loaded_twice_and_reloaded(package):
     assert (done.returncode, done.stderr) == (0, "")
     assert "def high(x):\n    return x > 1\n" in done.stdout
     assert reported(package) == [*BOTH, ("helper of node", 0.0, 1.0)]
+
+
+@pytest.mark.parametrize("options", [[], ["-I"], ["-O", "-W", "error"], ["-X", "dev", "-u"]])
+def test_the_interpreters_options(tmp_path, options):
+    # The path, the words and the flags are those of the script by itself.
+    script = tmp_path / "node.py"
+    script.write_text(
+        "import sys\nlimit = 3\nprint(sys.path, sys.argv, sys.flags, sys.orig_argv)\n"
+        "assert limit > 5, 'not with -O'\n"
+    )
+    static = tmp_path / "static.json"
+    place = comparison("a", "node.py", 4, 8, "assert limit > 5, 'not with -O'")
+    static.write_text(json.dumps({"schema": 1, "units": [unit(tmp_path, "node", place)]}))
+    hooks = [[], [RUN[1], "--static", static], ["-m", "pytpc.run", "--static", static]]
+    path = {"PYTHONPATH": str(ROOT)}
+    plain, by_path, by_name = (
+        subprocess.run(
+            [sys.executable, *options, *hook, str(script), "a"],
+            env={**os.environ, "TPC_SINK": "off", **path},
+            capture_output=True,
+            text=True,
+            check=False,
+            timeout=60,
+        )
+        for hook in hooks
+    )
+    assert (by_path.returncode, by_path.stdout) == (plain.returncode, plain.stdout)
+    # Isolated, there is no PYTHONPATH, and so no such module.
+    if options != ["-I"]:
+        assert (by_name.returncode, by_name.stdout) == (plain.returncode, plain.stdout)

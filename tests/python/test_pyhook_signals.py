@@ -1,0 +1,144 @@
+"""What a signal's handler does in the middle of a report is done to the program's own line."""
+
+from __future__ import annotations
+
+import signal
+import traceback
+
+import pytest
+from hook_samples import PATH, instrumented, listed
+from test_pyhook_file import files, recording, rows, run
+
+from pytpc.pyhook import sites
+
+
+class Late(Exception):
+    """What a handler of SIGALRM raises."""
+
+
+def raising(*_: object) -> None:
+    """As a handler does that runs within the report."""
+    raise Late
+
+
+@pytest.mark.parametrize(
+    ("source", "place"),
+    [
+        ("a = 1\nb = a < 2\n", (2, 5, "<")),
+        ("a = 'x'\nb = a < 'y'\n", (2, 5, "<")),
+        ("a = 1\nb = 0 < a < 2\n", (2, 5, ">")),
+        ("a = 1\nif a: pass\n", (2, 4, "flag")),
+        ("a = 1\nb = a or 2\n", (2, 5, "flag")),
+        ("a = 1\nfor b in range(a): pass\n", (2, 10, "<")),
+        ("a = 1\nmatch a:\n    case 1: pass\n", (2, 7, "flag")),
+    ],
+)
+def test_what_a_handler_raises_comes_from_the_programs_line(source, place) -> None:
+    before, handler = sites._take, signal.signal(signal.SIGUSR1, raising)
+    sites.set_take(raising)
+    try:
+        with pytest.raises(Late) as caught:
+            exec(instrumented(source, listed(*place)), {})
+    finally:
+        sites.set_take(before)
+        signal.signal(signal.SIGUSR1, handler)
+    frames = traceback.extract_tb(caught.value.__traceback__)
+    # The test, the program, the handler.
+    assert [frame.filename for frame in frames[1:]] == [PATH, __file__]
+
+
+def test_every_time_out_reaches_the_program_and_no_report_is_hidden(tmp_path) -> None:
+    done = run(
+        tmp_path,
+        """
+        import signal
+        class Late(Exception): pass
+        made = caught = 0
+        def late(*_):
+            global made
+            made += 1
+            raise Late
+        one, done = site("one"), []
+        signal.signal(signal.SIGALRM, late)
+        number = 0
+        while made < 500:
+            try:
+                signal.setitimer(signal.ITIMER_REAL, 0.0002)
+                while True:
+                    number += 1
+                    over(one, number, 0)
+                    done.append(number)
+            except Late:
+                caught += 1
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        assert caught == made, (caught, made)
+        print(*done)
+        """,
+    )
+    assert done.returncode == 0, done.stderr
+    found = [int(cmp) for _, _, cmp, _ in rows(tmp_path)]
+    # Of a comparison that was broken off there may be a report or none.
+    assert found == sorted(set(found))
+    assert set(map(int, done.stdout.split())) <= set(found)
+    assert recording(tmp_path).malformed == 0
+
+
+def test_a_report_while_the_first_one_opens_the_file(tmp_path) -> None:
+    done = run(
+        tmp_path,
+        """
+        one, real = site("one"), os.posix_fallocate
+        def fallocate(*words):
+            # As a signal's handler that comes in the middle.
+            over(one, 1, 0)
+            return real(*words)
+        os.posix_fallocate = fallocate
+        over(one, 2, 0)
+        over(one, 3, 0)
+        """,
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert [cmp for _, _, cmp, _ in rows(tmp_path)] == [2.0, 3.0]
+
+
+def test_ctrl_c_while_the_first_report_opens_the_file(tmp_path) -> None:
+    done = run(
+        tmp_path,
+        """
+        one, real = site("one"), os.posix_fallocate
+        def fallocate(*words):
+            os.posix_fallocate = real
+            raise KeyboardInterrupt
+        os.posix_fallocate = fallocate
+        try:
+            over(one, 1, 0)
+        except KeyboardInterrupt:
+            print("stopped")
+        over(one, 2, 0)
+        """,
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (0, "stopped\n", "")
+    assert [cmp for _, _, cmp, _ in rows(tmp_path)] == [2.0]
+    assert len(files(tmp_path)) == 1
+
+
+def test_ctrl_c_while_a_key_is_written(tmp_path) -> None:
+    done = run(
+        tmp_path,
+        """
+        one, two = site("one"), site("two")
+        over(one, 1, 0)
+        file = RUNTIME.file
+        class Words:
+            def __setitem__(self, at, what): raise KeyboardInterrupt
+        words, file._system.extent.words = file._system.extent.words, Words()
+        try:
+            over(two, 2, 0)
+        except KeyboardInterrupt:
+            file._system.extent.words = words
+        over(two, 3, 0)
+        """,
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert [(key, cmp) for key, _, cmp, _ in rows(tmp_path)] == [("one", 1.0), ("two", 3.0)]
+    assert recording(tmp_path).malformed == 0
