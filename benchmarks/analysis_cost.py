@@ -15,13 +15,14 @@ import statistics
 import subprocess
 import sys
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 
 from figures import figure
 
+from pytpc.demo_examples import IMAGE_CAPTURE, SHARED_PACKAGE
 from pytpc.paths import cmake_file
 
-PACKAGE = Path(__file__).resolve().parents[1] / "examples" / "image_capture"
 ROUNDS = 3
 PLAIN = (
     "-DCMAKE_C_COMPILER=clang-19",
@@ -35,13 +36,26 @@ PLAIN = (
 ENVIRONMENT = {**os.environ, "PATH": "/usr/bin:/bin"}
 
 
-def built(folder: Path, options: tuple[str, ...]) -> dict[str, str]:
-    """Builds the package; the commands that compiled and linked it, by what they wrote."""
-    configure = ["cmake", "-S", str(PACKAGE), "-B", str(folder), "-G", "Ninja"]
+def build(package: Path, folder: Path, options: Sequence[str], *targets: str) -> list[str]:
+    """Builds a package; ninja's command for its folder."""
+    configure = ["cmake", "-S", str(package), "-B", str(folder), "-G", "Ninja"]
     configure += ["-DCMAKE_BUILD_TYPE=RelWithDebInfo", "-DPYTHON_EXECUTABLE=/usr/bin/python3"]
     ninja = ["ninja", "-C", str(folder)]
     subprocess.run([*configure, *options], env=ENVIRONMENT, check=True, capture_output=True)
-    subprocess.run(ninja, env=ENVIRONMENT, check=True, capture_output=True)
+    subprocess.run([*ninja, *targets], env=ENVIRONMENT, check=True, capture_output=True)
+    return ninja
+
+
+def installed(folder: Path) -> Path:
+    """Installs what the robots share, which is headers for a build."""
+    prefix = folder / "install"
+    build(SHARED_PACKAGE, folder, (f"-DCMAKE_INSTALL_PREFIX={prefix}",), "install")
+    return prefix
+
+
+def built(folder: Path, options: Sequence[str]) -> dict[str, str]:
+    """Builds the robot; the commands that compiled and linked it, by what they wrote."""
+    ninja = build(IMAGE_CAPTURE.folder, folder, options)
     listed = subprocess.run(
         [*ninja, "-t", "commands"], env=ENVIRONMENT, check=True, capture_output=True, text=True
     )
@@ -83,7 +97,8 @@ def main() -> None:
     """Prints the ratio."""
     with tempfile.TemporaryDirectory() as scratch:
         folders = Path(scratch) / "with", Path(scratch) / "without"
-        options = (f"-DCMAKE_TOOLCHAIN_FILE={cmake_file()}",), PLAIN
+        shared = f"-DCMAKE_PREFIX_PATH={installed(Path(scratch) / 'shared')}"
+        options = (shared, f"-DCMAKE_TOOLCHAIN_FILE={cmake_file()}"), (shared, *PLAIN)
         with_passes, without = medians(
             {folder: built(folder, own) for folder, own in zip(folders, options, strict=True)}
         )

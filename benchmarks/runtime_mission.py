@@ -23,11 +23,11 @@ from pathlib import Path
 from figures import figure
 
 from pytpc.build import build_workspace, workspace_env
+from pytpc.demo_examples import IMAGE_CAPTURE
+from pytpc.demo_show import link_package
 from pytpc.graph import GRAPH_WORD
 from pytpc.mission import MissionRun, Progress, run_mission
-from pytpc.paths import project_root
 
-PACKAGE = project_root() / "examples" / "image_capture"
 TOPIC = "runtime-cost"
 ROUNDS = 5
 SETTINGS: dict[str, dict[str, str]] = {
@@ -105,7 +105,7 @@ def fly(env: dict[str, str], name: str, out: Path, topics: list[str]) -> tuple[M
     settings = {**env, "TPC_FOLDER": str(out / "files"), **SETTINGS[name]}
     run = run_mission(
         settings,
-        PACKAGE / "launch" / "image_capture.launch",
+        IMAGE_CAPTURE.launch,
         {"seed": "1"},
         out,
         TIMEOUT_S,
@@ -131,8 +131,7 @@ def main() -> None:
     messages: dict[str, list[float]] = {name: [] for name in SETTINGS}
     with tempfile.TemporaryDirectory() as scratch:
         workspace = Path(scratch) / "ws"
-        (workspace / "src").mkdir(parents=True)
-        (workspace / "src" / PACKAGE.name).symlink_to(PACKAGE)
+        link_package(IMAGE_CAPTURE, workspace)
         print("building", file=sys.stderr)
         env = workspace_env(build_workspace(workspace).bases.install)
         _, found = fly(env, "off", Path(scratch) / "first", [])

@@ -184,11 +184,13 @@ def build_workspace(
     return BuildResult(place, tuple(chosen), static, alone.reasons, seconds)
 
 
-def workspace_env(install_base: Path) -> dict[str, str]:
+def workspace_env(install_base: Path, begin: Mapping[str, str] | None = None) -> dict[str, str]:
     """The environment in which the nodes of an installed workspace run.
 
-    It is what a fresh login would have after sourcing ``setup.bash``: of the caller's own
-    environment only home, user, language, terminal and time zone are in it.
+    Args:
+        install_base: the folder with ``setup.bash``.
+        begin: the environment in which that is sourced. None: that of a fresh login; of the
+            caller's own only home, user, language, terminal and time zone are in it.
 
     Raises:
         WorkspaceError: the folder is not an install base.
@@ -197,11 +199,13 @@ def workspace_env(install_base: Path) -> dict[str, str]:
     script = install_base.absolute() / "setup.bash"
     if not script.is_file():
         raise WorkspaceError("no setup.bash here: build the workspace first", install_base)
-    kept = ("HOME", "USER", "LOGNAME", "LANG", "LC_ALL", "TERM", "TZ", "TMPDIR")
-    clean = {name: os.environ[name] for name in kept if name in os.environ}
+    if begin is None:
+        kept = ("HOME", "USER", "LOGNAME", "LANG", "LC_ALL", "TERM", "TZ", "TMPDIR")
+        clean = {name: os.environ[name] for name in kept if name in os.environ}
+        begin = {**clean, "PATH": SYSTEM_PATH}
     ran = subprocess.run(
         ["/bin/bash", "--norc", "--noprofile", "-c", 'source "$1" >&2 && env -0', "bash", script],
-        env={**clean, "PATH": SYSTEM_PATH},
+        env=dict(begin),
         stdin=subprocess.DEVNULL,
         capture_output=True,
         check=False,

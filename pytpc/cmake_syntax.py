@@ -74,6 +74,7 @@ _TOKEN = re.compile(
     re.DOTALL,
 )
 _BRACKET_OPENING = re.compile(rb"\[(=*)\[")
+_ESCAPE = re.compile(r"\\([^;])")
 _IDENTIFIER = re.compile(rb"[A-Za-z_][A-Za-z0-9_]*")
 
 _PIECES = frozenset({Kind.IDENTIFIER, Kind.UNQUOTED, Kind.QUOTED, Kind.BRACKET})
@@ -123,6 +124,48 @@ def command_names(data: bytes) -> list[tuple[str, int]]:
     return parser.commands
 
 
+@dataclass(frozen=True, slots=True)
+class Argument:
+    """An argument of a command: its text without quotes and escapes, variables not looked up."""
+
+    text: str
+    is_quoted: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """A command of a list file, its name in lower case."""
+
+    name: str
+    line: int
+    arguments: tuple[Argument, ...]
+
+
+def commands(data: bytes) -> list[Command]:
+    """The commands that stand in a list file, as `command_names` has them, with their arguments."""
+    parser = _Parser(list(tokens(data.removeprefix(UTF8_BOM))))
+    with contextlib.suppress(_FaultError):
+        parser.file()
+    return [
+        Command(name, line, tuple(map(_argument, pieces)))
+        for (name, line), pieces in zip(parser.commands, parser.pieces, strict=True)
+    ]
+
+
+def _argument(token: Token) -> Argument:
+    text = token.text.decode("utf-8", "replace")
+    if token.kind is Kind.BRACKET:
+        opening = text.index("[", 1) + 1
+        return Argument(text[opening:-opening].removeprefix("\n"), True)
+    if token.kind is Kind.QUOTED:
+        text = text[1:-1].replace("\\\n", "")
+    return Argument(_ESCAPE.sub(_unescaped, text), token.kind is Kind.QUOTED)
+
+
+def _unescaped(match: re.Match[str]) -> str:
+    return {"t": "\t", "n": "\n", "r": "\r"}.get(match[1], match[1])
+
+
 class _FaultError(Exception):
     def __init__(self, line: int, message: str) -> None:
         super().__init__(message)
@@ -130,12 +173,16 @@ class _FaultError(Exception):
 
 
 class _Parser:
-    """Recursive descent over the token list; ``commands`` gathers (name, line) in order."""
+    """Recursive descent over the token list; ``commands`` gathers (name, line) in order.
+
+    ``pieces`` has the arguments of each, parentheses among them left out.
+    """
 
     def __init__(self, stream: list[Token]) -> None:
         self.stream = stream
         self.at = 0
         self.commands: list[tuple[str, int]] = []
+        self.pieces: list[list[Token]] = []
 
     def file(self) -> None:
         line_is_fresh = True
@@ -168,6 +215,7 @@ class _Parser:
         if opening.kind is not Kind.OPEN:
             raise _unexpected(f'expected "(" after {shown}', opening)
         self.commands.append((shown.lower(), name.line))
+        self.pieces.append([])
         self._arguments(name.line, shown)
 
     def _arguments(self, line: int, shown: str) -> None:
@@ -184,6 +232,7 @@ class _Parser:
                         return
                 case kind if kind in _PIECES:
                     _check_separation(before, token)
+                    self.pieces[-1].append(token)
                 case Kind.OPEN_STRING | Kind.OPEN_BRACKET | Kind.BAD:
                     raise _unexpected(f"in the arguments of {shown}", token)
             before = token.kind

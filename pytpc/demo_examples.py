@@ -9,6 +9,9 @@ from pathlib import Path
 from pytpc.paths import project_root
 from pytpc.treatment import Treatment, TreatmentType, load_treatment
 
+SHARED_PACKAGE = project_root() / "examples" / "simulated_world"
+"""The catkin package that the robots' simulators and observers share."""
+
 
 @dataclass(frozen=True)
 class Example:
@@ -16,8 +19,7 @@ class Example:
 
     ``goal_topic`` is the topic on which there is a message for each time that the robot did what
     the mission is for; ``reached`` and ``missed`` say so in a sentence's end. ``missed_under`` are
-    the types of treatment that keep it from it. ``shown`` are the treatments of the demonstration,
-    ``python`` says that there are nodes in Python whose comparisons can report.
+    the types of treatment that keep it from it. ``shown`` are the treatments of the demonstration.
     """
 
     name: str
@@ -28,7 +30,6 @@ class Example:
     missed: str
     missed_under: frozenset[TreatmentType]
     shown: tuple[str, ...]
-    python_nodes: tuple[str, ...] = ()
 
     @property
     def folder(self) -> Path:
@@ -84,5 +85,4 @@ WATER_SAMPLER = Example(
         "type2_min_conductivity",
         "type2_hold_radius",
     ),
-    python_nodes=("nodes/mission.py", "nodes/mission_fault.py"),
 )

@@ -20,9 +20,9 @@ from pytpc.cli.console import progress
 from pytpc.cli.mission_commands import mission_progress
 from pytpc.colcon import BuildError
 from pytpc.demo import TreatedMission, failures, result_table, run_treatment
-from pytpc.demo_examples import Example
-from pytpc.demo_python import analyse_nodes, joined, launch_arguments
+from pytpc.demo_examples import SHARED_PACKAGE, Example
 from pytpc.errors import TpcError, WorkspaceError
+from pytpc.python_env import mission_env
 from pytpc.report.html import write_report
 from pytpc.static_info import StaticInfo
 from pytpc.treatment import Treatment
@@ -34,13 +34,11 @@ _PIPED_WIDTH = 160
 
 @dataclass(frozen=True)
 class Built:
-    """What flies: the robot, the static information of all nodes, the environment they run in, and
-    arguments for the launch file."""
+    """What flies: the robot, the static information of all nodes, the environment they run in."""
 
     example: Example
     static: StaticInfo
     env: Mapping[str, str]
-    launch_args: Mapping[str, str]
 
 
 def demonstration(example: Example, about: str) -> click.Command:
@@ -116,48 +114,43 @@ def can_be_named(treatment: Treatment, static: StaticInfo) -> bool:
 
 
 def build(example: Example, console: Console, out: Path) -> Built:
-    """Build a workspace that holds a link to the example, and analyse its nodes in Python."""
+    """Build a workspace that holds a link to the example; its nodes in Python are analysed, too."""
     workspace = out / "ws"
     link_package(example, workspace)
-    with step(console, "Build the mission's nodes with TPC's passes"):
+    with step(console, "Build the mission's nodes with TPC"):
         with Console(stderr=True).status("colcon build"):
             result = build_workspace(workspace)
         tell_found(console, result.static)
-    env = workspace_env(result.bases.install)
-    if not example.python_nodes:
-        return Built(example, result.static, env, {})
-    with step(console, "Analyse the mission's nodes in Python"):
-        folder = out / "python"
-        found = analyse_nodes(example, folder)
-        static = joined(result.static, found)
-        static.save(out / "static.json")
-        tell_found(console, joined(found[0], found[1:]))
-    return Built(example, static, env, launch_arguments(folder))
+    env = mission_env(workspace_env(result.bases.install), result.bases.static_info)
+    return Built(example, result.static, env)
 
 
 def link_package(example: Example, workspace: Path) -> None:
-    """Put a link to the example into a workspace.
+    """Put links to the example, and to what the examples share, into a workspace.
 
     Raises:
-        WorkspaceError: it cannot be made.
+        WorkspaceError: one cannot be made.
     """
-    link = workspace / "src" / example.name
-    if link.resolve() == example.folder:
-        return
-    # What stands there is the link of an earlier checkout.
-    try:
-        link.parent.mkdir(parents=True, exist_ok=True)
-        link.unlink(missing_ok=True)
-        link.symlink_to(example.folder)
-    except OSError as error:
-        raise WorkspaceError(f"cannot be made: {error.strerror}", link) from error
+    for package in (example.folder, SHARED_PACKAGE):
+        link = workspace / "src" / package.name
+        if link.resolve() == package:
+            continue
+        # What stands there is the link of an earlier checkout.
+        try:
+            link.parent.mkdir(parents=True, exist_ok=True)
+            link.unlink(missing_ok=True)
+            link.symlink_to(package)
+        except OSError as error:
+            raise WorkspaceError(f"cannot be made: {error.strerror}", link) from error
 
 
 def tell_found(console: Console, static: StaticInfo) -> None:
-    """Say in a line what the analysis found."""
+    """Say in a line what the analysis found, and in which language; one place is one comparison."""
+    places = [tpc for tpc in static.tpcs if tpc.type != "constant"]
+    in_python = sum(static.unit_of(tpc.key).is_python for tpc in places)
+    some = f": {len(places) - in_python:,} in C++, {in_python:,} in Python" if in_python else ""
     console.print(
-        f"   {many(len(static.thresholds), 'comparison')} of parameters found in"
-        f" {many(len(static.units), 'link unit')}"
+        f"   {many(len(places), 'comparison')} of parameters found{some}", highlight=False
     )
 
 
@@ -175,7 +168,6 @@ def fly(
                 static_info=built.static,
                 out_dir=out / treatment.name,
                 timeout_s=TIMEOUT_S,
-                launch_args=built.launch_args,
                 on_progress=advance,
             )
         run = mission.run

@@ -158,7 +158,7 @@ class Comparison:
     path: tuple[PathStep, ...] = ()
     end_lineno: int | None = None
     end_column: int | None = None
-    operand: Literal["left", "right"] | None = None
+    operand: str | None = None
 
     def to_json(self) -> dict[str, Any]:
         """The comparison as the JSON object of docs/formats.md."""

@@ -14,7 +14,9 @@ from pytpc.errors import InputError
 _LONGEST_LINE = 512
 
 
-def command_of(node: Path, arguments: Sequence[str], static: Sequence[Path]) -> list[str]:
+def command_of(
+    node: Path, arguments: Sequence[str], static: Sequence[Path], *, verbose: bool = False
+) -> list[str]:
     """The command line that runs ``node``.
 
     A Python script is run by the interpreter of its first line, else by ``python3``; what is no
@@ -29,6 +31,8 @@ def command_of(node: Path, arguments: Sequence[str], static: Sequence[Path]) -> 
             raise InputError("neither a Python script nor a program", node)
         return [str(node), *arguments]
     options = [word for path in static for word in ("--static", str(path))]
+    if verbose:
+        options.append("--verbose")
     return [*words, str(Path(run.__file__)), *options, "--", str(node), *arguments]
 
 

@@ -67,7 +67,8 @@ def python_of_build(
         if kept is not None:
             found = kept
         else:
-            scripts = scripts_of(workspace, [package.path for package in chosen], tests=tests)
+            roots = [package.path for package in chosen]
+            scripts = scripts_of(workspace, roots, rules, tests=tests)
             fresh = analyse_scripts(scripts, rules, on_progress)
             units = write_units(build_base, named_beside(fresh.units, names))
             found = PythonUnits(tuple(units), fresh.left_out)

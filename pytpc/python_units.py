@@ -6,7 +6,7 @@ The room between ``pynodes``, which analyses one script, and what builds and col
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import count
 from pathlib import Path
@@ -15,6 +15,7 @@ from pytpc.atomic import write_atomic
 from pytpc.errors import InputError
 from pytpc.link_unit import LeftOut, LinkUnit
 from pytpc.pynodes.analysis import analyse_entry
+from pytpc.pynodes.budget import SECONDS
 from pytpc.pynodes.packages import Entry, entries, entry_of
 from pytpc.pynodes.rules_file import Rules
 from pytpc.static_info import python_unit_file
@@ -47,37 +48,41 @@ class PythonUnits:
     folders: tuple[Path, ...] = ()
 
 
-def scripts_at(path: Path) -> Scripts:
+def scripts_at(path: Path, rules: Rules, beside: Sequence[Path] = ()) -> Scripts:
     """The scripts that a path means: itself, or all nodes in a folder.
+
+    Args:
+        path: a script, or a folder.
+        rules: what reads and what exposes.
+        beside: further folders, whose packages may be imported from.
 
     Raises:
         InputError: there is no such file or folder.
+        MissingToolError: catkin_pkg is not installed.
     """
     faults: list[InputError] = []
-    found = entries(path, faults.append)
+    found = entries(path, faults.append, rules, beside)
     left_out = [_fault(path, error)[1] for error in faults]
     return Scripts(tuple(found), tuple(dict.fromkeys(left_out)))
 
 
-def scripts_of(workspace: Path, packages: Iterable[Path], *, tests: bool = False) -> Scripts:
+def scripts_of(
+    workspace: Path, packages: Iterable[Path], rules: Rules, *, tests: bool = False
+) -> Scripts:
     """The scripts of packages of a workspace; all of it is looked at for what they import.
 
     Args:
         workspace: the folder with all packages.
         packages: the folders of some.
+        rules: what reads and what exposes.
         tests: take scripts in folders called test or tests, too.
-
-    Raises:
-        InputError: a package.xml is broken.
     """
     roots = {os.path.realpath(package): package.absolute() for package in packages}
     faults: list[InputError] = []
     found: dict[tuple[Path, str], Entry] = {}
-    places = [workspace, *_linked(workspace, roots)]
-    if tests:
-        places += [folder for root in roots.values() for folder in _test_folders(root)]
-    for place in places:
-        for entry in entries(place, faults.append):
+    below = (folder for root in roots.values() for folder in _test_folders(root))
+    for place in (workspace, *(below if tests else ())):
+        for entry in entries(place, faults.append, rules, [workspace]):
             if os.path.realpath(entry.root) in roots:
                 found.setdefault((entry.script, entry.name), entry)
     left_out = [
@@ -89,7 +94,10 @@ def scripts_of(workspace: Path, packages: Iterable[Path], *, tests: bool = False
 
 
 def analyse_scripts(
-    scripts: Scripts, rules: Rules, on_progress: Callable[[int, int], None] | None = None
+    scripts: Scripts,
+    rules: Rules,
+    on_progress: Callable[[int, int], None] | None = None,
+    seconds: float = SECONDS,
 ) -> PythonUnits:
     """Analyse scripts; one that cannot be is left out with the reason.
 
@@ -97,19 +105,22 @@ def analyse_scripts(
         scripts: of any number of packages.
         rules: what reads and what exposes.
         on_progress: called with (scripts done, scripts in all).
+        seconds: what each script may take; 0 is no limit.
     """
     units: list[LinkUnit] = []
-    left_out = list(scripts.left_out)
+    left_out = dict.fromkeys(scripts.left_out)
     for number, entry in enumerate(scripts.entries, start=1):
         script = _inside(entry.script, entry.root)
         try:
-            unit = replace(analyse_entry(entry, rules), script=script)
+            faults: list[InputError] = []
+            unit = replace(analyse_entry(entry, rules, seconds, faults.append), script=script)
             # A text of the source that no JSON can have would stop the whole build.
             dump_json(unit.to_json())
         except InputError as error:
-            left_out.append(_left_out(entry.package, script, error))
+            left_out[_left_out(entry.package, script, error)] = None
         else:
             units.append(unit)
+            left_out.update((_fault(entry.root, fault)[1], None) for fault in faults)
         if on_progress is not None:
             on_progress(number, len(scripts.entries))
     return PythonUnits(tuple(units), tuple(left_out))
@@ -133,12 +144,9 @@ def analyse_workspaces(
         folders: what else is among them, as files, is passed over.
         rules: what reads and what exposes.
         on_progress: called with (scripts done, scripts in all).
-
-    Raises:
-        InputError: a package.xml is broken.
     """
     found = [folder for folder in folders if _is_workspace(folder)]
-    scripts = joined(scripts_of(folder, package_folders(folder)) for folder in found)
+    scripts = joined(scripts_of(folder, package_folders(folder), rules) for folder in found)
     units = analyse_scripts(scripts, rules, on_progress)
     return replace(units, folders=tuple(Path(os.path.realpath(folder)) for folder in found))
 
@@ -221,14 +229,6 @@ def _is_workspace(folder: Path) -> bool:
     return next(package_folders(folder), None) is not None
 
 
-def _linked(workspace: Path, roots: Mapping[str, Path]) -> Iterator[Path]:
-    """The packages, by their real paths, that are reached by a symbolic link in the workspace."""
-    real_workspace = Path(os.path.realpath(workspace))
-    for real, root in roots.items():
-        if Path(real) != real_workspace / root.relative_to(workspace.absolute()):
-            yield root
-
-
 def _test_folders(root: Path) -> Iterator[Path]:
     for folder, below, _ in os.walk(root):
         below[:] = sorted(name for name in below if name not in _PRODUCTS and name[0] != ".")
@@ -244,10 +244,7 @@ def _inside(script: Path, root: Path) -> str:
 def _fault(path: Path, error: InputError) -> tuple[Path, LeftOut]:
     """A file below ``path`` that cannot be read, with the folder of its package."""
     file = path.absolute() if error.path is None else Path(error.path)
-    try:
-        entry = entry_of(file)
-    except InputError:
-        return file.parent, _left_out(file.parent.name, file.name, error)
+    entry = entry_of(file)
     return entry.root, _left_out(entry.package, _inside(file, entry.root), error)
 
 

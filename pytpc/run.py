@@ -18,7 +18,7 @@ if __name__ == "__main__" and not __package__:
 
 from pytpc.errors import InputError, TpcError
 from pytpc.pyhook.instrument import Instrument
-from pytpc.pyhook.listed import Table, read_table
+from pytpc.pyhook.listed import BUILT, Table, read_table
 from pytpc.pyhook.loader import install
 from pytpc.pyhook.runtime import RUNTIME
 from pytpc.pyhook.script import run_script
@@ -70,7 +70,7 @@ def parsed(words: list[str]) -> Words | None:
             raise InputError(f"{word}: no such option, or its value is missing; see --help")
     if not rest:
         raise InputError("which script is to be run? see --help")
-    return Words(static or static_of_environment(), verbose, rest[0], rest[1:])
+    return Words(static, verbose, rest[0], rest[1:])
 
 
 def static_of_environment() -> list[str]:
@@ -78,19 +78,57 @@ def static_of_environment() -> list[str]:
     return [path for path in os.environ.get("TPC_STATIC", "").split(os.pathsep) if path]
 
 
-def prepared(static: list[str], script: str) -> Instrument:
+def static_around(script: str) -> str | None:
+    """What ``pytpc build`` left in a folder above the script, else above the current one.
+
+    The script's folder is first where it stands, and then where a link leads to.
+    """
+    for start in (os.path.abspath(script), os.path.realpath(script), os.path.join(os.getcwd(), "")):
+        folder = os.path.dirname(start)
+        while True:
+            path = os.path.join(folder, BUILT)
+            if os.path.isfile(path):
+                return path
+            if os.path.dirname(folder) == folder:
+                break
+            folder = os.path.dirname(folder)
+    return None
+
+
+def prepared(given: Words) -> Instrument:
     """Read the static information of a script and install the hook.
 
     Raises:
-        InputError: a file cannot be read.
+        InputError: a file that was named cannot be read. One that was only found is left, and said.
     """
-    table = read_table(static, script) if static else Table([])
+    static = given.static or static_of_environment()
+    if static:
+        table = read_table(static, given.script)
+    else:
+        static, table = _found(given)
     instrument = Instrument(table, RUNTIME.register)
     if len(table):
         install(instrument)
+    elif static:
+        warn(f"no comparisons of Python files in {', '.join(static)}")
     else:
-        warn("no comparisons of Python files: --static, or TPC_STATIC, names no file that has some")
+        warn(
+            "no static information: no --static, no TPC_STATIC, and in no workspace that was built"
+        )
     return instrument
+
+
+def _found(given: Words) -> tuple[list[str], Table]:
+    path = static_around(given.script)
+    if path is None:
+        return [], Table([])
+    if given.verbose:
+        warn(f"the static information is {path}")
+    try:
+        return [path], read_table([path], given.script)
+    except InputError as error:
+        warn(f"{error}; nothing is reported")
+        return [path], Table([])
 
 
 def main(words: list[str] | None = None) -> None:
@@ -100,7 +138,7 @@ def main(words: list[str] | None = None) -> None:
         if given is None:
             sys.stdout.write(USAGE)
             return
-        instrument = prepared(given.static, given.script)
+        instrument = prepared(given)
         # What `-m` or the path of this file has put there is not the program's.
         del sys.path[0]
         if given.verbose:

@@ -23,6 +23,7 @@ UNIT_SCHEMA = "static_info.schema.json"
 MERGED_SCHEMA = "merged.schema.json"
 SURVEY_SCHEMA = "survey_result.schema.json"
 RULES_SCHEMA = "rules.schema.json"
+PYTHON_RULES_SCHEMA = "python_rules.schema.json"
 _LONGEST_MESSAGE = 160
 # The standard takes 5.0 for an integer; a line or a column must be one that can be counted with.
 _Validator = validators.extend(  # type: ignore[no-untyped-call]

@@ -225,7 +225,8 @@ def _python(tree: Tree, say: _Say) -> PythonUnits:
     def advance(done: int, total: int) -> None:
         say("analysing Python", far=f"{done:,} of {total:,} scripts")
 
-    return analyse_scripts(scripts_at(tree.path), load_rules(), advance)
+    rules = load_rules()
+    return analyse_scripts(scripts_at(tree.path, rules), rules, advance)
 
 
 def _known(tree: Tree, options: Options, key: str) -> TreeResult | None:

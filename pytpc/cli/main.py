@@ -22,6 +22,7 @@ SUMMARIES = {
     "completion": ("completion_commands", "Print what makes bash, zsh or fish complete pytpc."),
     "convert": ("event_commands", "Read bags, binary files, logs or CSV into Parquet."),
     "doctor": ("machine_commands", "Say what is wrong with this machine, or with a workspace."),
+    "env": ("env_commands", "Print what lets Python nodes report that a shell starts."),
     "explain": ("explain_commands", "Show the way from a parameter to what is exposed."),
     "export": ("static_commands", "Write what was found as SARIF or as an HTML page."),
     "ingest": ("event_commands", "The same as convert (its older name)."),

@@ -20,6 +20,7 @@ from pytpc.ingest.reading import opened
 from pytpc.ingest.recording import REPORTS_FOLDER
 from pytpc.mission import DEFAULT_TOPICS, MissionRun, Progress, run_mission
 from pytpc.pyhook.config import NAMES
+from pytpc.python_env import mission_env
 from pytpc.words import many
 
 _PATH = click.Path(path_type=Path)
@@ -50,6 +51,7 @@ _LAUNCH_TIMEOUT_S = 300.0
     help="The launch file that the running graph was started with: says where values came from.",
 )
 @click.option("--wall-time", is_flag=True, help="There is no /clock: the nodes run in real time.")
+@click.option("--no-python", is_flag=True, help="Nodes in Python run without reports.")
 @click.option("--parquet", is_flag=True, help="Convert the bag too, as `convert` does.")
 def record_command(
     *,
@@ -62,13 +64,15 @@ def record_command(
     topics: tuple[str, ...],
     launched: Path | None,
     wall_time: bool,
+    no_python: bool,
     parquet: bool,
 ) -> None:
     """Record a mission: of the running graph, or of LAUNCH.
 
     Without WORKSPACE and LAUNCH the graph at ROS_MASTER_URI is recorded until Ctrl-C. With them the
-    launch file of the built workspace is run on a ROS graph of its own, and recorded; TPC_SINK,
-    TPC_POLICY and so on hold for its nodes. The marks of all observers are recorded as they appear.
+    launch file of the built workspace is run on a ROS graph of its own, and recorded; its nodes in
+    Python report, and TPC_SINK, TPC_POLICY and so on hold for all. The marks of all observers are
+    recorded as they appear.
     """
     if workspace is None:
         run = _record_graph(output, until, timeout_s, topics, launched)
@@ -78,9 +82,13 @@ def record_command(
         raise click.UsageError("give both WORKSPACE and LAUNCH, or neither of them")
     else:
         launch_arguments = _launch_arguments(args)
+        bases = Bases.of(workspace)
+        env = {**workspace_env(bases.install), **sink_settings(os.environ)}
+        if not no_python:
+            env = mission_env(env, bases.static_info)
         with mission_progress(launch.stem) as advance:
             run = run_mission(
-                {**workspace_env(Bases.of(workspace).install), **sink_settings(os.environ)},
+                env,
                 launch,
                 launch_arguments,
                 output,

@@ -11,6 +11,7 @@ import click
 from pytpc.cli.console import found_text, progress, show_units, tell_left_out
 from pytpc.cli.options import PATH
 from pytpc.errors import InputError
+from pytpc.pynodes.budget import SECONDS
 from pytpc.pynodes.rules_file import load_rules
 from pytpc.python_units import analyse_scripts, joined, named_beside, scripts_at
 from pytpc.static_info import StaticInfo
@@ -30,6 +31,13 @@ from pytpc.static_info import StaticInfo
     help="What counts as exposing; thesis: publish and service calls alone.",
 )
 @click.option("--constants", is_flag=True, help="Comparisons with constants, too.")
+@click.option(
+    "--max-seconds",
+    type=click.FloatRange(min=0),
+    default=SECONDS,
+    show_default=True,
+    help="What the analysis of one script may take; 0: no limit.",
+)
 @click.option("--json", "as_json", is_flag=True, help="Print what is written, too.")
 def analyse_command(
     *,
@@ -38,6 +46,7 @@ def analyse_command(
     own: Path | None,
     profile: str,
     constants: bool,
+    max_seconds: float,
     as_json: bool,
 ) -> None:
     """Find the comparisons of Python nodes; no ROS is needed, and nothing is run.
@@ -46,11 +55,11 @@ def analyse_command(
     its package that it imports. A script that cannot be parsed is left out, with a warning.
     """
     rules = replace(load_rules(profile, own), constants=constants)
-    scripts = joined(map(scripts_at, sources))
+    scripts = joined(scripts_at(source, rules, sources) for source in sources)
     if not scripts.entries:
         raise InputError("no Python node here: a script with a shebang, or a __main__", sources[0])
     with progress("analysing Python") as advance:
-        analysed = analyse_scripts(scripts, rules, advance)
+        analysed = analyse_scripts(scripts, rules, advance, max_seconds)
     if not analysed.units:
         raise InputError(analysed.left_out[0].reason)
     static = StaticInfo.of(named_beside(analysed.units, ()), left_out=analysed.left_out)

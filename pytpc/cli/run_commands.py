@@ -19,17 +19,21 @@ from pytpc.node_program import command_of
     type=PATH,
     multiple=True,
     metavar="PATH",
-    help="Static information, or a folder that has some; else TPC_STATIC.",
+    help="Static information, or a folder that has some. [default: TPC_STATIC, else that of the"
+    " workspace that NODE, or this folder, lies in]",
 )
+@click.option("--verbose", is_flag=True, help="Say what reports, and by which static information.")
 @click.argument("node", type=PATH)
 @click.argument("arguments", nargs=-1, type=click.UNPROCESSED, metavar="[ARGUMENT]...")
-def run_command(*, static: tuple[Path, ...], node: Path, arguments: tuple[str, ...]) -> None:
+def run_command(
+    *, static: tuple[Path, ...], verbose: bool, node: Path, arguments: tuple[str, ...]
+) -> None:
     """Run the Python script NODE; the comparisons that analyse found report.
 
     It runs under its own interpreter, in the place of this process. What is no Python script is run
     as it is, so that a whole launch file may have launch-prefix="pytpc run".
     """
-    command = command_of(node, arguments, static)
+    command = command_of(node, arguments, static, verbose=verbose)
     sys.stdout.flush()
     sys.stderr.flush()
     try:

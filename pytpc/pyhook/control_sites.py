@@ -2,88 +2,99 @@
 
 from __future__ import annotations
 
-import sys
-from itertools import chain
-from typing import TYPE_CHECKING
+from functools import partial
+from itertools import chain, repeat
+from operator import attrgetter
+from typing import TYPE_CHECKING, Any
 
-from pytpc.pyhook.sites import logger
+from pytpc.pyhook.quiet import Site, caller, flat, keep, raising
+from pytpc.pyhook.sites import FALSE, TRUE, logger
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterator
 
     from pytpc.pyhook.sites import Held, Reported
 
 
-class Loop:
-    """``for i in range(limit)`` has become ``for i in LOOP.over(range(limit))``.
+class Loop(Site):
+    """``for i in range(limit)`` has become ``for i in LOOP.over(range(limit)).__next__()``.
 
     Before each turn i is compared with the limit, and at the end what i would be, as a ``for`` of
     C does it. A loop that is left by ``break`` or ``return`` has no end.
     """
 
-    __slots__ = ("_log",)
+    __slots__ = ("over", "turn")
 
     def __init__(self, reported: tuple[Reported, ...]) -> None:
         """All keys of the place."""
-        self._log = logger(reported)
+        log = logger(reported)
 
-    def over(self, iterable: Iterable[object]) -> Iterable[object]:
-        """The same elements, with reports; what is no ``range`` is left as it is."""
-        if type(iterable) is not range:
-            return iterable
-        counted: range = iterable
-        stop, log = counted.stop, self._log
-        behind = counted.start + len(counted) * counted.step
+        def turn(element: int, stop: int, is_turn: bool) -> Iterator[int]:
+            try:
+                log(element, stop, is_turn)
+            except BaseException as error:
+                return raising(error)
+            return repeat(element, is_turn)
 
-        def turn(element: int) -> int:
-            log(element, stop, True)
-            return element
+        def over(iterable: Any) -> Iterator[Any]:  # noqa: ANN401
+            """The same elements, with reports; what is no ``range`` is left as it is."""
+            if type(iterable) is not range:
+                return repeat(iterable)
+            stop = iterable.stop
+            behind = iterable.start + len(iterable) * iterable.step
+            elements = chain(iterable, (behind,))
+            is_turn = chain(repeat(True, len(iterable)), (False,))
+            # What `turn` is may change while the loop runs: a debugger may begin within it.
+            current = map(attrgetter("turn"), repeat(self))
+            return repeat(flat(map(partial.__call__, current, elements, repeat(stop), is_turn)))
 
-        def end() -> None:
-            log(behind, stop, False)
-
-        turns: Iterator[object] = map(turn, counted)
-        return chain(turns, iter(end, None))
+        # Both are `partial`, whatever is behind them, so that C can call them.
+        self.offer(over=over, turn=partial(turn))
+        keep(self)
 
 
-class Subject:
-    """``match subject`` has become ``match SUBJECT.hold(subject)``.
+class Subject(Site):
+    """``match subject`` has become ``match SUBJECT.hold(subject).__next__()``.
 
     The cases ask for the subject by `held`. Which of them is taken is said by `taken`, `default` or
     `none`, which stand in their guards.
     """
 
-    __slots__ = ("_held", "_log")
+    __slots__ = ("default", "held", "hold", "none", "taken")
 
     def __init__(self, reported: tuple[Reported, ...]) -> None:
         """All keys of a subject that is a parameter."""
-        self._held: Held = {}
-        self._log = logger(reported)
+        kept: Held = {}
+        log = logger(reported)
 
-    def hold(self, subject: object) -> object:
-        """Keep the subject of the calling frame's statement."""
-        self._held[id(sys._getframe(1))] = subject, None
-        return subject
+        def hold(subject: object) -> Iterator[object]:
+            """Keep the subject of the calling frame's statement."""
+            kept[caller()] = subject, None
+            return repeat(subject)
 
-    def held(self) -> object:
-        """The subject."""
-        return self._held[id(sys._getframe(1))][0]
+        def held() -> Iterator[object]:
+            """The subject."""
+            return repeat(kept[caller()][0])
 
-    def taken(self) -> bool:
-        """A case that compares is taken."""
-        self._end(id(sys._getframe(1)), True)
-        return True
+        def taken() -> Iterator[bool]:
+            """A case that compares is taken."""
+            return end(caller(), True, TRUE)
 
-    def default(self) -> bool:
-        """The case that takes everything is taken."""
-        self._end(id(sys._getframe(1)), False)
-        return True
+        def default() -> Iterator[bool]:
+            """The case that takes everything is taken."""
+            return end(caller(), False, TRUE)
 
-    def none(self) -> bool:
-        """No case was taken, nor is this one."""
-        self._end(id(sys._getframe(1)), False)
-        return False
+        def none() -> Iterator[bool]:
+            """No case was taken, nor is this one."""
+            return end(caller(), False, FALSE)
 
-    def _end(self, frame: int, is_taken: bool) -> None:
-        subject, _ = self._held.pop(frame)
-        self._log(subject, subject, is_taken)
+        def end(frame: int, is_taken: bool, answer: Iterator[bool]) -> Iterator[bool]:
+            subject, _ = kept.pop(frame)
+            try:
+                log(subject, subject, is_taken)
+            except BaseException as error:
+                return raising(error)
+            return answer
+
+        self.offer(hold=hold, held=held, taken=taken, default=default, none=none)
+        keep(self)

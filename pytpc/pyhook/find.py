@@ -9,6 +9,7 @@ the whole condition, or operand of ``and``, ``or`` and ``not``, and not a part o
 from __future__ import annotations
 
 import ast
+import re
 from typing import TYPE_CHECKING, NamedTuple
 
 from pytpc.pyhook.listed import Listed, ListedFile
@@ -46,7 +47,8 @@ class Found(NamedTuple):
     ``links``: comparison -> number of the link -> what it reports. ``flags``: expression -> what it
     reports. ``loops``: the iterated expression of a ``for`` -> what it reports. ``subjects``: the
     subject of a ``match`` -> what it reports. ``patterns``: a value in a ``case`` -> what it
-    reports. ``missing``: what is not there; ``unsupported``: what is, where it cannot be reported.
+    reports. ``calls``: a call of a function that compares inside -> what it reports.
+    ``missing``: what is not there; ``unsupported``: what is, where it cannot be reported.
     """
 
     links: dict[ast.Compare, dict[int, list[Place]]]
@@ -54,22 +56,23 @@ class Found(NamedTuple):
     loops: dict[ast.expr, list[Place]]
     subjects: dict[ast.expr, list[Place]]
     patterns: dict[ast.expr, list[Place]]
+    calls: dict[ast.expr, list[Place]]
     unsupported: list[Listed]
     missing: list[Listed]
 
     def total(self) -> int:
         """How many listed comparisons were found."""
         links = sum(len(places) for link in self.links.values() for places in link.values())
-        others = (self.flags, self.loops, self.subjects, self.patterns)
+        others = (self.flags, self.loops, self.subjects, self.patterns, self.calls)
         return links + sum(len(places) for kind in others for places in kind.values())
 
 
 def find(tree: ast.Module, listed: Sequence[Listed]) -> Found:
     """Where each of ``listed`` is in ``tree``."""
     index = _Index(tree)
-    found = Found({}, {}, {}, {}, {}, [], [])
+    found = Found({}, {}, {}, {}, {}, {}, [], [])
     for one in listed:
-        ways = (_as_link, _as_pattern, _as_loop, _as_flag)
+        ways = [_as_call] if one.is_inside else [_as_link, _as_pattern, _as_loop, _as_flag]
         if not any(way(index, found, one) for way in ways):
             found.missing.append(one)
     return found
@@ -108,7 +111,8 @@ def matching(candidates: Sequence[ListedFile], text: str) -> ListedFile | None:
     be the same: a file that was changed a little is still itself, and another one of its name is
     not.
     """
-    lines = text.splitlines()
+    # A form feed, say, ends no line of Python.
+    lines = re.split("\r\n|\r|\n", text)
 
     def is_same(listed: Listed) -> bool:
         inside = 0 < listed.lineno <= len(lines)
@@ -265,6 +269,19 @@ def _text(node: ast.expr) -> str:
         if isinstance(inner, ast.Constant):
             return f"{_text(node.value)}[{inner.value!r}]"
     return ""
+
+
+def _as_call(index: _Index, found: Found, listed: Listed) -> bool:
+    for node in index.names.get((listed.lineno, listed.column), []):
+        if isinstance(node, ast.Call) and _ends(node, listed) and _has_names(node):
+            found.calls.setdefault(node, []).append(Place(listed, False))
+            return True
+    return False
+
+
+def _has_names(call: ast.Call) -> bool:
+    """Whether each keyword stands there; the analysis lists no others."""
+    return all(keyword.arg is not None for keyword in call.keywords)
 
 
 def _as_pattern(index: _Index, found: Found, listed: Listed) -> bool:

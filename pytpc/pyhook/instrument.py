@@ -7,6 +7,7 @@ from io import BytesIO
 from types import CodeType
 from typing import TYPE_CHECKING, NamedTuple
 
+from pytpc.pyhook import quiet
 from pytpc.pyhook.find import matching
 from pytpc.pyhook.listed import ListedFile, Table
 from pytpc.pyhook.rewrite import rewrite
@@ -14,6 +15,9 @@ from pytpc.pyhook.words import many, warn
 
 if TYPE_CHECKING:
     from pytpc.pyhook.rewrite import Register
+
+# What a module that traces by itself has in its text.
+_TRACING = (b"settrace", b"setprofile", b"sys.monitoring")
 
 
 class Done(NamedTuple):
@@ -53,6 +57,8 @@ class Instrument:
         chosen = self._chosen(data, path)
         if chosen is None:
             return None
+        if any(word in data for word in _TRACING):
+            quiet.watch()
         rewritten = rewrite(data, path, chosen.comparisons, self._register, optimize=optimize)
         missing = len(rewritten.missing)
         if missing:

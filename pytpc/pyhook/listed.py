@@ -13,9 +13,10 @@ from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 from pytpc.errors import InputError
+from pytpc.pyhook.entry import program_of, stem_of
 
 # What `pytpc build` leaves in a workspace; it has all in it.
-_BUILT = os.path.join(".tpc", "static.json")
+BUILT = os.path.join(".tpc", "static.json")
 # Where static information lies below a workspace, a build folder or a folder of packages.
 _PLACES = ("*.json", "tpc/*.json", "*/tpc/*.json", "build/tpc/*.json", "build/*/tpc/*.json")
 
@@ -35,6 +36,11 @@ class Listed(NamedTuple):
     name: str | None
     operand: str | None
     source_code: str | None
+
+    @property
+    def is_inside(self) -> bool:
+        """Whether it is inside of the library function that is called there."""
+        return self.operand is not None and self.operand not in ("left", "right")
 
 
 class ListedFile(NamedTuple):
@@ -102,11 +108,19 @@ class _Unit(NamedTuple):
 
     def is_called(self, stem: str) -> bool:
         """Whether its script, or in files of before itself, has this name, without ``.py``."""
-        return stem in (self.name, _stem(self.script or self.name))
+        return stem in (self.name, stem_of(self.script or self.name))
 
     def is_of(self, real: str) -> bool:
         """Whether its script is the file with this path, in which no links are."""
         return self.script is not None and os.path.realpath(self.script) == real
+
+    def runs(self, module: tuple[str, ...]) -> bool:
+        """Whether its script is the module whose path may end so."""
+        return self.script is not None and self.script.endswith(module)
+
+    def has(self, module: tuple[str, ...]) -> bool:
+        """Whether there are comparisons in this module."""
+        return any(file.path.endswith(module) for file in self.files)
 
 
 def read_table(paths: Iterable[str], script: str | None = None) -> Table:
@@ -129,17 +143,17 @@ def read_table(paths: Iterable[str], script: str | None = None) -> Table:
 def names_script(paths: Iterable[str], script: str) -> bool:
     """Whether the static information has comparisons of this script, or of one of its name.
 
+    Of the script of an entry point those count that are in the module that it runs.
+
     Raises:
         InputError: as `read_table`.
     """
-    stem, real = _stem(script), os.path.realpath(script)
+    program, real = program_of(script), os.path.realpath(script)
     units = [unit for unit in _all_units(paths) if unit.files]
-    return any(unit.is_called(stem) or unit.is_of(real) for unit in units)
-
-
-def _stem(script: str) -> str:
-    name = os.path.basename(script)
-    return name[:-3] if name.endswith(".py") else name
+    return any(
+        unit.is_called(program.stem) or unit.is_of(real) or unit.has(program.files)
+        for unit in units
+    )
 
 
 def _all_units(paths: Iterable[str]) -> list[_Unit]:
@@ -153,11 +167,14 @@ def _of_script(units: list[_Unit], script: str) -> list[_Unit]:
     """The link units that the running script may be of; all of them where none is.
 
     It is told by its file. One that was installed is told by its name, and by its package, after
-    which its folder is called.
+    which its folder is called; that of an entry point by the module that it runs.
     """
-    stem = _stem(script)
+    program = program_of(script)
     real = os.path.realpath(script)
-    named = [unit for unit in units if unit.is_called(stem)]
+    running = [unit for unit in units if unit.has(program.files)]
+    if running:
+        return [unit for unit in running if unit.runs(program.files)] or running
+    named = [unit for unit in units if unit.is_called(program.stem)]
     exact = [unit for unit in units if unit.is_of(real)]
     inside = [
         unit
@@ -172,7 +189,7 @@ def _of_script(units: list[_Unit], script: str) -> list[_Unit]:
 
 
 def _of_folder(folder: str) -> list[_Unit]:
-    built = os.path.join(folder, _BUILT)
+    built = os.path.join(folder, BUILT)
     if os.path.isfile(built):
         return _of_document(built)
     found = sorted({path for place in _PLACES for path in glob.glob(os.path.join(folder, place))})

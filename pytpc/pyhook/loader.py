@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from types import CodeType, ModuleType
 from typing import Any
 
+from pytpc.pyhook import quiet
 from pytpc.pyhook.instrument import Instrument
 from pytpc.pyhook.relay import relayed
 from pytpc.pyhook.words import warn
@@ -54,6 +55,8 @@ class ReportingFinder:
         target: ModuleType | None = None,
     ) -> importlib.machinery.ModuleSpec | None:
         """What another finder gives, with our loader where the module may have comparisons."""
+        if fullname in quiet.TRACERS:
+            quiet.watch()
         if fullname.rpartition(".")[2] not in self._names:
             return None
         spec = self._other(fullname, path, target)
@@ -106,6 +109,7 @@ def _module_names(by_name: dict[str, Any], instrument: Instrument) -> set[str]:
 
 def install(instrument: Instrument) -> ReportingFinder:
     """Let modules that are imported from now on report."""
+    quiet.watch_if_traced()
     finder = ReportingFinder(instrument)
     sys.meta_path.insert(0, finder)
     return finder

@@ -3,7 +3,8 @@
 The kernel keeps what was written whatever happens to the process. Space is allocated on the disk
 before it is mapped, so that a full disk is an error and no signal. Each thread has chunks of its
 own; a place in one is claimed by one call of C, so that a signal's handler, or a finaliser, that
-reports in the middle of a report gets another place. ``what`` of a record is written last.
+reports in the middle of a report gets another place. ``what`` of a record is written last. Ctrl-C,
+or what else a handler raises, may end a report anywhere: a place that stays empty is filled.
 """
 
 from __future__ import annotations
@@ -48,17 +49,31 @@ from pytpc.pyhook.log_room import Extent, Room
 if TYPE_CHECKING:
     from pytpc.pyhook.sites import Reported, Take
 
+_INTEGERS = struct.Struct("<Iqqq")
+
 
 class _Chunk:
     """Records of one thread. ``claim()`` gives the byte of one; it may be behind ``end``."""
 
-    __slots__ = ("bytes", "claim", "end", "words")
+    __slots__ = ("begin", "bytes", "claim", "end", "words")
 
     def __init__(self, extent: Extent, begin: int) -> None:
         self.bytes = extent.bytes
         self.words = extent.words
-        self.claim = count(begin + CHUNK_HEADER_BYTES, RECORD_BYTES).__next__
+        self.begin = begin + CHUNK_HEADER_BYTES
+        self.claim = count(self.begin, RECORD_BYTES).__next__
         self.end = begin + CHUNK_BYTES
+
+    def fill(self, now: int, sim_ns: int) -> None:
+        """Write what says nothing new where a record was claimed and not written.
+
+        An empty one hides all that follow it.
+        """
+        end = min(self.claim() + RECORD_BYTES, self.end)
+        for at in range(self.begin, end, RECORD_BYTES):
+            if not self.words[at >> 2]:
+                pack_integers(self.bytes, at + 4, 0, now, sim_ns, 0)
+                self.words[at >> 2] = SIMULATED
 
 
 class _NoChunk(_Chunk):
@@ -68,32 +83,40 @@ class _NoChunk(_Chunk):
 
     def __init__(self) -> None:
         self.claim = count().__next__
-        self.end = 0
+        self.begin = self.end = 0
 
 
 class _Place:
     """Where a thread writes: its chunk, and how many records were in those before."""
 
-    __slots__ = ("chunk", "is_changing", "number", "sim_ns", "written")
+    __slots__ = ("chunk", "former", "is_changing", "number", "sim_ns", "written")
 
     def __init__(self, number: int) -> None:
         self.number = number
         self.written = 0
         self.sim_ns = -1
         self.is_changing = False
-        self.chunk: _Chunk = _NoChunk()
+        self.former: _Chunk = _NoChunk()
+        self.chunk: _Chunk = self.former
+
+    def fill(self) -> None:
+        """A report was broken off: its place may be in this chunk, or in the one before."""
+        now = monotonic_ns()
+        for chunk in (self.former, self.chunk):
+            chunk.fill(now, self.sim_ns)
 
 
 class _SystemChunk:
     """Where records of the system are written: in ``extent`` from byte ``at`` to ``end``."""
 
-    __slots__ = ("at", "end", "extent", "first")
+    __slots__ = ("at", "end", "extent", "first", "is_busy")
 
     def __init__(self, extent: Extent, begin: int, first: int) -> None:
         self.extent = extent
         self.at = begin + CHUNK_HEADER_BYTES
         self.end = begin + CHUNK_BYTES
         self.first = first
+        self.is_busy = False
 
 
 class _Owner:
@@ -146,22 +169,20 @@ class LogFile(Room):
                 place = local.place
             except AttributeError:
                 place = self._new_place()
-            # A signal's handler may change the chunk at any time: it is looked at once.
-            chunk = place.chunk
-            at = chunk.claim()
-            now = steady()
-            if at >= chunk.end or one.file is not self or now >= self._look_at:
-                found = self._prepared(place, one, chunk, at, now)
-                if found is None:
-                    return
-                chunk, at = found
-            what = whats[result * 2 + res]
             try:
+                # A signal's handler may change the chunk at any time: it is looked at once.
+                chunk = place.chunk
+                at = chunk.claim()
+                now = steady()
+                if at >= chunk.end or one.file is not self or now >= self._look_at:
+                    found = self._prepared(place, one, chunk, at, now)
+                    if found is None:
+                        return
+                    chunk, at = found
                 pack(chunk.bytes, at + 4, one.number, now, cmp, thresh)
-                chunk.words[at >> 2] = what
+                chunk.words[at >> 2] = whats[result * 2 + res]
             except BaseException:
-                # What stays empty hides all that follow; Ctrl-C may come at any time.
-                chunk.words[at >> 2] = what
+                place.fill()
                 raise
 
         return take
@@ -202,21 +223,25 @@ class LogFile(Room):
         sim_ns = ros_state.now().ros_ns if self.is_simulated else -1
         if sim_ns == place.sim_ns:
             return found
-        place.sim_ns = sim_ns
         pack_integers(chunk.bytes, at + 4, 0, now, sim_ns, 0)
         chunk.words[at >> 2] = SIMULATED
+        place.sim_ns = sim_ns
         return self._claimed(place)
 
     def edge(self, one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> None:
         """A report of the policy ``edges``."""
         place = self._place()
         now = monotonic_ns()
-        chunk = place.chunk
-        found = self._prepared(place, one, chunk, chunk.claim(), now)
-        if found is not None:
-            chunk, at = found
-            pack_report(chunk.bytes, at + 4, one.number, now, cmp, thresh)
-            chunk.words[at >> 2] = WHATS[result * 2 + res] | EDGE_BIT
+        try:
+            chunk = place.chunk
+            found = self._prepared(place, one, chunk, chunk.claim(), now)
+            if found is not None:
+                chunk, at = found
+                pack_report(chunk.bytes, at + 4, one.number, now, cmp, thresh)
+                chunk.words[at >> 2] = WHATS[result * 2 + res] | EDGE_BIT
+        except BaseException:
+            place.fill()
+            raise
 
     # --- threads and chunks
 
@@ -245,10 +270,10 @@ class LogFile(Room):
     def _next_chunk(self, place: _Place) -> bool:
         place.is_changing = True
         try:
-            if place.chunk.end:
-                place.written += RECORDS_OF_CHUNK
-            found = self.new_chunk(THREAD_CHUNK, place.number, place.written)
-            place.chunk = _NoChunk() if found is None else _Chunk(*found)
+            written = place.written + (RECORDS_OF_CHUNK if place.chunk.end else 0)
+            found = self.new_chunk(THREAD_CHUNK, place.number, written)
+            chunk = _NoChunk() if found is None else _Chunk(*found)
+            place.former, place.chunk, place.written = place.chunk, chunk, written
         finally:
             place.is_changing = False
         if found is None:
@@ -265,29 +290,34 @@ class LogFile(Room):
 
     # --- what is of the system
 
-    def _records(self, number: int) -> tuple[Extent, int] | None:
-        """Room for so many records in a row; the lock is held.
+    def _write(self, what: int, raw: bytes) -> bool:
+        """Write a record of the system; ``raw`` is all of it but ``what``. False without room.
 
-        What is left over at the end of a chunk counts as used.
+        Its place is taken only when it is written: what is broken off leaves no gap. Who reports in
+        the middle of this, as a signal's handler may, begins another chunk.
         """
-        chunk = self._system
-        if chunk is None or chunk.at + number * RECORD_BYTES > chunk.end:
-            first = 0 if chunk is None else chunk.first + RECORDS_OF_CHUNK
-            found = self.new_chunk(SYSTEM_CHUNK, 0, first)
-            if found is None:
-                return None
-            chunk = self._system = _SystemChunk(*found, first)
-        at = chunk.at
-        chunk.at += number * RECORD_BYTES
-        return chunk.extent, at
+        with self._lock:
+            size = -(-(len(raw) + 4) // RECORD_BYTES) * RECORD_BYTES
+            chunk = self._system
+            # What is left over at the end of a chunk counts as used.
+            if chunk is None or chunk.is_busy or chunk.at + size > chunk.end:
+                first = 0 if chunk is None else chunk.first + RECORDS_OF_CHUNK
+                found = self.new_chunk(SYSTEM_CHUNK, 0, first)
+                if found is None:
+                    return False
+                chunk = self._system = _SystemChunk(*found, first)
+            chunk.is_busy = True
+            try:
+                at = chunk.at
+                chunk.extent.bytes[at + 4 : at + 4 + len(raw)] = raw
+                chunk.extent.words[at >> 2] = what
+                chunk.at += size
+            finally:
+                chunk.is_busy = False
+        return True
 
     def _integers(self, what: int, site: int, now: int, first: int, second: int) -> None:
-        with self._lock:
-            found = self._records(1)
-            if found is not None:
-                extent, at = found
-                pack_integers(extent.bytes, at + 4, site, now, first, second)
-                extent.words[at >> 2] = what
+        self._write(what, _INTEGERS.pack(site, now, first, second))
 
     def new_slot(self) -> tuple[Any, Any, int] | None:
         """Room for a live summary: the bytes and words of its part of the file, and its place."""
@@ -307,15 +337,8 @@ class LogFile(Room):
             if one.file is self:
                 return
             raw = one.key.encode("utf-8")[:LONGEST_KEY]
-            blocks = -(-max(0, len(raw) - 16) // RECORD_BYTES)
-            found = self._records(1 + blocks)
-            if found is None:
-                return
-            extent, at = found
-            extent.bytes[at + 16 : at + 16 + len(raw)] = raw
-            struct.pack_into("<Iq", extent.bytes, at + 4, one.number, len(raw))
-            extent.words[at >> 2] = SITE
-            one.file = self
+            if self._write(SITE, struct.pack("<Iq", one.number, len(raw)) + raw):
+                one.file = self
 
     def announce(self, one: Reported) -> None:
         """Say what the number of a key is."""
@@ -349,9 +372,4 @@ class LogFile(Room):
 
     def write_summary(self, raw: bytes, what: int) -> None:
         """A summary without its first word."""
-        with self._lock:
-            found = self._records(5)
-            if found is not None:
-                extent, at = found
-                extent.bytes[at + 4 : at + 4 + len(raw)] = raw
-                extent.words[at >> 2] = what
+        self._write(what, raw)

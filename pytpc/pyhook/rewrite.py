@@ -17,6 +17,7 @@ import sys
 from types import CodeType
 from typing import TYPE_CHECKING, NamedTuple
 
+from pytpc.pyhook.call_sites import Inside, LibraryCall
 from pytpc.pyhook.control_sites import Loop, Subject
 from pytpc.pyhook.find import Found, Place, find, values_of
 from pytpc.pyhook.listed import Listed
@@ -205,6 +206,9 @@ class _Rewriter:
                 true = ast.copy_location(ast.Constant(value=True, kind=None), node)
                 still = ast.Compare(left=new, ops=[ast.Is()], comparators=[true])
                 new = ast.copy_location(still, node)
+        calls = self._found.calls.get(node)
+        if calls is not None and isinstance(node, ast.Call):
+            new = self._library_call(node, calls)
         if flags is not None:
             new = self._flag(new, flags, asked)
         loops = self._found.loops.get(node)
@@ -236,15 +240,13 @@ class _Rewriter:
     def _call(
         self, site: ast.expr, method: str, arguments: list[ast.expr], to: ast.expr
     ) -> ast.expr:
-        attribute = ast.Attribute(value=site, attr=method, ctx=ast.Load())
-        _at(attribute, site)
-        return ast.copy_location(ast.Call(func=attribute, args=arguments, keywords=[]), to)
-
-    def _evaluated(self, call: ast.expr, to: ast.expr) -> ast.expr:
-        """``call.__next__()``, whose attribute must not end on a line of its own.
+        """``SITE.method(arguments).__next__()``, whose attribute must not end on a line of its own.
 
         A call is on the line on which its attribute ends, where that is another one.
         """
+        attribute = ast.Attribute(value=site, attr=method, ctx=ast.Load())
+        _at(attribute, site)
+        call = ast.copy_location(ast.Call(func=attribute, args=arguments, keywords=[]), to)
         attribute = ast.Attribute(value=call, attr="__next__", ctx=ast.Load())
         ast.copy_location(attribute, to)
         attribute.end_lineno, attribute.end_col_offset = to.lineno, to.col_offset
@@ -266,7 +268,7 @@ class _Rewriter:
         is_last = link + 1 == len(node.ops)
         method = "link" if not is_last else "truth" if chain.asked else "compare"
         site = self._constant(comparison, first)
-        this = self._evaluated(self._call(site, method, [left, right], node), node)
+        this = self._call(site, method, [left, right], node)
         if is_last:
             return this
         handed = self._call(self._constant(comparison, node), "right", [], node)
@@ -275,12 +277,24 @@ class _Rewriter:
         body = self._chain(chain, link + 1, handed, node)
         return ast.copy_location(ast.IfExp(test=this, body=body, orelse=ended), node)
 
+    def _library_call(self, node: ast.Call, places: list[Place]) -> ast.expr:
+        inside = tuple(
+            Inside(self._register(place), place.listed.relation, place.listed.operand or "")
+            for place in places
+        )
+        names: list[ast.expr | None] = [
+            ast.copy_location(ast.Constant(value=keyword.arg, kind=None), keyword.value)
+            for keyword in node.keywords
+        ]
+        keywords = ast.Dict(keys=names, values=[keyword.value for keyword in node.keywords])
+        ast.copy_location(keywords, node)
+        site = self._constant(LibraryCall(inside), _first(node))
+        return self._call(site, "call", [node.func, *node.args, keywords], node)
+
     def _flag(self, node: ast.expr, places: list[Place], asked: bool) -> ast.expr:
         flag = Flag(tuple(self._register(place) for place in places))
-        call = self._call(
-            self._constant(flag, _first(node)), "truth" if asked else "value", [node], node
-        )
-        return self._evaluated(call, node) if asked else call
+        method = "truth" if asked else "value"
+        return self._call(self._constant(flag, _first(node)), method, [node], node)
 
 
 _ASKING = {

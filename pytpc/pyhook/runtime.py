@@ -42,6 +42,7 @@ class Runtime:
         self._reported: dict[str, Reported] = {}
         self._config: Config | None = None
         self._is_started = False
+        self._is_starting = False
         self._parent = 0
         self._was_node = False
         self._has_helper = False
@@ -93,13 +94,18 @@ class Runtime:
     def start(self) -> None:
         """Choose what the environment says, or what held before a fork."""
         with self._lock:
-            if self._is_started:
+            # A signal's handler may report, or raise, in the middle of this.
+            if self._is_started or self._is_starting:
                 return
-            self._is_started = True
-            config = self.config
-            if not self._choose(config):
-                self._config = config._replace(sink="off")
-                self._choose(self._config)
+            self._is_starting = True
+            try:
+                config = self.config
+                if not self._choose(config):
+                    self._config = config._replace(sink="off")
+                    self._choose(self._config)
+                self._is_started = True
+            finally:
+                self._is_starting = False
             if ros_state.is_imported() and not self._is_served and not self._has_helper:
                 self._start_helper()
 
@@ -267,7 +273,7 @@ class Runtime:
         self._has_helper = False
         # There is no node in a child, and so no settings but those that held.
         self._is_served = self._is_served or self._was_node
-        self._is_started = False
+        self._is_started = self._is_starting = False
         forget(self.all_reported())
         sites.set_take(self._first)
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 import importlib.machinery
 import os
 import sys
-from types import CodeType, ModuleType, TracebackType
+from types import CodeType, ModuleType
 
 from pytpc.errors import InputError
 from pytpc.pyhook.instrument import Instrument
+from pytpc.pyhook.quiet import foreign_frames
 from pytpc.pyhook.relay import relayed
 
 
@@ -63,22 +64,11 @@ def _show(error: BaseException) -> None:
     The interpreter then takes the exit status, or dies of SIGINT, by itself, but has nothing more
     to say.
     """
-    error.__traceback__ = own_frames(error.__traceback__)
+    error.__traceback__ = foreign_frames(error.__traceback__)
     kind, traceback = type(error), error.__traceback__
     sys.last_type, sys.last_value, sys.last_traceback = kind, error, traceback
     sys.excepthook(kind, error, traceback)
     sys.excepthook = _silent
-
-
-def own_frames(traceback: TracebackType | None) -> TracebackType | None:
-    """A traceback without the frames of this folder at its begin."""
-    folder = os.path.dirname(os.path.abspath(__file__))
-    while traceback is not None:
-        file = traceback.tb_frame.f_code.co_filename
-        if os.path.dirname(os.path.abspath(file)) != folder:
-            break
-        traceback = traceback.tb_next
-    return traceback
 
 
 def _silent(*_: object) -> None:

@@ -10,19 +10,26 @@ nor raises, `compare` does it at once and gives one of two iterators that stand 
 
 A report never calls anything of the program's objects: numbers are read by the methods of the base
 classes, and what has none is reported by its outcome alone.
+
+Each function that a rewritten program calls gives an iterator, so that it may change to a class in
+C under a tracer, and so that what a signal's handler raises within it is raised by C in the
+program's own line: see `pytpc.pyhook.quiet`.
 """
 
 from __future__ import annotations
 
 import math
 import operator
-import sys
 import threading
 from itertools import repeat, tee
 from typing import TYPE_CHECKING, Any
 
+from pytpc.pyhook.quiet import Site, caller, flat, hidden, is_programs, keep, raising
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
+
+    from pytpc.pyhook.quiet import Function
 
     Operator = Callable[[Any, Any], Any]
     Held = dict[int, tuple[object, object]]
@@ -103,6 +110,11 @@ def unknown_outcomes() -> int:
     return _counts["unknown_outcomes"]
 
 
+def count_unknown() -> None:
+    """An evaluation is not reported, because only the program may ask for what it came to."""
+    _counts["unknown_outcomes"] += 1
+
+
 def number_of(value: Any) -> float | None:  # noqa: ANN401
     """What ``value`` is as a number; None for what is none, or could say so only by its own code.
 
@@ -142,58 +154,68 @@ def truth_of(value: object) -> bool | None:
     return None
 
 
-def _values(cmp: object, thresh: object, outcome: bool) -> tuple[float, float]:
+def values(cmp: object, thresh: object, outcome: bool) -> tuple[float, float]:
+    """What is reported of two values; of what is no number, the outcome stands for both."""
     left = number_of(cmp)
     right = number_of(thresh)
     if left is None or right is None:
-        # As for texts: the outcome stands for both.
         return float(outcome), float(outcome)
     return left, right
 
 
-class Comparison:
+class Comparison(Site):
     """One link of a comparison. See the module's text.
 
     A link that others follow keeps its right operand and its outcome, by the frame in which it was
     evaluated, until one of `right`, `outcome` and `failed` asks for them, which it does at once.
     """
 
-    __slots__ = ("_held", "compare", "link", "truth")
+    __slots__ = ("compare", "failed", "link", "outcome", "right", "truth")
 
     def __init__(self, operation: str, reported: tuple[Reported, ...]) -> None:
         """``operation`` is the name of the class of the operator in `ast`."""
-        self._held: Held = {}
-        self.compare, self.truth = _comparer(operation, reported)
-        self.link = _linker(operation, reported, self._held)
+        held: Held = {}
 
-    def right(self) -> object:
-        """The right operand of the link that was just evaluated in the calling frame."""
-        return self._held.pop(id(sys._getframe(1)))[0]
+        def right() -> Iterator[object]:
+            """The right operand of the link that was just evaluated in the calling frame."""
+            return repeat(held.pop(caller())[0])
 
-    def outcome(self) -> object:
-        """Its outcome."""
-        return self._held.pop(id(sys._getframe(1)))[1]
+        def outcome() -> Iterator[object]:
+            """Its outcome."""
+            return repeat(held.pop(caller())[1])
 
-    def failed(self) -> bool:
-        """False in the place of an outcome that was false and is only asked for its truth."""
-        del self._held[id(sys._getframe(1))]
-        return False
+        def failed() -> Iterator[bool]:
+            """False in the place of an outcome that was false and is only asked for its truth."""
+            del held[caller()]
+            return FALSE
+
+        compare, truth = _comparer(operation, reported)
+        self.offer(
+            compare=compare,
+            truth=truth,
+            link=_linker(operation, reported, held),
+            right=right,
+            outcome=outcome,
+            failed=failed,
+        )
+        keep(self)
 
 
 def logger(reported: tuple[Reported, ...]) -> Callable[[Any, Any, bool], None]:
-    """Reports an outcome under each key."""
+    """Reports an outcome under each key. What it raises is the program's own."""
 
     def log(a: object, b: object, outcome: bool) -> None:
         try:
-            left, right = _values(a, b, outcome)
+            left, right = values(a, b, outcome)
             for one in reported:
                 if one.swapped:
                     _take(one, outcome, right, left, outcome)
                 else:
                     _take(one, outcome, left, right, outcome)
-        except Exception:
+        except Exception as error:
             # A report that cannot be made is not worth a node.
-            return
+            if is_programs(error):
+                raise
 
     return log
 
@@ -207,62 +229,74 @@ def _comparer(
     asks, in C, so that the report knows it.
     """
     lazy = _LAZY_OPERATIONS[operation]
-    # `in` has no numbers on its right.
-    plain: Operator = _PLAIN_OPERATIONS.get(operation, operator.eq)
-    numbers = _NUMBERS if operation in _PLAIN_OPERATIONS else frozenset()
-    log = logger(reported)
-    log_numbers = _number_logger(reported)
-
-    def later(a: object, b: object, outcome: object) -> object:
-        truth = truth_of(outcome)
-        if truth is None:
-            _counts["unknown_outcomes"] += 1
-        else:
-            log(a, b, truth)
-        return outcome
+    later = _later(reported)
+    at_once = _at_once(operation, reported)
 
     def compare(a: object, b: object) -> Iterator[Any]:
-        if type(a) in numbers and type(b) in numbers:
-            outcome = plain(a, b)
-            log_numbers(a, b, outcome)
-            return TRUE if outcome else FALSE
-        return map(later, (a,), (b,), lazy(a, b))
+        return flat(map(hidden(later), (a,), (b,), lazy(a, b)))
 
     def truth(a: object, b: object) -> Iterator[Any]:
-        if type(a) in numbers and type(b) in numbers:
-            outcome = plain(a, b)
-            log_numbers(a, b, outcome)
-            return TRUE if outcome else FALSE
-        return map(later, (a,), (b,), map(operator.truth, lazy(a, b)))
+        return flat(map(hidden(later), (a,), (b,), map(operator.truth, lazy(a, b))))
 
-    return compare, truth
+    return at_once(compare), at_once(truth)
 
 
-def _number_logger(reported: tuple[Reported, ...]) -> Callable[[Any, Any, bool], None]:
-    """The same as `_logger` for int, float and bool; the shortest way for a single key."""
-    if len(reported) != 1:
-        return logger(reported)
+def _later(reported: tuple[Reported, ...]) -> Function:
+    """What reports a comparison behind its outcome, and gives it on."""
+    log = logger(reported)
+
+    def later(a: object, b: object, outcome: object) -> Iterator[Any]:
+        try:
+            truth = truth_of(outcome)
+            if truth is None:
+                count_unknown()
+            else:
+                log(a, b, truth)
+        except BaseException as error:
+            return raising(error)
+        return repeat(outcome, 1)
+
+    return later
+
+
+def _at_once(operation: str, reported: tuple[Reported, ...]) -> Callable[[Function], Function]:
+    """What puts the shortest way before ``compare``: both are int, float or bool, and one key."""
+    if operation not in _PLAIN_OPERATIONS or len(reported) != 1:
+        # `in` has no numbers on its right.
+        return lambda slowly: slowly
+    plain = _PLAIN_OPERATIONS[operation]
+    numbers = _NUMBERS
+    log = logger(reported)
     (one,) = reported
     swapped = one.swapped
-    slowly = logger(reported)
 
-    def log(a: float, b: float, outcome: bool) -> None:
-        try:
-            if swapped:
-                _take(one, outcome, b + 0.0, a + 0.0, outcome)
-            else:
-                _take(one, outcome, a + 0.0, b + 0.0, outcome)
-        except OverflowError:
-            slowly(a, b, outcome)
-        except Exception:
-            return
+    def at_once(slowly: Function) -> Function:
+        def compare(a: Any, b: Any) -> Iterator[Any]:  # noqa: ANN401
+            try:
+                if type(a) not in numbers or type(b) not in numbers:
+                    return slowly(a, b)
+                outcome = plain(a, b)
+                try:
+                    if swapped:
+                        _take(one, outcome, b + 0.0, a + 0.0, outcome)
+                    else:
+                        _take(one, outcome, a + 0.0, b + 0.0, outcome)
+                except OverflowError:
+                    # An integer that is no double.
+                    log(a, b, outcome)
+                except Exception as error:
+                    if is_programs(error):
+                        raise
+                return TRUE if outcome else FALSE
+            except BaseException as error:
+                return raising(error)
 
-    return log
+        return compare
+
+    return at_once
 
 
-def _linker(
-    operation: str, reported: tuple[Reported, ...], held: Held
-) -> Callable[[Any, Any], Iterator[bool]]:
+def _linker(operation: str, reported: tuple[Reported, ...], held: Held) -> Function:
     """`link`: a link of a chain that others follow. Its iterator gives the truth.
 
     It hands the right operand on to the next link, which asks for it by `Comparison.right`, or,
@@ -271,47 +305,53 @@ def _linker(
     lazy = _LAZY_OPERATIONS[operation]
     log = logger(reported)
 
-    def later(a: object, b: object, outcome: object, truth: bool) -> bool:
-        log(a, b, truth)
-        held[id(sys._getframe(1))] = b, outcome
-        return truth
+    def later(a: object, b: object, outcome: object, truth: bool) -> Iterator[bool]:
+        try:
+            log(a, b, truth)
+        except BaseException as error:
+            return raising(error)
+        held[caller()] = b, outcome
+        return TRUE if truth else FALSE
 
     def link(a: object, b: object) -> Iterator[bool]:
         outcome, again = tee(lazy(a, b))
-        return map(later, (a,), (b,), outcome, map(operator.truth, again))
+        return flat(map(hidden(later), (a,), (b,), outcome, map(operator.truth, again)))
 
     return link
 
 
-class Flag:
-    """A parameter that is a condition by itself."""
+class Flag(Site):
+    """A parameter that is a condition by itself.
+
+    `truth` where the program asks for the truth alone; `value` where it takes the value itself.
+    """
 
     __slots__ = ("truth", "value")
 
     def __init__(self, reported: tuple[Reported, ...]) -> None:
         """All keys of the place."""
-        self.truth, self.value = _flagger(reported)
+        log = logger(reported)
 
+        def later(value: object, truth: bool) -> Iterator[bool]:
+            try:
+                log(value, value, truth)
+            except BaseException as error:
+                return raising(error)
+            return TRUE if truth else FALSE
 
-def _flagger(
-    reported: tuple[Reported, ...],
-) -> tuple[Callable[[Any], Iterator[bool]], Callable[[Any], Any]]:
-    """`truth` where the program asks for the truth alone; `value`, which gives the value back."""
-    log = logger(reported)
+        def truth(value: object) -> Iterator[bool]:
+            return flat(map(hidden(later), (value,), map(operator.truth, (value,))))
 
-    def later(value: object, truth: bool) -> bool:
-        log(value, value, truth)
-        return truth
+        def value(value: object) -> Iterator[object]:
+            try:
+                known = truth_of(value)
+                if known is None:
+                    count_unknown()
+                else:
+                    log(value, value, known)
+            except BaseException as error:
+                return raising(error)
+            return repeat(value)
 
-    def truth(value: object) -> Iterator[bool]:
-        return map(later, (value,), map(operator.truth, (value,)))
-
-    def value(value: object) -> object:
-        known = truth_of(value)
-        if known is None:
-            _counts["unknown_outcomes"] += 1
-        else:
-            log(value, value, known)
-        return value
-
-    return truth, value
+        self.offer(truth=truth, value=value)
+        keep(self)

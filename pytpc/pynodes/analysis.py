@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import gc
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 from importlib.metadata import PackageNotFoundError, version
 
+from pytpc.errors import InputError
 from pytpc.link_unit import (
     BlindSpot,
     Comparison,
@@ -17,6 +19,7 @@ from pytpc.link_unit import (
     Place,
     Tool,
 )
+from pytpc.pynodes.budget import SECONDS, Budget, BudgetSpentError, what_failed
 from pytpc.pynodes.constant_finder import find_constants
 from pytpc.pynodes.constants import DYNAMIC, Constants
 from pytpc.pynodes.flow import Flow
@@ -31,6 +34,7 @@ from pytpc.pynodes.raising import add_raising_calls
 from pytpc.pynodes.reads import Exposed, Read, find_exposing, find_reads
 from pytpc.pynodes.rules_file import Rules
 from pytpc.pynodes.slicing import Slice, Slicer
+from pytpc.pynodes.sources import lines_of
 
 _AT_MOST = 200
 
@@ -68,24 +72,49 @@ def analyse(program: Program, rules: Rules) -> Analysed:
     return Analysed(program, rules, flow, reads, exposed, follower, found_slice, found, others)
 
 
-def analyse_entry(entry: Entry, rules: Rules) -> LinkUnit:
-    """The static information of a script; ``failed`` where its expressions are nested too deeply.
+def analyse_entry(
+    entry: Entry,
+    rules: Rules,
+    seconds: float = SECONDS,
+    on_fault: Callable[[InputError], None] | None = None,
+) -> LinkUnit:
+    """The static information of a script.
+
+    Its status is ``failed`` where the analysis takes longer than ``seconds`` (0: no limit), or ends
+    in an error of its own; no other exception than the following comes out.
+
+    Args:
+        entry: which script.
+        rules: what reads and what exposes.
+        seconds: time on the wall.
+        on_fault: is told of imported modules that cannot be read or parsed: they are taken for
+            modules of a library, which nothing is known of, and listed as blind spots.
 
     Raises:
-        InputError: one of its files cannot be read or parsed.
+        InputError: the script itself cannot be read or parsed.
     """
     program = Program(entry.name, entry.package, entry.root)
     collecting = gc.isenabled()
     # Everything lives to the end, in millions of cycles: to look for garbage doubles the time.
     gc.disable()
     try:
-        Loader(program, list(entry.folders)).load(entry.script)
-        return Writer(analyse(program, rules)).unit()
-    except RecursionError:
-        return _failed(program, rules, "expressions or statements are nested too deeply")
+        with Budget(seconds):
+            Loader(program, entry).load()
+            unit = Writer(analyse(program, rules)).unit()
+    except InputError:
+        raise
+    except BudgetSpentError:
+        why = f"the analysis took more than {seconds:g} s (more: --max-seconds)"
+        return _failed(program, rules, why)
+    except Exception as error:
+        return _failed(program, rules, what_failed(error))
     finally:
         if collecting:
             gc.enable()
+    if on_fault is not None:
+        for fault in program.faults:
+            on_fault(fault.error)
+    return unit
 
 
 def _failed(program: Program, rules: Rules, why: str) -> LinkUnit:
@@ -103,9 +132,7 @@ class Writer:
     def __init__(self, analysed: Analysed) -> None:
         """Sources are at hand for the texts of lines."""
         self.all = analysed
-        self._lines = {
-            module.path: module.source.splitlines() for module in analysed.program.modules
-        }
+        self._lines = {module.path: lines_of(module.source) for module in analysed.program.modules}
 
     def unit(self) -> LinkUnit:
         """The link unit, its lists in the order of the format."""
@@ -136,7 +163,7 @@ class Writer:
         dynamic = sum(1 for read in self.all.reads if DYNAMIC in read.name)
         return Counts(
             functions=len(self.all.program.functions),
-            predicates=len(places),
+            predicates=len(places | within),
             predicates_in_slice=len(within),
             parameter_reads=reads,
             exposing_statements=len({_where(each.instr) for each in self.all.exposed}),
@@ -230,12 +257,11 @@ class Writer:
         key = key_of([*parts, str(ordinal)] if ordinal else list(parts))
         assert found.predicate is not None
         exposed = self.all.slice.nearest[found.predicate]
-        threshold = found.at.args[found.operand] if found.operand >= 0 else found.at
         reads = [self._read_place(fact) for fact in found.facts]
         return Comparison(
             key=str(key),
             type=found.type,
-            name=named_variable(threshold) if found.facts else found.parameter,
+            name=named_variable(found.threshold) if found.facts else found.parameter,
             source=found.parameter if found.facts else None,
             file=file,
             lineno=line,
@@ -255,7 +281,7 @@ class Writer:
             path=path_of(found, self.all.slice, self._source) if found.facts else (),
             end_lineno=end_line,
             end_column=end_column,
-            operand=("left", "right")[found.operand] if found.operand >= 0 else None,
+            operand=found.operand_text,
         )
 
     def _read_place(self, fact: Fact) -> Place:
@@ -286,6 +312,12 @@ class Writer:
         for call in self._unknown_calls():
             what = "what is called here is not known"
             spots.append(self._spot("indirect_call", None, call, what))
+        for fault in self.all.program.faults:
+            what = f"this module is imported, and is left out: {fault.error.message}"
+            line = fault.error.line or 1
+            spots.append(
+                BlindSpot("unread_module", None, fault.path, line, 1, "<module>", what, None)
+            )
         unique = dict.fromkeys(spots)
         return sorted(unique, key=lambda each: (each.kind, each.file, each.lineno, each.column))
 

@@ -30,6 +30,8 @@ class CallTable:
         self.callbacks: dict[Instr, dict[Function, None]] = {}
         self.given: dict[tuple[Instr, Instr], list[Instr]] = {}
         self._awaiting: dict[tuple[Instr, Instr], list[Callable[[Instr], None]]] = {}
+        self._sites: dict[Instr, list[Instr]] = {}
+        self._awaiting_site: dict[Instr, list[Callable[[Instr], None]]] = {}
 
     @staticmethod
     def arguments(instr: Instr) -> list[Given]:
@@ -44,9 +46,19 @@ class CallTable:
         for value in list(self.given.get((site, param), ())):
             action(value)
 
+    def when_site(self, param: Instr, action: Callable[[Instr], None]) -> None:
+        """Call ``action`` for each call that gives something to ``param``."""
+        self._awaiting_site.setdefault(param, []).append(action)
+        for site in list(self._sites.get(param, ())):
+            action(site)
+
     def give(self, site: Instr, param: Instr, value: Instr) -> None:
         """``site`` gives ``value`` to ``param``."""
         known = self.given.setdefault((site, param), [])
+        if not known:
+            self._sites.setdefault(param, []).append(site)
+            for act in list(self._awaiting_site.get(param, ())):
+                act(site)
         if value not in known:
             known.append(value)
             for action in list(self._awaiting.get((site, param), ())):

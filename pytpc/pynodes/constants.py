@@ -51,23 +51,25 @@ class Constants:
         """Nothing is folded before it is asked for."""
         self.flow = flow
         self._known: dict[Instr, tuple[object, ...]] = {}
+        self._meanwhile: dict[Instr, tuple[object, ...]] = {}
         self._active: set[Instr] = set()
         self._given: dict[Instr, tuple[object, ...]] = {}
 
     @contextmanager
     def where(self, given: dict[Instr, tuple[object, ...]]) -> Iterator[None]:
         """Inside, parameters are what ``given`` says."""
-        before = (self._given, self._known, self._active)
-        self._given, self._known, self._active = given, {}, set()
+        before = (self._given, self._known, self._meanwhile, self._active)
+        self._given, self._known, self._meanwhile, self._active = given, {}, {}, set()
         try:
             yield
         finally:
-            self._given, self._known, self._active = before
+            self._given, self._known, self._meanwhile, self._active = before
 
     def values(self, instr: Instr) -> tuple[object, ...]:
         """All that ``instr`` may be, ``UNKNOWN`` among it where that is not all."""
-        if instr in self._known:
-            return self._known[instr]
+        known = self._known if instr in self._known else self._meanwhile
+        if instr in known:
+            return known[instr]
         if instr in self._active or len(self._active) > 200:
             return (UNKNOWN,)
         self._active.add(instr)
@@ -76,8 +78,11 @@ class Constants:
         unique = tuple({(type(each), each): each for each in found}.values())
         if len(unique) > _MOST:
             unique = (UNKNOWN,)
+        # Within a circle of values only what was asked for is whole; the others are worked out once.
+        self._meanwhile[instr] = unique
         if not self._active:
             self._known[instr] = unique
+            self._meanwhile.clear()
         return unique
 
     def number(self, instr: Instr) -> float | None:

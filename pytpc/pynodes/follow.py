@@ -9,6 +9,7 @@ from pytpc.pynodes.constants import DYNAMIC, Constants
 from pytpc.pynodes.contexts import Stack, moves
 from pytpc.pynodes.flow import Flow
 from pytpc.pynodes.ir import Instr, Variable
+from pytpc.pynodes.library_calls import INSIDE, Inside, compared_inside
 from pytpc.pynodes.reads import Read
 from pytpc.pynodes.rules_file import Rules
 from pytpc.pynodes.transform import How, by_function, by_operator
@@ -40,11 +41,15 @@ class Fact:
 
 @dataclass(eq=False, slots=True)
 class Compared:
-    """A comparison ``at`` with the operand number ``operand``, or one of the kinds below."""
+    """A comparison ``at`` with the operand number ``operand``, or one of the kinds above.
+
+    ``inside``: it is in the library function that ``at`` calls.
+    """
 
     at: Instr
     operand: int
     fact: Fact
+    inside: Inside | None = None
     predicates: list[Instr] = field(default_factory=list)
 
 
@@ -68,6 +73,7 @@ class Follower:
         self.facts: dict[Instr, list[Fact]] = {}
         self.compared: dict[tuple[Instr, int, int, str, Stack], Compared] = {}
         self.lost: dict[Instr, Lost] = {}
+        self._inside: dict[Instr, dict[int, Inside]] = {}
         self._waiting: deque[Fact] = deque()
 
     def run(self, reads: list[Read]) -> None:
@@ -218,6 +224,8 @@ class Follower:
 
     def _argument(self, fact: Fact, user: Instr, path: str) -> None:
         """A value that is handed to a function outside the sources."""
+        if path in self.rules.comparisons and self._compare_inside(fact, user):
+            return
         op = self.rules.arithmetic.get(path)
         args = user.args[1:]
         if op is None:
@@ -242,6 +250,17 @@ class Follower:
         how = by_function(fact.how, op, number, left)
         self._arithmetic(fact, user, how)
 
+    def _compare_inside(self, fact: Fact, call: Instr) -> bool:
+        """A comparison inside of a library function; True where its result is the outcome."""
+        if call not in self._inside:
+            self._inside[call] = compared_inside(self.flow, call)
+        is_outcome = False
+        for place, inside in self._inside[call].items():
+            if call.args[1 + place] is fact.at:
+                self._compare(fact, call, INSIDE - place)
+                is_outcome |= not inside.chooses
+        return is_outcome
+
     def _is_exposing(self, path: str) -> bool:
         return path in self.rules.exposing or path.startswith(("rospy.log", "builtins.print"))
 
@@ -260,7 +279,8 @@ class Follower:
             return
         key = (at, operand, id(fact.read), fact.name, fact.stack)
         if key not in self.compared:
-            self.compared[key] = Compared(at, operand, fact)
+            inside = self._inside[at][INSIDE - operand] if operand <= INSIDE else None
+            self.compared[key] = Compared(at, operand, fact, inside)
         predicates = self.compared[key].predicates
         predicates += [branch for branch in branches if branch not in predicates]
 
@@ -268,9 +288,12 @@ class Follower:
 
     def decide(self) -> None:
         """Find the predicates that each comparison's outcome decides."""
+        self._keep_lost()
         known: dict[tuple[Instr, Stack], list[Instr]] = {}
         for compared in self.compared.values():
-            if compared.operand >= 0:
+            if compared.inside is not None and compared.inside.chooses:
+                compared.predicates = [compared.at]
+            elif compared.operand >= 0 or compared.inside is not None:
                 way = (compared.at, compared.fact.stack)
                 if way not in known:
                     known[way] = self.predicates(*way)
@@ -283,6 +306,13 @@ class Follower:
                     for branch in self.flow.users.get(user, ())
                     if branch.op == "branch" and branch not in compared.predicates
                 ]
+
+    def _keep_lost(self) -> None:
+        """What is measured, and cut to a parameter, is measured: no threshold is lost there."""
+        for call, lost in list(self.lost.items()):
+            others = [arg for arg in call.args[1:] if arg is not lost.fact.at]
+            if self._inside.get(call) and not any(arg in self.facts for arg in others):
+                del self.lost[call]
 
     def predicates(self, outcome: Instr, stack: Stack = ()) -> list[Instr]:
         """The branches that the outcome of a comparison decides, where it came by ``stack``."""

@@ -12,6 +12,7 @@ from typing import Literal
 from pytpc.pynodes.contexts import Stack
 from pytpc.pynodes.follow import FLAG, Compared, Fact, Follower
 from pytpc.pynodes.ir import Instr
+from pytpc.pynodes.library_calls import INSIDE, TURNED, Inside
 from pytpc.pynodes.reads import Read
 from pytpc.pynodes.slicing import Slice
 
@@ -19,8 +20,7 @@ RELATIONS = {
     "Lt": "<", "LtE": "<=", "Gt": ">", "GtE": ">=", "Eq": "==", "NotEq": "!=",
     "Is": "==", "IsNot": "!=", "In": "==", "NotIn": "!=",
 }  # fmt: skip
-_DEEPEST = 300
-_TURNED = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
+_ALL_KINDS = 3
 _NAMESPACE = bytes.fromhex("6b0f7a522c9e4d619a378f15c3405ed8")
 
 
@@ -42,6 +42,7 @@ class Found:
     predicates: dict[Instr, None] = field(default_factory=dict)
     distance: int = 0
     predicate: Instr | None = None
+    inside: Inside | None = None
 
     @property
     def span(self) -> Span:
@@ -56,10 +57,26 @@ class Found:
     @property
     def relation(self) -> str:
         """The operator, with the threshold on the right-hand side."""
+        if self.inside is not None:
+            return self.inside.relation
         if self.operand < 0:
             return "flag" if self.operand == FLAG else "<"
         sign = RELATIONS[str(self.at.data)]
-        return _TURNED.get(sign, sign) if self.operand == 0 else sign
+        return TURNED.get(sign, sign) if self.operand == 0 else sign
+
+    @property
+    def threshold(self) -> Instr:
+        """What the parameter's value is compared as."""
+        if self.inside is not None:
+            return self.at.args[1 + INSIDE - self.operand]
+        return self.at.args[self.operand] if self.operand >= 0 else self.at
+
+    @property
+    def operand_text(self) -> str | None:
+        """Which operand the threshold is, as in the schema."""
+        if self.inside is not None:
+            return self.inside.operand
+        return ("left", "right")[self.operand] if self.operand >= 0 else None
 
     @property
     def type(self) -> Literal["parameter", "flag", "derived", "constant"]:
@@ -117,7 +134,6 @@ class Gatherer:
         self.follower = follower
         self.slice = found
         self._kinds: dict[tuple[Instr, Stack], frozenset[str]] = {}
-        self._active: set[tuple[Instr, Stack]] = set()
 
     def run(self) -> tuple[list[Found], list[Found]]:
         """The comparisons that decide something exposed, and the others."""
@@ -135,6 +151,7 @@ class Gatherer:
             )  # fmt: skip
             if key not in joined:
                 joined[key] = Found(compared.at, compared.operand, compared.fact.name, [])
+                joined[key].inside = compared.inside
             joined[key].facts.append(compared.fact)
             joined[key].predicates.update(dict.fromkeys(compared.predicates))
         exposed: list[Found] = []
@@ -166,9 +183,13 @@ class Gatherer:
 
         What may be something measured is the threshold only where the other side is measured, too.
         """
-        if compared.operand < 0:
-            return "other" in self.kinds(compared.fact.at, compared.fact.stack)
         stack = compared.fact.stack
+        if compared.inside is not None:
+            others = (self.kinds(each, stack) for each in compared.inside.others)
+            only = frozenset[str]().union(*others) <= {"const"}
+            return only and "other" in self.kinds(compared.fact.at, stack)
+        if compared.operand < 0:
+            return "other" in self.kinds(compared.fact.at, stack)
         own = self.kinds(compared.at.args[compared.operand], stack)
         if "other" not in own:
             return False
@@ -182,53 +203,59 @@ class Gatherer:
             Of ``param``, ``const`` and ``other`` those that are possible.
         """
         way = (instr, stack)
-        if way in self._kinds:
-            return self._kinds[way]
-        if way in self._active:
-            return frozenset()
-        if len(self._active) > _DEEPEST:
-            return frozenset({"other"})
-        self._active.add(way)
-        kinds = self._find_kinds(instr, stack)
-        self._active.discard(way)
-        if not self._active:
-            self._kinds[way] = kinds
-        return kinds
+        if way not in self._kinds:
+            found: set[str] = set()
+            seen = {way}
+            waiting = [way]
+            while waiting and len(found) < _ALL_KINDS:
+                here = waiting.pop()
+                if here in self._kinds:
+                    found |= self._kinds[here]
+                    continue
+                own, further = self._step(*here)
+                found |= own
+                waiting += [each for each in further if each not in seen]
+                seen.update(further)
+            self._kinds[way] = frozenset(found)
+        return self._kinds[way]
 
-    def _find_kinds(self, instr: Instr, stack: Stack) -> frozenset[str]:
+    def _step(self, instr: Instr, stack: Stack) -> tuple[set[str], list[tuple[Instr, Stack]]]:
+        """What a value is by itself, and the values that it may come from."""
         facts = self.follower.facts.get(instr, ())
         if any(fact.before is None or fact.before.name != fact.name for fact in facts):
-            return frozenset({"param"})
+            return {"param"}, []
+        values: Iterable[Instr] = ()
         match instr.op:
             case "const" | "function" | "class" | "module" | "external":
-                return frozenset({"const"})
+                return {"const"}, []
             case "binary" | "unary" | "copy":
-                return self._union(instr.args, stack)
-            case "call" if facts and not self._is_own(instr):
-                return self._union(instr.args[1:], stack) or frozenset({"param"})
+                return set(), [(value, stack) for value in instr.args]
+            case "call" if not self._is_own(instr) and (facts or self._computes(instr)):
+                values = instr.args[1:]
+                alone = {"param"} if facts else {"const"}
+                return set() if values else alone, [(value, stack) for value in values]
             case "build":
-                return self._union(instr.args, stack) or frozenset({"const"})
+                values = instr.args
+                return set() if values else {"const"}, [(value, stack) for value in values]
             case "param" if stack and self._given(instr, stack):
-                return self._union(self._given(instr, stack), stack[:-1])
+                return set(), [(value, stack[:-1]) for value in self._given(instr, stack)]
         if instr.op == "param" and instr.function in self.follower.flow.points.calls.registered:
-            return frozenset({"other"})
+            return {"other"}, []
         origins = list(self.follower.flow.origins(instr))
         if not origins:
-            return self._union(instr.args[:1], stack) if facts else frozenset({"other"})
+            values = instr.args[:1] if facts else ()
+            return set() if facts else {"other"}, [(value, stack) for value in values]
         own = instr.function
-        kinds: set[str] = set()
-        for origin in origins:
-            kinds |= self.kinds(origin, stack if origin.function is own else ())
-        return frozenset(kinds)
+        return set(), [(each, stack if each.function is own else ()) for each in origins]
 
     def _given(self, param: Instr, stack: Stack) -> list[Instr]:
         return self.follower.flow.points.calls.given.get((stack[-1], param), [])
 
+    def _computes(self, instr: Instr) -> bool:
+        """True for a call that makes a value of its arguments alone: ``abs``, ``max``."""
+        flow = self.follower.flow
+        paths = flow.points.calls.outside.get(instr, {})
+        return any(path in self.follower.rules.arithmetic for path, _ in paths)
+
     def _is_own(self, instr: Instr) -> bool:
         return instr in self.follower.flow.points.calls.callees
-
-    def _union(self, values: Iterable[Instr], stack: Stack) -> frozenset[str]:
-        kinds: set[str] = set()
-        for value in values:
-            kinds |= self.kinds(value, stack)
-        return frozenset(kinds)

@@ -58,7 +58,8 @@ def _to_comparison(found: Found) -> list[_Event]:
     events = [_Event("read", facts[0].read.instr, f"{found.parameter} is read")]
     for fact in facts[1:]:
         events += _arrival(fact)
-    decides = "decides as it is" if found.operand < 0 else "compared"
+    is_value = found.operand < 0 and found.inside is None
+    decides = "decides as it is" if is_value else "compared"
     events.append(_Event("compare", found.at, decides))
     if found.predicate is not None and found.predicate is not found.at:
         same = position(found.predicate)[0] == position(found.at)[0]
@@ -107,6 +108,8 @@ def _to_exposing(found: Found, within: Slice) -> list[_Event]:
     while here is not None and here not in seen:
         seen.add(here)
         because = within.because.get(here)
+        if because is None and here in within.holder:
+            because = (within.holder[here], "data")
         if because is None:
             break
         after, how = because

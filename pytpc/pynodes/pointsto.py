@@ -173,10 +173,33 @@ class PointsTo(Solver):
         if param is None or owner.site is None:
             self.write(owner, name, value, instr)
             return
-        # Objects of one class are told apart by what each is made with.
-        self.calls.when_given(
-            owner.site, param, lambda given: self.write(owner, name, given, instr)
-        )
+        self._keep(owner, param, name, instr)
+
+    def _keep(self, owner: Obj, param: Instr, name: str, instr: Instr) -> None:
+        """``self.name = param`` in ``__init__``: objects are told apart by what each is made with.
+
+        The ``__init__`` of a base class gets it from that of the object's own class.
+        """
+        info, made = param.function.owner, owner.class_info
+        assert owner.site is not None
+        if info is None or made is None or self.lookup(made, "__init__") is info:
+            self.calls.when_given(
+                owner.site, param, lambda given: self.write(owner, name, given, instr)
+            )
+            return
+
+        def handed(given: Instr) -> None:
+            further = _unchanged_parameter(given)
+            if further is None or further is param:
+                self.write(owner, name, given, instr)
+            else:
+                self._keep(owner, further, name, instr)
+
+        def called(site: Instr) -> None:
+            if site.function.owner in self.mro(made):
+                self.calls.when_given(site, param, handed)
+
+        self.calls.when_site(param, called)
 
     def _on_attr(self, instr: Instr) -> None:
         name = str(instr.data)
@@ -359,19 +382,24 @@ def _kept_as_given(instr: Instr) -> Instr | None:
     if instr.op != "setattr":
         return None
     owner, value = instr.args
-    function = instr.function
+    first = _unchanged_parameter(owner)
+    found = _unchanged_parameter(value)
+    if first is None or first.data != 0:
+        return None
+    return found
+
+
+def _unchanged_parameter(value: Instr) -> Instr | None:
+    """The parameter of an ``__init__`` that a value is, where nothing else is stored in it."""
+    function = value.function
+    if value.op != "load" or value.data not in function.parameters:
+        return None
     if function.owner is None or not function.qualname.endswith(".__init__"):
         return None
-    if owner.op != "load" or value.op != "load" or owner.data is not function.parameters[0]:
-        return None
-    if value.data not in function.parameters:
+    place = function.parameters.index(value.data)
+    if place in (function.vararg, function.kwarg):
         return None
     stores = [
-        each
-        for each in function.instructions()
-        if each.op == "store" and each.data in (owner.data, value.data)
+        each for each in function.instructions() if each.op == "store" and each.data is value.data
     ]
-    if len(stores) != 2:
-        return None
-    place = function.parameters.index(value.data)
-    return None if place in (function.vararg, function.kwarg) else function.param_instrs[place]
+    return function.param_instrs[place] if len(stores) == 1 else None

@@ -1,15 +1,25 @@
-"""A link unit of Python: a script and the modules of its package that it imports."""
+"""A link unit of Python: a script and the modules of the workspace that it imports."""
 
 from __future__ import annotations
 
 import ast
-import tokenize
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from pytpc.errors import InputError
 from pytpc.pynodes.ir import Function, Instr, Module
 from pytpc.pynodes.lower import lower_module
+from pytpc.pynodes.packages import Entry, module_files
+from pytpc.pynodes.sources import parse
+
+
+@dataclass(frozen=True)
+class Unread:
+    """A module that is imported and cannot be read or parsed; ``path`` as modules have it."""
+
+    path: str
+    error: InputError
 
 
 @dataclass
@@ -20,6 +30,7 @@ class Program:
     package: str
     root: Path
     modules: list[Module] = field(default_factory=list)
+    faults: list[Unread] = field(default_factory=list)
 
     @property
     def functions(self) -> list[Function]:
@@ -30,90 +41,95 @@ class Program:
         """Those of all functions, in order."""
         return [instr for function in self.functions for instr in function.instructions()]
 
-
-def read_source(path: Path) -> str:
-    """The text of a source file, by the encoding that it declares.
-
-    Raises:
-        InputError: it cannot be read or decoded.
-    """
-    try:
-        with tokenize.open(path) as file:
-            return file.read()
-    except OSError as error:
-        raise InputError(error.strerror or "cannot be read", path) from None
-    except (SyntaxError, UnicodeDecodeError, LookupError) as error:
-        raise InputError(f"cannot be decoded: {error}", path) from None
-
-
-def parse(path: Path) -> tuple[str, ast.Module]:
-    """The text and the syntax tree of a source file.
-
-    Raises:
-        InputError: it cannot be read, or is no Python 3, with the line.
-    """
-    source = read_source(path)
-    try:
-        return source, ast.parse(source, str(path))
-    except SyntaxError as error:
-        raise InputError(f"not Python 3: {error.msg}", path, error.lineno) from None
-    except (ValueError, RecursionError, MemoryError) as error:
-        raise InputError(f"cannot be parsed: {error}", path) from None
+    def relative(self, path: Path) -> str:
+        """A file as static information names it: outside of the package by its absolute path."""
+        return str(path.relative_to(self.root) if path.is_relative_to(self.root) else path)
 
 
 class Loader:
     """Loads a script and, as it is lowered, what it imports."""
 
-    def __init__(self, program: Program, folders: list[Path]) -> None:
-        """``folders`` are where the package's modules are looked for, the first one first."""
+    def __init__(self, program: Program, entry: Entry) -> None:
+        """``entry`` says where the program begins and where modules are looked for."""
         self.program = program
-        self.folders = folders
-        self._known: dict[Path, Module] = {}
+        self.entry = entry
+        self._known: dict[Path, Module | None] = {}
         self._numbers = [0]
 
-    def load(self, script: Path) -> Program:
+    def load(self) -> Program:
         """Load the script and all that follows from it.
 
         Raises:
-            InputError: a file cannot be read or parsed.
+            InputError: the script cannot be read or parsed.
         """
-        self._module(script, "__main__")
+        script = self.entry.script.absolute()
+        source, tree = parse(script)
+        self._add(script, self.entry.module, source, _begun(tree, self.entry.begin))
         for module in self.program.modules:
             lower_module(module, self.resolve, self._numbers)
         return self.program
 
-    def _module(self, path: Path, name: str) -> Module:
+    def _add(self, path: Path, name: str, source: str, tree: ast.Module) -> Module:
+        is_package = path.name == "__init__.py"
+        module = Module(name, self.program.relative(path), source, tree, is_package)
+        self._known[path] = module
+        self.program.modules.append(module)
+        return module
+
+    def _module(self, path: Path, name: str) -> Module | None:
+        """The module of a file; None, once and for all, where it cannot be parsed."""
         path = path.absolute()
         if path not in self._known:
-            source, tree = parse(path)
-            relative = (
-                path.relative_to(self.program.root)
-                if path.is_relative_to(self.program.root)
-                else path
-            )
-            module = Module(name, str(relative), source, tree, path.name == "__init__.py")
-            self._known[path] = module
-            self.program.modules.append(module)
+            try:
+                return self._add(path, name, *parse(path))
+            except InputError as error:
+                self._known[path] = None
+                self.program.faults.append(Unread(self.program.relative(path), error))
         return self._known[path]
 
     def resolve(self, user: Module, name: str, dots: int) -> Module | str:
-        """What an import in ``user`` means: a module of the package, else a dotted name."""
+        """What an import in ``user`` means: a module of the workspace, else a dotted name."""
         if dots == 0:
-            return self._found(self.folders, name) or name
+            for path in self.entry.places(name):
+                return self._module(path, name) or name
+            return name
         folder = (self.program.root / user.path).parent
         for _ in range(dots - 1):
             folder = folder.parent
         if not name:
             start = folder / "__init__.py"
-            return self._module(start, folder.name) if start.is_file() else folder.name
-        return self._found([folder], name, user) or f"{folder.name}.{name}"
+            found = self._module(start, folder.name) if start.is_file() else None
+            return found or folder.name
+        full = f"{folder.name}.{name}"
+        for path in module_files(folder.joinpath(*name.split("."))):
+            return self._module(path, full) or full
+        return full
 
-    def _found(self, folders: list[Path], name: str, user: Module | None = None) -> Module | None:
-        parts = name.split(".")
-        for folder in folders:
-            base = folder.joinpath(*parts)
-            for path in (base / "__init__.py", base.with_name(base.name + ".py")):
-                if path.is_file():
-                    full = name if user is None else f"{folder.name}.{name}"
-                    return self._module(path, full)
-        return None
+
+def _begun(tree: ast.Module, begin: str) -> ast.Module:
+    """The module with a call of the function ``begin`` at its end, as an entry point calls it.
+
+    The call stands where the function's name is bound.
+    """
+    if not begin:
+        return tree
+    first, *rest = begin.split(".")
+    where = next((each for each in tree.body if first in _bound_by(each)), None)
+    if where is None:
+        return tree
+    function: ast.expr = ast.Name(first, ast.Load())
+    for name in rest:
+        function = ast.Attribute(function, name, ast.Load())
+    call = ast.Expr(ast.Call(function, [], []))
+    for node in ast.walk(call):
+        ast.copy_location(node, where)
+    return ast.Module([*tree.body, call], tree.type_ignores)
+
+
+def _bound_by(statement: ast.stmt) -> Iterator[str]:
+    if isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+        yield statement.name
+    elif isinstance(statement, ast.Import | ast.ImportFrom):
+        yield from (alias.asname or alias.name.split(".")[0] for alias in statement.names)
+    elif isinstance(statement, ast.Assign):
+        yield from (part.id for part in statement.targets if isinstance(part, ast.Name))

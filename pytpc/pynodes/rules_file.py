@@ -2,24 +2,15 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from pytpc.errors import InputError
+from pytpc.static_json import PYTHON_RULES_SCHEMA, check_schema, parse_json
 
 _OWN = Path(__file__).parent / "rules" / "python.json"
-_LISTS = {
-    "reads": {"function", "name", "name_keyword", "default", "default_keyword", "profiles"},
-    "exposing": {"function", "profiles"},
-    "topics": {"function", "name", "keyword"},
-    "makes": {"function", "class"},
-    "configs": {"function", "callback", "keyword", "config", "profiles"},
-    "services": {"function", "callback", "keyword", "profiles"},
-    "values": {"attribute", "method", "scale"},
-}
+_LISTS = ("reads", "exposing", "topics", "makes", "configs", "services", "values", "comparisons")
 
 
 @dataclass(frozen=True)
@@ -28,6 +19,20 @@ class Argument:
 
     place: int | None
     keyword: str | None = None
+
+
+@dataclass(frozen=True)
+class LibraryComparison:
+    """What a library function compares inside.
+
+    ``relation``: its first two arguments, and its result is the outcome; ``within`` is the keyword
+    of a bound of their distance. ``chooses``: its result is one of its arguments, ``smallest`` or
+    ``largest``, or the first one within the two others (``clip``).
+    """
+
+    relation: str | None = None
+    chooses: str | None = None
+    within: str | None = None
 
 
 @dataclass(frozen=True)
@@ -48,6 +53,7 @@ class Rules:
     configs: dict[str, tuple[Argument, int]] = field(default_factory=dict)
     services: dict[str, Argument] = field(default_factory=dict)
     values: dict[str, float] = field(default_factory=dict)
+    comparisons: dict[str, LibraryComparison] = field(default_factory=dict)
     waiting: set[str] = field(default_factory=set)
     arithmetic: dict[str, str] = field(default_factory=dict)
     outcomes: set[str] = field(default_factory=set)
@@ -70,77 +76,54 @@ def load_rules(profile: str = "default", own: Path | None = None) -> Rules:
     """The built-in tables for ``profile``, and the rows of the user's file.
 
     Raises:
-        InputError: the user's file cannot be read, is no JSON, or has a row that is not known.
+        InputError: the user's file cannot be read, is no JSON, or breaks the schema
+            ``python_rules.schema.json``, with the place.
     """
     rules = Rules(profile)
-    _add(rules, _read(_OWN), _OWN)
-    if own is not None:
-        _add(rules, _read(own), own)
+    for path in (_OWN, own):
+        if path is not None:
+            _add(rules, _read(path))
     return rules
 
 
 def _read(path: Path) -> dict[str, Any]:
-    try:
-        data = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(error.strerror or "cannot be read", path) from None
-    except UnicodeDecodeError:
-        raise InputError("not UTF-8", path) from None
-    except json.JSONDecodeError as error:
-        raise InputError(error.msg, path, error.lineno) from None
-    if not isinstance(data, dict):
-        raise InputError("/: not an object of tables", path)
-    return data
+    data: Any = parse_json(path)
+    check_schema(data, path, PYTHON_RULES_SCHEMA)
+    return dict(data)
 
 
-def _add(rules: Rules, data: dict[str, Any], path: Path) -> None:
-    for name, rows in data.items():
-        if name == "arithmetic":
-            _check(isinstance(rows, dict) and all(map(_is_text, rows.values())), name, path)
-            rules.arithmetic.update(rows)
-        elif name in ("waiting", "outcomes", "filters"):
-            _check(isinstance(rows, list) and all(map(_is_text, rows)), name, path)
-            getattr(rules, name).update(rows)
-        else:
-            _check(name in _LISTS and isinstance(rows, list), name, path)
-            for index, row in enumerate(rows):
-                place = f"{name}/{index}"
-                _check(isinstance(row, dict) and row.keys() <= _LISTS[name], place, path)
-                _check(name == "values" or _is_text(row.get("function")), place, path)
-                if rules.profile in row.get("profiles", [rules.profile]):
-                    _add_row(rules, name, row, place, path)
+def _add(rules: Rules, data: dict[str, Any]) -> None:
+    rules.arithmetic.update(data.get("arithmetic", {}))
+    for name in ("waiting", "outcomes", "filters"):
+        getattr(rules, name).update(data.get(name, []))
+    for name in _LISTS:
+        for row in data.get(name, []):
+            if rules.profile in row.get("profiles", [rules.profile]):
+                _add_row(rules, name, row)
 
 
-def _add_row(rules: Rules, name: str, row: dict[str, Any], place: str, path: Path) -> None:
+def _add_row(rules: Rules, name: str, row: dict[str, Any]) -> None:
     function = row.get("function", "")
-    try:
-        match name:
-            case "reads":
-                given = Argument(row.get("name"), row.get("name_keyword"))
-                default = Argument(row.get("default"), row.get("default_keyword"))
-                rules.reads[function] = (given, default)
-            case "exposing":
-                rules.exposing.add(function)
-            case "topics":
-                rules.topics[function] = Argument(row["name"], row.get("keyword"))
-            case "makes":
-                rules.makes[function] = row["class"]
-            case "configs":
-                callback = Argument(row["callback"], row.get("keyword"))
-                rules.configs[function] = (callback, int(row.get("config", 0)))
-            case "services":
-                rules.services[function] = Argument(row["callback"], row.get("keyword"))
-            case _:
-                given_name = row.get("attribute") or row["method"]
-                rules.values[given_name] = float(row.get("scale", 1.0))
-    except (KeyError, TypeError, ValueError):
-        _check(False, place, path)
-
-
-def _is_text(value: object) -> bool:
-    return isinstance(value, str)
-
-
-def _check(holds: bool, place: str, path: Path) -> None:
-    if not holds:
-        raise InputError(f"/{place}: not a row of this table (see docs/python-nodes.md)", path)
+    match name:
+        case "reads":
+            given = Argument(row.get("name"), row.get("name_keyword"))
+            default = Argument(row.get("default"), row.get("default_keyword"))
+            rules.reads[function] = (given, default)
+        case "exposing":
+            rules.exposing.add(function)
+        case "topics":
+            rules.topics[function] = Argument(row["name"], row.get("keyword"))
+        case "makes":
+            rules.makes[function] = row["class"]
+        case "configs":
+            callback = Argument(row["callback"], row.get("keyword"))
+            rules.configs[function] = (callback, row.get("config", 0))
+        case "services":
+            rules.services[function] = Argument(row["callback"], row.get("keyword"))
+        case "comparisons":
+            rules.comparisons[function] = LibraryComparison(
+                row.get("relation"), row.get("chooses"), row.get("within")
+            )
+        case _:
+            given_name = row.get("attribute") or row["method"]
+            rules.values[given_name] = float(row.get("scale", 1.0))

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from pytpc.pynodes.control import control_dependence
 from pytpc.pynodes.flow import Flow
 from pytpc.pynodes.ir import Block, Function, Instr
+from pytpc.pynodes.library_calls import choosing_calls
 from pytpc.pynodes.raising import Raising
 from pytpc.pynodes.reads import Exposed
 
@@ -21,12 +22,14 @@ class Slice:
     """``distance``: branch -> distance. ``nearest``: instruction -> the exposing statements.
 
     ``because``: instruction -> the one that brought it into the slice, and how (``control``,
-    ``data``, ``call``).
+    ``data``, ``call``). ``holder``: a call that chooses a value -> the instruction of the slice
+    in whose expression it is.
     """
 
     distance: dict[Instr, int] = field(default_factory=dict)
     nearest: dict[Instr, Exposed] = field(default_factory=dict)
     because: dict[Instr, tuple[Instr, str] | None] = field(default_factory=dict)
+    holder: dict[Instr, Instr] = field(default_factory=dict)
 
 
 class Slicer:
@@ -42,6 +45,7 @@ class Slicer:
             for call, paths in flow.points.calls.outside.items()
             if any(path in flow.points.rules.filters for path, _ in paths)
         }
+        self._choosing = choosing_calls(flow)
         self.slice = Slice()
         self._control: dict[Function, dict[Block, list[Block]]] = {}
 
@@ -129,6 +133,11 @@ class Slicer:
             if here in self._filters:
                 self.slice.distance.setdefault(here, number)
                 self.slice.nearest.setdefault(here, self.slice.nearest[instr])
+            if here in self._choosing:
+                # As the branch of a conditional expression, whose value is a step of its own.
+                self.slice.distance.setdefault(here, number + 1)
+                self.slice.nearest.setdefault(here, self.slice.nearest[instr])
+                self.slice.holder.setdefault(here, instr)
             if (number == 1 and here is instr) or here.op in ("call", "return", "iter"):
                 # What publishes is not what is published.
                 for arg in here.args[1:] if here is instr and here.op == "call" else here.args:

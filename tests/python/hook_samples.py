@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from types import CodeType, FrameType
 from typing import Any
 
-from pytpc.pyhook import sites
+from pytpc.pyhook import quiet, sites
 from pytpc.pyhook.find import Place, every_comparison
 from pytpc.pyhook.listed import Listed
 from pytpc.pyhook.rewrite import rewrite
@@ -90,33 +90,38 @@ def without_addresses(text: str) -> str:
 
 
 def outcome(code: CodeType, names: dict[str, object]) -> tuple[object, ...]:
-    """What a program does: how it ends, where its error comes from, and the lines that it runs.
+    """What a program does: how it ends, where its error comes from, and what a tracer sees of it.
 
-    Frames of the hook are left out: they are no part of the program.
+    A frame of the hook would be seen, too.
     """
-    lines: list[tuple[str, int]] = []
-
-    def local(frame: FrameType, event: str, _: object) -> object:
-        if event == "line":
-            lines.append((frame.f_code.co_name, frame.f_lineno))
-        return local
+    lines: list[tuple[str, str, int]] = []
 
     def trace(frame: FrameType, event: str, _: object) -> object:
-        return local if frame.f_code.co_filename == PATH else None
+        file = frame.f_code.co_filename
+        if file != PATH and "pyhook" not in file:
+            # Of a library, as when numpy gives a warning for the first time.
+            return None
+        lines.append((event, frame.f_code.co_name, frame.f_lineno))
+        return trace
 
-    ended: tuple[object, ...] = ("done",)
+    quiet.watch()
+    raised: Exception | None = None
     before = sys.gettrace()
     sys.settrace(trace)
     try:
         exec(code, names)
     except Exception as error:
-        stack = traceback.TracebackException.from_exception(error).stack
-        frames = [
-            (frame.name, frame.lineno, frame.end_lineno, frame.colno, frame.end_colno)
-            for frame in stack[1:]
-        ]
-        files = {frame.filename for frame in stack[1:]}
-        ended = (type(error).__name__, without_addresses(str(error)), frames, files)
+        raised = error
     finally:
         sys.settrace(before)
-    return ended, lines
+    return ("done",) if raised is None else _ended(raised), lines
+
+
+def _ended(error: Exception) -> tuple[object, ...]:
+    stack = traceback.TracebackException.from_exception(error).stack
+    frames = [
+        (frame.name, frame.lineno, frame.end_lineno, frame.colno, frame.end_colno)
+        for frame in stack[1:]
+    ]
+    files = {frame.filename for frame in stack[1:]}
+    return type(error).__name__, without_addresses(str(error)), frames, files

@@ -2,28 +2,16 @@
 
 from __future__ import annotations
 
-import importlib.util
+import re
 import statistics
-import sys
 from collections.abc import Iterable
-from pathlib import Path
-from types import ModuleType
 
 import pytest
+from observer_scripts import load_observer
 
-SCRIPT = Path(__file__).parents[2] / "examples/image_capture/scripts/observer.py"
+from pytpc.demo_examples import IMAGE_CAPTURE, WATER_SAMPLER
 
-
-def load() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("observer", SCRIPT)
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules["observer"] = module
-    spec.loader.exec_module(module)
-    return module
-
-
-observer = load()
+observer = load_observer(IMAGE_CAPTURE)
 PERSON = (0.0, 3.0)
 
 
@@ -154,3 +142,17 @@ def test_same_seed_same_marks():
     phases = [*BEGIN, (60.0, 0, 0.8, 1.6, LOOK_AT, 0.0)]
     assert watch(phases, seed=5) == watch(phases, seed=5)
     assert watch(phases, seed=5) != watch(phases, seed=6)
+
+
+@pytest.mark.parametrize(
+    ("example", "seen"),
+    [
+        (IMAGE_CAPTURE, {"/truth/uav", "/truth/person", "/camera/picture"}),
+        (WATER_SAMPLER, {"/truth/uav", "/truth/sampler"}),
+    ],
+    ids=lambda value: getattr(value, "name", ""),
+)
+def test_observer_is_told_nothing_but_what_a_person_sees(example, seen):
+    script = (example.folder / "scripts/observer.py").read_text()
+    assert set(re.findall(r'"(/[^"]+)"', script)) == seen
+    assert "param" not in re.sub(r"no parameter", "", script)

@@ -33,7 +33,8 @@ def wrong_with(entry: Entry) -> str | None:
         if (place, entry.text) not in values(source):
             return "no expression of this text begins here"
         # min and max compare inside; a value pattern and the end of a range do, too.
-        return None if entry.relation in (None, "flag", "<", ">", "==") else "not such a relation"
+        inside = {None, "flag", "<", "<=", ">", ">=", "==", "!="}
+        return None if entry.relation in inside else "not such a relation"
     if entry.relation not in (None, here[0], MIRRORED.get(here[0], here[0])):
         return f"the operator is {here[0]}"
     return None

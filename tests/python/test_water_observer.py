@@ -2,27 +2,14 @@
 
 from __future__ import annotations
 
-import importlib.util
-import sys
 from collections.abc import Iterable
-from types import ModuleType
 
 import pytest
+from observer_scripts import load_observer
 
 from pytpc.demo_examples import WATER_SAMPLER
 
-
-def load() -> ModuleType:
-    script = WATER_SAMPLER.folder / "scripts/observer.py"
-    spec = importlib.util.spec_from_file_location("water_observer", script)
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules["water_observer"] = module
-    spec.loader.exec_module(module)
-    return module
-
-
-observer = load()
+observer = load_observer(WATER_SAMPLER)
 
 # The tube is 1 m long and the water 0.65 m above the ground: its tip is wet below a height of 1.65.
 WET_BELOW = 1.65

@@ -101,12 +101,23 @@ def test_configuration_sets_each_parameter_that_a_node_reads():
 
 
 def test_defaults_in_the_source_are_the_configuration():
-    own = yaml.safe_load((PACKAGE / "config/params.yaml").read_text())["mission"]
-    found = {}
-    for path in source_files(".py"):
-        for name, text in re.findall(r'get_param\("~(\w+)", ([^)]+)\)', path.read_text()):
-            found[name] = ast.literal_eval(text)
-    assert found == own
+    own = yaml.safe_load((PACKAGE / "config/params.yaml").read_text())
+    in_python = {
+        name: ast.literal_eval(text)
+        for path in source_files(".py")
+        for name, text in re.findall(r'get_param\("~(\w+)", ([^)]+)\)', path.read_text())
+    }
+    assert in_python == own.pop("mission")
+    in_cpp = {
+        name: yaml.safe_load(text)
+        for path in source_files(".cpp")
+        for name, text in re.findall(r'\.param\("(\w+)", \w+, ([^)]+)\)', path.read_text())
+    }
+    # The rate comes from the launch file; what has no default there has one as a variable.
+    assert in_cpp.pop("rate") == 4.0
+    configured = {name: value for parameters in own.values() for name, value in parameters.items()}
+    assert in_cpp == {name: configured[name] for name in in_cpp}
+    assert set(configured) - set(in_cpp) == {"max_duration"}
 
 
 def test_both_languages_compare_many_parameters():

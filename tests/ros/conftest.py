@@ -7,14 +7,13 @@ from pathlib import Path
 import pytest
 
 from pytpc.build import BuildResult, build_workspace
-
-PACKAGE = Path(__file__).parents[2] / "examples/image_capture"
+from pytpc.demo_examples import IMAGE_CAPTURE
+from pytpc.demo_show import link_package
 
 
 def build_example(folder: Path, build_type: str = "RelWithDebInfo") -> BuildResult:
     """The example built in a workspace of its own."""
-    (folder / "src").mkdir(parents=True)
-    (folder / "src" / PACKAGE.name).symlink_to(PACKAGE)
+    link_package(IMAGE_CAPTURE, folder)
     return build_workspace(folder, build_type=build_type)
 
 

@@ -3,37 +3,80 @@
 A script of the static information is started again by pytpc/run.py, in the same process and with
 the same options of the interpreter; every other program goes on as it was. Another sitecustomize,
 which this one hides, is run as well.
+
+Every Python program that is started in such an environment comes by here, roslaunch and rosparam
+among them: what is none of ours is told without importing anything, or parsing.
 """
 
 import os
 import sys
 
+# Scripts of entry points, which have names of their own, are below this size.
+_ENTRY_BYTES = 4096
+
 
 def _hidden() -> None:
     """Run the sitecustomize that would have been found without this folder."""
-    import importlib.machinery  # noqa: PLC0415
-    import importlib.util  # noqa: PLC0415
+    from importlib.machinery import PathFinder  # noqa: PLC0415
 
     here = os.path.dirname(os.path.abspath(__file__))
     others = [path for path in sys.path if os.path.abspath(path or ".") != here]
-    spec = importlib.machinery.PathFinder.find_spec("sitecustomize", others)
+    spec = PathFinder.find_spec("sitecustomize", others)
     if spec is not None and spec.loader is not None:
-        module = importlib.util.module_from_spec(spec)
+        # As importlib.util.module_from_spec, which takes longer to import than all of this.
+        module = type(sys)("sitecustomize")
+        module.__spec__, module.__loader__ = spec, spec.loader
+        module.__file__ = spec.origin
         sys.modules["sitecustomize"] = module
         spec.loader.exec_module(module)
 
 
-def _is_wanted() -> bool:
-    """Whether this process is to report, and was not started for it already."""
+def _script() -> str:
+    """The script that this process is to run with reports; empty where it is none."""
     is_on = os.environ.get("TPC_PYTHON", "") not in ("", "0")
-    return is_on and os.environ.get("TPC_PYTHON_STARTED") != str(os.getpid())
-
-
-def _start() -> None:
-    """Start the script again, where its name is among the static information's."""
+    if not is_on or os.environ.get("TPC_PYTHON_STARTED") == str(os.getpid()):
+        return ""
     script = sys.argv[0] if getattr(sys, "argv", None) else ""
-    if script in ("", "-c", "-m", "-") or not os.path.isfile(script):
-        return
+    if script in ("", "-c", "-m", "-") or sys.version_info < (3, 8):
+        return ""
+    return script if os.path.isfile(script) else ""
+
+
+def _may_be_named(script: str, paths: "list[str]") -> bool:
+    """Whether the static information, as mere text, has the script's name, or it needs a look."""
+    try:
+        with open(script, "rb") as stream:
+            head = stream.read(_ENTRY_BYTES + 1)
+        if len(head) <= _ENTRY_BYTES and b"sys.exit(" in head:
+            return True
+        names = {os.path.basename(path) for path in (script, os.path.realpath(script))}
+        if any(map(os.path.isdir, paths)) or not all(map(str.isascii, names)):
+            return True
+        for path in paths:
+            with open(path, "rb") as stream:
+                text = stream.read()
+            if any(_is_in(text, name.encode()) for name in names):
+                return True
+    except OSError:
+        # What reads it in earnest says so.
+        return True
+    return False
+
+
+def _is_in(text: bytes, name: bytes) -> bool:
+    """Whether a JSON string is this name, or ends with it behind a slash, with .py or without."""
+    stem = name[:-3] if name.endswith(b".py") else name
+    for mark in (stem + b'"', stem + b'.py"'):
+        place = text.find(mark)
+        while place > 0:
+            if text[place - 1] in b'"/':
+                return True
+            place = text.find(mark, place + 1)
+    return False
+
+
+def _start(script: str, paths: "list[str]") -> None:
+    """Start the script again, where its name is among the static information's."""
     pytpc = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
     root = os.path.dirname(pytpc)
     sys.path.insert(0, root)
@@ -42,7 +85,6 @@ def _start() -> None:
         from pytpc.pyhook.listed import names_script  # noqa: PLC0415
     finally:
         sys.path.remove(root)
-    paths = [path for path in os.environ.get("TPC_STATIC", "").split(os.pathsep) if path]
     try:
         if not names_script(paths, script):
             return
@@ -57,6 +99,12 @@ def _start() -> None:
     os.execv(sys.executable, [sys.executable, *flags, run, "--", script, *sys.argv[1:]])
 
 
+def _begin() -> None:
+    script = _script()
+    paths = [path for path in os.environ.get("TPC_STATIC", "").split(os.pathsep) if path]
+    if script and _may_be_named(script, paths):
+        _start(script, paths)
+
+
 _hidden()
-if _is_wanted():
-    _start()
+_begin()

@@ -6,8 +6,8 @@
 
 #include <image_capture/Observation.h>
 #include <ros/ros.h>
+#include <simulated_world/noise.h>
 
-#include "image_capture/noise.h"
 #include "image_capture/uav_dynamics.h"
 
 namespace image_capture {
@@ -42,7 +42,7 @@ private:
                double response, Observation &image);
   void schedulePhantom(double after);
 
-  Noise noise_;
+  simulated_world::Noise noise_;
   Phantom phantom_;
   bool phantom_placed_ = false;
   std::uint32_t images_ = 0;

@@ -9,6 +9,8 @@
 #include <image_capture/CapturePicture.h>
 #include <image_capture/Picture.h>
 #include <ros/ros.h>
+#include <simulated_world/noise.h>
+#include <simulated_world/simulated_clock.h>
 
 #include "image_capture/camera_model.h"
 #include "image_capture/uav_dynamics.h"
@@ -28,30 +30,22 @@ private:
   bool onCapture(CapturePicture::Request &request,
                  CapturePicture::Response &response);
   void tick();
-  void waitForController();
-  double commandLag() const;
-  void publishClock();
+  void waitForPilot();
   void publishTruth();
   Picture makePicture(std::size_t bytes);
-  double now() const { return static_cast<double>(ticks_) * Step; }
-  ros::Time stamp() const;
-  bool every(double seconds) const;
 
-  static constexpr double Step = 0.01; ///< of simulated time, s
-
+  simulated_world::SimulatedClock clock_;
+  simulated_world::Lockstep controller_;
   UavDynamics dynamics_;
   CameraModel camera_;
-  Noise pixels_;
-  ros::Publisher clock_pub_, sensors_pub_, observation_pub_;
+  simulated_world::Noise pixels_;
+  ros::Publisher sensors_pub_, observation_pub_;
   ros::Publisher picture_pub_, preview_pub_;
   ros::Publisher uav_truth_pub_, person_truth_pub_;
   ros::Subscriber command_sub_;
   ros::ServiceServer capture_server_;
 
   AttitudeCommand command_;
-  std::int64_t ticks_ = 0;
-  std::int64_t sensor_ticks_ = 0;
-  std::int64_t command_ticks_ = -1;
   double rate_;
   double sensor_period_;
   double image_period_;

@@ -5,18 +5,9 @@
 namespace image_capture {
 
 namespace {
-constexpr double Gravity = 9.81;
-constexpr double HoverThrust = 0.5;
-constexpr double AttitudeLag = 0.12;
-constexpr double YawLag = 0.15;
-constexpr double Drag = 0.3;
 constexpr double GustDeviation = 0.03; // m/s^2
 constexpr double FullVoltage = 12.4;
 constexpr double EmptyVoltage = 10.2;
-
-double lag(double value, double target, double interval, double constant) {
-  return value + (target - value) * (1.0 - std::exp(-interval / constant));
-}
 } // namespace
 
 UavDynamics::UavDynamics(ros::NodeHandle &private_nh, std::uint32_t seed)
@@ -32,70 +23,37 @@ UavDynamics::UavDynamics(ros::NodeHandle &private_nh, std::uint32_t seed)
 
 void UavDynamics::step(const AttitudeCommand &command, double interval) {
   const bool powered = command.motors_on && !battery_empty_;
-  const double thrust = powered ? command.thrust : 0.0;
-  state_.thrust = lag(state_.thrust, thrust, interval, 0.05);
-  state_.charge -= state_.thrust * interval / battery_seconds_;
   gust_x_.step(noise_, interval);
   gust_y_.step(noise_, interval);
   baro_drift_.step(noise_, interval);
-  if (state_.z > 0.0 || state_.vz > 0.0) {
-    state_.roll = lag(state_.roll, command.roll, interval, AttitudeLag);
-    state_.pitch = lag(state_.pitch, command.pitch, interval, AttitudeLag);
-    state_.yaw_rate = lag(state_.yaw_rate, command.yaw_rate, interval, YawLag);
-    moveSideways(interval);
-  }
-  moveUp(interval);
-}
-
-void UavDynamics::moveSideways(double interval) {
-  const double c = std::cos(state_.yaw);
-  const double s = std::sin(state_.yaw);
-  // A positive pitch speeds up forwards, a positive roll to the left.
-  const double forward = Gravity * std::tan(state_.pitch);
-  const double left = Gravity * std::tan(state_.roll);
-  const double ax = c * forward - s * left - Drag * state_.vx + gust_x_.value();
-  const double ay = s * forward + c * left - Drag * state_.vy + gust_y_.value();
-  state_.vx += ax * interval;
-  state_.vy += ay * interval;
-  state_.x += state_.vx * interval;
-  state_.y += state_.vy * interval;
-  state_.yaw =
-      std::remainder(state_.yaw + state_.yaw_rate * interval, 2.0 * M_PI);
-}
-
-void UavDynamics::moveUp(double interval) {
-  const double lift = state_.thrust / HoverThrust * Gravity *
-                      std::cos(state_.roll) * std::cos(state_.pitch);
-  state_.vz += (lift - Gravity - Drag * state_.vz) * interval;
-  state_.z += state_.vz * interval;
-  if (state_.z <= 0.0 && state_.vz <= 0.0) {
-    state_.z = 0.0;
-    state_.vx = state_.vy = state_.vz = 0.0;
-    state_.roll = state_.pitch = state_.yaw_rate = 0.0;
-  }
+  multirotor_.step({command.roll, command.pitch, command.yaw_rate,
+                    powered ? command.thrust : 0.0},
+                   {gust_x_.value(), gust_y_.value()}, interval);
+  charge_ -= state().thrust * interval / battery_seconds_;
 }
 
 double UavDynamics::voltage() const {
-  const double sag = 0.4 * state_.thrust;
-  return EmptyVoltage + (FullVoltage - EmptyVoltage) * state_.charge - sag;
+  const double sag = 0.4 * state().thrust;
+  return EmptyVoltage + (FullVoltage - EmptyVoltage) * charge_ - sag;
 }
 
 UavSensors UavDynamics::sense(const ros::Time &stamp) {
   battery_empty_ = voltage() < battery_empty_voltage_;
+  const UavState &uav = state();
   UavSensors sensors;
   sensors.header.stamp = stamp;
-  sensors.gps_x = state_.x + noise_.gaussian(0.008);
-  sensors.gps_y = state_.y + noise_.gaussian(0.008);
+  sensors.gps_x = uav.x + noise_.gaussian(0.008);
+  sensors.gps_y = uav.y + noise_.gaussian(0.008);
   sensors.gps_valid = !noise_.chance(gps_dropout_);
-  sensors.flow_x = state_.vx + noise_.gaussian(0.05);
-  sensors.flow_y = state_.vy + noise_.gaussian(0.05);
-  sensors.baro_z = state_.z + baro_drift_.value() + noise_.gaussian(0.02);
-  const double slant = std::cos(state_.roll) * std::cos(state_.pitch);
-  sensors.sonar_range = state_.z / slant + noise_.gaussian(0.01);
-  sensors.roll = state_.roll + noise_.gaussian(0.003);
-  sensors.pitch = state_.pitch + noise_.gaussian(0.003);
-  sensors.yaw = state_.yaw + noise_.gaussian(0.003);
-  sensors.yaw_rate = state_.yaw_rate + noise_.gaussian(0.005);
+  sensors.flow_x = uav.vx + noise_.gaussian(0.05);
+  sensors.flow_y = uav.vy + noise_.gaussian(0.05);
+  sensors.baro_z = uav.z + baro_drift_.value() + noise_.gaussian(0.02);
+  const double slant = std::cos(uav.roll) * std::cos(uav.pitch);
+  sensors.sonar_range = uav.z / slant + noise_.gaussian(0.01);
+  sensors.roll = uav.roll + noise_.gaussian(0.003);
+  sensors.pitch = uav.pitch + noise_.gaussian(0.003);
+  sensors.yaw = uav.yaw + noise_.gaussian(0.003);
+  sensors.yaw_rate = uav.yaw_rate + noise_.gaussian(0.005);
   sensors.battery_voltage = voltage() + noise_.gaussian(0.03);
   return sensors;
 }

@@ -6,6 +6,8 @@
 #include <cstdint>
 
 #include <ros/ros.h>
+#include <simulated_world/simulated_clock.h>
+#include <water_sampler/WayPose.h>
 
 #include "water_sampler/uav_dynamics.h"
 #include "water_sampler/water_model.h"
@@ -22,28 +24,22 @@ public:
 
 private:
   void onCommand(const AttitudeCommand &command);
-  void onDrive(const PumpDrive &drive) { drive_ = drive; }
+  void onDrive(const PumpDrive &drive);
+  void onWayPose(const WayPose &waypose);
   void waitForPilot();
-  void waitForController();
   void tick();
   void publishTruth();
-  double now() const { return static_cast<double>(ticks_) * Step; }
-  ros::Time stamp() const;
-  bool every(double seconds) const;
 
-  static constexpr double Step = 0.01; ///< of simulated time, s
-
+  simulated_world::SimulatedClock clock_;
+  simulated_world::Lockstep controller_, mission_, pump_;
   UavDynamics dynamics_;
   WaterModel water_;
-  ros::Publisher clock_pub_, sensors_pub_, sampler_pub_;
+  ros::Publisher sensors_pub_, sampler_pub_;
   ros::Publisher uav_truth_pub_, sampler_truth_pub_, filled_pub_;
-  ros::Subscriber command_sub_, drive_sub_;
+  ros::Subscriber command_sub_, drive_sub_, waypose_sub_;
 
   AttitudeCommand command_;
   PumpDrive drive_;
-  std::int64_t ticks_ = 0;
-  std::int64_t sensor_ticks_ = 0;
-  std::int64_t command_ticks_ = -1;
   double rate_;
   double sensor_period_;
   double sampler_period_;

@@ -5,21 +5,14 @@
 #include <cstdint>
 
 #include <ros/ros.h>
+#include <simulated_world/multirotor.h>
+#include <simulated_world/noise.h>
 #include <water_sampler/AttitudeCommand.h>
 #include <water_sampler/UavSensors.h>
 
-#include "water_sampler/noise.h"
-
 namespace water_sampler {
 
-/// World frame, m, m/s, rad.
-struct UavState {
-  double x = 0.0, y = 0.0, z = 0.0;
-  double vx = 0.0, vy = 0.0, vz = 0.0;
-  double roll = 0.0, pitch = 0.0;
-  double thrust = 0.0;
-  double charge = 1.0; ///< of the battery, 0 to 1
-};
+using UavState = simulated_world::MultirotorState;
 
 class UavDynamics {
 public:
@@ -28,18 +21,18 @@ public:
   void step(const AttitudeCommand &command, double interval);
   /// `surface` is the height of what is below the UAV, m.
   UavSensors sense(const ros::Time &stamp, double surface);
-  const UavState &state() const { return state_; }
+  const UavState &state() const { return multirotor_.state(); }
 
 private:
   double voltage() const;
-  void moveSideways(double interval);
-  void moveUp(double interval);
+  simulated_world::Wind wind() const;
 
-  Noise noise_;
-  Drift gust_x_{0.03, 2.0};
-  Drift gust_y_{0.03, 2.0};
-  Drift baro_drift_{0.02, 20.0};
-  UavState state_;
+  simulated_world::Noise noise_;
+  simulated_world::SlowNoise gust_x_{0.03, 2.0};
+  simulated_world::SlowNoise gust_y_{0.03, 2.0};
+  simulated_world::SlowNoise baro_drift_{0.02, 20.0};
+  simulated_world::Multirotor multirotor_;
+  double charge_ = 1.0; ///< of the battery, 0 to 1
   double wind_x_;
   double wind_y_;
   double battery_seconds_;

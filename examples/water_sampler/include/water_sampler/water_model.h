@@ -5,11 +5,11 @@
 #include <cstdint>
 
 #include <ros/ros.h>
+#include <simulated_world/noise.h>
 #include <water_sampler/PumpDrive.h>
 #include <water_sampler/SamplerSensors.h>
 #include <water_sampler/SamplerTruth.h>
 
-#include "water_sampler/noise.h"
 #include "water_sampler/uav_dynamics.h"
 
 namespace water_sampler {
@@ -31,7 +31,7 @@ private:
   void spray(double interval);
   void pump(const PumpDrive &drive, double interval);
 
-  Noise noise_;
+  simulated_world::Noise noise_;
   double tip_x_ = 0.0, tip_y_ = 0.0, tip_z_ = 0.0;
   double spray_left_ = 0.0;  ///< of the burst that wets the tip, s
   double spray_pause_left_;  ///< until the next burst, s

@@ -12,7 +12,7 @@ constexpr double SilentStep = 0.3; // m
 ControllerNode::ControllerNode(ros::NodeHandle &nh, ros::NodeHandle &private_nh)
     : estimator_(private_nh), position_controller_(private_nh),
       height_controller_(private_nh), safety_(nh, private_nh) {
-  private_nh.param("waypose_idle_timeout", waypose_idle_timeout_, 1.5);
+  private_nh.param("waypose_idle_timeout", waypose_idle_timeout_, 4.0);
   command_pub_ = nh.advertise<AttitudeCommand>("/uav/command", 10);
   state_pub_ = nh.advertise<FlightState>("/controller/state", 10);
   waypose_sub_ =

@@ -66,9 +66,9 @@ void WaterModel::spray(double interval) {
   spray_pause_left_ -= interval;
   if (spray_pause_left_ > 0.0)
     return;
-  spray_left_ = noise_.between(0.3, 0.6);
-  spray_pause_left_ = SprayPause * noise_.between(0.5, 1.5);
-  spray_level_ = WaterConductivity * noise_.between(0.7, 0.9);
+  spray_left_ = noise_.uniform(0.3, 0.6);
+  spray_pause_left_ = SprayPause * noise_.uniform(0.5, 1.5);
+  spray_level_ = WaterConductivity * noise_.uniform(0.7, 0.9);
 }
 
 void WaterModel::pump(const PumpDrive &drive, double interval) {

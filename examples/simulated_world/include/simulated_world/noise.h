@@ -1,12 +1,12 @@
-// Seeded noise for the simulator.
-#ifndef IMAGE_CAPTURE_NOISE_H
-#define IMAGE_CAPTURE_NOISE_H
+// Seeded noise for the simulators.
+#ifndef SIMULATED_WORLD_NOISE_H
+#define SIMULATED_WORLD_NOISE_H
 
 #include <cmath>
 #include <cstdint>
 #include <random>
 
-namespace image_capture {
+namespace simulated_world {
 
 class Noise {
 public:
@@ -36,6 +36,7 @@ private:
 /// Noise with a memory (Ornstein and Uhlenbeck): gusts, drift of a barometer.
 class SlowNoise {
 public:
+  /// `deviation` in the unit of the value, `time_constant` in s.
   SlowNoise(double deviation, double time_constant)
       : deviation_(deviation), time_constant_(time_constant) {}
 
@@ -55,6 +56,6 @@ private:
   double value_ = 0.0;
 };
 
-} // namespace image_capture
+} // namespace simulated_world
 
-#endif // IMAGE_CAPTURE_NOISE_H
+#endif // SIMULATED_WORLD_NOISE_H

@@ -1,0 +1,1 @@
+"""What the scripted observers of the examples share."""

@@ -1,0 +1,99 @@
+"""The command for one's own shell: ``env``."""
+
+from __future__ import annotations
+
+import os
+import shlex
+from pathlib import Path
+
+import click
+
+from pytpc.build import workspace_env
+from pytpc.cli.console import warn
+from pytpc.cli.options import PATH
+from pytpc.errors import InputError, WorkspaceError
+from pytpc.paths import MERGED_FILE, OWN_FOLDER
+from pytpc.python_env import has_python, with_python, without_python
+from pytpc.shell_words import SHELLS, Change
+
+_SPACES = (f"{OWN_FOLDER}/install", "install", "devel")
+
+
+@click.command("env")
+@click.argument("source", type=PATH, required=False)
+@click.option("--off", is_flag=True, help="Print what undoes it; no SOURCE is needed.")
+@click.option("--setup", is_flag=True, help="With what the workspace's own setup.bash sets.")
+@click.option(
+    "--shell",
+    type=click.Choice(SHELLS),
+    default=SHELLS[0],
+    show_default=True,
+    help="sh stands for bash, zsh and all that are like it.",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print a JSON object.")
+def env_command(*, source: Path | None, off: bool, setup: bool, shell: str, as_json: bool) -> None:
+    """Print what lets the Python nodes report that are started from this shell.
+
+    \b
+    eval "$(pytpc env WORKSPACE)"; roslaunch ...      bash, zsh
+    pytpc env WORKSPACE --shell fish | source         fish
+
+    SOURCE is a workspace, or its static.json; without it static.json in this folder, else the
+    workspace that this folder is. However the workspace was built, nothing is built anew.
+    """
+    if off and setup:
+        raise click.UsageError("--off undoes what env sets, and not what setup.bash does")
+    before = dict(os.environ)
+    after = without_python(before) if off else _on(source, before, setup=setup)
+    change = Change.between(before, after)
+    click.echo(change.json() if as_json else change.text(shell), nl=False)
+
+
+def _on(source: Path | None, before: dict[str, str], *, setup: bool) -> dict[str, str]:
+    static = static_file(source)
+    after = before
+    if setup:
+        after = {**before, **workspace_env(_installed(source or Path()), before)}
+    if not has_python(static):
+        warn(f"{static}: no comparisons in Python, so that there is nothing to set")
+        return after
+    return with_python(after, static)
+
+
+def static_file(source: Path | None) -> Path:
+    """The file of static information that SOURCE stands for.
+
+    Raises:
+        InputError: there is no such file or folder.
+        WorkspaceError: the folder has none; the message has the command that makes it.
+    """
+    here = Path(MERGED_FILE)
+    if source is None:
+        source = here if here.is_file() else Path()
+    if source.is_file():
+        return source
+    if not source.is_dir():
+        raise InputError("no such file or folder", source)
+    static = source / OWN_FOLDER / MERGED_FILE
+    if not static.is_file():
+        raise WorkspaceError(
+            f"no {OWN_FOLDER}/{MERGED_FILE} here; build with `pytpc build`, or make it of what"
+            f" another build left: pytpc collect {shlex.quote(str(source))} -o"
+            f" {shlex.quote(str(static))}",
+            source,
+        )
+    return static
+
+
+def _installed(workspace: Path) -> Path:
+    found = [folder for folder in (workspace / name for name in _SPACES) if _has_setup(folder)]
+    if not found:
+        raise WorkspaceError(f"no setup.bash in {', '.join(_SPACES)}", workspace)
+    return found[0]
+
+
+def _has_setup(folder: Path) -> bool:
+    return (folder / "setup.bash").is_file()
+
+
+COMMANDS: list[click.Command] = [env_command]

@@ -1,0 +1,191 @@
+"""How the hook stays unseen: by tracers, and where a signal's handler raises within it.
+
+A debugger, a profiler and coverage are told of every Python frame. The functions of the hook are
+Python, but there is one kind of function that CPython runs with tracing off: a hook of ``sys.audit``.
+`Quiet` is a class whose instances are made by C alone: ``Quiet(function, a, b)`` lets the audit hook
+call ``function(a, b)`` and keeps the iterator that it gives.
+
+Every audit event of a process costs more once it has a hook in Python (some 0.2 us). So there is
+none until the program imports a tracer, or has one; and only when that begins to trace do the sites
+change to `Quiet`.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from functools import lru_cache, partial
+from itertools import chain
+from operator import attrgetter
+from typing import TYPE_CHECKING, Any
+from weakref import WeakSet
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from types import TracebackType
+
+    # Gives an iterator, whose next element is what the function comes to, or which raises.
+    Function = Callable[..., Iterator[Any]]
+
+_REPORT = "tpc.report"
+_TRACING = frozenset({"sys.settrace", "sys.setprofile", "sys.monitoring.register_callback"})
+# Modules without which few programs trace.
+TRACERS = frozenset(
+    {
+        "_pydevd_bundle", "bdb", "cProfile", "coverage", "debugpy", "hunter", "line_profiler",
+        "profile", "pydevd", "pyinstrument", "pysnooper", "trace", "viztracer", "yappi",
+    }
+)  # fmt: skip
+_FOLDER = os.path.dirname(os.path.abspath(__file__))
+
+
+def _method(function: Callable[..., Any]) -> Any:  # noqa: ANN401
+    """A method in C. The wrapper of ``lru_cache`` is what C has that binds its object."""
+    return lru_cache(maxsize=0)(function)
+
+
+class Quiet:
+    """``Quiet(function, *arguments)``: what the function gives, which was called unseen."""
+
+    __slots__ = ("given",)
+    __init__ = _method(partial(sys.audit, _REPORT))
+    __iter__ = _method(attrgetter("given"))
+    # For `quiet.__next__()`, as the rewritten program has it.
+    __next__ = property(attrgetter("given.__next__"))
+
+
+def _hook(event: str, arguments: tuple[Any, ...]) -> None:
+    if event == _REPORT:
+        quiet, function, *rest = arguments
+        try:
+            quiet.given = function(*rest)
+        except BaseException as error:
+            quiet.given = raising(error)
+    elif event in _TRACING:
+        begin()
+
+
+class _State:
+    """Whether there is an audit hook, and whether calls go through it."""
+
+    is_watching = False
+    is_quiet = False
+
+
+class Site:
+    """What a place calls: attributes that are functions, each of which gives an iterator."""
+
+    __slots__ = ("__weakref__", "_names")
+
+    def offer(self, **functions: Function) -> None:
+        """Let these be the attributes."""
+        self._names = tuple(functions)
+        for name, function in functions.items():
+            setattr(self, name, hidden(function))
+
+    def be_quiet(self) -> None:
+        """From now on no tracer sees them."""
+        for name in self._names:
+            setattr(self, name, partial(Quiet, getattr(self, name)))
+
+
+_SITES: WeakSet[Site] = WeakSet()
+
+
+def keep(site: Site) -> None:
+    """Let ``site`` be told when tracing begins."""
+    _SITES.add(site)
+
+
+def hidden(function: Function) -> Function:
+    """What is to be called in the place of ``function`` now."""
+    return partial(Quiet, function) if _State.is_quiet else function
+
+
+# An iterator over what an iterator over iterators comes to.
+flat = chain.from_iterable
+
+
+def watch() -> None:
+    """The program has a tracer, or imports one."""
+    if not _State.is_watching:
+        _State.is_watching = True
+        sys.addaudithook(_hook)
+    if sys.gettrace() is not None or sys.getprofile() is not None:
+        begin()
+
+
+def watch_if_traced() -> None:
+    """At the start: where the interpreter was started by a tracer, or has one."""
+    if sys.gettrace() is not None or sys.getprofile() is not None or TRACERS & sys.modules.keys():
+        watch()
+
+
+def begin() -> None:
+    """No tracer sees the functions of the hook from now on."""
+    if not _State.is_quiet:
+        _State.is_quiet = True
+        for site in list(_SITES):
+            site.be_quiet()
+
+
+def caller() -> int:
+    """Which frame of the program has called the function that asks."""
+    frame = sys._getframe(2)
+    if frame.f_code is _hook.__code__ and frame.f_back is not None:
+        frame = frame.f_back
+    return id(frame)
+
+
+# --- what a signal's handler raises
+
+
+def _nothing() -> Iterator[None]:
+    return
+    yield
+
+
+def raising(error: BaseException) -> Iterator[Any]:
+    """An iterator that raises what came from outside, as if it had come in the program's line.
+
+    `throw` of a generator that is through raises without a frame of its own.
+    """
+    error.__traceback__ = foreign_frames(error.__traceback__)
+    over = _nothing()
+    next(over, None)
+    return map(over.throw, (error,))
+
+
+def foreign_frames(traceback: TracebackType | None) -> TracebackType | None:
+    """A traceback without the frames of this folder at its begin."""
+    while traceback is not None:
+        file = traceback.tb_frame.f_code.co_filename
+        if os.path.dirname(os.path.abspath(file)) != _FOLDER:
+            break
+        traceback = traceback.tb_next
+    return traceback
+
+
+def is_programs(error: Exception) -> bool:
+    """Whether an error that came up in the hook is not the hook's, nor that of what it calls.
+
+    It may come up anywhere: raised by a handler of the program's for a signal, as a time-out is, or
+    by another thread.
+    """
+    import signal  # noqa: PLC0415
+
+    handlers = set()
+    for number in signal.valid_signals():
+        handler: Any = signal.getsignal(number)
+        handler = getattr(handler, "func", handler)
+        for function in (handler, getattr(type(handler), "__call__", None)):
+            code = getattr(function, "__code__", None)
+            if code is not None:
+                handlers.add(code)
+    traceback = error.__traceback__
+    while traceback is not None:
+        if traceback.tb_frame.f_code in handlers:
+            return True
+        traceback = traceback.tb_next
+    is_plain = type(error).__module__ in ("builtins", "struct")
+    return not is_plain and foreign_frames(error.__traceback__) is None

@@ -1,0 +1,87 @@
+"""Source files of Python: their text, their syntax tree, and why there is none."""
+
+from __future__ import annotations
+
+import ast
+import re
+import stat
+import tokenize
+import warnings
+from pathlib import Path
+
+from pytpc.errors import InputError
+
+# What is no Python 3, line by line, each with what it is called.
+_PYTHON_2 = [
+    (re.compile(r"^[^#'\"]*?(?:^|[\s:;])print\s+(?!=)[\w'\"(%>]"), "print without parentheses"),
+    (re.compile(r"^\s*except\s+[\w.()\s,]*\w\s*,\s*\w+\s*:"), "except with a comma"),
+    (re.compile(r"^\s*raise\s+[\w.]+\s*,"), "raise with a comma"),
+    (re.compile(r"^\s*exec\s+[\w'\"]"), "exec without parentheses"),
+    (re.compile(r"^[^#'\"]*<>"), "<>"),
+    (re.compile(r"^[^#'\"]*`[^`]+`"), "backquotes"),
+    (re.compile(r"^[^#'\"]*(?<![\w.])0[0-7]+(?![\w.])"), "an octal number"),
+    (re.compile(r"^[^#'\"]*(?<!\w)\d+[lL](?!\w)"), "a long number"),
+    (re.compile(r"^[^#'\"]*(?<!\w)[uU][rR]['\"]"), "a text of Python 2"),
+    (re.compile(r"^\s*def\s+\w+\s*\([^)]*\([\w\s,]+\)\s*[,)=]"), "a tuple among parameters"),
+]
+
+
+def read_source(path: Path) -> str:
+    r"""The text of a source file, by the encoding that it declares; lines end with ``\n``.
+
+    Raises:
+        InputError: it cannot be read or decoded, or is no file.
+    """
+    try:
+        if not stat.S_ISREG(path.stat().st_mode):
+            raise InputError("no ordinary file", path)
+        with tokenize.open(path) as file:
+            return file.read()
+    except OSError as error:
+        raise InputError(f"cannot be read: {error.strerror or error}", path) from None
+    except (SyntaxError, UnicodeDecodeError, LookupError) as error:
+        raise InputError(f"cannot be decoded: {error}", path) from None
+
+
+def lines_of(source: str) -> list[str]:
+    r"""The lines as Python counts them: form feeds and the like end none.
+
+    Args:
+        source: a text whose lines end with ``\n``.
+    """
+    return source.split("\n")
+
+
+def parse(path: Path) -> tuple[str, ast.Module]:
+    """The text and the syntax tree of a source file.
+
+    Raises:
+        InputError: it cannot be read, or is no Python 3, with the line.
+    """
+    source = read_source(path)
+    try:
+        with warnings.catch_warnings():
+            # What Python has to say of the user's texts (`"\d"`) is not ours to say.
+            warnings.simplefilter("ignore")
+            return source, ast.parse(source, str(path))
+    except SyntaxError as error:
+        raise InputError(f"not Python 3: {_why(source, error)}", path, error.lineno) from None
+    except (ValueError, RecursionError, MemoryError) as error:
+        raise InputError(f"cannot be parsed: {error}", path) from None
+
+
+def _why(source: str, error: SyntaxError) -> str:
+    said = error.msg or "it cannot be parsed"
+    old = _python_2(source, error.lineno)
+    return f"it looks like Python 2 ({old}) and needs Python 3" if old else said
+
+
+def _python_2(source: str, lineno: int | None) -> str | None:
+    """What on the faulty line, or else on that before it, is Python 2."""
+    lines = lines_of(source)
+    number = lineno or 0
+    for line in (lines[number - 1 : number], lines[max(number - 2, 0) : number - 1]):
+        for pattern, name in _PYTHON_2:
+            if line and pattern.search(line[0]):
+                return name
+    return None
