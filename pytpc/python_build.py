@@ -72,7 +72,11 @@ def python_of_build(
             fresh = analyse_scripts(scripts, rules, on_progress)
             units = write_units(build_base, named_beside(fresh.units, names))
             found = PythonUnits(tuple(units), fresh.left_out)
-            save_kept(kept_file, build_base, digest, found)
+            if any(unit.status == "failed" for unit in units):
+                # It may have been the time that it took: a machine is not always as busy.
+                kept_file.unlink(missing_ok=True)
+            else:
+                save_kept(kept_file, build_base, digest, found)
     others = _others(build_base, packages, chosen, found)
     return PythonUnits((*found.units, *others), found.left_out)
 

@@ -5,6 +5,7 @@
 
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -236,6 +237,21 @@ def test_other_wishes_are_analysed_again(workspace: Path, analysed: list[str]) -
     assert files(workspace) == []
     built(workspace, "camera", tests=True)
     assert len(analysed) == 12
+
+
+def test_what_failed_is_tried_again(workspace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The time that a script may take is another one on a busy machine."""
+    nothing = {"parameters": (), "exposing": (), "comparisons": ()}
+
+    def fail(entry: Entry, *how: Any) -> LinkUnit:
+        unit = analyse_entry(entry, *how)
+        why = {"status": "failed", "failure": "it took more than 120 s"}
+        return replace(unit, not_exposed=(), blind_spots=(), **nothing, **why)
+
+    with monkeypatch.context() as patched:
+        patched.setattr(python_units, "analyse_entry", fail)
+        assert {each.status for each in built(workspace).units} == {"failed"}
+    assert {each.status for each in built(workspace).units} == {"ok"}
 
 
 def test_a_package_that_is_reached_by_a_link(workspace: Path) -> None:
