@@ -67,12 +67,15 @@ def python_of_build(
         if kept is not None:
             found = kept
         else:
-            scripts = scripts_of(workspace, [one.path for one in chosen], rules, tests=tests)
+            roots = [package.path for package in chosen]
+            scripts = scripts_of(workspace, roots, rules, tests=tests)
             fresh = analyse_scripts(scripts, rules, on_progress)
             units = write_units(build_base, named_beside(fresh.units, names))
             found = PythonUnits(tuple(units), fresh.left_out)
-            # A failure may come of a busy machine: it is tried again.
-            if all(unit.status == "ok" for unit in units):
+            if any(unit.status == "failed" for unit in units):
+                # It may have been the time that it took: a machine is not always as busy.
+                kept_file.unlink(missing_ok=True)
+            else:
                 save_kept(kept_file, build_base, digest, found)
     others = _others(build_base, packages, chosen, found)
     return PythonUnits((*found.units, *others), found.left_out)

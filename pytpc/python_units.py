@@ -6,7 +6,7 @@ The room between ``pynodes``, which analyses one script, and what builds and col
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import count
 from pathlib import Path
@@ -80,10 +80,8 @@ def scripts_of(
     roots = {os.path.realpath(package): package.absolute() for package in packages}
     faults: list[InputError] = []
     found: dict[tuple[Path, str], Entry] = {}
-    places = [workspace, *_linked(workspace, roots)]
-    if tests:
-        places += [folder for root in roots.values() for folder in _test_folders(root)]
-    for place in places:
+    below = (folder for root in roots.values() for folder in _test_folders(root))
+    for place in (workspace, *(below if tests else ())):
         for entry in entries(place, faults.append, rules, [workspace]):
             if os.path.realpath(entry.root) in roots:
                 found.setdefault((entry.script, entry.name), entry)
@@ -229,14 +227,6 @@ def _is_workspace(folder: Path) -> bool:
     if not folder.is_dir() or (folder / "CMakeCache.txt").is_file():
         return False
     return next(package_folders(folder), None) is not None
-
-
-def _linked(workspace: Path, roots: Mapping[str, Path]) -> Iterator[Path]:
-    """The packages, by their real paths, that are reached by a symbolic link in the workspace."""
-    real_workspace = Path(os.path.realpath(workspace))
-    for real, root in roots.items():
-        if Path(real) != real_workspace / root.relative_to(workspace.absolute()):
-            yield root
 
 
 def _test_folders(root: Path) -> Iterator[Path]:

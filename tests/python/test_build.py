@@ -302,7 +302,7 @@ def test_python_alone_needs_neither_a_compiler_nor_our_half_in_c(
 def test_broken_rules_for_python_end_a_build_before_it_begins(workspace: Path) -> None:
     rules = workspace / "python.json"
     rules.write_text('{"reeds": []}', encoding="utf-8")
-    with pytest.raises(InputError, match=r"python\.json: /reeds: "):
+    with pytest.raises(InputError, match=r"python\.json: /.*reeds"):
         build_workspace(workspace, python_rules=rules)
     assert not (workspace / ".tpc").exists()
 

@@ -81,7 +81,8 @@ def test_a_place_without_a_condition() -> None:
 
 
 def analysed(workspace: Path) -> StaticInfo:
-    return StaticInfo.of(analyse_scripts(scripts_at(workspace), load_rules()).units)
+    rules = load_rules()
+    return StaticInfo.of(analyse_scripts(scripts_at(workspace, rules), rules).units)
 
 
 def texts(static: StaticInfo) -> list[tuple[str | None, str]]:

@@ -5,7 +5,9 @@
 
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 from click.testing import CliRunner
@@ -18,7 +20,7 @@ from pytpc.collecting import collect_sources
 from pytpc.link_unit import LinkUnit
 from pytpc.pynodes.analysis import analyse_entry
 from pytpc.pynodes.packages import Entry
-from pytpc.pynodes.rules_file import Rules, load_rules
+from pytpc.pynodes.rules_file import load_rules
 from pytpc.python_build import python_of_build
 from pytpc.python_units import PythonUnits, analyse_workspaces, named_beside
 from pytpc.static_info import StaticInfo, load_link_unit, unit_files
@@ -180,9 +182,9 @@ def analysed(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """The scripts that were analysed, one after another."""
     log: list[str] = []
 
-    def analyse(entry: Entry, rules: Rules) -> LinkUnit:
+    def analyse(entry: Entry, *how: Any) -> LinkUnit:
         log.append(entry.name)
-        return analyse_entry(entry, rules)
+        return analyse_entry(entry, *how)
 
     monkeypatch.setattr(python_units, "analyse_entry", analyse)
     return log
@@ -235,6 +237,21 @@ def test_other_wishes_are_analysed_again(workspace: Path, analysed: list[str]) -
     assert files(workspace) == []
     built(workspace, "camera", tests=True)
     assert len(analysed) == 12
+
+
+def test_what_failed_is_tried_again(workspace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The time that a script may take is another one on a busy machine."""
+    nothing = {"parameters": (), "exposing": (), "comparisons": ()}
+
+    def fail(entry: Entry, *how: Any) -> LinkUnit:
+        unit = analyse_entry(entry, *how)
+        why = {"status": "failed", "failure": "it took more than 120 s"}
+        return replace(unit, not_exposed=(), blind_spots=(), **nothing, **why)
+
+    with monkeypatch.context() as patched:
+        patched.setattr(python_units, "analyse_entry", fail)
+        assert {each.status for each in built(workspace).units} == {"failed"}
+    assert {each.status for each in built(workspace).units} == {"ok"}
 
 
 def test_a_package_that_is_reached_by_a_link(workspace: Path) -> None:
