@@ -236,3 +236,14 @@ def test_a_workspace_that_is_found_broken_ends_no_program(static, tmp_path):
     assert said.splitlines()[0].startswith(f"tpc: {built}:1: no JSON")
     assert said.splitlines()[-1] == "many"
     assert reported(static) == []
+
+
+def test_a_node_that_is_called_like_the_runner(static, tmp_path):
+    """`pytpc run` in a shell that did `pytpc env`: the runner is not taken for the node."""
+    document = json.loads(static.read_text())
+    document["units"] = [unit(tmp_path / "src/talk", "run", "nodes/run.py")]
+    static.write_text(json.dumps(document))
+    node = script(tmp_path, "import os\nfrom talk.talker import main\nmain()\n", "run.py")
+    node.write_text(node.read_text() + "print('TPC_PYTHON_STARTED' in os.environ)\n")
+    assert run(static, sys.executable, RUN, node, "a", "b") == "many\nFalse\n"
+    assert reported(static) == [("of nodes/run.py", 3.0, 2.0)]

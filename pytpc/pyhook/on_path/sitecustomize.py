@@ -79,6 +79,9 @@ def _start(script: str, paths: "list[str]") -> None:
     """Start the script again, where its name is among the static information's."""
     pytpc = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
     root = os.path.dirname(pytpc)
+    run = os.path.join(pytpc, "run.py")
+    if os.path.realpath(script) == os.path.realpath(run):
+        return
     sys.path.insert(0, root)
     try:
         from pytpc.errors import TpcError  # noqa: PLC0415
@@ -94,7 +97,6 @@ def _start(script: str, paths: "list[str]") -> None:
     from subprocess import _args_from_interpreter_flags  # type: ignore[attr-defined]  # noqa: PLC0415
 
     os.environ["TPC_PYTHON_STARTED"] = str(os.getpid())
-    run = os.path.join(pytpc, "run.py")
     flags = _args_from_interpreter_flags()
     os.execv(sys.executable, [sys.executable, *flags, run, "--", script, *sys.argv[1:]])
 
