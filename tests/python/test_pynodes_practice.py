@@ -487,7 +487,8 @@ def test_a_circle_of_values_is_gone_through_once(tmp_path: Path) -> None:
         for of in range(_COUNT)
         if to != of
     ]
-    lines = ["class Node:", "    def __init__(self):", "        self.x0 = rospy.get_param('~limit')"]
+    lines = ["class Node:", "    def __init__(self):"]
+    lines += ["        self.x0 = rospy.get_param('~limit')"]
     lines += [*copies, "    def cb(self, msg):"]
     lines += [f"        if 3.0 < self.x{_COUNT - 1}:", "            pub.publish(msg)"]
     lines += ["node = Node()", "rospy.Subscriber('in', Float64, node.cb)"]
