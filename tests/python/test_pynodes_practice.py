@@ -444,6 +444,19 @@ SAMPLES = {
                     pub.publish(msg)
         rospy.Subscriber("in", Float64, Node(Config.from_ros()).cb)
     """,
+    "a constant that a function makes of constants": """
+        limit = rospy.get_param("~limit")
+        class Node:
+            def reset(self, msg):
+                global limit
+                limit = max(1.0, 2.0)
+            def cb(self, msg):
+                if 3.0 > limit:  #: ~limit >
+                    pub.publish(msg)
+        node = Node()
+        rospy.Subscriber("a", Float64, node.cb)
+        rospy.Subscriber("b", Float64, node.reset)
+    """,
     "a table of handlers": """
         limits = {"a": rospy.get_param("~a"), "b": rospy.get_param("~b")}
         class Node:
@@ -462,6 +475,25 @@ SAMPLES = {
         Node()
     """,
 }
+
+_COUNT = 16
+
+
+def test_a_circle_of_values_is_gone_through_once(tmp_path: Path) -> None:
+    # Each of 16 attributes may be each other one: the ways through them are 16 factorial.
+    copies = [
+        f"    def m{to}_{of}(self):\n        self.x{to} = self.x{of}"
+        for to in range(_COUNT)
+        for of in range(_COUNT)
+        if to != of
+    ]
+    lines = ["class Node:", "    def __init__(self):"]
+    lines += ["        self.x0 = rospy.get_param('~limit')"]
+    lines += [*copies, "    def cb(self, msg):"]
+    lines += [f"        if 3.0 < self.x{_COUNT - 1}:", "            pub.publish(msg)"]
+    lines += ["node = Node()", "rospy.Subscriber('in', Float64, node.cb)"]
+    unit = analysed("\n".join(lines) + "\n", tmp_path)
+    assert [(each.source, each.relation) for each in unit.comparisons] == [("~limit", "<")]
 
 
 @pytest.mark.parametrize("name", SAMPLES)
