@@ -4,8 +4,8 @@ One loop compares numbers with a parameter. It runs plainly, under the hook with
 a report in the source that makes and publishes a std_msgs/String each, as the thesis's Python nodes
 do. All are rospy nodes on one roscore, with one subscriber on /threshold_information. A cost is the
 processor's time, of all threads of the node, for a comparison, less that of the plain loop in the
-same round; the figure is the median of the rounds, which take turns. Start-up is a script that does nothing, and one that imports rospy, with
-the hook and without it.
+same round; the figure is the median of the rounds, which take turns. Start-up is a script that does
+nothing, and one that imports rospy, with the hook and without it.
 """
 
 from __future__ import annotations
