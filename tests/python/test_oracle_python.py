@@ -10,7 +10,7 @@ from oracle_python.judge import judge
 from oracle_python.runner import Compiled, Run
 from oracle_python.shrink import shrink
 
-SEEDS = range(1, 13)
+SEEDS = range(1, 41)
 
 
 @pytest.mark.parametrize("seed", SEEDS)
