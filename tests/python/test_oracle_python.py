@@ -1,4 +1,4 @@
-"""What runs of random programs show, the analysis of Python says, and it stays fast."""
+"""What runs of random programs show, the analysis of Python says."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from oracle_python.judge import judge
 from oracle_python.runner import Compiled, Run
 from oracle_python.shrink import shrink
 
-SEEDS = range(1, 13)
+SEEDS = range(1, 41)
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -19,7 +19,7 @@ def test_nothing_that_runs_show_is_missed(seed: int, tmp_path: Path) -> None:
 
 
 def test_a_miss_would_be_seen(tmp_path: Path) -> None:
-    # The threshold goes through a function that the analysis takes for one of a library.
+    # The value is the key of a dict, which the analysis does not follow.
     node = (
         "import rospy\nimport math\n"
         "pub = rospy.Publisher('out', float)\n"
