@@ -4,7 +4,8 @@ This room runs inside of the robot's node, under the node's interpreter: Python 
 standard library alone. rospy is used where the program has imported it.
 
 ``listed`` (which comparisons) -> ``find`` (where they are in a module) -> ``rewrite`` (a module
-that reports) -> ``loader``, ``script`` (how it comes to run); ``sites`` (what an evaluation calls)
--> ``runtime`` (what is chosen) -> ``log_file``, ``edges``, ``ros_sinks`` (where reports go).
+that reports) -> ``loader``, ``script`` (how it comes to run); ``quiet`` (unseen by tracers) ->
+``sites`` (what an evaluation calls) -> ``runtime`` (what is chosen) -> ``policies``, ``log_file``,
+``ros_sinks`` (where reports go).
 docs/python-nodes.md has it in words.
 """

@@ -65,12 +65,13 @@ def main(words):
         words.pop(0)
     else:
         sys.path.insert(0, words[0])
-        from pytpc.pyhook import sites  # noqa: PLC0415
+        from pytpc.pyhook import quiet, sites  # noqa: PLC0415
 
         def take(*_):
             reports[0] += 1
 
         sites.set_take(take)
+        quiet.watch()
         sys.meta_path.insert(0, Finder())
         for name in MODULES:
             if name in sys.modules:

@@ -5,8 +5,6 @@ from __future__ import annotations
 import threading
 from types import SimpleNamespace
 
-import pytest
-
 from pytpc.pyhook import ros_state
 from pytpc.pyhook.config import Config
 from pytpc.pyhook.policies import Caps, Edges
@@ -14,12 +12,10 @@ from pytpc.pyhook.ros_sinks import RosoutSink
 from pytpc.pyhook.sites import Reported
 
 
-@pytest.mark.parametrize("policy", ["edges", "caps"])
-def test_a_log_may_wait_for_a_thread_that_compares(policy, monkeypatch) -> None:
+def test_a_log_may_wait_for_a_thread_that_compares(monkeypatch) -> None:
     # As where another thread holds a log's lock while it makes the text of an object.
-    sink, config = RosoutSink(), Config(site_cap=1, policy="edges")
-    caps = Caps(config, sink)
-    take = Edges(config, sink, caps).take if policy == "edges" else caps.take
+    sink, config = RosoutSink(), Config(policy="edges")
+    take = Edges(config, sink, Caps(config, sink)).take
     one, other = Reported("one", 1, False), Reported("other", 2, False)
     lines, ended = [], []
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-# Not test_sys_settrace: a tracer sees the calls of the hook, too (docs/python-nodes.md).
+# Those of tracers see no call of the hook.
 TESTS = [
     "test_bisect", "test_heapq", "test_dict", "test_float", "test_generators", "test_compare",
     "test_richcmp", "test_list", "test_tuple", "test_bool", "test_fractions", "test_dataclasses",
@@ -21,7 +21,8 @@ TESTS = [
     "test_userdict", "test_userlist", "test_textwrap", "test_shlex", "test_difflib", "test_copy",
     "test_ipaddress", "test_calendar", "test_graphlib", "test_deque", "test_opcodes",
     "test_augassign", "test_binop", "test_contains", "test_decorators", "test_enumerate",
-    "test_property", "test_weakset",
+    "test_property", "test_weakset", "test_sys_settrace", "test_sys_setprofile", "test_bdb",
+    "test_trace", "test_cprofile",
 ]  # fmt: skip
 
 
