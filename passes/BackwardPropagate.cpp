@@ -197,10 +197,16 @@ void Slicer::defineMemory(const Value *Pointer, const Instruction &At) {
   Locations Read = Access.resolve(Pointer, true);
   for (Location &L : Read)
     L.widen();
-  for (const Location &L : Read)
-    if (!Access.isSharedBy(L, At, Pointer) || SeenWritten.insert(L))
-      for (Instruction *Write : Access.writesOf(L, At, Pointer))
-        enter(Write, Gives, Why::Writes);
+  for (const Location &L : Read) {
+    if (Access.isSharedBy(L, At, Pointer) && !SeenWritten.insert(L))
+      continue;
+    // What was copied there is among the writes; that it was copied matters,
+    // too.
+    for (Instruction *Copy : Access.copiesTo(L))
+      enter(Copy, Runs, Why::Writes);
+    for (Instruction *Write : Access.writesOf(L, At, Pointer))
+      enter(Write, Gives, Why::Writes);
+  }
 }
 
 /// A value that control flow merges: the predicates that choose between the
