@@ -76,7 +76,7 @@ def test_analysis_finds_what_was_expected_by_hand_in_either_language(robot):
     in_python = "expected_python_tpcs.json"
     wanted = expected("expected_tpcs.json") + expected(in_python)
     assert wanted - found == Counter()
-    # Neither anything else nor what it is known to miss: see "about" in the files.
+    # And nothing else.
     assert found - wanted - expected(in_python, "either") == Counter()
 
 
