@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
 import struct
 import subprocess
@@ -23,7 +24,7 @@ from pytpc.cli.mission_commands import record_command, sink_settings
 from pytpc.demo import TreatedMission, failures, result_table
 from pytpc.demo_examples import IMAGE_CAPTURE, WATER_SAMPLER, Example
 from pytpc.errors import InputError, RunError
-from pytpc.graph import GraphProcess
+from pytpc.graph import GraphProcess, RosGraph
 from pytpc.ingest import Recording
 from pytpc.marks import Mark
 from pytpc.mission import (
@@ -393,6 +394,27 @@ def test_tail_of_a_process_prefers_what_tells_of_an_error(tmp_path):
     log_file.write_text("one\ntwo\nthree\nfour\n")
     assert process.tail(2) == ["three", "four"]
     assert GraphProcess("x", None, tmp_path / "none", 1.0).tail() == []  # type: ignore[arg-type]
+
+
+# roslaunch ends with status 0 when a required node is done: the mission is over, and no error.
+def test_what_may_end_by_itself(tmp_path):
+    graph = RosGraph({"PATH": os.environ["PATH"]}, tmp_path)
+    (tmp_path / "out").mkdir()
+    for status, may_end in ((0, True), (3, True), (0, False)):
+        process = graph.start("one", ["sh", "-c", f"exit {status}"], may_end=may_end)
+        process.popen.wait()
+        is_well = status == 0 and may_end
+        assert process.has_ended_well is is_well
+        if is_well:
+            graph.check()
+        else:
+            with pytest.raises(RunError, match=f"one ended with status {status}"):
+                graph.check()
+        graph.stop(process)
+    running = graph.start("two", ["sleep", "60"], may_end=True)
+    assert not running.has_ended_well
+    graph.check()
+    graph.stop(running)
 
 
 # --- treatments
