@@ -287,9 +287,25 @@ def test_what_was_before_the_first_clock(tmp_path):
     recorder.take(CHAT, struct.pack("<I", 2) + b"hi")
     for seconds in (1000, 1001, 1002):
         recorder.take(CLOCK, struct.pack("<II", seconds, 0))
+    recorder.take(CHAT, struct.pack("<I", 2) + b"yo")
     status = recorder.status()
     assert status.now_ns - status.began_ns == 2_000_000_000
+    recorder.put_early()
     bag.close()
+    with AnyReader([tmp_path / "a.bag"]) as reader:
+        assert [(time, data[4:]) for _, time, data in reader.messages()] == [
+            (1_000_000_000_000, b"hi"),
+            (1_002_000_000_000, b"yo"),
+        ]
+
+
+def test_a_clock_that_never_came(tmp_path):
+    bag = BagFile(tmp_path / "a.bag")
+    recorder = Recorder(bag, ["/chat"], None, sim_time=True)
+    recorder.take(CHAT, struct.pack("<I", 2) + b"hi")
+    recorder.put_early()
+    bag.close()
+    # Tools take an entry at 0 for a broken one.
     with AnyReader([tmp_path / "a.bag"]) as reader:
         assert [time for _, time, _ in reader.messages()] == [1]
 
