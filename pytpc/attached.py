@@ -115,6 +115,7 @@ def record_graph(
             drain(subscriber, recorder)
     finally:
         subscriber.close()
+    recorder.put_early()
     bag.close()
     status = recorder.status(closed=True)
     trace, reason = beginning.ended()

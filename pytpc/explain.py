@@ -106,8 +106,8 @@ def _of_parameter(static: StaticInfo, name: str) -> Explanation:
 
 
 def _same(name: str | None, asked: str) -> bool:
-    """Whether a name is meant; ``~limit`` and ``/arm/limit`` are asked for as ``limit`` too."""
-    return name is not None and (name == asked or re.split("[~/]", name)[-1] == asked)
+    """Whether a name is meant: ``~arm/limit`` is asked for as ``arm/limit`` or ``limit``, too."""
+    return name is not None and (name == asked or bool(re.search(f"[~/]{re.escape(asked)}$", name)))
 
 
 def _nothing_like(static: StaticInfo, name: str) -> str:

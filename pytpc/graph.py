@@ -37,12 +37,21 @@ _ROSOUT = "/usr/lib/rosout/rosout"
 
 @dataclass(frozen=True, slots=True)
 class GraphProcess:
-    """One process that a graph started. ``log`` has both of its output streams."""
+    """One process that a graph started.
+
+    ``log`` has both of its output streams. ``may_end``: that it ends with status 0 is no error.
+    """
 
     name: str
     popen: subprocess.Popen[bytes]
     log: Path
     patience_s: float
+    may_end: bool = False
+
+    @property
+    def has_ended_well(self) -> bool:
+        """True where it may end, and did with status 0."""
+        return self.may_end and self.popen.poll() == 0
 
     def tail(self, lines: int = 3) -> list[str]:
         """The last lines of its output, without colours; those that tell of an error first."""
@@ -126,6 +135,7 @@ class RosGraph:
         *,
         env: Mapping[str, str] | None = None,
         patience_s: float = 5.0,
+        may_end: bool = False,
     ) -> GraphProcess:
         """Start a process in the graph.
 
@@ -134,6 +144,7 @@ class RosGraph:
             argv: program and arguments.
             env: added to the graph's environment.
             patience_s: how long it may take to end after SIGINT.
+            may_end: that it ends by itself with status 0 is no error.
 
         Raises:
             MissingToolError: there is no such program.
@@ -155,19 +166,19 @@ class RosGraph:
                 raise MissingToolError(f"{argv[0]} not found: is ROS 1 installed?") from error
             except OSError as error:
                 raise RunError(f"{argv[0]} cannot be started: {error.strerror}") from error
-        process = GraphProcess(name, popen, log, patience_s)
+        process = GraphProcess(name, popen, log, patience_s, may_end)
         self._processes.append(process)
         return process
 
     def check(self) -> None:
-        """See that all processes still run.
+        """See that all processes still run, but those that may end.
 
         Raises:
             RunError: one has ended; the message has its status and what it said last.
         """
         for process in self._processes:
             status = process.popen.poll()
-            if status is not None:
+            if status is not None and not process.has_ended_well:
                 said = "; ".join(process.tail()) or "it says nothing"
                 raise RunError(f"{process.name} ended with status {status}: {said}", process.log)
 

@@ -62,7 +62,8 @@ class Progress:
 class MissionRun:
     """A mission that was recorded.
 
-    ``ended`` is ``done``, ``timeout`` or ``interrupted``. ``sim_s`` is how long it took on the
+    ``ended`` is ``done``, ``ended`` (roslaunch did, as it does when a required node ends),
+    ``timeout`` or ``interrupted``. ``sim_s`` is how long it took on the
     graph's clock, ``wall_s`` on the wall's. ``lost`` has for each node the messages on /rosout that
     did not reach the bag, ``missed_before`` those from before the recorder was connected to it.
     """
@@ -160,8 +161,8 @@ def run_mission(
         {**reports_to, **install_env}, out_dir / "ros", use_sim_time=use_sim_time
     ) as graph:
         recording = _start_recorder(graph, out_dir, (*DEFAULT_TOPICS, *topics), until)
-        started = graph.start("roslaunch", command, patience_s=_LAUNCH_PATIENCE_S)
-        watch = _Watch(graph, out_dir, began, on_progress)
+        started = graph.start("roslaunch", command, patience_s=_LAUNCH_PATIENCE_S, may_end=True)
+        watch = _Watch(graph, started, out_dir, began, on_progress)
         watch.wait_for_parameters(trace)
         # Without it less is known of where values came from, and that is all.
         with contextlib.suppress(RunError):
@@ -266,11 +267,13 @@ class _Watch:
     def __init__(
         self,
         graph: RosGraph,
+        launched: GraphProcess,
         out_dir: Path,
         began: float,
         on_progress: Callable[[Progress], None] | None,
     ) -> None:
         self._graph = graph
+        self._launched = launched
         self._status_path = _status_file(out_dir)
         self._began = began
         self._on_progress = on_progress
@@ -289,7 +292,7 @@ class _Watch:
         """Until roslaunch has set what the launch file sets, which it does before any node runs."""
         wanted = set() if trace is None else trace.by_roslaunch
         limit = time.monotonic() + _SET_PATIENCE_S
-        while time.monotonic() < limit:
+        while time.monotonic() < limit and not self._launched.has_ended_well:
             self.look()
             names = self._graph.call("getParamNames")
             known = set(names) if isinstance(names, list) else set()
@@ -299,22 +302,26 @@ class _Watch:
 
     def wait_for_clock(self) -> None:
         limit = time.monotonic() + _CLOCK_PATIENCE_S
-        while self.look().now_ns == 0:
+        while self.look().now_ns == 0 and not self._launched.has_ended_well:
             if time.monotonic() > limit:
                 raise RunError(
-                    f"no /clock for {_CLOCK_PATIENCE_S:.0f} s: does the launch file start a"
-                    " simulator?"
+                    f"no /clock for {_CLOCK_PATIENCE_S:.0f} s: where no simulator runs, say"
+                    " --wall-time"
                 )
             time.sleep(_POLL_S)
 
     def wait_for_end(self, timeout_s: float, settle_s: float) -> str:
         limit = time.monotonic() + timeout_s
         while not (status := self.look()).done:
+            if self._launched.has_ended_well:
+                return "ended"
             if time.monotonic() > limit:
                 return "timeout"
             time.sleep(_POLL_S)
         enough = status.now_ns + round(settle_s * 1e9)
         while self.look().now_ns < enough and time.monotonic() < limit:
+            if self._launched.has_ended_well:
+                break
             time.sleep(_POLL_S)
         return "done"
 

@@ -37,6 +37,7 @@ DRAIN_S = 2.0
 KEEP_S = 1.0
 """At most so much of a mission is lost when the recorder is killed."""
 _CLOCK = "/clock"
+_MOST_EARLY = 10_000
 # rosbag pads the first record's parts to 4096 bytes, rosbags both with their two lengths.
 _FIRST_PADDING = 4096 - 69
 _FIRST_PADDING_AT = 13 + 4 + 69
@@ -230,6 +231,7 @@ class Recorder:
         self._batches = BatchCounter(self._counter)
         self._reports = 0
         self._done = False
+        self._early: list[tuple[Source, bytes]] = []
         self._began_ns = self.now_ns()
 
     def add_topic(self, topic: str) -> None:
@@ -251,7 +253,9 @@ class Recorder:
             self._clock_ns = seconds * 1_000_000_000 + nanoseconds
             self._began_ns = self._began_ns or self._clock_ns
         if source.topic in self._topics:
-            self._bag.write(source, self.now_ns(), data)
+            self._early.append((source, data))
+        if self.now_ns() or len(self._early) > _MOST_EARLY:
+            self.put_early()
         if source.topic == _ROSOUT:
             text = self._counter.see(data, source.node, latched=source.latched)
             self._reports += text.startswith(REPORT)
@@ -259,6 +263,16 @@ class Recorder:
             self._reports += self._batches.see(source.node, data)
         elif source.topic == self._until and any(data):
             self._done = True
+
+    def put_early(self) -> None:
+        """Put what waits for the first /clock into the bag; to be called before it is closed.
+
+        A clock may begin at any time. Messages from before it get its first time, as if they had
+        come with it: at 0 they would make the mission as long as the clock's first time.
+        """
+        for source, data in self._early:
+            self._bag.write(source, self.now_ns(), data)
+        self._early.clear()
 
     def status(self, *, closed: bool = False) -> Status:
         """The account until now."""
@@ -367,6 +381,7 @@ def record(bag_path: Path, status_path: Path, topics: Sequence[str], until: str 
             recorder.take(source, data)
     drain(subscriber, recorder)
     subscriber.close()
+    recorder.put_early()
     bag.close()
     save_status(recorder.status(closed=True), status_path)
 

@@ -15,6 +15,7 @@ from urllib.parse import quote
 
 from pytpc.details import Details
 from pytpc.link_unit import LinkUnit, PathStep
+from pytpc.source_bytes import source_bytes
 from pytpc.static_info import StaticInfo
 
 SCHEMA = (
@@ -238,6 +239,6 @@ def _uri(path: str) -> str:
 
 def _read_lines(file: str) -> list[bytes]:
     try:
-        return Path(file).read_bytes().split(b"\n")
+        return source_bytes(Path(file)).split(b"\n")
     except OSError:
         return []

@@ -82,7 +82,8 @@ def record_command(
         raise click.UsageError("give both WORKSPACE and LAUNCH, or neither of them")
     else:
         launch_arguments = _launch_arguments(args)
-        with mission_progress(launch.stem) as advance:
+        unit = "s of it" if wall_time else "s simulated"
+        with mission_progress(launch.stem, unit) as advance:
             run = run_mission(
                 _env_of(workspace, python=not no_python),
                 launch,

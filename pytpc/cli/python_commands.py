@@ -15,6 +15,7 @@ from pytpc.pynodes.budget import SECONDS
 from pytpc.pynodes.rules_file import load_rules
 from pytpc.python_units import analyse_scripts, joined, named_beside, scripts_at
 from pytpc.static_info import StaticInfo
+from pytpc.words import many
 
 
 @click.command("analyse")
@@ -56,12 +57,14 @@ def analyse_command(
     """
     rules = replace(load_rules(profile, own), constants=constants)
     scripts = joined(scripts_at(source, rules, sources) for source in sources)
-    if not scripts.entries:
+    if not scripts.entries and not scripts.left_out:
         raise InputError("no Python node here: a script with a shebang, or a __main__", sources[0])
     with progress("analysing Python") as advance:
         analysed = analyse_scripts(scripts, rules, advance, max_seconds)
     if not analysed.units:
-        raise InputError(analysed.left_out[0].reason)
+        others = len(analysed.left_out) - 1
+        also = f" (and {many(others, 'other script')} that cannot be analysed)" if others else ""
+        raise InputError(f"{analysed.left_out[0].reason}{also}")
     static = StaticInfo.of(named_beside(analysed.units, ()), left_out=analysed.left_out)
     static.save(output)
     if as_json:

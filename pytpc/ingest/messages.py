@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping, Set
+from collections.abc import Callable, Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass
 
 import numpy as np
@@ -37,6 +37,7 @@ REPORTS = "/threshold_information"
 
 _PREFIX = PREFIX.encode()
 _BEGIN = b"threshold_"
+_BEGINNING_NS = 1_000_000_000
 _OTHERS = (SUMMARY_PREFIX.encode(), DROPPED_PREFIX.encode())
 _WITH_TIME = tuple(f",{prefix}".encode() for prefix in (SUMMARY_PREFIX, DROPPED_PREFIX))
 
@@ -48,6 +49,30 @@ class Decoders:
     log: Callable[[bytes], Log]
     text: Callable[[bytes], bytes]
     time: Callable[[bytes], int]
+
+
+class _Unstamped:
+    """Counts the records without a stamp, but those with which a node begins.
+
+    On simulated time a node has none until its first /clock; what it reports before has the bag's
+    time, and nothing is wrong. A node's beginning is the first second of its log in the bag.
+    """
+
+    def __init__(self) -> None:
+        """Nothing was seen yet."""
+        self.count = 0
+        self._began_ns: dict[bytes, int] = {}
+
+    def see_all(self, nodes: Sequence[bytes], times_ns: Iterable[int]) -> None:
+        """Nodes that logged at these times of the bag, in the bag's order."""
+        if len(self._began_ns) == len({*nodes, *self._began_ns}):
+            return
+        for node, time_ns in zip(nodes, times_ns, strict=True):
+            self._began_ns.setdefault(node, int(time_ns))
+
+    def add(self, node: bytes, time_ns: int) -> None:
+        """A record without a stamp of a node that was seen."""
+        self.count += time_ns - self._began_ns[node] > _BEGINNING_NS
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,7 +155,7 @@ class Messages:
         self._lines: dict[Way, Lines] = {}
         self._channels: dict[Way, Channel] = {}
         self._nodes: dict[bytes, int] = {}
-        self._unstamped = 0
+        self._unstamped = _Unstamped()
 
     def take(self, topic: str, caller: str, time_ns: int, raw: bytes) -> None:
         """Read one message; ``time_ns`` is when the recorder got it, ``caller`` who sent it."""
@@ -162,6 +187,8 @@ class Messages:
         self._gaps_of_senders.see_all(
             [sender or name for sender, name in zip(sent_by, names, strict=True)], logs.seq
         )
+        bag_ns = chunk.time_ns[which]
+        self._unstamped.see_all(names, bag_ns)
         codes = {name: self._node(name) for name in set(names)}
         nodes = np.array([codes[name] for name in names], np.int32)
         # The first bytes of each text; what is too short for them is of no interest.
@@ -174,11 +201,12 @@ class Messages:
         for row in np.sort(others).tolist():
             msg = chunk.data[logs.msg_begin[row] : logs.msg_end[row]]
             log = Log(0, int(logs.stamp_ns[row]), names[row], msg)
-            self._text_of(log, ROSOUT, int(chunk.time_ns[which][row]))
+            self._text_of(log, ROSOUT, int(bag_ns[row]))
         rows = rows[reports]
         stamps = logs.stamp_ns[rows]
-        self._unstamped += int(np.count_nonzero(stamps == 0))
-        stamps = np.where(stamps == 0, chunk.time_ns[which][rows], stamps)
+        for row in rows[stamps == 0].tolist():
+            self._unstamped.add(names[row], int(bag_ns[row]))
+        stamps = np.where(stamps == 0, bag_ns[rows], stamps)
         begins = logs.msg_begin[rows] + len(_PREFIX)
         places = zip(begins.tolist(), logs.msg_end[rows].tolist(), strict=True)
         texts = [chunk.data[begin:end] for begin, end in places]
@@ -190,16 +218,16 @@ class Messages:
         """Hand in what is still held."""
         for lines in self._lines.values():
             lines.flush()
-            self._unstamped += lines.unstamped
+            self._unstamped.count += lines.unstamped
         self._batches.close()
         # Who sends numbers: rosbag play does so anew, in one row for all nodes. But rosbag filter
         # names one sender for all. What is missing in both ways of counting is missing.
         gaps = min(self._gaps_of_nodes, self._gaps_of_senders, key=lambda one: one.lost.total())
         for name, count in gaps.lost.items():
             self._gathering.lost[_plain(name)] += count
-        if self._unstamped:
+        if self._unstamped.count:
             self._gathering.late_notes.append(
-                f"{many(self._unstamped, 'record')} without a stamp got the bag's time"
+                f"{many(self._unstamped.count, 'record')} without a stamp got the bag's time"
             )
 
     def _log(self, topic: str, caller: str, time_ns: int, raw: bytes) -> None:
@@ -210,11 +238,14 @@ class Messages:
         self._text_of(log, topic, time_ns)
 
     def _text_of(self, log: Log, topic: str, time_ns: int) -> None:
+        self._unstamped.see_all([log.node], [time_ns])
         if not log.msg.startswith(_BEGIN):
             return
         way: Way = "log" if topic == ROSOUT else "aggregate"
         if log.msg.startswith(_PREFIX):
-            stamp_ns = log.stamp_ns or self._from_bag(time_ns)
+            if not log.stamp_ns:
+                self._unstamped.add(log.node, time_ns)
+            stamp_ns = log.stamp_ns or time_ns
             lines = self._lines_of(way, topic, stamped=False, prefix=PREFIX)
             lines.add(log.msg[len(_PREFIX) :], stamp_ns, self._node(log.node))
         elif log.msg.startswith(_OTHERS) and topic == ROSOUT:
@@ -272,12 +303,9 @@ class Messages:
         if MarkMessages.message_type(topic) == "String":
             self._gathering.mark_messages.add_text(topic, _plain(self._decoders.text(raw)))
         else:
-            marked_ns = self._decoders.time(raw) or self._from_bag(time_ns)
-            self._gathering.mark_messages.add_time(topic, marked_ns)
-
-    def _from_bag(self, time_ns: int) -> int:
-        self._unstamped += 1
-        return time_ns
+            marked_ns = self._decoders.time(raw)
+            self._unstamped.count += not marked_ns
+            self._gathering.mark_messages.add_time(topic, marked_ns or time_ns)
 
     def _node(self, name: bytes) -> int:
         code = self._nodes.get(name)

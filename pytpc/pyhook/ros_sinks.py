@@ -220,8 +220,8 @@ class TopicSink(Sink):
             self._waiting.clear()
         if unsent:
             warn(
-                f"{many(unsent, 'evaluation')} were not sent on {TOPIC}: nobody listened, or the"
-                " node was shut down"
+                f"{many(unsent, 'evaluation')} not sent on {TOPIC}: nobody listened, or the node"
+                " was shut down"
             )
 
 

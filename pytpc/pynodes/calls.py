@@ -16,6 +16,8 @@ _SYNCHRONOUS = ("builtins.", "functools.", "itertools.", "numpy.")
 _PUTTING = {"append", "appendleft", "add", "insert", "put", "put_nowait", "setdefault", "push"}
 _MERGING = {"extend", "update", "extendleft"}
 _TAKING = {"pop", "popleft", "get", "get_nowait", "setdefault", "popitem", "__getitem__"}
+# Keywords that say how a call waits: what they are given is not kept, and not what comes back.
+_PATIENCE = ("block", "timeout")
 _COPYING = {
     f"builtins.{name}"
     for name in ("list", "tuple", "set", "sorted", "reversed", "iter", "dict", "frozenset")
@@ -288,7 +290,10 @@ class Calls(CallTable):
     def _on_object(self, instr: Instr, name: str, owner: Obj, given: list[Given]) -> None:
         """A method of a container, or of something made outside: it may keep what it is given."""
         flow = self.flow
-        values = [value for keyword, value in given if keyword not in ("*", "**")]
+        values = [value for keyword, value in given if keyword not in ("*", "**", *_PATIENCE)]
+        if values and name == "get" and isinstance(values[0].data, bool):
+            # A queue's `get(True, 0.5)`.
+            values = []
         if name in _MERGING:
             for keyword, value in given:
                 if keyword in (None, "*", "**"):
@@ -301,7 +306,7 @@ class Calls(CallTable):
             stored = values[1:] if name in ("insert", "setdefault") else values
             for value in stored:
                 flow.write(owner, SOME, value, instr)
-        elif owner.kind != "container":
+        elif owner.kind != "container" and name not in _TAKING and not flow.rules.waits(name):
             for value in values:
                 flow.write(owner, SOME, value, instr)
         if name in _TAKING:

@@ -99,9 +99,6 @@ def _waits(instr: Instr, flow: PointsTo) -> bool:
     for path, owner in flow.calls.outside.get(instr, ()):
         if owner is not None and owner.kind == "container":
             continue
-        name = path.rsplit(".", 1)[-1]
-        if any(
-            name == word or f"{word}_" in name or f"_{word}" in name for word in flow.rules.waiting
-        ):
+        if flow.rules.waits(path.rsplit(".", 1)[-1]):
             return True
     return False

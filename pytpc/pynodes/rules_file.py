@@ -59,6 +59,12 @@ class Rules:
     outcomes: set[str] = field(default_factory=set)
     filters: set[str] = field(default_factory=set)
 
+    def waits(self, method: str) -> bool:
+        """True where a function or method of that name waits for something."""
+        return any(
+            method == word or f"{word}_" in method or f"_{word}" in method for word in self.waiting
+        )
+
     @property
     def paths(self) -> list[str]:
         """All dotted names that the tables are about."""

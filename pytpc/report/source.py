@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pytpc.explain import where
+from pytpc.source_bytes import source_bytes
 from pytpc.static_info import Comparison, StaticInfo
 
 LONGEST_LINE = 160
@@ -74,11 +75,11 @@ def source_lines(static_info: StaticInfo, found: Comparison) -> tuple[list[Line]
 
 
 def read_lines(path: Path) -> list[bytes] | None:
-    """The lines of a file; None where it is not there, or too large to be anyone's source."""
+    """A file's lines in UTF-8; None where it is not there, or too large to be anyone's source."""
     try:
         if path.stat().st_size > _LARGEST_SOURCE:
             return None
-        return [line.rstrip(b"\r") for line in path.read_bytes().split(b"\n")]
+        return [line.rstrip(b"\r") for line in source_bytes(path).split(b"\n")]
     except OSError:
         return None
 

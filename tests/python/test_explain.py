@@ -109,9 +109,11 @@ def test_the_same_reason_in_two_units_is_said_once(tmp_path: Path) -> None:
 
 
 def test_a_name_without_its_namespace_is_enough(static: StaticInfo) -> None:
-    assert [found.name for _, found in look_up(static, "reach").reads] == ["~arm/reach"]
-    with pytest.raises(InputError):
-        look_up(static, "each")
+    for name in ("reach", "arm/reach", "~arm/reach"):
+        assert [found.name for _, found in look_up(static, name).reads] == ["~arm/reach"]
+    for name in ("each", "rm/reach", "a.m/reach"):
+        with pytest.raises(InputError):
+            look_up(static, name)
 
 
 def test_a_mistyped_parameter_is_answered_with_the_closest(static: StaticInfo) -> None:

@@ -87,6 +87,27 @@ def test_read_bag(mission):
     assert seen[-1][0] == seen[-1][1]
 
 
+# /uav has no time before its first /clock, 0.9 s long: that is how it begins. A second later it is
+# odd, and so it is from the first record on of a node that logged before.
+def test_records_from_before_the_first_clock(tmp_path):
+    path = tmp_path / "early.bag"
+    with BagFile(path) as bag:
+        bag.log(5.0, "/face", "starting")
+        bag.log(10.0, "/uav", line(1, 0, 0.2, 0.5), stamp=0)
+        bag.log(10.9, "/uav", line(1, 0, 0.3, 0.5), stamp=0)
+        bag.log(11.5, "/uav", line(1, 0, 0.4, 0.5))
+    recording = read_bag(path)
+    assert recording.events.time_ns.tolist() == [ns(10), ns(10.9), ns(11.5)]
+    assert recording.notes == ()
+    odd = tmp_path / "odd.bag"
+    with BagFile(odd) as bag:
+        bag.log(5.0, "/face", "starting")
+        bag.log(10.0, "/uav", line(1, 0, 0.2, 0.5))
+        bag.log(11.1, "/uav", line(1, 0, 0.3, 0.5), stamp=0)
+        bag.log(11.1, "/face", line(1, 0, 0.3, 0.5), stamp=0)
+    assert read_bag(odd).notes == ("2 records without a stamp got the bag's time",)
+
+
 # /uav reports on /rosout and, through the rosout node, on /rosout_agg; /far only on the latter (the
 # recorder did not reach it). A converter passes both on; /brain reports its own key directly.
 def test_each_report_is_counted_once(tmp_path):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
 import struct
 import subprocess
@@ -23,7 +24,7 @@ from pytpc.cli.mission_commands import record_command, sink_settings
 from pytpc.demo import TreatedMission, failures, result_table
 from pytpc.demo_examples import IMAGE_CAPTURE, WATER_SAMPLER, Example
 from pytpc.errors import InputError, RunError
-from pytpc.graph import GraphProcess
+from pytpc.graph import GraphProcess, RosGraph
 from pytpc.ingest import Recording
 from pytpc.marks import Mark
 from pytpc.mission import (
@@ -286,9 +287,25 @@ def test_what_was_before_the_first_clock(tmp_path):
     recorder.take(CHAT, struct.pack("<I", 2) + b"hi")
     for seconds in (1000, 1001, 1002):
         recorder.take(CLOCK, struct.pack("<II", seconds, 0))
+    recorder.take(CHAT, struct.pack("<I", 2) + b"yo")
     status = recorder.status()
     assert status.now_ns - status.began_ns == 2_000_000_000
+    recorder.put_early()
     bag.close()
+    with AnyReader([tmp_path / "a.bag"]) as reader:
+        assert [(time, data[4:]) for _, time, data in reader.messages()] == [
+            (1_000_000_000_000, b"hi"),
+            (1_002_000_000_000, b"yo"),
+        ]
+
+
+def test_a_clock_that_never_came(tmp_path):
+    bag = BagFile(tmp_path / "a.bag")
+    recorder = Recorder(bag, ["/chat"], None, sim_time=True)
+    recorder.take(CHAT, struct.pack("<I", 2) + b"hi")
+    recorder.put_early()
+    bag.close()
+    # Tools take an entry at 0 for a broken one.
     with AnyReader([tmp_path / "a.bag"]) as reader:
         assert [time for _, time, _ in reader.messages()] == [1]
 
@@ -393,6 +410,27 @@ def test_tail_of_a_process_prefers_what_tells_of_an_error(tmp_path):
     log_file.write_text("one\ntwo\nthree\nfour\n")
     assert process.tail(2) == ["three", "four"]
     assert GraphProcess("x", None, tmp_path / "none", 1.0).tail() == []  # type: ignore[arg-type]
+
+
+# roslaunch ends with status 0 when a required node is done: the mission is over, and no error.
+def test_what_may_end_by_itself(tmp_path):
+    graph = RosGraph({"PATH": os.environ["PATH"]}, tmp_path)
+    (tmp_path / "out").mkdir()
+    for status, may_end in ((0, True), (3, True), (0, False)):
+        process = graph.start("one", ["sh", "-c", f"exit {status}"], may_end=may_end)
+        process.popen.wait()
+        is_well = status == 0 and may_end
+        assert process.has_ended_well is is_well
+        if is_well:
+            graph.check()
+        else:
+            with pytest.raises(RunError, match=f"one ended with status {status}"):
+                graph.check()
+        graph.stop(process)
+    running = graph.start("two", ["sleep", "60"], may_end=True)
+    assert not running.has_ended_well
+    graph.check()
+    graph.stop(running)
 
 
 # --- treatments

@@ -11,6 +11,32 @@ import pytest
 from pynode_samples import analysed, found, marked
 
 SAMPLES = {
+    "how long a call waits is not what it gives": """
+        import queue
+        import actionlib
+        inbox = queue.Queue()
+        client = actionlib.SimpleActionClient("spray", object)
+        patience = rospy.get_param("~patience")
+        stop = rospy.get_param("~stop")
+        rospy.Subscriber("range", object, lambda m: inbox.put(m.data))
+        while not rospy.is_shutdown():
+            if inbox.get(timeout=patience) < stop:  #: ~stop <
+                pub.publish(1)
+            if inbox.get(True, patience) < stop:  #: ~stop <
+                pub.publish(2)
+            if client.wait_for_result(rospy.Duration(patience)):
+                pub.publish(3)
+    """,
+    "what is put into a queue comes out of it": """
+        import queue
+        inbox = queue.Queue()
+        inbox.put(rospy.get_param("~limit"))
+        limit = inbox.get(timeout=1.0)
+        def heard(msg):
+            if msg.data > limit:  #: ~limit >
+                pub.publish(msg)
+        rospy.Subscriber("in", object, heard)
+    """,
     "smach states": """
         import smach
         class Charge(smach.State):
@@ -407,7 +433,7 @@ SAMPLES = {
         low = rospy.get_param("~low")
         near = rospy.get_param("~near")
         def cb(msg):
-            speed = max(low, min(top, msg.data))
+            speed = max(low, min(top, msg.data))  #: ~top <, ~low >
             pub.publish(speed)
             nearest = 100.0
             for value in msg.ranges:

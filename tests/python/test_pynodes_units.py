@@ -217,3 +217,14 @@ def test_deep_expressions_fail_alone(tmp_path: Path) -> None:
     assert run(str(tmp_path), "-o", str(tmp_path / "out.json"))[0] == 0
     units = StaticInfo.load(tmp_path / "out.json").units
     assert {unit.link_unit: unit.status for unit in units} == {"deep": "failed", "good": "ok"}
+
+
+def test_a_folder_whose_scripts_are_all_broken(tmp_path: Path) -> None:
+    for name in ("one.py", "two.py"):
+        (tmp_path / name).write_text("#!/usr/bin/env python3\nimport rospy\nprint 1\n")
+    status, _, errors = run(str(tmp_path), "-o", str(tmp_path / "out.json"))
+    assert status == 1
+    assert errors.strip() == (
+        f"pytpc: error: {tmp_path}/one.py:3: not Python 3: it looks like Python 2 (print without"
+        " parentheses) and needs Python 3 (and 1 other script that cannot be analysed)"
+    )

@@ -1,0 +1,23 @@
+"""The bytes of a source file as columns count them: in UTF-8."""
+
+from __future__ import annotations
+
+import io
+import tokenize
+from pathlib import Path
+
+
+def source_bytes(path: Path) -> bytes:
+    """The file in UTF-8, without a byte order mark, from the encoding that it declares (PEP 263).
+
+    What declares none, or cannot be decoded, is given as it is.
+
+    Raises:
+        OSError: it cannot be read.
+    """
+    raw = path.read_bytes()
+    try:
+        encoding, _ = tokenize.detect_encoding(io.BytesIO(raw).readline)
+        return raw.decode(encoding).encode()
+    except (SyntaxError, UnicodeDecodeError, LookupError):
+        return raw
