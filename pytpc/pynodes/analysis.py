@@ -66,7 +66,7 @@ def analyse(program: Program, rules: Rules) -> Analysed:
     follower = Follower(flow, constants, rules)
     follower.run(reads)
     follower.decide()
-    found_slice = Slicer(flow, raising, follower.selecting).run(exposed)
+    found_slice = Slicer(flow, raising, follower.outcomes.selecting).run(exposed)
     found, others = Gatherer(follower, found_slice).run()
     if rules.constants:
         found += find_constants(follower, constants, found_slice, [*found, *others])

@@ -34,7 +34,9 @@ def find_constants(
             name = _constant(instr, operand, constants)
             if name is None:
                 continue
-            near = [each for each in follower.predicates(instr) if each in found_slice.distance]
+            near = [
+                each for each in follower.outcomes.predicates(instr) if each in found_slice.distance
+            ]
             if near:
                 predicate = min(near, key=lambda each: (found_slice.distance[each], each.number))
                 key = (instr.function.module, span_of(instr, operand))

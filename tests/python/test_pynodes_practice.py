@@ -407,13 +407,30 @@ SAMPLES = {
         low = rospy.get_param("~low")
         near = rospy.get_param("~near")
         def cb(msg):
-            speed = max(low, min(top, msg.data))
+            speed = max(low, min(top, msg.data))  #: ~low >, ~top <
             pub.publish(speed)
             nearest = 100.0
             for value in msg.ranges:
                 nearest = min(nearest, value)
             if nearest < near:  #: ~near <
                 pub.publish(np.clip(msg.data, -1.0, 1.0))
+        rospy.Subscriber("in", Float64, cb)
+    """,
+    "a table unpacked beside other arguments": """
+        class Node:
+            def put(self, value, limit=2.0):
+                if value < limit:  #: ~limits/limit <
+                    pub.publish(value)
+        def on(value, limit=1.0, gain=3.0):
+            if value > limit:  #: ~limits/limit >
+                pub.publish(value)
+            if value > gain:
+                pub.publish(value)
+        node = Node()
+        def cb(msg):
+            limits = rospy.get_param("~limits")
+            on(msg.data, gain=msg.gain, **limits)
+            node.put(msg.data, **limits)
         rospy.Subscriber("in", Float64, cb)
     """,
     "a config object that is passed around": """
