@@ -279,6 +279,18 @@ class Calls(CallTable):
                 continue
             flow.when(value, lambda found: self._merge(found, made, instr))
 
+    def joined(self, instr: Instr, found: Obj, *, is_left: bool) -> None:
+        """A container becomes part of a new one: ``left + right``, ``left | right``."""
+        if found.kind != "container":
+            return
+        flow = self.flow
+        made = flow.heap.container("list", instr)
+        flow.add(instr, [made])
+        if is_left or instr.data != "Add":
+            self._merge(found, made, instr)
+        else:
+            flow.write(made, SOME, flow.slot(found, EVERY), instr)
+
     def _merge(self, source: Obj, to: Obj, instr: Instr) -> None:
         if source is to:
             return

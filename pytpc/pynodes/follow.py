@@ -21,6 +21,8 @@ RANGE = -2
 """The value bounds the ``range`` that a loop runs over."""
 _VARIANTS = 3
 _LONGEST_NAME = 200
+_TAKING = {"get", "pop", "setdefault"}
+"""Methods of a dict that give the entry of their first argument."""
 
 
 @dataclass(eq=False, slots=True)
@@ -246,15 +248,32 @@ class Follower:
         """A call of a method of the value."""
         if name in self.rules.values:
             self._on(fact, call, call, fact.how.times(self.rules.values[name]))
-        elif name == "get" and len(call.args) > 1:
+        elif name in _TAKING and len(call.args) > 1:
             self._item(fact, call, call.args[1])
-        elif name in ("items", "values", "keys", "copy"):
-            pass
-        else:
+        elif name == "copy":
+            self._on(fact, call, call)
+        elif name == "values":
+            self._named(fact, call, [DYNAMIC])
+        elif name == "items":
+            self._pairs(fact, call)
+        elif name != "keys":
             self._lose(fact, call)
+
+    def _pairs(self, fact: Fact, call: Instr) -> None:
+        """``for name, value in table.items()``: the value is an entry."""
+        users = self.flow.users
+        loops = [each for each in users.get(call, ()) if each.op == "iter"]
+        if not loops:
+            self._lose(fact, call)
+        for pair in (each for loop in loops for each in users.get(loop, ()) if each.op == "next"):
+            for part in users.get(pair, ()):
+                if part.op == "item" and self.constants.values(part.args[1]) == (1,):
+                    self._named(fact, part, [DYNAMIC])
 
     def _argument(self, fact: Fact, user: Instr, path: str) -> None:
         """A value that is handed to a function outside the sources."""
+        if (fact.at, user) in self.flow.points.spread:
+            return
         if path in self.rules.comparisons and self._compare_inside(fact, user):
             return
         op = self.rules.arithmetic.get(path)
