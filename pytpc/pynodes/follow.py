@@ -101,6 +101,9 @@ class Follower:
         self._waiting.append(fact)
 
     def _on(self, fact: Fact, at: Instr, via: Instr | None, how: How | None = None) -> None:
+        if how is not None and not how.is_finite:
+            self._lose(fact, at)
+            return
         self._reach(Fact(at, fact.read, fact.name, how or fact.how, fact.stack, fact, via))
 
     def _step(self, fact: Fact) -> None:
