@@ -24,6 +24,7 @@ from pytpc.words import plain
 from pytpc.workspace import package_folders
 
 Name = tuple[str, str]
+_USED_BY_ANALYSIS = ("arithmetic.py", "cmake_syntax.py", "link_unit.py", "workspace.py")
 _TEST_FOLDERS = frozenset({"test", "tests"})
 _PRODUCTS = frozenset({"build", "devel", "install", "log", "__pycache__", "node_modules"})
 
@@ -128,9 +129,9 @@ def analyse_scripts(
 
 def analysis_files() -> list[Path]:
     """The files that the analysis consists of, sorted: as they change, its results may."""
-    own = Path(__file__).parent / "pynodes"
-    found = (path for end in ("*.py", "*.json") for path in own.rglob(end))
-    return sorted([Path(__file__), *found])
+    own = Path(__file__).parent
+    found = (path for end in ("*.py", "*.json") for path in (own / "pynodes").rglob(end))
+    return sorted([Path(__file__), *(own / name for name in _USED_BY_ANALYSIS), *found])
 
 
 def analyse_workspaces(

@@ -70,9 +70,12 @@ def dump_json(data: object) -> bytes:
     """``data`` as indented UTF-8 JSON with a final newline; the same data gives the same bytes.
 
     Raises:
-        InputError: there is a file name in it that is not UTF-8.
+        InputError: there is a file name in it that is not UTF-8, or a number that JSON has not.
     """
-    text = json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+    try:
+        text = json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+    except ValueError as error:
+        raise InputError(f"no JSON can have it: {error}") from error
     try:
         return text.encode()
     except UnicodeEncodeError as error:

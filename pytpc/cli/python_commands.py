@@ -53,7 +53,7 @@ def analyse_command(
     """Find the comparisons of Python nodes; no ROS is needed, and nothing is run.
 
     SOURCE is a script, a package or a workspace. Each script is a link unit, with the modules of
-    its package that it imports. A script that cannot be parsed is left out, with a warning.
+    the SOURCEs that it imports. A script that cannot be parsed is left out, with a warning.
     """
     rules = replace(load_rules(profile, own), constants=constants)
     scripts = joined(scripts_at(source, rules, sources) for source in sources)

@@ -66,10 +66,11 @@ def analyse(program: Program, rules: Rules) -> Analysed:
     follower = Follower(flow, constants, rules)
     follower.run(reads)
     follower.decide()
-    found_slice = Slicer(flow, raising, follower.selecting).run(exposed)
-    found, others = Gatherer(follower, found_slice).run()
-    if rules.constants:
-        found += find_constants(follower, constants, found_slice, [*found, *others])
+    fixed = find_constants(follower, constants) if rules.constants else []
+    found_slice = Slicer(flow, raising, follower.outcomes.selecting).run(exposed)
+    gatherer = Gatherer(follower, found_slice)
+    found, others = gatherer.run()
+    found += gatherer.constants(fixed, [*found, *others])
     return Analysed(program, rules, flow, reads, exposed, follower, found_slice, found, others)
 
 

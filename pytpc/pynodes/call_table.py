@@ -46,6 +46,10 @@ class CallTable:
         for value in list(self.given.get((site, param), ())):
             action(value)
 
+    def may_unpack(self, site: Instr, param: Instr) -> bool:
+        """True where what ``site`` unpacks may be the value of ``param``: no argument is."""
+        return param in self.given.get((site, param), ())
+
     def when_site(self, param: Instr, action: Callable[[Instr], None]) -> None:
         """Call ``action`` for each call that gives something to ``param``."""
         self._awaiting_site.setdefault(param, []).append(action)

@@ -165,7 +165,7 @@ class Calls(CallTable):
                 if function.vararg is not None:
                     flow.copy(value, params[function.vararg])
             elif keyword == "**":
-                self._unpack_names(value, function, first)
+                self._unpack_names(value, function, place, {each for each, _ in given})
             elif keyword in names:
                 flow.copy(value, params[names[keyword]])
                 self.give(instr, params[names[keyword]], value)
@@ -201,11 +201,16 @@ class Calls(CallTable):
                 ),
             )
 
-    def _unpack_names(self, value: Instr, function: Function, first: int) -> None:
+    def _unpack_names(
+        self, value: Instr, function: Function, first: int, taken: set[str | None]
+    ) -> None:
+        """The entries of ``**value`` come to the parameters from ``first`` on, but the taken."""
         if function.kwarg is not None:
             self.flow.copy(value, function.param_instrs[function.kwarg])
         for place, variable in enumerate(function.parameters):
-            if place < first or place in (function.vararg, function.kwarg):
+            if place < first or variable.name in taken:
+                continue
+            if place in (function.vararg, function.kwarg):
                 continue
             param = function.param_instrs[place]
             self.flow.when(
@@ -275,6 +280,18 @@ class Calls(CallTable):
                 flow.write(made, f"[{keyword!r}]", value, instr)
                 continue
             flow.when(value, lambda found: self._merge(found, made, instr))
+
+    def joined(self, instr: Instr, found: Obj, *, is_left: bool) -> None:
+        """A container becomes part of a new one: ``left + right``, ``left | right``."""
+        if found.kind != "container":
+            return
+        flow = self.flow
+        made = flow.heap.container("list", instr)
+        flow.add(instr, [made])
+        if is_left or instr.data != "Add":
+            self._merge(found, made, instr)
+        else:
+            flow.write(made, SOME, flow.slot(found, EVERY), instr)
 
     def _merge(self, source: Obj, to: Obj, instr: Instr) -> None:
         if source is to:

@@ -12,6 +12,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from itertools import islice
 from pathlib import Path
 
 from pytpc.cmake_syntax import Argument, Command, commands, find_fault
@@ -22,6 +23,8 @@ _ENDING = frozenset(
     {"DESTINATION", "PERMISSIONS", "CONFIGURATIONS", "COMPONENT", "OPTIONAL", "RENAME", "TYPE"}
 )
 _DEEPEST = 8
+# Both branches count, and what a variable has been: flags that are added to would double each time.
+_MOST_VALUES = 2000
 
 
 @dataclass
@@ -126,7 +129,7 @@ class _Reader:
 
     def _add(self, variable: str, values: list[str]) -> None:
         known = self._variables.get(variable, [])
-        self._variables[variable] = list(dict.fromkeys([*known, *values]))
+        self._variables[variable] = list(dict.fromkeys([*known, *values]))[:_MOST_VALUES]
 
     def _words(self, command: Command) -> list[str]:
         return [word for argument in command.arguments for word in self._expanded(argument)]
@@ -137,17 +140,19 @@ class _Reader:
         for _ in range(_DEEPEST):
             if not any(_VARIABLE.search(text) for text in texts):
                 break
-            texts = [further for text in texts for further in self._looked_up(text)]
+            found = (further for text in texts for further in self._looked_up(text))
+            texts = list(islice(found, _MOST_VALUES))
         if argument.is_quoted:
             return texts
         return [part for text in texts for part in text.split(";") if part]
 
-    def _looked_up(self, text: str) -> list[str]:
+    def _looked_up(self, text: str) -> Iterator[str]:
         match = _VARIABLE.search(text)
         if match is None:
-            return [text]
-        values = self._variables.get(match[1], [])
-        return [text[: match.start()] + value + text[match.end() :] for value in values]
+            yield text
+            return
+        for value in self._variables.get(match[1], []):
+            yield text[: match.start()] + value + text[match.end() :]
 
     def _listed(self, words: list[str]) -> Iterator[str]:
         is_list = False

@@ -11,46 +11,26 @@ from pytpc.pynodes.follow import Follower
 from pytpc.pynodes.gather import Found, span_of
 from pytpc.pynodes.ir import Instr, Variable
 from pytpc.pynodes.names import named_variable
-from pytpc.pynodes.slicing import Slice
 
 
-def find_constants(
-    follower: Follower, constants: Constants, found_slice: Slice, taken: list[Found]
-) -> list[Found]:
-    """The comparisons with constants that decide a predicate of the slice, in order.
+def find_constants(follower: Follower, constants: Constants) -> list[Found]:
+    """The comparisons with constants and the predicates that they decide, in order.
 
     Args:
         follower: finds the predicates that an outcome decides.
         constants: knows the numbers.
-        found_slice: what exposing statements depend on.
-        taken: the comparisons with parameters.
     """
-    with_parameter = {each.at.node for each in taken}
     found: dict[tuple[object, ...], Found] = {}
     for instr in follower.flow.points.program.instructions():
-        if instr.op != "compare" or instr.node in with_parameter:
+        if instr.op != "compare":
             continue
         for operand in (0, 1):
             name = _constant(instr, operand, constants)
-            if name is None:
-                continue
-            near = [each for each in follower.predicates(instr) if each in found_slice.distance]
-            if near:
-                predicate = min(near, key=lambda each: (found_slice.distance[each], each.number))
+            if name is not None:
                 key = (instr.function.module, span_of(instr, operand))
-                found.setdefault(
-                    key,
-                    Found(
-                        instr,
-                        operand,
-                        name,
-                        [],
-                        dict.fromkeys(near),
-                        found_slice.distance[predicate],
-                        predicate,
-                    ),
-                )
-            break
+                one = found.setdefault(key, Found(instr, operand, name, []))
+                one.predicates.update(dict.fromkeys(follower.outcomes.predicates(instr)))
+                break
     return list(found.values())
 
 

@@ -212,6 +212,11 @@ class Flow:
                 return True
         return False
 
+    def is_called(self, attr: Instr) -> bool:
+        """True for the method in ``value.method()``."""
+        users = self.users.get(attr, ())
+        return any(user.op == "call" and user.args[0] is attr for user in users)
+
     def objects(self, instr: Instr) -> list[Obj]:
         """The objects that a value may be, of a local variable those that are stored before."""
         if instr.op == "load" and instr in self.reaching.stores:

@@ -10,6 +10,7 @@ from pytpc.pynodes.contexts import Stack, moves
 from pytpc.pynodes.flow import Flow
 from pytpc.pynodes.ir import Instr
 from pytpc.pynodes.library_calls import INSIDE, Inside, compared_inside
+from pytpc.pynodes.outcomes import Outcomes
 from pytpc.pynodes.reads import Read
 from pytpc.pynodes.rules_file import Rules
 from pytpc.pynodes.transform import How, by_function, by_operator
@@ -19,9 +20,9 @@ FLAG = -1
 RANGE = -2
 """The value bounds the ``range`` that a loop runs over."""
 _VARIANTS = 3
-_OF_OUTCOMES = {"any", "all", "sum", "max", "min", "item", "copy", "astype", "tolist"}
-"""Methods of numpy's arrays of outcomes."""
 _LONGEST_NAME = 200
+_TAKING = {"get", "pop", "setdefault"}
+"""Methods of a dict that give the entry of their first argument."""
 
 
 @dataclass(eq=False, slots=True)
@@ -65,10 +66,7 @@ class Lost:
 
 
 class Follower:
-    """Follows values from reads; ``compared`` and ``lost`` are what is found.
-
-    ``selecting``: what chooses by an outcome without a branch, ``scan[scan < limit]``.
-    """
+    """Follows values from reads; ``compared`` and ``lost`` are what is found."""
 
     def __init__(self, flow: Flow, constants: Constants, rules: Rules) -> None:
         """Nothing is followed yet."""
@@ -79,7 +77,7 @@ class Follower:
         self.compared: dict[tuple[Instr, int, int, str, Stack], Compared] = {}
         self.lost: dict[Instr, Lost] = {}
         self._inside: dict[Instr, dict[int, Inside]] = {}
-        self.selecting: dict[Instr, None] = {}
+        self.outcomes = Outcomes(flow, constants, rules)
         self._waiting: deque[Fact] = deque()
 
     def run(self, reads: list[Read]) -> None:
@@ -103,6 +101,9 @@ class Follower:
         self._waiting.append(fact)
 
     def _on(self, fact: Fact, at: Instr, via: Instr | None, how: How | None = None) -> None:
+        if how is not None and not how.is_finite:
+            self._lose(fact, at)
+            return
         self._reach(Fact(at, fact.read, fact.name, how or fact.how, fact.stack, fact, via))
 
     def _step(self, fact: Fact) -> None:
@@ -198,19 +199,15 @@ class Follower:
     def _attribute(self, fact: Fact, user: Instr) -> None:
         name = str(user.data)
         if fact.read.is_table and not fact.name:
-            if not name.startswith("_") and not self._is_called(user):
+            if not name.startswith("_") and not self.flow.is_called(user):
                 self._named(fact, user, [name])
-        elif not self._is_called(user):
+        elif not self.flow.is_called(user):
             if name in self.rules.values:
                 self._on(fact, user, None, fact.how.times(self.rules.values[name]))
             return
         for call in self.flow.users.get(user, ()):
             if call.op == "call" and call.args[0] is user:
                 self._method(fact, call, name)
-
-    def _is_called(self, attr: Instr) -> bool:
-        users = self.flow.users.get(attr, ())
-        return any(user.op == "call" and user.args[0] is attr for user in users)
 
     def _item(self, fact: Fact, user: Instr, key: Instr) -> None:
         keys = self.constants.values(key)
@@ -237,31 +234,49 @@ class Follower:
         self._unpacked(fact, user)
 
     def _unpacked(self, fact: Fact, call: Instr) -> None:
-        """``f(**table)``: each entry comes to the parameter of its name."""
+        """``f(x, **table)``: each entry comes to the parameter of its name, if it is free."""
         names = getattr(call.data, "names", ())
         if not any(n == "**" and v is fact.at for n, v in zip(names, call.args[1:], strict=True)):
             return
-        for function in self.flow.points.calls.callees.get(call, {}):
+        calls = self.flow.points.calls
+        for function in calls.callees.get(call, {}):
             for place, variable in enumerate(function.parameters):
                 param = function.param_instrs[place]
                 if place == function.kwarg:
                     self._on(fact, param, None)
-                elif place != function.vararg and variable.name not in names:
+                elif place != function.vararg and calls.may_unpack(call, param):
                     self._named(fact, param, [variable.name])
 
     def _method(self, fact: Fact, call: Instr, name: str) -> None:
         """A call of a method of the value."""
         if name in self.rules.values:
             self._on(fact, call, call, fact.how.times(self.rules.values[name]))
-        elif name == "get" and len(call.args) > 1:
+        elif name in _TAKING and len(call.args) > 1:
             self._item(fact, call, call.args[1])
-        elif name in ("items", "values", "keys", "copy"):
-            pass
-        else:
+        elif name == "copy":
+            self._on(fact, call, call)
+        elif name == "values":
+            self._named(fact, call, [DYNAMIC])
+        elif name == "items":
+            self._pairs(fact, call)
+        elif name != "keys":
             self._lose(fact, call)
+
+    def _pairs(self, fact: Fact, call: Instr) -> None:
+        """``for name, value in table.items()``: the value is an entry."""
+        users = self.flow.users
+        loops = [each for each in users.get(call, ()) if each.op == "iter"]
+        if not loops:
+            self._lose(fact, call)
+        for pair in (each for loop in loops for each in users.get(loop, ()) if each.op == "next"):
+            for part in users.get(pair, ()):
+                if part.op == "item" and self.constants.values(part.args[1]) == (1,):
+                    self._named(fact, part, [DYNAMIC])
 
     def _argument(self, fact: Fact, user: Instr, path: str) -> None:
         """A value that is handed to a function outside the sources."""
+        if (fact.at, user) in self.flow.points.spread:
+            return
         if path in self.rules.comparisons and self._compare_inside(fact, user):
             return
         op = self.rules.arithmetic.get(path)
@@ -322,11 +337,9 @@ class Follower:
         predicates = self.compared[key].predicates
         predicates += [branch for branch in branches if branch not in predicates]
 
-    # Outcomes
-
     def decide(self) -> None:
         """Find the predicates that each comparison's outcome decides."""
-        self._keep_lost()
+        self._drop_measured()
         known: dict[tuple[Instr, Stack], list[Instr]] = {}
         for compared in self.compared.values():
             if compared.inside is not None and compared.inside.chooses:
@@ -334,7 +347,7 @@ class Follower:
             elif compared.operand >= 0 or compared.inside is not None:
                 way = (compared.at, compared.fact.stack)
                 if way not in known:
-                    known[way] = self.predicates(*way)
+                    known[way] = self.outcomes.predicates(*way)
                 compared.predicates = known[way]
             elif compared.operand == FLAG:
                 compared.predicates += [
@@ -345,81 +358,11 @@ class Follower:
                     if branch.op == "branch" and branch not in compared.predicates
                 ]
 
-    def _keep_lost(self) -> None:
+    def _drop_measured(self) -> None:
         """What is measured, and cut to a parameter, is measured: no threshold is lost there."""
         for call, lost in list(self.lost.items()):
-            others = [arg for arg in call.args[1:] if arg is not lost.fact.at]
-            if self._inside.get(call) and not any(arg in self.facts for arg in others):
-                del self.lost[call]
-
-    def predicates(self, outcome: Instr, stack: Stack = ()) -> list[Instr]:
-        """The branches that the outcome of a comparison decides, where it came by ``stack``."""
-        seen = {(outcome, stack)}
-        waiting = [(outcome, stack)]
-        found: dict[Instr, None] = {}
-        while waiting:
-            value, here = waiting.pop()
-            following = [(to, after) for to, _, after in moves(self.flow, value, here)]
-            found.update(dict.fromkeys(self._filtering(value)))
-            for user in self.flow.users.get(value, ()):
-                if self._selects(user, value):
-                    self.selecting[user] = None
-                    found[user] = None
-                if user.op == "branch":
-                    found[user] = None
-                elif self._passes(user, value):
-                    following.append((user, here))
-            for to, after in following:
-                if to.op == "branch":
-                    found[to] = None
-                elif (to, after) not in seen:
-                    seen.add((to, after))
-                    waiting.append((to, after))
-        return list(found)
-
-    def _filtering(self, value: Instr) -> list[Instr]:
-        """The calls of ``filter`` and its kin to which a function returns ``value``."""
-        if all(user.op != "return" for user in self.flow.users.get(value, ())):
-            return []
-        calls = self.flow.points.calls
-        return [
-            call
-            for call in calls.registered.get(value.function, ())
-            if any(path in self.rules.filters for path, _ in calls.outside.get(call, ()))
-        ]
-
-    def _selects(self, user: Instr, value: Instr) -> bool:
-        """True where the outcome ``value`` chooses elements: a mask, ``numpy.where``."""
-        if user.op == "item":
-            return user.args[1] is value
-        outside = self.flow.points.calls.outside.get(user, {})
-        return any(path in self.rules.filters for path, _ in outside)
-
-    def _passes(self, user: Instr, value: Instr) -> bool:
-        """True where the value of ``user`` says what the outcome ``value`` says."""
-        match user.op:
-            case "unary" | "match" | "iter" | "next":
-                return True
-            case "binary":
-                return str(user.data).startswith("Bit")
-            case "compare":
-                return self._with_truth(user, value)
-            case "call":
-                return self._passes_outcome(user, value)
-            case "attr":
-                return str(user.data) in _OF_OUTCOMES and self._is_called(user)
-            case "item":
-                return user.args[0] is value
-            case _:
-                return False
-
-    def _with_truth(self, compare: Instr, value: Instr) -> bool:
-        other = compare.args[1] if compare.args[0] is value else compare.args[0]
-        values = self.constants.values(other)
-        return bool(values) and all(isinstance(each, bool) for each in values)
-
-    def _passes_outcome(self, call: Instr, value: Instr) -> bool:
-        if call.args[0] is value:
-            return value.op == "attr"
-        outside = self.flow.points.calls.outside.get(call, {})
-        return any(path in self.rules.outcomes for path, _ in outside)
+            for place, inside in self._inside.get(call, {}).items():
+                is_bound = call.args[1 + place] is lost.fact.at
+                if is_bound and not any(other in self.facts for other in inside.others):
+                    del self.lost[call]
+                    break

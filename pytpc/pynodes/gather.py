@@ -161,6 +161,20 @@ class Gatherer:
             (exposed if self._nearest(found) else others).append(found)
         return exposed, others
 
+    def constants(self, candidates: Iterable[Found], taken: Iterable[Found]) -> list[Found]:
+        """Of comparisons with constants those that decide something exposed.
+
+        Args:
+            candidates: all of them.
+            taken: the comparisons with parameters, which count as those alone.
+        """
+        with_parameter = {each.at.node for each in taken}
+        return [
+            each
+            for each in candidates
+            if each.at.node not in with_parameter and self._nearest(each)
+        ]
+
     def _exposed(self) -> list[Compared]:
         distance = self.slice.distance
         return [

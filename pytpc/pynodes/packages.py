@@ -12,6 +12,7 @@ from pytpc.pynodes.cmake_programs import Programs, read_programs
 from pytpc.pynodes.rules_file import Rules, load_rules
 from pytpc.pynodes.scripts import Scripts, is_python, python_files
 from pytpc.pynodes.setup_files import Installed, read_setup
+from pytpc.pynodes.sources import module_files
 from pytpc.workspace import MANIFEST, package_folders, read_manifest
 
 OnFault = Callable[[InputError], None]
@@ -48,13 +49,6 @@ class Entry:
             known = self.packages.get(".".join(parts[:count]))
             if known is not None:
                 yield from module_files(known.joinpath(*parts[count:]))
-
-
-def module_files(base: Path) -> Iterator[Path]:
-    """The files of the module that would be the folder, or the file without ending, ``base``."""
-    for path in (base / "__init__.py", base.with_name(base.name + ".py")):
-        if path.is_file():
-            yield path
 
 
 def entries(

@@ -352,6 +352,9 @@ class PointsTo(Solver):
         word = _WORDS.get(name, name.lower())
         self._operator(instr, left, f"__{word}__", [right])
         self._operator(instr, right, f"__r{word}__", [left])
+        if name in _JOINING:
+            self.when(left, lambda found: self.calls.joined(instr, found, is_left=True))
+            self.when(right, lambda found: self.calls.joined(instr, found, is_left=False))
 
     def _on_branch(self, instr: Instr) -> None:
         self._operator(instr, instr.args[0], "__bool__", [])
@@ -385,4 +388,5 @@ _METHODS = {
     "In": ("", "__contains__"),
     "NotIn": ("", "__contains__"),
 }
+_JOINING = {"Add", "Mult", "Sub", "BitAnd", "BitOr", "BitXor"}
 _WORDS = {"Mult": "mul", "Div": "truediv", "BitAnd": "and", "BitOr": "or", "BitXor": "xor"}

@@ -11,8 +11,8 @@ from pathlib import Path
 from pytpc.errors import InputError
 from pytpc.pynodes.ir import Function, Instr, Module
 from pytpc.pynodes.lower import lower_module
-from pytpc.pynodes.packages import Entry, module_files
-from pytpc.pynodes.sources import parse
+from pytpc.pynodes.packages import Entry
+from pytpc.pynodes.sources import module_files, parse
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from typing import Protocol
 
 from pytpc.errors import InputError
 from pytpc.pynodes.rules_file import Rules
-from pytpc.pynodes.sources import parse
+from pytpc.pynodes.sources import module_files, parse
 from pytpc.workspace import IGNORE_MARKERS, MANIFEST, PRODUCT_MARKERS
 
 _LEFT_OUT = {"build", "devel", "install", "log", "test", "tests", "node_modules", "__pycache__"}
@@ -174,10 +174,7 @@ def _meant(program: Program, user: Path, dots: int, name: str) -> Iterator[Path]
     folder = user.parent
     for _ in range(dots - 1):
         folder = folder.parent
-    base = folder.joinpath(*name.split(".")) if name else folder
-    for path in (base / "__init__.py", base.with_name(base.name + ".py")):
-        if path.is_file():
-            yield path
+    yield from module_files(folder.joinpath(*name.split(".")) if name else folder)
 
 
 def _facts_of(source: str, tree: ast.Module) -> _Facts:

@@ -19,6 +19,8 @@ from pytpc.errors import InputError
 from pytpc.pynodes.sources import parse
 
 _SETUP = {"setup", "generate_distutils_setup"}
+# What an expression that is no constant, or a wrong one, ends in.
+_UNFIT = (AttributeError, LookupError, OverflowError, MemoryError, TypeError, ValueError)
 _Fault = Callable[[InputError], None]
 
 
@@ -173,14 +175,14 @@ class _Constants:
                 given = tuple(right) if isinstance(right, list) else right
                 return left % given if isinstance(left, str) and right is not None else None
             return left + right
-        except (TypeError, ValueError):
+        except _UNFIT:
             return None
 
     @staticmethod
     def _formatted(text: Any, args: list[Any]) -> str | None:  # noqa: ANN401
         try:
             return text.format(*args) if isinstance(text, str) and None not in args else None
-        except (IndexError, KeyError, ValueError):
+        except _UNFIT:
             return None
 
 

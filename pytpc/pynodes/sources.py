@@ -7,6 +7,7 @@ import re
 import stat
 import tokenize
 import warnings
+from collections.abc import Iterator
 from pathlib import Path
 
 from pytpc.errors import InputError
@@ -41,6 +42,14 @@ def read_source(path: Path) -> str:
         raise InputError(f"cannot be read: {error.strerror or error}", path) from None
     except (SyntaxError, UnicodeDecodeError, LookupError) as error:
         raise InputError(f"cannot be decoded: {error}", path) from None
+
+
+def module_files(base: Path) -> Iterator[Path]:
+    """The files of the module that would be the folder, or the file without ending, ``base``."""
+    # The root of all folders has no name: dots of a relative import may lead there.
+    for path in (base / "__init__.py", base.parent / f"{base.name}.py"):
+        if path.is_file():
+            yield path
 
 
 def lines_of(source: str) -> list[str]:

@@ -10,6 +10,8 @@ from pytpc.link_unit import Transform
 
 _SIGNS = {"/": " / ", "rem": " rem ", "shr": " >> ", "and": " & "}
 _DEEPEST = 12
+# Two to the power of it is no double.
+_LONGEST_SHIFT = 1024
 
 
 @dataclass(frozen=True)
@@ -24,6 +26,13 @@ class How:
     def plain(self) -> bool:
         """True where nothing was done."""
         return self == How()
+
+    @property
+    def is_finite(self) -> bool:
+        """False where a number in it is beyond all that JSON has."""
+        inner = self.inner
+        below = inner is None or (math.isfinite(inner.constant or 0.0) and inner.of.is_finite)
+        return below and math.isfinite(self.scale) and math.isfinite(self.offset)
 
     @property
     def depth(self) -> int:
@@ -152,7 +161,7 @@ def by_operator(how: How, op: str, constant: float, left: bool) -> How | None:
             return how.call("and", constant)
         case "RShift" if not left:
             return how.call("shr", constant)
-        case "LShift" if not left:
+        case "LShift" if not left and constant < _LONGEST_SHIFT:
             return how.times(2.0**constant)
         case _:
             return None

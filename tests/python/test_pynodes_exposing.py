@@ -180,3 +180,16 @@ def test_constants_only_when_asked_for(tmp_path: Path) -> None:
         ("TOP", "<", "constant", None),
     ]
     assert (unit.counts.comparisons, unit.counts.constants) == (0, 2)
+
+
+def test_a_mask_by_a_constant(tmp_path: Path) -> None:
+    text = """
+        import numpy as np
+        def cb(msg):
+            scan = np.array(msg.ranges)
+            pub.publish(scan[scan > 3.5])
+        rospy.Subscriber("in", Float64, cb)
+        """
+    assert analysed(text, tmp_path).comparisons == ()
+    unit = analyse_entry(entry_of(tmp_path / "node.py"), replace(load_rules(), constants=True))
+    assert [(c.name, c.relation, c.distance) for c in unit.comparisons] == [("3.5", ">", 1)]

@@ -75,3 +75,7 @@ def test_what_is_cut_is_no_lost_threshold(tmp_path: Path) -> None:
     # The larger of two parameters is a threshold that is not followed.
     both = "q = rospy.get_param('~q')\n" + text.format("max(p, q)")
     assert analysed(both, tmp_path).counts.lost_values == 1
+    # What is measured and clipped to two parameters is measured; a clipped parameter is lost.
+    between = "import numpy\nq = rospy.get_param('~q')\n" + text
+    assert analysed(between.format("numpy.clip(m.data, p, q)"), tmp_path).counts.lost_values == 0
+    assert analysed(between.format("numpy.clip(p, 0, 10)"), tmp_path).counts.lost_values == 1

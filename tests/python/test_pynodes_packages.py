@@ -142,6 +142,7 @@ def test_setup_py_is_not_run_and_odd_ones_are_no_error(tmp_path: Path) -> None:
     odd = (
         "import sys\nopen('/dev/null/x')\nsys.exit(1)\nname = name\n"
         "setup(packages=name, package_dir={1: 2, **rest}, scripts='scripts/one',\n"
+        "      py_modules=['', '/', '..', '%(a)s' % {}, '{0.a}'.format('b'), '{[0]}'.format(3)],\n"
         "      entry_points={'console_scripts': ['a' % 3, '{'.format(1), 'b=c', None, 'd=e:f']})\n"
     )
     (tmp_path / "setup.py").write_text(odd)
@@ -149,6 +150,13 @@ def test_setup_py_is_not_run_and_odd_ones_are_no_error(tmp_path: Path) -> None:
     found = read_setup(tmp_path, faults.append)
     assert (found.programs, found.scripts, found.packages) == ({"d": "e:f"}, ["scripts/one"], None)
     assert faults == []
+    # No name of these is a module's, and none of them is asked for what it cannot have.
+    assert found.modules == ["", "/", ".."]
+    put(tmp_path, "package.xml", MANIFEST.format("odd"))
+    assert entries(tmp_path, faults.append) == []
+    (fault,) = faults
+    assert fault.message == "the program d begins in e, which is not in this package"
+    faults.clear()
     (tmp_path / "setup.py").write_text("setup(\n")
     (tmp_path / "pyproject.toml").write_text("[project\n")
     (tmp_path / "setup.cfg").write_text("no section\n")
@@ -193,6 +201,14 @@ def test_programs_of_cmake(tmp_path: Path) -> None:
         for name in ("bin/a.py", "bin/b.py", "sh/run.sh", "more.py", "last.py", "sub/three.py")
     ]
     assert found.packages == {"guard": tmp_path / "py"}
+
+
+def test_variables_of_cmake_that_are_added_to_again_and_again(tmp_path: Path) -> None:
+    # As both branches of an `if` count, each `set` would double what there was: 2 to the 60.
+    lines = ["set(FLAGS -O2)", *(f'set(FLAGS "${{FLAGS}} -f{each}")' for each in range(60))]
+    lines += ["set(BOTH a b)", f'set(ALL "{"${BOTH}" * 60}")', "install(PROGRAMS one.py ${ALL})"]
+    put(tmp_path, "CMakeLists.txt", "\n".join(lines))
+    assert read_programs(tmp_path, pytest.fail).others[0] == tmp_path / "one.py"
 
 
 def test_a_list_file_that_cmake_cannot_parse_is_said(tmp_path: Path) -> None:
@@ -248,6 +264,7 @@ GUARD = "if __name__ == '__main__':\n    pass\n"
         ("from . import helper\n", True),
         ("import plain\n", False),
         ("import broken\n", False),
+        ("from " + "." * 99 + " import x\n", False),
         ("import rclpy\nrclpy.init()\n", True),
     ],
 )
