@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 
     Register = Callable[[Place], Reported]
 
-# Python 3.11 says of a failed `assert` that it is where the comparison in it is, if there is one, and
-# so of an error in the truth of a condition that follows the comparison.
+# Python 3.11 says of a failed `assert` that it is where the comparison in it is, if there is one.
+# The same holds for an error in the truth of a condition behind a comparison.
 _ASSERTS_AT_COMPARISON = sys.version_info[:2] == (3, 11)
 # From Python 3.13 on, the compiler joins a comparison with the truth that a kept `not` asks of it,
 # and what either raises has the place of `not`.
