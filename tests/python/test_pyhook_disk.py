@@ -6,6 +6,7 @@ import os
 import shutil
 import subprocess
 import sys
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -102,12 +103,12 @@ def test_threads_under_edges_and_every(tmp_path: Path) -> None:
         counts[key][1] += int(flops)
     for number in range(3):
         own = reported[f"own {number}"]
-        flops = sum(now != last for last, now in zip(own, own[1:], strict=False))
+        flops = sum(now != last for last, now in pairwise(own))
         assert counts[f"own {number}"] == [2000, flops]
     # Of what all have in common the order is another in each run: what is kept are its edges, the
     # first and each flop, and one follows upon the other.
     common = [result for key, result, _, _ in rows(edges) if key == "common"]
     assert counts["common"] == [6000, len(common) - 1]
-    assert all(now != last for last, now in zip(common, common[1:], strict=False))
+    assert all(now != last for last, now in pairwise(common))
     # Steps of 1, 3 and 5 modulo 8 meet 4, 5, 6 and 7 in half of all turns.
     assert sum(reported["common"]) == 3000
