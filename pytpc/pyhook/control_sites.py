@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from functools import partial
 from itertools import chain, repeat
 from operator import attrgetter
@@ -11,7 +12,7 @@ from pytpc.pyhook.quiet import Site, caller, flat, keep, raising
 from pytpc.pyhook.sites import FALSE, TRUE, logger
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
     from pytpc.pyhook.sites import Held, Reported
 
@@ -41,9 +42,13 @@ class Loop(Site):
             if type(iterable) is not range:
                 return repeat(iterable)
             stop = iterable.stop
-            behind = iterable.start + len(iterable) * iterable.step
-            elements = chain(iterable, (behind,))
-            is_turn = chain(repeat(True, len(iterable)), (False,))
+            elements: Iterable[int] = iterable
+            is_turn: Iterable[bool] = repeat(True)
+            if not iterable or iterable.index(iterable[-1]) < sys.maxsize:
+                turns = len(iterable)
+                elements = chain(iterable, (iterable.start + turns * iterable.step,))
+                is_turn = chain(repeat(True, turns), (False,))
+            # A longer one has no end that is ever seen, and no length that C can hold.
             # What `turn` is may change while the loop runs: a debugger may begin within it.
             current = map(attrgetter("turn"), repeat(self))
             return repeat(flat(map(partial.__call__, current, elements, repeat(stop), is_turn)))

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     Position = tuple[int, int]
 
-_RELATIONS = {
+RELATIONS = {
     "Lt": "<",
     "LtE": "<=",
     "Gt": ">",
@@ -63,8 +63,10 @@ class Found(NamedTuple):
     def total(self) -> int:
         """How many listed comparisons were found."""
         links = sum(len(places) for link in self.links.values() for places in link.values())
-        others = (self.flags, self.loops, self.subjects, self.patterns, self.calls)
-        return links + sum(len(places) for kind in others for places in kind.values())
+        # A conditional expression is one flag at two places.
+        flags = len({place for places in self.flags.values() for place in places})
+        others = (self.loops, self.subjects, self.patterns, self.calls)
+        return links + flags + sum(len(places) for kind in others for places in kind.values())
 
 
 def find(tree: ast.Module, listed: Sequence[Listed]) -> Found:
@@ -76,32 +78,6 @@ def find(tree: ast.Module, listed: Sequence[Listed]) -> Found:
         if not any(way(index, found, one) for way in ways):
             found.missing.append(one)
     return found
-
-
-def every_comparison(tree: ast.Module) -> list[Listed]:
-    """All comparisons of a module, as if they were listed: for tests of the rewriting itself."""
-    listed = []
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Compare):
-            for link, left in enumerate([node.left, *node.comparators[:-1]]):
-                relation = _RELATIONS[type(node.ops[link]).__name__]
-                place = node if link == 0 else left
-                key = f"{place.lineno}:{place.col_offset + 1}:{link}"
-                end = node.comparators[link]
-                listed.append(
-                    Listed(
-                        key,
-                        relation,
-                        place.lineno,
-                        place.col_offset + 1,
-                        end.end_lineno,
-                        (end.end_col_offset or 0) + 1,
-                        None,
-                        "right",
-                        None,
-                    )
-                )
-    return listed
 
 
 def matching(candidates: Sequence[ListedFile], text: str) -> ListedFile | None:
@@ -147,8 +123,8 @@ class _Index:
             for link, left in enumerate([node.left, *node.comparators[:-1]]):
                 for position in {_position(node if link == 0 else left), _position(left)}:
                     self.links.setdefault(position, []).append((node, link))
-        for condition in _conditions(node):
-            for operand in _operands(condition):
+        for condition in conditions_of(node):
+            for operand in operands_of(condition):
                 self.operands.setdefault(_position(operand), []).append(operand)
         if isinstance(node, (ast.For, ast.AsyncFor, ast.comprehension)):
             self.loops.setdefault(_position(node.iter), []).append(node.iter)
@@ -181,7 +157,7 @@ def _position(node: ast.expr) -> Position:
     return node.lineno, node.col_offset + 1
 
 
-def _conditions(node: ast.AST) -> Iterator[ast.expr]:
+def conditions_of(node: ast.AST) -> Iterator[ast.expr]:
     """The expressions whose truth ``node`` asks for."""
     if isinstance(node, (ast.If, ast.While, ast.IfExp, ast.Assert)):
         yield node.test
@@ -195,16 +171,16 @@ def _conditions(node: ast.AST) -> Iterator[ast.expr]:
         yield node.guard  # type: ignore[attr-defined]
 
 
-def _operands(condition: ast.expr) -> Iterator[ast.expr]:
+def operands_of(condition: ast.expr) -> Iterator[ast.expr]:
     """The parts of a condition that are predicates by themselves."""
     if isinstance(condition, ast.BoolOp):
         for value in condition.values:
-            yield from _operands(value)
+            yield from operands_of(value)
     elif isinstance(condition, ast.UnaryOp) and isinstance(condition.op, ast.Not):
-        yield from _operands(condition.operand)
+        yield from operands_of(condition.operand)
     elif isinstance(condition, ast.NamedExpr):
         yield condition
-        yield from _operands(condition.value)
+        yield from operands_of(condition.value)
     elif not isinstance(condition, ast.Compare):
         yield condition
 
@@ -224,7 +200,7 @@ def _as_link(index: _Index, found: Found, listed: Listed) -> bool:
         return False
     candidates: list[tuple[bool, bool, int, ast.Compare, int]] = []
     for node, link in index.links.get((listed.lineno, listed.column), []):
-        relation = _RELATIONS[type(node.ops[link]).__name__]
+        relation = RELATIONS[type(node.ops[link]).__name__]
         if listed.relation not in (relation, _MIRRORED[relation]):
             continue
         is_own = link > 0 or _position(node) == (listed.lineno, listed.column)
@@ -242,7 +218,7 @@ def _is_swapped(node: ast.Compare, link: int, listed: Listed) -> bool:
     """Whether the threshold is the left operand: the relation has it on the right-hand side."""
     if listed.operand is not None:
         return listed.operand == "left"
-    relation = _RELATIONS[type(node.ops[link]).__name__]
+    relation = RELATIONS[type(node.ops[link]).__name__]
     if relation not in ("==", "!="):
         return listed.relation != relation
     left = [node.left, *node.comparators][link]
@@ -296,7 +272,7 @@ def _as_pattern(index: _Index, found: Found, listed: Listed) -> bool:
 
 def _as_loop(index: _Index, found: Found, listed: Listed) -> bool:
     loops = index.loops.get((listed.lineno, listed.column), [])
-    if not loops:
+    if not loops or listed.relation == "flag":
         return False
     found.loops.setdefault(loops[0], []).append(Place(listed, False))
     return True
@@ -304,7 +280,7 @@ def _as_loop(index: _Index, found: Found, listed: Listed) -> bool:
 
 def _as_flag(index: _Index, found: Found, listed: Listed) -> bool:
     position = (listed.lineno, listed.column)
-    subjects = index.subjects.get(position, [])
+    subjects = [node for node in index.subjects.get(position, []) if _ends(node, listed)]
     if subjects:
         found.subjects.setdefault(subjects[0], []).append(Place(listed, False))
         return True
@@ -315,8 +291,24 @@ def _as_flag(index: _Index, found: Found, listed: Listed) -> bool:
         return False
     exact = [node for node in operands if _ends(node, listed)]
     chosen = max(exact or operands, key=_length)
-    found.flags.setdefault(chosen, []).append(Place(listed, False))
+    values = flags_of(chosen)
+    for value in values:
+        found.flags.setdefault(value, []).append(Place(listed, False))
+    if not values:
+        found.unsupported.append(listed)
     return True
+
+
+def flags_of(condition: ast.expr) -> list[ast.expr]:
+    """What may be chosen by a conditional expression, else the condition itself.
+
+    Choices that are conditions in turn are none: the program asks for the truth of their parts, and
+    whoever asked for theirs, too, would ask twice.
+    """
+    if isinstance(condition, ast.IfExp):
+        return [*flags_of(condition.body), *flags_of(condition.orelse)]
+    is_not = isinstance(condition, ast.UnaryOp) and isinstance(condition.op, ast.Not)
+    return [] if is_not or isinstance(condition, (ast.BoolOp, ast.Compare)) else [condition]
 
 
 def _length(node: ast.expr) -> Position:

@@ -68,7 +68,9 @@ class Instrument:
                 " information says, and not reported; analyse it again"
             )
         for listed in rewritten.unsupported:
-            warn(f"{path}:{listed.lineno}: a value within a pattern is not reported")
+            is_flag = listed.relation == "flag"
+            what = "choice between conditions" if is_flag else "value within a pattern"
+            warn(f"{path}:{listed.lineno}: a {what} is not reported")
         missing += len(rewritten.unsupported)
         self.done.append(Done(path, rewritten.instrumented, missing))
         return rewritten.code

@@ -29,7 +29,14 @@ if TYPE_CHECKING:
     Register = Callable[[Place], Reported]
 
 # Python 3.11 says of a failed `assert` that it is where the comparison in it is, if there is one.
+# The same holds for an error in the truth of a condition behind a comparison.
 _ASSERTS_AT_COMPARISON = sys.version_info[:2] == (3, 11)
+# From Python 3.13 on, the compiler joins a comparison with the truth that a kept `not` asks of it,
+# and what either raises has the place of `not`.
+_NOT_COMPARES = sys.version_info >= (3, 13)
+# Until Python 3.11 an error in the truth of a condition has the place of what asks for it; after
+# that, the condition's own.
+_ASKERS_PLACE = sys.version_info < (3, 12)
 _MARK = "\0tpc constant "
 
 
@@ -89,11 +96,15 @@ def with_constants(code: CodeType, constants: dict[str, object]) -> CodeType:
 
 
 class _Chain(NamedTuple):
-    """A comparison, which of its links report what, and whether its truth alone is asked for."""
+    """A comparison, which of its links report what, and whether its truth alone is asked for.
+
+    ``place`` is the expression whose place its last link has.
+    """
 
     node: ast.Compare
     links: dict[int, list[Place]]
     asked: bool
+    place: ast.expr
 
 
 class _Rewriter:
@@ -107,12 +118,18 @@ class _Rewriter:
         self._found = found
         self._register = register
         self._constants = constants
+        # What asks for the truth of a condition: a statement, an expression, a pattern.
+        self._asker: ast.AST = ast.Module(body=[], type_ignores=[])
 
     def module(self, tree: ast.AST) -> None:
         """Rewrite all of a module."""
         self._fields(tree)
 
     def _fields(self, node: ast.AST) -> None:
+        if isinstance(node, ast.stmt):
+            self._asker = node
+        elif type(node).__name__ == "match_case":
+            self._asker = node.pattern  # type: ignore[attr-defined]
         for name, value in ast.iter_fields(node):
             if isinstance(value, ast.expr):
                 setattr(node, name, self._expression(value, _is_asked(node, name)))
@@ -163,9 +180,12 @@ class _Rewriter:
                 # Not allowed, as the compiler will say.
                 continue
             where = ast.copy_location(ast.Constant(value=True, kind=None), case.pattern)
-            said = self._call(
-                self._constant(subject, where), "default" if is_default else "taken", [], where
-            )
+            if is_default:
+                # It stays the one that takes everything: how a `match` with one ends is no other.
+                call = self._call(self._constant(subject, where), "default", [], where)
+                case.body.insert(0, ast.copy_location(ast.Expr(value=call), where))
+                return
+            said = self._call(self._constant(subject, where), "taken", [], where)
             guards = [self._equality(case, subject, where)] if values else []
             guards += [case.guard] if case.guard is not None else []
             case.guard = self._joined(ast.And(), [*guards, said], where)
@@ -185,7 +205,7 @@ class _Rewriter:
                 ast.Compare(left=held, ops=[ast.Eq()], comparators=[value]), value
             )
             links = {0: self._found.patterns.get(value, [])}
-            conditions.append(self._chain(_Chain(equal, links, True), 0, held, held))
+            conditions.append(self._chain(_Chain(equal, links, True, equal), 0, held, held))
         case.pattern = ast.copy_location(ast.MatchAs(), case.pattern)
         return self._joined(ast.Or(), conditions, where)
 
@@ -195,13 +215,25 @@ class _Rewriter:
             return parts[0]
         return ast.copy_location(ast.BoolOp(op=operator, values=parts), where)
 
-    def _expression(self, node: ast.expr, asked: bool) -> ast.expr:
+    def _expression(
+        self, node: ast.expr, asked: bool, negation: ast.expr | None = None
+    ) -> ast.expr:
+        """What stands in the place of ``node``, the operand of ``negation`` if there is one."""
         flags = self._found.flags.get(node)
         links = self._found.links.get(node) if isinstance(node, ast.Compare) else None
+        asker = self._asker
+        is_branch = asked and isinstance(node, _BRANCHES)
+        if not is_branch:
+            self._asker = node
         self._parts(node, asked and not flags)
+        if not is_branch:
+            self._asker = asker
+        if asked and isinstance(node, ast.Compare) and _ASSERTS_AT_COMPARISON:
+            self._asker = node
         new: ast.expr = node
         if links is not None and isinstance(node, ast.Compare):
-            new = self._chain(_Chain(node, links, asked), 0, node.left, _first(node.left))
+            place = negation if negation is not None and _is_joined(node) else node
+            new = self._chain(_Chain(node, links, asked, place), 0, node.left, _first(node.left))
             if asked and _ASSERTS_AT_COMPARISON:
                 true = ast.copy_location(ast.Constant(value=True, kind=None), node)
                 still = ast.Compare(left=new, ops=[ast.Is()], comparators=[true])
@@ -210,7 +242,7 @@ class _Rewriter:
         if calls is not None and isinstance(node, ast.Call):
             new = self._library_call(node, calls)
         if flags is not None:
-            new = self._flag(new, flags, asked)
+            new = self._flag(new, flags, asker if asked else None)
         loops = self._found.loops.get(node)
         if loops is not None:
             loop = Loop(tuple(self._register(place) for place in loops))
@@ -227,7 +259,7 @@ class _Rewriter:
             node.orelse = self._expression(node.orelse, asked)
         elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.Not):
             # As a value `not x` asks by itself, and what x raises then has the place of `not`.
-            node.operand = self._expression(node.operand, asked)
+            node.operand = self._expression(node.operand, asked, None if asked else node)
         else:
             self._fields(node)
 
@@ -237,7 +269,7 @@ class _Rewriter:
         return _at(ast.Constant(value=mark, kind=None), where)
 
     def _call(
-        self, site: ast.expr, method: str, arguments: list[ast.expr], to: ast.expr
+        self, site: ast.expr, method: str, arguments: list[ast.expr], to: ast.AST
     ) -> ast.expr:
         """``SITE.method(arguments).__next__()``, whose attribute must not end on a line of its own.
 
@@ -248,7 +280,7 @@ class _Rewriter:
         call = ast.copy_location(ast.Call(func=attribute, args=arguments, keywords=[]), to)
         attribute = ast.Attribute(value=call, attr="__next__", ctx=ast.Load())
         ast.copy_location(attribute, to)
-        attribute.end_lineno, attribute.end_col_offset = to.lineno, to.col_offset
+        attribute.end_lineno, attribute.end_col_offset = call.lineno, call.col_offset
         return ast.copy_location(ast.Call(func=attribute, args=[], keywords=[]), to)
 
     def _chain(self, chain: _Chain, link: int, left: ast.expr, first: ast.expr) -> ast.expr:
@@ -267,7 +299,7 @@ class _Rewriter:
         is_last = link + 1 == len(node.ops)
         method = "link" if not is_last else "truth" if chain.asked else "compare"
         site = self._constant(comparison, first)
-        this = self._call(site, method, [left, right], node)
+        this = self._call(site, method, [left, right], chain.place if is_last else node)
         if is_last:
             return this
         handed = self._call(self._constant(comparison, node), "right", [], node)
@@ -290,12 +322,16 @@ class _Rewriter:
         site = self._constant(LibraryCall(inside), _first(node))
         return self._call(site, "call", [node.func, *node.args, keywords], node)
 
-    def _flag(self, node: ast.expr, places: list[Place], asked: bool) -> ast.expr:
+    def _flag(self, node: ast.expr, places: list[Place], asker: ast.AST | None) -> ast.expr:
+        """``node`` with a report of its truth, for which ``asker`` asks if anything does."""
         flag = Flag(tuple(self._register(place) for place in places))
-        method = "truth" if asked else "value"
-        return self._call(self._constant(flag, _first(node)), method, [node], node)
+        method = "value" if asker is None else "truth"
+        place = node if asker is None or not _ASKERS_PLACE else asker
+        return self._call(self._constant(flag, _first(node)), method, [node], place)
 
 
+# What asks nothing itself where its truth is asked for.
+_BRANCHES = (ast.BoolOp, ast.IfExp, ast.UnaryOp)
 _ASKING = {
     "If": ("test",),
     "While": ("test",),
@@ -310,6 +346,7 @@ _FIRST = {
     "BinOp": "left",
     "Call": "func",
     "Compare": "left",
+    "FormattedValue": "value",
     "IfExp": "test",
     "NamedExpr": "value",
     "Starred": "value",
@@ -320,6 +357,12 @@ _FIRST = {
 
 def _is_asked(node: ast.AST, field: str) -> bool:
     return field in _ASKING.get(type(node).__name__, ())
+
+
+def _is_joined(node: ast.Compare) -> bool:
+    """Whether a kept ``not`` and this comparison, its operand, are one to the compiler."""
+    is_ordinary = not isinstance(node.ops[0], (ast.Is, ast.IsNot, ast.In, ast.NotIn))
+    return _NOT_COMPARES and len(node.ops) == 1 and is_ordinary
 
 
 def _first(node: ast.expr) -> ast.expr:

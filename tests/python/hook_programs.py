@@ -2,7 +2,8 @@
 
     python hook_programs.py COUNT [SEED]
 
-Runs so many programs with and without reports of all comparisons, and prints those that differ.
+Runs so many programs plain, and with reports of all comparisons and of half of all flags, loops,
+cases and calls that compare inside. Prints those that differ; ends with exit status 1 if one does.
 Operands are numbers, texts, None, NaN, arrays, and objects whose comparison and truth are the
 program's own, and may raise.
 """
@@ -17,12 +18,12 @@ from pathlib import Path
 if __name__ == "__main__":
     sys.path[:0] = [str(Path(__file__).resolve().parents[2])]
 
-from hook_samples import PATH, everywhere, outcome, taking, without_addresses
+from hook_samples import PATH, at_random, everywhere, outcome, taking, without_addresses
 
 OPERATORS = ["<", "<=", ">", ">=", "==", "!=", "is", "is not", "in", "not in"]
 
 PRELUDE = '''\
-import dataclasses, decimal, enum, fractions, functools
+import dataclasses, decimal, enum, fractions, functools, math, operator
 log = []
 class Odd:
     """Compares by its own code, gives objects without a truth, or raises."""
@@ -103,9 +104,8 @@ NUMPY = ["array([1, 2])", "array([1.5])", "float64(1.5)", "int32(2)", "bool_(Tru
 class Maker:
     """Programs of one seed."""
 
-    def __init__(self, seed, values):
+    def __init__(self, seed):
         self._random = random.Random(seed)
-        self._values = values
 
     def program(self):
         """A text with a generator that is run to its end."""
@@ -118,7 +118,7 @@ class Maker:
 
     def value(self):
         """An operand."""
-        return f"t({self._random.randint(0, 999)}, {self._random.choice(self._values)})"
+        return f"t({self._random.randint(0, 999)}, {self._random.choice(VALUES)})"
 
     def expression(self, depth):
         """An expression with comparisons in it."""
@@ -165,6 +165,10 @@ EXPRESSIONS = [
     "[[(u := x < y) for x in (1, @v)] for y in (2, @v) if (v := y > 1)]",
     "sorted([@v, @v], key=lambda k: @e)", "dict(a=@e)['a']", "[1, 2][@e:]", "-(@v < @v)",
     "driven(given(@e))", "any(@e for _ in '12')", "(@e\n      < @e)", "(await_ if @e else 3)",
+    "min(@e, @v)", "max(@v, @e, @v)", "min(@v, @v, key=lambda k: @e)", "min(*@v, @e)",
+    "t(2, max)(\n        @v, @e)", "operator.lt(@v, @e)", "operator.ge(@v, @v)",
+    "operator.is_not(@v, @e)", "math.isclose(@v, @v, abs_tol=@v)", "(not @v)", "(@v and @v)",
+    "[i for i in range(3) if @v]",
 ]  # fmt: skip
 STATEMENTS = [
     "log.append(repr(@e))",
@@ -174,7 +178,8 @@ STATEMENTS = [
     "try:\n    x = (@e\n         < @e)\nexcept ValueError as e:\n    log.append(str(e))",
     "try:\n    #\nexcept (TypeError, ValueError) as e:\n    log.append(str(e))\nelse:\n    #\n"
     "finally:\n    log.append(@v)",
-    "for i in range(@v if @e else 2):\n    log.append(i)\n    if i > @v: break\nelse:\n    #",
+    "for i in range(@v if @e else 2):\n    log.append(i)\n"
+    "    if i > @v or i > 3: break\nelse:\n    #",
     "return @e",
     "x = {@v: 1}\nif @e: del x",
     "class C:\n    here = @e\n    if here is @v: there = @e\n    def m(self, a=@e): return a\n"
@@ -195,6 +200,10 @@ STATEMENTS = [
     "yield from [@e, (yield)]",
     "raise ValueError(@e) from None",
 ]
+WITH_NUMPY = [
+    "minimum(@v, @e)", "clip(@v, @v, @v)", "less(@v, @e)", "isclose(@v, @v, atol=@v)",
+    "min(array(@v), @v)",
+]  # fmt: skip
 MATCHES = [
     "match @v:\n    case 1 if @e:\n        #\n    case Limits.high | Limits.text:\n"
     "        #\n    case _:\n        #",
@@ -208,6 +217,17 @@ GROUPS = [
 ]
 NEWEST_EXPRESSIONS = ["f'{f'{@v < @e}' if @e else '{}'}'"]
 NEWEST = ["def h[T](a: T = @e): return a\nlog.append(repr(h()))"]
+try:
+    import numpy as np
+except ImportError:
+    OF_NUMPY = {}
+else:
+    OF_NUMPY = {
+        name: getattr(np, name)
+        for name in ("array", "float64", "int32", "bool_", "minimum", "clip", "less", "isclose")
+    }
+    VALUES += NUMPY
+    EXPRESSIONS += WITH_NUMPY
 VERSION = tuple(sys.version_info[:2])
 STATEMENTS += MATCHES if VERSION >= (3, 10) else []
 STATEMENTS += GROUPS if VERSION >= (3, 11) else []
@@ -219,24 +239,15 @@ def _indented(text):
     return "\n".join("    " + line for line in text.splitlines())
 
 
-def program(seed, values):
+def program(seed):
     """The text of a program; several seeds have none that may be compiled."""
-    return Maker(seed, values).program().replace("\0", "@decorated")
-
-
-def numpy_names():
-    """What programs take from numpy, where it is."""
-    try:
-        import numpy as np  # noqa: PLC0415
-    except ImportError:
-        return {}
-    return {"array": np.array, "float64": np.float64, "int32": np.int32, "bool_": np.bool_}
+    return Maker(seed).program().replace("\0", "@decorated")
 
 
 @functools.lru_cache(maxsize=2)
 def _prelude(is_plain):
     """The names of the prelude, with reports or without; made once, because it takes its time."""
-    names = {"__name__": "program", **numpy_names()}
+    names = {"__name__": "program", **OF_NUMPY}
     code = compile(PRELUDE, PATH, "exec", dont_inherit=True) if is_plain else everywhere(PRELUDE)
     exec(code, names)
     return names
@@ -255,14 +266,14 @@ def difference(seed):
 
     Returns None where the program cannot be compiled, as for ``yield`` in a comprehension.
     """
-    source = program(seed, VALUES + (NUMPY if numpy_names() else []))
+    source = program(seed)
     try:
         code = compile(source, PATH, "exec", dont_inherit=True)
     except SyntaxError:
         return None
     (expected, lines), *others = _run(code, True)
     with taking():
-        (found, seen), *found_others = _run(everywhere(source), False)
+        (found, seen), *found_others = _run(at_random(source, seed), False)
     if (found, found_others) != (expected, others):
         return f"{(expected, others)}\n{(found, found_others)}"
     if lines == seen:
@@ -272,18 +283,32 @@ def difference(seed):
 
 
 def main(count, first):
-    """Run ``count`` programs."""
-    same = left_out = 0
-    for seed in range(first, first + count):
-        what = difference(seed)
-        same += what == ""
-        left_out += what is None
-        if what:
-            print(f"seed {seed}: {what}", flush=True)
-            if count == 1:
-                print(program(seed, VALUES + (NUMPY if numpy_names() else [])))
-    print(f"{count} programs: {same} the same, {left_out} no programs")
+    """Run ``count`` programs; the counts come every thousand, and at the end or at Ctrl-C."""
+    done = same = left_out = 0
+
+    def told():
+        print(f"{done} programs: {same} the same, {left_out} no programs", flush=True)
+
+    try:
+        for seed in range(first, first + count):
+            what = difference(seed)
+            done += 1
+            same += what == ""
+            left_out += what is None
+            if what:
+                print(f"seed {seed}: {what}", flush=True)
+                if count == 1:
+                    print(program(seed))
+            if done % 1000 == 0 and done < count:
+                told()
+    except KeyboardInterrupt:
+        return 130
+    finally:
+        told()
+    return 0 if done == same + left_out else 1
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else random.randrange(1 << 40))
+    sys.exit(
+        main(int(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else random.randrange(1 << 40))
+    )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import random
 import re
 import sys
 import traceback
@@ -12,8 +13,10 @@ from dataclasses import dataclass, field
 from types import CodeType, FrameType
 from typing import Any
 
+from hook_places import comparisons, others
+
 from pytpc.pyhook import quiet, sites
-from pytpc.pyhook.find import Place, every_comparison
+from pytpc.pyhook.find import Place
 from pytpc.pyhook.listed import Listed
 from pytpc.pyhook.rewrite import rewrite
 from pytpc.pyhook.sites import Reported
@@ -74,8 +77,18 @@ def instrumented(source: str, *places: Listed) -> CodeType:
 
 
 def everywhere(source: str) -> CodeType:
-    """The code of a program of which every comparison reports."""
-    return instrumented(source, *every_comparison(ast.parse(source)))
+    """The code of a program of which all that may be listed reports."""
+    tree = ast.parse(source)
+    return instrumented(source, *comparisons(tree), *others(tree))
+
+
+def at_random(source: str, seed: int) -> CodeType:
+    """The code of a program of which every comparison reports, and half of all else."""
+    tree = ast.parse(source)
+    chosen = random.Random(seed)
+    return instrumented(
+        source, *comparisons(tree), *(one for one in others(tree) if chosen.random() < 0.5)
+    )
 
 
 def reports(source: str, *places: Listed, **names: object) -> list[tuple[Any, ...]]:
