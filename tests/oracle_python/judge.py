@@ -76,7 +76,7 @@ def _ask(verdict: Verdict, modules: Mapping[str, str], folder: Path) -> None:
         (folder / f"{name}.py").write_text(source)
     entry = entry_of(folder / "node.py")
     program = Program(entry.name, entry.package, entry.root)
-    Loader(program, list(entry.folders)).load(entry.script)
+    Loader(program, entry).load()
     analysed = analyse(program, load_rules())
     verdict.found = {_key(each) for each in analysed.found}
     distance = analysed.slice.distance

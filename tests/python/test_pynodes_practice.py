@@ -407,7 +407,7 @@ SAMPLES = {
         low = rospy.get_param("~low")
         near = rospy.get_param("~near")
         def cb(msg):
-            speed = max(low, min(top, msg.data))
+            speed = max(low, min(top, msg.data))  #: ~low >, ~top <
             pub.publish(speed)
             nearest = 100.0
             for value in msg.ranges:
