@@ -36,6 +36,7 @@ class Calls(CallTable):
         super().__init__()
         self.flow = flow
         self._done: set[tuple[Instr, Obj]] = set()
+        self._results: dict[Function, list[Instr]] = {}
 
     def call(self, instr: Instr, callee: Obj) -> None:
         """``instr`` calls ``callee``."""
@@ -135,11 +136,19 @@ class Calls(CallTable):
         if function.is_generator:
             made = flow.heap.container("list", instr)
             flow.add(to, [made])
-        for each in function.instructions():
+        for each in self._results_of(function):
             if each.op == "return":
                 flow.copy(each.args[0], to)
-            elif each.op == "yield":
+            else:
                 flow.write(made, SOME, each.args[0], each)
+
+    def _results_of(self, function: Function) -> list[Instr]:
+        """What gives a function's results, looked for once, however many calls it has."""
+        if function not in self._results:
+            self._results[function] = [
+                each for each in function.instructions() if each.op in ("return", "yield")
+            ]
+        return self._results[function]
 
     def _bind(
         self, instr: Instr, function: Function, owner: Obj | None, given: list[Given]
@@ -394,6 +403,6 @@ class Calls(CallTable):
                 flow.when(value, lambda found, param=param: flow.read_element(found, ANY, param))  # type: ignore[misc]
         made = flow.heap.container("list", instr)
         flow.add(instr, [made])
-        for each in function.instructions():
+        for each in self._results_of(function):
             if each.op == "return":
                 flow.write(made, SOME, each.args[0], each)

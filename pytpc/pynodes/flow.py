@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from pytpc.pynodes.effects import effects_of_calls
+from pytpc.pynodes.effects import CallEffects
 from pytpc.pynodes.ir import Block, Instr, Variable
 from pytpc.pynodes.objects import UNNAMED, Field, Obj
 from pytpc.pynodes.pointsto import PointsTo
@@ -28,7 +28,7 @@ class Flow:
                 table = self.stores_of if instr.op == "store" else self.loads_of
                 table.setdefault(instr.data, []).append(instr)
         self.reaching: Reaching = reaching_definitions(
-            points.program.functions, effects_of_calls(points), self._escaping()
+            points.program.functions, CallEffects(points), self._escaping()
         )
         for load, stores in self.reaching.stores.items():
             for store in stores:

@@ -21,6 +21,8 @@ from pytpc.pynodes.solver import Solver
 _STEPS = 20
 _LEAST_STEPS = 100_000
 """For each instruction, and in any case: how many steps the analysis may take."""
+_PLACES = 64
+"""Objects of one class are told apart at so many places where they are made."""
 
 
 class PointsTo(Solver):
@@ -87,8 +89,10 @@ class PointsTo(Solver):
 
     def instantiate(self, info: ClassInfo, site: Instr | None) -> Obj:
         """An object of a class; all its methods may be called on it."""
-        made = self.heap.instance(info, site)
         known = self.instances.setdefault(info, {})
+        made = self.heap.instance(info, site)
+        if made not in known and len(known) >= _PLACES:
+            made = self.heap.instance(info, None)
         if made in known:
             return made
         known[made] = None

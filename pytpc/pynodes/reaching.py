@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from pytpc.pynodes.effects import ANY_ATTRIBUTE, Effects
+from pytpc.pynodes.effects import CallEffects
 from pytpc.pynodes.ir import Block, Function, Instr, Variable
 
 Cell = Variable | tuple[Variable, str]
@@ -30,7 +30,7 @@ class Reaching:
 
 
 def reaching_definitions(
-    functions: list[Function], effects: dict[Instr, Effects], escaping: set[Instr]
+    functions: list[Function], effects: CallEffects, escaping: set[Instr]
 ) -> Reaching:
     """Work out ``Reaching`` of all functions.
 
@@ -61,7 +61,7 @@ class _OneFunction:
     def __init__(
         self,
         function: Function,
-        effects: dict[Instr, Effects],
+        effects: CallEffects,
         escaping: set[Instr],
         result: Reaching,
     ) -> None:
@@ -73,6 +73,7 @@ class _OneFunction:
         self.stores: list[Instr | None] = []
         self.of_cell: dict[Cell, int] = {}
         self.entry: dict[Cell, int] = {}
+        self.shared: dict[Cell, int] = {}
         self.bit: dict[Instr, int] = {}
         self.cell: dict[Instr, Cell] = {}
 
@@ -85,6 +86,10 @@ class _OneFunction:
             if cell not in self.entry:
                 self.entry[cell] = self._number(None)
                 self.of_cell[cell] = self.entry[cell]
+                if not isinstance(cell, Variable):
+                    self.shared[cell] = self.effects.mask(cell[1])
+                elif cell.shared:
+                    self.shared[cell] = self.effects.mask(cell)
             if instr.op in ("store", "setattr"):
                 self.bit[instr] = self._number(instr)
                 self.of_cell[cell] |= self.bit[instr]
@@ -97,11 +102,11 @@ class _OneFunction:
     def _step(self, instr: Instr, state: int) -> int:
         if instr in self.bit:
             return state & ~self.of_cell[self.cell[instr]] | self.bit[instr]
-        effects = self.effects.get(instr)
+        effects = self.effects.of(instr)
         if effects is not None and (effects.waits or effects.writes):
-            for cell, entry in self.entry.items():
-                if _touches(cell, effects.waits, effects.writes):
-                    state |= entry
+            for cell, names in self.shared.items():
+                if effects.waits or effects.writes & names:
+                    state |= self.entry[cell]
         return state
 
     def _fixpoint(self) -> dict[Block, int]:
@@ -148,12 +153,12 @@ class _OneFunction:
             for cell, mask in self.of_cell.items():
                 if isinstance(cell, tuple) and cell[0] is instr.data:
                     seen |= mask
-        effects = self.effects.get(instr)
+        effects = self.effects.of(instr)
         if effects is None:
             return seen
-        for cell, mask in self.of_cell.items():
-            if _touches(cell, effects.waits, effects.reads):
-                seen |= mask
+        for cell, names in self.shared.items():
+            if effects.waits or effects.reads & names:
+                seen |= self.of_cell[cell]
         return seen
 
     def _mark_load(self, instr: Instr, reached: int) -> None:
@@ -169,12 +174,6 @@ class _OneFunction:
                 found.append(store)
             reached ^= low
         self.result.stores[instr] = found
-
-
-def _touches(cell: Cell, waits: bool, names: set[str | Variable]) -> bool:
-    if isinstance(cell, Variable):
-        return cell.shared and (waits or cell in names)
-    return waits or cell[1] in names or ANY_ATTRIBUTE in names
 
 
 def _bound_once(function: Function) -> set[Variable]:

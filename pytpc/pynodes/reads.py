@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from pytpc.link_unit import Default
@@ -11,6 +12,7 @@ from pytpc.pynodes.contexts import Stack
 from pytpc.pynodes.flow import Flow
 from pytpc.pynodes.ir import Function, Instr
 from pytpc.pynodes.objects import Obj
+from pytpc.pynodes.parameter_lists import ParameterLists
 from pytpc.pynodes.rules_file import Argument, Rules
 
 Context = tuple[Stack, dict[Instr, tuple[object, ...]]]
@@ -62,13 +64,16 @@ def argument(given: list[Given], where: Argument) -> Instr | None:
 def find_reads(flow: Flow, constants: Constants, rules: Rules) -> list[Read]:
     """All reads, in the order of the program; one for each name that a call may read."""
     found: list[Read] = []
+    lists = ParameterLists(constants)
     for instr, paths in flow.points.calls.outside.items():
         given = CallTable.arguments(instr)
         for path, _ in paths:
             if path in rules.reads:
                 found += _read(instr, path, given, constants, rules)
             if path in rules.configs:
-                found += _configs(flow, instr, path, given, rules)
+                found += _configs(flow, path, given, rules)
+            if path in rules.lists:
+                found += _listed(flow, instr, path, given, lists)
     return sorted(found, key=lambda read: (read.instr.number, read.name))
 
 
@@ -129,17 +134,33 @@ def _default(constants: Constants, instr: Instr | None) -> Default:
     return value if finite else None
 
 
-def _configs(flow: Flow, instr: Instr, path: str, given: list[Given], rules: Rules) -> list[Read]:
+def _configs(flow: Flow, path: str, given: list[Given], rules: Rules) -> list[Read]:
     where, place = rules.configs[path]
-    callback = argument(given, where)
-    found = []
+    handed = _handed(flow, argument(given, where), place)
+    return [Read("", path, param, is_table=True) for param in handed]
+
+
+def _handed(flow: Flow, callback: Instr | None, place: int) -> Iterator[Instr]:
+    """The parameter of a callback that is handed the argument number ``place``."""
     for each in flow.points.of(callback) if callback is not None else ():
         function, first = _first_free(each)
         if function is not None and first + place < len(function.param_instrs):
-            param = function.param_instrs[first + place]
-            found.append(Read("", path, param, is_table=True))
-    del instr
-    return found
+            yield function.param_instrs[first + place]
+
+
+def _listed(
+    flow: Flow, instr: Instr, path: str, given: list[Given], lists: ParameterLists
+) -> list[Read]:
+    """The elements of lists of parameters."""
+    where_names, where_callback = flow.points.rules.lists[path]
+    asked = argument(given, where_names)
+    starts = [(instr, lists.named(asked))] if asked is not None else []
+    starts += [(each, []) for each in _handed(flow, argument(given, where_callback), 0)]
+    return [
+        Read(taken.name, path, taken.instr)
+        for start, names in starts
+        for taken in lists.taken(start, names)
+    ]
 
 
 def _first_free(callback: Obj) -> tuple[Function | None, int]:

@@ -10,7 +10,17 @@ from typing import Any
 from pytpc.static_json import PYTHON_RULES_SCHEMA, check_schema, parse_json
 
 _OWN = Path(__file__).parent / "rules" / "python.json"
-_LISTS = ("reads", "exposing", "topics", "makes", "configs", "services", "values", "comparisons")
+_LISTS = (
+    "reads",
+    "lists",
+    "exposing",
+    "topics",
+    "makes",
+    "configs",
+    "services",
+    "values",
+    "comparisons",
+)
 
 
 @dataclass(frozen=True)
@@ -40,8 +50,9 @@ class Rules:
     """The tables by dotted name; see ``rules/python.json``.
 
     ``reads``: the arguments with the name and with the default. ``arithmetic``: the name of an
-    operation. ``values``: attributes and methods that give the value of a parameter object, and
-    what they multiply it by.
+    operation. ``lists``: the arguments with the names of the list of parameters that is returned,
+    and with the callback that is handed one. ``values``: attributes and methods that give the value
+    of a parameter object, and what they multiply it by.
     """
 
     profile: str
@@ -52,6 +63,7 @@ class Rules:
     makes: dict[str, str] = field(default_factory=dict)
     configs: dict[str, tuple[Argument, int]] = field(default_factory=dict)
     services: dict[str, Argument] = field(default_factory=dict)
+    lists: dict[str, tuple[Argument, Argument]] = field(default_factory=dict)
     values: dict[str, float] = field(default_factory=dict)
     comparisons: dict[str, LibraryComparison] = field(default_factory=dict)
     waiting: set[str] = field(default_factory=set)
@@ -68,7 +80,7 @@ class Rules:
     @property
     def paths(self) -> list[str]:
         """All dotted names that the tables are about."""
-        tables = (self.reads, self.topics, self.makes, self.configs, self.services)
+        tables = (self.reads, self.topics, self.makes, self.configs, self.services, self.lists)
         named = [name for table in tables for name in table]
         return [*named, *self.exposing, *self.makes.values()]
 
@@ -126,6 +138,9 @@ def _add_row(rules: Rules, name: str, row: dict[str, Any]) -> None:
             rules.configs[function] = (callback, row.get("config", 0))
         case "services":
             rules.services[function] = Argument(row["callback"], row.get("keyword"))
+        case "lists":
+            names = Argument(row.get("names"), row.get("names_keyword"))
+            rules.lists[function] = (names, Argument(row.get("callback"), row.get("keyword")))
         case "comparisons":
             rules.comparisons[function] = LibraryComparison(
                 row.get("relation"), row.get("chooses"), row.get("within")

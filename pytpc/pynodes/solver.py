@@ -12,6 +12,8 @@ Node = Hashable
 """An Instr, a Variable, or a Field."""
 _MOST = 32
 """With more objects than this, a value's containers and library objects count no more."""
+_MOST_OWN = 128
+"""No value has more objects than this: what may be so much tells nothing apart."""
 
 
 class Solver:
@@ -33,7 +35,8 @@ class Solver:
         self._readers: dict[Obj, dict[Instr, None]] = {}
         self._unbound: set[tuple[Node, Node]] = set()
         self._objects: dict[Node, dict[Obj, None]] = {}
-        self._waiting: deque[tuple[Node, list[Obj]]] = deque()
+        self._waiting: deque[Node] = deque()
+        self._new: dict[Node, list[Obj]] = {}
         self._when: dict[Node, list[Callable[[Obj], None]]] = {}
         self._left = self._left_late = steps
 
@@ -51,9 +54,17 @@ class Solver:
             self.given_up.add(node)
             kept = () if self._left < -self._left_late else ("instance", "function", "method")
             new = [each for each in new if each.kind in kept]
+        room = _MOST_OWN - len(known)
+        if len(new) > room:
+            self.given_up.add(node)
+            new = new[:room]
         if new:
             known.update(dict.fromkeys(new))
-            self._waiting.append((node, new))
+            if node in self._new:
+                self._new[node] += new
+            else:
+                self._new[node] = new
+                self._waiting.append(node)
 
     def copy(self, source: Node, to: Node) -> None:
         """``to`` may be what ``source`` is."""
@@ -127,7 +138,8 @@ class Solver:
 
     def _solve(self) -> None:
         while self._waiting:
-            node, new = self._waiting.popleft()
+            node = self._waiting.popleft()
+            new = self._new.pop(node)
             for to in list(self.succ.get(node, ())):
                 if (node, to) not in self._unbound:
                     self.add(to, new)
