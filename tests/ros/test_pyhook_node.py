@@ -64,21 +64,35 @@ def graph(tmp_path) -> Iterator[RosGraph]:
 
 @pytest.fixture
 def node(tmp_path) -> Path:
+    return analysed(tmp_path, NODE, LINE)
+
+
+def analysed(tmp_path: Path, text: str, line: str) -> Path:
+    """A node of this text, whose comparison of x in this line is in the static information."""
     path = tmp_path / "mission.py"
-    path.write_text(NODE)
+    path.write_text(text)
     comparison = {
         "key": KEY,
         "relation": ">",
         "file": path.name,
-        "lineno": NODE.splitlines().index(LINE) + 1,
-        "column": LINE.index("x") + 1,
-        "name": "self.limit",
+        "lineno": text.splitlines().index(line) + 1,
+        "column": line.index("x") + 1,
+        "name": None,
         "operand": "right",
-        "source_code": LINE.strip(),
+        "source_code": line.strip(),
     }
     unit = {"link_unit": "mission", "source_root": str(tmp_path), "comparisons": [comparison]}
     (tmp_path / "static.json").write_text(json.dumps({"schema": 1, "units": [unit]}))
     return path
+
+
+HIGH = """\
+import rospy
+from rosgraph_msgs.msg import Clock
+def high(x):
+    return x > 2
+"""
+HIGH_LINE = "    return x > 2"
 
 
 def start(graph: RosGraph, node: Path, *words: str, **env: str) -> subprocess.Popen[str]:
@@ -206,3 +220,59 @@ def test_simulated_time(tmp_path, node):
     assert seconds.min() >= 1000.0
     assert seconds.max() <= 1060.0
     assert seconds.max() - seconds.min() >= 1.0
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [
+        ("high(1)\nhigh(3)\n", "mission.py ({})"),
+        ("high(1)\nrospy.init_node('late')\nrospy.sleep(1.5)\nhigh(3)\n", "/late"),
+    ],
+)
+def test_a_node_that_begins_late_or_never(graph, tmp_path, text, name):
+    process = start(graph, analysed(tmp_path, HIGH + text, HIGH_LINE), TPC_SINK="file")
+    assert ended(process) == ""
+    found = read(sorted((tmp_path / "tpc").glob("*.tpc")))
+    assert found.events.cmp.tolist() == [1.0, 3.0]
+    assert found.events.result.tolist() == [False, True]
+    # Without a node it is the program that is named.
+    assert found.events.nodes == (name.format(process.pid),)
+
+
+def test_the_first_of_two_nodes_of_one_name(graph, tmp_path):
+    text = "rospy.init_node('twice')\nprint('up', flush=True)\nhigh(1)\nrospy.spin()\nhigh(3)\n"
+    node = analysed(tmp_path, HIGH + text, HIGH_LINE)
+    first = start(graph, node, TPC_SINK="file", TPC_FOLDER=str(tmp_path / "first"))
+    time.sleep(3.0)
+    second = start(graph, node, TPC_SINK="file", TPC_FOLDER=str(tmp_path / "second"))
+    # The master has the first one shut down, which goes on behind `spin`.
+    said = ended(first)
+    assert "Traceback" not in said
+    assert "pytpc" not in said
+    assert second.poll() is None
+    second.send_signal(signal.SIGINT)
+    ended(second)
+    for folder in ("first", "second"):
+        found = read(sorted((tmp_path / folder).glob("*.tpc")))
+        assert found.events.cmp.tolist() == [1.0, 3.0]
+        assert found.events.nodes == ("/twice",)
+
+
+def test_simulated_time_that_goes_backwards(tmp_path):
+    text = """\
+rospy.init_node("back")
+clock = rospy.Publisher("/clock", Clock, queue_size=1)
+for number, second in enumerate((1000, 1010, 500, 505)):
+    while rospy.get_rostime().secs != second:
+        clock.publish(Clock(rospy.Time(second)))
+        rospy.rostime.wallsleep(0.01)
+    high(number)
+"""
+    node = analysed(tmp_path, HIGH + text, HIGH_LINE)
+    with RosGraph(dict(os.environ), tmp_path / "simulated", use_sim_time=True) as graph:
+        ended(start(graph, node, TPC_SINK="file"))
+    found = read(sorted((tmp_path / "tpc").glob("*.tpc")))
+    seconds = (found.events.time_ns // 10**9).tolist()
+    pairs = sorted(zip(found.events.cmp.tolist(), seconds, strict=True))
+    assert pairs == [(0.0, 1000), (1.0, 1010), (2.0, 500), (3.0, 505)]
+    assert (found.malformed, found.notes) == (0, ())
