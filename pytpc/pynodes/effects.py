@@ -80,15 +80,15 @@ class CallEffects:
                 users.setdefault(function, {})[instr.function] = None
         waiting = dict.fromkeys(self._functions)
         while waiting:
-            function, _ = waiting.popitem()
-            for user in users.get(function, ()):
-                if user not in self._functions:
-                    continue
-                before = self._functions[user]
-                after = before | self._functions[function]
-                if after != before:
-                    self._functions[user] = after
-                    waiting[user] = None
+            # By rounds: a function that many change is handed on once for all of them.
+            now, waiting = waiting, {}
+            for function in now:
+                for user in users.get(function, ()):
+                    before = self._functions.get(user, Effects())
+                    after = before | self._functions.get(function, Effects())
+                    if user in self._functions and after != before:
+                        self._functions[user] = after
+                        waiting[user] = None
 
     def _by_name(self, instr: Instr) -> tuple[int, int]:
         """What ``getattr``, ``setattr`` and uses of ``__dict__`` write and read."""

@@ -18,7 +18,7 @@ from pytpc.pynodes.program import Program
 from pytpc.pynodes.rules_file import Rules
 from pytpc.pynodes.solver import Solver
 
-_STEPS = 20
+_STEPS = 5
 _LEAST_STEPS = 100_000
 """For each instruction, and in any case: how many steps the analysis may take."""
 _PLACES = 64

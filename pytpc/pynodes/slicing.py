@@ -78,11 +78,13 @@ class Slicer:
                 if deciding.op != "dispatch":
                     found[deciding] = None
                     continue
-                # How a `finally` was come to is decided where that is noted.
-                for store in self.flow.sources(deciding.args[0]):
-                    if store.block not in seen:
-                        seen.add(store.block)
-                        waiting.append(store.block)
+                # How a `finally` was come to is decided where that is noted; that its end is come
+                # to, by what raises in it.
+                noted = [store.block for store in self.flow.sources(deciding.args[0])]
+                for block in (*noted, deciding.block):
+                    if block not in seen:
+                        seen.add(block)
+                        waiting.append(block)
         return list(found)
 
     def _deciding(self, block: Block) -> list[Instr]:

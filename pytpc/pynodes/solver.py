@@ -13,7 +13,8 @@ Node = Hashable
 _MOST = 32
 """With more objects than this, a value's containers and library objects count no more."""
 _MOST_OWN = 128
-"""No value has more objects than this: what may be so much tells nothing apart."""
+"""No value has more objects than this, nor than the above once the steps are taken: what may be so
+much tells nothing apart."""
 
 
 class Solver:
@@ -54,10 +55,10 @@ class Solver:
             self.given_up.add(node)
             kept = () if self._left < -self._left_late else ("instance", "function", "method")
             new = [each for each in new if each.kind in kept]
-        room = _MOST_OWN - len(known)
+        room = (_MOST_OWN if self._left >= 0 else _MOST) - len(known)
         if len(new) > room:
             self.given_up.add(node)
-            new = new[:room]
+            new = new[: max(room, 0)]
         if new:
             known.update(dict.fromkeys(new))
             if node in self._new:
@@ -72,6 +73,7 @@ class Solver:
         if source is to or to in known:
             return
         known[to] = None
+        self._left -= 1
         self.pred.setdefault(to, {})[source] = None
         if source in self._objects and (source, to) not in self._unbound:
             self.add(to, list(self._objects[source]))

@@ -279,3 +279,18 @@ BODIES = {
 def test_found(name: str, tmp_path: Path) -> None:
     text = _READ + dedent(BODIES[name]) + _SUB
     assert found(analysed(text, tmp_path)) == marked(text)
+
+
+def test_a_raise_within_finally_decides_what_follows(tmp_path: Path) -> None:
+    text = """
+        limit = rospy.get_param("~limit")
+        def cb(msg):
+            try:
+                pass
+            finally:
+                if limit:  #: ~limit flag
+                    raise ValueError("own")
+            pub.publish(1.0)
+        rospy.Subscriber("in", Float64, cb)
+    """
+    assert found(analysed(text, tmp_path)) == marked(text)
