@@ -87,7 +87,7 @@ WAYS: Mapping[str, tuple[str | None, str, int]] = {
     "file": ("file", "every", 500_000),
     "file_edges": ("file", "edges", 100_000),
     "topic": ("topic", "every", 50_000),
-    "rosout": ("rosout", "every", 1_000),
+    "rosout": ("rosout", "every", 10_000),
     "publish": (None, "", 10_000),
 }
 

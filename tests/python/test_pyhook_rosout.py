@@ -1,7 +1,8 @@
-"""The sink ``rosout`` hands lines to the program's log, whose handlers may themselves compare."""
+"""The sink ``rosout``: nothing of it waits for a thread that compares."""
 
 from __future__ import annotations
 
+import sys
 import threading
 from types import SimpleNamespace
 
@@ -12,21 +13,31 @@ from pytpc.pyhook.ros_sinks import RosoutSink
 from pytpc.pyhook.sites import Reported
 
 
-def test_a_log_may_wait_for_a_thread_that_compares(monkeypatch) -> None:
-    # As where another thread holds a log's lock while it makes the text of an object.
+def test_a_publisher_may_wait_for_a_thread_that_compares(monkeypatch) -> None:
+    # As where another thread holds the topic's lock while it compares.
     sink, config = RosoutSink(), Config(policy="edges")
     take = Edges(config, sink, Caps(config, sink)).take
     one, other = Reported("one", 1, False), Reported("other", 2, False)
     lines, ended = [], []
 
-    def loginfo(line: str) -> None:
-        lines.append(line)
+    def publish(message: SimpleNamespace) -> None:
+        lines.append(message.msg)
         thread = threading.Thread(target=take, args=(other, True, 1.0, 0.0, True), daemon=True)
         thread.start()
         thread.join(10)
         ended.append(not thread.is_alive())
 
-    node = SimpleNamespace(is_shutdown=lambda: False, loginfo=loginfo)
+    def log(**fields: object) -> SimpleNamespace:
+        return SimpleNamespace(header=SimpleNamespace(stamp=None), **fields)
+
+    log.INFO = 2
+    monkeypatch.setitem(sys.modules, "rosgraph_msgs.msg", SimpleNamespace(Log=log))
+    node = SimpleNamespace(
+        is_shutdown=lambda: False,
+        get_name=lambda: "/node",
+        Time=SimpleNamespace(now=lambda: 7.0),
+        Publisher=lambda *_, **__: SimpleNamespace(publish=publish),
+    )
     monkeypatch.setattr(ros_state, "rospy", lambda: node)
     take(one, True, 5.0, 3.0, True)
     assert lines[0] == "threshold_information:one,True,cmp:5,thresh:3,res:True"
