@@ -5,12 +5,14 @@ from __future__ import annotations
 import ast
 import ctypes
 import threading
+import time
 import traceback
 from pathlib import Path
 from types import TracebackType
 
 from pytpc.pynodes.ir import Instr
 
+_ARRIVAL_S = 1.0
 SECONDS = 120.0
 """The budget of a link unit, as in C++ (``TPC_MAX_SECONDS``)."""
 
@@ -31,6 +33,7 @@ class Budget:
         self._seconds = seconds
         self._lock = threading.Lock()
         self._is_working = False
+        self._is_over = False
         self._thread = 0
         self._timer: threading.Timer | None = None
 
@@ -50,22 +53,29 @@ class Budget:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        """Count no more. What was raised and has not arrived yet is taken back."""
-        with self._lock:
-            self._is_working = False
-            if self._timer is not None:
-                self._timer.cancel()
-                _raise_in(self._thread, None)
+        """Count no more. What was raised and has not arrived yet is awaited here, and dropped.
+
+        To take it back by ``PyThreadState_SetAsyncExc(thread, NULL)`` leaves CPython 3.11 asking
+        for ever whether there is something, and then a traced program stands still.
+        """
+        try:
+            with self._lock:
+                self._is_working = False
+                if self._timer is not None:
+                    self._timer.cancel()
+            limit = time.monotonic() + _ARRIVAL_S
+            while self._is_over and kind is not BudgetSpentError and time.monotonic() < limit:
+                time.sleep(0)
+        except BudgetSpentError:
+            pass
 
     def _end(self) -> None:
         with self._lock:
             if self._is_working:
-                _raise_in(self._thread, BudgetSpentError)
-
-
-def _raise_in(thread: int, kind: type[BaseException] | None) -> None:
-    wanted = ctypes.py_object(kind) if kind is not None else None
-    ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread), wanted)
+                self._is_over = True
+                ctypes.pythonapi.PyThreadState_SetAsyncExc(
+                    ctypes.c_ulong(self._thread), ctypes.py_object(BudgetSpentError)
+                )
 
 
 def what_failed(error: BaseException) -> str:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import subprocess
+import sys
 import time
 from pathlib import Path
 
@@ -199,6 +201,25 @@ def test_a_budget_that_is_not_spent_leaves_nothing_behind() -> None:
     # The next one has its own time.
     with Budget(30.0):
         time.sleep(0.05)
+
+
+TRACED = """\
+import sys
+from pytpc.pynodes.budget import Budget
+with Budget(60.0):
+    pass
+sys.settrace(lambda *_: None)
+exec(compile("done = True", "program.py", "exec"), names := {})
+sys.settrace(None)
+print(names["done"])
+"""
+
+
+def test_a_program_can_be_traced_after_a_budget() -> None:
+    # What is raised in a thread and taken back leaves CPython 3.11 standing still there.
+    command = [sys.executable, "-c", TRACED]
+    ran = subprocess.run(command, capture_output=True, text=True, timeout=60, check=True)
+    assert ran.stdout == "True\n"
 
 
 def test_deep_lists_are_no_error(tmp_path: Path) -> None:
