@@ -31,6 +31,8 @@ _START_TRIES = 3
 _MASTER_PATIENCE_S = 15.0
 _TAIL_BYTES = 16384
 _COLOUR = re.compile(r"\x1b\[[0-9;]*m")
+# roslaunch ends with status 0, however a required node ended.
+_REQUIRED_DIED = re.compile(r"REQUIRED process \[[^\]]*\] has died!\s+process has died")
 _TELLING = re.compile(r"has died|FATAL|Exception|[Ee]rror|ERROR|not found|cannot", re.ASCII)
 _ROSOUT = "/usr/lib/rosout/rosout"
 
@@ -50,23 +52,27 @@ class GraphProcess:
 
     @property
     def has_ended_well(self) -> bool:
-        """True where it may end, and did with status 0."""
-        return self.may_end and self.popen.poll() == 0
+        """True where it may end, and did with status 0, and so did what ended it."""
+        is_over = self.may_end and self.popen.poll() == 0
+        return is_over and _REQUIRED_DIED.search(self._end_of_log()) is None
 
     def tail(self, lines: int = 3) -> list[str]:
         """The last lines of its output, without colours; those that tell of an error first."""
+        # roslaunch underlines with equals signs, some of them on the line itself.
+        said = [line.strip("= \t") for line in self._end_of_log().splitlines()]
+        said = [line for line in said if line]
+        telling = [line for line in said if _TELLING.search(line)]
+        return (telling or said)[-lines:]
+
+    def _end_of_log(self) -> str:
         try:
             with self.log.open("rb") as stream:
                 stream.seek(0, os.SEEK_END)
                 stream.seek(max(0, stream.tell() - _TAIL_BYTES))
                 text = stream.read().decode("utf-8", "replace")
         except OSError:
-            return []
-        # roslaunch underlines with equals signs, some of them on the line itself.
-        said = [line.strip("= \t") for line in _COLOUR.sub("", text).splitlines()]
-        said = [line for line in said if line]
-        telling = [line for line in said if _TELLING.search(line)]
-        return (telling or said)[-lines:]
+            return ""
+        return _COLOUR.sub("", text)
 
 
 class RosGraph:

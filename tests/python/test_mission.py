@@ -427,6 +427,12 @@ def test_what_may_end_by_itself(tmp_path):
             with pytest.raises(RunError, match=f"one ended with status {status}"):
                 graph.check()
         graph.stop(process)
+    died = "\x1b[31m=====REQUIRED process [a-1] has died!\nprocess has died [pid 5, exit code -11]"
+    process = graph.start("three", ["printf", f"{died}\n"], may_end=True)
+    process.popen.wait()
+    with pytest.raises(RunError, match=r"three ended with status 0: .*exit code -11"):
+        graph.check()
+    graph.stop(process)
     running = graph.start("two", ["sleep", "60"], may_end=True)
     assert not running.has_ended_well
     graph.check()
