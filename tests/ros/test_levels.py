@@ -34,12 +34,14 @@ def without_compilers_choice(comparison: Comparison) -> Comparison:
     """The comparison without its distance and without where its path's functions return.
 
     Above -O0 clang gives a return of a local the place of the closing brace, where the local's
-    life ends; at -O0 it gives it the place of the return statement.
+    life ends; at -O0 it gives it the place of the return statement. The two workspaces, and the
+    headers that are installed there, are in different folders.
     """
     return replace(comparison, distance=0, path=tuple(map(without_return_place, comparison.path)))
 
 
 def without_return_place(step: PathStep) -> PathStep:
+    step = replace(step, file=Path(step.file).name)
     if step.step != "return":
         return step
     return replace(step, lineno=0, column=0, source_code="")
