@@ -8,11 +8,11 @@ mark kept it there, so the other one is wanted, of nearly all of these evaluatio
 - values that grow towards the threshold: what half of the ramps reach, or of the one ramp what it
   had reached in the middle of the window.
 
-A mark of type I says that the outcome should not have changed. The values of each stay on the wrong
-side have an extreme, its peak. Of n peaks between a begin b and an unknown end, the end is estimated
-as b + (max - b) * (1 + 1/n), as of serial numbers (Goodman, JASA 1952). A stay that the program
-itself ended by acting tells no end: where there is no other, n is 1, and the way is doubled. Each
-try that did not help adds 1/n, or a standard deviation.
+A mark of type I says that the outcome should not have changed. The values of each stay on the
+wrong side have an extreme, its peak. Of n peaks between a begin b and an unknown end, the end is
+estimated as b + (max - b) * (1 + 1/n), as of serial numbers (Goodman, JASA 1952). A stay that the
+program itself ended by acting tells no end: where there is no other, n is 1, and the way is
+doubled. Each try that did not help adds 1/n, or a standard deviation.
 """
 
 from __future__ import annotations
@@ -213,7 +213,7 @@ def _stays(
     if not peaks:
         return None
     before = values[(series.went == base) & (series.time_ns >= begins_ns)]
-    begin_value = float(np.quantile(before, _OUTER)) if before.size else 0.0
+    begin_value = float(np.quantile(before, _OUTER, method="lower")) if before.size else 0.0
     count = max(1, sum(ended))
     edge = _estimate(max(peaks), begin_value, 1 + (1 + tries) / count)
     ground: Ground = "peaks" if any(ended) else "growth"

@@ -153,25 +153,21 @@ def _kinds(
 ) -> list[tuple[MarkType, list[int]]]:
     """The types of error with their times, first the one that the first marks speak of.
 
-    What came first is the cause of what came later. A mark of no type is of type I where a result
-    of the parameter changed in the window before it, else of type II.
+    What came first is the cause of what came later. Marks of no type are of one type together: I
+    where a result of the parameter changed in the windows before most of them, else II.
     """
-    window = round(window_s * 1e9)
-    times: dict[MarkType, list[int]] = {kind: [] for kind in MARK_TYPES}
-    for mark in sorted(marks, key=Mark.order):
-        kind = mark.type
-        if kind is None:
-            begin = mark.time_ns - window
-            changed = any(
-                np.any((track.flop_ns >= begin) & (track.flop_ns <= mark.time_ns))
-                for track in tracks
-            )
-            kind = "I" if changed else "II"
-        times[kind].append(mark.time_ns)
     if not tracks or not marks:
         return []
-    first = min(mark.time_ns for mark in marks)
-    early = {kind: sum(one <= first + window for one in found) for kind, found in times.items()}
+    window = round(window_s * 1e9)
+    untyped = np.array([mark.time_ns for mark in marks if mark.type is None], dtype=np.int64)
+    flops = np.sort(np.concatenate([track.flop_ns for track in tracks]))
+    begin, end = np.searchsorted(flops, untyped - window), np.searchsorted(flops, untyped, "right")
+    meant: MarkType = "I" if 2 * np.count_nonzero(begin < end) > untyped.size else "II"
+    times: dict[MarkType, list[int]] = {kind: [] for kind in MARK_TYPES}
+    for mark in sorted(marks, key=Mark.order):
+        times[mark.type or meant].append(mark.time_ns)
+    soon = min(mark.time_ns for mark in marks) + window
+    early = {kind: sum(one <= soon for one in found) for kind, found in times.items()}
     order = sorted(
         (kind for kind in MARK_TYPES if times[kind]),
         key=lambda kind: (-early[kind], times[kind][0]),
