@@ -104,7 +104,7 @@ def test_rounds(out):
     assert (headline["value"], headline["gone"], headline["new"]) == (7, False, False)
 
 
-# Of the first nothing is known, and the second is a flag that never changed, so that no mark of type
+# Of the first nothing is known. The second is a flag that never changed, so that no mark of type
 # I is about it; the third is the counter. Its value is that of the chain `lasting`: one flight.
 def test_suspects_are_tried_in_turn(out):
     orders = {MISSION: ["<dynamic> at a.cpp:1", OTHER, "~limit"]}
