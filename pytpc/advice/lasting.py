@@ -19,6 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -187,32 +188,31 @@ def _stays(
 ) -> Lasting | None:
     """Of the stays on the wrong side before the marks; the first change of the window began it."""
     change = np.flatnonzero(series.went[1:] != series.went[:-1]) + 1
+    if not change.size and series.time_ns[0] >= marks[0] - window:
+        # What was never evaluated before had no outcome, and this one is the change.
+        change = np.zeros(1, dtype=np.int64)
     when = series.time_ns[change]
     first = _first_change(when, marks, window)
     if first is None:
         return None
-    base = bool(series.went[change[first] - 1])
+    base = not bool(series.went[change[first]])
     up = _is_up(relation, base)
     sign = 1.0 if up else -1.0
     values, threshs = sign * series.cmp, sign * series.thresh
-    begins_ns = min(int(marks[0]) - window, int(when[first]))
-    step = _step(values[series.time_ns >= begins_ns])
+    recent = series.time_ns >= min(int(marks[0]) - window, int(when[first]))
+    step = _step(values[recent])
     peaks, ended = [], []
-    for place in range(first, change.size):
-        begin = int(change[place])
-        if bool(series.went[begin]) == base or not _is_before(int(when[place]), marks, window):
+    for begin, end in pairwise([*change[first:].tolist(), values.size]):
+        if bool(series.went[begin]) == base or not _is_before(
+            int(series.time_ns[begin]), marks, window
+        ):
             continue
-        end = int(change[place + 1]) if place + 1 < change.size else values.size
         peak = float(np.max(values[begin:end]))
-        beyond = peak - float(threshs[begin])
-        cut = beyond <= _STEPS_BEYOND * step and _climbs(
-            values[max(0, begin - _RUN_UP) : begin + 1]
-        )
+        is_near = peak - float(threshs[begin]) <= _STEPS_BEYOND * step
         peaks.append(peak)
+        cut = is_near and _climbs(values[max(0, begin - _RUN_UP) : begin + 1])
         ended.append(end < values.size and not cut)
-    if not peaks:
-        return None
-    before = values[(series.went == base) & (series.time_ns >= begins_ns)]
+    before = values[(series.went == base) & recent]
     begin_value = float(np.quantile(before, _OUTER, method="lower")) if before.size else 0.0
     count = max(1, sum(ended))
     edge = _estimate(max(peaks), begin_value, 1 + (1 + tries) / count)
@@ -223,13 +223,18 @@ def _stays(
 
 
 def _first_change(when: Int64s, marks: Int64s, window: int) -> int | None:
-    """The first change within a window before a mark, else the last one before the first mark."""
-    for mark in marks.tolist():
-        inside = np.flatnonzero((when >= mark - window) & (when <= mark))
-        if inside.size:
-            return int(inside[0])
-    earlier = np.flatnonzero(when <= marks[0])
-    return int(earlier[-1]) if earlier.size else None
+    """The first change in the window before the first mark, else the last one before it.
+
+    Without any the first one in the windows before the others.
+    """
+    early = when <= marks[0]
+    soon = np.flatnonzero(early & (when >= marks[0] - window))
+    if soon.size:
+        return int(soon[0])
+    if early.any():
+        return int(np.flatnonzero(early)[-1])
+    later = [n for n, time_ns in enumerate(when.tolist()) if _is_before(time_ns, marks, window)]
+    return later[0] if later else None
 
 
 def _is_before(time_ns: int, marks: Int64s, window: int) -> bool:

@@ -243,6 +243,14 @@ def test_marks_of_no_type(times, kind):
     assert ask(">=", cmps, 3, marks(*times, kind=None), default=3).kind == kind
 
 
+# `0 >= 0` at once: nothing changed, but it was first evaluated within the window. What is above 0
+# does: 1. Of one that was so long before nothing is known.
+def test_a_first_evaluation_is_a_change():
+    found = ask(">=", [0] * 4, 0, marks(95), default=3, sources=())
+    assert (found.value, found.direction) == (1, "raise")
+    assert ask(">=", [0] * 40, 0, marks(125), default=3).value is None
+
+
 def test_nothing_is_said_where_nothing_was_evaluated():
     found = remedy(recording(), static_info(comparison(0, "limit")), "limit", marks(95))
     assert (found.value, found.basis) == (None, None)
