@@ -71,12 +71,14 @@ def join_advice(
     top: int = 5,
     declared: Sequence[Declared] = (),
     reference: Recording | None = None,
+    flown: Sequence[float] = (),
     window_s: float = WINDOW_S,
 ) -> list[MarkGroup]:
     """The advice for all marks, those that say the same together, in the order of the first ones.
 
     The arguments are those of `pytpc.advice.advise.advise`, with the rankings of several marks,
-    and ``reference``, a mission that went right.
+    ``reference``, a mission that went right, and ``flown``, values of the one suspect that did not
+    help.
     """
     groups: dict[tuple[object, ...], _Open] = {}
     for ranking in rankings:
@@ -104,6 +106,7 @@ def join_advice(
                     group.marks,
                     advice,
                     reference=reference,
+                    flown=flown,
                     window_s=window_s,
                 )
                 for advice in _joined(group.lists, top)
@@ -121,6 +124,7 @@ def _with_remedy(
     agreed: _Agreed,
     *,
     reference: Recording | None,
+    flown: Sequence[float],
     window_s: float,
 ) -> JoinedAdvice:
     """What was agreed on with the value to try, by the type that the parameter is suspected for."""
@@ -134,6 +138,7 @@ def _with_remedy(
         typed,
         reference=reference,
         declared=advice.declared,
+        flown=flown,
         window_s=window_s,
     )
     then = None

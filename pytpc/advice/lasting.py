@@ -159,7 +159,7 @@ def _share(way: float, series: _Series) -> float:
 
 
 def _steady_end(values: Floats, tries: int) -> float:
-    """Above all steady values and their noise; not on the other side of 0."""
+    """Above all steady values and their noise; of those below 0 at most half of the way to it."""
     middle = float(np.median(values))
     sigma = _MAD_TO_SIGMA * float(np.median(np.abs(values - middle)))
     if sigma == 0:
@@ -167,7 +167,7 @@ def _steady_end(values: Floats, tries: int) -> float:
         return end + (end - middle) * tries
     end = float(np.max(values[np.abs(values - middle) <= _SIGMAS * sigma]))
     beyond = end + sigma * (1 + tries)
-    return max(beyond, end / 2) if end < 0 <= beyond else beyond
+    return min(beyond, end / 2) if end < 0 else beyond
 
 
 def _ramps(values: Floats) -> Floats | None:

@@ -62,6 +62,13 @@ _LONGEST = 40
     metavar="RECORDING",
     help="A mission of the same build that went right: its value is taken where it would do.",
 )
+@click.option(
+    "--flown",
+    type=float,
+    multiple=True,
+    metavar="V",
+    help="An earlier value of PARAMETER with which the error was there; may be repeated.",
+)
 @TYPES
 @WINDOW
 @TOP
@@ -73,6 +80,7 @@ def suggest_command(
     static_source: Path,
     value_text: str | None,
     reference: Path | None,
+    flown: tuple[float, ...],
     types: Types,
     window_s: float,
     top: int,
@@ -85,6 +93,8 @@ def suggest_command(
     """
     if value_text is not None and parameter is None:
         raise click.UsageError("--value needs a PARAMETER")
+    if flown and parameter is None:
+        raise click.UsageError("--flown needs a PARAMETER")
     value = None if value_text is None else _number(value_text)
     static = static_of([static_source])
     found = recording_of(recording)
@@ -105,7 +115,7 @@ def suggest_command(
         advance(0, len(rankings))
         groups = join_advice(
             found, static, rankings, top=top, declared=_declared(static, recording),
-            reference=clean, window_s=window_s,
+            reference=clean, flown=flown, window_s=window_s,
         )  # fmt: skip
     if as_json:
         document = {
