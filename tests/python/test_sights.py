@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import ast
+import io
+import itertools
 import json
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -22,6 +25,7 @@ from pytpc.demo_examples import IMAGE_CAPTURE, SHARED_PACKAGE, WATER_SAMPLER
 
 crowd = shared_module("crowd")
 ObserverError = shared_module("errors").ObserverError
+progress = shared_module("progress")
 rules = shared_module("rules")
 sights = shared_module("sights")
 main = shared_module("command").main
@@ -296,6 +300,38 @@ def test_there_are_no_more_users_than_in_the_thesis(table, capsys):
     with pytest.raises(SystemExit):
         run(tank.observer.OBSERVER, "--sights", table, "--users", 5)
     assert "invalid choice: 5" in capsys.readouterr().err
+
+
+def test_without_a_file_it_watches_the_running_robot(monkeypatch):
+    watched = []
+    node = shared_module("observer_node")
+    monkeypatch.setattr(node, "watch", lambda *what: watched.append(what))
+    # What roslaunch adds is not for us.
+    assert run(tank.observer.OBSERVER, "--seed", 7, "__name:=observer", "__log:=/tmp/x.log") == 0
+    assert watched == [(tank.observer.OBSERVER, 7)]
+
+
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+def test_progress_is_shown_from_the_third_second_on_and_wiped_at_the_end(monkeypatch):
+    # The clock is asked at the begin, at 100 s, and for each item, a second later each time.
+    clock = itertools.count(100.0)
+    monkeypatch.setattr(progress.time, "monotonic", lambda: next(clock))
+    terminal = Terminal()
+    monkeypatch.setattr("sys.stderr", terminal)
+    assert list(progress.Progress("reading x.bag", 4).over("abcd")) == list("abcd")
+    # The first comes after a second. One, two and three of four are done when the others come.
+    shown = "".join(f"\rreading x.bag: {percent} %" for percent in (25, 50, 75))
+    assert terminal.getvalue() == f"{shown}\r\x1b[K"
+
+
+def test_progress_is_for_terminals(monkeypatch):
+    monkeypatch.setattr("sys.stderr", io.StringIO())
+    assert list(progress.Progress("reading x.bag", 0).over([])) == []
+    assert sys.stderr.getvalue() == ""
 
 
 def imported(path: Path) -> set[str]:
