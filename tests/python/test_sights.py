@@ -8,6 +8,7 @@ import itertools
 import json
 import sys
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -29,6 +30,8 @@ progress = shared_module("progress")
 rules = shared_module("rules")
 sights = shared_module("sights")
 main = shared_module("command").main
+
+needs_ros = pytest.mark.skipif(find_spec("rosbag") is None, reason="ROS is not installed")
 
 EXAMPLES = SHARED_PACKAGE.parent
 POSE = "geometry_msgs/msg/PoseStamped"
@@ -153,6 +156,7 @@ class Bag:
 
 
 # A quarter turn is a half angle of 45 degrees.
+@needs_ros
 def test_what_was_seen_of_the_image_capture_is_read_from_its_bag(tmp_path):
     path, out = tmp_path / "mission.bag", tmp_path / "sights.parquet"
     bag = Bag(path, (IMAGE_CAPTURE.folder, "Picture"))
@@ -172,6 +176,7 @@ def test_what_was_seen_of_the_image_capture_is_read_from_its_bag(tmp_path):
 
 
 # The tip is 3-4-5 away from the tank's middle, 0.5 m, and 0.25 m under the water.
+@needs_ros
 def test_what_was_seen_of_the_water_sampler_is_read_from_its_bag(tmp_path):
     path, out = tmp_path / "mission.bag", tmp_path / "sights.parquet"
     bag = Bag(path, (WATER_SAMPLER.folder, "SamplerTruth"))
@@ -188,6 +193,7 @@ def test_what_was_seen_of_the_water_sampler_is_read_from_its_bag(tmp_path):
     assert (first.above_tank, second.above_tank) == (False, True)
 
 
+@needs_ros
 def test_a_bag_of_a_robot_that_never_began_has_no_sight_and_no_mark(tmp_path):
     path = tmp_path / "mission.bag"
     with_one_pose(path)
@@ -247,6 +253,7 @@ def with_other_messages(path: Path) -> None:
     bag.writer.close()
 
 
+@needs_ros
 @pytest.mark.parametrize(
     ("make", "error"),
     [
@@ -291,6 +298,15 @@ def test_a_bad_file_is_one_line_and_status_1(table, tmp_path, capsys, arguments,
     assert names(tmp_path) == ["sights.parquet"]
 
 
+def test_a_python_without_what_a_bag_needs_is_one_line(tmp_path, monkeypatch, capsys):
+    monkeypatch.delitem(sys.modules, "simulated_world.bag", raising=False)
+    monkeypatch.setitem(sys.modules, "genpy", None)
+    arguments = ("--bag", tmp_path / "mission.bag", "--sights", tmp_path / "sights.parquet")
+    assert run(tank.observer.OBSERVER, *arguments) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.endswith(f"this Python ({sys.executable}) has no genpy")
+
+
 def test_sights_of_another_robot_are_refused(table, capsys):
     assert run(field.observer.OBSERVER, "--sights", table) == 1
     assert capsys.readouterr().err.endswith("column yaw is missing, not double\n")
@@ -302,6 +318,7 @@ def test_there_are_no_more_users_than_in_the_thesis(table, capsys):
     assert "invalid choice: 5" in capsys.readouterr().err
 
 
+@needs_ros
 def test_without_a_file_it_watches_the_running_robot(monkeypatch):
     watched = []
     node = shared_module("observer_node")

@@ -1,36 +1,21 @@
-"""Sights from a bag, and sights as a table (Parquet): one column for each field of a sight."""
+"""Sights as a table (Parquet): one column for each field of a sight."""
 
 from __future__ import annotations
 
-import struct
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import fields
 from itertools import pairwise
 from pathlib import Path
 
-import genpy
 import pyarrow as pa
 import pyarrow.parquet as pq
-from rosbag import Bag, ROSBagException
 
 from simulated_world.atomic_file import replacing
 from simulated_world.errors import ObserverError
-from simulated_world.observer import Channel, Observer
-from simulated_world.progress import Progress
 from simulated_world.rules import SightT
 
 # A field's type is its text where the module has postponed annotations.
 COLUMN_TYPES = {"float": pa.float64(), "int": pa.int64(), "bool": pa.bool_()}
-
-# What rosbag raises at a damaged bag; most of it is not its own.
-DAMAGED = (
-    ROSBagException,
-    genpy.MessageException,
-    ValueError,
-    LookupError,
-    struct.error,
-    EOFError,
-)
 
 
 def schema_of(sight: type[SightT]) -> pa.Schema:
@@ -94,46 +79,3 @@ def check_order(sights: Sequence[SightT], path: Path) -> None:
                 f"{path}: the time runs back from {before.time:.3f} s to {after.time:.3f} s"
                 f" at sight {number}"
             )
-
-
-def read_bag(path: Path, observer: Observer[SightT]) -> list[SightT]:
-    """What an observer would have seen of a recorded mission (ROS 1 bag).
-
-    Raises:
-        ObserverError: it is no bag, or nothing was recorded of what a person sees.
-        OSError: it cannot be read.
-    """
-    channels = observer.eyes().channels()
-    sights = []
-    for topic, message in _messages(path, channels):
-        sight = channels[topic].take(message)
-        if sight is not None:
-            sights.append(sight)
-    check_order(sights, path)
-    return sights
-
-
-def _messages(
-    path: Path, channels: Mapping[str, Channel[SightT]]
-) -> Iterator[tuple[str, genpy.Message]]:
-    """The messages on these topics, in the order in which they were recorded."""
-    try:
-        with Bag(str(path)) as bag:
-            _check_topics(bag, channels, path)
-            topics = list(channels)
-            progress = Progress(f"reading {path.name}", bag.get_message_count(topics))
-            for topic, message, _ in progress.over(bag.read_messages(topics=topics)):
-                yield topic, message
-    except DAMAGED as error:
-        text = f"{path}: no readable bag: {type(error).__name__}: {error}"
-        raise ObserverError(text) from error
-
-
-def _check_topics(bag: Bag, channels: Mapping[str, Channel[SightT]], path: Path) -> None:
-    recorded = bag.get_type_and_topic_info().topics
-    for topic, channel in channels.items():
-        if topic in recorded and recorded[topic].msg_type != channel.message_type:
-            there = recorded[topic].msg_type
-            raise ObserverError(f"{path}: {topic} has {there}, not {channel.message_type}")
-    if not any(topic in recorded for topic in channels):
-        raise ObserverError(f"{path}: nothing was recorded on {', '.join(channels)}")
