@@ -7,8 +7,7 @@ from pathlib import Path
 import pytest
 
 from pytpc.build import BuildResult, build_workspace
-from pytpc.demo_examples import IMAGE_CAPTURE
-from pytpc.demo_show import link_package
+from pytpc.demo_examples import IMAGE_CAPTURE, link_package
 
 
 def build_example(folder: Path, build_type: str = "RelWithDebInfo") -> BuildResult:
