@@ -7,7 +7,7 @@ import subprocess
 
 import pytest
 from mission_samples import comparison, static_info
-from study_samples import robot, treatment
+from study_flights import robot, treatment
 
 from pytpc.demo_examples import EXAMPLES
 from pytpc.errors import InputError

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 from mission_samples import comparison, static_info
-from study_samples import FakeFlier, made, robot
+from study_flights import FakeFlier, made, robot
 
 from pytpc import demo_examples
 from pytpc.cli import study_commands
