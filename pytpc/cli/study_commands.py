@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, TypeVar
 
 import click
 from rich.table import Table
 from rich.text import Text
 
 from pytpc.cli.console import console
+from pytpc.cli.options import JSON, PATH, Command
 from pytpc.cli.study_progress import StudyProgress
 from pytpc.demo_examples import EXAMPLES
 from pytpc.errors import RunError
@@ -27,21 +27,16 @@ from pytpc.study.suggested import (
 )
 from pytpc.words import many, plain
 
-_PATH = click.Path(path_type=Path)
-_Command = TypeVar("_Command", bound=Callable[..., Any])
 
-
-def _out(command: _Command) -> _Command:
-    return click.option(
+def _flown(command: Command) -> Command:
+    out = click.option(
         "--out",
-        type=_PATH,
+        type=PATH,
         default=Path("out/study"),
         show_default=True,
+        metavar="DIR",
         help="The study's folder.",
-    )(command)
-
-
-def _flown(command: _Command) -> _Command:
+    )
     jobs = click.option(
         "--jobs",
         type=click.IntRange(1, 16),
@@ -55,8 +50,7 @@ def _flown(command: _Command) -> _Command:
         metavar="R",
         help="Simulated seconds in a second.  [default: that of each system]",
     )
-    as_json = click.option("--json", "as_json", is_flag=True, help="Print the results as JSON.")
-    return _out(jobs(rate(as_json(command))))
+    return out(jobs(rate(JSON(command))))
 
 
 @click.group("study")
@@ -111,7 +105,7 @@ def run_command(
 
 
 @study_group.command("suggested")
-@click.argument("wanted", type=_PATH, required=False)
+@click.argument("wanted", type=PATH, required=False)
 @_flown
 def suggested_command(
     *, wanted: Path | None, out: Path, rate: float | None, jobs: int, as_json: bool
@@ -141,7 +135,7 @@ def suggested_command(
 
 
 @study_group.command("halves")
-@click.option("--json", "as_json", is_flag=True, help="Print them as a JSON list.")
+@JSON
 def halves_command(*, as_json: bool) -> None:
     """Say which mission is in which half of the study: the one for tuning, or held back.
 

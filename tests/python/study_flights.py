@@ -110,17 +110,17 @@ class FakeFlier:
 
 
 def made(digest: str = "1", **changes: object) -> Done:
-    plain = dict(
-        flight=digest,
-        marked="2",
-        rate=12.0,
-        seed=1,
-        people=7,
-        sim_s=60.0,
-        wall_s=5.0,
-        reports=100,
-        reached=True,
-        causes=0,
-        marks=0,
-    )
+    plain = {
+        "flight": digest,
+        "marked": "2",
+        "rate": 12.0,
+        "seed": 1,
+        "people": 7,
+        "sim_s": 60.0,
+        "wall_s": 5.0,
+        "reports": 100,
+        "reached": True,
+        "causes": 0,
+        "marks": 0,
+    }
     return Done(**{**plain, **changes})

@@ -521,5 +521,3 @@ def test_progress_without_a_terminal_is_a_line_now_and_then(example, capsys, mon
         "building robot: [ 50%] Building",
         "robot/type1_b/seed-1: 3 s simulated",
     ]
-
-
