@@ -11,14 +11,22 @@ from pathlib import Path
 from pytpc.atomic import write_atomic
 from pytpc.errors import RunError, TpcError
 from pytpc.ingest.reading import read
-from pytpc.ingest.recording import REPORTS_FOLDER, read_marks, save_recording, write_marks
+from pytpc.ingest.recording import (
+    EVENTS_FILE,
+    MARKS_FILE,
+    REPORTS_FOLDER,
+    read_marks,
+    save_recording,
+    write_marks,
+)
 from pytpc.marks import Mark
 from pytpc.mission import Progress, run_mission
-from pytpc.study.changes import save_changes
+from pytpc.study.changes import CHANGES_FILE, save_changes
 from pytpc.study.dataset import (
     CAUSES_FILE,
     DONE_FILE,
     MARKED_FILE,
+    SIGHTS_FILE,
     Cause,
     Done,
     load_causes,
@@ -34,6 +42,8 @@ from pytpc.treatment import Treatment, save_treatment
 SETTLE_S = 15.0
 TIMEOUT_S = 300.0
 DECOYS_FILE = "decoys.yaml"
+_OF_FLIGHT = (EVENTS_FILE, MARKS_FILE, SIGHTS_FILE, CHANGES_FILE)
+_OF_PEOPLE = (CAUSES_FILE, MARKED_FILE)
 
 
 @dataclass(frozen=True)
@@ -68,6 +78,8 @@ class Flier:
         done = load_done(folder)
         if done is None or (done.flight, done.marked) != self.digests(flight):
             return None
+        if not _has(folder, (*_OF_FLIGHT, *_OF_PEOPLE)):
+            return None
         # What the treatment says of itself may be put better than it was.
         save_treatment(flight.treatment, folder)
         remarks = remarks_of(flight, load_causes(folder / CAUSES_FILE), reached=done.reached)
@@ -87,7 +99,7 @@ class Flier:
         flown, marked = self.digests(flight)
         # Whatever happens from here on, the mission is not whole.
         _remove(folder / DONE_FILE)
-        if before is not None and before.flight == flown:
+        if before is not None and before.flight == flown and _has(folder, _OF_FLIGHT):
             recording, events, summaries = read_marks(folder)
             causes, marks = self._mark(flight, folder)
             write_marks(replace(recording, marks=marks), folder, events, summaries)
@@ -212,6 +224,10 @@ def _clear(folder: Path) -> None:
         folder.mkdir(parents=True)
     except OSError as error:
         raise TpcError(f"cannot be cleared: {error.strerror}", folder) from error
+
+
+def _has(folder: Path, names: Sequence[str]) -> bool:
+    return all((folder / name).is_file() for name in names)
 
 
 def _remove(path: Path) -> None:

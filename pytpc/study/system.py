@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -70,11 +71,19 @@ def prepare(
     folder = system_folder(example, out)
     workspace, static_file = folder / "ws", folder / MERGED_FILE
     link_package(example, workspace)
-    marker = {"sources": sources_digest(example), "tools": tools_digest()}
     bases = Bases.of(workspace)
-    is_built = (bases.install / "setup.bash").is_file() and _read(folder / _BUILT_FILE) == marker
+    marker = {
+        "sources": sources_digest(example),
+        "tools": tools_digest(),
+        "place": str(workspace.absolute()),
+    }
+    before = _read(folder / _BUILT_FILE)
+    is_built = (bases.install / "setup.bash").is_file() and before == marker
     if not is_built:
         (folder / _BUILT_FILE).unlink(missing_ok=True)
+        if isinstance(before, dict) and before.get("place") != marker["place"]:
+            # CMake's caches and the set-up scripts know where they were.
+            shutil.rmtree(bases.root, ignore_errors=True)
         build_workspace(workspace, on_output=on_output).static.save(static_file)
         write_atomic(folder / _BUILT_FILE, json.dumps(marker).encode() + b"\n")
     static = StaticInfo.load(static_file)

@@ -241,12 +241,13 @@ def flier(example, tmp_path, monkeypatch) -> Flier:
         seen.append(seed)
         causes = [{"kind": "I", "start": 20.0, "end": 20.0, "reason": "it leaks"}]
         (folder / "causes.json").write_text(json.dumps(causes))
+        (folder / "marks.parquet").write_bytes(b"")
 
     seen: list[int] = []
     example_ends = {"late": False}
     events = load_recording(demo_examples.SHARED_PACKAGE.parent / "recorded_mission").events
     monkeypatch.setattr(fly, "run_mission", run_mission)
-    monkeypatch.setattr(fly, "see", lambda *_: None)
+    monkeypatch.setattr(fly, "see", lambda *words: (words[-1] / "sights.parquet").write_bytes(b""))
     monkeypatch.setattr(fly, "mark", mark)
     monkeypatch.setattr(fly, "read_marked", lambda _: (Mark(22 * 10**9, "I", "user1"),))
     monkeypatch.setattr(fly, "read", lambda folder: Recording("seed-1", events, (), 0, 60 * 10**9))
@@ -279,7 +280,9 @@ def test_a_mission_leaves_what_its_readers_need_and_no_more(flier, example):
         "done.json",
         "events.parquet",
         "marks.json",
+        "marks.parquet",
         "params.yaml",
+        "sights.parquet",
         "treatment.json",
     ]
     assert load_recording(folder).marks == (Mark(22 * 10**9, "I", "user1"),)
@@ -339,6 +342,18 @@ def test_other_people_look_at_the_same_flight(flier, example):
     assert len(flier.calls) == 1
     assert flier.seen == [flight.people] * 2
     assert others.kept(flight) == done
+
+
+@pytest.mark.parametrize("name", ["events.parquet", "causes.json", "sights.parquet"])
+def test_a_mission_that_lost_a_file_is_flown_again(flier, example, name):
+    flight = treated(example)
+    flier.fly(flight)
+    (flight.folder(flier.out) / name).unlink()
+    assert flier.kept(flight) is None
+    flier.fly(flight)
+    assert flier.kept(flight) is not None
+    # What people make of a flight is made again from what they saw.
+    assert len(flier.calls) == (1 if name == "causes.json" else 2)
 
 
 def test_a_mission_that_does_not_end_is_not_done(flier, example):
