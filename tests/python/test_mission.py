@@ -489,6 +489,12 @@ def test_treatment_is_read(folder):
     assert treatment.mark_type == "I"
     assert treatment.change == "limit 20 -> 3"
     assert treatment.overlay == folder / "params.yaml"
+    assert treatment.tipping is None
+
+
+def test_where_the_behaviour_tips_may_be_said(folder):
+    (folder / "treatment.json").write_text(json.dumps({**GOOD, "tipping": 12}))
+    assert load_treatment(folder).tipping == 12
 
 
 @pytest.mark.parametrize(
@@ -502,6 +508,8 @@ def test_treatment_is_read(folder):
         ({"parameter": None, "node": None}, "type type1 has a changed parameter"),
         ({"launch": {"fault": True}}, "launch is not an object of texts"),
         ({"extra": 1}, "exactly the fields"),
+        ({"tipping": "12"}, "tipping is not a number or null"),
+        ({"tipping": True}, "tipping is not a number or null"),
     ],
 )
 def test_wrong_treatments_say_what_is_wrong(folder, change, what):

@@ -167,7 +167,8 @@ def test_standing_on_the_way_is_type2():
 
 def test_turning_past_the_person_is_type2_until_it_is_in_view_again():
     # From -1.5 at 3 s with 0.5 rad/s. The person is at 1.5708: within 25 degrees from 8.3 s on,
-    # beyond 32 degrees (2.1293) after 10.26 s, within them again at 1.0123 + 2 pi = 7.2955: 20.59 s.
+    # beyond 32 degrees (2.1293) after 10.26 s, within them again at 1.0123 + 2 pi = 7.2955, which
+    # is 20.59 s.
     turning = [(3.0, 0, 0, 1.6, -1.5, 0.0), (21.0, 0, 0, 1.6, -1.5, 0.5)]
     assert causes(turning) == [("II", 10.3, 20.6, "it turns past the person")]
 
