@@ -181,6 +181,18 @@ def test_staying_after_the_picture_is_type2():
     assert causes(phases, pictures=(13.0,)) == [("II", 15.1, 30.0, reason)]
 
 
+def test_nobody_is_looked_for_after_the_picture():
+    # Picture at 11.5 s, home at 18 s, where it hovers for 12 s before it lands.
+    reason = "it has its picture, and does not come home"
+    phases = [
+        *BEGIN,
+        (11.0, 0, 0.8, 1.6, LOOK_AT, 0.0),
+        (18.0, -3, 0, 1.6, LOOK_AT, 0.0),
+        (30.0, -3, 0, 1.6, LOOK_AT, 0.0),
+    ]
+    assert [cause[3] for cause in causes(phases, pictures=(11.5,))] == [reason]
+
+
 def test_a_second_picture_is_type1():
     # Before the person until 14 s, then home.
     phases = [

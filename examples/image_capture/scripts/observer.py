@@ -158,7 +158,7 @@ class FieldRules(Rules[Sight]):
         self.waiting(passed, "it turns past the person")
 
     def _watch_nobody(self, sight: Sight, flying: bool) -> None:
-        watching = flying and self._has_turned and not self._descent_seen
+        watching = flying and self._has_turned and self._pictures == 0
         alone = abs(sight.bearing) > IN_VIEW_RAD
         if not (watching and alone) or self._turning() or self.moving():
             self._nobody_since = None
