@@ -12,8 +12,9 @@ from rich.text import Text
 
 from pytpc.cli.console import console, progress
 from pytpc.cli.options import JSON, PATH
+from pytpc.study.suggested import WANTED_FILE
 from pytpc.study.suggestion_chains import Chain, shares
-from pytpc.study.suggestions import WANTED_FILE, load_orders, next_round
+from pytpc.study.suggestions import load_orders, next_round
 from pytpc.words import many, plain
 
 _HALVES = {"tuning": ("tuning",), "held-back": ("held-back",), "both": ("tuning", "held-back")}

@@ -34,15 +34,12 @@ from pytpc.ingest.recording import Recording, load_recording
 from pytpc.parameters import DYNAMIC, same_parameter
 from pytpc.static_info import StaticInfo
 from pytpc.static_json import parse_json
+from pytpc.study.dataset import DONE_FILE, STUDY_FILE
+from pytpc.study.suggested import SUGGESTION_FILE, TRIED_FILE, WANTED_FILE
 from pytpc.study.suggestion_chains import SUSPECTS, VARIANTS, Chain, Try
 
-STUDY_FILE = Path("study.json")
-WANTED_FILE = Path("results") / "suggestions-wanted.json"
 CHAINS_FILE = Path("results") / "suggestion-chains.json"
 TRIES_FILE = Path("results") / "suggestion-tries.parquet"
-HEADLINE_FILE = Path("results") / "suggestions.parquet"
-SUGGESTION_FILE = "suggestion.json"
-DONE_FILE = "done.json"
 
 HEADLINE = "lasting"
 """What is shown of the tool: nothing in it knows the value before the treatment."""
@@ -254,7 +251,7 @@ def _save(chains: Sequence[Chain], out: Path) -> None:
         if (row["variant"], row["tries"]) == (HEADLINE, 1) and row["value"] is not None
     ]
     schema = _TRIES.append(pa.field("new", pa.bool_())).append(pa.field("failure", pa.string()))
-    write_table(pa.Table.from_pylist(first, schema=schema), out / HEADLINE_FILE)
+    write_table(pa.Table.from_pylist(first, schema=schema), out / TRIED_FILE)
     _write_json([asdict(chain) for chain in chains], out / CHAINS_FILE)
     # Last: with it the next flights can begin.
     _write_json(list(_wanted(chains)), out / WANTED_FILE)

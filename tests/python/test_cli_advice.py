@@ -174,4 +174,5 @@ def test_a_clean_run_and_what_was_flown(files, tmp_path):
     assert found["what_if"]["answered"] == 2
     (group,) = json.loads(run(*words, "--flown", 0.9).stdout)["groups"]
     assert group["suspects"][0]["remedy"]["value"] == 0.0999
-    assert "--flown needs a PARAMETER" in run("suggest", bag, "--static", static, "--flown", 1).output
+    refused = run("suggest", bag, "--static", static, "--flown", 1)
+    assert "--flown needs a PARAMETER" in refused.output
