@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from mission_samples import comparison, events, key, ns, static_info
 
 from pytpc.advice.declared import Declared
@@ -255,3 +257,34 @@ def test_nothing_is_said_where_nothing_was_evaluated():
     found = remedy(recording(), static_info(comparison(0, "limit")), "limit", marks(95))
     assert (found.value, found.basis) == (None, None)
     assert found.reason == "none of its comparisons was evaluated"
+
+
+VALUES = st.lists(
+    st.one_of(st.floats(-20, 20), st.integers(-5, 5).map(float)), min_size=1, max_size=30
+)
+
+
+# Whatever the log: what is wanted of type II is never what the robot stood by, so that no more
+# evaluations have the outcome that most had; and of both types the value is another one, on the
+# side that is said.
+@settings(max_examples=300, deadline=None)
+@given(
+    VALUES, st.sampled_from(["<", ">", ">="]), st.floats(-20, 20), st.sampled_from(["I", "II"]),
+    st.lists(st.floats(-30, 30), max_size=3),
+)  # fmt: skip
+def test_whatever_the_log(cmps, relation, threshold, kind, flown):
+    found = ask(relation, cmps, threshold, marks(102, kind=kind), step=0.4, flown=flown)
+    if found.value is None:
+        assert found.reason
+        return
+    assert (found.value > threshold) == (found.direction == "raise")
+    assert found.value != threshold
+    assert not any(
+        min(threshold, found.value) < value < max(threshold, found.value) for value in flown
+    )
+    if kind == "II" and found.basis == "lasting":
+        holds = HOLDS[relation]
+        before = [holds(cmp, threshold) for cmp in cmps]
+        most = 2 * sum(before) >= len(before)
+        after = [holds(cmp, float(found.value)) for cmp in cmps]
+        assert after.count(most) < before.count(most)
