@@ -65,8 +65,8 @@ def wanted(out):
     return json.loads((out / "results" / "suggestions-wanted.json").read_text())
 
 
-# The smallest change is to 4. The way doubled is 6, so that lasts above 6: 7; from its log 0 to 7
-# three times the way, 21: 22. The default and the clean run have 25. Seed 2 has not been flown.
+# The smallest change is to 4. Three times the way is 9, so it lasts from 10 on; from that log five
+# times the way, 50: 51. The default and the clean run have 25. Seed 2 has not been flown.
 def test_rounds(out):
     next_round(out)
     first = {"system": "robot", "treatment": "type1_limit", "seed": 1}
@@ -74,14 +74,14 @@ def test_rounds(out):
     assert wanted(out) == [{**first, "value": 4}]
     fly(out, 4, gone=False)
     next_round(out)
-    assert wanted(out) == [{**first, "value": 7}]
+    assert wanted(out) == [{**first, "value": 10}]
     # Asked again before it was flown, it stays so: what stands there is of another value.
     next_round(out)
-    assert wanted(out) == [{**first, "value": 7}]
-    fly(out, 7, gone=False)
+    assert wanted(out) == [{**first, "value": 10}]
+    fly(out, 10, gone=False)
     next_round(out)
-    assert wanted(out) == [{**first, "value": 22}]
-    fly(out, 22, gone=True)
+    assert wanted(out) == [{**first, "value": 51}]
+    fly(out, 51, gone=True)
     next_round(out)
     assert wanted(out) == [{**first, "value": 25}]
     fly(out, 25, gone=True, new=True)
@@ -92,8 +92,8 @@ def test_rounds(out):
     told = [(row["variant"], row["tries"], row["value"], row["gone"]) for row in rows]
     assert told == [
         ("smallest", 1, 4, False),
-        ("lasting", 1, 7, False),
-        ("lasting", 2, 22, True),
+        ("lasting", 1, 10, False),
+        ("lasting", 2, 51, True),
         ("with-default", 1, 25, True),
         ("with-reference", 1, 25, True),
     ]
@@ -101,7 +101,7 @@ def test_rounds(out):
     assert [row["new_error"] for row in rows] == [False, False, False, True, True]
     assert rows[0]["reason"] == "I: too early"
     (headline,) = pq.read_table(out / "results" / "suggestions.parquet").to_pylist()
-    assert (headline["value"], headline["gone"], headline["new"]) == (7, False, False)
+    assert (headline["value"], headline["gone"], headline["new"]) == (10, False, False)
 
 
 # Of the first nothing is known. The second is a flag that never changed, so that no mark of type
@@ -115,8 +115,8 @@ def test_suspects_are_tried_in_turn(out):
         "its result did not change before the mark",
         "",
     ]
-    assert (tries[2].parameter, tries[2].node, tries[2].value) == ("~limit", "/brain", 7)
-    fly(out, 7, gone=True)
+    assert (tries[2].parameter, tries[2].node, tries[2].value) == ("~limit", "/brain", 10)
+    fly(out, 10, gone=True)
     chains = next_round(out, orders=orders)
     assert [one.variant for one in chains if one.is_over] == ["lasting", "suspects"]
 
