@@ -44,7 +44,7 @@ def ask(relation, cmps, threshold, marked, *, default=None, step=1.0, begin=90.0
     return remedy(log, static_info(found), "limit", marked, **more)
 
 
-# The program acts at 3, so the log ends there: 3 is the only peak, and three times the way from 0 is
+# The program acts at 3, so the log ends there: 3 is the only peak, three times the way from 0 is
 # 9. `9 >= T` is False for T > 9: the next whole number is 10. The smallest change is to 4.
 def test_a_counter_is_stepped_beyond_where_the_program_acted():
     found = ask(">=", [0, 1, 2, 3], 3, marks(95), default=3)
