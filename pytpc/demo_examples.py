@@ -86,3 +86,27 @@ WATER_SAMPLER = Example(
         "type2_hold_radius",
     ),
 )
+
+NAVIGATION = Example(
+    name="navigation",
+    title="Navigation",
+    watched=(
+        "/truth/robot",
+        "/truth/goal",
+        "/truth/events",
+        "/truth/goal_signalled",
+        "/mission/state",
+    ),
+    goal_topic="/truth/goal_signalled",
+    reached="the lamp was lit at the goal",
+    missed="the lamp was not lit at the goal",
+    # With some treatments of type I the robot gets there, and touches something on the way.
+    missed_under=frozenset({"type2", "fault"}),
+    shown=(
+        "clean",
+        "type1_goal_tolerance",
+        "type1_return_voltage",
+        "type2_heading_tolerance_deg",
+        "type2_min_start_quality",
+    ),
+)

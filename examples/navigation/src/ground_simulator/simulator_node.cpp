@@ -12,6 +12,7 @@ namespace navigation {
 namespace {
 constexpr double TruthPeriod = 0.1;
 constexpr double StatusPeriod = 0.1;
+constexpr double HandshakePeriod = 0.1; // s, of the wall's clock
 // The mark on the floor, and how near to it the lamp may be lit.
 constexpr Pose Goal = {6.6, 4.8, M_PI / 2.0};
 constexpr double SignalRadius = 0.4; // m
@@ -64,14 +65,19 @@ void SimulatorNode::run(ros::NodeHandle &private_nh) {
 }
 
 void SimulatorNode::waitForNodes() {
-  // The time begins when localisation, planner and safety stop see, and
-  // somebody drives.
-  while (ros::ok() && (scan_pub_.getNumSubscribers() < 3 ||
-                       odometry_pub_.getNumSubscribers() == 0 ||
-                       command_sub_.getNumPublishers() == 0 ||
-                       plan_sub_.getNumPublishers() == 0 ||
-                       mission_sub_.getNumPublishers() == 0)) {
-    ros::WallDuration(0.02).sleep();
+  // The first moment lasts until all who decide have answered to it: they come
+  // up one after the other, and the mission must not begin before the last.
+  clock_.advance();
+  const ros::Time stamp = clock_.stamp();
+  const RobotStatus status = base_.status(stamp);
+  const nav_msgs::Odometry odometry = base_.odometry(stamp);
+  const sensor_msgs::LaserScan scan = arena_.scan(stamp, base_.pose());
+  while (ros::ok() &&
+         !(drive_.begun() && planner_.begun() && mission_.begun())) {
+    status_pub_.publish(status);
+    odometry_pub_.publish(odometry);
+    scan_pub_.publish(scan);
+    ros::WallDuration(HandshakePeriod).sleep();
     ros::spinOnce();
   }
 }

@@ -11,7 +11,7 @@ namespace navigation {
 
 namespace {
 constexpr double Degree = M_PI / 180.0;
-constexpr double FrontHalf = 32.0 * Degree; // of the sector that is looked at
+constexpr double FrontHalf = 45.0 * Degree; // of the sector that is looked at
 constexpr double SideFrom = 60.0 * Degree;
 constexpr double SideTo = 100.0 * Degree;
 constexpr double RearFrom = 148.0 * Degree;
