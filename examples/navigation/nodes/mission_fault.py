@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
 """The mission with one wrong comparison: a fault in the source."""
 
-from navigation.battery_watch import BatteryWatch
 from navigation.mission import main
+from navigation.pilot import Pilot
 
 
-class FaultyBatteryWatch(BatteryWatch):
-    """Takes a good battery for a weak one."""
+class FaultyPilot(Pilot):
+    """Takes each place for the goal but the goal itself."""
 
-    def low(self):
-        return self.voltage > self._return_voltage
+    def at_goal(self, pose):
+        return self.distance(pose) > self._goal_radius
 
 
 if __name__ == "__main__":
-    main(battery=FaultyBatteryWatch)
+    main(FaultyPilot)

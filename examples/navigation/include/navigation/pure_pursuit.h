@@ -22,6 +22,7 @@ protected:
 private:
   Point target(const Point &robot) const;
   geometry_msgs::Twist follow(const Localised &robot, double distance);
+  geometry_msgs::Twist align();
   geometry_msgs::Twist turnTo(double heading_error);
   double limitedTurn(double turn_rate) const;
   void publish(const Localised &robot, const geometry_msgs::Twist &twist);
@@ -40,6 +41,8 @@ private:
   double min_turn_rate_;
   double sharp_curvature_;
   double sharp_speed_;
+  int aligned_frames_;
+  int aligned_ = 0; ///< frames in succession
   bool turn_at_goal_;
   bool turning_ = false;
   bool near_goal_ = false;

@@ -23,6 +23,7 @@ void PurePursuit::initialize(ros::NodeHandle &nh, ros::NodeHandle &private_nh) {
   private_nh.param("sharp_curvature", sharp_curvature_, 1.2);
   private_nh.param("sharp_speed", sharp_speed_, 0.3);
   private_nh.param("turn_at_goal", turn_at_goal_, true);
+  private_nh.param("aligned_frames", aligned_frames_, 5);
   double heading_tolerance_deg, turn_in_place_deg, turn_exit_deg;
   private_nh.param("heading_tolerance_deg", heading_tolerance_deg, 6.0);
   private_nh.param("turn_in_place_deg", turn_in_place_deg, 70.0);
@@ -35,8 +36,10 @@ void PurePursuit::initialize(ros::NodeHandle &nh, ros::NodeHandle &private_nh) {
 
 void PurePursuit::setPath(const std::vector<Pose> &path,
                           std::uint32_t goal_id) {
-  if (goal_id != goal_id_)
+  if (goal_id != goal_id_) {
     turning_ = near_goal_ = arrived_ = false;
+    aligned_ = 0;
+  }
   goal_id_ = goal_id;
   path_ = path;
 }
@@ -79,10 +82,7 @@ geometry_msgs::Twist PurePursuit::compute(const Localised &robot) {
   if (!near_goal_) {
     twist = follow(robot, distance_);
   } else if (turn_at_goal_ && !arrived_) {
-    if (aligned(heading_error_))
-      arrived_ = true;
-    else
-      twist = turnTo(heading_error_);
+    twist = align();
   } else {
     arrived_ = true;
   }
@@ -113,6 +113,17 @@ geometry_msgs::Twist PurePursuit::follow(const Localised &robot,
   twist.linear.x = speed;
   twist.angular.z = limitedTurn(speed * curvature);
   return twist;
+}
+
+geometry_msgs::Twist PurePursuit::align() {
+  if (!aligned(heading_error_)) {
+    aligned_ = 0;
+    return turnTo(heading_error_);
+  }
+  // In passing is not enough: it has to stay so.
+  if (++aligned_ >= aligned_frames_)
+    arrived_ = true;
+  return {};
 }
 
 geometry_msgs::Twist PurePursuit::turnTo(double heading_error) {

@@ -18,11 +18,8 @@ class BatteryWatch:
         if self.voltage == 0.0:
             self.voltage = voltage
         self.voltage += 0.1 * (voltage - self.voltage)
-        self._readings = self._readings + 1 if self.low() else 0
-
-    def low(self):
-        """Whether it is time to go home."""
-        return self.voltage < self._return_voltage
+        low = self.voltage < self._return_voltage
+        self._readings = self._readings + 1 if low else 0
 
     @property
     def weak(self):

@@ -16,14 +16,14 @@ from navigation.states import STATES
 class Mission:
     """Steps with each pose."""
 
-    def __init__(self, states=STATES, battery=BatteryWatch):
+    def __init__(self, pilot=Pilot):
         self._mission_timeout = rospy.get_param("~mission_timeout", 85.0)
-        self.battery = battery()
+        self.battery = BatteryWatch()
         self.drive = DriveWatch()
-        self.pilot = Pilot()
+        self.pilot = pilot()
         self.pose = None
         self.started = None
-        self._states = {state.name: state(self) for state in states}
+        self._states = {state.name: state(self) for state in STATES}
         self._state = None
         self._lock = threading.Lock()
         self._state_pub = rospy.Publisher("/mission/state", MissionState, queue_size=10)
@@ -83,7 +83,7 @@ class Mission:
         if (now - self.started).to_sec() > self._mission_timeout:
             rospy.logwarn("the time is up")
             return "done"
-        if self._state.name != "go_home" and self.battery.weak:
+        if self._state.name in {"go_out", "settle"} and self.battery.weak:
             rospy.logwarn("the battery is weak")
             return "go_home"
         return None
@@ -116,9 +116,9 @@ class Mission:
         self._done_pub.publish(Bool(True))
 
 
-def main(states=STATES, battery=BatteryWatch):
+def main(pilot=Pilot):
     """Run the mission as a node."""
     rospy.init_node("mission")
-    mission = Mission(states, battery)
+    mission = Mission(pilot)
     rospy.spin()
     return mission
