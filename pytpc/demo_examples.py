@@ -145,6 +145,7 @@ NAVIGATION = Example(
         "type2_heading_tolerance_deg",
         "type2_min_start_quality",
     ),
+    simulator="/ground_simulator",
 )
 
 EXAMPLES = (IMAGE_CAPTURE, WATER_SAMPLER, NAVIGATION)

@@ -38,9 +38,9 @@ private:
   double stop_distance_;
   double release_distance_;
   double slow_distance_;
-  double slow_speed_;
+  double slow_share_; ///< of the speed that is wanted
   double side_distance_;
-  double side_speed_;
+  double side_share_;
   double rear_distance_;
   double scan_timeout_;
   double status_timeout_;

@@ -28,7 +28,9 @@ void Confidence::update(const Match &match) {
     lost_ = true;
   else if (accepted_ >= good_frames_)
     lost_ = false;
-  ready_ = !lost_ && quality_ > min_quality_;
+  ready_ = !lost_;
+  if (quality_ < min_quality_)
+    ready_ = false;
 }
 
 LocalisationNode::LocalisationNode(ros::NodeHandle &nh,

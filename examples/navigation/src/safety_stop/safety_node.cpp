@@ -38,9 +38,9 @@ SafetyNode::SafetyNode(ros::NodeHandle &nh, ros::NodeHandle &private_nh) {
   private_nh.param("stop_distance", stop_distance_, 0.4);
   private_nh.param("release_distance", release_distance_, 0.5);
   private_nh.param("slow_distance", slow_distance_, 0.65);
-  private_nh.param("slow_speed", slow_speed_, 0.3);
+  private_nh.param("slow_share", slow_share_, 0.6);
   private_nh.param("side_distance", side_distance_, 0.28);
-  private_nh.param("side_speed", side_speed_, 0.2);
+  private_nh.param("side_share", side_share_, 0.5);
   private_nh.param("rear_distance", rear_distance_, 0.3);
   private_nh.param("scan_timeout", scan_timeout_, 0.5);
   private_nh.param("status_timeout", status_timeout_, 1.0);
@@ -137,9 +137,9 @@ void SafetyNode::guardFront(geometry_msgs::Twist &twist) {
     return;
   }
   if (front_ < slow_distance_)
-    twist.linear.x = std::min(twist.linear.x, slow_speed_);
+    twist.linear.x *= slow_share_;
   if (side_ < side_distance_)
-    twist.linear.x = std::min(twist.linear.x, side_speed_);
+    twist.linear.x *= side_share_;
 }
 
 void SafetyNode::guardRear(geometry_msgs::Twist &twist) const {
