@@ -82,20 +82,21 @@ def style() -> Iterator[None]:
         yield
 
 
-def save(figure: Figure, target: Path, form: str) -> None:
+def save(figure: Figure, target: Path, form: str, dpi: int = _DPI) -> None:
     """Write a figure, atomically; call it within ``style``.
 
     Args:
         figure: it keeps its size.
         target: the file.
         form: one of ``FORMATS``.
+        dpi: dots per inch, for ``png``.
 
     Raises:
         TpcError: the file cannot be written.
     """
     stream = io.BytesIO()
     FigureCanvasAgg(figure)
-    figure.savefig(stream, format=form, dpi=_DPI, metadata=_METADATA[form])
+    figure.savefig(stream, format=form, dpi=dpi, metadata=_METADATA[form])
     write_atomic(target, stream.getvalue())
 
 

@@ -1,0 +1,133 @@
+"""Is a confident verdict right, and is nobody accused where no parameter is to blame?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from statistics import fmean
+
+from pytpc.study.report.positions import ALL, LABELS, Position, ordered
+from pytpc.study.report.ranked import OURS
+from pytpc.tables import Cell, Column, Table
+
+CONFIDENT = 0.8
+"""A verdict with at least this confidence accuses."""
+
+BINS = 5
+
+
+@dataclass(frozen=True, slots=True)
+class Bin:
+    """Verdicts with a confidence in ``[low, high)``; the last bin has its upper end too."""
+
+    low: float
+    high: float
+    verdicts: int
+    confidence: float | None
+    right: float | None
+
+
+def judged(rows: Iterable[Position], method: str = OURS) -> list[Position]:
+    """The verdicts of a method that have a confidence, by all users' marks."""
+    return [r for r in rows if r.method == method and r.who == ALL and r.confidence is not None]
+
+
+def is_right(row: Position) -> bool:
+    """Whether the first is to blame; on clean missions and faults nobody is."""
+    return row.changed and row.within(1)
+
+
+def accuses(row: Position) -> bool:
+    """Whether a verdict is confident; without marks nobody asked."""
+    return row.marks > 0 and row.confidence is not None and row.confidence >= CONFIDENT
+
+
+def reliability(rows: Sequence[Position]) -> list[Bin]:
+    """How often verdicts are right, by their confidence; those without a mark are left out."""
+    found = [row for row in rows if row.marks > 0]
+    bins = []
+    for number in range(BINS):
+        low, high = number / BINS, (number + 1) / BINS
+        here = [row for row in found if _bin_of(row) == number]
+        bins.append(
+            Bin(
+                low,
+                high,
+                len(here),
+                fmean(row.confidence or 0.0 for row in here) if here else None,
+                fmean(float(is_right(row)) for row in here) if here else None,
+            )
+        )
+    return bins
+
+
+def calibration_error(bins: Sequence[Bin]) -> float | None:
+    """The expected calibration error (Naeini et al. 2015): the mean gap, weighted by verdicts."""
+    total = sum(one.verdicts for one in bins)
+    gaps = (
+        one.verdicts * abs(one.confidence - one.right)
+        for one in bins
+        if one.confidence is not None and one.right is not None
+    )
+    return sum(gaps) / total if total else None
+
+
+def reliability_table(bins: Sequence[Bin]) -> Table:
+    """The numbers of the diagram."""
+    columns = (Column("Verdicts", 0), Column("Mean confidence", 2), Column("Share right", 2))
+    rows = tuple(
+        (f"{one.low:.1f} to {one.high:.1f}", (one.verdicts, one.confidence, one.right))
+        for one in bins
+    )
+    return Table("reliability", "Reliability", columns, rows, (), "Confidence")
+
+
+def accusations_table(rows: Sequence[Position]) -> Table:
+    """Missions in which no parameter is to blame: who is first, and how confidently."""
+    own = [row for row in judged(rows) if not row.changed]
+    columns = tuple(
+        Column(heading, digits)
+        for heading, digits in (
+            ("Treatment", 0), ("Half", 0), ("Seed", 0), ("Labels", 0), ("Marks", 0), ("First", 0),
+            ("Confidence", 2), ("Accused", 0),
+        )
+    )  # fmt: skip
+    lines: list[tuple[str, tuple[Cell, ...]]] = []
+    for row in sorted(own, key=lambda r: (r.system, r.type, r.treatment, r.seed)):
+        accused = "yes" if accuses(row) else "no"
+        cells = (row.treatment, row.half, row.seed, row.labels, row.marks, row.top or None)
+        lines.append((row.system, (*cells, row.confidence, accused)))
+    return Table("accusations", "Where nobody is to blame", columns, tuple(lines), (), "System")
+
+
+def accusation_counts(rows: Sequence[Position]) -> Table:
+    """How many verdicts are confident, and how many of those are right, by what was done."""
+    columns = (
+        Column("Labels", 0),
+        Column("Missions", 0),
+        Column("Confident", 0),
+        Column("of them right", 0),
+    )
+    lines: list[tuple[str, tuple[Cell, ...]]] = []
+    for name, kinds in (
+        ("changed parameter", {"type1", "type2"}),
+        ("fault in the source", {"fault"}),
+        ("clean", {"clean"}),
+    ):
+        own = [row for row in judged(rows) if row.type in kinds]
+        for labels in ordered((row.labels for row in own), LABELS):
+            here = [row for row in own if row.labels == labels]
+            confident = [row for row in here if accuses(row)]
+            right = sum(is_right(row) for row in confident)
+            lines.append((name, (labels, len(here), len(confident), right)))
+    return Table("confident", "Confident verdicts", columns, tuple(lines), (), "Missions with")
+
+
+def false_accusations(rows: Sequence[Position], half: str, kind: str) -> int | None:
+    """Confident verdicts on missions of a ``kind`` in which nobody is to blame; None of none."""
+    own = [row for row in judged(rows) if row.type == kind and row.half == half]
+    return sum(map(accuses, own)) if own else None
+
+
+def _bin_of(row: Position) -> int:
+    return min(BINS - 1, int((row.confidence or 0.0) * BINS))

@@ -1,0 +1,217 @@
+"""The study's folder, read: its systems and their missions (docs/formats.md).
+
+Whatever is missing or broken is said in a sentence and left out: a page of a part of the study is
+better than none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+
+from pytpc.columns import read_table
+from pytpc.errors import InputError, TpcError
+from pytpc.marks import MARK_TYPES, Mark
+from pytpc.parameters import parameter_name, same_parameter
+from pytpc.source_lines import count_lines
+from pytpc.static_info import StaticInfo
+from pytpc.static_json import parse_json
+from pytpc.stats.missions import StudyMission, load_missions
+from pytpc.treatment import Treatment
+
+STUDY_FILE = "study.json"
+HALVES = ("held-back", "tuning")
+UNKNOWN = "unknown"
+_DONE = "done.json"
+_SAID = "marks.parquet"
+_LANGUAGES = {".py": "Python"}
+
+Progress = Callable[[int, int], None]
+
+
+@dataclass(frozen=True, eq=False)
+class Flight:
+    """A mission of the study; ``said`` are its marks with the types that the users gave.
+
+    The recording's own marks have the types that were right to give. ``half`` is of ``HALVES``, or
+    ``UNKNOWN``.
+    """
+
+    system: str
+    half: str
+    mission: StudyMission
+    treatment: Treatment
+    said: tuple[Mark, ...]
+
+    def as_said(self) -> StudyMission:
+        """The mission with the marks as the users set them."""
+        return replace(self.mission, recording=replace(self.mission.recording, marks=self.said))
+
+
+@dataclass(frozen=True, eq=False)
+class System:
+    """A robot of the study: what the analysis found in it, its missions, and a clean one apart."""
+
+    name: str
+    static_info: StaticInfo
+    flights: tuple[Flight, ...]
+    reference: StudyMission | None
+    sources: Path | None
+
+    @cached_property
+    def lines(self) -> int | None:
+        """Lines of code of the workspace's sources, None where they are not there."""
+        if self.sources is None:
+            return None
+        return sum(count.code for count in count_lines(self.sources).languages.values())
+
+    @cached_property
+    def parameters(self) -> tuple[str, ...]:
+        """All parameters with which something is compared, sorted."""
+        found = self.static_info.thresholds.values()
+        return tuple(sorted({parameter_name(comparison) for comparison in found}))
+
+    @property
+    def clean(self) -> list[StudyMission]:
+        """The missions in which nothing was wrong."""
+        flown = [flight.mission for flight in self.flights if flight.treatment.type == "clean"]
+        return flown or ([self.reference] if self.reference is not None else [])
+
+    def language(self, parameter: str) -> str:
+        """In which language a parameter is compared; ``both``, or ``-`` where nowhere."""
+        found = {
+            _LANGUAGES.get(Path(comparison.file).suffix, "C++")
+            for comparison in self.static_info.thresholds.values()
+            if same_parameter(parameter, parameter_name(comparison))
+        }
+        return "both" if len(found) > 1 else next(iter(found), "-")
+
+
+@dataclass(frozen=True, eq=False)
+class Study:
+    """All that is read of a study but its results; ``troubles`` are sentences."""
+
+    folder: Path
+    document: Mapping[str, Any]
+    systems: tuple[System, ...]
+    troubles: tuple[str, ...]
+
+
+def load_study(folder: Path, on_progress: Progress | None = None) -> Study:
+    """Read a study's folder.
+
+    Args:
+        folder: with ``systems`` and ``missions``.
+        on_progress: called with (missions read, missions in all).
+
+    Raises:
+        InputError: there is no such folder, or ``study.json`` is missing or broken.
+    """
+    if not folder.is_dir():
+        raise InputError("no such folder; `pytpc study run` makes it", folder)
+    document = parse_json(folder / STUDY_FILE)
+    if not isinstance(document, dict):
+        raise InputError("not about a study: an object is expected", folder / STUDY_FILE)
+    troubles: list[str] = []
+    names = sorted(path.name for path in (folder / "missions").glob("*") if path.is_dir())
+    paths = {name: sorted((folder / "missions" / name).glob("*/seed-*")) for name in names}
+    total, done = sum(map(len, paths.values())), 0
+    systems = []
+    for name in names:
+        try:
+            static_info = StaticInfo.load(folder / "systems" / name / "static.json")
+        except TpcError as error:
+            troubles.append(f"{name} is left out: {_told(error, folder)}.")
+            continue
+        halves = _halves(document, name)
+        flights = []
+        for path in paths[name]:
+            done += 1
+            if on_progress is not None:
+                on_progress(done, total)
+            try:
+                flights.append(_flight(path, name, halves))
+            except TpcError as error:
+                troubles.append(f"{_place(path, folder)} is left out: {_told(error, folder)}.")
+        systems.append(
+            System(
+                name,
+                static_info,
+                tuple(flights),
+                _reference(folder, name, troubles),
+                _sources(folder / "systems" / name / "ws" / "src"),
+            )
+        )
+    if not names:
+        troubles.append("No mission has been flown.")
+    return Study(folder, document, tuple(systems), tuple(troubles))
+
+
+def said_marks(path: Path, kind: str = "said") -> tuple[Mark, ...]:
+    """The marks of ``marks.parquet`` with their types as they were ``said``, or were ``right``.
+
+    Raises:
+        InputError: the file cannot be read, or a mark in it is none.
+    """
+
+    def marks(table: pa.Table) -> tuple[Mark, ...]:
+        missing = sorted({"time_ns", "observer", kind} - {*table.column_names})
+        if missing:
+            raise InputError(f"no column {missing[0]}")
+        rows = table.select(["time_ns", "observer", kind]).to_pylist()
+        for row in rows:
+            if row[kind] not in MARK_TYPES:
+                raise InputError(f"a mark of type {row[kind]!r}")
+        found = (Mark(int(row["time_ns"]), row[kind], row["observer"]) for row in rows)
+        return tuple(sorted(found, key=Mark.order))
+
+    return read_table(path, "marks", marks)
+
+
+def _flight(path: Path, system: str, halves: Mapping[str, str]) -> Flight:
+    if not (path / _DONE).is_file():
+        raise TpcError("it was not flown to its end")
+    (mission,) = load_missions([path])
+    if mission.treatment is None:
+        raise TpcError("it has no treatment.json")
+    half = halves.get(mission.treatment.name, UNKNOWN)
+    return Flight(system, half, mission, mission.treatment, said_marks(path / _SAID))
+
+
+def _reference(folder: Path, name: str, troubles: list[str]) -> StudyMission | None:
+    path = folder / "reference" / name
+    try:
+        (mission,) = load_missions([path])
+    except TpcError as error:
+        troubles.append(f"The clean reference of {name} is missing: {_told(error, folder)}.")
+        return None
+    return mission
+
+
+def _halves(document: Mapping[str, Any], system: str) -> dict[str, str]:
+    """The half of each treatment of a system, as the study was begun with."""
+    found = document.get("treatments")
+    rows: Sequence[Any] = found if isinstance(found, list) else []
+    return {
+        str(row.get("name")): str(row.get("half"))
+        for row in rows
+        if isinstance(row, dict) and row.get("system") == system
+    }
+
+
+def _sources(folder: Path) -> Path | None:
+    return folder if folder.is_dir() else None
+
+
+def _place(path: Path, folder: Path) -> str:
+    return path.relative_to(folder).as_posix()
+
+
+def _told(error: TpcError, folder: Path) -> str:
+    """An error without where the study's folder happens to be."""
+    return str(error).replace(f"{folder}/", "").rstrip(".")

@@ -1,0 +1,168 @@
+"""How high each method ranks the changed parameter: the main tables.
+
+A share is that of a treatment's missions, its mean that of the treatments; the interval is the
+bootstrap's over treatments (`measures`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from statistics import fmean
+
+from pytpc.study.report.folder import UNKNOWN, System
+from pytpc.study.report.measures import Interval, interval
+from pytpc.study.report.positions import ALL, LABELS, Position, by_treatment, ordered
+from pytpc.study.report.systems import language_of, nearness, one_of_each
+from pytpc.tables import Cell, Column, Table
+
+OURS = "tpc"
+BASELINE = "thesis"
+METHODS = (OURS, "tpc+reference", "tpc+changes", BASELINE, "thesis-doubt", "importance",
+           "recent-change", "random")  # fmt: skip
+TARGETS: Mapping[str, float] = {"typed": 0.90, "untyped": 0.80, "confused": 0.80}
+"""The share of treatments with the changed parameter in the top 3 (the issue's targets)."""
+
+Group = Callable[[Position], str]
+
+
+def changed_rows(rows: Iterable[Position], half: str = "", who: str = ALL) -> list[Position]:
+    """The verdicts about missions with a changed parameter, of one half, by marks of ``who``."""
+    return [r for r in rows if r.changed and r.who == who and (not half or r.half == half)]
+
+
+def top(rows: Iterable[Position], k: int) -> Interval:
+    """The share of treatments with the changed parameter among the first ``k``."""
+    return _over(rows, lambda row: float(row.within(k)))
+
+
+def mean_of(rows: Iterable[Position], of: Callable[[Position], float]) -> float | None:
+    """The mean over treatments of something."""
+    return _over(rows, of).value
+
+
+def verdict(share: float | None, labels: str) -> str:
+    """Whether a share of top 3 is what was aimed at."""
+    if share is None:
+        return "-"
+    return "hit" if share >= TARGETS[labels] else "miss"
+
+
+def main_table(rows: Sequence[Position], half: str) -> Table:
+    """Method by labels, on one half."""
+    columns = (
+        Column("Labels", 0),
+        Column("Treatments", 0),
+        Column("Top 1 %", 0),
+        Column("Top 3 %", 0),
+        Column("Mean position", 1),
+        Column("of", 0),
+        Column("Mean rank", 2),
+        Column("Target", 0),
+        Column("Verdict", 0),
+    )
+    own = changed_rows(rows, half)
+    lines: list[tuple[str, tuple[Cell, ...]]] = []
+    for labels in ordered((row.labels for row in own), LABELS):
+        for method in _methods(own):
+            found = [row for row in own if (row.method, row.labels) == (method, labels)]
+            if not found:
+                continue
+            three = top(found, 3)
+            aimed = TARGETS.get(labels)
+            cells: tuple[Cell, ...] = (
+                labels,
+                three.n,
+                top(found, 1).shown(),
+                three.shown(),
+                mean_of(found, lambda row: row.place),
+                mean_of(found, lambda row: float(row.parameters)),
+                mean_of(found, lambda row: row.rank),
+                None if aimed is None else f">= {100 * aimed:.0f}",
+                None if aimed is None else verdict(three.value, labels),
+            )
+            lines.append((method, cells))
+    return Table(f"main-{half}", f"The {half} half", columns, tuple(lines), (), "Method")
+
+
+def grouped_table(
+    label: str, rows: Sequence[Position], half: str, first: str, group: Group
+) -> Table:
+    """Top 3 by labels of each method, in groups of treatments."""
+    own = changed_rows(rows, half)
+    methods = _methods(own)
+    columns = (Column("Labels", 0), Column("Treatments", 0), *(Column(m, 0) for m in methods))
+    lines: list[tuple[str, tuple[Cell, ...]]] = []
+    for name in sorted({group(row) for row in own}):
+        for labels in ordered((row.labels for row in own), LABELS):
+            here = [row for row in own if row.labels == labels and group(row) == name]
+            shares = [top([row for row in here if row.method == m], 3) for m in methods]
+            count = max((share.n for share in shares), default=0)
+            lines.append((name, (labels, count, *(share.shown() for share in shares))))
+    title = f"Top 3 in %, the {half} half"
+    return Table(label, title, columns, tuple(lines), (), first)
+
+
+def groups_of(systems: Sequence[System]) -> dict[str, Group]:
+    """What treatments are grouped by: heading -> name of a verdict's group."""
+    near, spoken = {}, {}
+    for system in systems:
+        for flight in one_of_each(system.flights):
+            place = system.name, flight.treatment.name
+            near[place] = nearness(flight.treatment) or UNKNOWN
+            spoken[place] = language_of(system, flight.treatment)
+    return {
+        "System": lambda row: row.system,
+        "Type": lambda row: row.type,
+        "Tipping point": lambda row: near.get((row.system, row.treatment), UNKNOWN),
+        "Language": lambda row: spoken.get((row.system, row.treatment), UNKNOWN),
+    }
+
+
+def users_table(rows: Sequence[Position], half: str) -> Table:
+    """Top 3 by how many users marked; of single users the mean over all of them."""
+    own = [row for row in rows if row.changed and row.half == half]
+    methods = _methods(own)
+    columns = (Column("Labels", 0), *(Column(method, 0) for method in methods))
+    most = 1 + max((row.users or 0 for row in own), default=0)
+    lines: list[tuple[str, tuple[Cell, ...]]] = []
+    for users in sorted({row.users or most for row in own}):
+        for labels in ordered((row.labels for row in own), LABELS):
+            here = [r for r in own if r.labels == labels and (r.users or most) == users]
+            shares = (top([row for row in here if row.method == m], 3) for m in methods)
+            name = "all users" if users == most else f"{users} user{'s' if users > 1 else ''}"
+            lines.append((name, (labels, *(share.shown() for share in shares))))
+    return Table(f"users-{half}", "Top 3 in %", columns, tuple(lines), (), "Marks of")
+
+
+def positions_table(rows: Sequence[Position], labels: str) -> Table:
+    """The position by each method in every mission, by all users' marks."""
+    own = [row for row in rows if row.changed and row.who == ALL and row.labels == labels]
+    methods = _methods(own)
+    columns = (
+        Column("Treatment", 0),
+        Column("Half", 0),
+        Column("Seed", 0),
+        Column("Marks", 0),
+        Column("of", 0),
+        *(Column(method, 1) for method in methods),
+    )
+    lines: list[tuple[str, tuple[Cell, ...]]] = []
+    for (system, treatment), found in by_treatment(own).items():
+        for seed in sorted({row.seed for row in found}):
+            here = [row for row in found if row.seed == seed]
+            of = {row.method: row.position if row.marks else None for row in here}
+            first = here[0]
+            marks = max(row.marks for row in here)
+            cells = (treatment, first.half, seed, marks, first.parameters, *map(of.get, methods))
+            lines.append((system, cells))
+    title = f"Positions, {labels} marks"
+    return Table(f"positions-{labels}", title, columns, tuple(lines), (), "System")
+
+
+def _methods(rows: Iterable[Position]) -> list[str]:
+    return ordered((row.method for row in rows), METHODS)
+
+
+def _over(rows: Iterable[Position], of: Callable[[Position], float]) -> Interval:
+    groups = by_treatment(rows)
+    return interval([fmean(of(row) for row in found) for found in groups.values()])
