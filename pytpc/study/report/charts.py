@@ -11,8 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from pytpc.stats.drawing import COLOURS, CULPRIT, FAINT, GRID, INK
-from pytpc.study.report.confidence import CONFIDENT, Bin, calibration_error
-from pytpc.study.report.measures import Interval
+from pytpc.study.report.confidence import calibration_error
+from pytpc.study.report.measures import CONFIDENT, Bin, Estimate
 from pytpc.study.report.positions import LABELS, Position, ordered
 from pytpc.study.report.ranked import METHODS, OURS, TARGETS, changed_rows, top
 
@@ -64,8 +64,6 @@ def reliability_chart(bins: Sequence[Bin]) -> Figure:
         ha="right", fontsize=7.5, color=CULPRIT,
     )  # fmt: skip
     for one in bins:
-        if one.confidence is None or one.right is None:
-            continue
         axes.bar(
             one.low, one.right, width=one.high - one.low, align="edge", color="#cfe3f1",
             edgecolor=COLOURS[0], linewidth=0.8,
@@ -90,8 +88,8 @@ def reliability_chart(bins: Sequence[Bin]) -> Figure:
     return figure
 
 
-def _bar(axes: Axes, place: int, share: Interval, ours: bool) -> None:
-    if share.value is None or share.low is None or share.high is None:
+def _bar(axes: Axes, place: int, share: Estimate, ours: bool) -> None:
+    if not share.treatments:
         axes.annotate("-", (0, place), xytext=(4, 0), textcoords="offset points", va="center")
         return
     value, low, high = (100 * number for number in (share.value, share.low, share.high))

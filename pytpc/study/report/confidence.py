@@ -3,28 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
-from statistics import fmean
 
+from pytpc.study.report.measures import CONFIDENT, Bin, reliability
 from pytpc.study.report.positions import ALL, LABELS, Position, ordered
 from pytpc.study.report.ranked import OURS
 from pytpc.tables import Cell, Column, Table
-
-CONFIDENT = 0.8
-"""A verdict with at least this confidence accuses."""
-
-BINS = 5
-
-
-@dataclass(frozen=True, slots=True)
-class Bin:
-    """Verdicts with a confidence in ``[low, high)``; the last bin has its upper end too."""
-
-    low: float
-    high: float
-    verdicts: int
-    confidence: float | None
-    right: float | None
 
 
 def judged(rows: Iterable[Position], method: str = OURS) -> list[Position]:
@@ -42,33 +25,16 @@ def accuses(row: Position) -> bool:
     return row.marks > 0 and row.confidence is not None and row.confidence >= CONFIDENT
 
 
-def reliability(rows: Sequence[Position]) -> list[Bin]:
+def calibration(rows: Sequence[Position]) -> list[Bin]:
     """How often verdicts are right, by their confidence; those without a mark are left out."""
     found = [row for row in rows if row.marks > 0]
-    bins = []
-    for number in range(BINS):
-        low, high = number / BINS, (number + 1) / BINS
-        here = [row for row in found if _bin_of(row) == number]
-        bins.append(
-            Bin(
-                low,
-                high,
-                len(here),
-                fmean(row.confidence or 0.0 for row in here) if here else None,
-                fmean(float(is_right(row)) for row in here) if here else None,
-            )
-        )
-    return bins
+    return reliability([row.confidence or 0.0 for row in found], [is_right(row) for row in found])
 
 
 def calibration_error(bins: Sequence[Bin]) -> float | None:
     """The expected calibration error (Naeini et al. 2015): the mean gap, weighted by verdicts."""
     total = sum(one.verdicts for one in bins)
-    gaps = (
-        one.verdicts * abs(one.confidence - one.right)
-        for one in bins
-        if one.confidence is not None and one.right is not None
-    )
+    gaps = (one.verdicts * abs(one.confidence - one.right) for one in bins)
     return sum(gaps) / total if total else None
 
 
@@ -76,8 +42,7 @@ def reliability_table(bins: Sequence[Bin]) -> Table:
     """The numbers of the diagram."""
     columns = (Column("Verdicts", 0), Column("Mean confidence", 2), Column("Share right", 2))
     rows = tuple(
-        (f"{one.low:.1f} to {one.high:.1f}", (one.verdicts, one.confidence, one.right))
-        for one in bins
+        (f"{one.low:.1f} to {one.high:.1f}", (one.verdicts, one.confidence, one.right)) for one in bins
     )
     return Table("reliability", "Reliability", columns, rows, (), "Confidence")
 
@@ -127,7 +92,3 @@ def false_accusations(rows: Sequence[Position], half: str, kind: str) -> int | N
     """Confident verdicts on missions of a ``kind`` in which nobody is to blame; None of none."""
     own = [row for row in judged(rows) if row.type == kind and row.half == half]
     return sum(map(accuses, own)) if own else None
-
-
-def _bin_of(row: Position) -> int:
-    return min(BINS - 1, int((row.confidence or 0.0) * BINS))

@@ -12,7 +12,7 @@ from pytpc.stats.drawing import save, style
 from pytpc.stats.figures import state_of, trial_figure
 from pytpc.stats.missions import Trial
 from pytpc.study.report.charts import reliability_chart, result_chart
-from pytpc.study.report.confidence import judged, reliability
+from pytpc.study.report.confidence import calibration, judged
 from pytpc.study.report.folder import Flight, System
 from pytpc.study.report.original import KIND_NAMES, Original
 from pytpc.study.report.positions import Position
@@ -97,7 +97,7 @@ def draw_results(rows: Sequence[Position], folder: Path, halves: Sequence[str]) 
                 drawn.append(Drawing(name, "", said))
         if judged(rows):
             save(
-                reliability_chart(reliability(judged(rows))), folder / "confidence.png", "png", DPI
+                reliability_chart(calibration(judged(rows))), folder / "confidence.png", "png", DPI
             )
             said = "How often verdicts are right, by their confidence; all labels, all missions."
             drawn.append(Drawing("confidence.png", "", said))
@@ -118,4 +118,4 @@ def shown_flights(system: System, halves: Sequence[str]) -> list[Flight]:
 def _caption(flight: Flight) -> str:
     kind = KIND_NAMES[flight.treatment.type]
     name = flight.treatment.name
-    return f"{flight.system}, {kind}: {name}, seed {flight.mission.seed}"
+    return f"{flight.system}, {kind}: {name}, seed {flight.seed}"

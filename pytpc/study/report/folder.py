@@ -23,12 +23,14 @@ from pytpc.static_info import StaticInfo
 from pytpc.static_json import parse_json
 from pytpc.stats.missions import StudyMission, load_missions
 from pytpc.treatment import Treatment
+from pytpc.words import many
 
 STUDY_FILE = "study.json"
 HALVES = ("held-back", "tuning")
 UNKNOWN = "unknown"
 _DONE = "done.json"
 _SAID = "marks.parquet"
+_SEED = "seed-"
 _LANGUAGES = {".py": "Python"}
 
 Progress = Callable[[int, int], None]
@@ -44,6 +46,7 @@ class Flight:
 
     system: str
     half: str
+    seed: int
     mission: StudyMission
     treatment: Treatment
     said: tuple[Mark, ...]
@@ -55,13 +58,17 @@ class Flight:
 
 @dataclass(frozen=True, eq=False)
 class System:
-    """A robot of the study: what the analysis found in it, its missions, and a clean one apart."""
+    """A robot of the study: what the analysis found in it, its missions, and a clean one apart.
+
+    ``remarks`` say in sentences where a mission did not go as its treatment demands.
+    """
 
     name: str
     static_info: StaticInfo
     flights: tuple[Flight, ...]
     reference: StudyMission | None
     sources: Path | None
+    remarks: tuple[str, ...] = ()
 
     @cached_property
     def lines(self) -> int | None:
@@ -119,7 +126,7 @@ def load_study(folder: Path, on_progress: Progress | None = None) -> Study:
         raise InputError("not about a study: an object is expected", folder / STUDY_FILE)
     troubles: list[str] = []
     names = sorted(path.name for path in (folder / "missions").glob("*") if path.is_dir())
-    paths = {name: sorted((folder / "missions" / name).glob("*/seed-*")) for name in names}
+    paths = {name: sorted((folder / "missions" / name).glob(f"*/{_SEED}[0-9]")) for name in names}
     total, done = sum(map(len, paths.values())), 0
     systems = []
     for name in names:
@@ -128,7 +135,9 @@ def load_study(folder: Path, on_progress: Progress | None = None) -> Study:
         except TpcError as error:
             troubles.append(f"{name} is left out: {_told(error, folder)}.")
             continue
-        halves = _halves(document, name)
+        planned = _planned(document, name)
+        troubles += _unflown(planned, name)
+        halves = _halves(planned)
         flights = []
         for path in paths[name]:
             done += 1
@@ -145,6 +154,7 @@ def load_study(folder: Path, on_progress: Progress | None = None) -> Study:
                 tuple(flights),
                 _reference(folder, name, troubles),
                 _sources(folder / "systems" / name / "ws" / "src"),
+                _remarks(planned),
             )
         )
     if not names:
@@ -173,14 +183,15 @@ def said_marks(path: Path, kind: str = "said") -> tuple[Mark, ...]:
     return read_table(path, "marks", marks)
 
 
-def _flight(path: Path, system: str, halves: Mapping[str, str]) -> Flight:
+def _flight(path: Path, system: str, halves: Mapping[tuple[str, int], str]) -> Flight:
     if not (path / _DONE).is_file():
         raise TpcError("it was not flown to its end")
     (mission,) = load_missions([path])
     if mission.treatment is None:
         raise TpcError("it has no treatment.json")
-    half = halves.get(mission.treatment.name, UNKNOWN)
-    return Flight(system, half, mission, mission.treatment, said_marks(path / _SAID))
+    seed = int(path.name.removeprefix(_SEED))
+    half = halves.get((mission.treatment.name, seed), UNKNOWN)
+    return Flight(system, half, seed, mission, mission.treatment, said_marks(path / _SAID))
 
 
 def _reference(folder: Path, name: str, troubles: list[str]) -> StudyMission | None:
@@ -193,15 +204,40 @@ def _reference(folder: Path, name: str, troubles: list[str]) -> StudyMission | N
     return mission
 
 
-def _halves(document: Mapping[str, Any], system: str) -> dict[str, str]:
-    """The half of each treatment of a system, as the study was begun with."""
-    found = document.get("treatments")
+def _planned(document: Mapping[str, Any], system: str) -> list[dict[str, Any]]:
+    """What study.json says of the missions of a system."""
+    found = document.get("missions")
     rows: Sequence[Any] = found if isinstance(found, list) else []
+    own = [row for row in rows if isinstance(row, dict) and row.get("system") == system]
+    return [row for row in own if str(row.get("folder", "")).startswith("missions/")]
+
+
+def _halves(planned: Sequence[Mapping[str, Any]]) -> dict[tuple[str, int], str]:
+    """The half of each mission by treatment and seed, as the study was planned."""
     return {
-        str(row.get("name")): str(row.get("half"))
-        for row in rows
-        if isinstance(row, dict) and row.get("system") == system
+        (str(row.get("treatment")), int(row.get("seed") or 0)): str(row.get("half") or UNKNOWN)
+        for row in planned
     }
+
+
+def _unflown(planned: Sequence[Mapping[str, Any]], system: str) -> list[str]:
+    """Sentences about missions that failed, or are still to be flown."""
+    failed = [
+        f"{row['folder']} failed: {str(row['error']).rstrip('.')}."
+        for row in planned
+        if row.get("error")
+    ]
+    missing = sum(row.get("state") == "planned" for row in planned)
+    left = [f"{many(missing, 'mission')} of {system} not flown yet."] if missing else []
+    return failed + left
+
+
+def _remarks(planned: Sequence[Mapping[str, Any]]) -> tuple[str, ...]:
+    return tuple(
+        f"{str(row['folder']).removeprefix('missions/')}: {remark}"
+        for row in planned
+        for remark in row.get("remarks") or ()
+    )
 
 
 def _sources(folder: Path) -> Path | None:

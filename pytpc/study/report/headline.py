@@ -7,9 +7,9 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from pytpc.study.report.confidence import false_accusations
-from pytpc.study.report.measures import Interval
+from pytpc.study.report.measures import Estimate
 from pytpc.study.report.positions import LABELS, Position
-from pytpc.study.report.ranked import OURS, TARGETS, changed_rows, top
+from pytpc.study.report.ranked import OURS, TARGETS, changed_rows, percent, top
 from pytpc.study.report.repairs import TARGET, Repair, gone
 
 
@@ -51,9 +51,9 @@ def headlines(
     return found
 
 
-def _share(name: str, text: str, share: Interval, target: float) -> list[Headline]:
-    if share.value is None:
+def _share(name: str, text: str, share: Estimate, target: float) -> list[Headline]:
+    if not share.treatments:
         return []
     aimed = f">={100 * target:.0f}"
     value = 100 * share.value
-    return [Headline(name, text, value, "%", share.shown(), aimed, share.value >= target)]
+    return [Headline(name, text, value, "%", percent(share), aimed, share.value >= target)]

@@ -14,8 +14,8 @@ from pytpc.study.report import original as thesis_tables
 from pytpc.study.report.confidence import (
     accusation_counts,
     accusations_table,
+    calibration,
     judged,
-    reliability,
     reliability_table,
 )
 from pytpc.study.report.drawings import Advance, draw_results, draw_systems
@@ -81,8 +81,15 @@ def make_report(
     progress = on_progress or (lambda _: lambda _done, _total: None)
     study = load_study(folder, progress("reading missions"))
     troubles = list(study.troubles)
-    positions = _rows(folder / POSITIONS_FILE, read_positions, halves, troubles, "ranked")
-    repairs = _rows(folder / REPAIRS_FILE, read_repairs, halves, troubles, "tried as suggested")
+    ranked = _results(folder / POSITIONS_FILE, read_positions, troubles, "ranked")
+    positions = [row for row in ranked if row.half in halves]
+    flights = [f for system in study.systems for f in system.flights if f.half in halves]
+    repairs = _results(
+        folder / REPAIRS_FILE,
+        lambda path: read_repairs(path, flights),
+        troubles,
+        "flown again as suggested",
+    )
     advance = progress("working out tables")
     originals = []
     for number, system in enumerate(study.systems, start=1):
@@ -104,6 +111,7 @@ def make_report(
         drawings=drawn,
         headlines=own,
         troubles=troubles,
+        remarks=[remark for system in study.systems for remark in system.remarks],
         tried=_text(beside / TRIED_FILE),
         discussion=_text(beside / DISCUSSION_FILE),
     )
@@ -144,11 +152,11 @@ def _tables(
         *(main_table(positions, half) for half in halves),
         *(users_table(positions, half) for half in halves),
         *(positions_table(positions, labels) for labels in LABELS),
-        reliability_table(reliability(judged(positions))),
+        reliability_table(calibration(judged(positions))),
         accusation_counts(positions),
         accusations_table(positions),
         repairs_summary(repairs),
-        repairs_table(repairs, _tipping(study)),
+        repairs_table(repairs),
     ]
     for heading, group in groups_of(systems).items():
         name = heading.lower().replace(" ", "-")
@@ -162,27 +170,15 @@ def _tables(
     return tables, full
 
 
-def _tipping(study: Study) -> dict[tuple[str, str], float | None]:
-    return {
-        (system.name, flight.treatment.name): flight.treatment.tipping
-        for system in study.systems
-        for flight in system.flights
-    }
-
-
-def _rows(
-    path: Path,
-    read: Callable[[Path], list[Row]],
-    halves: Sequence[str],
-    troubles: list[str],
-    what: str,
+def _results(
+    path: Path, read: Callable[[Path], list[Row]], troubles: list[str], what: str
 ) -> list[Row]:
-    """The results of ``halves``; a sentence among ``troubles`` where there are none."""
+    """The rows of a table of results; a sentence among ``troubles`` where there is none."""
     if not path.exists():
         troubles.append(f"Nothing has been {what} yet.")
         return []
     try:
-        return [row for row in read(path) if row.half in halves]
+        return read(path)
     except TpcError as error:
         troubles.append(f"{path.name} is left out: {error.message}.")
         return []

@@ -9,10 +9,9 @@ from functools import cache
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 
-from pytpc.study.report.confidence import CONFIDENT
 from pytpc.study.report.drawings import Drawing
 from pytpc.study.report.headline import Headline
-from pytpc.study.report.measures import DRAWS
+from pytpc.study.report.measures import CONFIDENT, DRAWS
 from pytpc.study.report.repairs import TARGET
 from pytpc.study.report.systems import NEAR
 from pytpc.tables import Table, as_markdown, markdown
@@ -40,6 +39,7 @@ class Contents:
     drawings: Sequence[Drawing]
     headlines: Sequence[Headline]
     troubles: Sequence[str]
+    remarks: Sequence[str]
     tried: str
     discussion: str
 

@@ -7,10 +7,9 @@ bootstrap's over treatments (`measures`).
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from statistics import fmean
 
 from pytpc.study.report.folder import UNKNOWN, System
-from pytpc.study.report.measures import Interval, interval
+from pytpc.study.report.measures import Estimate, estimate
 from pytpc.study.report.positions import ALL, LABELS, Position, by_treatment, ordered
 from pytpc.study.report.systems import language_of, nearness, one_of_each
 from pytpc.tables import Cell, Column, Table
@@ -30,21 +29,22 @@ def changed_rows(rows: Iterable[Position], half: str = "", who: str = ALL) -> li
     return [r for r in rows if r.changed and r.who == who and (not half or r.half == half)]
 
 
-def top(rows: Iterable[Position], k: int) -> Interval:
+def top(rows: Iterable[Position], k: int) -> Estimate:
     """The share of treatments with the changed parameter among the first ``k``."""
     return _over(rows, lambda row: float(row.within(k)))
 
 
 def mean_of(rows: Iterable[Position], of: Callable[[Position], float]) -> float | None:
     """The mean over treatments of something."""
-    return _over(rows, of).value
+    found = _over(rows, of)
+    return found.value if found.treatments else None
 
 
-def verdict(share: float | None, labels: str) -> str:
-    """Whether a share of top 3 is what was aimed at."""
-    if share is None:
+def percent(share: Estimate) -> str:
+    """``83 [67, 100]``, a dash where nothing is known."""
+    if not share.treatments:
         return "-"
-    return "hit" if share >= TARGETS[labels] else "miss"
+    return f"{100 * share.value:.0f} [{100 * share.low:.0f}, {100 * share.high:.0f}]"
 
 
 def main_table(rows: Sequence[Position], half: str) -> Table:
@@ -71,14 +71,14 @@ def main_table(rows: Sequence[Position], half: str) -> Table:
             aimed = TARGETS.get(labels)
             cells: tuple[Cell, ...] = (
                 labels,
-                three.n,
-                top(found, 1).shown(),
-                three.shown(),
+                three.treatments,
+                percent(top(found, 1)),
+                percent(three),
                 mean_of(found, lambda row: row.place),
                 mean_of(found, lambda row: float(row.parameters)),
                 mean_of(found, lambda row: row.rank),
                 None if aimed is None else f">= {100 * aimed:.0f}",
-                None if aimed is None else verdict(three.value, labels),
+                None if aimed is None else "hit" if three.value >= aimed else "miss",
             )
             lines.append((method, cells))
     return Table(f"main-{half}", f"The {half} half", columns, tuple(lines), (), "Method")
@@ -96,8 +96,8 @@ def grouped_table(
         for labels in ordered((row.labels for row in own), LABELS):
             here = [row for row in own if row.labels == labels and group(row) == name]
             shares = [top([row for row in here if row.method == m], 3) for m in methods]
-            count = max((share.n for share in shares), default=0)
-            lines.append((name, (labels, count, *(share.shown() for share in shares))))
+            count = max((share.treatments for share in shares), default=0)
+            lines.append((name, (labels, count, *map(percent, shares))))
     title = f"Top 3 in %, the {half} half"
     return Table(label, title, columns, tuple(lines), (), first)
 
@@ -130,7 +130,7 @@ def users_table(rows: Sequence[Position], half: str) -> Table:
             here = [r for r in own if r.labels == labels and (r.users or most) == users]
             shares = (top([row for row in here if row.method == m], 3) for m in methods)
             name = "all users" if users == most else f"{users} user{'s' if users > 1 else ''}"
-            lines.append((name, (labels, *(share.shown() for share in shares))))
+            lines.append((name, (labels, *map(percent, shares))))
     return Table(f"users-{half}", "Top 3 in %", columns, tuple(lines), (), "Marks of")
 
 
@@ -163,6 +163,6 @@ def _methods(rows: Iterable[Position]) -> list[str]:
     return ordered((row.method for row in rows), METHODS)
 
 
-def _over(rows: Iterable[Position], of: Callable[[Position], float]) -> Interval:
-    groups = by_treatment(rows)
-    return interval([fmean(of(row) for row in found) for found in groups.values()])
+def _over(rows: Iterable[Position], of: Callable[[Position], float]) -> Estimate:
+    found = list(rows)
+    return estimate([of(row) for row in found], [(row.system, row.treatment) for row in found])
