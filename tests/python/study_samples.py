@@ -80,7 +80,7 @@ def make_study(folder: Path) -> Path:
     halves = {"type1_low": "tuning", "type2_high": "held-back", "fault_wires": "tuning"}
     planned = []
     for name, seed, treatment, marks in flights:
-        fly(folder, "alpha", name, seed, treatment, marks)
+        fly(folder, ("alpha", name, seed), treatment, marks)
         half = halves.get(name) or ("tuning" if seed == 1 else "held-back")
         planned.append(plan("alpha", name, seed, half))
     fly_recorded(folder)
@@ -108,14 +108,10 @@ def plan(system: str, name: str, seed: int, half: str, **changes: Any) -> dict[s
 
 
 def fly(
-    folder: Path,
-    system: str,
-    name: str,
-    seed: int,
-    treatment: dict[str, Any],
-    said: Sequence[Said],
+    folder: Path, place: tuple[str, str, int], treatment: dict[str, Any], said: Sequence[Said]
 ) -> Path:
-    """A mission's folder, whole."""
+    """The folder of a mission (system, treatment, seed), whole."""
+    system, name, seed = place
     target = folder / "missions" / system / name / f"seed-{seed}"
     marks = [Mark(ns(seconds), right, user) for seconds, user, right, _ in said]
     save_recording(Recording(f"seed-{seed}", EVENTS, tuple(marks), 0, ns(20)), target)
@@ -165,7 +161,7 @@ def positions() -> list[Row]:
     """Verdicts of `tpc` and the thesis's, those of single users of typed marks alone."""
     low, high = ("alpha", "type1_low", "type1", "tuning"), ("alpha", "type2_high", "type2")
     picture = ("image_capture", "type2_min_coverage_limit", "type2", "held-back", 1)
-    rows = [
+    return [
         Row(*low, 1, "typed", 1, 0.9),
         Row(*low, 2, "typed", None, None, marks=0),
         Row(*high, "held-back", 1, "typed", 1, 0.7),
@@ -186,7 +182,6 @@ def positions() -> list[Row]:
         Row("alpha", "clean", "clean", "held-back", 2, "typed", None, None, marks=0),
         Row("alpha", "fault_wires", "fault", "tuning", 1, "typed", None, 0.55),
     ]
-    return rows
 
 
 def suggestions() -> list[dict[str, Any]]:

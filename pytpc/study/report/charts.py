@@ -27,7 +27,7 @@ def result_chart(rows: Sequence[Position], half: str) -> Figure:
     figure = Figure(figsize=(_WIDTH, height))
     panels = figure.subplots(1, len(LABELS), sharey=True)
     figure.subplots_adjust(
-        left=0.145, right=0.985, top=1 - 0.62 / height, bottom=0.5 / height, wspace=0.08
+        left=0.145, right=0.985, top=1 - 0.62 / height, bottom=0.5 / height, wspace=0.13
     )
     figure.suptitle(
         f"Changed parameter among the first three, the {half} half", x=0.008, y=1 - 0.08 / height,
@@ -60,9 +60,14 @@ def reliability_chart(bins: Sequence[Bin]) -> Figure:
     axes.plot([0, 1], [0, 1], color=FAINT, linewidth=1.0, linestyle=(0, (4, 2)))
     axes.axvline(CONFIDENT, color=CULPRIT, linewidth=1.0, linestyle=(0, (1, 1.5)))
     axes.annotate(
-        "accuses from here on", (CONFIDENT, 0.02), xytext=(-4, 0), textcoords="offset points",
-        ha="right", fontsize=7.5, color=CULPRIT,
-    )  # fmt: skip
+        "accuses from here on",
+        (CONFIDENT, 1.17),
+        xytext=(4, 0),
+        textcoords="offset points",
+        va="top",
+        fontsize=7.5,
+        color=CULPRIT,
+    )
     for one in bins:
         axes.bar(
             one.low, one.right, width=one.high - one.low, align="edge", color="#cfe3f1",
@@ -79,7 +84,7 @@ def reliability_chart(bins: Sequence[Bin]) -> Figure:
     said = "" if error is None else f", calibration error {error:.2f}"
     axes.set_title(f"Confidence of {OURS}{said}", loc="left", fontsize=9.5, weight="bold")
     axes.set_xlim(0, 1)
-    axes.set_ylim(0, 1.12)
+    axes.set_ylim(0, 1.18)
     axes.set_yticks([0, 0.2, 0.4, 0.6, 0.8, 1.0])
     axes.set_xlabel("confidence of the verdict", color=INK)
     axes.set_ylabel("share of verdicts whose first is to blame")

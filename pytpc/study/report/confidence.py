@@ -11,8 +11,8 @@ from pytpc.tables import Cell, Column, Table
 
 
 def judged(rows: Iterable[Position], method: str = OURS) -> list[Position]:
-    """The verdicts of a method that have a confidence, by all users' marks."""
-    return [r for r in rows if r.method == method and r.who == ALL and r.confidence is not None]
+    """The verdicts of a method by all users' marks; without a mark they have no confidence."""
+    return [row for row in rows if row.method == method and row.who == ALL]
 
 
 def is_right(row: Position) -> bool:
@@ -27,7 +27,7 @@ def accuses(row: Position) -> bool:
 
 def calibration(rows: Sequence[Position]) -> list[Bin]:
     """How often verdicts are right, by their confidence; those without a mark are left out."""
-    found = [row for row in rows if row.marks > 0]
+    found = [row for row in rows if row.marks > 0 and row.confidence is not None]
     return reliability([row.confidence or 0.0 for row in found], [is_right(row) for row in found])
 
 
@@ -42,7 +42,7 @@ def reliability_table(bins: Sequence[Bin]) -> Table:
     """The numbers of the diagram."""
     columns = (Column("Verdicts", 0), Column("Mean confidence", 2), Column("Share right", 2))
     rows = tuple(
-        (f"{one.low:.1f} to {one.high:.1f}", (one.verdicts, one.confidence, one.right)) for one in bins
+        (f"{b.low:.1f} to {b.high:.1f}", (b.verdicts, b.confidence, b.right)) for b in bins
     )
     return Table("reliability", "Reliability", columns, rows, (), "Confidence")
 
@@ -88,7 +88,7 @@ def accusation_counts(rows: Sequence[Position]) -> Table:
     return Table("confident", "Confident verdicts", columns, tuple(lines), (), "Missions with")
 
 
-def false_accusations(rows: Sequence[Position], half: str, kind: str) -> int | None:
-    """Confident verdicts on missions of a ``kind`` in which nobody is to blame; None of none."""
+def false_accusations(rows: Sequence[Position], half: str, kind: str) -> tuple[int, int]:
+    """How many verdicts on missions of a ``kind`` accuse somebody, and how many there are."""
     own = [row for row in judged(rows) if row.type == kind and row.half == half]
-    return sum(map(accuses, own)) if own else None
+    return sum(map(accuses, own)), len(own)

@@ -61,21 +61,21 @@ def draw_systems(
         name = f"{system.name}-runtime.png"
         with style():
             figure = runtime_bars(original.runtime, sorted(filter(None, changed)))
-            save(figure, folder / name, "png", DPI)
+            save(figure, folder / name, "png", DPI, palette=True)
         said = f"Figure 6.14 of {system.name}: how often each parameter is compared with."
         drawn.append(Drawing(name, system.name, said))
         for flight in shown_flights(system, halves):
             said = _caption(flight)
             name = f"{system.name}-{flight.treatment.type}.png"
-            trial = Trial(said, flight.as_said())
+            trial = Trial(_title(flight), flight.as_said())
             state = state_of(trial, on_trouble=lambda text: troubles.append(f"{text}."))
             with style():
                 try:
                     figure = trial_figure(trial, system.static_info, state)
                 except TpcError as error:
-                    troubles.append(f"{said} is not drawn: {error}.")
+                    troubles.append(f"{_title(flight)} is not drawn: {error}.")
                     continue
-                save(figure, folder / name, "png", DPI)
+                save(figure, folder / name, "png", DPI, palette=True)
             number_of = _NUMBERS[flight.treatment.type]
             drawn.append(Drawing(name, system.name, f"Figure {number_of} of {said}"))
     return drawn, troubles
@@ -92,13 +92,13 @@ def draw_results(rows: Sequence[Position], folder: Path, halves: Sequence[str]) 
         for half in halves:
             if changed_rows(rows, half):
                 name = f"top3-{half}.png"
-                save(result_chart(rows, half), folder / name, "png", DPI)
+                save(result_chart(rows, half), folder / name, "png", DPI, palette=True)
                 said = f"Top 3 by method and labels, the {half} half; lines are 95 % intervals."
                 drawn.append(Drawing(name, "", said))
-        if judged(rows):
-            save(
-                reliability_chart(calibration(judged(rows))), folder / "confidence.png", "png", DPI
-            )
+        bins = calibration(judged(rows))
+        if bins:
+            target = folder / "confidence.png"
+            save(reliability_chart(bins), target, "png", DPI, palette=True)
             said = "How often verdicts are right, by their confidence; all labels, all missions."
             drawn.append(Drawing("confidence.png", "", said))
     return drawn
@@ -115,7 +115,10 @@ def shown_flights(system: System, halves: Sequence[str]) -> list[Flight]:
     return list(shown.values())
 
 
+def _title(flight: Flight) -> str:
+    return f"{flight.system}, {KIND_NAMES[flight.treatment.type]}, seed {flight.seed}"
+
+
 def _caption(flight: Flight) -> str:
     kind = KIND_NAMES[flight.treatment.type]
-    name = flight.treatment.name
-    return f"{flight.system}, {kind}: {name}, seed {flight.seed}"
+    return f"{flight.system}, {kind}: {flight.treatment.name}, seed {flight.seed}."

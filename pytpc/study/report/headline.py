@@ -43,11 +43,13 @@ def headlines(
     text = f"Error gone with the suggested value, {half} half"
     found += _share(f"suggestions-gone-{half}", text, gone(repairs, half), TARGET)
     for kind, what in (("clean", "clean missions"), ("fault", "faults in the source")):
-        count = false_accusations(positions, half, kind)
-        if count is not None:
+        count, verdicts = false_accusations(positions, half, kind)
+        if verdicts:
             text = f"Confident accusations on {what}, {half} half"
             name = f"accusations-{kind}-{half}"
-            found.append(Headline(name, text, count, "verdicts", str(count), "0", count == 0))
+            found.append(
+                Headline(name, text, count, "verdicts", f"{count} of {verdicts}", "0", count == 0)
+            )
     return found
 
 

@@ -18,7 +18,7 @@ from pytpc.study.report.confidence import (
     judged,
     reliability_table,
 )
-from pytpc.study.report.drawings import Advance, draw_results, draw_systems
+from pytpc.study.report.drawings import Advance, Drawing, draw_results, draw_systems
 from pytpc.study.report.folder import HALVES, Study, load_study
 from pytpc.study.report.headline import Headline, headlines
 from pytpc.study.report.original import Original
@@ -64,6 +64,8 @@ def make_report(
     target: Path,
     halves: Sequence[str] = HALVES,
     on_progress: Callable[[str], Advance] | None = None,
+    *,
+    draw: bool = True,
 ) -> Made:
     """Write the page, with its figures and tables beside it.
 
@@ -73,6 +75,7 @@ def make_report(
             to ``study``, where the texts that people wrote are looked for.
         halves: the halves whose results are shown; others are not even ranked.
         on_progress: called with what begins, gives what is called with (done, all).
+        draw: draw the figures, which takes most of the time.
 
     Raises:
         InputError: the folder is none of a study.
@@ -96,10 +99,12 @@ def make_report(
         originals.append(Original.of(system, halves))
         advance(number, len(study.systems))
     images = target.parent / IMAGES
-    drawing = progress("drawing")
-    drawn, undrawn = draw_systems(originals, study.systems, images, halves, drawing)
-    drawn = [*draw_results(positions, images, halves), *drawn]
-    troubles += undrawn
+    drawn: list[Drawing] = []
+    if draw:
+        drawn, undrawn = draw_systems(originals, study.systems, images, halves, progress("drawing"))
+        drawn = [*draw_results(positions, images, halves), *drawn]
+        # Where the folder happens to be is nobody's business on the page.
+        troubles += [trouble.replace(f"{folder}/", "") for trouble in undrawn]
     tables, full = _tables(study, originals, positions, repairs, halves)
     own = [one for half in halves for one in headlines(positions, repairs, half)]
     beside = target.parent / BESIDE

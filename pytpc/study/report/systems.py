@@ -68,12 +68,15 @@ def treatments_table(systems: Sequence[System]) -> Table:
     )  # fmt: skip
     rows: list[tuple[str, tuple[Cell, ...]]] = []
     for system in systems:
+        halves: dict[str, set[str]] = {}
+        for flight in system.flights:
+            halves.setdefault(flight.treatment.name, set()).add(flight.half)
         for flight in one_of_each(system.flights):
             treated = flight.treatment
             cells: tuple[Cell, ...] = (
                 treated.name,
                 treated.type,
-                flight.half,
+                " and ".join(sorted(halves[treated.name])),
                 treated.parameter,
                 treated.node,
                 language_of(system, treated),
