@@ -7,15 +7,18 @@ import statistics
 from collections.abc import Iterable
 
 import pytest
-from observer_scripts import load_observer
+from observer_scripts import load_observer, shared_module
 
 from pytpc.demo_examples import IMAGE_CAPTURE, WATER_SAMPLER
 
 observer = load_observer(IMAGE_CAPTURE)
+Person = shared_module("person").Person
 PERSON = (0.0, 3.0)
 
 
-def sights(*phases: tuple[float, float, float, float, float, float]) -> Iterable:
+def sights(
+    *phases: tuple[float, float, float, float, float, float], pictures: tuple[float, ...] = ()
+) -> Iterable:
     """Sights ten times a second. A phase: until, then at its end x, y, z, yaw, turning rate.
 
     Position and height change evenly within a phase; with a rate other than 0 the yaw begins at
@@ -26,27 +29,22 @@ def sights(*phases: tuple[float, float, float, float, float, float]) -> Iterable
         steps = round((until - time) * 10)
         for step in range(1, steps + 1):
             share = step / steps
+            now = round(time + step * 0.1, 3)
             yield observer.Sight(
-                round(time + step * 0.1, 3),
+                now,
                 x + share * (to_x - x),
                 y + share * (to_y - y),
                 z + share * (to_z - z),
                 yaw + rate * step * 0.1,
                 *PERSON,
+                sum(click <= now for click in pictures),
             )
         time, x, y, z = until, to_x, to_y, to_z
 
 
 def watch(phases: list, seed: int = 1, pictures: tuple[float, ...] = ()) -> list:
-    person = observer.Observer(seed)
-    clicks = list(pictures)
-    marks = []
-    for sight in sights(*phases):
-        marks += person.see(sight)
-        while clicks and clicks[0] <= sight.time:
-            person.shutter()
-            clicks.pop(0)
-    return marks
+    person = Person(observer.OBSERVER.rules(), seed)
+    return [mark for sight in sights(*phases, pictures=pictures) for mark in person.see(sight)]
 
 
 # The person stands in the direction of yaw 1.5708. Up in 3 s, turning for 6 s, then looking at it.

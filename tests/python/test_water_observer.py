@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 import pytest
-from observer_scripts import load_observer
+from observer_scripts import load_observer, shared_module
 
 from pytpc.demo_examples import WATER_SAMPLER
 
 observer = load_observer(WATER_SAMPLER)
+Person = shared_module("person").Person
 
 # The tube is 1 m long and the water 0.65 m above the ground: its tip is wet below a height of 1.65.
 WET_BELOW = 1.65
@@ -42,7 +43,7 @@ def sights(*phases: tuple[float, float, float, bool, float]) -> Iterable:
 
 
 def watch(phases: list, seed: int = 1) -> list:
-    person = observer.Observer(seed)
+    person = Person(observer.OBSERVER.rules(), seed)
     return [mark for sight in sights(*phases) for mark in person.see(sight)]
 
 

@@ -9,9 +9,18 @@ It sees the UAV, the person and the shutter; no parameter, report or treatment.
 from __future__ import annotations
 
 import math
+import sys
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from simulated_world.observer import TYPE_I, Look, Person
+from simulated_world.command import main
+from simulated_world.observer import Channel, Eyes, Observer
+from simulated_world.rules import Look, Rules
+
+if TYPE_CHECKING:
+    from geometry_msgs.msg import Point, PoseStamped
+    from image_capture.msg import Picture
 
 NOBODY_PATIENCE_S = 6.0
 
@@ -25,11 +34,15 @@ TURNING_RAD_S = 0.15
 
 @dataclass(frozen=True)
 class Sight(Look):
-    """What is seen at one moment: yaw in rad, the person's place in m."""
+    """What is seen at one moment: yaw in rad, the person's place in m.
+
+    ``pictures`` is how often the camera has clicked so far.
+    """
 
     yaw: float
     person_x: float
     person_y: float
+    pictures: int
 
     @property
     def bearing(self) -> float:
@@ -43,14 +56,14 @@ class Sight(Look):
         return math.hypot(self.person_x - self.x, self.person_y - self.y)
 
 
-class Observer(Person[Sight]):
-    """The person beside the field."""
+class FieldRules(Rules[Sight]):
+    """What the person beside the field knows."""
 
     window_s = 0.5
 
-    def __init__(self, seed: int) -> None:
-        """``seed`` is for the delays of this person."""
-        super().__init__(seed)
+    def __init__(self) -> None:
+        """The UAV stands at home."""
+        super().__init__()
         self._highest = 0.0
         self._has_turned = False
         self._pictures = 0
@@ -60,32 +73,31 @@ class Observer(Person[Sight]):
         self._nobody_marked = False
 
     def judge(self, sight: Sight) -> None:
-        """Press keys for what is wrong."""
+        """Say what is wrong."""
         self._highest = max(self._highest, sight.z)
         flying = sight.z > FLYING_M
         if self._turning():
             self._has_turned = self._has_turned or flying
+        self._listen(sight)
         self._watch_person(sight, flying)
         self._watch_nobody(sight, flying)
         self._watch_descent(sight)
 
-    def shutter(self) -> None:
-        """The camera clicked; whom it shows is judged by the last sight."""
-        if not self.recent:
+    def _listen(self, sight: Sight) -> None:
+        """The camera clicked, or did not; whom a picture shows is seen at once."""
+        if sight.pictures == self._pictures:
             return
-        self._pictures += 1
-        sight = self.recent[-1]
+        self._pictures = sight.pictures
         if abs(sight.bearing) < IN_VIEW_RAD:
             self._person_photographed = True
-            self.give_up()
         else:
-            self.press(TYPE_I, sight.time, "a picture of nobody")
+            self.wrong(sight.time, "a picture of nobody")
 
     def _watch_person(self, sight: Sight, flying: bool) -> None:
         in_front = abs(sight.bearing) < IN_FRONT_RAD and sight.distance < IN_FRONT_M
         standing = flying and self._has_turned and not self.moving() and not self._turning()
         waiting = in_front and standing and not self._person_photographed
-        self.wait(sight, waiting, "in front of the person, and no picture")
+        self.waiting(waiting, "in front of the person, and no picture")
 
     def _watch_nobody(self, sight: Sight, flying: bool) -> None:
         watching = flying and self._has_turned and not self._descent_seen
@@ -98,7 +110,7 @@ class Observer(Person[Sight]):
             self._nobody_since = sight.time
         if not self._nobody_marked and sight.time - self._nobody_since > NOBODY_PATIENCE_S:
             self._nobody_marked = True
-            self.press(TYPE_I, sight.time, "it stopped turning, and nobody is there")
+            self.wrong(sight.time, "it stopped turning, and nobody is there")
 
     def _watch_descent(self, sight: Sight) -> None:
         if self._descent_seen or not self._has_turned:
@@ -107,7 +119,7 @@ class Observer(Person[Sight]):
             self._descent_seen = True
             # After any picture landing is the next step; a wrong picture was marked as such.
             if self._pictures == 0:
-                self.press(TYPE_I, sight.time, "it lands without having taken a picture")
+                self.wrong(sight.time, "it lands without having taken a picture")
 
     def _turning(self) -> bool:
         first, last = self.recent[0], self.recent[-1]
@@ -115,36 +127,45 @@ class Observer(Person[Sight]):
         return self.elapsed() > 0.0 and abs(turned) / self.elapsed() > TURNING_RAD_S
 
 
-def main() -> None:
-    """Run the observer as a ROS node."""
-    # Imported here, so that the rules above can be tested without ROS.
-    import rospy  # noqa: PLC0415
-    from geometry_msgs.msg import PoseStamped  # noqa: PLC0415
-    from image_capture.msg import Picture  # noqa: PLC0415
-    from simulated_world.observer_node import Keys, start_observer  # noqa: PLC0415
+class FieldEyes(Eyes[Sight]):
+    """The person is seen before the UAV is."""
 
-    observer = Observer(start_observer())
-    keys = Keys()
-    person: list[PoseStamped] = []
+    def __init__(self) -> None:
+        """Nothing was seen yet."""
+        self._person: Point | None = None
+        self._pictures = 0
 
-    def on_person(message: PoseStamped) -> None:
-        person[:] = [message]
+    def channels(self) -> Mapping[str, Channel[Sight]]:
+        """The UAV, the person, and the shutter."""
+        return {
+            "/truth/person": Channel("geometry_msgs/PoseStamped", self._somebody),
+            "/truth/uav": Channel("geometry_msgs/PoseStamped", self._uav),
+            "/camera/picture": Channel("image_capture/Picture", self._click),
+        }
 
-    def on_uav(message: PoseStamped) -> None:
-        if not person:
-            return
-        pose, head = message.pose, person[0].pose.position
-        yaw = 2.0 * math.atan2(pose.orientation.z, pose.orientation.w)
-        place = pose.position
-        time = message.header.stamp.to_sec()
-        sight = Sight(time, place.x, place.y, place.z, yaw, head.x, head.y)
-        keys.press(observer.see(sight))
+    def _somebody(self, message: PoseStamped) -> None:
+        self._person = message.pose.position
 
-    rospy.Subscriber("/truth/person", PoseStamped, on_person, queue_size=100)
-    rospy.Subscriber("/truth/uav", PoseStamped, on_uav, queue_size=100)
-    rospy.Subscriber("/camera/picture", Picture, lambda _: observer.shutter(), queue_size=4)
-    rospy.spin()
+    def _click(self, _: Picture) -> None:
+        self._pictures += 1
 
+    def _uav(self, message: PoseStamped) -> Sight | None:
+        if self._person is None:
+            return None
+        place, turn = message.pose.position, message.pose.orientation
+        return Sight(
+            message.header.stamp.to_sec(),
+            place.x,
+            place.y,
+            place.z,
+            2.0 * math.atan2(turn.z, turn.w),
+            self._person.x,
+            self._person.y,
+            self._pictures,
+        )
+
+
+OBSERVER = Observer(Sight, FieldRules, FieldEyes)
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main(OBSERVER, sys.argv[1:]))

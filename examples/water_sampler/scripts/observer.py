@@ -9,9 +9,18 @@ the tube and the vial and hears the pump; no parameter, report or treatment.
 from __future__ import annotations
 
 import math
+import sys
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from simulated_world.observer import TYPE_I, Look, Person
+from simulated_world.command import main
+from simulated_world.observer import Channel, Eyes, Observer
+from simulated_world.rules import Look, Rules
+
+if TYPE_CHECKING:
+    from geometry_msgs.msg import Point, PoseStamped
+    from water_sampler.msg import SamplerTruth
 
 FULL = 0.8  # of the vial; less is plainly not full
 HEARD_S = 0.5  # a pump is heard to run or to have stopped
@@ -39,14 +48,14 @@ class Sight(Look):
         return self.above_tank and self.tip_depth > 0.0
 
 
-class Observer(Person[Sight]):
-    """The person beside the tank."""
+class TankRules(Rules[Sight]):
+    """What the person beside the tank knows."""
 
-    least_patience_s = 5.0
+    patience_s = 5.0
 
-    def __init__(self, seed: int) -> None:
-        """``seed`` is for the delays of this person."""
-        super().__init__(seed)
+    def __init__(self) -> None:
+        """The UAV stands at home."""
+        super().__init__()
         self._highest = 0.0
         self._was_at_tank = False
         self._pumped = False
@@ -56,7 +65,7 @@ class Observer(Person[Sight]):
         self._silent_since: float | None = None
 
     def judge(self, sight: Sight) -> None:
-        """Press keys for what is wrong."""
+        """Say what is wrong."""
         self._highest = max(self._highest, sight.z)
         self._was_at_tank = self._was_at_tank or (sight.above_tank and sight.z > FLYING_M)
         self._listen(sight)
@@ -76,7 +85,7 @@ class Observer(Person[Sight]):
         self._dry_marked = False
         # A pump that ran in the air was complained of already.
         if stopped and not was_dry and sight.vial_level < FULL:
-            self.press(TYPE_I, sight.time, "the pump stops, and the vial is not full")
+            self.wrong(sight.time, "the pump stops, and the vial is not full")
 
     def _hear_air(self, sight: Sight) -> None:
         if sight.tip_in_water:
@@ -86,14 +95,14 @@ class Observer(Person[Sight]):
             self._dry_since = sight.time
         if not self._dry_marked and sight.time - self._dry_since > HEARD_S:
             self._dry_marked = True
-            self.press(TYPE_I, self._dry_since, "the pump runs, and the tube is not in the water")
+            self.wrong(self._dry_since, "the pump runs, and the tube is not in the water")
 
     def _watch_waiting(self, sight: Sight) -> None:
         idle = not sight.pump_running and sight.vial_level < FULL
         at_tank = sight.above_tank and sight.z > FLYING_M
         still = not self.moving() and not self._climbing()
         missing = "no pump is heard" if sight.tip_in_water else "the tube stays above the water"
-        self.wait(sight, idle and at_tank and still, f"it stands at the tank, and {missing}")
+        self.waiting(idle and at_tank and still, f"it stands at the tank, and {missing}")
 
     def _watch_descent(self, sight: Sight) -> None:
         leaving = self._was_at_tank and not sight.above_tank
@@ -101,48 +110,47 @@ class Observer(Person[Sight]):
             return
         self._descent_seen = True
         if not self._pumped:
-            self.press(TYPE_I, sight.time, "it lands without having pumped")
+            self.wrong(sight.time, "it lands without having pumped")
 
     def _climbing(self) -> bool:
         climbed = abs(self.recent[-1].z - self.recent[0].z)
         return self.elapsed() > 0.0 and climbed / self.elapsed() > CLIMBING_M_S
 
 
-def main() -> None:
-    """Run the observer as a ROS node."""
-    # Imported here, so that the rules above can be tested without ROS.
-    import rospy  # noqa: PLC0415
-    from geometry_msgs.msg import PoseStamped  # noqa: PLC0415
-    from simulated_world.observer_node import Keys, start_observer  # noqa: PLC0415
-    from water_sampler.msg import SamplerTruth  # noqa: PLC0415
+class TankEyes(Eyes[Sight]):
+    """The UAV is seen a little before what hangs below it."""
 
-    observer = Observer(start_observer())
-    keys = Keys()
-    uav: list[PoseStamped] = []
+    def __init__(self) -> None:
+        """Nothing was seen yet."""
+        self._place: Point | None = None
 
-    def on_uav(message: PoseStamped) -> None:
-        uav[:] = [message]
+    def channels(self) -> Mapping[str, Channel[Sight]]:
+        """The UAV's place; the tube, the pump and the vial."""
+        return {
+            "/truth/uav": Channel("geometry_msgs/PoseStamped", self._uav),
+            "/truth/sampler": Channel("water_sampler/SamplerTruth", self._sampler),
+        }
 
-    def on_sampler(message: SamplerTruth) -> None:
-        if not uav:
-            return
-        place, tip, tank = uav[0].pose.position, message.tip, message.tank
-        sight = Sight(
+    def _uav(self, message: PoseStamped) -> None:
+        self._place = message.pose.position
+
+    def _sampler(self, message: SamplerTruth) -> Sight | None:
+        if self._place is None:
+            return None
+        tip, tank = message.tip, message.tank
+        return Sight(
             message.header.stamp.to_sec(),
-            place.x,
-            place.y,
-            place.z,
+            self._place.x,
+            self._place.y,
+            self._place.z,
             math.hypot(tip.x - tank.x, tip.y - tank.y) < message.tank_radius,
             tank.z - tip.z,
             message.pump_running,
             message.vial_level,
         )
-        keys.press(observer.see(sight))
 
-    rospy.Subscriber("/truth/uav", PoseStamped, on_uav, queue_size=100)
-    rospy.Subscriber("/truth/sampler", SamplerTruth, on_sampler, queue_size=100)
-    rospy.spin()
 
+OBSERVER = Observer(Sight, TankRules, TankEyes)
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main(OBSERVER, sys.argv[1:]))
