@@ -98,8 +98,9 @@ def test_the_groups(text):
         "1", "100 [100, 100]"
     ]  # fmt: skip
     assert row_of(text, by.format("language"), "C++", "untyped")[:2] == ["2", "100 [100, 100]"]
-    # Users 1 and 2 alone: 1 and 4.
-    assert row_of(text, by.format("number of users"), "1 user", "typed")[0] == "50 [50, 50]"
+    # Users 1 and 2 alone: 1 and 4 with the first seed; none with the second, and none in the other
+    # system: 1/4 and 0.
+    assert row_of(text, by.format("number of users"), "1 user", "typed")[0] == "12 [0, 25]"
     every = "Positions in every mission, untyped marks"
     assert row_of(text, every, "alpha", "type2_high", "held-back", "1") == ["3", "4", "1.0"]
     assert row_of(text, every, "alpha", "type2_high", "held-back", "2") == ["3", "4", "1.5"]

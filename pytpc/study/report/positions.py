@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -92,6 +92,27 @@ def by_treatment(rows: Iterable[Position]) -> dict[tuple[str, str], list[Positio
     for row in rows:
         found[row.system, row.treatment].append(row)
     return dict(sorted(found.items()))
+
+
+def with_absent(rows: Sequence[Position]) -> list[Position]:
+    """``rows``, and a miss for each user in each mission that this user alone did not mark.
+
+    A user of one mission was beside the robot in all of them, and only verdicts from marks are in
+    the table.
+    """
+    users = sorted({row.who for row in rows if row.users == 1})
+    known = {_verdict(row, row.who) for row in rows}
+    absent = [
+        replace(row, who=user, position=None, confidence=None, marks=0)
+        for row in rows
+        for user in users
+        if row.who == ALL and _verdict(row, user) not in known
+    ]
+    return [*rows, *absent]
+
+
+def _verdict(row: Position, who: str) -> tuple[object, ...]:
+    return (row.system, row.treatment, row.seed, row.labels, row.method, who)
 
 
 def ordered(names: Iterable[str], first: Sequence[str]) -> list[str]:

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from pytpc.study.report.folder import UNKNOWN, System
 from pytpc.study.report.measures import Estimate, estimate
-from pytpc.study.report.positions import ALL, LABELS, Position, by_treatment, ordered
+from pytpc.study.report.positions import ALL, LABELS, Position, by_treatment, ordered, with_absent
 from pytpc.study.report.systems import language_of, nearness, one_of_each
 from pytpc.tables import Cell, Column, Table
 
@@ -120,7 +120,7 @@ def groups_of(systems: Sequence[System]) -> dict[str, Group]:
 
 def users_table(rows: Sequence[Position], half: str) -> Table:
     """Top 3 by how many users marked; of single users the mean over all of them."""
-    own = [row for row in rows if row.changed and row.half == half]
+    own = [row for row in with_absent(rows) if row.changed and row.half == half]
     methods = _methods(own)
     columns = (Column("Labels", 0), *(Column(method, 0) for method in methods))
     most = 1 + max((row.users or 0 for row in own), default=0)
