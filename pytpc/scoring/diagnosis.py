@@ -15,14 +15,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 
-from pytpc.columns import Floats
+from pytpc.columns import Floats, Int64s
 from pytpc.ingest.recording import Recording
 from pytpc.marks import Mark
-from pytpc.scoring.diagnosis_evidence import Evidence, evidence, marked
+from pytpc.scoring.diagnosis_evidence import SHARE, Evidence, evidence, marked
 from pytpc.scoring.diagnosis_streams import Streams
 from pytpc.scoring.tables import Tpcs
 from pytpc.static_info import StaticInfo
@@ -39,11 +39,15 @@ class Weights:
     restless: float = -0.3
     clock: float = -0.5
     flat: float = -1.5
+    far: float = 0.0
     type2: float = 0.0
     none: float = 3.0
 
 
-WEIGHTS = Weights()
+REASONED = Weights()
+"""The weights by reason alone: where the fit begins, and what it stays near."""
+
+WEIGHTS = REASONED
 
 LIED = 0.5
 """Before any mark is seen: that these observers cannot tell the types apart (table 6.13)."""
@@ -138,7 +142,7 @@ def type_odds(marks: Sequence[Mark]) -> float:
 
 
 def parameter_scores(
-    found: Evidence, columns: np.ndarray, parameters: int, odds: float, weights: Weights
+    found: Evidence, columns: Int64s, parameters: int, odds: float | Floats, weights: Weights
 ) -> Floats:
     """The score of each parameter: that of its best stream.
 
@@ -146,16 +150,20 @@ def parameter_scores(
         found: the evidence of the streams.
         columns: int64[streams], whose each is.
         parameters: how many there are.
-        odds: of the types, see ``type_odds``.
+        odds: of the types, see ``type_odds``; of all or of each stream.
         weights: what the evidence counts.
     """
-    first = weights.acted * found.acted
-    second = weights.type2 + sum(
-        getattr(weights, field.name) * getattr(found, field.name)
-        for field in fields(found)
-        if field.name != "acted" and field.name != "held"
+    first = weights.acted * found.acted + weights.far * found.far
+    second = (
+        weights.type2
+        + weights.waited * found.waited
+        + weights.held * np.log(found.held + SHARE)
+        + weights.near * found.near
+        + weights.restless * found.restless
+        + weights.clock * found.clock
+        + weights.flat * found.flat
+        + weights.far * found.far
     )
-    second = second + weights.held * np.log(found.held + 0.05)
     score = np.logaddexp(first - np.logaddexp(0.0, odds), second - np.logaddexp(0.0, -odds))
     best = np.full(parameters, -np.inf)
     np.maximum.at(best, columns, score)

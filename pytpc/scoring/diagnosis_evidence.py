@@ -3,7 +3,8 @@
 Type I, something was done that should not have been. If a change of the comparison's result did it,
 each observer's mark came a reaction after that change:
 
-    acted = log mean over its turns t of  u(t) * prod over marks m of (e + (1 - e) T p(m - t))^w(m)
+    acted = log sum over its turns t of  u(t) fit(t)  /  (sum of u(t) + c)
+    fit(t) = product over marks m of (e + (1 - e) T p(m - t))^w(m)
 
 p is the density of reactions, T the length of the log, so that T p compares with marks at any time;
 e is the share of marks that have nothing to do with it. The mean punishes a comparison that changes
@@ -23,7 +24,7 @@ log in which it had it with a value as near as in the wait.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import NamedTuple
 
 import numpy as np
@@ -32,7 +33,7 @@ from pytpc.columns import Bools, Floats, Int64s
 from pytpc.scoring.diagnosis_streams import CASCADE_S, Stream, Streams
 
 REACTION_LOG = 1.946
-"""Mean of the logarithms of the seven delays of type I in the thesis's table 6.14; a median of 7 s."""
+"""Mean of the logarithms of table 6.14's seven delays of type I: a median of 7 s."""
 
 REACTION_SIGMA = 1.17
 """Their standard deviation. (The t distribution below has heavier tails.)"""
@@ -55,13 +56,26 @@ SHARE = 0.05
 NEAR_QUANTILE = 0.75
 """So much of the wait is within what is called as near as in the wait."""
 
-START = 0.3
+START = 0.1
 """A comparison that begins to be evaluated weighs so much of one that changes: it may pass at once,
 and be the cause, but much begins after any cause."""
 
 LATER = 0.4
 """A change with another one up to ``CASCADE_S`` before it weighs so much of a first one."""
 
+EFFECT_S = 1.2
+"""What the robot begins or leaves off within this time after a change may be its effect."""
+
+IDLE = 0.3
+"""A change after which the robot goes on as before weighs so much; one after which very many
+comparisons begin or are left alone, 1 more."""
+
+HALF = 2.0
+"""After a change with so many effects, it is half of that."""
+
+OTHERS = 0.3
+"""Added to the sum of the turns' weights: of a comparison whose turns have no effect none is likely
+to be the cause."""
 
 CLOCK_S = 1.0
 """What rises like a clock is looked for over this time at least."""
@@ -82,7 +96,7 @@ class Evidence:
     logarithm of the mean distance from the threshold in the wait as a part of the stream's range;
     ``restless`` the logarithm of 1 + changes in the wait; ``clock`` 1 where the value rises by a
     second each second in the wait, as the time since something does; ``flat`` 1 where there is but
-    one value, as of a flag.
+    one value, as of a flag; ``far`` the logarithm of the distance from what is exposed.
     """
 
     acted: Floats
@@ -92,6 +106,7 @@ class Evidence:
     restless: Floats
     clock: Floats
     flat: Floats
+    far: Floats
 
 
 def marked(times_ns: Int64s, observers: tuple[str, ...], streams: Streams) -> Marked:
@@ -108,9 +123,11 @@ def marked(times_ns: Int64s, observers: tuple[str, ...], streams: Streams) -> Ma
 def evidence(streams: Streams, marks: Marked) -> Evidence:
     """The evidence of all streams; there is at least one mark."""
     wait = _Wait.before(marks, streams.seconds)
-    rows = [(_acted(s, streams, marks), *_waited(s, wait)) for s in streams.streams]
-    columns = np.array(rows, np.float64).reshape(len(rows), 7).T
-    return Evidence(*columns)
+    rows = [
+        (_acted(s, streams, marks), *_waited(s, wait), float(np.log(max(s.distance, 1.0))))
+        for s in streams.streams
+    ]
+    return Evidence(*np.array(rows, np.float64).reshape(len(rows), len(fields(Evidence))).T)
 
 
 def reaction(delays: Floats) -> Floats:
@@ -132,14 +149,15 @@ def _acted(stream: Stream, streams: Streams, marks: Marked) -> float:
     if not turns.size:
         return float(np.log(STRAY) * marks.weight.sum())
     first = _between(streams.decisions, turns - CASCADE_S, turns) == 0
-    follows = _between(streams.shifts, turns, turns + CASCADE_S) - _between(
-        streams.shifts, turns - CASCADE_S, turns
+    follows = _between(streams.shifts, turns, turns + EFFECT_S) - _between(
+        streams.shifts, turns - EFFECT_S, turns
     )
-    prior = prior * np.where(first, 1.0, LATER) * np.sqrt(1.0 + np.maximum(0, follows))
+    follows = np.maximum(0, follows)
+    prior = prior * np.where(first, 1.0, LATER) * (IDLE + follows / (follows + HALF))
     times = max(streams.seconds, 1.0) * reaction(marks.times[None, :] - turns[:, None])
     fits = (np.log(STRAY + (1 - STRAY) * times) * marks.weight).sum(axis=1)
     top = fits.max()
-    return float(top + np.log(np.mean(prior * np.exp(fits - top))))
+    return float(top + np.log(np.sum(prior * np.exp(fits - top)) / (OTHERS + prior.sum())))
 
 
 class _Wait(NamedTuple):

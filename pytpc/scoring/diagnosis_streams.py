@@ -27,6 +27,9 @@ threshold. The first of them is what happened."""
 DECISIVE = 20
 """A comparison whose result changed more often than this up to then takes no part in cascades."""
 
+LARGEST = 1e290
+"""A value beyond this is taken for infinite, so that sums of them stay within a double."""
+
 CASCADE_S = 1.5
 """What changes within this time of another change may be its consequence: nodes wait for messages,
 and a robot's mission runs at a few Hz."""
@@ -39,11 +42,13 @@ class Stream:
     ``times`` float64[n], sorted; ``weight`` float64[n], the seconds for which each was the last
     word; ``res`` bool[n]; ``margin`` float64[n], |cmp - thresh|, nan where it is not finite;
     ``spread`` is the range of all its finite values, of cmp and of thresh. ``column`` is the
-    parameter's place in `Tpcs.names`, ``code`` the comparison's in `Tpcs.keys`.
+    parameter's place in `Tpcs.names`, ``distance`` that of the comparison from what it exposes.
+    ``changes`` are when its result changed, noise taken together; ``starts`` and ``stops`` when it
+    began to be evaluated after a pause, and was before one (those of the log included).
     """
 
-    code: int
     column: int
+    distance: float
     times: Floats
     weight: Floats
     res: Bools
@@ -54,11 +59,6 @@ class Stream:
     changes: Floats
     starts: Floats
     stops: Floats
-
-    @property
-    def turns(self) -> Floats:
-        """When it changed, and when it began to matter: both may be what made the robot act."""
-        return np.concatenate([self.changes, self.starts])
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,7 +93,8 @@ class Streams:
         streams = []
         for rows in np.split(order, ends[:-1] + 1):
             code = int(events.key[rows[0]])
-            streams.append(_stream(events, rows, begin, code, place[tpcs.parameters[code]]))
+            column = place[tpcs.parameters[code]]
+            streams.append(_stream(events, rows, begin, column, float(tpcs.distance[code])))
         return cls(tuple(streams), begin, seconds)
 
     @cached_property
@@ -117,14 +118,14 @@ class Streams:
 _KEPT: WeakKeyDictionary[Events, tuple[tuple[str, ...], Streams]] = WeakKeyDictionary()
 
 
-def _stream(events: Events, rows: Int64s, begin_ns: int, code: int, column: int) -> Stream:
+def _stream(events: Events, rows: Int64s, begin_ns: int, column: int, distance: float) -> Stream:
     times = (events.time_ns[rows] - begin_ns) / 1e9
     cmp, thresh, res = events.cmp[rows], events.thresh[rows], events.res[rows]
     gaps = np.diff(times)
     pause = max(PAUSE_S, 3.0 * float(np.median(gaps))) if gaps.size else PAUSE_S
     usual = float(np.median(gaps)) if gaps.size else 0.0
     weight = np.append(np.minimum(gaps, pause), min(usual, pause))
-    finite = np.isfinite(cmp) & np.isfinite(thresh)
+    finite = (np.abs(cmp) < LARGEST) & (np.abs(thresh) < LARGEST)
     with np.errstate(invalid="ignore", over="ignore"):
         margin = np.where(finite, np.abs(cmp - thresh), np.nan)
         values = np.concatenate([cmp[finite], thresh[finite]])
@@ -132,8 +133,8 @@ def _stream(events: Events, rows: Int64s, begin_ns: int, code: int, column: int)
     changed = np.flatnonzero(res[1:] != res[:-1]) + 1
     paused = np.flatnonzero(gaps > pause)
     return Stream(
-        code=code,
         column=column,
+        distance=distance,
         times=times,
         weight=weight,
         res=res,

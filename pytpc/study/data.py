@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
@@ -27,6 +27,7 @@ STUDY_FILE = "study.json"
 MARKS_TABLE = "marks.parquet"
 CHANGES_FILE = "changes.json"
 DONE_FILE = "done.json"
+MISSIONS = "missions"
 
 
 @dataclass(frozen=True)
@@ -73,16 +74,6 @@ class Mission:
         return Case(recording, self.static_info, self.reference, self.changes)
 
 
-def half_of(kind: str, seed: int, half: Half | None) -> Half:
-    """The half of a mission, ``half`` being its treatment's; of clean ones seed 1 is for tuning.
-
-    A treatment that the plan does not have is held back.
-    """
-    if kind == "clean":
-        return "tuning" if seed == 1 else "held-back"
-    return half or "held-back"
-
-
 def missions(
     out: Path,
     wanted: Sequence[Half] = ("tuning",),
@@ -90,7 +81,7 @@ def missions(
 ) -> Iterator[Mission]:
     """Read the missions of a study's folder, one at a time, sorted.
 
-    Of a mission whose half is not wanted nothing is read but its treatment's name and type.
+    Nothing is read of a mission whose half is not wanted.
 
     Args:
         out: the study's folder.
@@ -100,29 +91,25 @@ def missions(
     Raises:
         InputError: a file is missing or broken.
     """
-    planned = _planned(out / STUDY_FILE)
-    found = [
-        place
-        for system in _folders(out / "missions")
-        for place in _places(system, wanted, planned)
-    ]
-    for number, (path, half, treatment) in enumerate(found, start=1):
-        yield load_mission(out, path, half, treatment)
+    found = [(path, half) for half in wanted for path in _places(out, [half])]
+    for number, (path, half) in enumerate(sorted(found), start=1):
+        yield load_mission(out, path, half)
         if on_progress is not None:
             on_progress(number, len(found))
 
 
-def load_mission(out: Path, path: Path, half: Half, treatment: dict[str, Any]) -> Mission:
+def load_mission(out: Path, path: Path, half: Half) -> Mission:
     """Read one mission of the study in ``out``.
 
     Raises:
         InputError: a file is missing or broken.
     """
     system = path.parent.parent.name
+    treatment = _treatment(path / TREATMENT_FILE)
     return Mission(
         system=system,
         treatment=path.parent.name,
-        type=str(treatment["type"]),
+        type=treatment["type"],
         half=half,
         seed=_seed(path),
         parameter=treatment["parameter"],
@@ -156,45 +143,47 @@ def user_marks(path: Path) -> tuple[UserMark, ...]:
     return read_table(path, "marks", rows)
 
 
-def _places(
-    system: Path, wanted: Sequence[Half], planned: Mapping[tuple[str, str], Half]
-) -> Iterator[tuple[Path, Half, dict[str, Any]]]:
-    """The flown missions of a system in the wanted halves."""
-    for treatment in _folders(system):
-        for path in sorted(treatment.glob("seed-*"), key=_seed):
-            if not (path / DONE_FILE).is_file():
-                continue
-            document = parse_json(path / TREATMENT_FILE)
-            planned_half = planned.get((system.name, treatment.name))
-            half = half_of(str(document["type"]), _seed(path), planned_half)
-            if half in wanted:
-                yield path, half, document
+def _places(out: Path, wanted: Sequence[Half]) -> list[Path]:
+    """The folders of the flown missions in the wanted halves.
 
-
-def _planned(path: Path) -> dict[tuple[str, str], Half]:
-    """(system, treatment) -> half, as the study was begun with.
-
-    It is not worked out from what has been flown so far: the halves would change as it grows.
+    The halves are those that the study was begun with: worked out from what has been flown so far
+    they would change as it grows.
     """
-    document = parse_json(path)
-    rows = document.get("treatments") if isinstance(document, dict) else None
-    if not isinstance(rows, list):
-        raise InputError("it does not say which treatments there are", path)
+    document = parse_json(out / STUDY_FILE)
+    rows = document.get("missions") if isinstance(document, dict) else None
     try:
-        return {
-            (row["system"], row["name"]): row["half"]
-            for row in rows
-            if row["half"] in get_args(Half)
-        }
-    except (KeyError, TypeError) as error:
-        raise InputError(f"a treatment without {error}", path) from error
+        if not isinstance(rows, list):
+            raise ValueError("it does not say which missions there are")
+        halves = {out / row["folder"]: row["half"] for row in rows}
+    except (KeyError, TypeError, ValueError) as error:
+        raise InputError(f"not about a study: {error}", out / STUDY_FILE) from error
+    return sorted(
+        path
+        for path, half in halves.items()
+        if half in wanted
+        and path.parent.parent.parent == out / MISSIONS
+        and (path / DONE_FILE).is_file()
+    )
+
+
+def _treatment(path: Path) -> dict[str, Any]:
+    document = parse_json(path)
+    if not isinstance(document, dict):
+        raise InputError("not a treatment: an object is expected", path)
+    missing = {"type", "parameter", "node"} - set(document)
+    if missing:
+        raise InputError(f"not a treatment: no {min(missing)}", path)
+    return document
 
 
 def _changes(path: Path) -> tuple[Change, ...]:
     if not path.is_file():
         return ()
+    document = parse_json(path)
     try:
-        return tuple(Change(**change) for change in parse_json(path))
+        if not isinstance(document, list):
+            raise TypeError("a list is expected")
+        return tuple(Change(**change) for change in document)
     except TypeError as error:
         raise InputError(f"not a history of changes: {error}", path) from error
 
@@ -207,10 +196,6 @@ def _static(path: Path) -> StaticInfo:
 @cache
 def _reference(path: Path) -> Recording | None:
     return load_recording(path) if path.is_dir() else None
-
-
-def _folders(path: Path) -> list[Path]:
-    return sorted(below for below in path.glob("*") if below.is_dir())
 
 
 def _seed(path: Path) -> int:

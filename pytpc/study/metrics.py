@@ -76,14 +76,10 @@ class Merit:
 def merit(rows: Iterable[Row]) -> Merit:
     """The figures of one method, from the rows of missions with a changed parameter."""
     found = list(rows)
-    places = [
-        (row.parameters + 1) / 2 if row.position is None else row.position for row in found
-    ]
+    places = [(row.parameters + 1) / 2 if row.position is None else row.position for row in found]
     marked = np.array([row.position is not None for row in found], np.bool_)
     where = np.array(places, np.float64)
-    ranks = [
-        1.0 - (place - 1.0) / row.parameters for row, place in zip(found, places, strict=True)
-    ]
+    ranks = [1.0 - (place - 1.0) / row.parameters for row, place in zip(found, places, strict=True)]
     units = [(row.system, row.treatment) for row in found]
     return Merit(
         estimate(marked & (where <= 1), units),
@@ -123,7 +119,7 @@ class Bin(NamedTuple):
 
     low: float
     high: float
-    count: int
+    verdicts: int
     confidence: float
     right: float
 
@@ -164,4 +160,3 @@ def accusations(rows: Iterable[Row], limit: float = CONFIDENT) -> Estimate:
     found = list(rows)
     accused = [row.confidence is not None and row.confidence >= limit for row in found]
     return estimate(accused, [(row.system, row.treatment) for row in found])
-

@@ -1,4 +1,4 @@
-"""Predicate-based statistical debugging: Liblit et al., Scalable Statistical Bug Isolation, PLDI'05.
+"""Predicate-based statistical debugging (Liblit et al., Scalable Statistical Bug Isolation, 2005).
 
 There a program is run many times, and some runs fail. Here windows of one mission are the runs: the
 12 s before a mark failed, and the rest of the mission, cut into windows of the same length, passed.
@@ -89,5 +89,3 @@ def _within(times: Int64s, begins: Int64s, ends: Int64s) -> Bools:
     """bool[windows]: whether one of the sorted times lies in each closed window."""
     first = np.searchsorted(times, begins, side="left")
     return np.asarray(first < np.searchsorted(times, ends, side="right"))
-
-

@@ -16,9 +16,7 @@ def recent_change(case: Case) -> Verdict:
     names = Tpcs.of(case.static_info).names
     for change in reversed(case.changes):
         order += [
-            name
-            for name in names
-            if name not in order and same_parameter(change.parameter, name)
+            name for name in names if name not in order and same_parameter(change.parameter, name)
         ]
     return Verdict(tuple(order))
 
