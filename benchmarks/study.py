@@ -14,7 +14,7 @@ from typing import Any
 
 from figures import figure
 
-from pytpc.study.report.folder import STUDY_FILE
+from pytpc.study.data import STUDY_FILE
 from pytpc.study.report.making import RESULTS_FILE, make_report
 
 TOPIC = "study"

@@ -9,7 +9,6 @@ import click
 
 from pytpc.cli.console import progress, warn
 from pytpc.cli.options import JSON, PATH
-from pytpc.study.report.folder import HALVES
 from pytpc.words import many, plain
 
 
@@ -37,21 +36,25 @@ from pytpc.words import many, plain
     show_default=True,
     help="Whose results are shown.",
 )
+@click.option("--again", is_flag=True, help="Rank also what has been ranked; the methods changed.")
 @JSON
-def report_command(out: Path, docs: Path, half: str, as_json: bool) -> None:
+def report_command(out: Path, docs: Path, half: str, again: bool, as_json: bool) -> None:
     """Write every table and figure of the study: a page, with figures and CSV beside it.
 
-    What is missing in the folder is said on the page.
+    Missions that were not ranked yet are ranked first, by all methods. What is missing in the
+    folder is said on the page.
     """
     # matplotlib takes half a second to import, which other commands need not wait for.
+    from pytpc.study.report.folder import HALVES  # noqa: PLC0415
     from pytpc.study.report.making import json_text, make_report  # noqa: PLC0415
 
     with ExitStack() as stack:
         made = make_report(
             out,
             docs,
-            HALVES if half == "both" else (half,),
+            [one for one in HALVES if half in {one, "both"}],
             lambda what: stack.enter_context(progress(what)),
+            rank="again" if again else "missing",
         )
     for trouble in made.troubles:
         warn(plain(trouble))

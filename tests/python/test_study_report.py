@@ -6,6 +6,7 @@ import importlib.util
 import json
 import re
 import shutil
+from dataclasses import asdict
 from pathlib import Path
 
 import matplotlib.image
@@ -16,11 +17,13 @@ import pytest
 from click.testing import CliRunner
 from study_samples import fly, make_study, plan, write_rows
 
-from pytpc.cli.study_report_command import report_command
+from pytpc.cli.study_commands import study_group
 from pytpc.errors import InputError
 from pytpc.stats.states import seen_state
+from pytpc.study.methods import METHODS
+from pytpc.study.report.judging import rank_missions
 from pytpc.study.report.making import make_report
-from pytpc.study.report.positions import read_positions
+from pytpc.study.report.positions import Position, read_positions
 from pytpc.study.report.systems import nearness
 from pytpc.treatment import load_treatment
 
@@ -317,10 +320,47 @@ def test_no_study_there(tmp_path):
         make_report(tmp_path, tmp_path / "study.md")
 
 
+def rows_in(study: Path) -> list[Position]:
+    return read_positions(study / "results/positions.parquet")
+
+
+# One mission was taken out of the table, of the half that is asked for, and one of the other. Its
+# two users and both together, three labels, eight methods. The error is of type I: ~low alone has
+# flopped, so whoever believes that it is of type I puts it first.
+def test_only_missions_that_are_not_ranked_are_ranked(own, tmp_path):
+    missing = {("type1_low", 1), ("type2_high", 1)}
+    kept = [row for row in rows_in(own) if (row.treatment, row.seed) not in missing]
+    write_rows(own / "results/positions.parquet", [asdict(row) for row in kept])
+    rank_missions(own, ["tuning"])
+    rows = rows_in(own)
+    added = [row for row in rows if row not in kept]
+    assert len(rows) == len(kept) + len(added)
+    assert {(row.treatment, row.seed) for row in added} == {("type1_low", 1)}
+    assert len(added) == 3 * 3 * 8
+    (found,) = [
+        row for row in added if (row.method, row.labels, row.who) == ("thesis", "typed", "all")
+    ]
+    assert (found.position, found.parameters, found.marks) == (1.0, 4, 2)
+    rank_missions(own, ["tuning"], again=True)
+    anew = rows_in(own)
+    assert [row for row in anew if row.half == "held-back"] == [
+        row for row in kept if row.half == "held-back"
+    ]
+    assert {row.method for row in anew if row.treatment == "clean" and row.seed == 1} == {*METHODS}
+
+
+def test_what_cannot_be_ranked_is_said(own, tmp_path):
+    shutil.rmtree(own / "results")
+    (own / "missions/alpha/type1_low/seed-1/marks.parquet").write_text("x")
+    made = make_report(own, tmp_path / "study.md", ["tuning"], rank="missing", draw=False)
+    said = "Not all missions are ranked: missions/alpha/type1_low/seed-1/marks.parquet: not a file"
+    assert any(trouble.startswith(said) for trouble in made.troubles), made.troubles
+
+
 def test_the_command(study, tmp_path):
     page = tmp_path / "docs/study.md"
-    words = ["--out", str(study), "--docs", str(page), "--half", "held-back", "--json"]
-    result = CliRunner().invoke(report_command, words)
+    words = ["report", "--out", str(study), "--docs", str(page), "--half", "held-back", "--json"]
+    result = CliRunner().invoke(study_group, words)
     assert result.exit_code == 0
     document = json.loads(result.stdout)
     assert document == json.loads((page.parent / "study/results.json").read_text())

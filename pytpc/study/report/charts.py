@@ -11,9 +11,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from pytpc.stats.drawing import COLOURS, CULPRIT, FAINT, GRID, INK
+from pytpc.study.data import LABELS
+from pytpc.study.metrics import CONFIDENT, Bin, Estimate
 from pytpc.study.report.confidence import calibration_error
-from pytpc.study.report.measures import CONFIDENT, Bin, Estimate
-from pytpc.study.report.positions import LABELS, Position, ordered
+from pytpc.study.report.positions import Position, ordered
 from pytpc.study.report.ranked import METHODS, OURS, TARGETS, changed_rows, top
 
 _WIDTH = 8.6

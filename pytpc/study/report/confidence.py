@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from pytpc.study.report.measures import CONFIDENT, Bin, reliability
-from pytpc.study.report.positions import ALL, LABELS, Position, ordered
+from pytpc.study.data import ALL, LABELS
+from pytpc.study.metrics import CONFIDENT, Bin, reliability
+from pytpc.study.report.positions import Position, ordered
 from pytpc.study.report.ranked import OURS
 from pytpc.tables import Cell, Column, Table
 

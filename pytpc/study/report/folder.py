@@ -12,24 +12,20 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-import pyarrow as pa
-
-from pytpc.columns import read_table
 from pytpc.errors import InputError, TpcError
-from pytpc.marks import MARK_TYPES, Mark
+from pytpc.marks import Mark
 from pytpc.parameters import parameter_name, same_parameter
 from pytpc.source_lines import count_lines
 from pytpc.static_info import StaticInfo
 from pytpc.static_json import parse_json
 from pytpc.stats.missions import StudyMission, load_missions
+from pytpc.study.data import DONE_FILE, MARKS_TABLE, MISSIONS, STUDY_FILE, user_marks
+from pytpc.study.plan import Half
 from pytpc.treatment import Treatment
 from pytpc.words import many
 
-STUDY_FILE = "study.json"
-HALVES = ("held-back", "tuning")
+HALVES: tuple[Half, ...] = ("held-back", "tuning")
 UNKNOWN = "unknown"
-_DONE = "done.json"
-_SAID = "marks.parquet"
 _SEED = "seed-"
 _LANGUAGES = {".py": "Python"}
 
@@ -125,15 +121,15 @@ def load_study(folder: Path, on_progress: Progress | None = None) -> Study:
     if not isinstance(document, dict):
         raise InputError("not about a study: an object is expected", folder / STUDY_FILE)
     troubles: list[str] = []
-    names = sorted(path.name for path in (folder / "missions").glob("*") if path.is_dir())
-    paths = {name: sorted((folder / "missions" / name).glob(f"*/{_SEED}[0-9]")) for name in names}
+    names = sorted(path.name for path in (folder / MISSIONS).glob("*") if path.is_dir())
+    paths = {name: sorted((folder / MISSIONS / name).glob(f"*/{_SEED}[0-9]")) for name in names}
     total, done = sum(map(len, paths.values())), 0
     systems = []
     for name in names:
         try:
             static_info = StaticInfo.load(folder / "systems" / name / "static.json")
         except TpcError as error:
-            troubles.append(f"{name} is left out: {_told(error, folder)}.")
+            troubles.append(f"{name} is left out: {told(error, folder)}.")
             continue
         planned = _planned(document, name)
         troubles += _unflown(planned, name)
@@ -146,7 +142,7 @@ def load_study(folder: Path, on_progress: Progress | None = None) -> Study:
             try:
                 flights.append(_flight(path, name, halves))
             except TpcError as error:
-                troubles.append(f"{_place(path, folder)} is left out: {_told(error, folder)}.")
+                troubles.append(f"{_place(path, folder)} is left out: {told(error, folder)}.")
         systems.append(
             System(
                 name,
@@ -162,36 +158,17 @@ def load_study(folder: Path, on_progress: Progress | None = None) -> Study:
     return Study(folder, document, tuple(systems), tuple(troubles))
 
 
-def said_marks(path: Path, kind: str = "said") -> tuple[Mark, ...]:
-    """The marks of ``marks.parquet`` with their types as they were ``said``, or were ``right``.
-
-    Raises:
-        InputError: the file cannot be read, or a mark in it is none.
-    """
-
-    def marks(table: pa.Table) -> tuple[Mark, ...]:
-        missing = sorted({"time_ns", "observer", kind} - {*table.column_names})
-        if missing:
-            raise InputError(f"no column {missing[0]}")
-        rows = table.select(["time_ns", "observer", kind]).to_pylist()
-        for row in rows:
-            if row[kind] not in MARK_TYPES:
-                raise InputError(f"a mark of type {row[kind]!r}")
-        found = (Mark(int(row["time_ns"]), row[kind], row["observer"]) for row in rows)
-        return tuple(sorted(found, key=Mark.order))
-
-    return read_table(path, "marks", marks)
-
-
 def _flight(path: Path, system: str, halves: Mapping[tuple[str, int], str]) -> Flight:
-    if not (path / _DONE).is_file():
+    if not (path / DONE_FILE).is_file():
         raise TpcError("it was not flown to its end")
     (mission,) = load_missions([path])
     if mission.treatment is None:
         raise TpcError("it has no treatment.json")
     seed = int(path.name.removeprefix(_SEED))
     half = halves.get((mission.treatment.name, seed), UNKNOWN)
-    return Flight(system, half, seed, mission, mission.treatment, said_marks(path / _SAID))
+    said = [mark.mark("confused") for mark in user_marks(path / MARKS_TABLE)]
+    marks = tuple(sorted(said, key=Mark.order))
+    return Flight(system, half, seed, mission, mission.treatment, marks)
 
 
 def _reference(folder: Path, name: str, troubles: list[str]) -> StudyMission | None:
@@ -199,7 +176,7 @@ def _reference(folder: Path, name: str, troubles: list[str]) -> StudyMission | N
     try:
         (mission,) = load_missions([path])
     except TpcError as error:
-        troubles.append(f"The clean reference of {name} is missing: {_told(error, folder)}.")
+        troubles.append(f"The clean reference of {name} is missing: {told(error, folder)}.")
         return None
     return mission
 
@@ -209,7 +186,7 @@ def _planned(document: Mapping[str, Any], system: str) -> list[dict[str, Any]]:
     found = document.get("missions")
     rows: Sequence[Any] = found if isinstance(found, list) else []
     own = [row for row in rows if isinstance(row, dict) and row.get("system") == system]
-    return [row for row in own if str(row.get("folder", "")).startswith("missions/")]
+    return [row for row in own if str(row.get("folder", "")).startswith(f"{MISSIONS}/")]
 
 
 def _halves(planned: Sequence[Mapping[str, Any]]) -> dict[tuple[str, int], str]:
@@ -234,7 +211,7 @@ def _unflown(planned: Sequence[Mapping[str, Any]], system: str) -> list[str]:
 
 def _remarks(planned: Sequence[Mapping[str, Any]]) -> tuple[str, ...]:
     return tuple(
-        f"{str(row['folder']).removeprefix('missions/')}: {remark}"
+        f"{str(row['folder']).removeprefix(f'{MISSIONS}/')}: {remark}"
         for row in planned
         for remark in row.get("remarks") or ()
     )
@@ -248,6 +225,6 @@ def _place(path: Path, folder: Path) -> str:
     return path.relative_to(folder).as_posix()
 
 
-def _told(error: TpcError, folder: Path) -> str:
-    """An error without where the study's folder happens to be."""
+def told(error: TpcError, folder: Path) -> str:
+    """An error without its full stop, and without where the study's folder happens to be."""
     return str(error).replace(f"{folder}/", "").rstrip(".")

@@ -6,9 +6,10 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from pytpc.study.data import LABELS
+from pytpc.study.metrics import Estimate
 from pytpc.study.report.confidence import false_accusations
-from pytpc.study.report.measures import Estimate
-from pytpc.study.report.positions import LABELS, Position
+from pytpc.study.report.positions import Position
 from pytpc.study.report.ranked import OURS, TARGETS, changed_rows, percent, top
 from pytpc.study.report.repairs import TARGET, Repair, gone
 

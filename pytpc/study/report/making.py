@@ -6,10 +6,13 @@ import json
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, Literal, TypeVar
 
 from pytpc.atomic import write_atomic
-from pytpc.errors import TpcError
+from pytpc.errors import InputError, TpcError
+from pytpc.study.data import LABELS
+from pytpc.study.judge import POSITIONS_FILE
+from pytpc.study.plan import Half
 from pytpc.study.report import original as thesis_tables
 from pytpc.study.report.confidence import (
     accusation_counts,
@@ -19,11 +22,12 @@ from pytpc.study.report.confidence import (
     reliability_table,
 )
 from pytpc.study.report.drawings import Advance, Drawing, draw_results, draw_systems
-from pytpc.study.report.folder import HALVES, Study, load_study
+from pytpc.study.report.folder import HALVES, Study, load_study, told
 from pytpc.study.report.headline import Headline, headlines
+from pytpc.study.report.judging import rank_missions
 from pytpc.study.report.original import Original
 from pytpc.study.report.page import BESIDE, IMAGES, Contents, page
-from pytpc.study.report.positions import LABELS, POSITIONS_FILE, Position, read_positions
+from pytpc.study.report.positions import Position, read_positions
 from pytpc.study.report.ranked import (
     grouped_table,
     groups_of,
@@ -32,18 +36,18 @@ from pytpc.study.report.ranked import (
     users_table,
 )
 from pytpc.study.report.repairs import (
-    REPAIRS_FILE,
     Repair,
     read_repairs,
     repairs_summary,
     repairs_table,
 )
 from pytpc.study.report.systems import systems_table, treatments_table
+from pytpc.study.suggested import TRIED_FILE
 from pytpc.tables import Table, as_csv, as_json
 
 RESULTS_FILE = "results.json"
-TRIED_FILE = "tried.md"
-DISCUSSION_FILE = "discussion.md"
+_NOT_HELPED_FILE = "tried.md"
+_DISCUSSION_FILE = "discussion.md"
 _SCHEMA = 1
 
 Row = TypeVar("Row", Position, Repair)
@@ -62,9 +66,10 @@ class Made:
 def make_report(
     folder: Path,
     target: Path,
-    halves: Sequence[str] = HALVES,
+    halves: Sequence[Half] = HALVES,
     on_progress: Callable[[str], Advance] | None = None,
     *,
+    rank: Literal["missing", "again"] | None = None,
     draw: bool = True,
 ) -> Made:
     """Write the page, with its figures and tables beside it.
@@ -75,6 +80,7 @@ def make_report(
             to ``study``, where the texts that people wrote are looked for.
         halves: the halves whose results are shown; others are not even ranked.
         on_progress: called with what begins, gives what is called with (done, all).
+        rank: let the methods rank the missions that are not ranked yet, or all of ``halves`` again.
         draw: draw the figures, which takes most of the time.
 
     Raises:
@@ -84,11 +90,16 @@ def make_report(
     progress = on_progress or (lambda _: lambda _done, _total: None)
     study = load_study(folder, progress("reading missions"))
     troubles = list(study.troubles)
+    if rank is not None:
+        try:
+            rank_missions(folder, halves, progress("ranking"), again=rank == "again")
+        except InputError as error:
+            troubles.append(f"Not all missions are ranked: {told(error, folder)}.")
     ranked = _results(folder / POSITIONS_FILE, read_positions, troubles, "ranked")
     positions = [row for row in ranked if row.half in halves]
     flights = [f for system in study.systems for f in system.flights if f.half in halves]
     repairs = _results(
-        folder / REPAIRS_FILE,
+        folder / TRIED_FILE,
         lambda path: read_repairs(path, flights),
         troubles,
         "flown again as suggested",
@@ -117,8 +128,8 @@ def make_report(
         headlines=own,
         troubles=troubles,
         remarks=[remark for system in study.systems for remark in system.remarks],
-        tried=_text(beside / TRIED_FILE),
-        discussion=_text(beside / DISCUSSION_FILE),
+        tried=_text(beside / _NOT_HELPED_FILE),
+        discussion=_text(beside / _DISCUSSION_FILE),
     )
     numbers = _numbers(own, tables, troubles)
     written = [images / drawing.file for drawing in drawn]

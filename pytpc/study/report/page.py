@@ -9,9 +9,9 @@ from functools import cache
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 
+from pytpc.study.metrics import CONFIDENT, DRAWS
 from pytpc.study.report.drawings import Drawing
 from pytpc.study.report.headline import Headline
-from pytpc.study.report.measures import CONFIDENT, DRAWS
 from pytpc.study.report.repairs import TARGET
 from pytpc.study.report.systems import NEAR
 from pytpc.tables import Table, as_markdown, markdown

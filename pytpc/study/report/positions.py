@@ -1,4 +1,4 @@
-"""``results/positions.parquet``: where each method put the changed parameter."""
+"""Where each method put the changed parameter: the judge's table, read."""
 
 from __future__ import annotations
 
@@ -13,34 +13,17 @@ import pyarrow as pa
 
 from pytpc.columns import read_table
 from pytpc.errors import InputError
-
-POSITIONS_FILE = "results/positions.parquet"
-LABELS = ("typed", "untyped", "confused")
-ALL = "all"
+from pytpc.study.data import ALL
+from pytpc.study.judge import Judged
 
 
 @dataclass(frozen=True, slots=True)
-class Position:
+class Position(Judged):
     """One verdict: of a mission, by a ``method``, from the marks of ``who`` with ``labels``.
 
     ``position`` counts from 1, with ties at the mean of their places; None where no parameter was
-    changed, or nothing was said of it. ``parameters`` is among how many, ``top`` the first,
-    ``confidence`` in [0, 1] or None, ``marks`` how many marks there were.
+    changed, or there was no mark.
     """
-
-    system: str
-    treatment: str
-    type: str
-    half: str
-    seed: int
-    labels: str
-    who: str
-    method: str
-    position: float | None
-    parameters: int
-    top: str
-    confidence: float | None
-    marks: int
 
     @property
     def changed(self) -> bool:

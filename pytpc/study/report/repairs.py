@@ -11,13 +11,12 @@ import pyarrow as pa
 
 from pytpc.columns import read_table
 from pytpc.errors import InputError
+from pytpc.study.metrics import Estimate, estimate
 from pytpc.study.report.folder import HALVES, Flight
-from pytpc.study.report.measures import Estimate, estimate
 from pytpc.study.report.ranked import percent
 from pytpc.tables import Cell, Column, Table
 from pytpc.words import show
 
-REPAIRS_FILE = "results/suggestions.parquet"
 TARGET = 0.80
 """The share of treatments in which the error is to be gone (the issue's target)."""
 
