@@ -9,24 +9,29 @@ from __future__ import annotations
 import json
 import shutil
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
-from mission_samples import comparison, events, ns, static_info
+from mission_samples import comparison, events, link_unit, ns
 
 from pytpc.ingest.recording import Recording, save_recording
 from pytpc.marks import Mark, MarkType
+from pytpc.static_info import StaticInfo, Tool
 
 RECORDED = Path(__file__).parents[2] / "examples" / "recorded_mission"
-STATIC = static_info(
-    comparison(0, "~low"),
-    comparison(1, "~high"),
-    comparison(2, "~other", file="scripts/node.py"),
-    comparison(3, "~never"),
+STATIC = StaticInfo.of(
+    [
+        link_unit([comparison(0, "~low"), comparison(1, "~high"), comparison(3, "~never")]),
+        replace(
+            link_unit([comparison(2, "~other", file="scripts/node")]),
+            link_unit="node.py",
+            tool=Tool("tpc", "0.1.0", "", "default", "python"),
+        ),
+    ]
 )
 SECONDS = range(1, 21)
 EVENTS = events(

@@ -92,6 +92,14 @@ def test_the_main_table(text):
     ]
 
 
+# With typed marks: the missions of type2_high are 1 against 3.5 and 4 against 2: one better, one
+# worse, and positions -2.5 and 2, mean -0.25; the other system's is 2 against 30. The thesis's
+# ranking has no row with other marks.
+def test_against_the_baseline(text):
+    rows = rows_of(text, "Better than the thesis's ranking? The held-back half")
+    assert rows[1:] == [["tpc", "typed", "50 [0, 100]", "-14.1"]]
+
+
 def test_the_groups(text):
     by = "Top 3 by {}, the held-back half"
     assert row_of(text, by.format("system"), "alpha", "typed")[:2] == ["1", "50 [50, 50]"]
@@ -182,6 +190,13 @@ def test_suggestions(text):
         "~high", "10", "26", "30", "~high", "12", "still there", "yes"
     ]  # fmt: skip
     assert row_of(text, heading, "alpha", "type1_low", "tuning", "1")[-2] == "nothing was suggested"
+
+
+# Three parameters are compared in C++, one in Python (by the analysis, not by the file's name).
+def test_the_systems(text):
+    assert row_of(text, "What was done", "alpha") == [
+        "1", "-", "4", "4", "3", "3", "1", "4", "7"
+    ]  # fmt: skip
 
 
 def test_the_headlines(made):
@@ -289,10 +304,12 @@ def test_missions_that_failed_or_went_wrong_are_on_the_page(own, tmp_path):
         plan("alpha", "type1_x", 2, "tuning", state="planned"),
     ]
     document["missions"][0]["remarks"] = ["the observer saw nothing"]
+    document["systems"] = [{"name": "alpha"}, {"name": "omega"}]
     (own / "study.json").write_text(json.dumps(document))
     made = make_report(own, tmp_path / "study.md", draw=False)
     assert "missions/alpha/type1_x/seed-1 failed: the node died." in made.troubles
     assert "1 mission of alpha not flown yet." in made.troubles
+    assert "No mission of omega has been flown." in made.troubles
     page = made.page.read_text().replace("\\", "")
     assert "- alpha/type1_low/seed-1: the observer saw nothing" in page
 

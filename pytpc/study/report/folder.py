@@ -1,4 +1,4 @@
-"""The study's folder, read: its systems and their missions (docs/formats.md).
+"""The study's folder, read: its systems and their missions (docs/study-data.md).
 
 Whatever is missing or broken is said in a sentence and left out: a page of a part of the study is
 better than none.
@@ -27,7 +27,6 @@ from pytpc.words import many
 HALVES: tuple[Half, ...] = ("held-back", "tuning")
 UNKNOWN = "unknown"
 _SEED = "seed-"
-_LANGUAGES = {".py": "Python"}
 
 Progress = Callable[[int, int], None]
 
@@ -87,9 +86,10 @@ class System:
 
     def language(self, parameter: str) -> str:
         """In which language a parameter is compared; ``both``, or ``-`` where nowhere."""
+        info = self.static_info
         found = {
-            _LANGUAGES.get(Path(comparison.file).suffix, "C++")
-            for comparison in self.static_info.thresholds.values()
+            "Python" if info.unit_of(key).is_python else "C++"
+            for key, comparison in info.thresholds.items()
             if same_parameter(parameter, parameter_name(comparison))
         }
         return "both" if len(found) > 1 else next(iter(found), "-")
@@ -99,8 +99,6 @@ class System:
 class Study:
     """All that is read of a study but its results; ``troubles`` are sentences."""
 
-    folder: Path
-    document: Mapping[str, Any]
     systems: tuple[System, ...]
     troubles: tuple[str, ...]
 
@@ -133,12 +131,15 @@ def load_study(folder: Path, on_progress: Progress | None = None) -> Study:
             continue
         planned = _planned(document, name)
         troubles += _unflown(planned, name)
+        unflown = {row["folder"] for row in planned if row.get("state") != "done"}
         halves = _halves(planned)
         flights = []
         for path in paths[name]:
             done += 1
             if on_progress is not None:
                 on_progress(done, total)
+            if _place(path, folder) in unflown and not (path / DONE_FILE).is_file():
+                continue
             try:
                 flights.append(_flight(path, name, halves))
             except TpcError as error:
@@ -153,9 +154,12 @@ def load_study(folder: Path, on_progress: Progress | None = None) -> Study:
                 _remarks(planned),
             )
         )
+    troubles += [
+        f"No mission of {name} has been flown." for name in _systems(document) if name not in names
+    ]
     if not names:
         troubles.append("No mission has been flown.")
-    return Study(folder, document, tuple(systems), tuple(troubles))
+    return Study(tuple(systems), tuple(troubles))
 
 
 def _flight(path: Path, system: str, halves: Mapping[tuple[str, int], str]) -> Flight:
@@ -179,6 +183,13 @@ def _reference(folder: Path, name: str, troubles: list[str]) -> StudyMission | N
         troubles.append(f"The clean reference of {name} is missing: {told(error, folder)}.")
         return None
     return mission
+
+
+def _systems(document: Mapping[str, Any]) -> list[str]:
+    """The systems that the study is to have."""
+    found = document.get("systems")
+    rows: Sequence[Any] = found if isinstance(found, list) else []
+    return [str(row.get("name")) for row in rows if isinstance(row, dict)]
 
 
 def _planned(document: Mapping[str, Any], system: str) -> list[dict[str, Any]]:

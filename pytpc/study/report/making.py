@@ -29,6 +29,7 @@ from pytpc.study.report.original import Original
 from pytpc.study.report.page import BESIDE, IMAGES, Contents, page
 from pytpc.study.report.positions import Position, read_positions
 from pytpc.study.report.ranked import (
+    against_table,
     grouped_table,
     groups_of,
     main_table,
@@ -166,6 +167,7 @@ def _tables(
         thesis_tables.marks_compared(originals),
         thesis_tables.thesis_found(),
         *(main_table(positions, half) for half in halves),
+        *(against_table(positions, half) for half in halves),
         *(users_table(positions, half) for half in halves),
         *(positions_table(positions, labels) for labels in LABELS),
         reliability_table(calibration(judged(positions))),

@@ -85,6 +85,29 @@ def main_table(rows: Sequence[Position], half: str) -> Table:
     return Table(f"main-{half}", f"The {half} half", columns, tuple(lines), (), "Method")
 
 
+def against_table(rows: Sequence[Position], half: str) -> Table:
+    """By how much each method is better than the baseline, mission by mission.
+
+    A difference has a narrower interval than two shares: what is hard is hard for both.
+    """
+    own = changed_rows(rows, half)
+    columns = (Column("Labels", 0), Column("Top 3, difference in %", 0), Column("Mean position", 1))
+    base = {_mission(row): row for row in own if row.method == BASELINE}
+    lines: list[tuple[str, tuple[Cell, ...]]] = []
+    for labels in ordered((row.labels for row in own), LABELS):
+        for method in _methods(own):
+            found = [r for r in own if (r.method, r.labels) == (method, labels)]
+            pairs = [(row, base[_mission(row)]) for row in found if _mission(row) in base]
+            if method == BASELINE or not pairs:
+                continue
+            units = [(row.system, row.treatment) for row, _ in pairs]
+            three = estimate([float(r.within(3)) - float(b.within(3)) for r, b in pairs], units)
+            places = estimate([row.place - other.place for row, other in pairs], units)
+            lines.append((method, (labels, percent(three), places.value)))
+    title = f"Against {BASELINE}, the {half} half"
+    return Table(f"against-{half}", title, columns, tuple(lines), (), "Method")
+
+
 def grouped_table(
     label: str, rows: Sequence[Position], half: str, first: str, group: Group
 ) -> Table:
@@ -158,6 +181,10 @@ def positions_table(rows: Sequence[Position], labels: str) -> Table:
             lines.append((system, cells))
     title = f"Positions, {labels} marks"
     return Table(f"positions-{labels}", title, columns, tuple(lines), (), "System")
+
+
+def _mission(row: Position) -> tuple[str, str, int, str]:
+    return (row.system, row.treatment, row.seed, row.labels)
 
 
 def _methods(rows: Iterable[Position]) -> list[str]:
