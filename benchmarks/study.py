@@ -14,7 +14,7 @@ from typing import Any
 
 from figures import figure
 
-from pytpc.study.data import STUDY_FILE
+from pytpc.study.judge import POSITIONS_FILE
 from pytpc.study.report.making import RESULTS_FILE, make_report
 
 TOPIC = "study"
@@ -28,7 +28,7 @@ def main(words: Sequence[str] | None = None) -> None:
     parser.add_argument("--out", type=Path, default=_ROOT / "out" / "study")
     parser.add_argument("--results", type=Path, default=_ROOT / "docs" / "study" / RESULTS_FILE)
     args = parser.parse_args(words)
-    if (args.out / STUDY_FILE).is_file():
+    if (args.out / POSITIONS_FILE).is_file():
         print(f"# from the study in {args.out}", flush=True)
         numbers = _numbers_of(args.out)
     elif args.results.is_file():
