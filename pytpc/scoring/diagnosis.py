@@ -33,7 +33,8 @@ class Weights:
     """What the evidence counts."""
 
     acted: float = 0.8
-    waited: float = 1.0
+    waited: float = 0.8
+    since: float = 0.4
     held: float = 1.0
     near: float = -0.7
     restless: float = -0.3
@@ -157,6 +158,7 @@ def parameter_scores(
     second = (
         weights.type2
         + weights.waited * found.waited
+        + weights.since * found.since
         + weights.held * np.log(found.held + SHARE)
         + weights.near * found.near
         + weights.restless * found.restless

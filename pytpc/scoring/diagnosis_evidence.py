@@ -18,8 +18,11 @@ farther from the threshold:
 
     waited = log (held + e) / (elsewhere + e)
 
+    since = sum over the first marks m of the observers of  log (e + (1 - e) T q(m - b(m)))
+
 held is the share of the wait in which it had that result, elsewhere the share of the rest of the
-log in which it had it with a value as near as in the wait.
+log in which it had it with a value as near as in the wait. b(m) is when that began before the mark,
+q the density of an observer's patience: who has waited for a minute before the mark, waits always.
 """
 
 from __future__ import annotations
@@ -36,10 +39,10 @@ REACTION_LOG = 1.946
 """Mean of the logarithms of table 6.14's seven delays of type I: a median of 7 s."""
 
 REACTION_SIGMA = 1.17
-"""Their standard deviation. (The t distribution below has heavier tails.)"""
+"""Their standard deviation. (The tails of ``reaction`` are heavier: seven numbers do not tell.)"""
 
-REACTION_FREEDOM = 4
-"""Degrees of freedom of the t distribution: seven numbers do not tell the tails."""
+PATIENCE_LOG, PATIENCE_SIGMA = 2.01, 0.74
+"""The same of the six delays of type II there: a median of 7.5 s."""
 
 STRAY = 0.1
 """The share of marks that have nothing to do with the fault that is looked for: the robot does odd
@@ -55,6 +58,13 @@ SHARE = 0.05
 
 NEAR_QUANTILE = 0.75
 """So much of the wait is within what is called as near as in the wait."""
+
+SLACK = 0.05
+"""What is farther from the threshold by this part of the range is as near: a battery sinks, and is
+never as low before."""
+
+BRIEF_S = 2.0
+"""A wait goes on if it is interrupted for this time: at a threshold values are noisy."""
 
 START = 0.1
 """A comparison that begins to be evaluated weighs so much of one that changes: it may pass at once,
@@ -82,25 +92,30 @@ CLOCK_S = 1.0
 
 
 class Marked(NamedTuple):
-    """The marks: seconds from the begin of the log, float64[marks], and how much each counts."""
+    """The marks: seconds from the begin of the log, float64[marks], and how much each counts.
+
+    ``first`` bool[marks] are those that are the first of their observers.
+    """
 
     times: Floats
     weight: Floats
+    first: Bools
 
 
 @dataclass(frozen=True)
 class Evidence:
     """float64[streams] each.
 
-    ``acted`` and ``waited`` see above; ``held`` the share of the wait with one result; ``near`` the
-    logarithm of the mean distance from the threshold in the wait as a part of the stream's range;
-    ``restless`` the logarithm of 1 + changes in the wait; ``clock`` 1 where the value rises by a
+    ``acted``, ``waited`` and ``since`` see above; ``held`` the share of the wait with one result;
+    ``near`` the logarithm of the mean distance from the threshold in the wait as a part of the
+    stream's range; ``restless`` the logarithm of 1 + changes in the wait; ``clock`` 1 where the value rises by a
     second each second in the wait, as the time since something does; ``flat`` 1 where there is but
     one value, as of a flag; ``far`` the logarithm of the distance from what is exposed.
     """
 
     acted: Floats
     waited: Floats
+    since: Floats
     held: Floats
     near: Floats
     restless: Floats
@@ -113,31 +128,32 @@ def marked(times_ns: Int64s, observers: tuple[str, ...], streams: Streams) -> Ma
     """The marks as they count: the k-th of an observer 1/k^2."""
     times = (times_ns - streams.begin_ns) / 1e9
     count: dict[str, int] = {}
-    weight = np.ones(times.size)
+    order = np.ones(times.size)
     for index in np.argsort(times, kind="stable").tolist():
-        k = count[observers[index]] = count.get(observers[index], 0) + 1
-        weight[index] = 1.0 / k**2
-    return Marked(times, weight)
+        order[index] = count[observers[index]] = count.get(observers[index], 0) + 1
+    return Marked(times, order**-2.0, order == 1)
 
 
 def evidence(streams: Streams, marks: Marked) -> Evidence:
     """The evidence of all streams; there is at least one mark."""
     wait = _Wait.before(marks, streams.seconds)
     rows = [
-        (_acted(s, streams, marks), *_waited(s, wait), float(np.log(max(s.distance, 1.0))))
+        (_acted(s, streams, marks), *_waited(s, wait, marks), float(np.log(max(s.distance, 1.0))))
         for s in streams.streams
     ]
     return Evidence(*np.array(rows, np.float64).reshape(len(rows), len(fields(Evidence))).T)
 
 
-def reaction(delays: Floats) -> Floats:
-    """The density of reactions, per second: log t; 0 where the mark came before."""
+def reaction(delays: Floats, mean: float = REACTION_LOG, sigma: float = REACTION_SIGMA) -> Floats:
+    """The density of reactions, per second; 0 where the mark came before.
+
+    Of their logarithms it is Student's t with 4 degrees of freedom, 3/8 (1 + z^2/4)^(-5/2).
+    """
     density = np.zeros(delays.shape)
     after = delays > 0
-    z = (np.log(np.maximum(delays[after], 1e-3)) - REACTION_LOG) / REACTION_SIGMA
-    # Of t with 4 degrees of freedom: 3/8 (1 + z^2/4)^(-5/2).
-    student = 0.375 * (1.0 + z * z / REACTION_FREEDOM) ** (-(REACTION_FREEDOM + 1) / 2)
-    density[after] = student / (REACTION_SIGMA * np.maximum(delays[after], 1e-3))
+    seconds = np.maximum(delays[after], 1e-3)
+    z = (np.log(seconds) - mean) / sigma
+    density[after] = 0.375 * (1.0 + z * z / 4.0) ** -2.5 / (sigma * seconds)
     return density
 
 
@@ -158,6 +174,18 @@ def _acted(stream: Stream, streams: Streams, marks: Marked) -> float:
     fits = (np.log(STRAY + (1 - STRAY) * times) * marks.weight).sum(axis=1)
     top = fits.max()
     return float(top + np.log(np.sum(prior * np.exp(fits - top)) / (OTHERS + prior.sum())))
+
+
+class _Waited(NamedTuple):
+    """The evidence for type II; the defaults are those of a stream that is not in the wait."""
+
+    waited: float
+    since: float
+    held: float = 0.0
+    near: float = 0.0
+    restless: float = 0.0
+    clock: float = 0.0
+    flat: float = 0.0
 
 
 class _Wait(NamedTuple):
@@ -185,34 +213,50 @@ class _Wait(NamedTuple):
         return max(float(np.sum(np.maximum(ends - np.maximum(self.begins, 0.0), 0.0))), 1.0)
 
 
-def _waited(stream: Stream, wait: _Wait) -> tuple[float, float, float, float, float, float]:
+def _waited(stream: Stream, wait: _Wait, marks: Marked) -> _Waited:
     inside = wait.holds(stream.times)
     if not inside.any():
-        return np.log(SHARE / (SHARE + 1.0)), 0.0, 0.0, 0.0, 0.0, 0.0
+        nothing = float(np.log(STRAY) * marks.weight[marks.first].sum())
+        return _Waited(float(np.log(SHARE / (SHARE + 1.0))), nothing)
     weight, margin = stream.weight, stream.margin
     held = [float(weight[inside & (stream.res == way)].sum()) for way in (False, True)]
-    way = bool(held[1] > held[0])
+    way = bool(held[1] > held[0]) if sum(held) else bool(stream.res[inside][-1])
     one = inside & (stream.res == way)
-    share = min(1.0, held[way] / wait.length)
-    flat = stream.spread == 0.0 or not np.isfinite(margin[one]).any()
+    known = margin[one][np.isfinite(margin[one])]
+    flat = stream.spread == 0.0 or not known.size
     if flat:
         limit, near = np.inf, 0.0
     else:
-        known = margin[one][np.isfinite(margin[one])]
-        limit = float(np.quantile(known, NEAR_QUANTILE))
+        limit = float(np.quantile(known, NEAR_QUANTILE)) + SLACK * stream.spread
         near = float(np.log(known.mean() / stream.spread + 0.01))
-    alike = ~inside & (stream.res == way) & ~(margin > limit)
+    alike = (stream.res == way) & ~(margin > limit)
+    share = min(1.0, held[way] / wait.length)
     rest = max(wait.seconds - wait.length, 1.0)
-    elsewhere = min(1.0, float(weight[alike].sum()) / rest)
-    changes = np.count_nonzero(wait.holds(stream.changes))
-    return (
-        float(np.log((share + SHARE) / (elsewhere + SHARE))),
-        share,
-        near,
-        float(np.log1p(changes)),
-        float(_is_clock(stream, one)),
-        float(flat),
+    elsewhere = min(1.0, float(weight[alike & ~inside].sum()) / rest)
+    return _Waited(
+        waited=float(np.log((share + SHARE) / (elsewhere + SHARE))),
+        since=_since(stream.times[alike], wait.seconds, marks),
+        held=share,
+        near=near,
+        restless=float(np.log1p(np.count_nonzero(wait.holds(stream.changes)))),
+        clock=float(_is_clock(stream, one)),
+        flat=float(flat),
     )
+
+
+def _since(times: Floats, seconds: float, marks: Marked) -> float:
+    """How well the first marks fit to when the wait began before each of them.
+
+    ``times`` are those at which the stream was as in the wait; a pause of up to ``BRIEF_S`` does
+    not end it, nor does a mark after its end of up to that come too late.
+    """
+    firsts, weight = marks.times[marks.first], marks.weight[marks.first]
+    begins = np.flatnonzero(np.diff(times, prepend=-np.inf) > BRIEF_S)
+    last = np.searchsorted(times, firsts, side="right") - 1
+    begun = times[begins[np.maximum(np.searchsorted(begins, last, side="right") - 1, 0)]]
+    fits = max(seconds, 1.0) * reaction(firsts - begun, PATIENCE_LOG, PATIENCE_SIGMA)
+    fits[(last < 0) | (firsts - times[last] > BRIEF_S)] = 0.0
+    return float((np.log(STRAY + (1 - STRAY) * fits) * weight).sum())
 
 
 def _is_clock(stream: Stream, rows: Bools) -> bool:
