@@ -42,6 +42,7 @@ class Weights:
     flat: float = -1.5
     far: float = 0.0
     type2: float = 0.0
+    latch: float = -1.5
     none: float = 3.0
 
 
@@ -166,7 +167,11 @@ def parameter_scores(
         + weights.flat * found.flat
         + weights.far * found.far
     )
-    score = np.logaddexp(first - np.logaddexp(0.0, odds), second - np.logaddexp(0.0, -odds))
+    latch = 1.0 / (1.0 + np.exp(-weights.latch))
+    other = 1.0 / (1.0 + np.exp(-np.asarray(odds)))
+    score = np.logaddexp(
+        first + np.log(1.0 - other * (1.0 - latch)), second + np.log(other * (1.0 - latch))
+    )
     best = np.full(parameters, -np.inf)
     np.maximum.at(best, columns, score)
     return best

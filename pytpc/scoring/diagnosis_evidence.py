@@ -1,32 +1,33 @@
 """What the marks say of each stream: the evidence for either type of error.
 
 Type I, something was done that should not have been. If a change of the comparison's result did it,
-each observer's mark came a reaction after that change:
+the first mark of each observer came a reaction after that change:
 
-    acted = log sum over its turns t of  u(t) fit(t)  /  (sum of u(t) + c)
-    fit(t) = product over marks m of (e + (1 - e) T p(m - t))^w(m)
+    acted = log( sum over its turns t of u(t) fit(t) / (sum of u(t) + c) ) - log( mean of fit )
+    fit(t) = product over the first marks m of (e + (1 - e) T p(m - t))
 
 p is the density of reactions, T the length of the log, so that T p compares with marks at any time;
-e is the share of marks that have nothing to do with it. The mean punishes a comparison that changes
-often: most of its changes were not marked. w(m) is 1 for the first mark of an observer, and falls
-for the ones after it. u(t) is how well the turn t fits as a cause by itself: the first of a cascade
-causes the others, and what the robot does changes after it.
+e is the share of marks that have nothing to do with it. To divide by the sum of u(t) punishes a
+comparison that changes often: most of its changes were not marked. The mean of fit over all times
+is taken off, as the marks of several observers come together whatever it was. u(t) is how well the
+turn t fits as a cause by itself: the first of a cascade causes the others, and what the robot does
+changes after it.
 
 Type II, something is not done that should be. The comparison is evaluated in the wait before the
 marks and has one result there; elsewhere it is not evaluated, has the other one, or its value is
 farther from the threshold:
 
-    waited = log (held + e) / (elsewhere + e)
-
-    since = sum over the first marks m of the observers of  log (e + (1 - e) T q(m - b(m)))
+    waited = log( (held + s) / (elsewhere + s) )
+    since = sum over the first marks m of log(e + (1 - e) T q(m - b(m)))
 
 held is the share of the wait in which it had that result, elsewhere the share of the rest of the
 log in which it had it with a value as near as in the wait. b(m) is when that began before the mark,
-q the density of an observer's patience: who has waited for a minute before the mark, waits always.
+q the density of an observer's patience: what has been so for long is not what is waited for.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from typing import NamedTuple
 
@@ -63,6 +64,9 @@ SLACK = 0.05
 """What is farther from the threshold by this part of the range is as near: a battery sinks, and is
 never as low before."""
 
+GRID = 1000
+"""Times at which a cause at any time is tried."""
+
 BRIEF_S = 2.0
 """A wait goes on if it is interrupted for this time: at a threshold values are noisy."""
 
@@ -92,14 +96,13 @@ CLOCK_S = 1.0
 
 
 class Marked(NamedTuple):
-    """The marks: seconds from the begin of the log, float64[marks], and how much each counts.
+    """The marks in seconds from the begin of the log: all, and the first of each observer.
 
-    ``first`` bool[marks] are those that are the first of their observers.
+    An observer's later marks say that the error lasts, and nothing more of when it began.
     """
 
     times: Floats
-    weight: Floats
-    first: Bools
+    firsts: Floats
 
 
 @dataclass(frozen=True)
@@ -108,9 +111,10 @@ class Evidence:
 
     ``acted``, ``waited`` and ``since`` see above; ``held`` the share of the wait with one result;
     ``near`` the logarithm of the mean distance from the threshold in the wait as a part of the
-    stream's range; ``restless`` the logarithm of 1 + changes in the wait; ``clock`` 1 where the value rises by a
-    second each second in the wait, as the time since something does; ``flat`` 1 where there is but
-    one value, as of a flag; ``far`` the logarithm of the distance from what is exposed.
+    stream's range; ``restless`` the logarithm of 1 + changes in the wait; ``clock`` 1 where the
+    value rises by a second each second in the wait, as the time since something does; ``flat`` 1
+    where there is but one value, as of a flag; ``far`` the logarithm of the distance from what is
+    exposed.
     """
 
     acted: Floats
@@ -124,21 +128,21 @@ class Evidence:
     far: Floats
 
 
-def marked(times_ns: Int64s, observers: tuple[str, ...], streams: Streams) -> Marked:
-    """The marks as they count: the k-th of an observer 1/k^2."""
+def marked(times_ns: Int64s, observers: Sequence[str], streams: Streams) -> Marked:
+    """The marks on the clock of the streams."""
     times = (times_ns - streams.begin_ns) / 1e9
-    count: dict[str, int] = {}
-    order = np.ones(times.size)
-    for index in np.argsort(times, kind="stable").tolist():
-        order[index] = count[observers[index]] = count.get(observers[index], 0) + 1
-    return Marked(times, order**-2.0, order == 1)
+    firsts: dict[str, float] = {}
+    for time, observer in zip(times.tolist(), observers, strict=True):
+        firsts[observer] = min(time, firsts.get(observer, np.inf))
+    return Marked(times, np.sort(np.array([*firsts.values()], np.float64)))
 
 
 def evidence(streams: Streams, marks: Marked) -> Evidence:
     """The evidence of all streams; there is at least one mark."""
     wait = _Wait.before(marks, streams.seconds)
+    chance = _any_time(streams.seconds, marks)
     rows = [
-        (_acted(s, streams, marks), *_waited(s, wait, marks), float(np.log(max(s.distance, 1.0))))
+        (_acted(s, streams, marks) - chance, *_waited(s, wait, marks), float(np.log(max(s.distance, 1.0))))
         for s in streams.streams
     ]
     return Evidence(*np.array(rows, np.float64).reshape(len(rows), len(fields(Evidence))).T)
@@ -158,22 +162,35 @@ def reaction(delays: Floats, mean: float = REACTION_LOG, sigma: float = REACTION
 
 
 def _acted(stream: Stream, streams: Streams, marks: Marked) -> float:
-    last = float(marks.times.max(initial=0.0))
+    last = float(marks.firsts.max(initial=0.0))
     turns = np.concatenate([stream.changes, stream.starts])
     prior = np.concatenate([np.ones(stream.changes.size), np.full(stream.starts.size, START)])
     turns, prior = turns[turns <= last], prior[turns <= last]
     if not turns.size:
-        return float(np.log(STRAY) * marks.weight.sum())
+        return float(np.log(STRAY)) * marks.firsts.size
     first = _between(streams.decisions, turns - CASCADE_S, turns) == 0
     follows = _between(streams.shifts, turns, turns + EFFECT_S) - _between(
         streams.shifts, turns - EFFECT_S, turns
     )
     follows = np.maximum(0, follows)
     prior = prior * np.where(first, 1.0, LATER) * (IDLE + follows / (follows + HALF))
-    times = max(streams.seconds, 1.0) * reaction(marks.times[None, :] - turns[:, None])
-    fits = (np.log(STRAY + (1 - STRAY) * times) * marks.weight).sum(axis=1)
+    fits = _fits(turns, streams.seconds, marks)
     top = fits.max()
     return float(top + np.log(np.sum(prior * np.exp(fits - top)) / (OTHERS + prior.sum())))
+
+
+def _fits(turns: Floats, seconds: float, marks: Marked) -> Floats:
+    """How well the first marks fit to each turn as their cause, as logarithms."""
+    times = max(seconds, 1.0) * reaction(marks.firsts[None, :] - turns[:, None])
+    return np.asarray(np.log(STRAY + (1 - STRAY) * times).sum(axis=1))
+
+
+def _any_time(seconds: float, marks: Marked) -> float:
+    """The same for a cause at any time up to the last mark: the marks of all come together."""
+    last = float(np.clip(marks.firsts.max(initial=0.0), 0.0, seconds))
+    fits = _fits(np.linspace(0.0, last, GRID), seconds, marks)
+    top = fits.max()
+    return float(top + np.log(np.mean(np.exp(fits - top))))
 
 
 class _Waited(NamedTuple):
@@ -216,7 +233,7 @@ class _Wait(NamedTuple):
 def _waited(stream: Stream, wait: _Wait, marks: Marked) -> _Waited:
     inside = wait.holds(stream.times)
     if not inside.any():
-        nothing = float(np.log(STRAY) * marks.weight[marks.first].sum())
+        nothing = float(np.log(STRAY)) * marks.firsts.size
         return _Waited(float(np.log(SHARE / (SHARE + 1.0))), nothing)
     weight, margin = stream.weight, stream.margin
     held = [float(weight[inside & (stream.res == way)].sum()) for way in (False, True)]
@@ -250,13 +267,13 @@ def _since(times: Floats, seconds: float, marks: Marked) -> float:
     ``times`` are those at which the stream was as in the wait; a pause of up to ``BRIEF_S`` does
     not end it, nor does a mark after its end of up to that come too late.
     """
-    firsts, weight = marks.times[marks.first], marks.weight[marks.first]
+    firsts = marks.firsts
     begins = np.flatnonzero(np.diff(times, prepend=-np.inf) > BRIEF_S)
     last = np.searchsorted(times, firsts, side="right") - 1
     begun = times[begins[np.maximum(np.searchsorted(begins, last, side="right") - 1, 0)]]
     fits = max(seconds, 1.0) * reaction(firsts - begun, PATIENCE_LOG, PATIENCE_SIGMA)
     fits[(last < 0) | (firsts - times[last] > BRIEF_S)] = 0.0
-    return float((np.log(STRAY + (1 - STRAY) * fits) * weight).sum())
+    return float(np.log(STRAY + (1 - STRAY) * fits).sum())
 
 
 def _is_clock(stream: Stream, rows: Bools) -> bool:
