@@ -33,7 +33,8 @@ class Weights:
     """What the evidence counts."""
 
     acted: float = 0.8
-    waited: float = 1.0
+    waited: float = 0.8
+    since: float = 0.4
     held: float = 1.0
     near: float = -0.7
     restless: float = -0.3
@@ -41,6 +42,7 @@ class Weights:
     flat: float = -1.5
     far: float = 0.0
     type2: float = 0.0
+    latch: float = -1.5
     none: float = 3.0
 
 
@@ -157,6 +159,7 @@ def parameter_scores(
     second = (
         weights.type2
         + weights.waited * found.waited
+        + weights.since * found.since
         + weights.held * np.log(found.held + SHARE)
         + weights.near * found.near
         + weights.restless * found.restless
@@ -164,7 +167,11 @@ def parameter_scores(
         + weights.flat * found.flat
         + weights.far * found.far
     )
-    score = np.logaddexp(first - np.logaddexp(0.0, odds), second - np.logaddexp(0.0, -odds))
+    latch = 1.0 / (1.0 + np.exp(-weights.latch))
+    other = 1.0 / (1.0 + np.exp(-np.asarray(odds)))
+    score = np.logaddexp(
+        first + np.log(1.0 - other * (1.0 - latch)), second + np.log(other * (1.0 - latch))
+    )
     best = np.full(parameters, -np.inf)
     np.maximum.at(best, columns, score)
     return best
