@@ -508,7 +508,7 @@ def test_where_the_behaviour_tips_may_be_said(folder):
         ({"parameter": None, "node": None}, "type type1 has a changed parameter"),
         ({"launch": {"fault": True}}, "launch is not an object of texts"),
         ({"extra": 1}, "exactly the fields"),
-        ({"tipping": "12"}, "tipping is not a number or null"),
+        ({"tipping": "7"}, "tipping is not a number or null"),
         ({"tipping": True}, "tipping is not a number or null"),
     ],
 )
@@ -517,6 +517,21 @@ def test_wrong_treatments_say_what_is_wrong(folder, change, what):
     with pytest.raises(InputError, match=what) as caught:
         load_treatment(folder)
     assert str(caught.value).startswith(f"{folder}/treatment.json: ")
+
+
+@pytest.mark.parametrize("tipping", [7, 6.5, None])
+def test_a_treatment_may_say_where_the_behaviour_tips(folder, tipping):
+    assert load_treatment(folder).tipping is None
+    (folder / "treatment.json").write_text(json.dumps({**GOOD, "tipping": tipping}))
+    assert load_treatment(folder).tipping == tipping
+
+
+def test_nothing_tips_where_no_parameter_is_changed(folder):
+    nothing = dict.fromkeys(("parameter", "node", "old", "new"))
+    clean = {**GOOD, **nothing, "type": "clean", "tipping": 7}
+    (folder / "treatment.json").write_text(json.dumps(clean))
+    with pytest.raises(InputError, match="tipping is not null"):
+        load_treatment(folder)
 
 
 def test_broken_json_says_the_line(folder):

@@ -8,11 +8,10 @@ from collections import Counter
 from collections.abc import Callable
 
 import pytest
-from rich.console import Console
 
 from pytpc.demo import FIRST, TreatedMission, gone_wrong, run_treatment
 from pytpc.demo_examples import WATER_SAMPLER
-from pytpc.demo_show import Built, build
+from pytpc.demo_show import Built
 from pytpc.errors import MissingToolError
 from pytpc.paths import cmake_file, log_library, plugin
 from pytpc.scoring.ranking import unknown_keys
@@ -39,8 +38,8 @@ except MissingToolError as error:
 
 
 @pytest.fixture(scope="module")
-def robot(tmp_path_factory: pytest.TempPathFactory) -> Built:
-    return build(WATER_SAMPLER, Console(quiet=True), tmp_path_factory.mktemp("water"))
+def robot(water: Built) -> Built:
+    return water
 
 
 @pytest.fixture(scope="module")
