@@ -101,8 +101,8 @@ IMAGE_CAPTURE = Example(
     goal_topic="/camera/picture",
     reached="a picture was taken",
     missed="no picture was taken",
-    # With the treatment of type I there is a picture, of nobody.
-    missed_under=frozenset({"type2", "fault"}),
+    # With treatments of type I, and with one of the faults, there is a picture, of nobody.
+    missed_under=frozenset({"type2"}),
     shown=("clean", "type1_face_detection_threshold", "type2_min_coverage_limit"),
 )
 

@@ -5,8 +5,11 @@ from __future__ import annotations
 import pytest
 import test_observer as field
 import test_water_observer as tank
+from hypothesis import given
+from hypothesis import strategies as st
 from observer_scripts import shared_module
 
+person = shared_module("person")
 rules = shared_module("rules")
 Cause, causes_of = rules.Cause, rules.causes_of
 
@@ -140,3 +143,28 @@ def test_no_sight_and_one_sight_of_a_robot(module):
     (first, *_) = module.sights(*module.BEGIN)
     assert causes_of(observer.rules(), []) == []
     assert causes_of(observer.rules(), [first]) == []
+
+
+# One second each: whether a deed is done at it, and whether it waits.
+STORIES = st.lists(st.tuples(st.booleans(), st.booleans()), max_size=80)
+
+
+@given(STORIES, st.integers(0, 50))
+def test_who_watches_live_marks_the_causes_that_a_recording_shows(story, seed):
+    rows = [
+        rules.Look(float(time), 0.5 * deed, float(waits), 0.0)
+        for time, (deed, waits) in enumerate(story)
+    ]
+    found = causes_of(Plain(), rows)
+    live = person.Person(Plain(), seed)
+    marks = [mark for row in rows for mark in live.see(row)]
+    deeds = [cause.start for cause in found if cause.kind == "I"]
+    assert deeds == [time - 0.5 for time, (deed, _) in enumerate(story) if deed]
+    of_deeds = [mark for mark in marks if mark.topic == person.TYPE_I]
+    # The n-th key pressed comes after the n-th deed; a reaction may outlast the mission.
+    assert len(of_deeds) <= len(deeds)
+    assert all(mark.time > deed for mark, deed in zip(of_deeds, deeds, strict=False))
+    waits = [cause for cause in found if cause.kind == "II"]
+    for mark in marks:
+        if mark.topic == person.TYPE_II:
+            assert any(each.start + Plain.patience_s < mark.time <= each.end for each in waits)

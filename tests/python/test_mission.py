@@ -489,6 +489,12 @@ def test_treatment_is_read(folder):
     assert treatment.mark_type == "I"
     assert treatment.change == "limit 20 -> 3"
     assert treatment.overlay == folder / "params.yaml"
+    assert treatment.tipping is None
+
+
+def test_where_the_behaviour_tips_may_be_said(folder):
+    (folder / "treatment.json").write_text(json.dumps({**GOOD, "tipping": 12}))
+    assert load_treatment(folder).tipping == 12
 
 
 @pytest.mark.parametrize(

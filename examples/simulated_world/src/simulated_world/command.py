@@ -4,7 +4,7 @@
     observer.py --bag mission.bag --sights sights.parquet   from a bag to sights
     observer.py --sights sights.parquet --causes causes.json --marks marks.parquet --seed 1
 
-The last two need pyarrow, and no running robot.
+Files need pyarrow and no running robot; a bag needs the Python of ROS, too.
 """
 
 from __future__ import annotations
@@ -28,7 +28,8 @@ def main(observer: Observer[SightT], arguments: Sequence[str]) -> int:
         arguments: the command line without the program; what roslaunch adds is left to ROS.
 
     Returns:
-        The exit status: 1, and one line on stderr, where a file is not as it has to be.
+        The exit status: 1, and one line on stderr, where a file is not as it has to be or a
+        module is missing.
     """
     options = _parser().parse_args([text for text in arguments if ":=" not in text])
     try:
@@ -43,6 +44,8 @@ def main(observer: Observer[SightT], arguments: Sequence[str]) -> int:
         return _failed(f"{error.filename}: {error.strerror}" if error.filename else str(error))
     except ObserverError as error:
         return _failed(str(error))
+    except ModuleNotFoundError as error:
+        return _failed(f"this Python ({sys.executable}) has no {error.name}")
     return 0
 
 
@@ -76,13 +79,15 @@ def _parser() -> argparse.ArgumentParser:
 
 def _from_files(observer: Observer[SightT], options: argparse.Namespace) -> None:
     from simulated_world import marks_file  # noqa: PLC0415
-    from simulated_world.sights import load_sights, read_bag, save_sights  # noqa: PLC0415
+    from simulated_world.sights import load_sights, save_sights  # noqa: PLC0415
 
     if options.sights is None:
         raise ObserverError("--sights is missing")
     if options.bag is None:
         sights = load_sights(options.sights, observer.sight)
     else:
+        from simulated_world.bag import read_bag  # noqa: PLC0415
+
         sights = read_bag(options.bag, observer)
         save_sights(sights, observer.sight, options.sights)
     causes = causes_of(observer.rules(), sights)

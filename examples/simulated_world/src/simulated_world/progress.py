@@ -30,8 +30,9 @@ class Progress:
         shown = False
         try:
             for count, item in enumerate(items):
-                if time.monotonic() >= due:
-                    due, shown = time.monotonic() + EVERY_S, True
+                now = time.monotonic()
+                if now >= due:
+                    due, shown = now + EVERY_S, True
                     percent = 100 * count // self._total
                     print(f"\r{self._what}: {percent} %", end="", file=sys.stderr, flush=True)
                 yield item

@@ -1,20 +1,17 @@
-"""Sights from a bag, and sights as a table (Parquet): one column for each field of a sight."""
+"""Sights as a table (Parquet): one column for each field of a sight."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import fields
 from itertools import pairwise
 from pathlib import Path
 
 import pyarrow as pa
 import pyarrow.parquet as pq
-from rosbag import Bag, ROSBagException
 
 from simulated_world.atomic_file import replacing
 from simulated_world.errors import ObserverError
-from simulated_world.observer import Observer
-from simulated_world.progress import Progress
 from simulated_world.rules import SightT
 
 # A field's type is its text where the module has postponed annotations.
@@ -82,36 +79,3 @@ def check_order(sights: Sequence[SightT], path: Path) -> None:
                 f"{path}: the time runs back from {before.time:.3f} s to {after.time:.3f} s"
                 f" at sight {number}"
             )
-
-
-def read_bag(path: Path, observer: Observer[SightT]) -> list[SightT]:
-    """What an observer would have seen of a recorded mission (ROS 1 bag).
-
-    Raises:
-        ObserverError: it is no bag, or nothing was recorded of what a person sees.
-        OSError: it cannot be read.
-    """
-    try:
-        with Bag(str(path)) as bag:
-            sights = list(_sights_in(bag, observer, path))
-    except ROSBagException as error:
-        raise ObserverError(f"{path}: no readable bag: {error}") from error
-    check_order(sights, path)
-    return sights
-
-
-def _sights_in(bag: Bag, observer: Observer[SightT], path: Path) -> Iterator[SightT]:
-    channels = observer.eyes().channels()
-    recorded = bag.get_type_and_topic_info().topics
-    for topic, channel in channels.items():
-        if topic in recorded and recorded[topic].msg_type != channel.message_type:
-            there = recorded[topic].msg_type
-            raise ObserverError(f"{path}: {topic} has {there}, not {channel.message_type}")
-    if not any(topic in recorded for topic in channels):
-        raise ObserverError(f"{path}: nothing was recorded on {', '.join(channels)}")
-    messages = bag.read_messages(topics=list(channels))
-    progress = Progress(f"reading {path.name}", bag.get_message_count(list(channels)))
-    for topic, message, _ in progress.over(messages):
-        sight = channels[topic].take(message)
-        if sight is not None:
-            yield sight
