@@ -16,7 +16,7 @@ from pytpc.paths import cmake_file, defer_plugin, log_library, plugin, project_r
 from pytpc.static_info import StaticInfo
 from pytpc.study.plan import Flight
 
-VERSION = 1
+VERSION = 2
 """Counts what the study itself does to a mission: another number has all flown again."""
 
 _NO_INPUT = frozenset({"treatments", "__pycache__"})
