@@ -231,6 +231,11 @@ def test_a_mission_that_does_not_end_is_not_done(flier, rig, example):
     assert load_done(flight.folder(flier.out)) is None
 
 
+def test_the_eyes_are_where_the_digest_looks_for_them():
+    for file in digest.EYES:
+        assert file.is_file()
+
+
 def test_the_sources_digest_knows_what_the_robot_is_built_from(example):
     before = digest.sources_digest(example)
     for name in ("README.md", "study.json", "treatments/clean/params.yaml", "demo.py"):
