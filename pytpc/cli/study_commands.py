@@ -12,6 +12,7 @@ from rich.text import Text
 from pytpc.cli.console import console
 from pytpc.cli.options import JSON, PATH, Command
 from pytpc.cli.study_progress import StudyProgress
+from pytpc.cli.study_report_command import report_command
 from pytpc.cli.study_suggestions import suggestions_command
 from pytpc.demo_examples import EXAMPLES
 from pytpc.errors import RunError
@@ -154,6 +155,7 @@ def halves_command(*, as_json: bool) -> None:
     console().print(table, highlight=False)
 
 
+study_group.add_command(report_command)
 study_group.add_command(suggestions_command)
 
 COMMANDS: list[click.Command] = [study_group]
