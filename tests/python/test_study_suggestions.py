@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 
+import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 from click.testing import CliRunner
@@ -13,11 +14,13 @@ from pytpc.cli.study_suggestions import suggestions_command
 from pytpc.errors import InputError
 from pytpc.ingest.recording import Recording, save_recording
 from pytpc.marks import Mark
+from pytpc.study.case import Verdict
 from pytpc.study.suggestion_chains import Chain, Try, shares
-from pytpc.study.suggestions import load_orders, next_round
+from pytpc.study.suggestions import next_round
 
 MISSION = "robot/type1_limit/seed-1"
 OTHER = "~other"
+USER_MARK = ("time_ns", "observer", "cause", "right", "said")
 
 
 def log(threshold, cmps=None):
@@ -41,7 +44,9 @@ def out(tmp_path):
     flag = comparison(1, OTHER, "flag", default=False)
     static_info(comparison(0, "~limit", ">=", default=25), flag).save(static / "static.json")
     save(tmp_path / "missions" / MISSION, log(3))
-    (tmp_path / "missions" / MISSION / "treatment.json").write_text(json.dumps(values))
+    (tmp_path / "missions" / MISSION / "treatment.json").write_text(
+        json.dumps({**values, "type": "type1"})
+    )
     save(tmp_path / "reference" / "robot", log(25, range(10)))
     return tmp_path
 
@@ -59,6 +64,10 @@ def fly(out, value, *, gone, new=False, parameter="~limit"):
     errors = [] if gone and not new else ["I: too early"]
     said = {"parameter": parameter, "value": value, "gone": gone, "new": new, "errors": errors}
     (folder / "suggestion.json").write_text(json.dumps(said))
+
+
+def marks_file(out):
+    return out / "missions" / MISSION / "marks.parquet"
 
 
 def wanted(out):
@@ -107,8 +116,9 @@ def test_rounds(out):
 # Of the first nothing is known. The second is a flag that never changed, so that no mark of type
 # I is about it; the third is the counter. Its value is that of the chain `lasting`: one flight.
 def test_suspects_are_tried_in_turn(out):
-    orders = {MISSION: ["<dynamic> at a.cpp:1", OTHER, "~limit"]}
-    chains = next_round(out, orders=orders)
+    method = lambda _: Verdict(("<dynamic> at a.cpp:1", OTHER, "~limit"))  # noqa: E731
+    pq.write_table(pa.table({name: [] for name in USER_MARK}), marks_file(out))
+    chains = next_round(out, method=method)
     tries = next(chain.tries for chain in chains if chain.variant == "suspects")
     assert [one.reason for one in tries] == [
         "only the running node knows its name",
@@ -117,7 +127,7 @@ def test_suspects_are_tried_in_turn(out):
     ]
     assert (tries[2].parameter, tries[2].node, tries[2].value) == ("~limit", "/brain", 10)
     fly(out, 10, gone=True)
-    chains = next_round(out, orders=orders)
+    chains = next_round(out)
     assert [one.variant for one in chains if one.is_over] == ["lasting", "suspects"]
 
 
@@ -138,7 +148,7 @@ def test_nobody_marked(out):
 
 def chain(treatment, seed, *gone):
     tries = [Try("p", None, 1.0, None, one, False) for one in gone]
-    return Chain("robot", treatment, "type1", "tuning", seed, "lasting", 1.0, 2.0, tries)
+    return Chain("robot", treatment, "type1", "tuning", seed, "lasting", 1.0, 2.0, (), tries)
 
 
 # Treatment a: of its two seeds one at once and one by the second try; b by neither of three.
@@ -175,11 +185,7 @@ def test_the_command(out):
     }  # fmt: skip
 
 
-def test_files_that_are_broken(out, tmp_path):
-    path = tmp_path / "orders.json"
-    path.write_text('{"a": ["x", 3]}')
-    with pytest.raises(InputError, match="not a list of parameters: a"):
-        load_orders(path)
+def test_files_that_are_broken(out):
     (out / "study.json").write_text("{}")
     with pytest.raises(InputError, match="not about a study"):
         next_round(out)
