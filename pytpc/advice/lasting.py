@@ -217,9 +217,10 @@ def _stays(
         cut = is_near and _climbs(values[max(0, begin - _RUN_UP) : begin + 1])
         ended.append(end < values.size and not cut)
     before = values[(series.went == base) & recent]
-    begin_value = float(np.quantile(before, _OUTER, method="lower")) if before.size else 0.0
+    lowest = float(np.quantile(before, _OUTER, method="lower")) if before.size else 0.0
+    lowest = min(lowest, _begin_of_climb(values[: change[first] + 1]))
     count = max(1, sum(ended))
-    edge = _estimate(max(peaks), begin_value, (_WAY + 2 * tries) ** (1 / count))
+    edge = _estimate(max(peaks), lowest, (_WAY + 2 * tries) ** (1 / count))
     ground: Ground = "peaks" if any(ended) else "growth"
     least = sign * float(values[change[first]])
     near = (int(marks[0]) - int(when[first])) / 1e9
@@ -257,6 +258,12 @@ def _climbs(values: Floats) -> bool:
     """Whether the values only grow, and not in one jump."""
     steps = np.diff(values)
     return bool(np.all(steps >= 0)) and int(np.count_nonzero(steps > 0)) > 1
+
+
+def _begin_of_climb(values: Floats) -> float:
+    """Where the last value was climbed to from, which may be long before the window."""
+    falls = np.flatnonzero(np.diff(values) < 0)
+    return float(values[falls[-1] + 1 if falls.size else 0])
 
 
 def _estimate(peak: float, begin: float, factor: float) -> float:

@@ -55,11 +55,17 @@ def test_a_counter_is_stepped_beyond_where_the_program_acted():
     assert "a first step" in found.text
 
 
-# Flown with 7 and still wrong: 0 + 7 * 5 = 35, so 36. With 22: of the 22 values 0 to 21 the first
-# 5 % are the 0, so the way begins at 1: 1 + 21 * 7 = 148, so 149.
+# Flown with 7 and still wrong: 0 + 7 * 5 = 35, so 36. With 22: 0 + 22 * 7 = 154, so 155, although
+# the lowest 5 % of the 22 values 0 to 21 end at 1.
 def test_each_try_in_vain_steps_further():
     assert ask(">=", range(8), 7, marks(99), default=3, flown=[3]).value == 36
-    assert ask(">=", range(23), 22, marks(99), default=3, flown=[3, 7], step=0.3).value == 149
+    assert ask(">=", range(23), 22, marks(99), default=3, flown=[3, 7], step=0.3).value == 155
+
+
+# The way begins where the ramp did, before the window: of 0, 1, ... 20 from 80 s on the window
+# before the mark at 101 s has those from 9 on. 0 + 20 * 3 = 60, so 61.
+def test_a_ramp_that_is_longer_than_the_window():
+    assert ask(">=", range(21), 20, marks(101), begin=80.0, default=3).value == 61
 
 
 # Peaks 3, 5 and 4 that went back by themselves. The threshold is 2 and the step 1, so 3 may be the
