@@ -167,11 +167,10 @@ def parameter_scores(
         + weights.flat * found.flat
         + weights.far * found.far
     )
-    latch = 1.0 / (1.0 + np.exp(-weights.latch))
-    other = 1.0 / (1.0 + np.exp(-np.asarray(odds)))
-    score = np.logaddexp(
-        first + np.log(1.0 - other * (1.0 - latch)), second + np.log(other * (1.0 - latch))
-    )
+    # In logarithms: of type II that are latches, of type II that are not, of type I.
+    latched, held = -np.logaddexp(0.0, -weights.latch), -np.logaddexp(0.0, weights.latch)
+    other, one = -np.logaddexp(0.0, -np.asarray(odds)), -np.logaddexp(0.0, odds)
+    score = np.logaddexp(first + np.logaddexp(one, other + latched), second + other + held)
     best = np.full(parameters, -np.inf)
     np.maximum.at(best, columns, score)
     return best
