@@ -129,13 +129,11 @@ def gone_wrong(mission: TreatedMission) -> list[str]:
     if treatment.type == "clean":
         if mission.rankings:
             found.append(f"{treatment.name}: the observer set {len(mission.rankings)} marks")
-        if not reached:
-            found.append(f"{treatment.name}: {example.missed}")
     elif treatment.mark_type is not None and not mission.judged:
         kind = treatment.mark_type
         found.append(f"{treatment.name}: the observer set no mark of type {kind}")
-    if treatment.type in example.missed_under and reached:
-        found.append(f"{treatment.name}: {example.reached}")
+    for remark in example.goal_remarks(treatment, reached=reached):
+        found.append(f"{treatment.name}: {remark}")
     lost = sum(run.lost.values())
     if lost:
         found.append(f"{treatment.name}: {lost} log messages were lost by the recorder")

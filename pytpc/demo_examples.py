@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from pytpc.errors import WorkspaceError
 from pytpc.paths import project_root
-from pytpc.treatment import Treatment, TreatmentType, load_treatment
+from pytpc.treatment import TREATMENT_FILE, Treatment, TreatmentType, load_treatment
 
 SHARED_PACKAGE = project_root() / "examples" / "simulated_world"
 """The catkin package that the robots' simulators and observers share."""
@@ -20,6 +21,8 @@ class Example:
     ``goal_topic`` is the topic on which there is a message for each time that the robot did what
     the mission is for; ``reached`` and ``missed`` say so in a sentence's end. ``missed_under`` are
     the types of treatment that keep it from it. ``shown`` are the treatments of the demonstration.
+    ``simulator`` is the node that is the world, not the robot. ``study_rate`` is how many simulated
+    seconds the study flies in a second of the wall.
     """
 
     name: str
@@ -30,6 +33,8 @@ class Example:
     missed: str
     missed_under: frozenset[TreatmentType]
     shown: tuple[str, ...]
+    simulator: str = "/uav_simulator"
+    study_rate: float = 12.0
 
     @property
     def folder(self) -> Path:
@@ -38,8 +43,22 @@ class Example:
 
     @property
     def launch(self) -> Path:
-        """Its launch file; it has the arguments ``seed`` and ``treatment``."""
+        """Its launch file.
+
+        Its arguments: ``rate`` (of the simulated time), ``seed``, ``treatment`` and ``overlay2``
+        (files of parameters, loaded one after the other), ``fault``, ``observer``.
+        """
         return self.folder / "launch" / f"{self.name}.launch"
+
+    @property
+    def parameters(self) -> Path:
+        """The file with the parameters with which its mission goes right."""
+        return self.folder / "config" / "params.yaml"
+
+    @property
+    def observer(self) -> Path:
+        """The program that sees what a person beside the robot sees."""
+        return self.folder / "scripts" / "observer.py"
 
     def treatment(self, name: str) -> Treatment:
         """One of its treatments.
@@ -57,6 +76,23 @@ class Example:
         """
         return [self.treatment(name) for name in names or self.shown]
 
+    def goal_remarks(self, treatment: Treatment, *, reached: bool) -> list[str]:
+        """A sentence where the goal was reached against what the treatment demands, or missed."""
+        if treatment.type == "clean" and not reached:
+            return [self.missed]
+        if treatment.type in self.missed_under and reached:
+            return [self.reached]
+        return []
+
+    def all_treatments(self) -> list[Treatment]:
+        """All that there are, by name.
+
+        Raises:
+            InputError: see ``load_treatment``.
+        """
+        files = (self.folder / "treatments").glob(f"*/{TREATMENT_FILE}")
+        return [load_treatment(path.parent) for path in sorted(files)]
+
 
 IMAGE_CAPTURE = Example(
     name="image_capture",
@@ -65,8 +101,8 @@ IMAGE_CAPTURE = Example(
     goal_topic="/camera/picture",
     reached="a picture was taken",
     missed="no picture was taken",
-    # With the treatment of type I there is a picture, of nobody.
-    missed_under=frozenset({"type2", "fault"}),
+    # With treatments of type I, and with one of the faults, there is a picture, of nobody.
+    missed_under=frozenset({"type2"}),
     shown=("clean", "type1_face_detection_threshold", "type2_min_coverage_limit"),
 )
 
@@ -86,3 +122,50 @@ WATER_SAMPLER = Example(
         "type2_hold_radius",
     ),
 )
+
+NAVIGATION = Example(
+    name="navigation",
+    title="Navigation",
+    watched=(
+        "/truth/robot",
+        "/truth/goal",
+        "/truth/events",
+        "/truth/goal_signalled",
+        "/mission/state",
+    ),
+    goal_topic="/truth/goal_signalled",
+    reached="the lamp was lit at the goal",
+    missed="the lamp was not lit at the goal",
+    # With some treatments of type I the robot gets there, and touches something on the way.
+    missed_under=frozenset({"type2", "fault"}),
+    shown=(
+        "clean",
+        "type1_goal_tolerance",
+        "type1_return_voltage",
+        "type2_heading_tolerance_deg",
+        "type2_min_start_quality",
+    ),
+    simulator="/ground_simulator",
+)
+
+EXAMPLES = (IMAGE_CAPTURE, WATER_SAMPLER, NAVIGATION)
+"""All robots, in the order of the study."""
+
+
+def link_package(example: Example, workspace: Path) -> None:
+    """Put links to the example, and to what the examples share, into a workspace.
+
+    Raises:
+        WorkspaceError: one cannot be made.
+    """
+    for package in (example.folder, SHARED_PACKAGE):
+        link = workspace / "src" / package.name
+        if link.resolve() == package:
+            continue
+        # What stands there is the link of an earlier checkout.
+        try:
+            link.parent.mkdir(parents=True, exist_ok=True)
+            link.unlink(missing_ok=True)
+            link.symlink_to(package)
+        except OSError as error:
+            raise WorkspaceError(f"cannot be made: {error.strerror}", link) from error

@@ -20,8 +20,8 @@ from pytpc.cli.console import progress
 from pytpc.cli.mission_commands import mission_progress
 from pytpc.colcon import BuildError
 from pytpc.demo import TreatedMission, failures, result_table, run_treatment
-from pytpc.demo_examples import SHARED_PACKAGE, Example
-from pytpc.errors import TpcError, WorkspaceError
+from pytpc.demo_examples import Example, link_package
+from pytpc.errors import TpcError
 from pytpc.python_env import mission_env
 from pytpc.report.html import write_report
 from pytpc.static_info import StaticInfo
@@ -123,25 +123,6 @@ def build(example: Example, console: Console, out: Path) -> Built:
         tell_found(console, result.static)
     env = mission_env(workspace_env(result.bases.install), result.bases.static_info)
     return Built(example, result.static, env)
-
-
-def link_package(example: Example, workspace: Path) -> None:
-    """Put links to the example, and to what the examples share, into a workspace.
-
-    Raises:
-        WorkspaceError: one cannot be made.
-    """
-    for package in (example.folder, SHARED_PACKAGE):
-        link = workspace / "src" / package.name
-        if link.resolve() == package:
-            continue
-        # What stands there is the link of an earlier checkout.
-        try:
-            link.parent.mkdir(parents=True, exist_ok=True)
-            link.unlink(missing_ok=True)
-            link.symlink_to(package)
-        except OSError as error:
-            raise WorkspaceError(f"cannot be made: {error.strerror}", link) from error
 
 
 def tell_found(console: Console, static: StaticInfo) -> None:

@@ -22,6 +22,7 @@ OVERLAY_FILE = "params.yaml"
 TreatmentType = Literal["clean", "type1", "type2", "fault"]
 _MARK_TYPES: Mapping[str, MarkType] = {"type1": "I", "type2": "II"}
 _FIELDS = ("name", "type", "parameter", "node", "old", "new", "launch", "effect")
+_OPTIONAL = "tipping"
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +33,7 @@ class Treatment:
     left out), ``node`` whose it is,
     ``old`` and ``new`` its values; all None where no parameter is changed. ``launch`` are arguments
     for the launch file, ``overlay`` is the file with the parameters, ``effect`` a sentence.
+    ``tipping`` is the value at which the behaviour tips, None where nobody looked for it.
     """
 
     name: str
@@ -43,6 +45,7 @@ class Treatment:
     launch: dict[str, str]
     effect: str
     overlay: Path
+    tipping: float | None = None
 
     @property
     def mark_type(self) -> MarkType | None:
@@ -90,8 +93,9 @@ def save_treatment(treatment: Treatment, mission: Path) -> None:
 
 
 def _treatment(document: object, overlay: Path) -> Treatment:
-    if not isinstance(document, dict) or sorted(document) != sorted(_FIELDS):
-        raise ValueError(f"it has to have exactly the fields {', '.join(_FIELDS)}")
+    if not isinstance(document, dict) or sorted({*document} - {_OPTIONAL}) != sorted(_FIELDS):
+        fields = ", ".join(_FIELDS)
+        raise ValueError(f"it has to have exactly the fields {fields}, and may have {_OPTIONAL}")
     kind = document["type"]
     if kind not in get_args(TreatmentType):
         raise ValueError(f"type is {kind!r}, not one of {', '.join(get_args(TreatmentType))}")
@@ -103,10 +107,15 @@ def _treatment(document: object, overlay: Path) -> Treatment:
     if changed != (kind in _MARK_TYPES):
         raise ValueError(f"type {kind} has {'no ' if changed else 'a '}changed parameter")
     for field in ("old", "new"):
-        number = isinstance(document[field], int | float) and not isinstance(document[field], bool)
-        if number != changed:
+        if _is_number(document[field]) != changed:
             raise ValueError(f"{field} is not {'a number' if changed else 'null'}")
+    if document.get(_OPTIONAL) is not None and not (changed and _is_number(document[_OPTIONAL])):
+        raise ValueError(f"{_OPTIONAL} is not {'a number or ' if changed else ''}null")
     launch = document["launch"]
     if not isinstance(launch, dict) or not all(isinstance(v, str) for v in launch.values()):
         raise ValueError("launch is not an object of texts")
     return Treatment(**{**document, "overlay": overlay})
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)

@@ -39,6 +39,7 @@ SUMMARIES = {
     "show": ("static_commands", "Show all that is known about a comparison."),
     "sink": ("graph_commands", "Show and change where running nodes report to."),
     "stats": ("stats_commands", "Tables and figures of a study from recorded missions."),
+    "study": ("study_commands", "Fly the study of the example robots; its halves; its tables."),
     "suggest": ("advice_commands", "Say what to do with the suspects, and what it would change."),
     "survey": ("survey_commands", "Build source trees with and without TPC; tables."),
     "toolchain": ("machine_commands", "Print what to type to build with TPC by another tool."),

@@ -18,6 +18,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from PIL import Image
 
 from pytpc.atomic import write_atomic
 from pytpc.marks import Mark, MarkType
@@ -82,21 +83,36 @@ def style() -> Iterator[None]:
         yield
 
 
-def save(figure: Figure, target: Path, form: str) -> None:
+def save(
+    figure: Figure, target: Path, form: str, dpi: int = _DPI, *, palette: bool = False
+) -> None:
     """Write a figure, atomically; call it within ``style``.
 
     Args:
         figure: it keeps its size.
         target: the file.
         form: one of ``FORMATS``.
+        dpi: dots per inch, for ``png``.
+        palette: write a ``png`` with 256 colours, which takes a third of the room.
 
     Raises:
         TpcError: the file cannot be written.
     """
     stream = io.BytesIO()
     FigureCanvasAgg(figure)
-    figure.savefig(stream, format=form, dpi=_DPI, metadata=_METADATA[form])
+    figure.savefig(stream, format=form, dpi=dpi, metadata=_METADATA[form])
+    if palette and form == "png":
+        stream = _with_palette(stream)
     write_atomic(target, stream.getvalue())
+
+
+def _with_palette(png: io.BytesIO) -> io.BytesIO:
+    stream = io.BytesIO()
+    with Image.open(png) as image:
+        image.convert("RGB").quantize(256, dither=Image.Dither.NONE).save(
+            stream, format="PNG", optimize=True
+        )
+    return stream
 
 
 def short(text: str, length: int) -> str:

@@ -63,6 +63,7 @@ FOLDERS: Mapping[str, Sequence[str]] = {
     "patch": (INPUT,),
     "record": (INPUT, "robot.launch", "-o", "out"),
     "run": (INPUT,),
+    "study": ("suggested", INPUT),
     "survey": (INPUT,),
 }
 GRAPHS: Mapping[str, Sequence[str]] = {

@@ -10,6 +10,9 @@ from pathlib import Path
 import pytest
 import yaml
 
+from pytpc.demo_examples import IMAGE_CAPTURE
+from pytpc.treatment import Treatment
+
 PACKAGE = Path(__file__).parents[2] / "examples/image_capture"
 # Which handle a parameter is read by is not looked at here.
 DOCUMENT = json.loads((PACKAGE / "expected_tpcs.json").read_text().replace('"~', '"'))
@@ -55,14 +58,20 @@ def test_each_parameter_of_the_lists_is_read_and_each_read_one_is_in_a_list():
     assert reads() - listed - crossing == set()
 
 
-def test_fault_build_differs_in_the_one_relation():
-    def of(unit: str) -> Counter:
-        return Counter(
-            (entry["parameter"], entry["relation"])
-            for entry in DOCUMENT["tpcs"]
-            if entry["unit"] == unit
-        )
+def of(unit: str) -> Counter:
+    return Counter(
+        (entry["parameter"], entry["relation"])
+        for entry in DOCUMENT["tpcs"]
+        if entry["unit"] == unit
+    )
 
+
+def test_a_fault_may_be_in_no_relation():
+    # It is in the word between two of them.
+    assert of("face_detector") == of("face_detector_fault")
+
+
+def test_fault_build_differs_in_the_one_relation():
     assert of("mission") - of("mission_fault") == Counter({("max_coverage_limit", "<"): 1})
     assert of("mission_fault") - of("mission") == Counter({("max_coverage_limit", ">"): 1})
 
@@ -105,3 +114,57 @@ def test_the_table_of_the_thesis_is_covered():
 def test_package_is_large_enough_to_be_a_robot():
     lines = sum(len(path.read_text().splitlines()) for path in source_files())
     assert lines > 1500
+
+
+def treatments(kind: str) -> list[Treatment]:
+    folders = sorted((PACKAGE / "treatments").glob(f"{kind}*"))
+    return [IMAGE_CAPTURE.treatment(folder.name) for folder in folders]
+
+
+@pytest.mark.parametrize("kind", ["type1", "type2"])
+def test_treatments_of_a_type_change_five_parameters_of_three_nodes(kind):
+    changed = treatments(kind)
+    assert len({treatment.parameter for treatment in changed}) >= 5
+    nodes = {treatment.node for treatment in changed}
+    assert nodes == {"/mission", "/face_detector", "/flight_controller"}
+    assert all(treatment.tipping is not None for treatment in changed)
+
+
+def test_no_parameter_is_changed_in_both_types():
+    first, second = (
+        {treatment.parameter for treatment in treatments(kind)} for kind in ("type1", "type2")
+    )
+    assert first & second == set()
+
+
+@pytest.mark.parametrize("treatment", treatments("type"), ids=lambda treatment: str(treatment.name))
+def test_treatment_changes_one_compared_parameter_past_where_it_tips(treatment):
+    own = yaml.safe_load((PACKAGE / "config/params.yaml").read_text())
+    node, name = treatment.node.lstrip("/"), treatment.parameter.lstrip("~")
+    assert treatment.name == f"{treatment.type}_{name}"
+    assert yaml.safe_load(treatment.overlay.read_text()) == {node: {name: treatment.new}}
+    assert own[node][name] == treatment.old
+    assert treatment.old != treatment.new
+    between = sorted([treatment.old, treatment.tipping, treatment.new])
+    assert between[1] == treatment.tipping
+    assert name in {entry["parameter"] for entry in DOCUMENT["tpcs"]}
+
+
+def test_what_changes_no_parameter_sets_none():
+    # The file of clean is loaded after the treatment's.
+    assert len(treatments("fault")) == 2
+    for treatment in [*treatments("clean"), *treatments("fault")]:
+        assert yaml.safe_load(treatment.overlay.read_text()) == {}
+
+
+def test_faults_are_those_that_the_launch_file_knows():
+    launch = (PACKAGE / "launch/image_capture.launch").read_text()
+    known = set(re.findall(r"'(\w+)'", " ".join(re.findall(r"eval fault [^\"]*", launch))))
+    assert known == {"none"} | {treatment.launch["fault"] for treatment in treatments("fault")}
+
+
+def test_what_never_is_a_decoy_is_configured():
+    own = yaml.safe_load((PACKAGE / "config/params.yaml").read_text())
+    for name in json.loads((PACKAGE / "study.json").read_text())["never_decoys"]:
+        _, node, parameter = name.split("/")
+        assert isinstance(own[node][parameter], float)

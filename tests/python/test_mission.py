@@ -251,12 +251,13 @@ def test_recorder_stamps_with_the_clock_and_keeps_the_account(tmp_path):
     recorder.take(ROSOUT, log(b"/a", 1, b"threshold_information:k,1,cmp:1,thresh:1,res:1"))
     recorder.take(ROSOUT, log(b"/a", 4, b"threshold_informant"))
     recorder.take(DONE, b"\1")
+    assert recorder.status().done
     bag.close()
     # /clock was not asked for, so it is not in the bag. Of two log messages one is a report, and
     # 2 and 3 are missing between them.
     assert recorder.status(closed=True) == Status(
         ready=True,
-        done=True,
+        done_ns=4_000_000_000,
         closed=True,
         began_ns=3_250_000_000,
         now_ns=4_000_000_000,
@@ -336,7 +337,7 @@ def test_a_recording_that_was_cut_off_can_be_reindexed(tmp_path):
 def test_status_survives_the_way_through_its_file(tmp_path):
     path = tmp_path / "status.json"
     assert read_status(path) is None
-    status = Status(ready=True, now_ns=5, messages={"/rosout": 3}, lost={"/a": 1})
+    status = Status(ready=True, done_ns=4, now_ns=5, messages={"/rosout": 3}, lost={"/a": 1})
     save_status(status, path)
     assert read_status(path) == status
 
@@ -489,6 +490,12 @@ def test_treatment_is_read(folder):
     assert treatment.mark_type == "I"
     assert treatment.change == "limit 20 -> 3"
     assert treatment.overlay == folder / "params.yaml"
+    assert treatment.tipping is None
+
+
+def test_where_the_behaviour_tips_may_be_said(folder):
+    (folder / "treatment.json").write_text(json.dumps({**GOOD, "tipping": 12}))
+    assert load_treatment(folder).tipping == 12
 
 
 @pytest.mark.parametrize(
@@ -502,6 +509,8 @@ def test_treatment_is_read(folder):
         ({"parameter": None, "node": None}, "type type1 has a changed parameter"),
         ({"launch": {"fault": True}}, "launch is not an object of texts"),
         ({"extra": 1}, "exactly the fields"),
+        ({"tipping": "7"}, "tipping is not a number or null"),
+        ({"tipping": True}, "tipping is not a number or null"),
     ],
 )
 def test_wrong_treatments_say_what_is_wrong(folder, change, what):
@@ -509,6 +518,21 @@ def test_wrong_treatments_say_what_is_wrong(folder, change, what):
     with pytest.raises(InputError, match=what) as caught:
         load_treatment(folder)
     assert str(caught.value).startswith(f"{folder}/treatment.json: ")
+
+
+@pytest.mark.parametrize("tipping", [7, 6.5, None])
+def test_a_treatment_may_say_where_the_behaviour_tips(folder, tipping):
+    assert load_treatment(folder).tipping is None
+    (folder / "treatment.json").write_text(json.dumps({**GOOD, "tipping": tipping}))
+    assert load_treatment(folder).tipping == tipping
+
+
+def test_nothing_tips_where_no_parameter_is_changed(folder):
+    nothing = dict.fromkeys(("parameter", "node", "old", "new"))
+    clean = {**GOOD, **nothing, "type": "clean", "tipping": 7}
+    (folder / "treatment.json").write_text(json.dumps(clean))
+    with pytest.raises(InputError, match="tipping is not null"):
+        load_treatment(folder)
 
 
 def test_broken_json_says_the_line(folder):

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from types import SimpleNamespace
 
 import pytest
-from observer_scripts import load_observer
+from observer_scripts import load_observer, shared_module
 
 from pytpc.demo_examples import WATER_SAMPLER
 
 observer = load_observer(WATER_SAMPLER)
+Person = shared_module("person").Person
 
 # The tube is 1 m long and the water 0.65 m above the ground: its tip is wet below a height of 1.65.
 WET_BELOW = 1.65
@@ -42,7 +44,7 @@ def sights(*phases: tuple[float, float, float, bool, float]) -> Iterable:
 
 
 def watch(phases: list, seed: int = 1) -> list:
-    person = observer.Observer(seed)
+    person = Person(observer.OBSERVER.rules(), seed)
     return [mark for sight in sights(*phases) for mark in person.see(sight)]
 
 
@@ -148,14 +150,92 @@ def test_lowering_slowly_is_not_standing():
     assert all(watch(phases, seed) == [] for seed in range(20))
 
 
-def test_landing_without_having_pumped_is_type1():
-    # It goes on at once: nobody loses patience. 0.5 m below 2.4 m is passed a half second after
-    # the descent begins at 13 s.
-    phases = [*BEGIN, (9.0, AT_TANK, 2.4, False, 0.0), *home(7.0 + 2.0, 0.0)]
-    marks = watch(phases)
-    assert [mark.topic for mark in marks] == ["mark_action"]
-    assert "lands" in marks[0].reason
-    assert marks[0].time > 15.5
+def causes(phases: list) -> list[tuple[str, float, str]]:
+    """Kind, begin in s and reason of all that is wrong."""
+    found = shared_module("rules").causes_of(observer.TankRules(), sights(*phases))
+    return [(cause.kind, round(cause.start, 1), cause.reason) for cause in found]
+
+
+def test_leaving_without_having_pumped_is_type1():
+    # It goes on at once: nobody loses patience. It leaves at 11 s with 3 m in 4 s: 0.45 m, where
+    # the tank ends, after 0.6 s, and 0.5 m, where it is plain that it goes home, after 0.67 s.
+    phases = [*BEGIN, (9.0, AT_TANK, 2.4, False, 0.0), *home(9.0, 0.0)]
+    assert causes(phases) == [("I", 11.7, "it leaves the tank without having pumped")]
+
+
+def test_turning_back_before_the_tank_is_type1():
+    # At 2 m, before the tank, it turns at 7 s; 0.5 m back at 1 m/s are 0.5 s, and a look more.
+    phases = [
+        BEGIN[0],
+        (7.0, 2.0, 2.4, False, 0.0),
+        (9.0, AT_HOME, 2.4, False, 0.0),
+        (13.0, AT_HOME, 0.0, False, 0.0),
+    ]
+    assert causes(phases) == [("I", 7.6, "it turns back before the tank")]
+
+
+def test_coming_down_in_the_midst_is_type1_once():
+    # From 2.4 m at 0.6 m/s: 0.5 m lower after 0.83 s.
+    phases = [BEGIN[0], (6.0, 1.5, 2.4, False, 0.0), (10.0, 1.5, 0.0, False, 0.0)]
+    assert causes(phases) == [("I", 6.9, "it comes down far from home")]
+
+
+def test_coming_down_into_the_tank_is_type1():
+    # 0.5 m deep is the tip at 1.15 m: 1.25 m lower, after 2.08 s at 0.6 m/s.
+    phases = [*BEGIN, (12.0, AT_TANK, 0.0, False, 0.0)]
+    assert causes(phases) == [("I", 10.1, "it comes down into the tank")]
+
+
+def test_falling_is_type1():
+    # The last metre in 0.4 s are 2.5 m/s; over 0.3 s that is 0.45 m after 0.2 s:
+    # 0.1 s at 0.6 m/s and 0.2 s at 2.5 m/s are 0.56 m.
+    filled = [*LOWERED, (26.0, AT_TANK, 1.5, True, 0.9), (28.0, AT_TANK, 2.4, False, 0.9)]
+    down = [(32.0, AT_HOME, 2.4, False, 0.9), (34.0, AT_HOME, 1.0, False, 0.9)]
+    fall = (34.4, AT_HOME, 0.0, False, 0.9)
+    assert causes([*filled, *down, fall]) == [("I", 34.2, "it falls")]
+    # At 0.6 m/s it lands.
+    assert causes([*filled, *down, (35.7, AT_HOME, 0.0, False, 0.9)]) == []
+
+
+def test_staying_on_the_ground_is_type2_from_when_it_should_have_gone():
+    late = [(40.0, 0.0, 0.0, False, 0.0), (44.0, 0.0, 2.4, False, 0.0)]
+    # It is given 10 s from the first look on, at 0.1 s.
+    assert causes(late) == [("II", 10.2, "it does not take off")]
+    # 14 s are 4 s too many: less than the patience of 5 s.
+    assert causes([(14.0, 0.0, 0.0, False, 0.0), (18.0, 0.0, 2.4, False, 0.0)]) == []
+
+
+def test_hovering_away_from_the_tank_is_type2():
+    # Still since 6 s; in the second before, which is looked at together, it moved over 0.3 m/s
+    # until 0.6 s later: 1.5 m in 2 s are 0.75 m/s, of which 0.4 s are left in that second.
+    phases = [BEGIN[0], (6.0, 1.5, 2.4, False, 0.0), (16.0, 1.5, 2.4, False, 0.0)]
+    assert causes(phases) == [("II", 6.6, "it hovers where there is nothing to do")]
+
+
+def test_a_sight_is_of_one_time_though_its_halves_come_late():
+    def uav(seconds: float, z: float) -> SimpleNamespace:
+        place = SimpleNamespace(x=0.0, y=0.0, z=z)
+        return SimpleNamespace(header=header(seconds), pose=SimpleNamespace(position=place))
+
+    def sampler(seconds: float) -> SimpleNamespace:
+        return SimpleNamespace(
+            header=header(seconds), tip=SimpleNamespace(x=0.0, y=0.0, z=0.0),
+            tank=SimpleNamespace(x=TANK_X, y=0.0, z=0.65), tank_radius=0.45,
+            pump_running=False, vial_level=0.0,
+        )  # fmt: skip
+
+    def header(seconds: float) -> SimpleNamespace:
+        nanoseconds = round(seconds * 1e9)
+        stamp = SimpleNamespace(to_nsec=lambda: nanoseconds, to_sec=lambda: seconds)
+        return SimpleNamespace(stamp=stamp)
+
+    channels = observer.TankEyes().channels()
+    see_uav, see_sampler = (channels[f"/truth/{name}"].take for name in ("uav", "sampler"))
+    # Three of the UAV at once, then those of the tube; one of each has no other half.
+    seen = [see_uav(uav(seconds, seconds)) for seconds in (0.1, 0.2, 0.3)]
+    seen += [see_sampler(sampler(seconds)) for seconds in (0.1, 0.3, 0.4)]
+    seen.append(see_uav(uav(0.4, 0.4)))
+    assert [(s.time, s.z) for s in seen if s is not None] == [(0.1, 0.1), (0.3, 0.3), (0.4, 0.4)]
 
 
 def test_waiting_for_a_moment_does_not_change_how_fast_a_person_is():

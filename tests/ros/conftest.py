@@ -5,10 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from rich.console import Console
 
 from pytpc.build import BuildResult, build_workspace
-from pytpc.demo_examples import IMAGE_CAPTURE
-from pytpc.demo_show import link_package
+from pytpc.demo_examples import IMAGE_CAPTURE, WATER_SAMPLER, link_package
+from pytpc.demo_show import Built, build
+from pytpc.study.system import system_folder
 
 
 def build_example(folder: Path, build_type: str = "RelWithDebInfo") -> BuildResult:
@@ -20,3 +22,15 @@ def build_example(folder: Path, build_type: str = "RelWithDebInfo") -> BuildResu
 @pytest.fixture(scope="session")
 def built(tmp_path_factory: pytest.TempPathFactory) -> BuildResult:
     return build_example(tmp_path_factory.mktemp("ws"))
+
+
+@pytest.fixture(scope="session")
+def study_out(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A study's folder."""
+    return tmp_path_factory.mktemp("study")
+
+
+@pytest.fixture(scope="session")
+def water(study_out: Path) -> Built:
+    """The robot in two languages, built where the study looks for it."""
+    return build(WATER_SAMPLER, Console(quiet=True), system_folder(WATER_SAMPLER, study_out))

@@ -146,6 +146,15 @@ def test_fault_in_the_source_looks_like_a_type2_error(built, env, tmp_path):
     assert "mission" not in units
 
 
+def test_fault_in_another_node_looks_like_a_type1_error(built, env, tmp_path):
+    mission = fly("fault_shape_test", 1, built, env, tmp_path)
+    assert mission.run.messages["/camera/picture"] == 1
+    assert [r for r in mission.rankings if r.mark.type == "I"]
+    units = {built.static.unit_of(key).link_unit for key in mission.recording.events.keys}
+    assert {"face_detector_fault", "mission"} <= units
+    assert not {"face_detector", "mission_fault"} & units
+
+
 def test_node_that_dies_ends_the_mission_with_one_line(env, tmp_path):
     killed = []
 

@@ -18,6 +18,14 @@ struct Person {
   double y = 0.0;
 };
 
+/// What is seen of something upright: m, and 0 to 1.
+struct Upright {
+  double width = 0.0;
+  double height = 0.0;
+  double contrast = 0.0;
+  double response = 0.0; ///< of the feature bank
+};
+
 class CameraModel {
 public:
   CameraModel(ros::NodeHandle &private_nh, std::uint32_t seed);
@@ -35,7 +43,8 @@ private:
     double end = 0.0;
   };
 
-  void addPerson(const UavState &uav, double time, Observation &image);
+  void addUpright(const UavState &uav, const Person &place, const Upright &look,
+                  Observation &image);
   void addPhantom(const UavState &uav, double time, Observation &image);
   void addClutter(Observation &image);
   void addBlob(double offset_x, double width, double height, double contrast,
@@ -43,6 +52,8 @@ private:
   void schedulePhantom(double after);
 
   simulated_world::Noise noise_;
+  /// Apart: when the sun comes through does not depend on what else is seen.
+  simulated_world::Noise leaves_;
   Phantom phantom_;
   bool phantom_placed_ = false;
   std::uint32_t images_ = 0;

@@ -7,7 +7,9 @@
 
 #include <image_capture/AttitudeCommand.h>
 #include <image_capture/CapturePicture.h>
+#include <image_capture/FaceArray.h>
 #include <image_capture/Picture.h>
+#include <image_capture/WayPose.h>
 #include <ros/ros.h>
 #include <simulated_world/noise.h>
 #include <simulated_world/simulated_clock.h>
@@ -27,6 +29,8 @@ public:
 
 private:
   void onCommand(const AttitudeCommand &command);
+  void onFaces(const FaceArray &faces);
+  void onWayPose(const WayPose &waypose);
   bool onCapture(CapturePicture::Request &request,
                  CapturePicture::Response &response);
   void tick();
@@ -35,14 +39,14 @@ private:
   Picture makePicture(std::size_t bytes);
 
   simulated_world::SimulatedClock clock_;
-  simulated_world::Lockstep controller_;
+  simulated_world::Lockstep controller_, detector_, mission_;
   UavDynamics dynamics_;
   CameraModel camera_;
   simulated_world::Noise pixels_;
   ros::Publisher sensors_pub_, observation_pub_;
   ros::Publisher picture_pub_, preview_pub_;
   ros::Publisher uav_truth_pub_, person_truth_pub_;
-  ros::Subscriber command_sub_;
+  ros::Subscriber command_sub_, faces_sub_, waypose_sub_;
   ros::ServiceServer capture_server_;
 
   AttitudeCommand command_;
@@ -50,6 +54,7 @@ private:
   double sensor_period_;
   double image_period_;
   double max_command_lag_;
+  double max_tick_lag_;
   double shutter_interval_;
   double last_shutter_ = -1.0e3;
   std::uint32_t pictures_ = 0;

@@ -34,7 +34,11 @@ bool BlobFilter::plausibleShape(const Blob &blob) const {
   if (blob.width < min_face_width_)
     return false;
   const double aspect = blob.height / blob.width;
+#ifdef IMAGE_CAPTURE_SHAPE_FAULT
+  return aspect > min_aspect_ratio_ || aspect < max_aspect_ratio_;
+#else
   return aspect > min_aspect_ratio_ && aspect < max_aspect_ratio_;
+#endif
 }
 
 double BlobFilter::classify(const Blob &blob) {

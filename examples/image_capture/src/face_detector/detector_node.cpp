@@ -17,13 +17,11 @@ DetectorNode::DetectorNode(ros::NodeHandle &nh, ros::NodeHandle &private_nh)
 }
 
 void DetectorNode::onObservation(const Observation &observation) {
-  if (!enabled_)
-    return;
   FaceArray result;
   result.header.stamp = observation.header.stamp;
   result.image_id = observation.image_id;
   result.frame_rate = observation.frame_rate;
-  if (sharp(observation) || detect_when_blurred_)
+  if (enabled_ && (sharp(observation) || detect_when_blurred_))
     findFaces(observation, result);
   faces_pub_.publish(result);
   ROS_DEBUG("%u strong responses so far", filter_.strongResponses());

@@ -29,7 +29,7 @@ void MissionNode::runState() {
   case MissionState::ABORT:
     return runAbort();
   default:
-    return;
+    return sendWayPose(WayPose());
   }
 }
 
@@ -42,6 +42,7 @@ void MissionNode::watchTime() {
 }
 
 void MissionNode::runIdle() {
+  sendWayPose(WayPose());
   const bool sensing = !flight_.header.stamp.isZero() && frame_rate_ > 0.0;
   if (!sensing)
     return;
@@ -103,15 +104,16 @@ void MissionNode::runTrack() {
     person_y_.reset();
     enter(MissionState::SEARCH);
     search_.resume(flight_.yaw, now_);
-    return;
+    return runSearch();
   }
   if (!tracker_.identified()) {
     centreFace();
     return;
   }
-  if (in_range_ && centred_ && pictures_.mayCapture(now_))
+  if (in_range_ && centred_ && pictures_.mayCapture(now_)) {
+    centreFace();
     takePicture();
-  else if (enable_approach_)
+  } else if (enable_approach_)
     approachFace();
   else
     centreFace();

@@ -8,8 +8,11 @@
 namespace image_capture {
 
 namespace {
-constexpr double FaceWidth = 0.45;
-constexpr double FaceHeight = 0.55;
+/// What stands upright in the field, as the camera sees its head.
+constexpr Upright PersonsHead = {0.45, 0.55, 0.6, 0.85};
+/// A stone post has a face's features, but is too slim for one.
+constexpr Upright Post = {0.3, 0.66, 0.5, 0.8};
+constexpr Person PostPlace = {6.5, 0.2};
 constexpr std::uint32_t ImageWidth = 640;
 constexpr std::uint32_t ImageHeight = 480;
 constexpr double ExposureTime = 0.02;
@@ -19,7 +22,7 @@ constexpr double WallHalfAngle = 0.65;
 } // namespace
 
 CameraModel::CameraModel(ros::NodeHandle &private_nh, std::uint32_t seed)
-    : noise_(seed) {
+    : noise_(seed), leaves_(seed + 500u) {
   double degrees = 60.0;
   private_nh.getParam("field_of_view_deg", degrees);
   half_angle_ = 0.5 * degrees * M_PI / 180.0;
@@ -50,31 +53,31 @@ Observation CameraModel::observe(const UavState &uav, double time) {
   image.yaw_rate = uav.yaw_rate + noise_.gaussian(0.01);
   addClutter(image);
   addPhantom(uav, time, image);
-  addPerson(uav, time, image);
+  addUpright(uav, person(time), PersonsHead, image);
+  addUpright(uav, PostPlace, Post, image);
   return image;
 }
 
-void CameraModel::addPerson(const UavState &uav, double time,
-                            Observation &image) {
-  const Person head = person(time);
-  const double dx = head.x - uav.x;
-  const double dy = head.y - uav.y;
+void CameraModel::addUpright(const UavState &uav, const Person &place,
+                             const Upright &look, Observation &image) {
+  const double dx = place.x - uav.x;
+  const double dy = place.y - uav.y;
   const double distance = std::max(std::hypot(dx, dy), 0.3);
   if (distance > camera_range_ || noise_.chance(MissedImages))
     return;
   const double angle = wrapAngle(std::atan2(dy, dx) - uav.yaw);
-  const double half_face = 0.5 * FaceWidth / distance;
-  if (std::fabs(angle) + half_face > half_angle_)
+  const double half_width = 0.5 * look.width / distance;
+  if (std::fabs(angle) + half_width > half_angle_)
     return;
   const double scale = 0.5 * ImageWidth / (distance * std::tan(half_angle_));
-  addBlob(-angle / half_angle_, scale * FaceWidth, scale * FaceHeight, 0.6,
-          0.85, image);
+  addBlob(-angle / half_angle_, scale * look.width, scale * look.height,
+          look.contrast, look.response, image);
 }
 
 void CameraModel::schedulePhantom(double after) {
   // A second passes at least: the leaves have to swing back.
-  phantom_.begin = after + 1.0 + noise_.waitingTime(phantom_pause_);
-  phantom_.end = phantom_.begin + noise_.uniform(1.0, 1.8);
+  phantom_.begin = after + 1.0 + leaves_.waitingTime(phantom_pause_);
+  phantom_.end = phantom_.begin + leaves_.uniform(1.0, 1.8);
   phantom_placed_ = false;
 }
 
@@ -85,10 +88,10 @@ void CameraModel::addPhantom(const UavState &uav, double time,
   if (time < phantom_.begin)
     return;
   if (!phantom_placed_) {
-    const double angle = noise_.uniform(-0.8, 0.8) * half_angle_;
+    const double angle = leaves_.uniform(-0.8, 0.8) * half_angle_;
     phantom_.bearing = uav.yaw + angle;
-    phantom_.coverage = noise_.uniform(0.03, 0.16);
-    phantom_.aspect = noise_.uniform(1.0, 1.5);
+    phantom_.coverage = leaves_.uniform(0.03, 0.16);
+    phantom_.aspect = leaves_.uniform(1.0, 1.5);
     phantom_placed_ = true;
   }
   const double angle = wrapAngle(phantom_.bearing - uav.yaw);

@@ -21,7 +21,8 @@ SimulatorNode::SimulatorNode(ros::NodeHandle &nh, ros::NodeHandle &private_nh,
   private_nh.param("rate", rate_, 4.0);
   private_nh.param("sensor_period", sensor_period_, 0.06);
   private_nh.param("image_period", image_period_, 0.1);
-  private_nh.param("max_command_lag", max_command_lag_, 0.12);
+  private_nh.param("max_command_lag", max_command_lag_, 0.0);
+  private_nh.param("max_tick_lag", max_tick_lag_, 0.12);
   private_nh.param("shutter_interval", shutter_interval_, 0.5);
   sensors_pub_ = nh.advertise<UavSensors>("/uav/sensors", 10);
   observation_pub_ = nh.advertise<Observation>("/camera/observation", 10);
@@ -31,6 +32,10 @@ SimulatorNode::SimulatorNode(ros::NodeHandle &nh, ros::NodeHandle &private_nh,
   person_truth_pub_ =
       nh.advertise<geometry_msgs::PoseStamped>("/truth/person", 100);
   command_sub_ = nh.subscribe("/uav/command", 10, &SimulatorNode::onCommand,
+                              this, ros::TransportHints().tcpNoDelay());
+  faces_sub_ = nh.subscribe("/camera/faces", 10, &SimulatorNode::onFaces, this,
+                            ros::TransportHints().tcpNoDelay());
+  waypose_sub_ = nh.subscribe("/mission/waypose", 10, &SimulatorNode::onWayPose,
                               this, ros::TransportHints().tcpNoDelay());
   capture_server_ =
       nh.advertiseService("/camera/capture", &SimulatorNode::onCapture, this);
@@ -46,27 +51,38 @@ void SimulatorNode::run(ros::NodeHandle &private_nh) {
       break;
     tick();
     controller_.hold(max_command_lag_);
+    detector_.hold(max_command_lag_);
+    mission_.hold(max_tick_lag_);
     clock_.keepPace(rate_);
   }
 }
 
 void SimulatorNode::waitForPilot() {
-  // The time begins when the UAV has a pilot.
-  while (ros::ok() && sensors_pub_.getNumSubscribers() == 0) {
+  // The time begins when all who decide are there.
+  while (ros::ok() && (sensors_pub_.getNumSubscribers() == 0 ||
+                       observation_pub_.getNumSubscribers() == 0 ||
+                       command_sub_.getNumPublishers() == 0 ||
+                       faces_sub_.getNumPublishers() == 0 ||
+                       waypose_sub_.getNumPublishers() == 0)) {
     ros::WallDuration(0.02).sleep();
     ros::spinOnce();
   }
+  // And a moment later, in which they find one another.
+  ros::WallDuration(0.5).sleep();
 }
 
 void SimulatorNode::tick() {
   clock_.advance();
   const ros::Time stamp = clock_.stamp();
   dynamics_.step(command_, clock_.Step);
+  // The mission acts ten times a second, each time by the clock.
+  mission_.sent(stamp);
   if (clock_.every(sensor_period_)) {
     controller_.sent(stamp);
     sensors_pub_.publish(dynamics_.sense(stamp));
   }
   if (clock_.every(image_period_)) {
+    detector_.sent(stamp);
     Observation image = camera_.observe(dynamics_.state(), clock_.now());
     image.header.stamp = stamp;
     observation_pub_.publish(image);
@@ -80,6 +96,14 @@ void SimulatorNode::tick() {
 void SimulatorNode::onCommand(const AttitudeCommand &command) {
   command_ = command;
   controller_.answered(command.header.stamp);
+}
+
+void SimulatorNode::onFaces(const FaceArray &faces) {
+  detector_.answered(faces.header.stamp);
+}
+
+void SimulatorNode::onWayPose(const WayPose &waypose) {
+  mission_.answered(waypose.header.stamp);
 }
 
 bool SimulatorNode::onCapture(CapturePicture::Request &request,

@@ -46,7 +46,11 @@ void Pump::update(const SamplerSensors &sensors) {
 
 std::uint8_t Pump::faultOf(const SamplerSensors &sensors) {
   const ros::Time &now = sensors.header.stamp;
+#ifdef WATER_SAMPLER_FLOW_FAULT
+  if (sensors.flow < min_flow_)
+#else
   if (sensors.flow > min_flow_)
+#endif
     last_flow_ = now;
   if ((now - last_flow_).toSec() > dry_run_timeout_)
     return PumpStatus::DRY;

@@ -1,0 +1,72 @@
+"""One run of a study at a time, and nothing left of one that was killed."""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import os
+import signal
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+from pytpc.errors import RunError, TpcError
+
+_LOCK_FILE = ".lock"
+_HOME = b"ROS_HOME="
+_PATIENCE_S = 3.0
+
+
+@contextlib.contextmanager
+def alone_in(out: Path) -> Iterator[None]:
+    """Within it this is the only run in the study's folder; what a killed one left is ended.
+
+    Raises:
+        RunError: another run is at work.
+        TpcError: the folder cannot be written.
+    """
+    path = out / _LOCK_FILE
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        lock = path.open("wb")
+    except OSError as error:
+        raise TpcError(f"cannot be written: {error.strerror}", path) from error
+    with lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError as error:
+            raise RunError("another run is at work in this folder", out) from error
+        end_leftovers(out)
+        yield
+
+
+def end_leftovers(out: Path) -> int:
+    """End the graphs in a study's folder that outlived the run that began them.
+
+    A run that was killed could not end its master and nodes. They are known by their ROS_HOME.
+
+    Returns:
+        How many processes there were.
+    """
+    found = _processes_of(out)
+    for number in (signal.SIGTERM, signal.SIGKILL):
+        for pid in _processes_of(out):
+            with contextlib.suppress(ProcessLookupError, PermissionError):
+                os.kill(pid, number)
+        until = time.monotonic() + _PATIENCE_S
+        while time.monotonic() < until and _processes_of(out):
+            time.sleep(0.05)
+    return len(found)
+
+
+def _processes_of(out: Path) -> list[int]:
+    below = _HOME + os.fsencode(str(out.absolute())) + b"/"
+    found = []
+    for entry in Path("/proc").iterdir():
+        if not entry.name.isdigit() or int(entry.name) == os.getpid():
+            continue
+        with contextlib.suppress(OSError):
+            words = (entry / "environ").read_bytes().split(b"\0")
+            if any(word.startswith(below) for word in words):
+                found.append(int(entry.name))
+    return found

@@ -1,0 +1,199 @@
+"""Suggestions, tried for real: a treated mission again, with one parameter set to a value.
+
+Everything else is as it was: the treatment, its decoys, the seed, the people.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+
+import pyarrow as pa
+
+from pytpc.atomic import write_atomic
+from pytpc.columns import write_table
+from pytpc.errors import InputError
+from pytpc.static_json import parse_json
+from pytpc.study.dataset import CAUSES_FILE, Cause, load_causes, load_done
+from pytpc.study.plan import Flight, Setting
+
+WANTED_FILE = Path("results") / "suggestions-wanted.json"
+TRIED_FILE = Path("results") / "suggestions.parquet"
+SUGGESTION_FILE = "suggestion.json"
+_FIELDS = ("system", "treatment", "seed", "parameter", "node", "value")
+_TRIED = pa.schema(
+    [
+        ("system", pa.string()),
+        ("treatment", pa.string()),
+        ("type", pa.string()),
+        ("half", pa.string()),
+        ("seed", pa.int64()),
+        ("parameter", pa.string()),
+        ("node", pa.string()),
+        ("value", pa.float64()),
+        ("gone", pa.bool_()),
+        ("new", pa.bool_()),
+        ("reached", pa.bool_()),
+        ("failure", pa.string()),
+    ]
+)
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """A suggestion that is to be tried in one mission."""
+
+    system: str
+    treatment: str
+    seed: int
+    setting: Setting
+
+    @property
+    def mission(self) -> tuple[str, str, int]:
+        """Which mission it is."""
+        return (self.system, self.treatment, self.seed)
+
+
+@dataclass(frozen=True)
+class Tried:
+    """What came of a suggestion.
+
+    ``gone``: no error of the kind and for the reason of the first one of the treated mission was
+    seen; None where in that mission none was. ``new``: an error was seen that was not there before.
+    ``errors`` are the reasons of all that was seen.
+    """
+
+    gone: bool | None
+    new: bool
+    errors: tuple[str, ...]
+
+
+def load_wanted(path: Path) -> list[Wanted]:
+    """The list of what is to be tried; ``node`` may be null where one node has the parameter.
+
+    Raises:
+        InputError: the file is not such a list, or has a mission twice.
+    """
+    document = parse_json(path)
+    try:
+        if not isinstance(document, list):
+            raise ValueError("a list is expected")
+        wanted = [_wanted(one) for one in document]
+    except (KeyError, TypeError, ValueError) as error:
+        what = f"{error} is missing" if isinstance(error, KeyError) else str(error)
+        raise InputError(f"not a list of suggestions: {what}", path) from error
+    seen: set[tuple[str, str, int]] = set()
+    for one in wanted:
+        if one.mission in seen:
+            raise InputError(f"{'/'.join(map(str, one.mission))} stands there twice", path)
+        seen.add(one.mission)
+    return wanted
+
+
+def _wanted(one: object) -> Wanted:
+    if not isinstance(one, dict):
+        raise ValueError(f"{one!r} is no object")
+    system, treatment, seed, parameter, node, value = (one[name] for name in _FIELDS)
+    texts = (system, treatment, parameter, node or "")
+    if not all(isinstance(text, str) for text in texts):
+        raise ValueError(f"{texts} are not texts")
+    if not isinstance(seed, int) or not isinstance(value, int | float) or isinstance(value, bool):
+        raise ValueError(f"seed {seed!r} or value {value!r} is not a number")
+    return Wanted(system, treatment, seed, Setting(parameter, node or "", float(value)))
+
+
+def suggested_flight(wanted: Wanted, missions: Sequence[Flight], out: Path) -> Flight:
+    """The flight that tries a suggestion.
+
+    Args:
+        wanted: what is to be tried.
+        missions: of its system.
+        out: the study's folder.
+
+    Raises:
+        InputError: there is no such mission, it has not been flown, or no such parameter.
+    """
+    system, treatment, seed = wanted.mission
+    for mission in missions:
+        if mission.kind != "mission" or (mission.treatment.name, mission.seed) != (treatment, seed):
+            continue
+        if load_done(mission.folder(out)) is None:
+            raise InputError("has not been flown: pytpc study run", mission.folder(out))
+        flight = replace(mission, kind="suggested", suggested=wanted.setting)
+        flight.settings()
+        return flight
+    raise InputError(f"there is no mission {system}/{treatment}/seed-{seed}")
+
+
+def judged(before: Sequence[Cause], after: Sequence[Cause]) -> Tried:
+    """What the causes of a treated mission, and of the same with a suggestion, say of it."""
+
+    def sort(cause: Cause) -> tuple[str, str]:
+        return (cause.kind, cause.reason)
+
+    known = {sort(cause) for cause in before}
+    found = [sort(cause) for cause in after]
+    first = min(before, key=lambda cause: cause.start, default=None)
+    return Tried(
+        gone=None if first is None else sort(first) not in found,
+        new=any(one not in known for one in found),
+        errors=tuple(f"{kind}: {reason}" for kind, reason in found),
+    )
+
+
+def try_of(flight: Flight, out: Path) -> Tried:
+    """Judge a flight that tried a suggestion, and write it into its folder.
+
+    Raises:
+        InputError: the causes of one of the two missions cannot be read.
+        TpcError: the file cannot be written.
+    """
+    treated = replace(flight, kind="mission", suggested=None)
+    before = load_causes(treated.folder(out) / CAUSES_FILE)
+    tried = judged(before, load_causes(flight.folder(out) / CAUSES_FILE))
+    setting = {} if flight.suggested is None else asdict(flight.suggested)
+    text = json.dumps({"schema": 1, **setting, **asdict(tried)}, indent=1)
+    write_atomic(flight.folder(out) / SUGGESTION_FILE, text.encode() + b"\n")
+    return tried
+
+
+def save_tried(
+    flights: Iterable[Flight], failures: Mapping[str, str], out: Path
+) -> list[dict[str, object]]:
+    """Write ``results/suggestions.parquet``: a row for each flight that tried a suggestion.
+
+    Args:
+        flights: what was flown.
+        failures: why a flight failed, by its label.
+        out: the study's folder.
+
+    Returns:
+        The rows.
+
+    Raises:
+        TpcError: a file cannot be read or written.
+    """
+    rows = [_row(flight, failures.get(flight.label, ""), out) for flight in flights]
+    write_table(pa.Table.from_pylist(rows, schema=_TRIED), out / TRIED_FILE)
+    return rows
+
+
+def _row(flight: Flight, failure: str, out: Path) -> dict[str, object]:
+    done = None if failure else load_done(flight.folder(out))
+    tried = None if done is None else try_of(flight, out)
+    setting = flight.suggested
+    assert setting is not None, "a flight that tries a suggestion has one"
+    return {
+        "system": flight.example.name,
+        "treatment": flight.treatment.name,
+        "type": flight.treatment.type,
+        "half": flight.half,
+        "seed": flight.seed,
+        **asdict(setting),
+        "gone": None if tried is None else tried.gone,
+        "new": None if tried is None else tried.new,
+        "reached": None if done is None else done.reached,
+        "failure": failure,
+    }

@@ -1,0 +1,189 @@
+"""Suggestions that are tried: what is flown, and what is made of it."""
+
+from __future__ import annotations
+
+import json
+
+import pyarrow.parquet as pq
+import pytest
+from click.testing import CliRunner
+from mission_samples import comparison, static_info
+from study_flights import FakeFlier, made, robot
+
+from pytpc.cli import study_commands
+from pytpc.cli.main import main
+from pytpc.errors import InputError, TpcError
+from pytpc.study import flying
+from pytpc.study.dataset import Cause, StudyFile, save_done
+from pytpc.study.plan import Selection, Setting, flights_of
+from pytpc.study.suggested import Tried, Wanted, judged, load_wanted, suggested_flight
+from pytpc.study.system import System
+
+LEAKS, STANDS = Cause("I", 20.0, 20.0, "it leaks"), Cause("II", 12.5, 40.0, "it stands there")
+ROW = {
+    "system": "robot",
+    "treatment": "type1_b",
+    "seed": 1,
+    "parameter": "~b",
+    "node": "/pump",
+    "value": 1.9,
+}
+
+
+@pytest.fixture
+def example(tmp_path, monkeypatch):
+    return robot(tmp_path, monkeypatch, "type1_b", "type2_b")
+
+
+# At other times, so that nothing but kind and reason can be compared.
+@pytest.mark.parametrize(
+    ("before", "after", "gone", "new"),
+    [
+        ([LEAKS], [], True, False),
+        ([LEAKS], [Cause("I", 31.0, 31.0, "it leaks")], False, False),
+        ([LEAKS], [STANDS], True, True),
+        ([LEAKS], [STANDS, LEAKS], False, True),
+        # STANDS is the first in time; what came of it may stay.
+        ([LEAKS, STANDS], [LEAKS], True, False),
+        ([LEAKS, STANDS], [Cause("II", 50.0, 70.0, "it stands there")], False, False),
+        # The same words of another type are another error.
+        ([LEAKS], [Cause("II", 20.0, 30.0, "it leaks")], True, True),
+        ([], [], None, False),
+        ([], [LEAKS], None, True),
+    ],
+)
+def test_an_error_is_gone_where_nothing_of_its_kind_and_reason_is_seen(before, after, gone, new):
+    tried = judged(before, after)
+    assert (tried.gone, tried.new) == (gone, new)
+
+
+def test_all_that_was_seen_is_told():
+    assert judged([LEAKS], [LEAKS, STANDS]) == Tried(
+        gone=False, new=True, errors=("I: it leaks", "II: it stands there")
+    )
+
+
+def test_the_list_is_read(tmp_path):
+    path = tmp_path / "wanted.json"
+    path.write_text(json.dumps([ROW, {**ROW, "seed": 2, "node": None, "value": 3}]))
+    assert load_wanted(path) == [
+        Wanted("robot", "type1_b", 1, Setting("~b", "/pump", 1.9)),
+        Wanted("robot", "type1_b", 2, Setting("~b", "", 3.0)),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("document", "what"),
+    [
+        ({}, "a list is expected"),
+        ([1], "1 is no object"),
+        ([{**ROW, "value": None}], "value None is not a number"),
+        ([{**ROW, "value": True}], "value True is not a number"),
+        ([{**ROW, "seed": "1"}], "seed '1'"),
+        ([{**ROW, "system": 1}], "are not texts"),
+        ([{name: ROW[name] for name in ROW if name != "value"}], "'value' is missing"),
+        ([ROW, {**ROW, "value": 2.0}], "robot/type1_b/1 stands there twice"),
+    ],
+)
+def test_a_wrong_list_is_an_error(tmp_path, document, what):
+    path = tmp_path / "wanted.json"
+    path.write_text(json.dumps(document))
+    with pytest.raises(InputError, match=what) as caught:
+        load_wanted(path)
+    assert str(caught.value).startswith(f"{path}: ")
+
+
+def test_a_mission_has_to_be_there_before_it_is_flown_again(example, tmp_path):
+    flights = flights_of(example, ())
+    wanted = Wanted("robot", "type1_b", 1, Setting("~b", "/pump", 1.9))
+    with pytest.raises(InputError, match="has not been flown"):
+        suggested_flight(wanted, flights, tmp_path)
+    save_done(made(), tmp_path / "missions/robot/type1_b/seed-1")
+    flight = suggested_flight(wanted, flights, tmp_path)
+    assert flight.label == "suggested/robot/type1_b/seed-1"
+    assert flight.settings() == {"/pump/b": 1.9}
+    # The same people look on.
+    (mission,) = [one for one in flights if one.label == "missions/robot/type1_b/seed-1"]
+    assert flight.people == mission.people
+    none = Wanted("robot", "type9", 1, wanted.setting)
+    with pytest.raises(InputError, match="there is no mission robot/type9/seed-1"):
+        suggested_flight(none, flights, tmp_path)
+    with pytest.raises(TpcError, match="~gone: no parameter of this robot"):
+        wrong = Wanted("robot", "type1_b", 1, Setting("~gone", "", 1.0))
+        suggested_flight(wrong, flights, tmp_path)
+
+
+@pytest.fixture
+def fleet(example, tmp_path, monkeypatch) -> FakeFlier:
+    """The command flies the little robot, and only seems to; nothing is seen with a suggestion."""
+    monkeypatch.setattr(Selection, "examples", lambda *_: [example])
+    save = StudyFile.save
+    monkeypatch.setattr(StudyFile, "save", lambda self: save(self, (example,)))
+    system = System(example, static_info(comparison(1, "~a")), {}, {}, "build")
+    monkeypatch.setattr(flying, "prepare", lambda *_: (system, True))
+    found = FakeFlier(tmp_path / "out")
+    monkeypatch.setattr(flying, "Flier", lambda *_: found)
+    assert study_commands.WANTED_FILE.name == "suggestions-wanted.json"
+    for treatment, cause in (("type1_b", LEAKS), ("type2_b", STANDS)):
+        folder = found.out / "missions/robot" / treatment / "seed-1"
+        save_done(made(), folder)
+        (folder / "causes.json").write_text(_of(cause))
+        again = found.out / "suggested/robot" / treatment / "seed-1"
+        again.mkdir(parents=True)
+        (again / "causes.json").write_text(_of(*([STANDS] if treatment == "type2_b" else [])))
+    return found
+
+
+def _of(*causes: Cause) -> str:
+    fields = ("kind", "start", "end", "reason")
+    return json.dumps([{name: getattr(one, name) for name in fields} for one in causes])
+
+
+def test_suggestions_are_flown_and_judged(fleet):
+    other = {**ROW, "treatment": "type2_b", "parameter": "~a", "node": None, "value": 1.5}
+    wanted = fleet.out / "results" / "suggestions-wanted.json"
+    wanted.parent.mkdir()
+    wanted.write_text(json.dumps([ROW, other]))
+    result = CliRunner().invoke(main, ["study", "suggested", "--out", str(fleet.out)])
+    assert result.exit_code == 0, result.output
+    assert fleet.flown == ["suggested/robot/type1_b/seed-1", "suggested/robot/type2_b/seed-1"]
+    rows = pq.read_table(fleet.out / "results/suggestions.parquet").to_pylist()
+    # sha256sum: robot/type1_b and robot/type2_b are the only ones of their types.
+    assert rows[0] == {**ROW, "type": "type1", "half": "tuning", "gone": True, "new": False} | {
+        "reached": True,
+        "failure": "",
+    }
+    assert (rows[1]["gone"], rows[1]["new"], rows[1]["node"]) == (False, False, "")
+    suggestion = json.loads(
+        (fleet.out / "suggested/robot/type1_b/seed-1/suggestion.json").read_text()
+    )
+    assert suggestion == {
+        "schema": 1,
+        "parameter": "~b",
+        "node": "/pump",
+        "value": 1.9,
+        "gone": True,
+        "new": False,
+        "errors": [],
+    }
+    assert "2 suggestions" in result.stdout
+
+
+def test_a_suggestion_whose_flight_fails_is_a_row_and_status_1(fleet, tmp_path):
+    fleet.failures["suggested/robot/type1_b/seed-1"] = 2
+    wanted = tmp_path / "wanted.json"
+    wanted.write_text(json.dumps([ROW]))
+    words = ["study", "suggested", str(wanted), "--out", str(fleet.out), "--json"]
+    result = CliRunner().invoke(main, words)
+    assert result.exit_code == 1
+    (row,) = json.loads(result.stdout)
+    assert (row["gone"], row["new"], row["reached"]) == (None, None, None)
+    assert "pump died" in row["failure"]
+
+
+def test_an_empty_list_is_nothing_to_fly(fleet, tmp_path):
+    wanted = tmp_path / "wanted.json"
+    wanted.write_text("[]")
+    result = CliRunner().invoke(main, ["study", "suggested", str(wanted)])
+    assert result.exit_code == 2
+    assert "the list is empty" in result.output
