@@ -142,7 +142,11 @@ def evidence(streams: Streams, marks: Marked) -> Evidence:
     wait = _Wait.before(marks, streams.seconds)
     chance = _any_time(streams.seconds, marks)
     rows = [
-        (_acted(s, streams, marks) - chance, *_waited(s, wait, marks), float(np.log(max(s.distance, 1.0))))
+        (
+            _acted(s, streams, marks) - chance,
+            *_waited(s, wait, marks),
+            float(np.log(max(s.distance, 1.0))),
+        )
         for s in streams.streams
     ]
     return Evidence(*np.array(rows, np.float64).reshape(len(rows), len(fields(Evidence))).T)

@@ -333,7 +333,7 @@ def test_missions_that_failed_or_went_wrong_are_on_the_page(own, tmp_path):
     (own / "study.json").write_text(json.dumps(document))
     made = make_report(own, tmp_path / "study.md", draw=False)
     assert "missions/alpha/type1_x/seed-1 failed: the node died." in made.troubles
-    assert "1 mission of alpha not flown yet." in made.troubles
+    assert "Still to be flown: 1 mission of alpha." in made.troubles
     assert "No mission of omega has been flown." in made.troubles
     page = made.page.read_text().replace("\\", "")
     assert "- alpha/type1_low/seed-1: the observer saw nothing" in page
