@@ -123,7 +123,32 @@ WATER_SAMPLER = Example(
     ),
 )
 
-EXAMPLES = (IMAGE_CAPTURE, WATER_SAMPLER)
+NAVIGATION = Example(
+    name="navigation",
+    title="Navigation",
+    watched=(
+        "/truth/robot",
+        "/truth/goal",
+        "/truth/events",
+        "/truth/goal_signalled",
+        "/mission/state",
+    ),
+    goal_topic="/truth/goal_signalled",
+    reached="the lamp was lit at the goal",
+    missed="the lamp was not lit at the goal",
+    # With some treatments of type I the robot gets there, and touches something on the way.
+    missed_under=frozenset({"type2", "fault"}),
+    shown=(
+        "clean",
+        "type1_goal_tolerance",
+        "type1_return_voltage",
+        "type2_heading_tolerance_deg",
+        "type2_min_start_quality",
+    ),
+    simulator="/ground_simulator",
+)
+
+EXAMPLES = (IMAGE_CAPTURE, WATER_SAMPLER, NAVIGATION)
 """All robots, in the order of the study."""
 
 

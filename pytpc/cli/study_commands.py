@@ -1,4 +1,4 @@
-"""The commands ``study run``, ``study halves`` and ``study suggested``."""
+"""The commands ``study run``, ``study halves``, ``study suggested``; the group of ``study``."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from pytpc.cli.console import console
 from pytpc.cli.options import JSON, PATH, Command
 from pytpc.cli.study_progress import StudyProgress
 from pytpc.cli.study_report_command import report_command
+from pytpc.cli.study_suggestions import suggestions_command
 from pytpc.demo_examples import EXAMPLES
 from pytpc.errors import RunError
 from pytpc.static_json import dump_json
@@ -155,6 +156,8 @@ def halves_command(*, as_json: bool) -> None:
 
 
 study_group.add_command(report_command)
+study_group.add_command(suggestions_command)
+
 COMMANDS: list[click.Command] = [study_group]
 
 

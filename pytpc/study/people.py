@@ -13,8 +13,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import pyarrow as pa
+import pyarrow.compute as pc
 
-from pytpc.columns import check_schema, read_table
+from pytpc.columns import check_schema, read_table, write_table
 from pytpc.demo_examples import SHARED_PACKAGE, Example
 from pytpc.errors import InputError, RunError
 from pytpc.marks import MARK_TYPES, Mark
@@ -47,6 +48,21 @@ def see(example: Example, env: Mapping[str, str], bag: Path, folder: Path) -> No
         RunError: the observer fails; one line, what it said last.
     """
     _run(example, env, ["--bag", str(bag), "--sights", str(folder / SIGHTS_FILE)])
+
+
+def cut_sights(path: Path, end_s: float) -> None:
+    """Leave what was seen until ``end_s`` (simulated s): the column ``time`` of any robot's sights.
+
+    Raises:
+        InputError: the file cannot be read, or has no such column.
+        TpcError: it cannot be written.
+    """
+
+    def until_end(table: pa.Table) -> pa.Table:
+        check_schema(table.schema, pa.schema([("time", pa.float64())]))
+        return table.filter(pc.less_equal(table["time"], end_s))
+
+    write_table(read_table(path, "sights", until_end), path)
 
 
 def mark(example: Example, env: Mapping[str, str], folder: Path, seed: int) -> None:

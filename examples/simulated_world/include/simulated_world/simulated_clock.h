@@ -69,12 +69,14 @@ public:
     due_ = true;
   }
   void answered(const ros::Time &stamp) { answered_ = stamp; }
+  /// Whether it has answered at all.
+  bool begun() const { return !answered_.isZero(); }
 
   /// Spins until the answers to what was sent last are at most `max_lag` (s,
   /// simulated) behind. A node that never answered has not begun, and is not
   /// waited for.
   void hold(double max_lag) {
-    if (!due_ || answered_.isZero())
+    if (!due_ || !begun())
       return;
     due_ = false;
     const ros::Duration most(max_lag);

@@ -1,0 +1,20 @@
+// The same controller with a fault in its source: degrees are compared with
+// radians, so that it is hardly ever content with its heading.
+#include <cmath>
+
+#include <pluginlib/class_list_macros.hpp>
+
+#include "navigation/pure_pursuit.h"
+
+namespace navigation {
+
+class PurePursuitFault : public PurePursuit {
+protected:
+  bool aligned(double heading_error) const override {
+    return std::fabs(heading_error) * 180.0 / M_PI < heading_tolerance_;
+  }
+};
+
+} // namespace navigation
+
+PLUGINLIB_EXPORT_CLASS(navigation::PurePursuitFault, navigation::Controller)

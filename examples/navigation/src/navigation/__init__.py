@@ -1,0 +1,1 @@
+"""The mission of the ground robot: what it does, from its dock to the goal and back."""
