@@ -195,15 +195,21 @@ def test_suggestions(text):
 
 
 # With the second seed the error is gone. With the first none was seen before, so that the treatment
-# has 1 (and the other system's 0, mean 1/2); or the flight failed, so that it has 1/2 (mean 1/4).
+# has 1 (and the other system's 0, mean 1/2); or the flight failed or was not flown, so that it has
+# 1/2 (mean 1/4).
 @pytest.mark.parametrize(
     ("failure", "said", "mean"),
-    [("", "none was seen before", 0.5), ("it died", "the flight failed", 0.25)],
+    [
+        ("", "none was seen before", 0.5),
+        ("it died", "the flight failed", 0.25),
+        ("", "still to be flown", 0.25),
+    ],
 )
 def test_suggestions_that_cannot_be_judged(study, tmp_path, failure, said, mean):
     flights = [flight for system in load_study(study).systems for flight in system.flights]
     first, second = suggestions()
-    first |= {"gone": None, "new": None, "failure": failure}
+    new = False if said == "none was seen before" else None
+    first |= {"gone": None, "new": new, "failure": failure}
     write_rows(tmp_path / "results/s.parquet", [first, second | {"gone": True}])
     rows = read_repairs(tmp_path / "results/s.parquet", flights)
     told = {(row.flight.treatment.name, row.flight.seed): row.said for row in rows}
