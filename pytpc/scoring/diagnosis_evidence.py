@@ -70,9 +70,12 @@ GRID = 1000
 BRIEF_S = 2.0
 """A wait goes on if it is interrupted for this time: at a threshold values are noisy."""
 
-START = 0.1
-"""A comparison that begins to be evaluated weighs so much of one that changes: it may pass at once,
-and be the cause, but much begins after any cause."""
+START = 0.05
+"""A comparison that begins to be evaluated weighs so much of one that changes: much begins after
+any cause."""
+
+ONCE, ONCE_S = 0.4, 0.3
+"""One that is left alone again within this time may have passed at once, and be the cause."""
 
 LATER = 0.4
 """A change with another one up to ``CASCADE_S`` before it weighs so much of a first one."""
@@ -168,7 +171,8 @@ def reaction(delays: Floats, mean: float = REACTION_LOG, sigma: float = REACTION
 def _acted(stream: Stream, streams: Streams, marks: Marked) -> float:
     last = float(marks.firsts.max(initial=0.0))
     turns = np.concatenate([stream.changes, stream.starts])
-    prior = np.concatenate([np.ones(stream.changes.size), np.full(stream.starts.size, START)])
+    once = stream.stops - stream.starts <= ONCE_S
+    prior = np.concatenate([np.ones(stream.changes.size), np.where(once, ONCE, START)])
     turns, prior = turns[turns <= last], prior[turns <= last]
     if not turns.size:
         return float(np.log(STRAY)) * marks.firsts.size

@@ -21,6 +21,8 @@ from pytpc.scoring.diagnosis import (
     type_odds,
 )
 from pytpc.scoring.diagnosis_evidence import (
+    PATIENCE_LOG,
+    PATIENCE_SIGMA,
     REACTION_LOG,
     REACTION_SIGMA,
     SHARE,
@@ -116,6 +118,7 @@ def test_a_parameter_has_the_score_of_its_best_comparison():
     found = Evidence(
         acted=np.array([0.0, 2.0, -1.0]),
         waited=np.array([1.0, 0.0, -1.0]),
+        since=zero,
         held=np.full(3, 1 - SHARE),
         near=zero,
         restless=zero,
@@ -123,9 +126,15 @@ def test_a_parameter_has_the_score_of_its_best_comparison():
         flat=zero,
         far=zero,
     )
-    weights = Weights(acted=1, waited=1, type2=0)
-    scores = parameter_scores(found, np.array([0, 0, 1]), 3, 0.0, weights)
+    columns = np.array([0, 0, 1])
+    weights = Weights(acted=1, waited=1, type2=0, latch=-50)
+    scores = parameter_scores(found, columns, 3, 0.0, weights)
     assert scores.tolist() == pytest.approx([math.log((math.e**2 + 1) / 2), -1.0, -math.inf])
+    # Surely of type II: of its share of latches, 1/2, it is the change after all.
+    scores = parameter_scores(found, columns, 3, 50.0, replace(weights, latch=0))
+    assert scores.tolist() == pytest.approx([math.log((math.e**2 + 1) / 2), -1.0, -math.inf])
+    scores = parameter_scores(found, columns, 3, 50.0, weights)
+    assert scores.tolist() == pytest.approx([1.0, -1.0, -math.inf])
 
 
 # At the median z = 0: 3/8 / (sigma t). Before the mark there is no reaction.
@@ -168,36 +177,64 @@ def test_agreement_is_believed_more_and_disagreement_not_at_all():
 
 # gate has one turn at 30 s, the first evaluation is a start at 0 s. The mark is at 33 s.
 # At 30 s nothing else changed in the 1.5 s before but noisy, which changes too often; nothing
-# begins after it: u = 0.3. At 0 s u = 0.1 * 0.3: what begins with the log is no shift.
-# acted = log (0.3 f(3) + 0.03 f(33)) / (0.33 + 0.3), f(d) = 0.1 + 0.9 * 79.53 p(d).
+# begins after it: u = 0.3. At 0 s u = 0.1 * 0.3: what begins with the log is no shift. So the first
+# part is log (0.3 f(3) + 0.03 f(33)) / (0.33 + 0.3), f(d) = 0.1 + 0.9 * 79.53 p(d).
+# The mean of f over causes from 0 to 33 s is 0.1 + 0.9 * 79.53 / 33 times the share F of reactions
+# below 33 s, where z = (log 33 - 1.946) / 1.17 = 1.3252 and, of t with four degrees of freedom,
+# F = 1/2 + 3/8 z/sqrt(1 + z^2/4) (1 - z^2/(12 + 3 z^2)) = 0.8721.
 def test_acted_by_hand():
     streams = Streams.of(events(gate_case()), Tpcs.of(STATIC))
     found = evidence(streams, marked(np.array([ns(33)]), ("",), streams))
     f = STRAY + (1 - STRAY) * 79.53 * reaction(np.array([3.0, 33.0]))
-    expected = math.log((0.3 * f[0] + 0.03 * f[1]) / 0.63)
+    chance = STRAY + (1 - STRAY) * 79.53 / 33 * 0.8721
+    expected = math.log((0.3 * f[0] + 0.03 * f[1]) / 0.63) - math.log(chance)
     assert streams.seconds == pytest.approx(79.53)
-    assert found.acted[0] == pytest.approx(expected)
+    assert found.acted[0] == pytest.approx(expected, abs=0.01)
     assert int(np.argmax(found.acted)) == 0
 
 
-# The wait is [22, 30]: gate stands at 1.1 and 1.11 with a threshold of 1, false, for 8.5 s of 8;
-# elsewhere it is as near from 20 to 22 s and after 30 s until the end. The value falls from 5: a
-# range of 4, and a mean distance of about 0.105 there.
+def test_a_comparison_that_changes_all_the_time_is_as_good_as_chance():
+    rows = [(t / 2, 0, t % 4 < 2, t % 4, 2) for t in range(160)]
+    streams = Streams.of(events(rows), Tpcs.of(STATIC))
+    own = marked(np.array([ns(40), ns(42), ns(45)]), ("a", "b", "c"), streams)
+    assert abs(evidence(streams, own).acted[0]) < 0.3
+
+
+# The wait is [22, 30]: gate stands at 1.1 and 1.11 with a threshold of 1, false, for 8.5 s of 8.
+# 17 evaluations: 9 of 1.1 and 8 of 1.11; the value falls from 5, so the range is 4. As near is up
+# to 0.11 + 0.05 * 4 = 0.31: elsewhere from 18.5 s, where the value is 1.3, to 21.5 s, and from 30.5
+# to 79.5 s: 7 + 99 evaluations of half a second.
 def test_waited_by_hand():
     streams = Streams.of(events(wait_case()), Tpcs.of(STATIC))
     found = evidence(streams, marked(np.array([ns(30)]), ("",), streams))
-    # Evaluations at 20, 20.5, 21, 21.5 and 30.5, ..., 79.5 s: 4 + 99, each for half a second; at
-    # 19.5 s the value is 1.1, as near.
-    elsewhere = (103 + 1) * 0.5 / (79.53 - 8)
+    elsewhere = 106 * 0.5 / (79.53 - 8)
     assert found.held[0] == 1.0
     assert found.waited[0] == pytest.approx(math.log((1 + SHARE) / (elsewhere + SHARE)), abs=1e-3)
-    # 17 evaluations: 9 of 1.1 and 8 of 1.11.
-    mean = (9 * 0.1 + 8 * 0.11) / 17
-    assert found.near[0] == pytest.approx(math.log(mean / 4 + 0.01))
+    assert found.near[0] == pytest.approx(math.log((9 * 0.1 + 8 * 0.11) / 17 / 4 + 0.01))
+    # It has been so for 11.5 s at the mark.
+    fit = 79.53 * reaction(np.array([11.5]), PATIENCE_LOG, PATIENCE_SIGMA)[0]
+    assert found.since[0] == pytest.approx(math.log(STRAY + (1 - STRAY) * fit))
     assert (found.restless[0], found.clock[0], found.flat[0]) == (0.0, 0.0, 0.0)
     # The flag has one value, the noisy one changes each second.
     assert found.flat.tolist() == [0.0, 0.0, 0.0, 1.0]
     assert found.restless[1] == pytest.approx(math.log(1 + 8))
+
+
+# At 50 s it has been so for 1 s, since its break of 3 s; before the break for 46 s, which ended
+# more than 2 s before the mark at 49.5 s.
+def test_a_break_ends_a_wait_and_a_short_one_does_not():
+    rows = [(t / 10, 0, 0, 1, 2) for t in range(460)] + [
+        (t / 10, 0, 0, 1, 2) for t in range(490, 800)
+    ]
+    streams = Streams.of(events(rows), Tpcs.of(STATIC))
+    found = [
+        evidence(streams, marked(np.array([ns(m)]), ("",), streams)).since[0]
+        for m in (50, 48.5, 47)
+    ]
+    fits = 79.9 * reaction(np.array([1.0, 47.0]), PATIENCE_LOG, PATIENCE_SIGMA)
+    assert found[0] == pytest.approx(math.log(STRAY + (1 - STRAY) * fits[0]))
+    assert found[1] == pytest.approx(math.log(STRAY))
+    assert found[2] == pytest.approx(math.log(STRAY + (1 - STRAY) * fits[1]))
 
 
 def test_a_timer_is_known_as_one_in_coarse_steps_too():
@@ -208,10 +245,11 @@ def test_a_timer_is_known_as_one_in_coarse_steps_too():
     assert found.clock.tolist() == [1.0, 0.0]
 
 
-def test_the_marks_of_one_observer_count_less_and_less():
+def test_only_the_first_mark_of_an_observer_tells_when_it_began():
     streams = Streams.of(events(gate_case()), Tpcs.of(STATIC))
     found = marked(np.array([ns(40), ns(33), ns(50)]), ("a", "a", "b"), streams)
-    assert found.weight.tolist() == [0.25, 1.0, 1.0]
+    assert found.times.tolist() == [40, 33, 50]
+    assert found.firsts.tolist() == [33, 50]
 
 
 # Half of a value away: part 0.5, log(0.5) * SLOPE.

@@ -7,8 +7,14 @@ from std_msgs.msg import Bool
 
 from navigation.battery_watch import BatteryWatch
 from navigation.drive_watch import DriveWatch
-from navigation.msg import ControllerStatus, Localised, MissionState, PlanStatus
-from navigation.msg import RecoveryStatus, RobotStatus
+from navigation.msg import (
+    ControllerStatus,
+    Localised,
+    MissionState,
+    PlanStatus,
+    RecoveryStatus,
+    RobotStatus,
+)
 from navigation.pilot import Pilot
 from navigation.states import STATES
 
