@@ -71,6 +71,7 @@ def next_round(
     out: Path,
     halves: Sequence[Half] = ("tuning",),
     method: Method | None = None,
+    variants: Sequence[str] = tuple(VARIANTS),
     on_progress: Callable[[int, int], None] | None = None,
 ) -> list[Chain]:
     """Take in what was flown, and write what is to be flown next.
@@ -79,6 +80,7 @@ def next_round(
         out: the study's folder.
         halves: the halves whose missions are asked about; chains of others stay as they are.
         method: for the chains ``suspects``, of which there are none without it.
+        variants: for which there are new chains.
         on_progress: called with (chains done, chains in all).
 
     Returns:
@@ -88,7 +90,7 @@ def next_round(
         InputError: a file of the study is missing or broken.
         TpcError: a file cannot be written.
     """
-    chains = _chains(out, halves, method)
+    chains = _chains(out, halves, method, variants)
     for number, chain in enumerate(chains, start=1):
         _take_in(chain, out)
         while not chain.is_over and not (chain.tries and chain.tries[-1].is_open):
@@ -99,13 +101,15 @@ def next_round(
     return chains
 
 
-def _chains(out: Path, halves: Sequence[Half], method: Method | None) -> list[Chain]:
-    """Those of before, and new ones for all variants of what was flown with an error since."""
+def _chains(
+    out: Path, halves: Sequence[Half], method: Method | None, variants: Sequence[str]
+) -> list[Chain]:
+    """Those of before, and new ones of ``variants`` for what was flown with an error since."""
     known = {(one.mission, one.variant): one for one in _saved(out)}
     for row in _missions(out):
         if row["half"] not in halves:
             continue
-        for variant in VARIANTS:
+        for variant in variants:
             chain = Chain(
                 row["system"], row["treatment"], row["type"], row["half"],
                 int(row["seed"]), variant, float(row["old"]), float(row["new"]),
@@ -117,8 +121,8 @@ def _chains(out: Path, halves: Sequence[Half], method: Method | None) -> list[Ch
                 mission = load_mission(out, out / "missions" / chain.mission, row["half"])
                 chain.order = method(mission.case("typed")).order[: MOST_TRIES[SUSPECTS]]
             known[place] = chain
-    variants = list(VARIANTS)
-    return sorted(known.values(), key=lambda one: (one.mission, variants.index(one.variant)))
+    order = list(VARIANTS)
+    return sorted(known.values(), key=lambda one: (one.mission, order.index(one.variant)))
 
 
 def _saved(out: Path) -> list[Chain]:
