@@ -243,6 +243,9 @@ def _stays(
     lowest = min(lowest, _begin_of_climb(values[: change[first] + 1]))
     count = max(1, sum(ended))
     edge = _estimate(max(peaks), lowest, (_WAY + 2 * tries) ** (1 / count))
+    if np.max(values) <= 0:
+        # What is never on the other side of 0 does not get there.
+        edge = min(edge, 0.0)
     ground: Ground = "peaks" if any(ended) else "growth"
     least = sign * float(values[change[first]])
     near = (int(marks[0]) - int(when[first])) / 1e9
