@@ -64,7 +64,8 @@ class MissionRun:
 
     ``ended`` is ``done``, ``ended`` (roslaunch did, as it does when a required node ends),
     ``timeout`` or ``interrupted``. ``sim_s`` is how long it took on the
-    graph's clock, ``wall_s`` on the wall's. ``lost`` has for each node the messages on /rosout that
+    graph's clock, ``wall_s`` on the wall's; ``done_ns`` is when on the former it was done, None
+    where nobody said so. ``lost`` has for each node the messages on /rosout that
     did not reach the bag, ``missed_before`` those from before the recorder was connected to it.
     """
 
@@ -77,6 +78,7 @@ class MissionRun:
     messages: dict[str, int]
     lost: dict[str, int]
     missed_before: dict[str, int]
+    done_ns: int | None = None
 
     @classmethod
     def of(cls, status: recorder.Status, out_dir: Path, ended: str, wall_s: float) -> MissionRun:
@@ -91,6 +93,7 @@ class MissionRun:
             messages=status.messages,
             lost=status.lost,
             missed_before=status.missed_before,
+            done_ns=status.done_ns,
         )
 
     @property

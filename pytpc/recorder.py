@@ -55,12 +55,13 @@ _TIME = struct.Struct("<II")
 class Status:
     """What the recorder says of itself; times in ns on the graph's clock, at the start and now.
 
+    ``done_ns`` is when the topic that says so said that the mission is done, None before.
     ``missed_before`` has the messages on /rosout that a node sent before the recorder was
     connected, ``lost`` those that went missing afterwards.
     """
 
     ready: bool = False
-    done: bool = False
+    done_ns: int | None = None
     closed: bool = False
     began_ns: int = 0
     now_ns: int = 0
@@ -68,6 +69,11 @@ class Status:
     messages: dict[str, int] = field(default_factory=dict)
     lost: dict[str, int] = field(default_factory=dict)
     missed_before: dict[str, int] = field(default_factory=dict)
+
+    @property
+    def done(self) -> bool:
+        """Whether the mission is."""
+        return self.done_ns is not None
 
 
 class LossCounter:
@@ -230,7 +236,7 @@ class Recorder:
         self._counter = LossCounter()
         self._batches = BatchCounter(self._counter)
         self._reports = 0
-        self._done = False
+        self._done_ns: int | None = None
         self._early: list[tuple[Source, bytes]] = []
         self._began_ns = self.now_ns()
 
@@ -261,8 +267,8 @@ class Recorder:
             self._reports += text.startswith(REPORT)
         elif source.topic == _REPORTS:
             self._reports += self._batches.see(source.node, data)
-        elif source.topic == self._until and any(data):
-            self._done = True
+        elif source.topic == self._until and any(data) and self._done_ns is None:
+            self._done_ns = self.now_ns()
 
     def put_early(self) -> None:
         """Put what waits for the first /clock into the bag; to be called before it is closed.
@@ -278,7 +284,7 @@ class Recorder:
         """The account until now."""
         return Status(
             ready=True,
-            done=self._done,
+            done_ns=self._done_ns,
             closed=closed,
             began_ns=self._began_ns,
             now_ns=self.now_ns(),

@@ -121,7 +121,7 @@ def as_markdown(table: Table) -> str:
     headings = [f"{column.group} {column.heading}".strip() for column in table.columns]
     lines = [
         markdown_row([table.first, *map(markdown, headings)]),
-        markdown_row(["---", *("--:" for _ in table.columns)]),
+        markdown_row(["---", *("---" if text else "--:" for text in _texts(table))]),
     ]
     for name, cells in table.rows:
         lines.append(markdown_row([markdown(name), *map(markdown, shown(table, cells))]))
@@ -130,6 +130,12 @@ def as_markdown(table: Table) -> str:
         lines.append(markdown_row([f"*{name}*", *map(markdown, texts)]))
     lines += [f"\n{markdown(note)}" for note in table.notes]
     return "\n".join(lines) + "\n"
+
+
+def _texts(table: Table) -> list[bool]:
+    """For each column whether texts stand in it, which begin at the left."""
+    every = [cells for _, cells in (*table.rows, *table.summary)]
+    return [any(isinstance(cells[n], str) for cells in every) for n in range(len(table.columns))]
 
 
 def as_latex(table: Table) -> str:

@@ -9,6 +9,7 @@ from pytpc.advice.counterfactual import WhatIf
 from pytpc.advice.declared import Declared
 from pytpc.advice.intervals import Intervals
 from pytpc.advice.joining import JoinedAdvice, MarkGroup
+from pytpc.advice.remedy import Remedy
 from pytpc.advice.suggest import Suggestion
 from pytpc.marks import Mark
 from pytpc.words import Number
@@ -47,6 +48,21 @@ def suggestion_json(found: Suggestion) -> Json:
         "reason": found.reason,
         "feasible": intervals_json(found.feasible),
         "limited_by": found.limited_by,
+    }
+
+
+def remedy_json(found: Remedy) -> Json:
+    """A value to try; ``known`` are ``{source, value}``."""
+    return {
+        "current": finite(found.current),
+        "direction": found.direction,
+        "value": finite(found.value),
+        "basis": found.basis,
+        "text": found.text,
+        "reason": found.reason,
+        "type": found.kind,
+        "key": found.key,
+        "known": [{"source": one.source, "value": finite(one.value)} for one in found.known],
     }
 
 
@@ -112,7 +128,13 @@ def group_json(group: MarkGroup, start_ns: int) -> Json:
 
 
 def _joined(found: JoinedAdvice) -> Json:
-    return {**advice_json(found.advice), "named": found.named, "agreed": found.agreed}
+    tried = None if found.what_if is None else what_if_json(found.what_if)
+    return {
+        **advice_json(found.advice),
+        "named": found.named,
+        "agreed": found.agreed,
+        "remedy": {**remedy_json(found.remedy), "what_if": tried},
+    }
 
 
 def _mark(mark: Mark, start_ns: int) -> Json:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from pytpc.advice.advise import Advice, advise
+from pytpc.advice.counterfactual import WhatIf, what_if
 from pytpc.advice.declared import Declared
 from pytpc.advice.intervals import holds
+from pytpc.advice.remedy import Remedy, remedy
 from pytpc.ingest.recording import Recording
 from pytpc.marks import Mark, MarkType
 from pytpc.scoring.ranking import MarkRanking
@@ -20,11 +22,15 @@ class JoinedAdvice:
     """One parameter at the marks of a group, with the advice that does at the most of them.
 
     It is a suspect at ``named`` of the marks, and the suggested value would do at ``agreed``.
+    ``remedy`` is the value to try, from all marks of the group together, and ``what_if`` what it
+    would have changed, None where there is none.
     """
 
     advice: Advice
     named: int
     agreed: int
+    remedy: Remedy
+    what_if: WhatIf | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +47,15 @@ class MarkGroup:
     reasons: tuple[str, ...]
 
 
+@dataclass(frozen=True, slots=True)
+class _Agreed:
+    """The advice that does at the most marks, at how many it was named, and at how many it does."""
+
+    advice: Advice
+    named: int
+    count: int
+
+
 @dataclass
 class _Open:
     marks: list[Mark] = field(default_factory=list)
@@ -55,11 +70,15 @@ def join_advice(
     *,
     top: int = 5,
     declared: Sequence[Declared] = (),
+    reference: Recording | None = None,
+    flown: Sequence[float] = (),
     window_s: float = WINDOW_S,
 ) -> list[MarkGroup]:
     """The advice for all marks, those that say the same together, in the order of the first ones.
 
-    The arguments are those of `pytpc.advice.advise.advise`, with the rankings of several marks.
+    The arguments are those of `pytpc.advice.advise.advise`, with the rankings of several marks,
+    ``reference``, a mission that went right, and ``flown``, values of the one suspect that did not
+    help.
     """
     groups: dict[tuple[object, ...], _Open] = {}
     for ranking in rankings:
@@ -80,14 +99,57 @@ def join_advice(
         MarkGroup(
             tuple(group.marks),
             group.marks[0].type,
-            tuple(_joined(group.lists, top)),
+            tuple(
+                _with_remedy(
+                    recording,
+                    static_info,
+                    group.marks,
+                    advice,
+                    reference=reference,
+                    flown=flown,
+                    window_s=window_s,
+                )
+                for advice in _joined(group.lists, top)
+            ),
             tuple(group.reasons),
         )
         for group in groups.values()
     ]
 
 
-def _joined(lists: Sequence[Sequence[Advice]], top: int) -> list[JoinedAdvice]:
+def _with_remedy(
+    recording: Recording,
+    static_info: StaticInfo,
+    marks: Sequence[Mark],
+    agreed: _Agreed,
+    *,
+    reference: Recording | None,
+    flown: Sequence[float],
+    window_s: float,
+) -> JoinedAdvice:
+    """What was agreed on with the value to try, by the type that the parameter is suspected for."""
+    advice, kind = agreed.advice, agreed.advice.suspect.type
+    typed = [replace(mark, type=kind) for mark in marks]
+    name = advice.suspect.parameter
+    found = remedy(
+        recording,
+        static_info,
+        name,
+        typed,
+        reference=reference,
+        declared=advice.declared,
+        flown=flown,
+        window_s=window_s,
+    )
+    then = None
+    if found.value is not None:
+        then = what_if(
+            recording, static_info, name, found.value, kind=kind, marks=typed, window_s=window_s
+        )
+    return JoinedAdvice(advice, agreed.named, agreed.count, found, then)
+
+
+def _joined(lists: Sequence[Sequence[Advice]], top: int) -> list[_Agreed]:
     """The first suspects of all lists; one that a list does not have stands behind its last."""
     found: dict[tuple[str, MarkType], list[Advice]] = {}
     places: dict[tuple[str, MarkType], int] = {}
@@ -100,7 +162,7 @@ def _joined(lists: Sequence[Sequence[Advice]], top: int) -> list[JoinedAdvice]:
     return [_most_agreed(found[name]) for name in order[:top]]
 
 
-def _most_agreed(same: Sequence[Advice]) -> JoinedAdvice:
+def _most_agreed(same: Sequence[Advice]) -> _Agreed:
     """That of several suggestions for one parameter which would do at the most marks."""
     best, most = same[0], 0
     for advice in same:
@@ -110,4 +172,4 @@ def _most_agreed(same: Sequence[Advice]) -> JoinedAdvice:
         count = sum(holds(other.suggestion.feasible, float(value)) for other in same)
         if count > most:
             best, most = advice, count
-    return JoinedAdvice(best, len(same), most)
+    return _Agreed(best, len(same), most)

@@ -16,19 +16,21 @@ from typing import Literal
 
 import numpy as np
 
-from pytpc.advice.choice import WHOLE, Choice, Possible, choose, nearest_of
+from pytpc.advice.case import (
+    EQUALITIES,
+    Case,
+    case_of,
+    is_truth,
+    refuse,
+    shown_current,
+    values_for,
+)
+from pytpc.advice.choice import WHOLE, Choice, choose, nearest_of
 from pytpc.advice.declared import Declared
-from pytpc.advice.evidence import Evidence, NoneBecauseError, evidence_of
+from pytpc.advice.evidence import NoneBecauseError, evidence_of
 from pytpc.advice.intervals import Interval, Intervals, gaps, holds, intersection, union, words
 from pytpc.advice.thresholds import outcomes, thresholds_for, thresholds_for_one
-from pytpc.advice.units import (
-    NoUnitError,
-    ParameterUnit,
-    is_text,
-    is_unsigned,
-    is_whole,
-    unit_of,
-)
+from pytpc.advice.units import NoUnitError
 from pytpc.events import Bools, Events, Floats
 from pytpc.marks import MarkType
 from pytpc.parameters import parameter_name
@@ -38,8 +40,6 @@ from pytpc.summaries import Summaries
 from pytpc.words import Number, exact, show
 
 Direction = Literal["raise", "lower", "switch"]
-_CLOSE, _TINY = 1e-9, 1e-12
-_EQUALITIES = frozenset({"==", "!="})
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,37 +69,6 @@ class Suggestion:
     limited_by: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class _Case:
-    """What a suggestion is worked out from: the evaluations up to the mark, and the parameter."""
-
-    comparison: Comparison
-    how: ParameterUnit
-    possible: Possible
-    evidence: Evidence
-
-    @property
-    def relation(self) -> str:
-        return self.comparison.relation
-
-    @property
-    def threshold(self) -> float:
-        return self.evidence.threshold
-
-    @property
-    def present(self) -> float:
-        """The parameter's value as a double."""
-        found = self.how.current
-        return math.nan if found is None else found
-
-    @property
-    def current(self) -> Number:
-        return self.number(self.present)
-
-    def number(self, value: float) -> Number:
-        return round(value) if self.possible.whole and math.isfinite(value) else value
-
-
 def suggest(
     events: Events,
     comparison: Comparison,
@@ -126,15 +95,15 @@ def suggest(
     current: Number | None = None
     feasible: Intervals = ()
     try:
-        _refuse(comparison, unit)
+        refuse(comparison, unit)
         evidence = evidence_of(events, summaries, comparison.key, mark_ns, kind, window_s=window_s)
-        case = _case(comparison, unit, evidence, declared)
-        current = _shown_current(case)
+        case = case_of(comparison, unit, evidence, declared)
+        current = shown_current(case)
         if comparison.relation == "flag":
             return _switch(case, kind)
-        if _is_truth(case) and comparison.relation in _EQUALITIES and kind == "II":
+        if is_truth(case) and comparison.relation in EQUALITIES and kind == "II":
             return _switched(case, not case.threshold)
-        feasible = _feasible(case, _first_type(case) if kind == "I" else _second_type(case))
+        feasible = values_for(case, _first_type(case) if kind == "I" else _second_type(case))
         return replace(_chosen(case, feasible, kind), feasible=feasible)
     except (NoneBecauseError, NoUnitError) as why:
         reason = str(why)
@@ -142,33 +111,7 @@ def suggest(
         return Suggestion(name, current, None, None, None, False, reason, reason, feasible)
 
 
-def _refuse(comparison: Comparison, unit: LinkUnit | None) -> None:
-    if comparison.type == "constant":
-        raise NoneBecauseError("the threshold is a constant in the source, not a parameter")
-    if is_text(comparison, unit):
-        raise NoneBecauseError("the parameter is text")
-
-
-def _case(
-    comparison: Comparison, unit: LinkUnit | None, evidence: Evidence, declared: Declared | None
-) -> _Case:
-    if not math.isfinite(evidence.threshold):
-        raise NoneBecauseError("the threshold is not a finite number")
-    how = unit_of(comparison, unit, evidence.threshold)
-    if how.current is None:
-        text = comparison.transform.text if comparison.transform is not None else ""
-        what = text or show(evidence.threshold)
-        raise NoneBecauseError(f"no value of the parameter gives the threshold {what}")
-    seen = evidence.seen if how.tree == "x" else np.array([how.current])
-    whole = is_whole(comparison, unit, seen)
-    if declared is not None and declared.type in {"int", "double"}:
-        whole = declared.type == "int"
-    return _Case(
-        comparison, how, Possible(whole, is_unsigned(comparison, unit), declared), evidence
-    )
-
-
-def _first_type(case: _Case) -> Intervals:
+def _first_type(case: Case) -> Intervals:
     """The thresholds with which both evaluations of the flop have the outcome of the earlier."""
     evidence = case.evidence
     before, after = outcomes(case.relation, evidence.cmp, evidence.thresh).tolist()
@@ -182,15 +125,15 @@ def _first_type(case: _Case) -> Intervals:
     both = intersection(earlier, later)
     if holds(both, case.threshold):
         raise NoneBecauseError("the threshold has changed since, and would do as it is now")
-    if not both and case.relation in _EQUALITIES:
+    if not both and case.relation in EQUALITIES:
         raise NoneBecauseError("no value is equal to both compared values of the last change")
     return both
 
 
-def _second_type(case: _Case) -> Intervals:
+def _second_type(case: Case) -> Intervals:
     """The thresholds with which one evaluation of the window has its other outcome."""
     went, cmps = _still(case)
-    if case.evidence.summed and case.relation in _EQUALITIES:
+    if case.evidence.summed and case.relation in EQUALITIES:
         raise NoneBecauseError("summaries do not tell which values came near to the threshold")
     return union(
         interval
@@ -201,7 +144,7 @@ def _second_type(case: _Case) -> Intervals:
     )
 
 
-def _still(case: _Case) -> tuple[Bools, Floats]:
+def _still(case: Case) -> tuple[Bools, Floats]:
     """Outcomes and compared values of those that the present threshold would let go as they did."""
     evidence = case.evidence
     finite = np.isfinite(evidence.cmp)
@@ -215,32 +158,15 @@ def _still(case: _Case) -> tuple[Bools, Floats]:
     return went[same], cmps[same]
 
 
-def _feasible(case: _Case, thresholds: Intervals) -> Intervals:
-    """The values of the parameter that give one of ``thresholds``, none of them the present one."""
-    found = case.how.parameters(thresholds)
-    if holds(found, case.present):
-        # What the program rounds otherwise than we do must not come out as "leave it".
-        slack = max(abs(case.present) * _CLOSE, _TINY)
-        beside = [Interval.below(case.present - slack), Interval.above(case.present + slack)]
-        found = intersection(found, beside)
-    if found:
-        return found
-    if case.relation in _EQUALITIES:
-        raise NoneBecauseError("no value of the parameter gives the compared value exactly")
-    if case.comparison.transform is None or case.comparison.transform.kind == "affine":
-        raise NoneBecauseError("no finite threshold would change the outcome")
-    raise NoneBecauseError("no value of the parameter gives such a threshold")
-
-
-def _chosen(case: _Case, feasible: Intervals, kind: MarkType) -> Suggestion:
+def _chosen(case: Case, feasible: Intervals, kind: MarkType) -> Suggestion:
     declared = case.possible.declared
     if declared is not None and declared.choices:
         return _choice_of(case, feasible, declared)
-    if case.relation in _EQUALITIES and _is_everything_else(feasible, case):
+    if case.relation in EQUALITIES and _is_everything_else(feasible, case):
         others = " and ".join(part.words().removeprefix("exactly ") for part in gaps(feasible))
         raise NoneBecauseError(f"any value but {others} would do")
     up_first = True
-    if kind == "II" and case.relation not in _EQUALITIES:
+    if kind == "II" and case.relation not in EQUALITIES:
         up_first = _turns_upwards(case)
     found = choose(feasible, case.present, case.possible, up_first=up_first)
     if isinstance(found, str):
@@ -248,13 +174,13 @@ def _chosen(case: _Case, feasible: Intervals, kind: MarkType) -> Suggestion:
     return _sentence(case, found)
 
 
-def _is_everything_else(feasible: Intervals, case: _Case) -> bool:
+def _is_everything_else(feasible: Intervals, case: Case) -> bool:
     """Whether the values on both sides of the present one would do."""
     gaps = [math.nextafter(case.present, end) for end in (-math.inf, math.inf)]
     return all(holds(feasible, gap) for gap in gaps)
 
 
-def _turns_upwards(case: _Case) -> bool:
+def _turns_upwards(case: Case) -> bool:
     """Whether higher values of the parameter turn the last outcome of the window."""
     went, cmps = _still(case)
     last = thresholds_for(case.relation, float(cmps[-1]), not bool(went[-1]))
@@ -262,7 +188,7 @@ def _turns_upwards(case: _Case) -> bool:
     return any(part.first() > case.present for part in values)
 
 
-def _choice_of(case: _Case, feasible: Intervals, declared: Declared) -> Suggestion:
+def _choice_of(case: Case, feasible: Intervals, declared: Declared) -> Suggestion:
     """One of the values of an enumeration."""
     numbers = {
         value: name
@@ -272,7 +198,7 @@ def _choice_of(case: _Case, feasible: Intervals, declared: Declared) -> Suggesti
     if not numbers:
         names = _names(declared, tuple(value for _, value in declared.choices))
         raise NoneBecauseError(f"none of the declared choices would do: {names}")
-    if case.relation in _EQUALITIES and len(numbers) > 1:
+    if case.relation in EQUALITIES and len(numbers) > 1:
         raise NoneBecauseError(f"another choice would do: {_names(declared, tuple(numbers))}")
     value = nearest_of(iter(numbers), feasible, case.present)
     assert value is not None, "there is one"
@@ -299,7 +225,7 @@ def _names(declared: Declared, values: tuple[Number | str, ...]) -> str:
     )
 
 
-def _switch(case: _Case, kind: MarkType) -> Suggestion:
+def _switch(case: Case, kind: MarkType) -> Suggestion:
     """A flag: the value before it changed (type I), or the other one (type II).
 
     A number is one in a condition of its own, or in a switch, of which any two values may differ.
@@ -317,7 +243,7 @@ def _switch(case: _Case, kind: MarkType) -> Suggestion:
         )
     else:
         other = 0.0 if now else 1.0
-    if _is_truth(case):
+    if is_truth(case):
         return _switched(case, bool(other))
     values = case.how.parameters((Interval.point(other),))
     if not values:
@@ -326,27 +252,14 @@ def _switch(case: _Case, kind: MarkType) -> Suggestion:
     return _switched(case, case.number(value))
 
 
-def _switched(case: _Case, value: Number) -> Suggestion:
-    source, current = parameter_name(case.comparison), _shown_current(case)
+def _switched(case: Case, value: Number) -> Suggestion:
+    source, current = parameter_name(case.comparison), shown_current(case)
     text = f"switch {source} from {show(current)} to {show(value)}"
     feasible = (Interval.point(float(value)),)
     return Suggestion(source, current, "switch", value, float(value), True, text, None, feasible)
 
 
-def _is_truth(case: _Case) -> bool:
-    found, declared = case.comparison, case.possible.declared
-    if declared is not None:
-        return declared.type == "bool"
-    unknown = found.type == "flag" and found.default is None
-    plain = found.type != "derived"
-    return unknown or (isinstance(found.default, bool) and plain)
-
-
-def _shown_current(case: _Case) -> Number:
-    return bool(case.threshold) if _is_truth(case) else case.current
-
-
-def _sentence(case: _Case, found: Choice) -> Suggestion:
+def _sentence(case: Case, found: Choice) -> Suggestion:
     source, inside = parameter_name(case.comparison), found.interval
     up = found.value > case.present
     boundary = inside.low if up else inside.high

@@ -56,6 +56,19 @@ _LONGEST = 40
     metavar="V",
     help="Say what this value of PARAMETER would have changed, in place of looking for one.",
 )
+@click.option(
+    "--reference",
+    type=PATH,
+    metavar="RECORDING",
+    help="A mission of the same build that went right: its value is taken where it would do.",
+)
+@click.option(
+    "--flown",
+    type=float,
+    multiple=True,
+    metavar="V",
+    help="An earlier value of PARAMETER with which the error was there; may be repeated.",
+)
 @TYPES
 @WINDOW
 @TOP
@@ -66,6 +79,8 @@ def suggest_command(
     parameter: str | None,
     static_source: Path,
     value_text: str | None,
+    reference: Path | None,
+    flown: tuple[float, ...],
     types: Types,
     window_s: float,
     top: int,
@@ -78,6 +93,8 @@ def suggest_command(
     """
     if value_text is not None and parameter is None:
         raise click.UsageError("--value needs a PARAMETER")
+    if flown and parameter is None:
+        raise click.UsageError("--flown needs a PARAMETER")
     value = None if value_text is None else _number(value_text)
     static = static_of([static_source])
     found = recording_of(recording)
@@ -93,11 +110,12 @@ def suggest_command(
     rankings = rank_marks(found, static, types=types, window_s=window_s)
     if parameter is not None:
         rankings = _only(rankings, static, parameter)
+    clean = None if reference is None else recording_of(reference)
     with progress("replaying the mission") as advance:
         advance(0, len(rankings))
         groups = join_advice(
             found, static, rankings, top=top, declared=_declared(static, recording),
-            window_s=window_s,
+            reference=clean, flown=flown, window_s=window_s,
         )  # fmt: skip
     if as_json:
         document = {
@@ -233,6 +251,9 @@ def _suspect(number: int, joined: JoinedAdvice, marks: int) -> RenderableType:
     lines.append(Text(f"   {place}{code}", style="dim"))
     if advice.what_if is not None:
         lines.append(Text(plain(f"   {advice.what_if.text}")))
+    tried = joined.remedy
+    if tried.value is not None and tried.value != suggestion.value:
+        lines.append(Text(plain(f"   to try: {tried.text}")))
     if marks > 1 and joined.agreed < marks:
         lines.append(
             Text(f"   among the first suspects at {joined.named} of {many(marks, 'mark')}")

@@ -1,4 +1,4 @@
-"""The commands ``study run``, ``study halves`` and ``study suggested``."""
+"""The commands ``study run``, ``study halves``, ``study suggested``; the group of ``study``."""
 
 from __future__ import annotations
 
@@ -12,6 +12,8 @@ from rich.text import Text
 from pytpc.cli.console import console
 from pytpc.cli.options import JSON, PATH, Command
 from pytpc.cli.study_progress import StudyProgress
+from pytpc.cli.study_report import report_command
+from pytpc.cli.study_suggestions import suggestions_command
 from pytpc.demo_examples import EXAMPLES
 from pytpc.errors import RunError
 from pytpc.static_json import dump_json
@@ -152,6 +154,9 @@ def halves_command(*, as_json: bool) -> None:
         table.add_row(*(plain(str(value)) for value in _of(flight).values()), flight.half)
     console().print(table, highlight=False)
 
+
+study_group.add_command(report_command)
+study_group.add_command(suggestions_command)
 
 COMMANDS: list[click.Command] = [study_group]
 

@@ -18,6 +18,7 @@ from rich.progress import (
 from rich.progress import Progress as Bar
 from rich.text import Text
 
+from pytpc.colcon import BuildError
 from pytpc.demo_examples import Example
 from pytpc.mission import Progress
 from pytpc.study.plan import Flight
@@ -63,8 +64,11 @@ class StudyProgress:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        """Take it away."""
+        """Take it away; where a build failed, show the end of what it said."""
         self._bar.stop()
+        if isinstance(error, BuildError):
+            for line in error.tail:
+                click.echo(line, err=True)
 
     def building(self, example: Example, line: str) -> None:
         """A line of a build."""

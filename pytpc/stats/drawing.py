@@ -18,6 +18,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from PIL import Image
 
 from pytpc.atomic import write_atomic
 from pytpc.marks import Mark, MarkType
@@ -69,6 +70,8 @@ _METADATA: dict[str, dict[str, Any]] = {
     "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
 }
 _DPI = 150
+# More of them are drawn thin, for the curves are to be seen between them.
+_FEW_MARKS = 12
 
 
 @contextmanager
@@ -82,21 +85,36 @@ def style() -> Iterator[None]:
         yield
 
 
-def save(figure: Figure, target: Path, form: str) -> None:
+def save(
+    figure: Figure, target: Path, form: str, dpi: int = _DPI, *, palette: bool = False
+) -> None:
     """Write a figure, atomically; call it within ``style``.
 
     Args:
         figure: it keeps its size.
         target: the file.
         form: one of ``FORMATS``.
+        dpi: dots per inch, for ``png``.
+        palette: write a ``png`` with 256 colours, which takes a third of the room.
 
     Raises:
         TpcError: the file cannot be written.
     """
     stream = io.BytesIO()
     FigureCanvasAgg(figure)
-    figure.savefig(stream, format=form, dpi=_DPI, metadata=_METADATA[form])
+    figure.savefig(stream, format=form, dpi=dpi, metadata=_METADATA[form])
+    if palette and form == "png":
+        stream = _with_palette(stream)
     write_atomic(target, stream.getvalue())
+
+
+def _with_palette(png: io.BytesIO) -> io.BytesIO:
+    stream = io.BytesIO()
+    with Image.open(png) as image:
+        image.convert("RGB").quantize(256, dither=Image.Dither.NONE).save(
+            stream, format="PNG", optimize=True
+        )
+    return stream
 
 
 def short(text: str, length: int) -> str:
@@ -113,10 +131,11 @@ def draw_marks(axes: Axes, marks: Sequence[Mark], start_ns: int) -> None:
         marks: of any types.
         start_ns: begin of the mission.
     """
+    width = 1.2 if len(marks) <= _FEW_MARKS else 0.7
     for mark in marks:
         time = (mark.time_ns - start_ns) / 1e9
         colour, dash, _, _ = _MARKS[mark.type]
-        axes.axvline(time, color=colour, linewidth=1.2, linestyle=dash, zorder=4)
+        axes.axvline(time, color=colour, linewidth=width, linestyle=dash, zorder=4)
         line = mark_line(mark.type)
         line.set_linestyle("none")
         line.set_data([time], [1.0])

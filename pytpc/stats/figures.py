@@ -6,6 +6,8 @@ import re
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from matplotlib.figure import Figure
+
 from pytpc.errors import TpcError
 from pytpc.scoring.curves import STEP_S, rank_curves
 from pytpc.scoring.scores import WINDOW_S
@@ -15,7 +17,7 @@ from pytpc.stats.curves import mission_figure
 from pytpc.stats.drawing import save, style
 from pytpc.stats.missions import StudyMission, Trial, in_order
 from pytpc.stats.runtime import runtime_statistics
-from pytpc.stats.states import RobotState, robot_state
+from pytpc.stats.states import RobotState, robot_state, seen_state
 
 # More points than a page is wide would only be drawn over each other.
 _POINTS = 1500
@@ -62,34 +64,57 @@ def draw_study(
         for number, (trial, name) in enumerate(zip(trials, names, strict=True), start=1):
             if on_progress is not None:
                 on_progress(number, len(trials) + 1)
-            recording = trial.mission.recording
-            curves = rank_curves(
-                recording,
-                static_info,
-                step_s=max(STEP_S, recording.seconds / _POINTS),
-                window_s=window_s,
-            )
-            treatment = trial.mission.treatment
-            changed = None if treatment is None else treatment.parameter
-            state = _state_of(trial, states, on_trouble)
-            figure = mission_figure(_title(trial), recording, curves, state, changed)
+            state = state_of(trial, states, on_trouble)
+            figure = trial_figure(trial, static_info, state, window_s)
             for form in formats:
                 written.append(folder / f"{name}.{form}")
                 save(figure, written[-1], form)
     return written
 
 
-def _state_of(
-    trial: Trial, states: Sequence[str], on_trouble: Callable[[str], None] | None
+def trial_figure(
+    trial: Trial, static_info: StaticInfo, state: RobotState, window_s: float = WINDOW_S
+) -> Figure:
+    """The figure of one trial; call it within `drawing.style`.
+
+    Raises:
+        TpcError: the mission is too long for its curves.
+    """
+    recording, treatment = trial.mission.recording, trial.mission.treatment
+    step_s = max(STEP_S, recording.seconds / _POINTS)
+    curves = rank_curves(recording, static_info, step_s=step_s, window_s=window_s)
+    changed = None if treatment is None else treatment.parameter
+    return mission_figure(_title(trial), recording, curves, state, changed)
+
+
+def state_of(
+    trial: Trial,
+    states: Sequence[str] = (),
+    on_trouble: Callable[[str], None] | None = None,
 ) -> RobotState:
-    """What the robot did; nothing where it cannot be read: the ranks are drawn all the same."""
-    bag = trial.mission.bag
+    """What the robot did; nothing where it cannot be read: the ranks are drawn all the same.
+
+    Sights are taken where nothing of a bag is asked for, or there is none.
+
+    Args:
+        trial: the mission.
+        states: fields of the bag, see `pytpc.stats.states`.
+        on_trouble: called with a sentence where the state cannot be read.
+    """
+    bag, sights = trial.mission.bag, trial.mission.sights
+    start_ns = trial.mission.recording.start_ns
+    if sights is not None and not states:
+        try:
+            return seen_state(sights, start_ns)
+        except TpcError as error:
+            if on_trouble is not None:
+                on_trouble(f"{trial.label}: {error}")
     if bag is None:
         if states and on_trouble is not None:
             on_trouble(f"{trial.label}: without a bag nothing is known of the robot")
         return RobotState()
     try:
-        return robot_state(bag, trial.mission.recording.start_ns, states)
+        return robot_state(bag, start_ns, states)
     except TpcError as error:
         if on_trouble is not None:
             on_trouble(f"{trial.label}: {error}")

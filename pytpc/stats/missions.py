@@ -24,6 +24,7 @@ UNNAMED = "unnamed"
 
 _ORDER: Sequence[TreatmentType | None] = ("type1", "type2", "fault", "clean", None)
 _BAG = ".bag"
+_SIGHTS_FILE = "sights.parquet"
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +32,8 @@ class StudyMission:
     """One mission of a study.
 
     ``name`` is that of its folder or file. ``treatment`` and ``seed`` are None where nobody wrote
-    them down. ``bag`` has the topics that were recorded besides the reports, None without one.
+    them down. ``bag`` has the topics that were recorded besides the reports, ``sights`` what a
+    person beside the field sees of the robot; None without one.
     """
 
     name: str
@@ -39,6 +41,7 @@ class StudyMission:
     treatment: Treatment | None = None
     seed: int | None = None
     bag: Path | None = None
+    sights: Path | None = None
 
     @property
     def kind(self) -> TreatmentType | None:
@@ -128,6 +131,7 @@ def _load(
         treatment=treatment,
         seed=int(seed) if re.fullmatch(r"[0-9]{1,18}", seed) else None,
         bag=_bag(path, run),
+        sights=sights if whole and (sights := folder / _SIGHTS_FILE).is_file() else None,
     )
 
 

@@ -1,8 +1,9 @@
-"""What the robot did, from the topics that were recorded besides the reports.
+"""What the robot did, from the topics that were recorded besides the reports, or from sights.
 
 ``robot_state`` reads numbers and texts over time from a ROS 1 bag or a folder of rosbag2: the
 fields that are asked for, else those of a pose and of a mission's state where topics look like it.
 A field is written ``TOPIC.FIELD.FIELD``; ``yaw`` of something with an orientation is its angle.
+``seen_state`` takes position and yaw from a table of what a person beside the field sees.
 """
 
 from __future__ import annotations
@@ -16,10 +17,11 @@ from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
+import pyarrow as pa
 from rosbags.highlevel import AnyReader
 from rosbags.typesys import Stores, get_typestore
 
-from pytpc.columns import Floats
+from pytpc.columns import Floats, read_table
 from pytpc.errors import InputError, TpcError
 
 _POSES = {
@@ -35,6 +37,8 @@ _OTHER = ("person", "goal", "target", "cmd", "command", "setpoint", "waypoint", 
 _STATES = {"state", "mode", "status", "phase"}
 _NAMES = ("name", "mode", "phase", "status", "data", "state")
 _AXES = ("x", "y", "z")
+_YAW = "yaw"
+_TIME = "time"
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,6 +110,39 @@ def robot_state(
         raise InputError(f"the robot's state cannot be read: {said}", bag) from error
 
 
+def seen_state(sights: Path, start_ns: int) -> RobotState:
+    """What the robot did, from a table of sights.
+
+    Args:
+        sights: Parquet with ``time`` in seconds on the clock of the reports, and of ``x``, ``y``,
+            ``z`` (m) and ``yaw`` (rad) those that are known; other columns are not drawn.
+        start_ns: the begin of the mission, where the seconds count from.
+
+    Raises:
+        InputError: the file cannot be read, or has no time.
+    """
+
+    def state(table: pa.Table) -> RobotState:
+        if _TIME not in table.column_names:
+            raise InputError(f"no column {_TIME}; there are {', '.join(table.column_names)}")
+        columns = {
+            name: np.asarray(table.column(name).to_numpy(), dtype=np.float64)
+            for name in (_TIME, *_AXES, _YAW)
+            if name in table.column_names
+        }
+        order = np.argsort(columns[_TIME], kind="stable")
+        times = columns.pop(_TIME)[order] - start_ns / 1e9
+        sorted_ = {name: values[order] for name, values in columns.items()}
+        return RobotState(
+            tuple(
+                Series(name, times, _unwrapped(values) if name == _YAW else values)
+                for name, values in sorted_.items()
+            )
+        )
+
+    return read_table(sights, "sights", state)
+
+
 def _read(
     reader: AnyReader,
     fields: Sequence[_Field],
@@ -140,7 +177,7 @@ def _read(
             phases.append(_phases(field.label, seconds[order], [values[field][i] for i in order]))
         else:
             numbers = np.array(values[field], dtype=np.float64)[order]
-            if field.path[-1:] == ("yaw",):
+            if field.path[-1:] == (_YAW,):
                 numbers = _unwrapped(numbers)
             series.append(Series(field.label, seconds[order], numbers))
     return RobotState(tuple(series), tuple(phases))
@@ -177,7 +214,7 @@ def _pose_fields(topic: str, msgtype: str) -> list[_Field]:
     above = tuple(part for part in _POSES[msgtype].split(".") if part)
     position = "translation" if above == ("transform",) else "position"
     fields = [_Field(topic, (*above, position, axis), axis) for axis in _AXES]
-    return [*fields, _Field(topic, (*above, "yaw"), "yaw")]
+    return [*fields, _Field(topic, (*above, _YAW), _YAW)]
 
 
 def _likeness(topic: str) -> int | None:
@@ -198,7 +235,7 @@ def _value(message: object, field: _Field) -> float | str:
     found: Any = message
     for name in field.path:
         turned = getattr(found, "orientation", getattr(found, "rotation", None))
-        if name == "yaw" and not hasattr(found, "yaw") and turned is not None:
+        if name == _YAW and not hasattr(found, "yaw") and turned is not None:
             return _yaw(turned)
         if isinstance(found, np.ndarray | list) and name.isdecimal() and int(name) < len(found):
             found = found[int(name)]

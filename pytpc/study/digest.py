@@ -16,23 +16,26 @@ from pytpc.paths import cmake_file, defer_plugin, log_library, plugin, project_r
 from pytpc.static_info import StaticInfo
 from pytpc.study.plan import Flight
 
-VERSION = 1
+VERSION = 2
 """Counts what the study itself does to a mission: another number has all flown again."""
 
 _NO_INPUT = frozenset({"treatments", "__pycache__"})
 _NO_INPUT_ENDINGS = frozenset({".md", ".json", ".pyc"})
 _PEOPLE = SHARED_PACKAGE / "src"
+EYES = tuple(_PEOPLE / "simulated_world" / name for name in ("bag.py", "sights.py"))
+"""How a bag becomes sights. The bag is not kept: where these are others, all is flown again."""
 _ANALYSIS = project_root() / "pytpc" / "pynodes"
 
 
 def sources_digest(example: Example) -> str:
-    """Of all that a robot is built from, and launched with.
+    """Of all that a robot is built from and launched with, and of its observer's eyes.
 
     Raises:
         InputError: a file cannot be read.
     """
     own = [path for path in _files(example.folder) if path.name != "demo.py"]
-    shared = [path for path in _files(SHARED_PACKAGE) if not path.is_relative_to(_PEOPLE)]
+    files = _files(SHARED_PACKAGE)
+    shared = [path for path in files if path in EYES or not path.is_relative_to(_PEOPLE)]
     return _of([_contents(own, example.folder), _contents(shared, SHARED_PACKAGE)])
 
 
@@ -60,12 +63,12 @@ def build_digest(example: Example, static: StaticInfo) -> str:
 
 
 def people_digest() -> str:
-    """Of those who look on, without the eyes of a robot's own observer.
+    """Of those who look on: what they make of the sights, and when they press a key.
 
     Raises:
         InputError: a file cannot be read.
     """
-    return _of(_contents(_files(_PEOPLE), _PEOPLE))
+    return _of(_contents([path for path in _files(_PEOPLE) if path not in EYES], _PEOPLE))
 
 
 def flight_digest(flight: Flight, build: str, rate: float, settle_s: float) -> str:

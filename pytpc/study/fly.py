@@ -15,6 +15,7 @@ from pytpc.ingest.recording import (
     EVENTS_FILE,
     MARKS_FILE,
     REPORTS_FOLDER,
+    Recording,
     read_marks,
     save_recording,
     write_marks,
@@ -34,7 +35,7 @@ from pytpc.study.dataset import (
     save_done,
 )
 from pytpc.study.digest import flight_digest, marks_digest
-from pytpc.study.people import mark, read_marked, see
+from pytpc.study.people import cut_sights, mark, read_marked, see
 from pytpc.study.plan import Flight, overlay_text
 from pytpc.study.system import System
 from pytpc.treatment import Treatment, save_treatment
@@ -132,16 +133,18 @@ class Flier:
             settle_s=SETTLE_S,
             on_progress=on_progress,
         )
-        if run.ended != "done":
+        if run.ended != "done" or run.done_ns is None:
             what = {"timeout": "was not over", "ended": "ended before it was done"}
             raise RunError(
                 f"the mission {what.get(run.ended, run.ended)} after {run.wall_s:.0f} s", folder
             )
         save_treatment(flight.treatment, folder)
         save_changes(flight.changes, folder)
+        end_ns = round(run.done_ns + SETTLE_S * 1e9)
         see(example, self.system.plain_env, run.bag, folder)
+        cut_sights(folder / SIGHTS_FILE, end_ns / 1e9)
         causes, marks = self._mark(flight, folder)
-        recording = replace(read(folder), marks=marks)
+        recording = replace(cut(read(folder), end_ns), marks=marks)
         if not len(recording.events):
             raise RunError("no node reported a comparison", folder)
         save_recording(recording, folder)
@@ -155,7 +158,7 @@ class Flier:
             rate=self.rate,
             seed=flight.seed,
             people=flight.people,
-            sim_s=run.sim_s,
+            sim_s=recording.seconds,
             wall_s=run.wall_s,
             reports=len(recording.events),
             reached=reached,
@@ -224,6 +227,15 @@ def _clear(folder: Path) -> None:
         folder.mkdir(parents=True)
     except OSError as error:
         raise TpcError(f"cannot be cleared: {error.strerror}", folder) from error
+
+
+def cut(recording: Recording, end_ns: int) -> Recording:
+    """The recording until ``end_ns``.
+
+    How long a graph goes on after that hangs on the machine, and so would what is made of it.
+    """
+    events = recording.events.between(recording.start_ns, end_ns)
+    return replace(recording, events=events, end_ns=min(recording.end_ns, end_ns))
 
 
 def _has(folder: Path, names: Sequence[str]) -> bool:

@@ -13,25 +13,18 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import pyarrow as pa
+import pyarrow.compute as pc
 
-from pytpc.columns import check_schema, read_table
+from pytpc.columns import check_schema, read_table, write_table
 from pytpc.demo_examples import SHARED_PACKAGE, Example
-from pytpc.errors import InputError, RunError
-from pytpc.marks import MARK_TYPES, Mark
+from pytpc.errors import RunError
+from pytpc.marks import Mark
+from pytpc.study.data import user_marks
 from pytpc.study.dataset import CAUSES_FILE, MARKED_FILE, SIGHTS_FILE
 
 USERS = 4
 _PATIENCE_S = 120.0
 _MODULES = "PYTHONPATH"
-_MARKED = pa.schema(
-    [
-        ("time_ns", pa.int64()),
-        ("observer", pa.string()),
-        ("cause", pa.int32()),
-        ("right", pa.string()),
-        ("said", pa.string()),
-    ]
-)
 
 
 def see(example: Example, env: Mapping[str, str], bag: Path, folder: Path) -> None:
@@ -47,6 +40,21 @@ def see(example: Example, env: Mapping[str, str], bag: Path, folder: Path) -> No
         RunError: the observer fails; one line, what it said last.
     """
     _run(example, env, ["--bag", str(bag), "--sights", str(folder / SIGHTS_FILE)])
+
+
+def cut_sights(path: Path, end_s: float) -> None:
+    """Leave what was seen until ``end_s`` (simulated s): the column ``time`` of any robot's sights.
+
+    Raises:
+        InputError: the file cannot be read, or has no such column.
+        TpcError: it cannot be written.
+    """
+
+    def until_end(table: pa.Table) -> pa.Table:
+        check_schema(table.schema, pa.schema([("time", pa.float64())]))
+        return table.filter(pc.less_equal(table["time"], end_s))
+
+    write_table(read_table(path, "sights", until_end), path)
 
 
 def mark(example: Example, env: Mapping[str, str], folder: Path, seed: int) -> None:
@@ -87,14 +95,4 @@ def read_marked(path: Path) -> tuple[Mark, ...]:
     Raises:
         InputError: the file cannot be read, or is not of marks.
     """
-
-    def marks_of(table: pa.Table) -> tuple[Mark, ...]:
-        check_schema(table.schema, _MARKED)
-        marks = []
-        for row in table.select(["time_ns", "observer", "right"]).to_pylist():
-            if None in row.values() or row["right"] not in MARK_TYPES:
-                raise InputError(f"a mark that is none: {row}")
-            marks.append(Mark(row["time_ns"], row["right"], row["observer"]))
-        return tuple(sorted(marks, key=Mark.order))
-
-    return read_table(path, "marks", marks_of)
+    return tuple(sorted((one.mark("typed") for one in user_marks(path)), key=Mark.order))

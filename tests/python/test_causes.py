@@ -129,7 +129,7 @@ def test_in_front_of_the_person_until_the_picture():
         (11.0, 0, 0.8, 1.6, field.LOOK_AT, 0.0),
         (60.0, 0, 0.8, 1.6, field.LOOK_AT, 0.0),
     ]
-    (until_picture,) = of_field(*phases, pictures=(30.0,))
+    until_picture, *_ = of_field(*phases, pictures=(30.0,))
     assert (until_picture.kind, until_picture.end) == ("II", 30.0)
     # Still over half a second: 0.4 m/s is below 0.3 m/s when a quarter of that is over.
     assert until_picture.start == pytest.approx(11.2, abs=0.11)

@@ -52,6 +52,10 @@ def run(*arguments):
 # 190 values those of odd steps (0.3 and 0.5: 95) and the 0.4 of even steps from 10 s on: steps 90
 # to 189, half of which are even, 50. All are near: [-2.5, 9.5] and [7.5, 19.5] reach over the log,
 # which ends at 19.9 s, but for steps 186 to 189: 19.6 to 19.9 s, all of which turn.
+#
+# To try: of steps 0 to 185 the values are 0.2 (45 times), 0.3 (45), 0.4 (48) and 0.5 (48), so that
+# the median is 0.4, 48 deviations are 0, 93 are 0.1 and 45 are 0.2, their median is 0.1 and the
+# standard deviation 0.14826: below the smallest by that is 0.05174, but half of the 0.2 is enough.
 def test_what_is_printed(files):
     bag, static = files
     result = run("suggest", bag, "--static", static)
@@ -63,6 +67,8 @@ def test_what_is_printed(files):
         "1  lower ~cover from 0.6 to 0.299 (below 0.3)",
         "src/node.cpp:11  if (value > \N{REPLACEMENT CHARACTER}[31mcover_) {",
         f"0.299 answers 2 of 2 {AWAY} 4 of 190 decisions (2.1 %)",
+        "to try: lower ~cover from 0.6 to 0.0999 (below 0.1: nearly all of 186 evaluations"
+        " before the marks go the other way)",
         f"declared at {bag.parent}/robot/cfg/Robot.cfg:2",
     ]
     assert "Robot.cfg:3: add_more(gen): the function is not followed" in result.stderr
@@ -151,3 +157,22 @@ def test_values_as_they_are_typed(files):
     for text, shown in (("true", "true"), ("FALSE", "false"), ("3", "3"), ("1e-3", "0.001")):
         result = run("suggest", bag, "cover", "--static", static, "--value", text)
         assert result.stdout.splitlines()[0] == f"~cover = {shown}:"
+
+
+# A clean run with 0.15 lies below 0.5, as the smallest change wants, so that it is taken, though
+# only what is below 0.1 lasts. That 0.9 was flown before changes nothing: half of 0.2 is the least.
+def test_a_clean_run_and_what_was_flown(files, tmp_path):
+    bag, static = files
+    clean = tmp_path / "clean.bag"
+    with BagFile(clean) as writer:
+        writer.log(1, "/uav", line(1, 1, 0.3, 0.15))
+    words = ("suggest", bag, "cover", "--static", static, "--json")
+    (group,) = json.loads(run(*words, "--reference", clean).stdout)["groups"]
+    found = group["suspects"][0]["remedy"]
+    assert (found["value"], found["basis"]) == (0.15, "reference")
+    assert found["known"][0] == {"source": "reference", "value": 0.15}
+    assert found["what_if"]["answered"] == 2
+    (group,) = json.loads(run(*words, "--flown", 0.9).stdout)["groups"]
+    assert group["suspects"][0]["remedy"]["value"] == 0.0999
+    refused = run("suggest", bag, "--static", static, "--flown", 1)
+    assert "--flown needs a PARAMETER" in refused.output

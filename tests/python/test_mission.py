@@ -251,12 +251,13 @@ def test_recorder_stamps_with_the_clock_and_keeps_the_account(tmp_path):
     recorder.take(ROSOUT, log(b"/a", 1, b"threshold_information:k,1,cmp:1,thresh:1,res:1"))
     recorder.take(ROSOUT, log(b"/a", 4, b"threshold_informant"))
     recorder.take(DONE, b"\1")
+    assert recorder.status().done
     bag.close()
     # /clock was not asked for, so it is not in the bag. Of two log messages one is a report, and
     # 2 and 3 are missing between them.
     assert recorder.status(closed=True) == Status(
         ready=True,
-        done=True,
+        done_ns=4_000_000_000,
         closed=True,
         began_ns=3_250_000_000,
         now_ns=4_000_000_000,
@@ -336,7 +337,7 @@ def test_a_recording_that_was_cut_off_can_be_reindexed(tmp_path):
 def test_status_survives_the_way_through_its_file(tmp_path):
     path = tmp_path / "status.json"
     assert read_status(path) is None
-    status = Status(ready=True, now_ns=5, messages={"/rosout": 3}, lost={"/a": 1})
+    status = Status(ready=True, done_ns=4, now_ns=5, messages={"/rosout": 3}, lost={"/a": 1})
     save_status(status, path)
     assert read_status(path) == status
 

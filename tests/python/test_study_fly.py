@@ -6,6 +6,8 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 from mission_samples import comparison, static_info
 from study_flights import robot
@@ -75,6 +77,7 @@ class Rig:
         self.calls: list[dict[str, str]] = []
         self.seen: list[int] = []
         self.ended = "done"
+        self.done_ns = 30 * 10**9
 
     def run_mission(self, env, launch, args, folder, timeout_s, **_):
         assert env["TPC_SINK"] == "file"
@@ -84,11 +87,13 @@ class Rig:
         params.write_text("pump: {b: 0.5}\n")
         for name in ("tpc", "ros"):
             (folder / name).mkdir()
-        return MissionRun(bag, params, self.ended, 60.0, 5.0, 0, {"/truth/full": 1}, {}, {})
+        return MissionRun(
+            bag, params, self.ended, 60.0, 5.0, 0, {"/truth/full": 1}, {}, {}, self.done_ns
+        )
 
     def see(self, example, env, bag, folder):
         assert bag.read_bytes() == b"#ROSBAG"
-        (folder / "sights.parquet").write_bytes(b"")
+        pq.write_table(pa.table({"time": [1.0, 44.9, 45.0, 45.1]}), folder / "sights.parquet")
 
     def mark(self, example, env, folder, seed):
         self.seen.append(seed)
@@ -141,6 +146,11 @@ def test_a_mission_leaves_what_its_readers_need_and_no_more(flier, rig, example)
         "treatment.json",
     ]
     assert load_recording(folder).marks == (Mark(22 * 10**9, "I", "user1"),)
+    # How long a graph goes on after the mission's end and 15 s hangs on the machine.
+    assert load_recording(folder).end_ns == 45 * 10**9
+    assert load_recording(folder).events.time_ns.max() <= 45 * 10**9
+    assert pq.read_table(folder / "sights.parquet")["time"].to_pylist() == [1.0, 44.9, 45.0]
+    assert done.sim_s == 45.0
     assert (done.causes, done.marks, done.reached, done.remarks) == (1, 1, True, ())
     (args,) = rig.calls
     assert args == {
@@ -221,6 +231,11 @@ def test_a_mission_that_does_not_end_is_not_done(flier, rig, example):
     assert load_done(flight.folder(flier.out)) is None
 
 
+def test_the_eyes_are_where_the_digest_looks_for_them():
+    for file in digest.EYES:
+        assert file.is_file()
+
+
 def test_the_sources_digest_knows_what_the_robot_is_built_from(example):
     before = digest.sources_digest(example)
     for name in ("README.md", "study.json", "treatments/clean/params.yaml", "demo.py"):
@@ -256,3 +271,16 @@ def test_the_observer_sees_the_shared_package_before_all_others(example, tmp_pat
         *("--sights", "/m/sights.parquet", "--seed", "7", "--users", "4"),
         *("--causes", "/m/causes.json", "--marks", "/m/marks.parquet"),
     ]
+
+
+def test_the_marks_have_the_type_that_was_right_whatever_was_said(tmp_path):
+    path = tmp_path / "marks.parquet"
+    columns = {
+        "time_ns": [9, 5],
+        "observer": ["user1", "user2"],
+        "cause": [0, 0],
+        "right": ["II", "I"],
+        "said": ["I", "II"],
+    }
+    pq.write_table(pa.table(columns), path)
+    assert people.read_marked(path) == (Mark(5, "I", "user2"), Mark(9, "II", "user1"))

@@ -19,6 +19,7 @@ from study_flights import FakeFlier, made, robot
 from pytpc.cli import study_commands
 from pytpc.cli.main import main
 from pytpc.cli.study_progress import StudyProgress, result_line
+from pytpc.colcon import BuildError
 from pytpc.mission import Progress
 from pytpc.study import flying
 from pytpc.study.changes import Candidate
@@ -288,6 +289,19 @@ def test_a_broken_treatment_is_one_line_before_anything_is_flown(fleet, example)
     result = run("run", "--out", str(fleet.out))
     assert (result.exit_code, fleet.flown) == (1, [])
     assert result.stderr.startswith(f"pytpc: error: {path}:1: not JSON")
+
+
+def test_a_build_that_fails_shows_the_end_of_what_it_said(fleet, monkeypatch):
+    def fails(*_: object) -> None:
+        raise BuildError("does not build", Path("ws"), "robot", ["node.cpp:3: no such thing"])
+
+    monkeypatch.setattr(flying, "prepare", fails)
+    result = run("run", "--out", str(fleet.out))
+    assert result.exit_code == 1
+    assert result.stderr.splitlines() == [
+        "node.cpp:3: no such thing",
+        "pytpc: error: ws: does not build",
+    ]
 
 
 def test_halves_are_listed(fleet):

@@ -88,6 +88,12 @@ def test_markdown():
     ]
 
 
+def test_markdown_texts_begin_at_the_left_and_numbers_do_not():
+    columns = (Column("Word", 0), Column("Number", 0), Column("Nothing", 0))
+    table = Table("t", "T", columns, (("a", ("x", 1, None)), ("b", (None, 2, None))), ())
+    assert as_markdown(table).splitlines()[1] == "| --- | --- | --: | --: |"
+
+
 def test_latex_has_the_groups_above_their_columns():
     lines = as_latex(TABLE).splitlines()
     place = lines.index(r" & \multicolumn{2}{c}{User\_1} & \multicolumn{1}{c}{} \\")

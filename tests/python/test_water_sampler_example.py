@@ -12,6 +12,7 @@ import pytest
 import yaml
 
 from pytpc.demo_examples import WATER_SAMPLER
+from pytpc.treatment import Treatment
 
 PACKAGE = WATER_SAMPLER.folder
 CPP = json.loads((PACKAGE / "expected_tpcs.json").read_text())
@@ -77,16 +78,20 @@ def test_each_parameter_of_the_lists_is_read_and_each_read_one_is_in_a_list(
     assert listed == reads(pattern, *endings)
 
 
-def test_fault_differs_in_the_one_relation():
+@pytest.mark.parametrize(
+    ("document", "unit", "parameter", "right", "wrong"),
+    [(PYTHON, "mission", "~max_dip_depth", "<", ">"), (CPP, "pump_control", "~min_flow", ">", "<")],
+)
+def test_fault_differs_in_the_one_relation(document, unit, parameter, right, wrong):
     def of(unit: str) -> Counter:
         return Counter(
             (entry["parameter"], entry["relation"])
-            for entry in PYTHON["tpcs"]
+            for entry in document["tpcs"]
             if entry["unit"] == unit
         )
 
-    assert of("mission") - of("mission_fault") == Counter({("~max_dip_depth", "<"): 1})
-    assert of("mission_fault") - of("mission") == Counter({("~max_dip_depth", ">"): 1})
+    assert of(unit) - of(f"{unit}_fault") == Counter({(parameter, right): 1})
+    assert of(f"{unit}_fault") - of(unit) == Counter({(parameter, wrong): 1})
 
 
 def test_configuration_sets_each_parameter_that_a_node_reads():
@@ -125,17 +130,66 @@ def test_both_languages_compare_many_parameters():
     assert len(in_python) >= 20
 
 
-def test_a_parameter_of_each_language_is_changed_in_each_type_of_treatment():
-    changed: dict[str, set[str]] = {"type1": set(), "type2": set()}
-    for folder in sorted((PACKAGE / "treatments").iterdir()):
-        treatment = WATER_SAMPLER.treatment(folder.name)
-        for language, document in (("C++", CPP), ("Python", PYTHON)):
-            compared = {entry["parameter"] for entry in document["tpcs"]}
-            if treatment.parameter in compared:
-                changed[treatment.type].add(language)
-    assert changed == {"type1": {"C++", "Python"}, "type2": {"C++", "Python"}}
+def treatments() -> list[Treatment]:
+    return [WATER_SAMPLER.treatment(path.name) for path in (PACKAGE / "treatments").iterdir()]
+
+
+@pytest.mark.parametrize("kind", ["type1", "type2"])
+def test_parameters_of_each_language_are_changed_in_each_type_of_treatment(kind):
+    changed = [str(each.parameter) for each in treatments() if each.type == kind]
+    assert len(changed) == len(set(changed)) >= 5
+    for document in (CPP, PYTHON):
+        compared = {entry["parameter"] for entry in document["tpcs"]}
+        assert len(compared & set(changed)) >= 2
+
+
+def test_no_parameter_is_changed_in_two_treatments():
+    changed = Counter(each.parameter for each in treatments() if each.parameter is not None)
+    assert set(changed.values()) == {1}
+
+
+@pytest.mark.parametrize("treatment", treatments(), ids=lambda each: each.name)
+def test_treatment_changes_one_number_and_says_so(treatment):
+    overlay = yaml.safe_load(treatment.overlay.read_text())
+    assert treatment.name == treatment.overlay.parent.name
+    if treatment.parameter is None:
+        assert overlay == {}
+        assert treatment.name.startswith(treatment.type)
+        return
+    node, name = treatment.node.removeprefix("/"), treatment.parameter.removeprefix("~")
+    assert treatment.name == f"{treatment.type}_{name}"
+    assert overlay == {node: {name: treatment.new}}
+    own = yaml.safe_load((PACKAGE / "config/params.yaml").read_text())
+    assert own[node][name] == treatment.old
+    # The behaviour tips between the right value and the wrong one.
+    low, high = sorted((treatment.old, treatment.new))
+    assert low < treatment.tipping < high
+
+
+def test_faults_are_those_of_the_launch_file():
+    launch = WATER_SAMPLER.launch.read_text()
+    faults = [each for each in treatments() if each.type == "fault"]
+    assert len(faults) == 2
+    for each in faults:
+        assert list(each.launch) == ["fault"]
+        assert each.name == f"fault_{each.launch['fault']}"
+        assert launch.count(f"$(eval fault == '{each.launch['fault']}')") == 2
+
+
+def test_no_decoy_list_names_a_parameter_that_is_not_there():
+    own = yaml.safe_load((PACKAGE / "config/params.yaml").read_text())
+    never = json.loads((PACKAGE / "study.json").read_text())["never_decoys"]
+    assert set(never) <= {f"/{node}/{name}" for node, values in own.items() for name in values}
 
 
 def test_demonstration_flies_treatments_that_are_there():
-    there = {path.name for path in (PACKAGE / "treatments").iterdir()}
-    assert set(WATER_SAMPLER.shown) == there - {"fault_dip_depth"}
+    assert WATER_SAMPLER.shown[0] == "clean"
+    assert set(WATER_SAMPLER.shown) <= {each.name for each in treatments()}
+
+
+def test_treatments_under_which_the_vial_is_filled_are_there():
+    assert {each.name for each in treatments()} > WATER_SAMPLER.reached_under
+    for each in treatments():
+        nevertheless = each.type == "clean" or each.name in WATER_SAMPLER.reached_under
+        said = [] if nevertheless else [WATER_SAMPLER.reached]
+        assert WATER_SAMPLER.goal_remarks(each, reached=True) == said

@@ -13,6 +13,8 @@ from pytpc.demo_show import Built
 from pytpc.scoring.ranking import unknown_keys
 
 IN_CPP = {"uav_simulator", "flight_controller", "pump_control"}
+# The link unit with a fault -> that in whose place it runs.
+FAULTY = {"mission_fault": "mission", "pump_control_fault": "pump_control"}
 # Of simulated time. A machine that cannot keep up is slower, and flies the same: the time waits.
 RATE = "12"
 MISTAKES = (
@@ -21,7 +23,14 @@ MISTAKES = (
     "type2_hold_radius",
     "type2_min_conductivity",
 )
-MISSIONS = ("clean", "fault_dip_depth", *MISTAKES)
+FAULTS = ("fault_dip_depth", "fault_pump_flow")
+MISSIONS = ("clean", *FAULTS, *MISTAKES)
+# Those of the study alone.
+MORE = tuple(
+    path.name
+    for path in sorted((WATER_SAMPLER.folder / "treatments").iterdir())
+    if path.name not in MISSIONS
+)
 
 need_cpp_half()
 
@@ -53,8 +62,8 @@ def test_mission_goes_as_its_treatment_demands(robot, fly, name):
     assert (mission.recording.malformed, mission.recording.lost) == (0, {})
     # The nodes of both languages report.
     reporting = {robot.static.unit_of(key).link_unit for key in events.keys}
-    python_node = "mission_fault" if name == "fault_dip_depth" else "mission"
-    assert reporting == IN_CPP | {python_node}
+    assert {FAULTY.get(unit, unit) for unit in reporting} == {*IN_CPP, "mission"}
+    assert len(reporting & {*FAULTY}) == (name in FAULTS)
     # What the thesis saw is 126 to 456 comparisons a second (SPEC 11). The seconds in which a busy
     # machine ends the graph count, too.
     assert 150.0 < mission.run.reports / mission.run.sim_s < 600.0
@@ -79,8 +88,18 @@ def test_one_ranking_names_the_parameter_of_either_language(fly, name):
     assert max(positions[1:] or positions) <= FIRST
 
 
-def test_fault_in_the_source_looks_like_a_type2_error(fly):
-    assert "II" in {ranking.mark.type for ranking in fly("fault_dip_depth").rankings}
+@pytest.mark.parametrize(("name", "kind"), [("fault_dip_depth", "II"), ("fault_pump_flow", "I")])
+def test_fault_in_the_source_looks_like_an_error_of_a_kind(fly, name, kind):
+    assert kind == fly(name).rankings[0].mark.type
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("name", MORE)
+def test_first_mark_of_the_study_s_treatments_is_of_the_right_type(fly, name, seed):
+    mission = fly(name, seed)
+    assert gone_wrong(mission) == []
+    assert mission.rankings[0].mark.type == mission.treatment.mark_type
 
 
 # Wind, drops and the observer's delays are others; how late a person is decides the position.

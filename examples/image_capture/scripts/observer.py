@@ -210,8 +210,8 @@ class FieldEyes(Eyes[Sight]):
         """The UAV, the person, and the shutter."""
         return {
             "/truth/person": Channel("geometry_msgs/PoseStamped", self._somebody),
-            "/truth/uav": Channel("geometry_msgs/PoseStamped", self._uav),
             "/camera/picture": Channel("image_capture/Picture", self._click),
+            "/truth/uav": Channel("geometry_msgs/PoseStamped", self._uav),
         }
 
     def _somebody(self, message: PoseStamped) -> None:

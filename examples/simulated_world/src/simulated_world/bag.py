@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Iterator, Mapping
+from operator import itemgetter
 from pathlib import Path
 
 import genpy
@@ -46,17 +47,28 @@ def read_bag(path: Path, observer: Observer[SightT]) -> list[SightT]:
 def _messages(
     path: Path, channels: Mapping[str, Channel[SightT]]
 ) -> Iterator[tuple[str, genpy.Message]]:
-    """The messages on these topics, in the order in which they were recorded."""
+    """The messages on these topics, in the order of their stamps.
+
+    A recorder on a busy machine hears one topic later than another. Where stamps are equal the
+    order is that of ``channels``; a message without a stamp has the time of its recording.
+    """
+    stamped: list[tuple[int, int, str, genpy.Message]] = []
+    places = {topic: place for place, topic in enumerate(channels)}
     try:
         with Bag(str(path)) as bag:
             _check_topics(bag, channels, path)
             topics = list(channels)
             progress = Progress(f"reading {path.name}", bag.get_message_count(topics))
-            for topic, message, _ in progress.over(bag.read_messages(topics=topics)):
-                yield topic, message
+            for topic, message, recorded in progress.over(bag.read_messages(topics=topics)):
+                header = getattr(message, "header", None)
+                time = recorded if header is None else header.stamp
+                stamped.append((time.to_nsec(), places[topic], topic, message))
     except DAMAGED as error:
         text = f"{path}: no readable bag: {type(error).__name__}: {error}"
         raise ObserverError(text) from error
+    stamped.sort(key=itemgetter(0, 1))
+    for _, _, topic, message in stamped:
+        yield topic, message
 
 
 def _check_topics(bag: Bag, channels: Mapping[str, Channel[SightT]], path: Path) -> None:

@@ -24,7 +24,11 @@ class Eyes(Generic[SightT]):
     """How messages become sights; the same for a running robot and for a bag."""
 
     def channels(self) -> Mapping[str, Channel[SightT]]:
-        """The topics of what a person can see or hear."""
+        """The topics of what a person can see or hear.
+
+        Of messages of one time the first topic's is taken first, so that what completes a sight
+        stands last.
+        """
         raise NotImplementedError
 
 

@@ -1,0 +1,60 @@
+"""What the study found on the treatments that were held back, each with its target.
+
+From the study's folder where there is one, else from the numbers of the page in docs/.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from figures import figure
+
+from pytpc.study.judge import POSITIONS_FILE
+from pytpc.study.report.making import RESULTS_FILE, make_report
+
+TOPIC = "study"
+HALF = "held-back"
+_ROOT = Path(__file__).parents[1]
+
+
+def main(words: Sequence[str] | None = None) -> None:
+    """Print the figures."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--out", type=Path, default=_ROOT / "out" / "study")
+    parser.add_argument("--results", type=Path, default=_ROOT / "docs" / "study" / RESULTS_FILE)
+    args = parser.parse_args(words)
+    if (args.out / POSITIONS_FILE).is_file():
+        print(f"# from the study in {args.out}", flush=True)
+        numbers = _numbers_of(args.out)
+    elif args.results.is_file():
+        print(f"# from the numbers of the page, {args.results}", flush=True)
+        numbers = json.loads(args.results.read_text())
+    else:
+        print(f"# neither {args.out} nor {args.results} is there", flush=True)
+        return
+    for one in numbers["figures"]:
+        name, apart, _ = one["name"].partition(f"-{HALF}")
+        if apart:
+            figure(
+                TOPIC,
+                name,
+                one["value"],
+                unit=one["unit"],
+                target=one["target"],
+                hit=one["hit"],
+            )
+
+
+def _numbers_of(study: Path) -> dict[str, Any]:
+    """The numbers of a study, whose page is not kept."""
+    with tempfile.TemporaryDirectory() as folder:
+        return make_report(study, Path(folder) / "study.md", [HALF], draw=False).numbers
+
+
+if __name__ == "__main__":
+    main()

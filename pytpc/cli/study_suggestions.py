@@ -1,0 +1,65 @@
+"""The command ``study suggestions``: what is to be flown next, and what came of it so far."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+
+import click
+from rich.table import Table
+from rich.text import Text
+
+from pytpc.cli.console import console, progress
+from pytpc.cli.options import JSON, PATH
+from pytpc.study.data import Half
+from pytpc.study.methods import METHODS
+from pytpc.study.suggested import WANTED_FILE
+from pytpc.study.suggestion_chains import Chain, shares
+from pytpc.study.suggestions import next_round
+from pytpc.words import many, plain
+
+_HALVES: dict[str, tuple[Half, ...]] = {
+    "tuning": ("tuning",),
+    "held-back": ("held-back",),
+    "both": ("tuning", "held-back"),
+}
+
+
+@click.command("suggestions")
+@click.option("--out", type=PATH, default=Path("out") / "study", show_default=True)
+@click.option("--half", type=click.Choice(list(_HALVES)), default="both", show_default=True)
+@click.option(
+    "--method",
+    type=click.Choice(list(METHODS)),
+    help="Also try the first suspects of this ranking.",
+)
+@JSON
+def suggestions_command(*, out: Path, half: str, method: str | None, as_json: bool) -> None:
+    """Take in the suggestions that were flown, and say which are to be flown next.
+
+    By turns with ``study suggested``, until nothing is left.
+    """
+    ranking = None if method is None else METHODS[method]
+    with progress("working out suggestions") as advance:
+        chains = next_round(out, _HALVES[half], ranking, advance)
+    mine = [chain for chain in chains if chain.half in _HALVES[half]]
+    if as_json:
+        document = [asdict(share) for share in shares(mine)]
+        click.echo(json.dumps(document, indent=1))
+        return
+    _show(mine)
+    left = {chain.mission for chain in mine if not chain.is_over}
+    what = f"{many(len(left), 'mission')} to fly: {out / WANTED_FILE}"
+    click.echo(plain(what if left else "nothing is left to fly"))
+
+
+def _show(chains: list[Chain]) -> None:
+    table = Table()
+    for heading in ("Variant", "Tries", "Treatments", "Gone %", "New error %", "Waiting"):
+        table.add_column(heading, justify="left" if heading == "Variant" else "right")
+    for share in shares(chains):
+        rates = ["-" if r is None else f"{100 * r:.0f}" for r in (share.gone, share.new_error)]
+        numbers = (str(share.tries), str(share.treatments), *rates, str(share.open))
+        table.add_row(Text(share.variant), *numbers)
+    console().print(table, highlight=False)

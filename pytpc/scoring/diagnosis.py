@@ -1,0 +1,205 @@
+"""Who is to blame: a posterior over the parameters, and over none of them, from all marks at once.
+
+``diagnose`` is the entrance. For each parameter p
+
+    score(p) = log( P(I) exp(a . x_I(p)) + P(II) exp(b . x_II(p)) )
+
+with the evidence x of `pytpc.scoring.diagnosis_evidence` of its best comparison; P is how likely
+either type is from what the marks say (``type_odds``). The posterior is that of a conditional logit
+(McFadden 1974): exp(score(p)) over the sum of all, "none of them" being one alternative with a
+constant score. So a few weights, fitted on the tuning half of the study (`pytpc.study.fit`), make
+one order of both types, and a probability beside it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from pytpc.columns import Floats, Int64s
+from pytpc.ingest.recording import Recording
+from pytpc.marks import Mark
+from pytpc.scoring.diagnosis_evidence import SHARE, Evidence, evidence, marked
+from pytpc.scoring.diagnosis_streams import Streams
+from pytpc.scoring.tables import Tpcs
+from pytpc.static_info import StaticInfo
+
+
+@dataclass(frozen=True, slots=True)
+class Weights:
+    """What the evidence counts."""
+
+    acted: float = 0.8
+    waited: float = 0.8
+    since: float = 0.4
+    held: float = 1.0
+    near: float = -0.7
+    restless: float = -0.3
+    clock: float = -0.5
+    flat: float = -1.5
+    far: float = 0.0
+    type2: float = 0.0
+    latch: float = -1.5
+    none: float = 3.0
+
+
+REASONED = Weights()
+"""The weights by reason alone: where the fit begins, and what it stays near."""
+
+WEIGHTS = Weights(
+    acted=1.03,
+    waited=0.94,
+    since=0.18,
+    held=1.02,
+    near=-0.68,
+    restless=-0.28,
+    clock=-0.33,
+    flat=-1.59,
+    far=-0.11,
+    type2=-1.54,
+    latch=0.19,
+    none=1.24,
+)
+"""Fitted by `pytpc.study.fit` on flights (seed 11, two crowds each) of the 15 treatments of types I
+and II, the faults and the clean missions in the tuning halves of image_capture and water_sampler."""
+
+LIED = 0.5
+"""Before any mark is seen: that these observers cannot tell the types apart (table 6.13)."""
+SLIP = 0.05
+"""An observer who can tell them apart says the wrong one this often."""
+SAID_I = 28 / 68
+"""Who cannot says type I this often, whatever it is: the share of all marks in table 6.13."""
+
+MARKS_I, MARKS_II = 17 / 8, 51 / 8
+"""Marks of a user in a trial of either type, by table 6.15."""
+REPEAT = 0.5
+"""How much the number of marks counts: those of one observer are not independent."""
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """The parameters and what speaks against them.
+
+    ``names`` as `Tpcs.names`; ``scores`` float64[p], the greater the more suspicious, -inf where
+    the parameter was never compared; ``posterior`` float64[p]; ``none`` the probability that it is
+    none of them; ``type1`` that the error is of type I, from the marks alone.
+    """
+
+    names: tuple[str, ...]
+    scores: Floats
+    posterior: Floats
+    none: float
+    type1: float
+
+    @property
+    def order(self) -> list[int]:
+        """The columns of those that were compared, the most suspicious first; ties by name."""
+        known = np.flatnonzero(np.isfinite(self.scores))
+        return [int(n) for n in known[np.argsort(-self.scores[known], kind="stable")]]
+
+
+def diagnose(
+    recording: Recording,
+    static_info: StaticInfo,
+    *,
+    prior: Floats | None = None,
+    weights: Weights = WEIGHTS,
+) -> Diagnosis:
+    """Judge all parameters by all marks of a mission together.
+
+    Args:
+        recording: the mission with its marks, of any types or none.
+        static_info: what the analysis found.
+        prior: float64[p], added to the scores: what is known of the parameters otherwise.
+        weights: what the evidence counts.
+
+    Raises:
+        ValueError: ``prior`` does not have one number for each parameter.
+    """
+    tpcs = Tpcs.of(static_info)
+    extra = np.zeros(len(tpcs.names)) if prior is None else np.asarray(prior, np.float64)
+    if extra.shape != (len(tpcs.names),):
+        raise ValueError("one prior for each parameter is needed")
+    streams = Streams.of(recording.events, tpcs)
+    marks = recording.marks
+    if not marks or not streams.streams:
+        nobody = np.full(len(tpcs.names), -np.inf)
+        return Diagnosis(tpcs.names, nobody, np.zeros(len(tpcs.names)), 1.0, 0.5)
+    times = np.array([mark.time_ns for mark in marks], np.int64)
+    found = evidence(streams, marked(times, tuple(mark.observer for mark in marks), streams))
+    columns = np.array([stream.column for stream in streams.streams])
+    odds = type_odds(marks)
+    scores = parameter_scores(found, columns, len(tpcs.names), odds, weights) + extra
+    posterior, none = softmax(scores, weights.none)
+    return Diagnosis(tpcs.names, scores, posterior, none, 1.0 / (1.0 + math.exp(odds)))
+
+
+def type_odds(marks: Sequence[Mark]) -> float:
+    """log P(II) / P(I) of an error, from what was said at the marks and how often they came.
+
+    The observers either can tell the types apart, but for slips, or what they say means nothing.
+    That all of them agree speaks for the first. Both numbers of table 6.13 taken as they are would
+    make a mark of type I evidence for type II; that is not believed of other people.
+    """
+    said = [mark.type for mark in marks if mark.type is not None]
+    ones, twos = said.count("I"), said.count("II")
+    vague = ones * math.log(SAID_I) + twos * math.log(1 - SAID_I) + math.log(LIED)
+    likely = []
+    for right, wrong in ((ones, twos), (twos, ones)):
+        clear = right * math.log(1 - SLIP) + wrong * math.log(SLIP) + math.log(1 - LIED)
+        likely.append(float(np.logaddexp(clear, vague)))
+    users: dict[str, int] = {}
+    for mark in marks:
+        users[mark.observer] = users.get(mark.observer, 0) + 1
+    repeated = sum(_geometric(n, MARKS_II) - _geometric(n, MARKS_I) for n in users.values())
+    return likely[1] - likely[0] + REPEAT * repeated
+
+
+def parameter_scores(
+    found: Evidence, columns: Int64s, parameters: int, odds: float | Floats, weights: Weights
+) -> Floats:
+    """The score of each parameter: that of its best stream.
+
+    Args:
+        found: the evidence of the streams.
+        columns: int64[streams], whose each is.
+        parameters: how many there are.
+        odds: of the types, see ``type_odds``; of all or of each stream.
+        weights: what the evidence counts.
+    """
+    first = weights.acted * found.acted + weights.far * found.far
+    second = (
+        weights.type2
+        + weights.waited * found.waited
+        + weights.since * found.since
+        + weights.held * np.log(found.held + SHARE)
+        + weights.near * found.near
+        + weights.restless * found.restless
+        + weights.clock * found.clock
+        + weights.flat * found.flat
+        + weights.far * found.far
+    )
+    # In logarithms: of type II that are latches, of type II that are not, of type I.
+    latched, held = -np.logaddexp(0.0, -weights.latch), -np.logaddexp(0.0, weights.latch)
+    other, one = -np.logaddexp(0.0, -np.asarray(odds)), -np.logaddexp(0.0, odds)
+    score = np.logaddexp(first + np.logaddexp(one, other + latched), second + other + held)
+    best = np.full(parameters, -np.inf)
+    np.maximum.at(best, columns, score)
+    return best
+
+
+def softmax(scores: Floats, none: float) -> tuple[Floats, float]:
+    """The posterior of each, and of none of them."""
+    top = max(float(scores.max(initial=-np.inf)), none)
+    parts = np.exp(scores - top)
+    rest = math.exp(none - top)
+    total = float(parts.sum()) + rest
+    return parts / total, rest / total
+
+
+def _geometric(count: int, mean: float) -> float:
+    """log P(count) of a geometric distribution from 1 with that mean."""
+    return (count - 1) * math.log(1 - 1 / mean) - math.log(mean)

@@ -1,0 +1,23 @@
+"""The methods that the study compares, by the names that its tables have."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from pytpc.study.case import Method
+from pytpc.study.methods.importance import importance
+from pytpc.study.methods.ours import tpc, tpc_changes, tpc_reference
+from pytpc.study.methods.plain import by_chance, recent_change
+from pytpc.study.methods.thesis import thesis, thesis_doubt
+
+METHODS: Mapping[str, Method] = {
+    "thesis": thesis,
+    "thesis-doubt": thesis_doubt,
+    "importance": importance,
+    "recent-change": recent_change,
+    "random": by_chance,
+    "tpc": tpc,
+    "tpc+reference": tpc_reference,
+    "tpc+changes": tpc_changes,
+}
+"""In the order of the tables: baselines first."""

@@ -1,0 +1,220 @@
+"""From a study's folder to its page: reads, works out, draws and writes."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal, TypeVar
+
+from pytpc.atomic import write_atomic
+from pytpc.errors import InputError, TpcError
+from pytpc.study.data import LABELS
+from pytpc.study.judge import POSITIONS_FILE
+from pytpc.study.plan import Half
+from pytpc.study.report import original as thesis_tables
+from pytpc.study.report.confidence import (
+    accusation_counts,
+    accusations_table,
+    calibration,
+    judged,
+    reliability_table,
+)
+from pytpc.study.report.drawings import Advance, Drawing, draw_results, draw_systems
+from pytpc.study.report.folder import HALVES, Study, load_study, told
+from pytpc.study.report.headline import Headline, headlines
+from pytpc.study.report.judging import rank_missions
+from pytpc.study.report.original import Original
+from pytpc.study.report.page import BESIDE, IMAGES, Contents, page
+from pytpc.study.report.positions import Position, read_positions
+from pytpc.study.report.ranked import (
+    against_table,
+    grouped_table,
+    groups_of,
+    main_table,
+    positions_table,
+    users_table,
+)
+from pytpc.study.report.repairs import (
+    Repair,
+    read_repairs,
+    repairs_summary,
+    repairs_table,
+)
+from pytpc.study.report.systems import systems_table, treatments_table
+from pytpc.study.suggested import TRIED_FILE
+from pytpc.tables import Table, as_csv, as_json
+
+RESULTS_FILE = "results.json"
+_NOT_HELPED_FILE = "tried.md"
+_DISCUSSION_FILE = "discussion.md"
+_SCHEMA = 1
+
+Row = TypeVar("Row", Position, Repair)
+
+
+@dataclass(frozen=True, eq=False)
+class Made:
+    """What was written: the page, the other files, and the numbers as an object for JSON."""
+
+    page: Path
+    files: tuple[Path, ...]
+    numbers: dict[str, Any]
+    troubles: tuple[str, ...]
+
+
+def make_report(
+    folder: Path,
+    target: Path,
+    halves: Sequence[Half] = HALVES,
+    on_progress: Callable[[str], Advance] | None = None,
+    *,
+    rank: Literal["missing", "again"] | None = None,
+    draw: bool = True,
+) -> Made:
+    """Write the page, with its figures and tables beside it.
+
+    Args:
+        folder: the study's.
+        target: the page. Its figures go to ``images/study`` beside it, its tables and the numbers
+            to ``study``, where the texts that people wrote are looked for.
+        halves: the halves whose results are shown; others are not even ranked.
+        on_progress: called with what begins, gives what is called with (done, all).
+        rank: let the methods rank the missions that are not ranked yet, or all of ``halves`` again.
+        draw: draw the figures, which takes most of the time.
+
+    Raises:
+        InputError: the folder is none of a study.
+        TpcError: a file cannot be written.
+    """
+    progress = on_progress or (lambda _: lambda _done, _total: None)
+    study = load_study(folder, progress("reading missions"))
+    troubles = list(study.troubles)
+    if rank is not None:
+        try:
+            rank_missions(folder, halves, progress("ranking"), again=rank == "again")
+        except InputError as error:
+            troubles.append(f"Not all missions are ranked: {told(error, folder)}.")
+    ranked = _results(folder / POSITIONS_FILE, read_positions, troubles, "ranked")
+    positions = [row for row in ranked if row.half in halves]
+    flights = [f for system in study.systems for f in system.flights if f.half in halves]
+    repairs = _results(
+        folder / TRIED_FILE,
+        lambda path: read_repairs(path, flights),
+        troubles,
+        "flown again as suggested",
+    )
+    advance = progress("working out tables")
+    originals = []
+    for number, system in enumerate(study.systems, start=1):
+        originals.append(Original.of(system, halves))
+        advance(number, len(study.systems))
+    images = target.parent / IMAGES
+    drawn: list[Drawing] = []
+    if draw:
+        drawn, undrawn = draw_systems(originals, study.systems, images, halves, progress("drawing"))
+        drawn = [*draw_results(positions, images, halves), *drawn]
+        # Where the folder happens to be is nobody's business on the page.
+        troubles += [trouble.replace(f"{folder}/", "") for trouble in undrawn]
+    tables, full = _tables(study, originals, positions, repairs, halves)
+    own = [one for half in halves for one in headlines(positions, repairs, half)]
+    beside = target.parent / BESIDE
+    contents = Contents(
+        systems=[system.name for system in study.systems],
+        missions=sum(len(system.flights) for system in study.systems),
+        halves=halves,
+        tables=tables,
+        drawings=drawn,
+        headlines=own,
+        troubles=troubles,
+        remarks=[remark for system in study.systems for remark in system.remarks],
+        tried=_text(beside / _NOT_HELPED_FILE),
+        discussion=_text(beside / _DISCUSSION_FILE),
+    )
+    numbers = _numbers(own, tables, troubles)
+    written = [images / drawing.file for drawing in drawn]
+    for name, table in full.items():
+        written.append(beside / f"{name}.csv")
+        write_atomic(written[-1], as_csv(table).encode())
+    written.append(beside / RESULTS_FILE)
+    write_atomic(written[-1], json_text(numbers).encode())
+    write_atomic(target, page(contents).encode())
+    return Made(target, tuple(written), numbers, tuple(troubles))
+
+
+def json_text(numbers: object) -> str:
+    """As it stands in ``results.json``."""
+    return json.dumps(numbers, indent=1, ensure_ascii=False) + "\n"
+
+
+def _tables(
+    study: Study,
+    originals: Sequence[Original],
+    positions: Sequence[Position],
+    repairs: Sequence[Repair],
+    halves: Sequence[str],
+) -> tuple[dict[str, Table], dict[str, Table]]:
+    """The tables of the page by label, and those that are too long for it by their file's name."""
+    systems = study.systems
+    found = [
+        systems_table(systems),
+        treatments_table(systems),
+        thesis_tables.runtime_compared(originals),
+        thesis_tables.thesis_runtime(),
+        thesis_tables.confusion_compared(originals),
+        thesis_tables.delays_compared(originals),
+        thesis_tables.marks_compared(originals),
+        thesis_tables.thesis_found(),
+        *(main_table(positions, half) for half in halves),
+        *(against_table(positions, half) for half in halves),
+        *(users_table(positions, half) for half in halves),
+        *(positions_table(positions, labels) for labels in LABELS),
+        reliability_table(calibration(judged(positions))),
+        accusation_counts(positions),
+        accusations_table(positions),
+        repairs_summary(repairs),
+        repairs_table(repairs),
+    ]
+    for heading, group in groups_of(systems).items():
+        name = heading.lower().replace(" ", "-")
+        found += [grouped_table(f"{name}-{h}", positions, h, heading, group) for h in halves]
+    tables = {table.label: table for table in found}
+    full: dict[str, Table] = {}
+    for one in originals:
+        tables[f"{one.name}-runtime-short"] = thesis_tables.runtime_short(one.runtime)
+        tables[f"{one.name}-found-compared"] = thesis_tables.found_compared(one)
+        full.update({f"{one.name}-{table.label}": table for table in one.tables()})
+    return tables, full
+
+
+def _results(
+    path: Path, read: Callable[[Path], list[Row]], troubles: list[str], what: str
+) -> list[Row]:
+    """The rows of a table of results; a sentence among ``troubles`` where there is none."""
+    if not path.exists():
+        troubles.append(f"Nothing has been {what} yet.")
+        return []
+    try:
+        return read(path)
+    except TpcError as error:
+        troubles.append(f"{path.name} is left out: {error.message}.")
+        return []
+
+
+def _numbers(
+    own: Sequence[Headline], tables: dict[str, Table], troubles: Sequence[str]
+) -> dict[str, Any]:
+    return {
+        "schema": _SCHEMA,
+        "figures": [one.to_json() for one in own],
+        "tables": {label: as_json(table) for label, table in tables.items()},
+        "missing": list(troubles),
+    }
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        return ""

@@ -1,0 +1,150 @@
+"""Suggestions that were flown: is the error gone, and has a new one come?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+
+from pytpc.columns import read_table
+from pytpc.errors import InputError
+from pytpc.study.metrics import Estimate, estimate
+from pytpc.study.report.folder import HALVES, Flight
+from pytpc.study.report.ranked import percent
+from pytpc.tables import Cell, Column, Table
+from pytpc.words import show
+
+TARGET = 0.80
+"""The share of treatments in which the error is to be gone (the issue's target)."""
+
+_MISSION = ("system", "treatment", "seed")
+_COLUMNS = (*_MISSION, "parameter", "value", "gone", "new", "failure")
+
+
+@dataclass(frozen=True, slots=True)
+class Repair:
+    """A treated mission, and what came of the suggestion for it.
+
+    ``parameter`` and ``value`` are what was set, None where nothing was suggested. ``gone`` is None
+    where in the treated mission no error was seen; ``fresh`` is whether an error was seen that was
+    not there before, None where the mission was not flown again.
+    """
+
+    flight: Flight
+    parameter: str | None = None
+    value: float | None = None
+    gone: bool | None = False
+    fresh: bool | None = None
+    failure: str = ""
+
+    @property
+    def said(self) -> str:
+        """What came of it, in words."""
+        if self.value is None:
+            return "nothing was suggested"
+        if self.failure:
+            return "the flight failed"
+        if self.fresh is None:
+            return "still to be flown"
+        return {None: "none was seen before", True: "gone", False: "still there"}[self.gone]
+
+
+def read_repairs(path: Path, flights: Iterable[Flight]) -> list[Repair]:
+    """What came of the suggestions for all ``flights`` with a changed parameter, in their order.
+
+    Where nothing was suggested, or the flight failed, the error is not gone.
+
+    Raises:
+        InputError: the file cannot be read, or a column is missing.
+    """
+
+    def by_mission(table: pa.Table) -> dict[tuple[Any, ...], dict[str, Any]]:
+        missing = [name for name in _COLUMNS if name not in table.column_names]
+        if missing:
+            raise InputError(f"no column {missing[0]}")
+        rows = table.select(list(_COLUMNS)).to_pylist()
+        return {tuple(row[name] for name in _MISSION): row for row in rows}
+
+    found = read_table(path, "suggestions", by_mission)
+    treated = [flight for flight in flights if flight.treatment.parameter is not None]
+    return [_repair(one, found.get((one.system, one.treatment.name, one.seed))) for one in treated]
+
+
+def gone(rows: Iterable[Repair], half: str) -> Estimate:
+    """The share of treatments of a half in which the error is gone."""
+    return _gone([row for row in rows if row.flight.half == half])
+
+
+def repairs_summary(rows: Sequence[Repair]) -> Table:
+    """Shares by half and type of treatment."""
+    columns = (
+        Column("Half", 0),
+        Column("Treatments", 0),
+        Column("Error gone %", 0),
+        Column("New error %", 0),
+        Column("Target", 0),
+        Column("Verdict", 0),
+    )
+    lines: list[tuple[str, tuple[Cell, ...]]] = []
+    kinds = {"all": ("type1", "type2"), "type I": ("type1",), "type II": ("type2",)}
+    for half in HALVES:
+        for name, of in kinds.items():
+            own = [r for r in rows if r.flight.half == half and r.flight.treatment.type in of]
+            share = _gone(own)
+            if not share.treatments:
+                continue
+            flown = [row for row in own if row.fresh is not None]
+            fresh = estimate([float(row.fresh or 0) for row in flown], _units(flown))
+            verdict = "hit" if share.value >= TARGET else "miss"
+            cells = (half, share.treatments, percent(share), percent(fresh))
+            lines.append((name, (*cells, f">= {100 * TARGET:.0f}", verdict)))
+    return Table("repairs", "Suggestions, flown", columns, tuple(lines), (), "Treatments of")
+
+
+def repairs_table(rows: Sequence[Repair]) -> Table:
+    """Every treated mission and what came of its suggestion."""
+    headings = (
+        *("Treatment", "Half", "Seed", "Changed", "Old", "Tipping", "New"),
+        *("Suggested for", "Suggested", "Error", "New error"),
+    )
+    lines: list[tuple[str, tuple[Cell, ...]]] = []
+    for row in rows:
+        treated = row.flight.treatment
+        cells: tuple[Cell, ...] = (
+            treated.name,
+            row.flight.half,
+            row.flight.seed,
+            treated.parameter,
+            show(treated.old),
+            None if treated.tipping is None else show(treated.tipping),
+            show(treated.new),
+            row.parameter,
+            None if row.value is None else show(row.value),
+            row.said,
+            None if row.fresh is None else "yes" if row.fresh else "no",
+        )
+        lines.append((row.flight.system, cells))
+    columns = tuple(Column(heading, 0) for heading in headings)
+    return Table("repairs-all", "Missions flown again", columns, tuple(lines), (), "System")
+
+
+def _gone(rows: Iterable[Repair]) -> Estimate:
+    """Where no error was seen before there is nothing that could go."""
+    judged = [row for row in rows if row.gone is not None]
+    return estimate([float(row.gone or 0) for row in judged], _units(judged))
+
+
+def _units(rows: Iterable[Repair]) -> list[tuple[str, str]]:
+    return [(row.flight.system, row.flight.treatment.name) for row in rows]
+
+
+def _repair(flight: Flight, row: dict[str, Any] | None) -> Repair:
+    if row is None:
+        return Repair(flight)
+    failure = str(row["failure"] or "")
+    # Of a suggestion that was not flown nothing is known: it has not helped.
+    gone = False if failure or row["new"] is None else row["gone"]
+    return Repair(flight, row["parameter"], row["value"], gone, row["new"], failure)

@@ -1,0 +1,382 @@
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from mission_samples import comparison, events, ns, static_info
+
+from pytpc.events import Events
+from pytpc.ingest import Recording
+from pytpc.marks import Mark
+from pytpc.scoring.diagnosis import (
+    MARKS_I,
+    MARKS_II,
+    REPEAT,
+    Weights,
+    diagnose,
+    parameter_scores,
+    softmax,
+    type_odds,
+)
+from pytpc.scoring.diagnosis_evidence import (
+    PATIENCE_LOG,
+    PATIENCE_SIGMA,
+    REACTION_LOG,
+    REACTION_SIGMA,
+    SHARE,
+    STRAY,
+    Evidence,
+    evidence,
+    marked,
+    reaction,
+)
+from pytpc.scoring.diagnosis_priors import SLOPE, UNCHANGED, of_change, of_changes, of_reference
+from pytpc.scoring.diagnosis_streams import Streams
+from pytpc.scoring.tables import Tpcs
+
+STATIC = static_info(
+    comparison(0, "~gate"),
+    comparison(1, "~noisy"),
+    comparison(2, "~safe"),
+    comparison(3, "~never"),
+    comparison(4, "~enable", "flag"),
+)
+
+
+def gate_case(switch=30.0, end=80.0):
+    """gate turns once; noisy turns each second; safe never does; enable is a flag."""
+    rows = []
+    for tick in range(int(end * 2)):
+        t = tick / 2
+        rows.append((t, 0, t >= switch, t / end, switch / end))
+        rows.append((t + 0.01, 1, int(t) % 2, 0.1 * (int(t) % 2), 0.05))
+        rows.append((t + 0.02, 2, 0, 1 + 0.1 * math.sin(t), 9))
+        rows.append((t + 0.03, 4, 1, 1, 1))
+    return rows
+
+
+def wait_case(begin=20.0, end=80.0):
+    """From ``begin`` on gate is evaluated, stands near its threshold and does not turn."""
+    rows = []
+    for tick in range(int(end * 2)):
+        t = tick / 2
+        value = 5 - 0.2 * t if t < begin else 1.1 + 0.01 * (tick % 2)
+        rows.append((t, 0, value < 1, value, 1))
+        rows.append((t + 0.01, 1, int(t) % 2, 0.1 * (int(t) % 2), 0.05))
+        rows.append((t + 0.02, 2, 0, 1 + 0.1 * math.sin(t), 9))
+        rows.append((t + 0.03, 4, 1, 1, 1))
+    return rows
+
+
+def recording(rows, marks, table=None):
+    found = events(rows) if table is None else table
+    return Recording("mission", found, tuple(marks), 0, ns(80))
+
+
+def marks(*seconds, kind=None, observer="user1"):
+    return [Mark(ns(t), kind, observer) for t in seconds]
+
+
+def first(found):
+    return found.names[found.order[0]]
+
+
+def test_the_change_before_the_mark_is_suspected():
+    found = diagnose(recording(gate_case(), marks(33, kind="I")), STATIC)
+    assert first(found) == "~gate"
+    assert "~never" not in [found.names[n] for n in found.order]
+
+
+def test_what_stands_near_its_threshold_in_the_wait_is_suspected():
+    for kind in ("II", None):
+        found = diagnose(recording(wait_case(), marks(30, 37, 44, 51, kind=kind)), STATIC)
+        assert first(found) == "~gate", kind
+
+
+def test_the_posterior_is_one_with_none_of_them():
+    found = diagnose(recording(gate_case(), marks(33, kind="I")), STATIC)
+    assert found.posterior.sum() + found.none == pytest.approx(1.0)
+    assert found.posterior[found.names.index("~never")] == 0.0
+
+
+# exp of the scores log 2, log 1 and none's log 1: 2/4, 1/4 and 1/4.
+def test_the_posterior_of_two_by_hand():
+    posterior, none = softmax(np.log([2.0, 1.0]), 0.0)
+    assert posterior.tolist() == pytest.approx([0.5, 0.25])
+    assert none == pytest.approx(0.25)
+    posterior, none = softmax(np.array([-np.inf, -np.inf]), 2.0)
+    assert (posterior.tolist(), none) == ([0.0, 0.0], 1.0)
+
+
+# Streams 0 and 1 are of parameter 0, 2 of parameter 1; both types are as likely. With the weights 1
+# of acted and of waited alone: (e^0 + e^1)/2, (e^2 + e^0)/2 and (e^-1 + e^-1)/2; the better of the
+# first two counts.
+def test_a_parameter_has_the_score_of_its_best_comparison():
+    zero = np.zeros(3)
+    found = Evidence(
+        acted=np.array([0.0, 2.0, -1.0]),
+        waited=np.array([1.0, 0.0, -1.0]),
+        since=zero,
+        held=np.full(3, 1 - SHARE),
+        near=zero,
+        restless=zero,
+        clock=zero,
+        flat=zero,
+        far=zero,
+    )
+    columns = np.array([0, 0, 1])
+    weights = Weights(acted=1, waited=1, type2=0, latch=-50)
+    scores = parameter_scores(found, columns, 3, 0.0, weights)
+    assert scores.tolist() == pytest.approx([math.log((math.e**2 + 1) / 2), -1.0, -math.inf])
+    # Surely of type II: of its share of latches, 1/2, it is the change after all.
+    scores = parameter_scores(found, columns, 3, 50.0, replace(weights, latch=0))
+    assert scores.tolist() == pytest.approx([math.log((math.e**2 + 1) / 2), -1.0, -math.inf])
+    scores = parameter_scores(found, columns, 3, 50.0, weights)
+    assert scores.tolist() == pytest.approx([1.0, -1.0, -math.inf])
+
+
+# At the median z = 0: 3/8 / (sigma t). Before the mark there is no reaction.
+def test_reactions_by_hand():
+    median = math.exp(REACTION_LOG)
+    density = reaction(np.array([median, -1.0, 0.0]))
+    assert density.tolist() == pytest.approx([0.375 / (REACTION_SIGMA * median), 0.0, 0.0])
+    # It is a density: its integral over log t from far left to far right is 1.
+    logs = np.linspace(-40, 40, 80001)
+    assert float(np.sum(reaction(np.exp(logs)) * np.exp(logs)) * 0.001) == pytest.approx(
+        1, abs=0.01
+    )
+
+
+# One user, n marks of no type: REPEAT times log of (1/m2 (1-1/m2)^(n-1)) / (1/m1 (1-1/m1)^(n-1)).
+def test_many_marks_speak_for_the_second_type():
+    one = type_odds(marks(1))
+    assert one == pytest.approx(REPEAT * math.log(MARKS_I / MARKS_II))
+    ratio = (1 - 1 / MARKS_II) / (1 - 1 / MARKS_I)
+    assert type_odds(marks(1, 2, 3)) == pytest.approx(one + REPEAT * 2 * math.log(ratio))
+
+
+# The observers tell the types apart (0.5), with slips of 0.05, or say I with 28/68 (0.5).
+# One mark of type I: (0.05 + 28/68) / (0.95 + 28/68).
+def test_a_said_type_is_believed_in_part():
+    plain = type_odds(marks(1))
+    said = type_odds(marks(1, kind="I")) - plain
+    assert said == pytest.approx(math.log((0.05 + 28 / 68) / (0.95 + 28 / 68)))
+    assert type_odds(marks(1, kind="II")) > plain
+
+
+def test_agreement_is_believed_more_and_disagreement_not_at_all():
+    def said(kinds):
+        own = [Mark(ns(5), kind, f"user{n}") for n, kind in enumerate(kinds)]
+        return type_odds(own) - type_odds([replace(mark, type=None) for mark in own])
+
+    assert said(["I"] * 4) < said(["I"]) < 0
+    assert abs(said(["I", "II", "I", "II"])) < abs(said(["I"]))
+
+
+# gate has one turn at 30 s, the first evaluation is a start at 0 s. The mark is at 33 s.
+# At 30 s nothing else changed in the 1.5 s before but noisy, which changes too often; nothing
+# begins after it: u = 0.3. At 0 s u = 0.1 * 0.3: what begins with the log is no shift. So the first
+# part is log (0.3 f(3) + 0.03 f(33)) / (0.33 + 0.3), f(d) = 0.1 + 0.9 * 79.53 p(d).
+# The mean of f over causes from 0 to 33 s is 0.1 + 0.9 * 79.53 / 33 times the share F of reactions
+# below 33 s, where z = (log 33 - 1.946) / 1.17 = 1.3252 and, of t with four degrees of freedom,
+# F = 1/2 + 3/8 z/sqrt(1 + z^2/4) (1 - z^2/(12 + 3 z^2)) = 0.8721.
+def test_acted_by_hand():
+    streams = Streams.of(events(gate_case()), Tpcs.of(STATIC))
+    found = evidence(streams, marked(np.array([ns(33)]), ("",), streams))
+    f = STRAY + (1 - STRAY) * 79.53 * reaction(np.array([3.0, 33.0]))
+    chance = STRAY + (1 - STRAY) * 79.53 / 33 * 0.8721
+    expected = math.log((0.3 * f[0] + 0.03 * f[1]) / 0.63) - math.log(chance)
+    assert streams.seconds == pytest.approx(79.53)
+    assert found.acted[0] == pytest.approx(expected, abs=0.01)
+    assert int(np.argmax(found.acted)) == 0
+
+
+def test_a_comparison_that_changes_all_the_time_is_as_good_as_chance():
+    rows = [(t / 2, 0, t % 4 < 2, t % 4, 2) for t in range(160)]
+    streams = Streams.of(events(rows), Tpcs.of(STATIC))
+    own = marked(np.array([ns(40), ns(42), ns(45)]), ("a", "b", "c"), streams)
+    assert abs(evidence(streams, own).acted[0]) < 0.3
+
+
+# The wait is [22, 30]: gate stands at 1.1 and 1.11 with a threshold of 1, false, for 8.5 s of 8.
+# 17 evaluations: 9 of 1.1 and 8 of 1.11; the value falls from 5, so the range is 4. As near is up
+# to 0.11 + 0.05 * 4 = 0.31: elsewhere from 18.5 s, where the value is 1.3, to 21.5 s, and from 30.5
+# to 79.5 s: 7 + 99 evaluations of half a second.
+def test_waited_by_hand():
+    streams = Streams.of(events(wait_case()), Tpcs.of(STATIC))
+    found = evidence(streams, marked(np.array([ns(30)]), ("",), streams))
+    elsewhere = 106 * 0.5 / (79.53 - 8)
+    assert found.held[0] == 1.0
+    assert found.waited[0] == pytest.approx(math.log((1 + SHARE) / (elsewhere + SHARE)), abs=1e-3)
+    assert found.near[0] == pytest.approx(math.log((9 * 0.1 + 8 * 0.11) / 17 / 4 + 0.01))
+    # It has been so for 11.5 s at the mark.
+    fit = 79.53 * reaction(np.array([11.5]), PATIENCE_LOG, PATIENCE_SIGMA)[0]
+    assert found.since[0] == pytest.approx(math.log(STRAY + (1 - STRAY) * fit))
+    assert (found.restless[0], found.clock[0], found.flat[0]) == (0.0, 0.0, 0.0)
+    # The flag has one value, the noisy one changes each second.
+    assert found.flat.tolist() == [0.0, 0.0, 0.0, 1.0]
+    assert found.restless[1] == pytest.approx(math.log(1 + 8))
+
+
+# At 50 s it has been so for 1 s, since its break of 3 s; before the break for 46 s, which ended
+# more than 2 s before the mark at 49.5 s.
+def test_a_break_ends_a_wait_and_a_short_one_does_not():
+    rows = [(t / 10, 0, 0, 1, 2) for t in range(460)] + [
+        (t / 10, 0, 0, 1, 2) for t in range(490, 800)
+    ]
+    streams = Streams.of(events(rows), Tpcs.of(STATIC))
+    found = [
+        evidence(streams, marked(np.array([ns(m)]), ("",), streams)).since[0]
+        for m in (50, 48.5, 47)
+    ]
+    fits = 79.9 * reaction(np.array([1.0, 47.0]), PATIENCE_LOG, PATIENCE_SIGMA)
+    assert found[0] == pytest.approx(math.log(STRAY + (1 - STRAY) * fits[0]))
+    assert found[1] == pytest.approx(math.log(STRAY))
+    assert found[2] == pytest.approx(math.log(STRAY + (1 - STRAY) * fits[1]))
+
+
+def test_a_timer_is_known_as_one_in_coarse_steps_too():
+    rows = [(t / 10, 0, 0, math.floor(t / 5) / 2, 99) for t in range(800)]
+    rows += [(t / 10, 1, 0, t / 20, 99) for t in range(800)]
+    streams = Streams.of(events(rows), Tpcs.of(STATIC))
+    found = evidence(streams, marked(np.array([ns(40)]), ("",), streams))
+    assert found.clock.tolist() == [1.0, 0.0]
+
+
+def test_only_the_first_mark_of_an_observer_tells_when_it_began():
+    streams = Streams.of(events(gate_case()), Tpcs.of(STATIC))
+    found = marked(np.array([ns(40), ns(33), ns(50)]), ("a", "a", "b"), streams)
+    assert found.times.tolist() == [40, 33, 50]
+    assert found.firsts.tolist() == [33, 50]
+
+
+# Half of a value away: part 0.5, log(0.5) * SLOPE.
+def test_priors_by_hand():
+    assert of_change(1.0, 2.0) == pytest.approx(SLOPE * math.log(0.5))
+    assert of_change(2.0, 2.0) == UNCHANGED
+    assert of_change(0.0, 5.0) == pytest.approx(0.0)
+    prior = of_changes(("~a", "~b"), [("/node/b", 1.0, 2.0), ("~b", 1.0, 1.0)])
+    assert prior.tolist() == [UNCHANGED, pytest.approx(SLOPE * math.log(0.5))]
+    assert of_changes(("~a", "~b"), []).tolist() == [0.0, 0.0]
+
+
+def test_a_clean_run_tells_which_threshold_is_another():
+    tpcs = Tpcs.of(STATIC)
+    here = events([(1, 0, 0, 1, 4), (1, 1, 0, 1, 4), (1, 2, 0, 1, 4), (2, 2, 0, 1, 5)])
+    there = events([(1, 0, 0, 1, 2), (1, 1, 0, 1, 4), (1, 2, 0, 1, 4)])
+    prior = dict(zip(tpcs.names, of_reference(tpcs, here, there), strict=True))
+    assert prior["~gate"] == pytest.approx(SLOPE * math.log(0.5))
+    assert prior["~noisy"] == UNCHANGED
+    assert prior["~safe"] == prior["~never"] == UNCHANGED / 2
+
+
+def test_a_prior_moves_the_order():
+    names = Tpcs.of(STATIC).names
+    prior = np.where([name == "~safe" for name in names], 20.0, 0.0)
+    found = diagnose(recording(gate_case(), marks(33)), STATIC, prior=prior)
+    assert first(found) == "~safe"
+    with pytest.raises(ValueError, match="one prior for each parameter"):
+        diagnose(recording(gate_case(), marks(33)), STATIC, prior=np.zeros(2))
+
+
+CASES = [(gate_case, marks(33, 35)), (wait_case, marks(30, 37, 44))]
+
+
+@pytest.mark.parametrize(("rows", "own"), CASES)
+def test_the_clock_does_not_matter(rows, own):
+    plain = diagnose(recording(rows(), own), STATIC)
+    late = [(row[0] + 2**20, *row[1:]) for row in rows()]
+    moved = [replace(mark, time_ns=mark.time_ns + ns(2**20)) for mark in own]
+    assert diagnose(recording(late, moved), STATIC).scores == pytest.approx(plain.scores, rel=1e-9)
+
+
+@pytest.mark.parametrize(("rows", "own"), CASES)
+def test_the_order_of_recording_does_not_matter(rows, own):
+    plain = diagnose(recording(rows(), own), STATIC)
+    shuffled = [rows()[n] for n in np.random.default_rng(1).permutation(len(rows()))]
+    turned = diagnose(recording(shuffled, own[::-1]), STATIC)
+    assert turned.scores.tolist() == plain.scores.tolist()
+
+
+@pytest.mark.parametrize(("rows", "own"), CASES)
+def test_units_do_not_matter(rows, own):
+    plain = diagnose(recording(rows(), own), STATIC)
+    larger = [(t, n, r, cmp * 1024, thresh * 1024) for t, n, r, cmp, thresh in rows()]
+    assert diagnose(recording(larger, own), STATIC).scores.tolist() == plain.scores.tolist()
+
+
+@pytest.mark.parametrize(("rows", "own"), CASES)
+def test_names_do_not_matter(rows, own):
+    plain = diagnose(recording(rows(), own), STATIC)
+    other = static_info(*(comparison(n, f"~z{9 - n}") for n in range(5)))
+    found = diagnose(recording(rows(), own), other)
+    by_name = dict(zip(found.names, found.scores, strict=True))
+    names = ["~gate", "~noisy", "~safe", "~never", "~enable"]
+    for number, name in enumerate(names):
+        assert by_name[f"~z{9 - number}"] == plain.scores[plain.names.index(name)]
+
+
+@pytest.mark.parametrize(("rows", "own"), CASES)
+def test_what_is_never_evaluated_changes_nothing(rows, own):
+    plain = diagnose(recording(rows(), own), STATIC)
+    more = static_info(*STATIC.comparisons.values(), comparison(7, "~more"))
+    found = diagnose(recording(rows(), own), more)
+    kept = [found.names.index(name) for name in plain.names]
+    assert found.posterior[kept].tolist() == plain.posterior.tolist()
+    assert found.posterior[found.names.index("~more")] == 0.0
+
+
+def test_no_marks_and_no_log_are_nobodys_fault():
+    for one in (recording(gate_case(), []), recording([], marks(3))):
+        found = diagnose(one, STATIC)
+        assert (found.order, found.none) == ([], 1.0)
+
+
+def test_marks_outside_of_the_log_are_borne():
+    for own in (marks(-500), marks(10_000), [Mark(2**62, "I"), Mark(-(2**62), "II")]):
+        found = diagnose(recording(gate_case(), own), STATIC)
+        assert np.isfinite(found.posterior).all()
+        assert found.posterior.sum() + found.none == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("odd", [math.nan, math.inf, -math.inf, 1.7e308])
+def test_values_that_are_no_numbers_are_borne(odd):
+    rows = wait_case() + [(t + 0.1, 3, t % 2, odd, -odd) for t in range(80)]
+    rows += [(t + 0.2, 2, 0, odd, 9) for t in range(80)]
+    found = diagnose(recording(rows, marks(30, 37, 44)), STATIC)
+    assert np.isfinite(found.posterior).all()
+    assert first(found) == "~gate"
+
+
+def test_one_evaluation_and_equal_times_are_borne():
+    rows = [(5, 0, 1, 1, 2)] + [(6, 1, n % 2, n, 2) for n in range(5)]
+    found = diagnose(recording(rows, marks(7)), STATIC)
+    assert {found.names[n] for n in found.order} == {"~gate", "~noisy"}
+    assert np.isfinite(found.scores[found.order]).all()
+
+
+def test_the_same_code_in_two_nodes_is_two_streams():
+    rows = [(t, 0, 0, 1, 2, "/one") for t in range(80)] + [
+        (t, 0, 1, 3, 2, "/two") for t in range(80)
+    ]
+    streams = Streams.of(events(rows), Tpcs.of(STATIC))
+    assert len(streams.streams) == 2
+    assert [stream.changes.size for stream in streams.streams] == [0, 0]
+
+
+def test_bursts_are_one_change():
+    rows = [(t, 0, 0, 1, 2) for t in range(10)]
+    rows += [(10.1, 0, 1, 3, 2), (10.2, 0, 0, 1, 2), (10.3, 0, 1, 3, 2), (15, 0, 0, 1, 2)]
+    streams = Streams.of(events(rows), Tpcs.of(STATIC))
+    (stream,) = streams.streams
+    assert stream.changes.tolist() == pytest.approx([10.1, 15.0])
+
+
+def test_streams_are_worked_out_once_for_a_table():
+    table: Events = events(gate_case())
+    tpcs = Tpcs.of(STATIC)
+    assert Streams.of(table, tpcs) is Streams.of(table, Tpcs.of(STATIC))
+    fewer = Tpcs.of(static_info(comparison(0, "~gate")))
+    assert len(Streams.of(table, fewer).streams) == 1

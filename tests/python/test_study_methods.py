@@ -1,0 +1,155 @@
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from mission_samples import comparison, events, ns, static_info
+
+from pytpc.ingest import Recording
+from pytpc.marks import Mark
+from pytpc.study.case import Case, Change
+from pytpc.study.data import Mission, UserMark
+from pytpc.study.judge import judge
+from pytpc.study.methods import METHODS
+from pytpc.study.methods.importance import importance, importance_of, windows
+from pytpc.study.methods.plain import by_chance, recent_change
+from pytpc.study.methods.thesis import thesis, thesis_doubt
+
+STATIC = static_info(
+    comparison(0, "~a"), comparison(1, "~b"), comparison(2, "~c"), comparison(3, "~never")
+)
+
+
+def case(rows, marks, end=100.0, **known):
+    recording = Recording("mission", events(rows), tuple(marks), 0, ns(end))
+    return Case(recording, STATIC, **known)
+
+
+# Five windows, the first two failed. True in both and in one that passed; evaluated in all:
+# Increase = 2/3 - 2/5 = 4/15. log(2)/log(2) = 1. Importance = 2 / (15/4 + 1) = 8/19.
+def test_importance_by_hand():
+    failed = np.array([1, 1, 0, 0, 0], bool)
+    true = np.array([1, 1, 1, 0, 0], bool)
+    assert importance_of(true, np.ones(5, bool), failed) == pytest.approx(8 / 19)
+
+
+# Of four that failed, true in two: log(2)/log(4) = 1/2; in none that passed of two:
+# Increase = 1 - 4/6 = 1/3, Importance = 2 / (3 + 2) = 0.4.
+def test_importance_counts_how_many_failures_a_predicate_explains():
+    failed = np.array([1, 1, 1, 1, 0, 0], bool)
+    true = np.array([1, 1, 0, 0, 0, 0], bool)
+    assert importance_of(true, np.ones(6, bool), failed) == pytest.approx(0.4)
+    once = np.array([1, 0, 0, 0, 0, 0], bool)
+    assert importance_of(once, np.ones(6, bool), failed) == 0.0
+    assert importance_of(np.ones(6, bool), np.ones(6, bool), failed) == 0.0
+    assert importance_of(~failed, np.ones(6, bool), failed) == 0.0
+
+
+# One failure: Increase = 1 - 1/3 = 2/3, all of the recall: 2 / (3/2 + 1) = 0.8.
+def test_importance_of_a_single_failure():
+    failed = np.array([1, 0, 0], bool)
+    assert importance_of(failed, np.ones(3, bool), failed) == pytest.approx(0.8)
+
+
+# Before the mark at 20 s: [8, 20]. Before that 8 s, more than half a window. After it 31 s: two
+# whole windows and one of 7 s.
+def test_windows_before_marks_fail_and_the_rest_passes():
+    begins, ends, failed = windows(np.array([ns(20)]), 0, ns(51), ns(12))
+    assert failed.tolist() == [True, False, False, False, False]
+    assert (begins / 1e9).round(6).tolist() == [8, 0, 20, 32, 44]
+    assert (ends / 1e9).round(6).tolist() == [20, 8, 32, 44, 51]
+
+
+def test_windows_of_marks_near_each_other_overlap_and_leave_no_gap():
+    begins, _, failed = windows(np.array([ns(20), ns(23), ns(23)]), 0, ns(24), ns(12))
+    assert failed.tolist() == [True, True, False]
+    assert (begins / 1e9).tolist() == [8, 11, 0]
+
+
+# a is true in [8, 20] alone, b always, c is evaluated in it and always false.
+def test_importance_names_what_is_true_where_it_fails():
+    rows = [(t, 0, 8 <= t <= 20, 1, 2) for t in range(0, 52, 2)]
+    rows += [(t, 1, 1, 1, 2) for t in range(0, 52, 2)]
+    rows += [(12, 2, 0, 1, 2)]
+    found = importance(case(rows, [Mark(ns(20), None)], end=51))
+    assert found.order[0] == "~a"
+    assert "~b" not in found.order
+    assert math.isnan(found.confidence)
+
+
+# Type I at 50 s: a (50-49)*2 = 2 before b (50-40)*2 = 20: ranks 1 and 3/4 of four. At 60 s b has
+# changed at 59 s, too: a 11*2 = 22, b 1*3 = 3: ranks 3/4 and 1. Both have the mean 7/8: tied.
+def test_the_thesis_is_joined_by_mean_rank():
+    rows = [(1, 0, 0, 1, 2), (49, 0, 1, 3, 2), (1, 1, 0, 1, 2), (40, 1, 1, 3, 2), (59, 1, 0, 1, 2)]
+    marks = [Mark(ns(50), "I"), Mark(ns(60), "I")]
+    found = thesis(case(rows, marks))
+    assert (found.order, found.scores) == (("~a", "~b"), (0.875, 0.875))
+    found = thesis(case(rows, marks[:1]))
+    assert (found.order, found.scores) == (("~a", "~b"), (1.0, 0.75))
+
+
+# By type II alone c is first (it is the only one in the window); doubted, a comes in by type I with
+# 45/70 of its rank.
+def test_the_doubting_thesis_brings_in_the_other_type():
+    rows = [(1, 0, 0, 1, 2), (20, 0, 1, 3, 2), (49, 2, 0, 1, 2), (50, 2, 0, 1.5, 2)]
+    marks = [Mark(ns(50), "II")]
+    assert thesis(case(rows, marks)).order == ("~c",)
+    found = thesis_doubt(case(rows, marks))
+    assert (found.order, found.scores) == (("~c", "~a"), (1.0, pytest.approx(45 / 70)))
+
+
+def test_the_last_change_is_the_first_suspect():
+    changes = tuple(Change(name, "/node", 1.0, 2.0) for name in ("~a", "~c", "~elsewhere", "~a"))
+    assert recent_change(case([], [], changes=changes)).order == ("~a", "~c")
+    assert recent_change(case([], [])).order == ()
+
+
+def test_chance_is_the_same_for_the_same_marks():
+    drawn = [by_chance(case([], [Mark(ns(t), None)])).order for t in (1, 1, 2, 3, 4)]
+    assert drawn[0] == drawn[1]
+    assert len(set(drawn)) > 1
+    assert all(sorted(order) == ["~a", "~b", "~c", "~never"] for order in drawn)
+
+
+def mission(marks, parameter="~a", rows=((1, 0, 0, 1, 2), (49, 0, 1, 3, 2), (10, 1, 0, 1, 2))):
+    recording = Recording("mission", events(rows), (), 0, ns(100))
+    kind = "clean" if parameter is None else "type1"
+    return Mission(
+        "robot", kind, kind, "tuning", 1, parameter, None, recording, STATIC, marks, None, ()
+    )
+
+
+def test_every_method_is_judged_by_all_marks_and_by_each_user():
+    marks = (
+        UserMark(ns(50), "user1", 0, "I", "II"),
+        UserMark(ns(52), "user2", 0, "I", "I"),
+    )
+    rows = list(judge(mission(marks), METHODS))
+    assert len(rows) == 3 * 3 * len(METHODS)
+    assert {(row.who, row.marks) for row in rows} == {("all", 2), ("user1", 1), ("user2", 1)}
+    (first,) = [r for r in rows if (r.method, r.labels, r.who) == ("thesis", "typed", "all")]
+    assert (first.position, first.parameters, first.top, first.confidence) == (1, 4, "~a", None)
+    assert all(row.confidence is None for row in rows if not row.method.startswith("tpc"))
+    assert all(row.confidence is not None for row in rows if row.method.startswith("tpc"))
+
+
+def test_labels_are_what_the_methods_see():
+    seen = []
+    marks = (UserMark(ns(50), "user1", 0, "I", "II"),)
+    method = {"spy": lambda one: seen.append(one.recording.marks[0].type) or thesis(one)}
+    list(judge(mission(marks), method, users=[]))
+    assert seen == ["I", None, "II"]
+
+
+def test_a_mission_without_marks_is_a_miss_and_no_accusation():
+    rows = list(judge(mission(()), METHODS))
+    assert len(rows) == 3 * len(METHODS)
+    assert {(r.position, r.confidence, r.marks, r.top) for r in rows} == {(None, None, 0, "")}
+
+
+def test_a_clean_mission_has_no_position():
+    marks = (UserMark(ns(50), "user1", -1, "I", "II"),)
+    rows = list(judge(mission(marks, None), METHODS))
+    assert {row.position for row in rows} == {None}
+    assert all(row.top for row in rows if row.method == "tpc")

@@ -1,0 +1,191 @@
+"""Rounds of suggestions for a study of one mission: what is asked for, taken in and written."""
+
+from __future__ import annotations
+
+import json
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+from click.testing import CliRunner
+from mission_samples import comparison, events, ns, static_info
+
+from pytpc.cli.study_suggestions import suggestions_command
+from pytpc.errors import InputError
+from pytpc.ingest.recording import Recording, save_recording
+from pytpc.marks import Mark
+from pytpc.study.case import Verdict
+from pytpc.study.suggestion_chains import Chain, Try, shares
+from pytpc.study.suggestions import next_round
+
+MISSION = "robot/type1_limit/seed-1"
+OTHER = "~other"
+USER_MARK = ("time_ns", "observer", "cause", "right", "said")
+
+
+def log(threshold, cmps=None):
+    """A counter that the program acts on at the threshold, and a flag that stays as it is."""
+    cmps = range(threshold + 1) if cmps is None else cmps
+    rows = [(90 + n, 0, cmp >= threshold, cmp, threshold) for n, cmp in enumerate(cmps)]
+    rows += [(90 + n, 1, False, 0, 0, "/pump") for n in range(5)]
+    end = 90 + len(cmps)
+    return Recording("m", events(rows, "/brain"), (Mark(ns(end), "I"),), 0, ns(end))
+
+
+@pytest.fixture
+def out(tmp_path):
+    """A counter with a threshold of 3 for 25: the log 0, 1, 2, 3."""
+    mission = {"system": "robot", "treatment": "type1_limit", "type": "type1", "half": "tuning"}
+    values = {"parameter": "~limit", "node": "/brain", "old": 25, "new": 3}
+    rows = [{**mission, **values, "seed": 1}, {**mission, **values, "seed": 2}]
+    (tmp_path / "study.json").write_text(json.dumps({"missions": rows}))
+    static = tmp_path / "systems" / "robot"
+    static.mkdir(parents=True)
+    flag = comparison(1, OTHER, "flag", default=False)
+    static_info(comparison(0, "~limit", ">=", default=25), flag).save(static / "static.json")
+    save(tmp_path / "missions" / MISSION, log(3))
+    (tmp_path / "missions" / MISSION / "treatment.json").write_text(
+        json.dumps({**values, "type": "type1"})
+    )
+    save(tmp_path / "reference" / "robot", log(25, range(10)))
+    return tmp_path
+
+
+def save(folder, recording):
+    folder.mkdir(parents=True, exist_ok=True)
+    save_recording(recording, folder)
+    (folder / "done.json").write_text("{}")
+
+
+def fly(out, value, *, gone, new=False, parameter="~limit"):
+    """What `pytpc study suggested` leaves."""
+    folder = out / "suggested" / MISSION
+    save(folder, log(value))
+    errors = [] if gone and not new else ["I: too early"]
+    said = {"parameter": parameter, "value": value, "gone": gone, "new": new, "errors": errors}
+    (folder / "suggestion.json").write_text(json.dumps(said))
+
+
+def marks_file(out):
+    return out / "missions" / MISSION / "marks.parquet"
+
+
+def wanted(out):
+    return json.loads((out / "results" / "suggestions-wanted.json").read_text())
+
+
+# The smallest change is to 4. Three times the way is 9, so it lasts from 10 on; from that log five
+# times the way, 50: 51. The default and the clean run have 25. Seed 2 has not been flown.
+def test_rounds(out):
+    next_round(out)
+    first = {"system": "robot", "treatment": "type1_limit", "seed": 1}
+    first |= {"parameter": "~limit", "node": "/brain"}
+    assert wanted(out) == [{**first, "value": 4}]
+    fly(out, 4, gone=False)
+    next_round(out)
+    assert wanted(out) == [{**first, "value": 10}]
+    # Asked again before it was flown, it stays so: what stands there is of another value.
+    next_round(out)
+    assert wanted(out) == [{**first, "value": 10}]
+    fly(out, 10, gone=False)
+    next_round(out)
+    assert wanted(out) == [{**first, "value": 51}]
+    fly(out, 51, gone=True)
+    next_round(out)
+    assert wanted(out) == [{**first, "value": 25}]
+    fly(out, 25, gone=True, new=True)
+    chains = next_round(out)
+    assert wanted(out) == []
+    assert all(chain.is_over for chain in chains)
+    rows = pq.read_table(out / "results" / "suggestion-tries.parquet").to_pylist()
+    told = [(row["variant"], row["tries"], row["value"], row["gone"]) for row in rows]
+    assert told == [
+        ("smallest", 1, 4, False),
+        ("lasting", 1, 10, False),
+        ("lasting", 2, 51, True),
+        ("with-default", 1, 25, True),
+        ("with-reference", 1, 25, True),
+    ]
+    assert {row["basis"] for row in rows[3:]} == {"default", "reference"}
+    assert [row["new_error"] for row in rows] == [False, False, False, True, True]
+    assert rows[0]["reason"] == "I: too early"
+    (headline,) = pq.read_table(out / "results" / "suggestions.parquet").to_pylist()
+    assert (headline["value"], headline["gone"], headline["new"]) == (10, False, False)
+
+
+# Of the first nothing is known. The second is a flag that never changed, so that no mark of type
+# I is about it; the third is the counter. Its value is that of the chain `lasting`: one flight.
+def test_suspects_are_tried_in_turn(out):
+    method = lambda _: Verdict(("<dynamic> at a.cpp:1", OTHER, "~limit"))  # noqa: E731
+    pq.write_table(pa.table({name: [] for name in USER_MARK}), marks_file(out))
+    chains = next_round(out, method=method)
+    tries = next(chain.tries for chain in chains if chain.variant == "suspects")
+    assert [one.reason for one in tries] == [
+        "only the running node knows its name",
+        "its result did not change before the mark",
+        "",
+    ]
+    assert (tries[2].parameter, tries[2].node, tries[2].value) == ("~limit", "/brain", 10)
+    fly(out, 10, gone=True)
+    chains = next_round(out)
+    assert [one.variant for one in chains if one.is_over] == ["lasting", "suspects"]
+
+
+def test_a_half_that_is_not_asked_about_is_not_looked_at(out):
+    assert next_round(out, ["held-back"]) == []
+    assert wanted(out) == []
+
+
+def test_nobody_marked(out):
+    recording = log(3)
+    save(out / "missions" / MISSION, Recording("m", recording.events, (), 0, recording.end_ns))
+    chains = next_round(out)
+    assert [chain.tries[0].reason for chain in chains] == ["nobody set a mark"] * 4
+    assert wanted(out) == []
+    # The error is still there.
+    assert [share.gone for share in shares(chains)][:2] == [0, 0]
+
+
+def chain(treatment, seed, *gone):
+    tries = [Try("p", None, 1.0, None, one, False) for one in gone]
+    return Chain("robot", treatment, "type1", "tuning", seed, "lasting", 1.0, 2.0, (), tries)
+
+
+# Treatment a: of its two seeds one at once and one by the second try; b by neither of three.
+def test_shares():
+    found = shares(
+        [chain("a", 1, True), chain("a", 2, False, True), chain("b", 1, False, False, False)]
+    )
+    assert [(one.tries, one.treatments, one.gone) for one in found] == [
+        (1, 2, 0.25),
+        (2, 2, 0.5),
+        (3, 2, 0.5),
+    ]
+
+
+# One that waits for its second flight counts for the first try alone.
+def test_shares_while_flights_are_left():
+    waits = chain("a", 1, False)
+    waits.tries.append(Try("p", None, 1.0, None))
+    found = shares([waits])
+    assert [(one.tries, one.treatments, one.open) for one in found] == [
+        (1, 1, 0), (2, 0, 1), (3, 0, 1),
+    ]  # fmt: skip
+    assert found[1].gone is None
+
+
+def test_the_command(out):
+    result = CliRunner().invoke(suggestions_command, ["--out", str(out)])
+    assert result.exit_code == 0, result.output
+    assert "1 mission to fly" in result.output
+    shown = CliRunner().invoke(suggestions_command, ["--out", str(out), "--json"])
+    assert json.loads(shown.stdout)[0] == {
+        "variant": "smallest", "tries": 1, "treatments": 0, "gone": None, "new_error": None,
+        "open": 1,
+    }  # fmt: skip
+
+
+def test_files_that_are_broken(out):
+    (out / "study.json").write_text("{}")
+    with pytest.raises(InputError, match="not about a study"):
+        next_round(out)
