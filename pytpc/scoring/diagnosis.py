@@ -63,8 +63,8 @@ WEIGHTS = Weights(
     latch=0.19,
     none=1.24,
 )
-"""Fitted by `pytpc.study.fit` on flights (seed 11, two crowds each) of the 15 treatments of types I
-and II, the faults and the clean missions in the tuning halves of image_capture and water_sampler."""
+"""Fitted by `pytpc.study.fit` on flights (seed 11, two crowds each) of 15 treatments of types I and
+II, a fault and the clean missions in the tuning halves of image_capture and water_sampler."""
 
 LIED = 0.5
 """Before any mark is seen: that these observers cannot tell the types apart (table 6.13)."""
