@@ -17,6 +17,7 @@ from pytpc.scoring.diagnosis import (
     Weights,
     diagnose,
     parameter_scores,
+    ranked,
     softmax,
     type_odds,
 )
@@ -135,6 +136,19 @@ def test_a_parameter_has_the_score_of_its_best_comparison():
     assert scores.tolist() == pytest.approx([math.log((math.e**2 + 1) / 2), -1.0, -math.inf])
     scores = parameter_scores(found, columns, 3, 50.0, weights)
     assert scores.tolist() == pytest.approx([1.0, -1.0, -math.inf])
+
+
+# At 50 s by type I: gate (50-49)*2 = 2 before noisy (50-40)*2 = 20. By type II only gate has been
+# evaluated in the window: first. safe was compared before, and has no score: behind the three that
+# were compared, like never. Nobody is before gate, one before noisy.
+def test_the_baseline_is_a_witness():
+    rows = [(1, 0, 0, 1, 2), (49, 0, 1, 3, 2), (1, 1, 0, 1, 2), (37, 1, 1, 3, 2), (1, 2, 0, 1, 2)]
+    tpcs = Tpcs.of(STATIC)
+    found = ranked(recording(rows, []), tpcs, np.array([ns(50)]))
+    by_name = dict(zip(tpcs.names, np.exp(-found), strict=True))
+    assert by_name == pytest.approx(
+        {"~gate": 2.0, "~noisy": 3.0, "~safe": 5.0, "~never": 5.0, "~enable": 5.0}
+    )
 
 
 # At the median z = 0: 3/8 / (sigma t). Before the mark there is no reaction.
