@@ -1,4 +1,4 @@
-.PHONY: demo demo-water test test-llvm22 fuzz setup bench lint
+.PHONY: demo demo-water demo-navigation test test-llvm22 fuzz setup bench lint
 PYTHON = .venv/bin/python
 
 demo: setup   ## a robot with a wrong parameter, and its name
@@ -6,6 +6,9 @@ demo: setup   ## a robot with a wrong parameter, and its name
 
 demo-water: setup  ## the same with a robot in Python and C++
 	$(PYTHON) examples/water_sampler/demo.py --out out/demo-water
+
+demo-navigation: setup  ## the same with a ground robot, its controller in a plugin
+	$(PYTHON) examples/navigation/demo.py --out out/demo-navigation
 
 test: setup   ## all tests: passes, Python, a real ROS graph
 	tools/test

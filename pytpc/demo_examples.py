@@ -20,7 +20,8 @@ class Example:
 
     ``goal_topic`` is the topic on which there is a message for each time that the robot did what
     the mission is for; ``reached`` and ``missed`` say so in a sentence's end. ``missed_under`` are
-    the types of treatment that keep it from it. ``shown`` are the treatments of the demonstration.
+    the types of treatment that keep it from it, all but those in ``reached_under``, by name, where
+    it is late or fails after it. ``shown`` are the treatments of the demonstration.
     ``simulator`` is the node that is the world, not the robot. ``study_rate`` is how many simulated
     seconds the study flies in a second of the wall.
     """
@@ -33,6 +34,7 @@ class Example:
     missed: str
     missed_under: frozenset[TreatmentType]
     shown: tuple[str, ...]
+    reached_under: frozenset[str] = frozenset()
     simulator: str = "/uav_simulator"
     study_rate: float = 12.0
 
@@ -80,9 +82,8 @@ class Example:
         """A sentence where the goal was reached against what the treatment demands, or missed."""
         if treatment.type == "clean" and not reached:
             return [self.missed]
-        if treatment.type in self.missed_under and reached:
-            return [self.reached]
-        return []
+        to_miss = treatment.type in self.missed_under and treatment.name not in self.reached_under
+        return [self.reached] if to_miss and reached else []
 
     def all_treatments(self) -> list[Treatment]:
         """All that there are, by name.
@@ -120,6 +121,14 @@ WATER_SAMPLER = Example(
         "type1_wet_readings_needed",
         "type2_min_conductivity",
         "type2_hold_radius",
+    ),
+    reached_under=frozenset(
+        {
+            "type1_min_land_height",
+            "type2_hold_time",
+            "type2_max_sink_rate",
+            "type2_start_delay",
+        }
     ),
 )
 

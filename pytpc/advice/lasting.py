@@ -9,10 +9,13 @@ mark kept it there, so the other one is wanted, of nearly all of these evaluatio
   had reached in the middle of the window.
 
 A mark of type I says that the outcome should not have changed. The values of each stay on the
-wrong side have an extreme, its peak. Of n peaks between a begin b and an unknown end, the end is
-estimated as b + (max - b) * (1 + 1/n), as of serial numbers (Goodman, JASA 1952). A stay that the
-program itself ended by acting tells no end: where there is no other, n is 1, and the way is
-doubled. Each try that did not help adds 1/n, or a standard deviation.
+wrong side have an extreme, its peak. Of n peaks that are spread evenly between a begin and an
+unknown end, the end is with a probability of 2/3 within 3 ** (1/n) times the way to the largest
+(Goodman, "Serial Number Analysis", JASA 1952). A stay that the program itself ended by acting tells
+no end: where there is no other, n is 1, and the way is three times what it was.
+
+After each try that did not help it is a standard deviation more, or a probability of 4/5 and 6/7 (5
+and 7 in place of 3).
 """
 
 from __future__ import annotations
@@ -38,6 +41,7 @@ _MORE_UPS = 3
 _RESET = 2.0
 _RUN_UP = 5
 _STEPS_BEYOND = 1.5
+_WAY = 3.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -213,9 +217,10 @@ def _stays(
         cut = is_near and _climbs(values[max(0, begin - _RUN_UP) : begin + 1])
         ended.append(end < values.size and not cut)
     before = values[(series.went == base) & recent]
-    begin_value = float(np.quantile(before, _OUTER, method="lower")) if before.size else 0.0
+    lowest = float(np.quantile(before, _OUTER, method="lower")) if before.size else 0.0
+    lowest = min(lowest, _begin_of_climb(values[: change[first] + 1]))
     count = max(1, sum(ended))
-    edge = _estimate(max(peaks), begin_value, 1 + (1 + tries) / count)
+    edge = _estimate(max(peaks), lowest, (_WAY + 2 * tries) ** (1 / count))
     ground: Ground = "peaks" if any(ended) else "growth"
     least = sign * float(values[change[first]])
     near = (int(marks[0]) - int(when[first])) / 1e9
@@ -253,6 +258,12 @@ def _climbs(values: Floats) -> bool:
     """Whether the values only grow, and not in one jump."""
     steps = np.diff(values)
     return bool(np.all(steps >= 0)) and int(np.count_nonzero(steps > 0)) > 1
+
+
+def _begin_of_climb(values: Floats) -> float:
+    """Where the last value was climbed to from, which may be long before the window."""
+    falls = np.flatnonzero(np.diff(values) < 0)
+    return float(values[falls[-1] + 1 if falls.size else 0])
 
 
 def _estimate(peak: float, begin: float, factor: float) -> float:

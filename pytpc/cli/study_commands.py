@@ -12,7 +12,7 @@ from rich.text import Text
 from pytpc.cli.console import console
 from pytpc.cli.options import JSON, PATH, Command
 from pytpc.cli.study_progress import StudyProgress
-from pytpc.cli.study_report_command import report_command
+from pytpc.cli.study_report import report_command
 from pytpc.cli.study_suggestions import suggestions_command
 from pytpc.demo_examples import EXAMPLES
 from pytpc.errors import RunError

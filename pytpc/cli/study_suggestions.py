@@ -12,32 +12,37 @@ from rich.text import Text
 
 from pytpc.cli.console import console, progress
 from pytpc.cli.options import JSON, PATH
+from pytpc.study.data import Half
+from pytpc.study.methods import METHODS
 from pytpc.study.suggested import WANTED_FILE
 from pytpc.study.suggestion_chains import Chain, shares
-from pytpc.study.suggestions import load_orders, next_round
+from pytpc.study.suggestions import next_round
 from pytpc.words import many, plain
 
-_HALVES = {"tuning": ("tuning",), "held-back": ("held-back",), "both": ("tuning", "held-back")}
+_HALVES: dict[str, tuple[Half, ...]] = {
+    "tuning": ("tuning",),
+    "held-back": ("held-back",),
+    "both": ("tuning", "held-back"),
+}
 
 
 @click.command("suggestions")
 @click.option("--out", type=PATH, default=Path("out") / "study", show_default=True)
 @click.option("--half", type=click.Choice(list(_HALVES)), default="both", show_default=True)
 @click.option(
-    "--suspects",
-    type=PATH,
-    metavar="FILE",
-    help="A JSON object: for SYSTEM/TREATMENT/seed-N the parameters, the most suspicious first.",
+    "--method",
+    type=click.Choice(list(METHODS)),
+    help="Also try the first suspects of this ranking.",
 )
 @JSON
-def suggestions_command(*, out: Path, half: str, suspects: Path | None, as_json: bool) -> None:
+def suggestions_command(*, out: Path, half: str, method: str | None, as_json: bool) -> None:
     """Take in the suggestions that were flown, and say which are to be flown next.
 
     By turns with ``study suggested``, until nothing is left.
     """
-    orders = None if suspects is None else load_orders(suspects)
+    ranking = None if method is None else METHODS[method]
     with progress("working out suggestions") as advance:
-        chains = next_round(out, _HALVES[half], orders, advance)
+        chains = next_round(out, _HALVES[half], ranking, advance)
     mine = [chain for chain in chains if chain.half in _HALVES[half]]
     if as_json:
         document = [asdict(share) for share in shares(mine)]

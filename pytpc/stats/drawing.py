@@ -70,6 +70,8 @@ _METADATA: dict[str, dict[str, Any]] = {
     "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
 }
 _DPI = 150
+# More of them are drawn thin, for the curves are to be seen between them.
+_FEW_MARKS = 12
 
 
 @contextmanager
@@ -129,10 +131,11 @@ def draw_marks(axes: Axes, marks: Sequence[Mark], start_ns: int) -> None:
         marks: of any types.
         start_ns: begin of the mission.
     """
+    width = 1.2 if len(marks) <= _FEW_MARKS else 0.7
     for mark in marks:
         time = (mark.time_ns - start_ns) / 1e9
         colour, dash, _, _ = _MARKS[mark.type]
-        axes.axvline(time, color=colour, linewidth=1.2, linestyle=dash, zorder=4)
+        axes.axvline(time, color=colour, linewidth=width, linestyle=dash, zorder=4)
         line = mark_line(mark.type)
         line.set_linestyle("none")
         line.set_data([time], [1.0])

@@ -17,22 +17,14 @@ import pyarrow.compute as pc
 
 from pytpc.columns import check_schema, read_table, write_table
 from pytpc.demo_examples import SHARED_PACKAGE, Example
-from pytpc.errors import InputError, RunError
-from pytpc.marks import MARK_TYPES, Mark
+from pytpc.errors import RunError
+from pytpc.marks import Mark
+from pytpc.study.data import user_marks
 from pytpc.study.dataset import CAUSES_FILE, MARKED_FILE, SIGHTS_FILE
 
 USERS = 4
 _PATIENCE_S = 120.0
 _MODULES = "PYTHONPATH"
-_MARKED = pa.schema(
-    [
-        ("time_ns", pa.int64()),
-        ("observer", pa.string()),
-        ("cause", pa.int32()),
-        ("right", pa.string()),
-        ("said", pa.string()),
-    ]
-)
 
 
 def see(example: Example, env: Mapping[str, str], bag: Path, folder: Path) -> None:
@@ -103,14 +95,4 @@ def read_marked(path: Path) -> tuple[Mark, ...]:
     Raises:
         InputError: the file cannot be read, or is not of marks.
     """
-
-    def marks_of(table: pa.Table) -> tuple[Mark, ...]:
-        check_schema(table.schema, _MARKED)
-        marks = []
-        for row in table.select(["time_ns", "observer", "right"]).to_pylist():
-            if None in row.values() or row["right"] not in MARK_TYPES:
-                raise InputError(f"a mark that is none: {row}")
-            marks.append(Mark(row["time_ns"], row["right"], row["observer"]))
-        return tuple(sorted(marks, key=Mark.order))
-
-    return read_table(path, "marks", marks_of)
+    return tuple(sorted((one.mark("typed") for one in user_marks(path)), key=Mark.order))

@@ -47,7 +47,11 @@ class Try:
 
 @dataclass
 class Chain:
-    """The tries of one variant for one mission, ``old`` and ``new`` of its changed parameter."""
+    """The tries of one variant for one mission.
+
+    ``old`` and ``new`` are values of the changed parameter; ``order`` are the first suspects, empty
+    of variants that are told the changed one.
+    """
 
     system: str
     treatment: str
@@ -57,6 +61,7 @@ class Chain:
     variant: str
     old: float
     new: float
+    order: tuple[str, ...] = ()
     tries: list[Try] = field(default_factory=list)
 
     @property
@@ -82,7 +87,8 @@ class Chain:
     @classmethod
     def from_json(cls, document: Mapping[str, Any]) -> Chain:
         """The chain of an object in ``CHAINS_FILE``."""
-        return cls(**{**document, "tries": [Try(**one) for one in document["tries"]]})
+        tries = [Try(**one) for one in document["tries"]]
+        return cls(**{**document, "order": tuple(document["order"]), "tries": tries})
 
 
 @dataclass(frozen=True, slots=True)

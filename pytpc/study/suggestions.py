@@ -19,7 +19,7 @@ marks as they are typed rightly, of all users. Two chains that want one value sh
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -34,9 +34,11 @@ from pytpc.ingest.recording import Recording, load_recording
 from pytpc.parameters import DYNAMIC, same_parameter
 from pytpc.static_info import StaticInfo
 from pytpc.static_json import parse_json
+from pytpc.study.case import Method
+from pytpc.study.data import Half, load_mission
 from pytpc.study.dataset import DONE_FILE, STUDY_FILE
 from pytpc.study.suggested import SUGGESTION_FILE, TRIED_FILE, WANTED_FILE
-from pytpc.study.suggestion_chains import SUSPECTS, VARIANTS, Chain, Try
+from pytpc.study.suggestion_chains import MOST_TRIES, SUSPECTS, VARIANTS, Chain, Try
 
 CHAINS_FILE = Path("results") / "suggestion-chains.json"
 TRIES_FILE = Path("results") / "suggestion-tries.parquet"
@@ -65,14 +67,10 @@ _TRIES = pa.schema(
 )
 
 
-Orders = Mapping[str, Sequence[str]]
-"""The suspects of each mission (``SYSTEM/TREATMENT/seed-N``), the most suspicious first."""
-
-
 def next_round(
     out: Path,
-    halves: Collection[str] = ("tuning",),
-    orders: Orders | None = None,
+    halves: Sequence[Half] = ("tuning",),
+    method: Method | None = None,
     on_progress: Callable[[int, int], None] | None = None,
 ) -> list[Chain]:
     """Take in what was flown, and write what is to be flown next.
@@ -80,7 +78,7 @@ def next_round(
     Args:
         out: the study's folder.
         halves: the halves whose missions are asked about; chains of others stay as they are.
-        orders: for the chains ``suspects``; a mission that is not in it has no such chain.
+        method: for the chains ``suspects``, of which there are none without it.
         on_progress: called with (chains done, chains in all).
 
     Returns:
@@ -90,45 +88,35 @@ def next_round(
         InputError: a file of the study is missing or broken.
         TpcError: a file cannot be written.
     """
-    chains = _chains(out, halves, orders or {})
+    chains = _chains(out, halves, method)
     for number, chain in enumerate(chains, start=1):
         _take_in(chain, out)
         while not chain.is_over and not (chain.tries and chain.tries[-1].is_open):
-            chain.tries.append(_next(chain, out, (orders or {}).get(chain.mission, ())))
+            chain.tries.append(_next(chain, out))
         if on_progress is not None:
             on_progress(number, len(chains))
     _save(chains, out)
     return chains
 
 
-def load_orders(path: Path) -> dict[str, list[str]]:
-    """Read suspects: an object of lists of parameters, by mission.
-
-    Raises:
-        InputError: the file is not such an object.
-    """
-    document = parse_json(path)
-    if not isinstance(document, dict):
-        raise InputError("not the suspects of missions: an object is expected", path)
-    for mission, order in document.items():
-        if not isinstance(order, list) or not all(isinstance(name, str) for name in order):
-            raise InputError(f"not a list of parameters: {mission}", path)
-    return document
-
-
-def _chains(out: Path, halves: Collection[str], orders: Orders) -> list[Chain]:
+def _chains(out: Path, halves: Sequence[Half], method: Method | None) -> list[Chain]:
     """Those of before, and new ones for all variants of what was flown with an error since."""
     known = {(one.mission, one.variant): one for one in _saved(out)}
-    for mission in _missions(out):
-        if mission["half"] not in halves:
+    for row in _missions(out):
+        if row["half"] not in halves:
             continue
         for variant in VARIANTS:
             chain = Chain(
-                mission["system"], mission["treatment"], mission["type"], mission["half"],
-                int(mission["seed"]), variant, float(mission["old"]), float(mission["new"]),
+                row["system"], row["treatment"], row["type"], row["half"],
+                int(row["seed"]), variant, float(row["old"]), float(row["new"]),
             )  # fmt: skip
-            if variant != SUSPECTS or chain.mission in orders:
-                known.setdefault((chain.mission, variant), chain)
+            place = (chain.mission, variant)
+            if place in known or (variant == SUSPECTS and method is None):
+                continue
+            if method is not None and variant == SUSPECTS:
+                mission = load_mission(out, out / "missions" / chain.mission, row["half"])
+                chain.order = method(mission.case("typed")).order[: MOST_TRIES[SUSPECTS]]
+            known[place] = chain
     variants = list(VARIANTS)
     return sorted(known.values(), key=lambda one: (one.mission, variants.index(one.variant)))
 
@@ -184,7 +172,7 @@ def _take_in(chain: Chain, out: Path) -> None:
         raise InputError(f"not what came of a suggestion: {error}", path) from error
 
 
-def _next(chain: Chain, out: Path, order: Sequence[str]) -> Try:
+def _next(chain: Chain, out: Path) -> Try:
     """The next value of a chain that is not over and has none that is to be flown."""
     mission = out / "missions" / chain.mission
     treatment = parse_json(mission / "treatment.json")
@@ -193,9 +181,9 @@ def _next(chain: Chain, out: Path, order: Sequence[str]) -> Try:
     parameter, node = treatment["parameter"], treatment.get("node")
     folder, flown = mission, []
     if chain.variant == SUSPECTS:
-        if len(chain.tries) >= len(order):
+        if len(chain.tries) >= len(chain.order):
             return Try("", None, None, None, reason="no more suspects")
-        parameter, node = order[len(chain.tries)], None
+        parameter, node = chain.order[len(chain.tries)], None
     elif chain.tries:
         # Its flight is that of this chain: the one that _take_in has just read.
         folder = out / "suggested" / chain.mission
@@ -260,7 +248,7 @@ def _save(chains: Sequence[Chain], out: Path) -> None:
 def _rows(chains: Sequence[Chain]) -> Iterator[dict[str, object]]:
     for chain in chains:
         head = asdict(chain)
-        del head["tries"], head["new"]
+        del head["tries"], head["new"], head["order"]
         for number, one in enumerate(chain.tries, start=1):
             if not one.is_open:
                 # Where nothing is suggested the error stays.

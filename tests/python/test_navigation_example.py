@@ -100,7 +100,7 @@ def test_treatments_of_a_type_change_parameters_of_many_nodes(kind):
     assert len({treatment.parameter for treatment in changed}) >= 5
     nodes = {treatment.node for treatment in changed}
     # The mission is in Python, the controller a plugin.
-    assert nodes > {"/mission", "/controller_host", "/safety_stop", "/planner"}
+    assert nodes > {"/mission", "/controller_host", "/localisation", "/planner"}
 
 
 def test_no_parameter_is_changed_in_both_types():

@@ -44,60 +44,66 @@ def ask(relation, cmps, threshold, marked, *, default=None, step=1.0, begin=90.0
     return remedy(log, static_info(found), "limit", marked, **more)
 
 
-# The program acts at 3, so the log ends there: 3 is the only peak, and the way from 0 is doubled:
-# 6. `6 >= T` is False for T > 6: the next whole number is 7. The smallest change is to 4.
+# The program acts at 3, so the log ends there: 3 is the only peak, three times the way from 0 is
+# 9. `9 >= T` is False for T > 9: the next whole number is 10. The smallest change is to 4.
 def test_a_counter_is_stepped_beyond_where_the_program_acted():
     found = ask(">=", [0, 1, 2, 3], 3, marks(95), default=3)
-    assert (found.value, found.basis, found.direction) == (7, "growth", "raise")
+    assert (found.value, found.basis, found.direction) == (10, "growth", "raise")
     assert type(found.value) is int
     assert found.smallest is not None
     assert found.smallest.value == 4
     assert "a first step" in found.text
 
 
-# Flown with 7 and still wrong: 0 + 7 * 3 = 21, so 22. With 22: of the 22 values 0 to 21 the first
-# 5 % are the 0, so the way begins at 1: 1 + 21 * 4 = 85, so 86.
+# Flown with 7 and still wrong: 0 + 7 * 5 = 35, so 36. With 22: 0 + 22 * 7 = 154, so 155, although
+# the lowest 5 % of the 22 values 0 to 21 end at 1.
 def test_each_try_in_vain_steps_further():
-    assert ask(">=", range(8), 7, marks(99), default=3, flown=[3]).value == 22
-    assert ask(">=", range(23), 22, marks(99), default=3, flown=[3, 7], step=0.3).value == 86
+    assert ask(">=", range(8), 7, marks(99), default=3, flown=[3]).value == 36
+    assert ask(">=", range(23), 22, marks(99), default=3, flown=[3, 7], step=0.3).value == 155
+
+
+# The way begins where the ramp did, before the window: of 0, 1, ... 20 from 80 s on the window
+# before the mark at 101 s has those from 9 on. 0 + 20 * 3 = 60, so 61.
+def test_a_ramp_that_is_longer_than_the_window():
+    assert ask(">=", range(21), 20, marks(101), begin=80.0, default=3).value == 61
 
 
 # Peaks 3, 5 and 4 that went back by themselves. The threshold is 2 and the step 1, so 3 may be the
 # program's doing (3 - 2 is less than 1.5 steps beyond), 5 and 4 are not: n = 2, and the end is
-# 0 + 5 * (1 + 1/2) = 7.5. The next whole number above is 8.
+# 0 + 5 * sqrt(3) = 8.66. The next whole number above is 9.
 def test_a_counter_that_falls_back_by_itself_tells_how_far_it_gets():
     found = ask(">=", [0, 1, 2, 3, 0, 1, 2, 3, 4, 5, 0, 1, 2, 3, 4, 0], 2, marks(99), default=2,
                 step=0.5)  # fmt: skip
-    assert (found.value, found.basis) == (8, "lasting")
+    assert (found.value, found.basis) == (9, "lasting")
 
 
-# 15.3 is the peak at which the program acted: 0 + 15.3 * 2 = 30.6; `30.6 >= T` is False above it,
-# and the next of three digits is 30.7. The author's default lies beyond the smallest change.
+# 15.3 is the peak at which the program acted: 0 + 15.3 * 3 = 45.9; `45.9 >= T` is False above it,
+# and the next of three digits is 46. The author's default lies beyond the smallest change.
 def test_a_volume_that_grows_goes_to_the_default_where_it_may():
     asked = {"relation": ">=", "cmps": [0, 5, 10, 15.3], "threshold": 15, "marked": marks(95)}
-    assert ask(**asked, default=41.0, sources=()).value == 30.7
+    assert ask(**asked, default=41.0, sources=()).value == 46
     found = ask(**asked, default=41.0)
     assert (found.value, found.basis) == (41, "default")
     assert "the default in the source" in found.text
     # A default that lies the other way, or is the present value, is none.
-    assert ask(**asked, default=10.0).value == 30.7
-    assert ask(**asked, default=15.0).value == 30.7
+    assert ask(**asked, default=10.0).value == 46
+    assert ask(**asked, default=15.0).value == 46
 
 
 # Noise about 5 crosses 10 three times, in one jump each, and goes back: peaks 11, 12, 11.5.
-# 5 + (12 - 5) * (1 + 1/3) = 14.333; the value itself times 4/3 would be 16, and the less counts.
-# `14.333 > T` is False from 14.333 on: 14.4.
+# The cube root of 3 is 1.44225, and 5 + (12 - 5) * 1.44225 = 15.096; the value itself times that
+# would be 17.3, and the less counts. `15.096 > T` is False from 15.096 on: 15.1.
 def test_noise_below_a_threshold():
     found = ask(">", [5, 5, 11, 5, 5, 12, 5, 11.5, 5], 10, marks(99))
-    assert (found.value, found.basis, found.direction) == (14.4, "lasting", "raise")
+    assert (found.value, found.basis, found.direction) == (15.1, "lasting", "raise")
 
 
 # A distance that shrinks from 8 to the 2.8 at which the robot says that it is there (below 3). The
-# way from 8 doubled is 8 - 5.2 * 2 < 0, the value halved is 1.4: the less of the two.
-# `1.4 < T` is False up to 1.4.
-def test_a_distance_is_halved():
+# way from 8 three times is 8 - 5.2 * 3 < 0, a third of the value 0.9333: the less of the two.
+# `0.9333 < T` is False up to 0.9333: 0.933.
+def test_a_distance_is_divided():
     found = ask("<", [8, 6, 4, 2.8], 3, marks(95))
-    assert (found.value, found.direction) == (1.4, "lower")
+    assert (found.value, found.direction) == (0.933, "lower")
 
 
 # Within reach once (0.03 < 0.04), and else not: the robot stood because it was False. The median
@@ -214,7 +220,7 @@ def test_a_default_that_does_not_last_is_not_taken():
 
 
 # The program acted at 61 of 60, and 15 and 92 were flown: 92 was too much, or nobody would have
-# gone back. 0 + 61 * 4 is beyond it: the geometric mean of 60 and 92 is 74.297.
+# gone back. 0 + 61 * 7 is beyond it: the geometric mean of 60 and 92 is 74.297.
 def test_between_values_that_were_flown():
     found = ask(">=", [0, 20, 40, 61], 60, marks(95), flown=[15, 92])
     assert (found.value, found.basis) == (74.3, "between")

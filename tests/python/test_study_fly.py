@@ -271,3 +271,16 @@ def test_the_observer_sees_the_shared_package_before_all_others(example, tmp_pat
         *("--sights", "/m/sights.parquet", "--seed", "7", "--users", "4"),
         *("--causes", "/m/causes.json", "--marks", "/m/marks.parquet"),
     ]
+
+
+def test_the_marks_have_the_type_that_was_right_whatever_was_said(tmp_path):
+    path = tmp_path / "marks.parquet"
+    columns = {
+        "time_ns": [9, 5],
+        "observer": ["user1", "user2"],
+        "cause": [0, 0],
+        "right": ["II", "I"],
+        "said": ["I", "II"],
+    }
+    pq.write_table(pa.table(columns), path)
+    assert people.read_marked(path) == (Mark(5, "I", "user2"), Mark(9, "II", "user1"))

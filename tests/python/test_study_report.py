@@ -15,15 +15,17 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 from click.testing import CliRunner
-from study_samples import fly, make_study, plan, write_rows
+from study_samples import fly, make_study, plan, suggestions, write_rows
 
 from pytpc.cli.study_commands import study_group
 from pytpc.errors import InputError
 from pytpc.stats.states import seen_state
 from pytpc.study.methods import METHODS
+from pytpc.study.report.folder import load_study
 from pytpc.study.report.judging import rank_missions
 from pytpc.study.report.making import make_report
 from pytpc.study.report.positions import Position, read_positions
+from pytpc.study.report.repairs import gone, read_repairs
 from pytpc.study.report.systems import nearness
 from pytpc.treatment import load_treatment
 
@@ -192,6 +194,35 @@ def test_suggestions(text):
     assert row_of(text, heading, "alpha", "type1_low", "tuning", "1")[-2] == "nothing was suggested"
 
 
+# With the second seed the error is gone. With the first none was seen before, so that the treatment
+# has 1 (and the other system's 0, mean 1/2); or the flight failed or was not flown, so that it has
+# 1/2 (mean 1/4).
+@pytest.mark.parametrize(
+    ("failure", "said", "mean"),
+    [
+        ("", "none was seen before", 0.5),
+        ("it died", "the flight failed", 0.25),
+        ("", "still to be flown", 0.25),
+    ],
+)
+def test_suggestions_that_cannot_be_judged(study, tmp_path, failure, said, mean):
+    flights = [flight for system in load_study(study).systems for flight in system.flights]
+    first, second = suggestions()
+    new = False if said == "none was seen before" else None
+    first |= {"gone": None, "new": new, "failure": failure}
+    write_rows(tmp_path / "results/s.parquet", [first, second | {"gone": True}])
+    rows = read_repairs(tmp_path / "results/s.parquet", flights)
+    told = {(row.flight.treatment.name, row.flight.seed): row.said for row in rows}
+    assert told == {
+        ("type1_low", 1): "nothing was suggested",
+        ("type1_low", 2): "nothing was suggested",
+        ("type2_high", 1): said,
+        ("type2_high", 2): "gone",
+        ("type2_min_coverage_limit", 1): "nothing was suggested",
+    }
+    assert gone(rows, "held-back").value == mean
+
+
 # Three parameters are compared in C++, one in Python (by the analysis, not by the file's name).
 def test_the_systems(text):
     assert row_of(text, "What was done", "alpha") == [
@@ -308,7 +339,7 @@ def test_missions_that_failed_or_went_wrong_are_on_the_page(own, tmp_path):
     (own / "study.json").write_text(json.dumps(document))
     made = make_report(own, tmp_path / "study.md", draw=False)
     assert "missions/alpha/type1_x/seed-1 failed: the node died." in made.troubles
-    assert "1 mission of alpha not flown yet." in made.troubles
+    assert "Still to be flown: 1 mission of alpha." in made.troubles
     assert "No mission of omega has been flown." in made.troubles
     page = made.page.read_text().replace("\\", "")
     assert "- alpha/type1_low/seed-1: the observer saw nothing" in page

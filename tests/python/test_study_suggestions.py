@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 
+import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 from click.testing import CliRunner
@@ -13,11 +14,13 @@ from pytpc.cli.study_suggestions import suggestions_command
 from pytpc.errors import InputError
 from pytpc.ingest.recording import Recording, save_recording
 from pytpc.marks import Mark
+from pytpc.study.case import Verdict
 from pytpc.study.suggestion_chains import Chain, Try, shares
-from pytpc.study.suggestions import load_orders, next_round
+from pytpc.study.suggestions import next_round
 
 MISSION = "robot/type1_limit/seed-1"
 OTHER = "~other"
+USER_MARK = ("time_ns", "observer", "cause", "right", "said")
 
 
 def log(threshold, cmps=None):
@@ -41,7 +44,9 @@ def out(tmp_path):
     flag = comparison(1, OTHER, "flag", default=False)
     static_info(comparison(0, "~limit", ">=", default=25), flag).save(static / "static.json")
     save(tmp_path / "missions" / MISSION, log(3))
-    (tmp_path / "missions" / MISSION / "treatment.json").write_text(json.dumps(values))
+    (tmp_path / "missions" / MISSION / "treatment.json").write_text(
+        json.dumps({**values, "type": "type1"})
+    )
     save(tmp_path / "reference" / "robot", log(25, range(10)))
     return tmp_path
 
@@ -61,12 +66,16 @@ def fly(out, value, *, gone, new=False, parameter="~limit"):
     (folder / "suggestion.json").write_text(json.dumps(said))
 
 
+def marks_file(out):
+    return out / "missions" / MISSION / "marks.parquet"
+
+
 def wanted(out):
     return json.loads((out / "results" / "suggestions-wanted.json").read_text())
 
 
-# The smallest change is to 4. The way doubled is 6, so that lasts above 6: 7; from its log 0 to 7
-# three times the way, 21: 22. The default and the clean run have 25. Seed 2 has not been flown.
+# The smallest change is to 4. Three times the way is 9, so it lasts from 10 on; from that log five
+# times the way, 50: 51. The default and the clean run have 25. Seed 2 has not been flown.
 def test_rounds(out):
     next_round(out)
     first = {"system": "robot", "treatment": "type1_limit", "seed": 1}
@@ -74,14 +83,14 @@ def test_rounds(out):
     assert wanted(out) == [{**first, "value": 4}]
     fly(out, 4, gone=False)
     next_round(out)
-    assert wanted(out) == [{**first, "value": 7}]
+    assert wanted(out) == [{**first, "value": 10}]
     # Asked again before it was flown, it stays so: what stands there is of another value.
     next_round(out)
-    assert wanted(out) == [{**first, "value": 7}]
-    fly(out, 7, gone=False)
+    assert wanted(out) == [{**first, "value": 10}]
+    fly(out, 10, gone=False)
     next_round(out)
-    assert wanted(out) == [{**first, "value": 22}]
-    fly(out, 22, gone=True)
+    assert wanted(out) == [{**first, "value": 51}]
+    fly(out, 51, gone=True)
     next_round(out)
     assert wanted(out) == [{**first, "value": 25}]
     fly(out, 25, gone=True, new=True)
@@ -92,8 +101,8 @@ def test_rounds(out):
     told = [(row["variant"], row["tries"], row["value"], row["gone"]) for row in rows]
     assert told == [
         ("smallest", 1, 4, False),
-        ("lasting", 1, 7, False),
-        ("lasting", 2, 22, True),
+        ("lasting", 1, 10, False),
+        ("lasting", 2, 51, True),
         ("with-default", 1, 25, True),
         ("with-reference", 1, 25, True),
     ]
@@ -101,23 +110,24 @@ def test_rounds(out):
     assert [row["new_error"] for row in rows] == [False, False, False, True, True]
     assert rows[0]["reason"] == "I: too early"
     (headline,) = pq.read_table(out / "results" / "suggestions.parquet").to_pylist()
-    assert (headline["value"], headline["gone"], headline["new"]) == (7, False, False)
+    assert (headline["value"], headline["gone"], headline["new"]) == (10, False, False)
 
 
 # Of the first nothing is known. The second is a flag that never changed, so that no mark of type
 # I is about it; the third is the counter. Its value is that of the chain `lasting`: one flight.
 def test_suspects_are_tried_in_turn(out):
-    orders = {MISSION: ["<dynamic> at a.cpp:1", OTHER, "~limit"]}
-    chains = next_round(out, orders=orders)
+    method = lambda _: Verdict(("<dynamic> at a.cpp:1", OTHER, "~limit"))  # noqa: E731
+    pq.write_table(pa.table({name: [] for name in USER_MARK}), marks_file(out))
+    chains = next_round(out, method=method)
     tries = next(chain.tries for chain in chains if chain.variant == "suspects")
     assert [one.reason for one in tries] == [
         "only the running node knows its name",
         "its result did not change before the mark",
         "",
     ]
-    assert (tries[2].parameter, tries[2].node, tries[2].value) == ("~limit", "/brain", 7)
-    fly(out, 7, gone=True)
-    chains = next_round(out, orders=orders)
+    assert (tries[2].parameter, tries[2].node, tries[2].value) == ("~limit", "/brain", 10)
+    fly(out, 10, gone=True)
+    chains = next_round(out)
     assert [one.variant for one in chains if one.is_over] == ["lasting", "suspects"]
 
 
@@ -138,7 +148,7 @@ def test_nobody_marked(out):
 
 def chain(treatment, seed, *gone):
     tries = [Try("p", None, 1.0, None, one, False) for one in gone]
-    return Chain("robot", treatment, "type1", "tuning", seed, "lasting", 1.0, 2.0, tries)
+    return Chain("robot", treatment, "type1", "tuning", seed, "lasting", 1.0, 2.0, (), tries)
 
 
 # Treatment a: of its two seeds one at once and one by the second try; b by neither of three.
@@ -175,11 +185,7 @@ def test_the_command(out):
     }  # fmt: skip
 
 
-def test_files_that_are_broken(out, tmp_path):
-    path = tmp_path / "orders.json"
-    path.write_text('{"a": ["x", 3]}')
-    with pytest.raises(InputError, match="not a list of parameters: a"):
-        load_orders(path)
+def test_files_that_are_broken(out):
     (out / "study.json").write_text("{}")
     with pytest.raises(InputError, match="not about a study"):
         next_round(out)

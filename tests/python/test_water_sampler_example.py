@@ -185,3 +185,11 @@ def test_no_decoy_list_names_a_parameter_that_is_not_there():
 def test_demonstration_flies_treatments_that_are_there():
     assert WATER_SAMPLER.shown[0] == "clean"
     assert set(WATER_SAMPLER.shown) <= {each.name for each in treatments()}
+
+
+def test_treatments_under_which_the_vial_is_filled_are_there():
+    assert {each.name for each in treatments()} > WATER_SAMPLER.reached_under
+    for each in treatments():
+        nevertheless = each.type == "clean" or each.name in WATER_SAMPLER.reached_under
+        said = [] if nevertheless else [WATER_SAMPLER.reached]
+        assert WATER_SAMPLER.goal_remarks(each, reached=True) == said

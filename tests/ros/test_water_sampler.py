@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-import functools
-import json
 from collections import Counter
-from collections.abc import Callable
 
 import pytest
+from flown import Fly, expected, flights, found, need_cpp_half
 
-from pytpc.demo import FIRST, TreatedMission, gone_wrong, run_treatment
+from pytpc.demo import FIRST, gone_wrong
 from pytpc.demo_examples import WATER_SAMPLER
 from pytpc.demo_show import Built
-from pytpc.errors import MissingToolError
-from pytpc.paths import cmake_file, log_library, plugin
 from pytpc.scoring.ranking import unknown_keys
 
-FIELDS = ("unit", "file", "line", "parameter", "type", "relation")
 IN_CPP = {"uav_simulator", "flight_controller", "pump_control"}
 # The link unit with a fault -> that in whose place it runs.
 FAULTY = {"mission_fault": "mission", "pump_control_fault": "pump_control"}
@@ -36,21 +31,8 @@ MORE = tuple(
     for path in sorted((WATER_SAMPLER.folder / "treatments").iterdir())
     if path.name not in MISSIONS
 )
-# Under these the vial is filled nevertheless: late, or before the error.
-FILLED = {
-    "type1_min_land_height",
-    "type2_hold_time",
-    "type2_max_sink_rate",
-    "type2_start_delay",
-}
 
-Fly = Callable[..., TreatedMission]
-
-try:
-    for half in (cmake_file, plugin, log_library):
-        half()
-except MissingToolError as error:
-    pytest.skip(f"the C++ half is not installed: {error}", allow_module_level=True)
+need_cpp_half()
 
 
 @pytest.fixture(scope="module")
@@ -60,45 +42,15 @@ def robot(water: Built) -> Built:
 
 @pytest.fixture(scope="module")
 def fly(robot, tmp_path_factory: pytest.TempPathFactory) -> Fly:
-    @functools.cache
-    def once(name: str, seed: int = 1) -> TreatedMission:
-        return run_treatment(
-            WATER_SAMPLER,
-            WATER_SAMPLER.treatment(name),
-            seed=seed,
-            install_env=robot.env,
-            static_info=robot.static,
-            out_dir=tmp_path_factory.mktemp(name),
-            timeout_s=150.0,
-            launch_args={"rate": RATE},
-        )
-
-    return once
-
-
-def wrong_with(mission: TreatedMission) -> list[str]:
-    name = mission.treatment.name
-    as_filled = f"{name}: {WATER_SAMPLER.reached}"
-    return [what for what in gone_wrong(mission) if name not in FILLED or what != as_filled]
-
-
-def expected(file: str, part: str = "tpcs") -> Counter:
-    document = json.loads((WATER_SAMPLER.folder / file).read_text())
-    return Counter(tuple(entry[name] for name in FIELDS) for entry in document[part])
+    return flights(WATER_SAMPLER, robot, RATE, tmp_path_factory)
 
 
 def test_analysis_finds_what_was_expected_by_hand_in_either_language(robot):
-    found = Counter(
-        (unit.link_unit, c.file, c.lineno, c.source, c.type, c.relation)
-        for unit in robot.static.units
-        for c in unit.comparisons
-        if c.type != "constant"
-    )
     in_python = "expected_python_tpcs.json"
-    wanted = expected("expected_tpcs.json") + expected(in_python)
-    assert wanted - found == Counter()
+    wanted = expected(WATER_SAMPLER, "expected_tpcs.json") + expected(WATER_SAMPLER, in_python)
+    assert wanted - found(robot.static) == Counter()
     # And nothing else.
-    assert found - wanted - expected(in_python, "either") == Counter()
+    assert found(robot.static) - wanted - expected(WATER_SAMPLER, in_python, "either") == Counter()
 
 
 @pytest.mark.parametrize("name", MISSIONS)
@@ -136,7 +88,7 @@ def test_one_ranking_names_the_parameter_of_either_language(fly, name):
     assert max(positions[1:] or positions) <= FIRST
 
 
-@pytest.mark.parametrize(("name", "kind"), zip(FAULTS, ("II", "I"), strict=True))
+@pytest.mark.parametrize(("name", "kind"), [("fault_dip_depth", "II"), ("fault_pump_flow", "I")])
 def test_fault_in_the_source_looks_like_an_error_of_a_kind(fly, name, kind):
     assert kind == fly(name).rankings[0].mark.type
 
@@ -146,7 +98,7 @@ def test_fault_in_the_source_looks_like_an_error_of_a_kind(fly, name, kind):
 @pytest.mark.parametrize("name", MORE)
 def test_first_mark_of_the_study_s_treatments_is_of_the_right_type(fly, name, seed):
     mission = fly(name, seed)
-    assert wrong_with(mission) == []
+    assert gone_wrong(mission) == []
     assert mission.rankings[0].mark.type == mission.treatment.mark_type
 
 

@@ -192,11 +192,12 @@ class ArenaRules(Rules[Sight]):
 
 
 class ArenaEyes(Eyes[Sight]):
-    """The robot is seen a little before what happens around it."""
+    """The robot and what happens around it are seen at once, whichever message comes first."""
 
     def __init__(self) -> None:
         """Nothing was seen yet."""
         self._robot: PoseStamped | None = None
+        self._arena: ArenaTruth | None = None
         self._goal: PoseStamped | None = None
 
     def channels(self) -> Mapping[str, Channel[Sight]]:
@@ -207,28 +208,35 @@ class ArenaEyes(Eyes[Sight]):
             "/truth/events": Channel("navigation/ArenaTruth", self._see_arena),
         }
 
-    def _see_robot(self, message: PoseStamped) -> None:
+    def _see_robot(self, message: PoseStamped) -> Sight | None:
         self._robot = message
+        return self._sight()
 
     def _see_goal(self, message: PoseStamped) -> None:
         self._goal = message
 
     def _see_arena(self, message: ArenaTruth) -> Sight | None:
-        if self._robot is None or self._goal is None:
+        self._arena = message
+        return self._sight()
+
+    def _sight(self) -> Sight | None:
+        if self._robot is None or self._arena is None or self._goal is None:
             return None
-        robot, goal = self._robot.pose, self._goal.pose.position
+        if self._robot.header.stamp != self._arena.header.stamp:
+            return None
+        robot, arena, goal = self._robot.pose, self._arena, self._goal.pose.position
         return Sight(
-            time=message.header.stamp.to_sec(),
+            time=arena.header.stamp.to_sec(),
             x=robot.position.x,
             y=robot.position.y,
             z=robot.position.z,
             heading=2.0 * math.atan2(robot.orientation.z, robot.orientation.w),
-            cart_x=message.cart_x,
-            cart_y=message.cart_y,
+            cart_x=arena.cart_x,
+            cart_y=arena.cart_y,
             goal_x=goal.x,
             goal_y=goal.y,
-            contact=message.contact,
-            lamp=message.lamp,
+            contact=arena.contact,
+            lamp=arena.lamp,
         )
 
 

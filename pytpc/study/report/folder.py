@@ -216,7 +216,7 @@ def _unflown(planned: Sequence[Mapping[str, Any]], system: str) -> list[str]:
         if row.get("error")
     ]
     missing = sum(row.get("state") == "planned" for row in planned)
-    left = [f"{many(missing, 'mission')} of {system} not flown yet."] if missing else []
+    left = [f"Still to be flown: {many(missing, 'mission')} of {system}."] if missing else []
     return failed + left
 
 

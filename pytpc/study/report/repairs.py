@@ -47,6 +47,8 @@ class Repair:
             return "nothing was suggested"
         if self.failure:
             return "the flight failed"
+        if self.fresh is None:
+            return "still to be flown"
         return {None: "none was seen before", True: "gone", False: "still there"}[self.gone]
 
 
@@ -143,5 +145,6 @@ def _repair(flight: Flight, row: dict[str, Any] | None) -> Repair:
     if row is None:
         return Repair(flight)
     failure = str(row["failure"] or "")
-    gone = False if failure else row["gone"]
+    # Of a suggestion that was not flown nothing is known: it has not helped.
+    gone = False if failure or row["new"] is None else row["gone"]
     return Repair(flight, row["parameter"], row["value"], gone, row["new"], failure)

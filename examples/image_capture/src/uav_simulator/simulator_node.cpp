@@ -22,7 +22,7 @@ SimulatorNode::SimulatorNode(ros::NodeHandle &nh, ros::NodeHandle &private_nh,
   private_nh.param("sensor_period", sensor_period_, 0.06);
   private_nh.param("image_period", image_period_, 0.1);
   private_nh.param("max_command_lag", max_command_lag_, 0.0);
-  private_nh.param("max_tick_lag", max_tick_lag_, 0.12);
+  private_nh.param("max_tick_lag", max_tick_lag_, 0.09);
   private_nh.param("shutter_interval", shutter_interval_, 0.5);
   sensors_pub_ = nh.advertise<UavSensors>("/uav/sensors", 10);
   observation_pub_ = nh.advertise<Observation>("/camera/observation", 10);
@@ -75,7 +75,8 @@ void SimulatorNode::tick() {
   clock_.advance();
   const ros::Time stamp = clock_.stamp();
   dynamics_.step(command_, clock_.Step);
-  // The mission acts ten times a second, each time by the clock.
+  // The mission acts ten times a second, by the clock; with a lag of less than
+  // that the time stands still until it has.
   mission_.sent(stamp);
   if (clock_.every(sensor_period_)) {
     controller_.sent(stamp);

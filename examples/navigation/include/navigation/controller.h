@@ -16,8 +16,7 @@ class Controller {
 public:
   virtual ~Controller() = default;
   /// Called once: `private_nh` has its parameters.
-  virtual void initialize(ros::NodeHandle &nh,
-                          ros::NodeHandle &private_nh) = 0;
+  virtual void initialize(ros::NodeHandle &nh, ros::NodeHandle &private_nh) = 0;
   /// A path to a new goal, or another one to the same; the last pose is the
   /// goal.
   virtual void setPath(const std::vector<Pose> &path,

@@ -62,10 +62,8 @@ inline Point nearestOnBox(const Box &box, const Point &point) {
 
 /// The way to a box's outline, m; 0 inside.
 inline double distanceTo(const Box &box, const Point &point) {
-  const double dx =
-      std::max({box.min_x - point.x, point.x - box.max_x, 0.0});
-  const double dy =
-      std::max({box.min_y - point.y, point.y - box.max_y, 0.0});
+  const double dx = std::max({box.min_x - point.x, point.x - box.max_x, 0.0});
+  const double dy = std::max({box.min_y - point.y, point.y - box.max_y, 0.0});
   return std::hypot(dx, dy);
 }
 

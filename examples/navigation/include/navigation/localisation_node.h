@@ -2,8 +2,8 @@
 #ifndef NAVIGATION_LOCALISATION_NODE_H
 #define NAVIGATION_LOCALISATION_NODE_H
 
-#include <navigation/Localised.h>
 #include <nav_msgs/Odometry.h>
+#include <navigation/Localised.h>
 #include <ros/ros.h>
 #include <sensor_msgs/LaserScan.h>
 

@@ -53,7 +53,7 @@ private:
   bool enable_front_guard_;
   double front_ = 0.0, side_ = 0.0, rear_ = 0.0; ///< clearances, m
   double voltage_ = 0.0;                         ///< smoothed
-  int weak_ = 0; ///< samples in succession
+  int weak_ = 0;                                 ///< samples in succession
   int tilted_ = 0;
   bool blocked_ = false;
   bool command_pending_ = false;

@@ -13,7 +13,7 @@ namespace navigation {
 
 struct Match {
   Pose pose;
-  double fit = 0.0; ///< mean weight of the used beams, 0 to 1
+  double fit = 0.0;         ///< mean weight of the used beams, 0 to 1
   double information = 0.0; ///< of the direction that is known worse
   bool accepted = false;
 };

@@ -45,9 +45,8 @@ void ControllerHostNode::onPath(const nav_msgs::Path &path) {
   std::vector<Pose> poses;
   for (const geometry_msgs::PoseStamped &stamped : path.poses) {
     const geometry_msgs::Pose &pose = stamped.pose;
-    poses.push_back(
-        {pose.position.x, pose.position.y,
-         2.0 * std::atan2(pose.orientation.z, pose.orientation.w)});
+    poses.push_back({pose.position.x, pose.position.y,
+                     2.0 * std::atan2(pose.orientation.z, pose.orientation.w)});
   }
   controller_->setPath(poses, command_.goal_id);
 }

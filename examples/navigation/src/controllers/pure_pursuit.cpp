@@ -7,8 +7,8 @@
 namespace navigation {
 
 namespace {
-constexpr double TurnGain = 1.8;  // 1/s
-constexpr double SlowGain = 0.8;  // 1/s
+constexpr double TurnGain = 1.8; // 1/s
+constexpr double SlowGain = 0.8; // 1/s
 constexpr double Degree = M_PI / 180.0;
 } // namespace
 
@@ -158,4 +158,3 @@ void PurePursuit::publish(const Localised &robot,
 }
 
 } // namespace navigation
-

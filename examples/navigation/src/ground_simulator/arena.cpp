@@ -5,11 +5,11 @@
 namespace navigation {
 
 namespace {
-constexpr double CartHalf = 0.2;      // m
-constexpr double CartSpeed = 0.55;    // m/s
-constexpr double CartEnd = 0.4;       // y, m
-constexpr double CartTrigger = 3.6;   // x of the robot, m
-constexpr double LaserRange = 6.0;    // m
+constexpr double CartHalf = 0.2;    // m
+constexpr double CartSpeed = 0.55;  // m/s
+constexpr double CartEnd = 0.4;     // y, m
+constexpr double CartTrigger = 3.3; // x of the robot, m
+constexpr double LaserRange = 6.0;  // m
 constexpr int Beams = 120;
 constexpr double DustTime = 0.35; // s
 

@@ -11,7 +11,7 @@ int main(int argc, char **argv) {
   int seed = 1;
   private_nh.getParam("seed", seed);
   navigation::SimulatorNode node(nh, private_nh,
-                                    static_cast<std::uint32_t>(seed));
+                                 static_cast<std::uint32_t>(seed));
   node.run(private_nh);
   return 0;
 }

@@ -7,8 +7,8 @@ namespace navigation {
 namespace {
 constexpr double FullVoltage = 12.6;
 constexpr double EmptyVoltage = 10.0;
-constexpr double MotorLag = 0.15;    // s
-constexpr double HalfTrack = 0.16;   // m, from the middle to a wheel
+constexpr double MotorLag = 0.15;     // s
+constexpr double HalfTrack = 0.16;    // m, from the middle to a wheel
 constexpr double OdometryBias = 1.02; // the wheels are smaller than they say
 
 double lag(double value, double target, double interval) {

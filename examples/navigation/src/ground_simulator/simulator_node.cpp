@@ -38,10 +38,10 @@ SimulatorNode::SimulatorNode(ros::NodeHandle &nh, ros::NodeHandle &private_nh,
   const auto hints = ros::TransportHints().tcpNoDelay();
   command_sub_ = nh.subscribe("/robot/cmd_vel", 10, &SimulatorNode::onCommand,
                               this, hints);
-  mission_sub_ = nh.subscribe("/mission/command", 10,
-                              &SimulatorNode::onMission, this, hints);
-  plan_sub_ = nh.subscribe("/planner/status", 10, &SimulatorNode::onPlan, this,
-                           hints);
+  mission_sub_ = nh.subscribe("/mission/command", 10, &SimulatorNode::onMission,
+                              this, hints);
+  plan_sub_ =
+      nh.subscribe("/planner/status", 10, &SimulatorNode::onPlan, this, hints);
   lamp_sub_ = nh.subscribe("/mission/lamp", 10, &SimulatorNode::onLamp, this);
   horn_sub_ = nh.subscribe("/mission/horn", 10, &SimulatorNode::onHorn, this);
 }

@@ -43,8 +43,7 @@ LocalisationNode::LocalisationNode(ros::NodeHandle &nh,
   const auto hints = ros::TransportHints().tcpNoDelay();
   odometry_sub_ =
       nh.subscribe("/odom", 10, &LocalisationNode::onOdometry, this, hints);
-  scan_sub_ =
-      nh.subscribe("/scan", 10, &LocalisationNode::onScan, this, hints);
+  scan_sub_ = nh.subscribe("/scan", 10, &LocalisationNode::onScan, this, hints);
 }
 
 void LocalisationNode::onOdometry(const nav_msgs::Odometry &odometry) {

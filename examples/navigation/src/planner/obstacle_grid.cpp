@@ -6,8 +6,8 @@
 namespace navigation {
 
 namespace {
-constexpr double Far = 1.0;       // m: clearance is not measured farther
-constexpr double MarkRange = 3.0; // m: farther a small turn is a long way
+constexpr double Far = 1.0;         // m: clearance is not measured farther
+constexpr double MarkRange = 3.0;   // m: farther a small turn is a long way
 constexpr double WallMargin = 0.15; // m
 constexpr int MostHits = 12;
 constexpr double Weight = 6.0;     // of discomfort near an obstacle
@@ -16,8 +16,8 @@ constexpr double BehindHit = 0.15; // m before a hit that are not cleared
 } // namespace
 
 ObstacleGrid::ObstacleGrid(ros::NodeHandle &private_nh)
-    : wall_(Columns * Rows, false), marked_(Columns * Rows, false), hits_(Columns * Rows, 0),
-      clearance_(Columns * Rows, Far) {
+    : wall_(Columns * Rows, false), marked_(Columns * Rows, false),
+      hits_(Columns * Rows, 0), clearance_(Columns * Rows, Far) {
   private_nh.param("inflation_radius", inflation_radius_, 0.33);
   private_nh.param("occupied_hits", occupied_hits_, 4);
   for (int row = 0; row < Rows; ++row)

@@ -21,8 +21,8 @@ PlannerNode::PlannerNode(ros::NodeHandle &nh, ros::NodeHandle &private_nh)
   status_pub_ = nh.advertise<PlanStatus>("/planner/status", 10);
   grid_pub_ = nh.advertise<nav_msgs::OccupancyGrid>("/planner/grid", 2);
   const auto hints = ros::TransportHints().tcpNoDelay();
-  pose_sub_ = nh.subscribe("/localisation/pose", 10, &PlannerNode::onPose, this,
-                           hints);
+  pose_sub_ =
+      nh.subscribe("/localisation/pose", 10, &PlannerNode::onPose, this, hints);
   scan_sub_ = nh.subscribe("/scan", 10, &PlannerNode::onScan, this, hints);
   mission_sub_ = nh.subscribe("/mission/command", 10, &PlannerNode::onMission,
                               this, hints);

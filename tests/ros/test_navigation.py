@@ -1,0 +1,71 @@
+"""A robot with a controller in a plugin on a real graph: built once, each mission driven once."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import pytest
+from flown import Fly, expected, flights, found, need_cpp_half
+from rich.console import Console
+
+from pytpc.demo import gone_wrong
+from pytpc.demo_examples import NAVIGATION
+from pytpc.demo_show import Built, build
+from pytpc.scoring.ranking import unknown_keys
+
+IN_CPP = {
+    "controller_host",
+    "ground_simulator",
+    "localisation",
+    "navigation_controllers",
+    "planner",
+    "recovery",
+    "safety_stop",
+}
+# Of simulated time. A machine that cannot keep up is slower, and drives the same: the time waits.
+RATE = "8"
+MISSIONS = ("clean", "type1_goal_tolerance", "type2_min_start_quality")
+
+need_cpp_half()
+
+
+@pytest.fixture(scope="module")
+def robot(tmp_path_factory: pytest.TempPathFactory) -> Built:
+    return build(NAVIGATION, Console(quiet=True), tmp_path_factory.mktemp("navigation"))
+
+
+@pytest.fixture(scope="module")
+def fly(robot, tmp_path_factory: pytest.TempPathFactory) -> Fly:
+    return flights(NAVIGATION, robot, RATE, tmp_path_factory)
+
+
+def test_analysis_finds_what_was_expected_by_hand_in_nodes_and_plugins(robot):
+    in_python = "expected_python_tpcs.json"
+    wanted = expected(NAVIGATION, "expected_tpcs.json") + expected(NAVIGATION, in_python)
+    assert wanted - found(robot.static) == Counter()
+    # And nothing else.
+    assert found(robot.static) - wanted - expected(NAVIGATION, in_python, "either") == Counter()
+
+
+@pytest.mark.parametrize("name", MISSIONS)
+def test_mission_goes_as_its_treatment_demands(robot, fly, name):
+    mission = fly(name)
+    assert gone_wrong(mission) == []
+    assert unknown_keys(mission.recording.events, robot.static) == {}
+    assert (mission.recording.malformed, mission.recording.lost) == (0, {})
+
+
+def test_many_parameters_act_in_a_clean_mission_in_each_link_unit(robot, fly):
+    keys = fly("clean").recording.events.keys
+    assert {robot.static.unit_of(key).link_unit for key in keys} == IN_CPP | {"mission"}
+    assert len({robot.static.comparisons[key].source for key in keys}) >= 70
+
+
+def test_changed_parameter_is_compared_where_it_decides(robot, fly):
+    for name in MISSIONS[1:]:
+        mission = fly(name)
+        compared = {
+            robot.static.comparisons[key].source.lstrip("~")
+            for key in mission.recording.events.keys
+        }
+        assert mission.treatment.parameter.lstrip("~") in compared
