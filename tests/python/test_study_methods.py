@@ -19,7 +19,7 @@ from pytpc.study.fit import Batch, fit, samples
 from pytpc.study.judge import judge, save_positions
 from pytpc.study.methods import METHODS
 from pytpc.study.methods.importance import importance, importance_of, windows
-from pytpc.study.methods.plain import by_chance, recent_change
+from pytpc.study.methods.plain import by_chance, largest_change, recent_change
 from pytpc.study.methods.thesis import thesis, thesis_doubt
 
 STATIC = static_info(
@@ -109,6 +109,15 @@ def test_the_last_change_is_the_first_suspect():
     changes = tuple(Change(name, "/node", 1.0, 2.0) for name in ("~a", "~c", "~elsewhere", "~a"))
     assert recent_change(case([], [], changes=changes)).order == ("~a", "~c")
     assert recent_change(case([], [])).order == ()
+
+
+def test_the_largest_change_is_by_its_part_of_the_value():
+    changes = (
+        Change("~a", "/n", 100.0, 103.0),
+        Change("~b", "/n", 0.1, 0.2),
+        Change("~c", "/n", 0, 0),
+    )
+    assert largest_change(case([], [], changes=changes)).order == ("~b", "~a", "~c")
 
 
 def test_chance_is_the_same_for_the_same_marks():
