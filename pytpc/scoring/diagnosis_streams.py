@@ -44,9 +44,12 @@ class Stream:
     ``spread`` is the range of all its finite values, of cmp and of thresh. ``column`` is the
     parameter's place in `Tpcs.names`, ``distance`` that of the comparison from what it exposes.
     ``changes`` are when its result changed, noise taken together; ``starts`` and ``stops`` when it
-    began to be evaluated after a pause, and was before one (those of the log included).
+    began to be evaluated after a pause, and was before one (those of the log included). ``key`` and
+    ``node`` are whose evaluations they are.
     """
 
+    key: str
+    node: str
     column: int
     distance: float
     times: Floats
@@ -133,6 +136,8 @@ def _stream(events: Events, rows: Int64s, begin_ns: int, column: int, distance: 
     changed = np.flatnonzero(res[1:] != res[:-1]) + 1
     paused = np.flatnonzero(gaps > pause)
     return Stream(
+        key=events.keys[events.key[rows[0]]],
+        node=events.nodes[events.node[rows[0]]],
         column=column,
         distance=distance,
         times=times,
