@@ -150,18 +150,18 @@ def diagnose(
     scores = parameter_scores(found, columns, len(tpcs.names), odds, weights)
     scores = scores + weights.ranked * ranked(recording, tpcs, times) + extra
     posterior, none = softmax(scores, weights.none)
-    by = _decisive(streams, *stream_scores(found, odds, weights), len(tpcs.names))
+    by = _decisive(streams, tpcs, *stream_scores(found, odds, weights))
     return Diagnosis(tpcs.names, scores, posterior, none, 1.0 / (1.0 + math.exp(odds)), by)
 
 
 def _decisive(
-    streams: Streams, scores: Floats, type1: Floats, parameters: int
+    streams: Streams, tpcs: Tpcs, scores: Floats, type1: Floats
 ) -> tuple[Decisive | None, ...]:
     """The best stream of each parameter, the first of equal ones."""
-    best: list[Decisive | None] = [None] * parameters
+    best: list[Decisive | None] = [None] * len(tpcs.names)
     for n in reversed(np.argsort(-scores, kind="stable").tolist()):
         stream = streams.streams[n]
-        best[stream.column] = Decisive(stream.key, stream.node, float(type1[n]))
+        best[stream.column] = Decisive(tpcs.keys[stream.code], stream.node, float(type1[n]))
     return tuple(best)
 
 
