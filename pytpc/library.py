@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import overload
 
 from pytpc.advice.advise import advise
+from pytpc.advice.blame import blame
 from pytpc.advice.blamed import advise_blamed
 from pytpc.advice.counterfactual import WhatIf
 from pytpc.advice.counterfactual import what_if as replay
@@ -30,7 +31,6 @@ from pytpc.notebook import StudyTable, Table
 from pytpc.notebook_answers import Advices, Diagnosed
 from pytpc.report.html import MissionReport
 from pytpc.report.html import write_report as write_page
-from pytpc.scoring.blame import blame
 from pytpc.scoring.curves import STEP_S, RankCurves, rank_curves
 from pytpc.scoring.ranking import MarkRanking, Types, rank_marks
 from pytpc.scoring.scores import WINDOW_S
@@ -192,7 +192,7 @@ def diagnose(
     *,
     types: Types = "believe",
     reference: Recording | Source | None = None,
-    changes: Sequence[Change] | None = None,
+    changes: Sequence[Change] = (),
     top: int = _SHOWN,
 ) -> Diagnosed:
     """How likely it is each parameter, by all marks of a mission together, and what to do.
@@ -202,7 +202,7 @@ def diagnose(
         static_info: what the analysis found.
         types: with ``ignore`` what the marks say of the type does not count.
         reference: a mission of the same build that went right.
-        changes: what was changed since it went right, None where that is not known; see
+        changes: what was changed since it went right, empty where that is not known; see
             `pytpc.changes.read_changes` and `pytpc.changes.changes_between`.
         top: for how many suspects there is a value to try.
 
@@ -211,7 +211,7 @@ def diagnose(
     """
     recording, static = _marked(mission), load_static(static_info)
     clean = None if reference is None else read(reference)
-    known = None if changes is None else [(one.parameter, one.old, one.new) for one in changes]
+    known = [(one.parameter, one.old, one.new) for one in changes]
     found = blame(recording, static, types=types, reference=clean, changes=known)
     places = [] if isinstance(mission, Recording) else [Path(mission)]
     declared = declared_in(static, places)

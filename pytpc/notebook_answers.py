@@ -8,9 +8,9 @@ from html import escape
 from typing import overload
 
 from pytpc.advice.advise import Advice
+from pytpc.advice.blame import Blame
 from pytpc.advice.blamed import BlamedAdvice
 from pytpc.notebook import Table
-from pytpc.scoring.blame import Blame
 from pytpc.scoring.ranking import MarkRanking
 from pytpc.words import exact, percent, plain, show
 

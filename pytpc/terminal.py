@@ -10,12 +10,12 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
+from pytpc.advice.blame import Blame
 from pytpc.advice.blamed import BlamedAdvice
 from pytpc.advice.declared import Declared, declared_for
 from pytpc.advice.suggest import Suggestion, suggest
 from pytpc.ingest.recording import Recording
 from pytpc.marks import MarkType
-from pytpc.scoring.blame import Blame
 from pytpc.scoring.ranking import MarkRanking, Suspect
 from pytpc.scoring.scores import WINDOW_S
 from pytpc.static_info import Comparison, StaticInfo

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 
 from pytpc.advice.advise import Advice
+from pytpc.advice.blame import Blame
 from pytpc.advice.blamed import BlamedAdvice
 from pytpc.advice.counterfactual import WhatIf
 from pytpc.advice.declared import Declared
@@ -14,7 +15,6 @@ from pytpc.advice.joining import JoinedAdvice, MarkGroup
 from pytpc.advice.remedy import Remedy
 from pytpc.advice.suggest import Suggestion
 from pytpc.marks import Mark
-from pytpc.scoring.blame import Blame
 from pytpc.words import Number
 
 Json = dict[str, object]

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from pytpc.advice.blame import Accused, Blame
 from pytpc.advice.counterfactual import WhatIf, what_if
 from pytpc.advice.declared import Declared, declared_for
 from pytpc.advice.remedy import Remedy, remedy
 from pytpc.ingest.recording import Recording
 from pytpc.marks import Mark
-from pytpc.scoring.blame import Accused, Blame
 from pytpc.scoring.scores import WINDOW_S
 from pytpc.static_info import StaticInfo
 

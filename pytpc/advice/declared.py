@@ -12,11 +12,11 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from pytpc.advice.blame import Accused
 from pytpc.advice.declaration import Declared
 from pytpc.advice.declared_bag import is_bag, read_bag
 from pytpc.advice.declared_cfg import read_cfg
 from pytpc.parameters import same_parameter
-from pytpc.scoring.blame import Accused
 from pytpc.scoring.ranking import Suspect
 from pytpc.static_info import StaticInfo
 

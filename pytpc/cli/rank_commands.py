@@ -12,6 +12,7 @@ from rich.table import Table
 from rich.text import Text
 
 from pytpc.advice.as_json import blame_json
+from pytpc.advice.blame import Blame
 from pytpc.advice.blamed import BlamedAdvice
 from pytpc.advice.declared import Declared, declared_in, read_declared
 from pytpc.cli.console import console, warn
@@ -34,7 +35,6 @@ from pytpc.ingest import Recording
 from pytpc.marking.file import MarksFile
 from pytpc.marking.session import Change
 from pytpc.marks import MARK_TYPES, Mark, MarkType, joined, marks_beside, marks_text, read_marks
-from pytpc.scoring.blame import Blame
 from pytpc.scoring.clocks import two_clocks
 from pytpc.scoring.ranking import MarkRanking, Types, rank_marks
 from pytpc.static_info import StaticInfo

@@ -9,6 +9,7 @@ from typing import Literal, TypeVar
 
 import click
 
+from pytpc.advice.blame import Blame, blame
 from pytpc.advice.blamed import BlamedAdvice, advise_blamed
 from pytpc.advice.declared import Declared
 from pytpc.changes import Change, changes_between, read_changes
@@ -18,7 +19,6 @@ from pytpc.errors import InputError
 from pytpc.ingest import Recording
 from pytpc.mission import PARAMS_FILE
 from pytpc.parameters import same_parameter
-from pytpc.scoring.blame import Blame, blame
 from pytpc.scoring.ranking import Types
 from pytpc.scoring.tables import Tpcs
 from pytpc.static_info import StaticInfo
@@ -70,12 +70,12 @@ class Judge:
     """Judges missions by all their marks, with what is known beside the log.
 
     ``before`` is the params.yaml with which each mission's own is compared, in place of
-    ``changes``; both may be None.
+    ``changes``; None where it is not.
     """
 
     static: StaticInfo
     reference: Recording | None
-    changes: tuple[Change, ...] | None
+    changes: tuple[Change, ...]
     before: Path | None
 
     @classmethod
@@ -95,8 +95,8 @@ class Judge:
         if reference is not None:
             clean = recording_of(reference)
             check_reports(clean, static, reference)
-        changes = None if changes_file is None else read_changes(changes_file)
-        if changes is not None and changes_file is not None:
+        changes = () if changes_file is None else read_changes(changes_file)
+        if changes_file is not None:
             _warn_of(changes, changes_file, static)
         return cls(static, clean, changes, before)
 
@@ -119,7 +119,7 @@ class Judge:
         if self.before is not None:
             changes = _changes_since(self.before, source)
             _warn_of(changes, self.before, self.static)
-        known = None if changes is None else [(one.parameter, one.old, one.new) for one in changes]
+        known = [(one.parameter, one.old, one.new) for one in changes]
         found = blame(
             recording,
             self.static,

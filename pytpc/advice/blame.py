@@ -1,22 +1,21 @@
 """Whom all marks of a mission accuse together, in the words and places of a user.
 
-``blame`` is the entrance: `pytpc.scoring.diagnosis`, with what is known beside the log, and what
-there is to say where the marks or the reports are not enough.
+``blame`` is the entrance: `pytpc.advice.diagnosing`, and what there is to say where the marks or
+the reports are not enough.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pytpc.columns import Floats
+from pytpc.advice.diagnosing import Changed, diagnose_beside
 from pytpc.events import Events
 from pytpc.ingest.recording import Recording
 from pytpc.marks import Mark, MarkType
-from pytpc.scoring.diagnosis import Decisive, Diagnosis, diagnose
-from pytpc.scoring.diagnosis_priors import of_changes, of_reference
+from pytpc.scoring.diagnosis import Decisive, Diagnosis
 from pytpc.scoring.evidence import Evaluation, Log
 from pytpc.scoring.ranking import Types, outside
 from pytpc.scoring.scores import WINDOW_S
@@ -29,9 +28,6 @@ SURE = 0.5
 
 _DIGITS = 9
 """Scores that differ by rounding only are tied."""
-
-Changed = tuple[str, float, float]
-"""A parameter that was changed, the value before and after."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +112,7 @@ def blame(
     *,
     types: Types = "believe",
     reference: Recording | None = None,
-    changes: Iterable[Changed] | None = None,
+    changes: Sequence[Changed] = (),
     window_s: float = WINDOW_S,
 ) -> Blame:
     """Judge the parameters by all marks of a mission.
@@ -127,8 +123,7 @@ def blame(
         types: with ``ignore`` what the marks say of the type is not looked at; ``believe`` and
             ``doubt`` are the same, for they are never taken for certain.
         reference: a clean run of the same build.
-        changes: what was changed since the robot went right, None where that is not known. With a
-            reference, too, what either of them says is as it was is unlikely.
+        changes: what was changed since the robot went right, empty where that is not known.
         window_s: a mark that has no report in so many seconds before it says nothing.
     """
     if types == "ignore":
@@ -141,27 +136,12 @@ def blame(
     notes = _notes(recording, beyond)
     if not recording.marks or all(beyond) or not len(events):
         return Blame((), 1.0, len(tpcs.names), recording.marks, notes)
-    prior = _prior(tpcs, recording, reference, changes)
-    found = diagnose(recording, static_info, prior=prior)
+    found = diagnose_beside(recording, static_info, reference=reference, changes=changes)
     suspects = _suspects(found, static_info, recording.marks, events)
     made = Blame(suspects, found.none, len(tpcs.names), recording.marks, notes)
     if len(recording.marks) > 1 or made.accused is not None:
         return made
     return replace(made, notes=(*notes, "one mark says little: mark it each time that it happens"))
-
-
-def _prior(
-    tpcs: Tpcs,
-    recording: Recording,
-    reference: Recording | None,
-    changes: Iterable[Changed] | None,
-) -> Floats | None:
-    priors = []
-    if reference is not None:
-        priors.append(of_reference(tpcs, recording.events, reference.events))
-    if changes is not None:
-        priors.append(of_changes(tpcs.names, changes))
-    return np.min(priors, axis=0) if priors else None
 
 
 def _suspects(
