@@ -150,10 +150,10 @@ def test_users_get_what_the_study_judges():
 # The clean run says that ~safe is what it was, the history that ~gate is. By both it is neither.
 def test_a_clean_run_and_the_changes_together():
     clean = Recording("clean", events([(1, 0, 0, 0.1, 0.9), (2, 1, 0, 1, 9)]), (), 0, ns(80))
-    of_safe = [("safe", 5.0, 9.0)]
-    found = blame(mission(), STATIC, reference=clean, changes=of_safe)
-    assert found.none > blame(mission(), STATIC, reference=clean).none
-    assert found.none > blame(mission(), STATIC, changes=of_safe).none
+    found = blame(mission(), STATIC, reference=clean, changes=[("safe", 5.0, 9.0)])
+    assert blame(mission(), STATIC, reference=clean).accused == "~gate"
+    assert found.accused is None
+    assert found.none > 0.5
 
 
 # Only the changes of results were reported; the rest came as a summary.
