@@ -35,8 +35,9 @@ from pytpc.parameters import DYNAMIC, same_parameter
 from pytpc.static_info import StaticInfo
 from pytpc.static_json import parse_json
 from pytpc.study.case import Method
-from pytpc.study.data import Half, load_mission
+from pytpc.study.data import load_mission
 from pytpc.study.dataset import DONE_FILE, STUDY_FILE
+from pytpc.study.plan import Half
 from pytpc.study.suggested import SUGGESTION_FILE, TRIED_FILE, WANTED_FILE
 from pytpc.study.suggestion_chains import MOST_TRIES, SUSPECTS, VARIANTS, Chain, Try
 

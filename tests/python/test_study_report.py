@@ -15,11 +15,13 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 from click.testing import CliRunner
-from study_samples import fly, make_study, plan, suggestions, write_rows
+from study_flights import made as made_by
+from study_samples import fly, make_study, plan, suggestions, write_rows, write_said
 
 from pytpc.cli.study_commands import study_group
 from pytpc.errors import InputError
 from pytpc.stats.states import seen_state
+from pytpc.study.dataset import save_done
 from pytpc.study.methods import METHODS
 from pytpc.study.report.folder import load_study
 from pytpc.study.report.judging import rank_missions
@@ -395,6 +397,25 @@ def test_only_missions_that_are_not_ranked_are_ranked(own, tmp_path):
         row for row in kept if row.half == "held-back"
     ]
     assert {row.method for row in anew if row.treatment == "clean" and row.seed == 1} == {*METHODS}
+
+
+# Then user1 alone marked it. Two sets of marks, three labels, eight methods.
+def test_a_mission_that_was_marked_anew_is_ranked_again(own):
+    place = own / "missions/alpha/type1_low/seed-1"
+    save_done(made_by("flown", marked="people 1"), place)
+    rank_missions(own, ["tuning"])
+    before = rows_in(own)
+    save_done(made_by("flown", marked="people 2"), place)
+    write_said(place, [(7, "user1", "I", "I")])
+    rank_missions(own, ["tuning"])
+    rows = [row for row in rows_in(own) if (row.treatment, row.seed) == ("type1_low", 1)]
+    assert len(rows) == 2 * 3 * 8
+    assert {(row.marks, row.digest) for row in rows} == {(1, "flown-people 2")}
+    # What was not marked anew stays.
+    others = [row for row in before if (row.treatment, row.seed) != ("type1_low", 1)]
+    assert [row for row in rows_in(own) if row not in rows] == others
+    rank_missions(own, ["tuning"])
+    assert len(rows_in(own)) == len(rows) + len(others)
 
 
 def test_what_cannot_be_ranked_is_said(own, tmp_path):
