@@ -18,7 +18,6 @@ from pytpc.study.report.confidence import (
     accusation_counts,
     accusations_table,
     calibration,
-    judged,
     reliability_table,
 )
 from pytpc.study.report.drawings import Advance, Drawing, draw_results, draw_systems
@@ -174,8 +173,8 @@ def _tables(
         *(against_table(positions, half) for half in halves),
         *(users_table(positions, half) for half in halves),
         *(positions_table(positions, labels) for labels in LABELS),
-        reliability_table(calibration(judged(positions))),
-        accusation_counts(positions),
+        *(reliability_table(calibration(positions, half), half) for half in halves),
+        accusation_counts(positions, halves),
         accusations_table(positions),
         repairs_summary(repairs),
         repairs_table(repairs),
