@@ -5,6 +5,8 @@ mark kept it there, so the other one is wanted, of nearly all of these evaluatio
 
 - steady values: all but outliers (4 standard deviations, by the median of absolute deviations, so
   that the way there does not count) and one standard deviation more;
+- one decision that held for most of that time: the program went on by it, did not ask again and
+  stands by it, so that it should not have changed, as of type I;
 - values that grow towards the threshold: what half of the ramps reach, or of the one ramp what it
   had reached in the middle of the window.
 
@@ -21,7 +23,7 @@ and 7 in place of 3).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Literal
 
@@ -134,6 +136,12 @@ def _standing(
     for mark in marks.tolist():
         inside |= (series.time_ns >= mark - window) & (series.time_ns <= mark)
     part = series.take(inside)
+    decided = _held(series, marks, window)
+    if decided is not None:
+        found = _stays(decided, relation, marks, window, tries)
+        if found is not None:
+            way = found.least - float(series.thresh[-1])
+            return replace(found, kind="II", near=_share(way, series))
     if not part.cmp.size:
         return None
     outcome = not bool(np.mean(part.went) >= 1 / 2)
@@ -146,14 +154,28 @@ def _standing(
     ramps = _ramps(-values)
     if ramps is None:
         edge = _steady_end(values, tries)
-        found: tuple[Ground, int] = ("steady", part.cmp.size)
+        why: tuple[Ground, int] = ("steady", part.cmp.size)
     else:
         first = values[part.time_ns <= marks[0]]
         peaks = -ramps if ramps.size > 1 else (first if first.size else values)
         edge = float(np.quantile(peaks, min(1.0, 1 / 2 + tries / 4), method="higher"))
-        found = ("ramps", ramps.size)
+        why = ("ramps", ramps.size)
     least = float(np.min(stuck))
-    return Lasting("II", outcome, sign * max(edge, least), sign * least, up, *found, near)
+    return Lasting("II", outcome, sign * max(edge, least), sign * least, up, *why, near)
+
+
+def _held(series: _Series, marks: Int64s, window: int) -> _Series | None:
+    """What led to a decision that held for most of the time before the first marks; None if none.
+
+    The program went on by it and did not ask again: it stands by what was decided then. They are
+    the evaluations since the change before that to the decision.
+    """
+    begin, end = int(marks[0]) - window, int(marks[marks <= marks[0] + window][-1])
+    until = series.take(series.time_ns <= end)
+    if not until.time_ns.size or 2 * (end - max(begin, int(until.time_ns[-1]))) <= end - begin:
+        return None
+    change = np.flatnonzero(until.went[1:] != until.went[:-1]) + 1
+    return until.take(slice(int(change[-2]) if change.size > 1 else 0, None))
 
 
 def _share(way: float, series: _Series) -> float:
@@ -221,6 +243,9 @@ def _stays(
     lowest = min(lowest, _begin_of_climb(values[: change[first] + 1]))
     count = max(1, sum(ended))
     edge = _estimate(max(peaks), lowest, (_WAY + 2 * tries) ** (1 / count))
+    if np.max(values) <= 0:
+        # What is never on the other side of 0 does not get there.
+        edge = min(edge, 0.0)
     ground: Ground = "peaks" if any(ended) else "growth"
     least = sign * float(values[change[first]])
     near = (int(marks[0]) - int(when[first])) / 1e9

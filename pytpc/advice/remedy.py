@@ -142,7 +142,8 @@ def remedy(
             chosen = _chosen(name, wanted, allowed, flown)
             if chosen is not None:
                 return replace(chosen, smallest=smallest[0], known=tuple(known))
-        if smallest[0].value is not None:
+        # What lasts may be nowhere between the values that were flown; then neither is this.
+        if smallest[0].value is not None and not (wanted and flown):
             return _as_smallest(name, kind, *smallest)
         reason = smallest[0].reason or reason
     return Remedy(name, None, None, None, None, reason, reason, None, None, None)

@@ -239,21 +239,20 @@ def _list(words: Sequence[str]) -> str:
 
 def _suspect(number: int, joined: JoinedAdvice, marks: int) -> RenderableType:
     advice = joined.advice
-    suggestion, found = advice.suggestion, advice.suspect.comparison
+    tried, smallest, found = joined.remedy, advice.suggestion, advice.suspect.comparison
     line = Text(f"{number}  ")
-    if suggestion.direction is None:
-        line.append(plain(f"{suggestion.parameter}: {suggestion.reason}"), style="dim")
+    if tried.value is None:
+        line.append(plain(f"{smallest.parameter}: {smallest.reason or tried.reason}"), style="dim")
     else:
-        line.append(plain(suggestion.text), style="bold" if number == 1 else "")
+        line.append(plain(tried.text), style="bold" if number == 1 else "")
     lines = [line]
     place = plain(f"{found.file}:{found.lineno}")
     code = f"  {plain(found.source_code.strip())}" if found.source_code else ""
     lines.append(Text(f"   {place}{code}", style="dim"))
-    if advice.what_if is not None:
-        lines.append(Text(plain(f"   {advice.what_if.text}")))
-    tried = joined.remedy
-    if tried.value is not None and tried.value != suggestion.value:
-        lines.append(Text(plain(f"   to try: {tried.text}")))
+    if joined.what_if is not None:
+        lines.append(Text(plain(f"   {joined.what_if.text}")))
+    if smallest.value is not None and smallest.value != tried.value:
+        lines.append(Text(plain(f"   the smallest change: {smallest.text}")))
     if marks > 1 and joined.agreed < marks:
         lines.append(
             Text(f"   among the first suspects at {joined.named} of {many(marks, 'mark')}")

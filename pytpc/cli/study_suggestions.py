@@ -15,7 +15,7 @@ from pytpc.cli.options import JSON, PATH
 from pytpc.study.methods import METHODS
 from pytpc.study.plan import Half
 from pytpc.study.suggested import WANTED_FILE
-from pytpc.study.suggestion_chains import Chain, shares
+from pytpc.study.suggestion_chains import VARIANTS, Chain, shares
 from pytpc.study.suggestions import next_round
 from pytpc.words import many, plain
 
@@ -30,19 +30,28 @@ _HALVES: dict[str, tuple[Half, ...]] = {
 @click.option("--out", type=PATH, default=Path("out") / "study", show_default=True)
 @click.option("--half", type=click.Choice(list(_HALVES)), default="both", show_default=True)
 @click.option(
+    "--variant",
+    "variants",
+    type=click.Choice(list(VARIANTS)),
+    multiple=True,
+    help="Only this one; may be repeated.",
+)
+@click.option(
     "--method",
     type=click.Choice(list(METHODS)),
     help="Also try the first suspects of this ranking.",
 )
 @JSON
-def suggestions_command(*, out: Path, half: str, method: str | None, as_json: bool) -> None:
+def suggestions_command(
+    *, out: Path, half: str, variants: tuple[str, ...], method: str | None, as_json: bool
+) -> None:
     """Take in the suggestions that were flown, and say which are to be flown next.
 
     By turns with ``study suggested``, until nothing is left.
     """
     ranking = None if method is None else METHODS[method]
     with progress("working out suggestions") as advance:
-        chains = next_round(out, _HALVES[half], ranking, advance)
+        chains = next_round(out, _HALVES[half], ranking, variants or tuple(VARIANTS), advance)
     mine = [chain for chain in chains if chain.half in _HALVES[half]]
     if as_json:
         document = [asdict(share) for share in shares(mine)]

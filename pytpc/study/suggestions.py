@@ -79,6 +79,7 @@ def next_round(
     out: Path,
     halves: Sequence[Half] = ("tuning",),
     method: Method | None = None,
+    variants: Sequence[str] = tuple(VARIANTS),
     on_progress: Callable[[int, int], None] | None = None,
 ) -> list[Chain]:
     """Take in what was flown, and write what is to be flown next.
@@ -87,6 +88,7 @@ def next_round(
         out: the study's folder.
         halves: the halves whose missions are asked about; chains of others stay as they are.
         method: for the chains ``suspects``, of which there are none without it.
+        variants: for which there are new chains.
         on_progress: called with (chains done, chains in all).
 
     Returns:
@@ -96,7 +98,7 @@ def next_round(
         InputError: a file of the study is missing or broken.
         TpcError: a file cannot be written.
     """
-    chains = _chains(out, halves, method)
+    chains = _chains(out, halves, method, variants)
     for number, chain in enumerate(chains, start=1):
         _take_in(chain, out)
         while not chain.is_over and not (chain.tries and chain.tries[-1].is_open):
@@ -107,30 +109,35 @@ def next_round(
     return chains
 
 
-def _chains(out: Path, halves: Sequence[Half], method: Method | None) -> list[Chain]:
-    """Those of before, and new ones for all variants of what was flown or marked since."""
+def _chains(
+    out: Path, halves: Sequence[Half], method: Method | None, variants: Sequence[str]
+) -> list[Chain]:
+    """Those of before, and new ones of ``variants`` for what was flown or marked since."""
     known = {(one.mission, one.variant): one for one in load_chains(out / CHAINS_FILE)}
     for row in _missions(out):
         if row["half"] not in halves:
             continue
-        for variant in VARIANTS:
+        done = load_done(out / "missions" / _name(row))
+        digest = "" if done is None else done.digest
+        known = {
+            place: one
+            for place, one in known.items()
+            if one.digest == digest or one.mission != _name(row)
+        }
+        for variant in variants:
             chain = Chain(
                 row["system"], row["treatment"], row["type"], row["half"],
-                int(row["seed"]), variant, float(row["old"]), float(row["new"]),
+                int(row["seed"]), variant, float(row["old"]), float(row["new"]), digest=digest,
             )  # fmt: skip
-            done = load_done(out / "missions" / chain.mission)
-            chain.digest = "" if done is None else done.digest
             place = (chain.mission, variant)
-            if place in known and known[place].digest != chain.digest:
-                del known[place]
             if place in known or (variant == SUSPECTS and method is None):
                 continue
             if method is not None and variant == SUSPECTS:
                 mission = load_mission(out, out / "missions" / chain.mission, row["half"])
                 chain.order = method(mission.case("typed")).order[: MOST_TRIES[SUSPECTS]]
             known[place] = chain
-    variants = list(VARIANTS)
-    return sorted(known.values(), key=lambda one: (one.mission, variants.index(one.variant)))
+    order = list(VARIANTS)
+    return sorted(known.values(), key=lambda one: (one.mission, order.index(one.variant)))
 
 
 def _missions(out: Path) -> Iterator[Mapping[str, Any]]:
@@ -141,11 +148,16 @@ def _missions(out: Path) -> Iterator[Mapping[str, Any]]:
         if not isinstance(rows, list):
             raise TypeError("it does not say which missions there are")
         for row in rows:
-            flown = out / "missions" / row["system"] / row["treatment"] / f"seed-{row['seed']}"
-            if row["type"] in {"type1", "type2"} and (flown / DONE_FILE).is_file():
+            flown = out / "missions" / _name(row) / DONE_FILE
+            if row["type"] in {"type1", "type2"} and flown.is_file():
                 yield row
     except (KeyError, TypeError) as error:
         raise InputError(f"not about a study: {error}", out / STUDY_FILE) from error
+
+
+def _name(row: Mapping[str, Any]) -> str:
+    """As `Chain.mission`."""
+    return f"{row['system']}/{row['treatment']}/seed-{row['seed']}"
 
 
 def _take_in(chain: Chain, out: Path) -> None:

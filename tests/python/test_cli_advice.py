@@ -64,11 +64,11 @@ def test_what_is_printed(files):
     assert lines == [
         "2 marks at 8.5 and 18.5 s: type II, does not do what it should",
         "not enough evidence: only ~cover had been compared up to the mark",
-        "1  lower ~cover from 0.6 to 0.299 (below 0.3)",
+        "1  lower ~cover from 0.6 to 0.0999 (below 0.1: nearly all of 186 evaluations before the"
+        " marks go the other way)",
         "src/node.cpp:11  if (value > \N{REPLACEMENT CHARACTER}[31mcover_) {",
-        f"0.299 answers 2 of 2 {AWAY} 4 of 190 decisions (2.1 %)",
-        "to try: lower ~cover from 0.6 to 0.0999 (below 0.1: nearly all of 186 evaluations"
-        " before the marks go the other way)",
+        f"0.0999 answers 2 of 2 {AWAY} 4 of 190 decisions (2.1 %)",
+        "the smallest change: lower ~cover from 0.6 to 0.299 (below 0.3)",
         f"declared at {bag.parent}/robot/cfg/Robot.cfg:2",
     ]
     assert "Robot.cfg:3: add_more(gen): the function is not followed" in result.stderr

@@ -100,7 +100,7 @@ def test_treatments_of_a_type_change_parameters_of_many_nodes(kind):
     assert len({treatment.parameter for treatment in changed}) >= 5
     nodes = {treatment.node for treatment in changed}
     # The mission is in Python, the controller a plugin.
-    assert nodes > {"/mission", "/controller_host", "/localisation", "/planner"}
+    assert nodes > {"/mission", "/controller_host", "/localisation"}
 
 
 def test_no_parameter_is_changed_in_both_types():
@@ -116,9 +116,8 @@ def test_treatment_changes_one_compared_parameter_past_where_it_tips(treatment):
     assert treatment.name == f"{treatment.type}_{name}"
     assert yaml.safe_load(treatment.overlay.read_text()) == {node: {name: treatment.new}}
     assert ROBOT.configured[node][name] == treatment.old
-    if treatment.tipping is not None:
-        between = sorted([treatment.old, treatment.tipping, treatment.new])
-        assert between[1] == treatment.tipping
+    between = sorted([treatment.old, treatment.tipping, treatment.new])
+    assert between[1] == treatment.tipping
     compared = {entry["parameter"] for entry in [*IN_CPP["tpcs"], *IN_PYTHON["tpcs"]]}
     assert name in {parameter.lstrip("~") for parameter in compared}
 

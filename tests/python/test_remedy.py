@@ -129,6 +129,24 @@ def test_the_way_to_where_it_stood_does_not_count():
     assert ask("<", cmps, 0.04, marks(99, kind="II")).value == 0.145
 
 
+# True of 5 and 4, then False of 0, where it stays: three times the way from 5 would be -10, but a
+# counter has no such values. `0 >= T` is True from 0 down.
+def test_a_counter_does_not_get_below_0():
+    found = ask(">=", [5, 5, 4, 0, 0], 2, marks(95), default=2)
+    assert (found.direction, found.value) == ("lower", 0)
+
+
+# A height that sinks from 2.4 to the 1.7 at which the program goes on to wait (below 1.75), and is
+# not asked for again until the mark 9 s later. Waiting is by that decision: it comes too early, and
+# of three times the way (2.4 - 0.7 * 3 = 0.3) and a third of the value (0.5667) that is less.
+def test_a_decision_that_was_not_asked_for_again():
+    cmps = [2.4, 2.2, 2.0, 1.8, 1.7]
+    found = ask("<", cmps, 1.75, marks(103, 105, kind="II"))
+    assert (found.direction, found.value, found.kind) == ("lower", 0.566, "II")
+    # Asked for until the mark, most of the window's evaluations decide: above 1.8 they are no more.
+    assert ask("<", cmps, 1.75, marks(95, kind="II")).direction == "raise"
+
+
 # Ramps up to 4, 6 and 5 below a threshold of 30: half of them get to 5. In vain: three of four, of
 # these three all: 4.
 def test_ramps_that_do_not_get_there():

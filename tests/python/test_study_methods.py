@@ -1,19 +1,25 @@
 from __future__ import annotations
 
+import json
 import math
 
 import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 from mission_samples import comparison, events, ns, static_info
 
-from pytpc.ingest import Recording
+from pytpc.errors import InputError
+from pytpc.ingest import Recording, save_recording
 from pytpc.marks import Mark
+from pytpc.scoring.diagnosis import REASONED, diagnose
 from pytpc.study.case import Case, Change
-from pytpc.study.data import Mission, UserMark
-from pytpc.study.judge import judge
+from pytpc.study.data import Mission, UserMark, missions
+from pytpc.study.fit import Batch, fit, samples
+from pytpc.study.judge import judge, save_positions
 from pytpc.study.methods import METHODS
 from pytpc.study.methods.importance import importance, importance_of, windows
-from pytpc.study.methods.plain import by_chance, recent_change
+from pytpc.study.methods.plain import by_chance, largest_change, recent_change
 from pytpc.study.methods.thesis import thesis, thesis_doubt
 
 STATIC = static_info(
@@ -105,6 +111,15 @@ def test_the_last_change_is_the_first_suspect():
     assert recent_change(case([], [])).order == ()
 
 
+def test_the_largest_change_is_by_its_part_of_the_value():
+    changes = (
+        Change("~a", "/n", 100.0, 103.0),
+        Change("~b", "/n", 0.1, 0.2),
+        Change("~c", "/n", 0, 0),
+    )
+    assert largest_change(case([], [], changes=changes)).order == ("~b", "~a", "~c")
+
+
 def test_chance_is_the_same_for_the_same_marks():
     drawn = [by_chance(case([], [Mark(ns(t), None)])).order for t in (1, 1, 2, 3, 4)]
     assert drawn[0] == drawn[1]
@@ -153,3 +168,82 @@ def test_a_clean_mission_has_no_position():
     rows = list(judge(mission(marks, None), METHODS))
     assert {row.position for row in rows} == {None}
     assert all(row.top for row in rows if row.method == "tpc")
+
+
+def study_folder(out, halves):
+    """Missions of one system, by treatment -> half; all of them flown."""
+    rows = []
+    for name, half in halves.items():
+        folder = f"missions/robot/{name}/seed-1"
+        rows.append({"folder": folder, "half": half})
+        recording = Recording(name, events([(1, 0, 0, 1, 2), (9, 0, 1, 3, 2)]), (), 0, ns(20))
+        (out / folder).mkdir(parents=True)
+        save_recording(recording, out / folder)
+        document = {"type": name.split("_")[0], "parameter": "~a", "node": "/node"}
+        (out / folder / "treatment.json").write_text(json.dumps(document))
+        change = {"parameter": "~a", "node": "/node", "old": 1.0, "new": 2.0}
+        (out / folder / "changes.json").write_text(json.dumps([change]))
+        (out / folder / "done.json").write_text("{}")
+        mark = {"time_ns": ns(12), "observer": "user1", "cause": 0, "right": "I", "said": "II"}
+        pq.write_table(pa.Table.from_pylist([mark]), out / folder / "marks.parquet")
+    (out / "study.json").write_text(json.dumps({"missions": rows}))
+    (out / "systems" / "robot").mkdir(parents=True)
+    STATIC.save(out / "systems" / "robot" / "static.json")
+
+
+def test_what_is_held_back_is_not_even_read(tmp_path):
+    study_folder(tmp_path, {"type1_a": "tuning", "type1_b": "held-back", "type2_a": "tuning"})
+    (tmp_path / "missions/robot/type1_b/seed-1/events.parquet").write_bytes(b"not to be read")
+    found = list(missions(tmp_path))
+    assert [(m.treatment, m.type, m.half, m.seed) for m in found] == [
+        ("type1_a", "type1", "tuning", 1),
+        ("type2_a", "type2", "tuning", 1),
+    ]
+    assert found[0].marks == (UserMark(ns(12), "user1", 0, "I", "II"),)
+    assert found[0].changes == (Change("~a", "/node", 1.0, 2.0),)
+    assert found[0].case("confused").recording.marks == (Mark(ns(12), "II", "user1"),)
+    with pytest.raises(InputError, match=r"events\.parquet"):
+        list(missions(tmp_path, ["held-back"]))
+
+
+def test_a_mission_that_was_not_flown_to_its_end_is_left_out(tmp_path):
+    study_folder(tmp_path, {"type1_a": "tuning", "type2_a": "tuning"})
+    (tmp_path / "missions/robot/type1_a/seed-1/done.json").unlink()
+    assert [m.treatment for m in missions(tmp_path)] == ["type2_a"]
+
+
+@pytest.mark.parametrize("text", ["[]", "{}", '{"missions": [{"half": "tuning"}]}'])
+def test_a_folder_without_a_plan_is_refused(tmp_path, text):
+    (tmp_path / "study.json").write_text(text)
+    with pytest.raises(InputError, match="not about a study"):
+        list(missions(tmp_path))
+
+
+def test_the_table_of_positions_is_written(tmp_path):
+    marks = (UserMark(ns(50), "user1", 0, "I", "II"),)
+    save_positions(judge(mission(marks), {"thesis": thesis}), tmp_path)
+    table = pq.read_table(tmp_path / "results" / "positions.parquet")
+    assert table.num_rows == 6
+    assert table.column("position")[0].as_py() == 1.0
+    assert table.column("confidence")[0].as_py() is None
+
+
+# A fit on one mission cannot but believe what it saw: the loss falls, and weights stay near.
+def test_the_fit_lowers_the_loss_and_is_the_same_again():
+    marks = (UserMark(ns(50), "user1", 0, "I", "I"),)
+    found = samples(mission(marks))
+    assert len(found) == 6
+    assert found[0].right == (0,)
+    before = Batch.of(found).loss(REASONED)
+    weights = fit(found)
+    assert Batch.of(found).loss(weights) < before
+    assert weights == fit(found)
+    assert weights.flat == pytest.approx(REASONED.flat, abs=1.0)
+
+
+def test_the_loss_is_that_of_the_posterior():
+    marks = (UserMark(ns(50), "user1", 0, "I", "I"),)
+    (sample, *_) = samples(mission(marks))
+    case = mission(marks).case("typed")
+    found = diagnose(case.recording, STATIC, weights=REASONED)
+    assert Batch.of([sample]).loss(REASONED) == pytest.approx(-math.log(found.posterior[0]))

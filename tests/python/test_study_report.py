@@ -416,7 +416,7 @@ def rows_in(study: Path) -> list[Position]:
 
 
 # One mission was taken out of the table, of the half that is asked for, and one of the other. Its
-# two users and both together, three labels, eight methods. The error is of type I: ~low alone has
+# two users and both together, three labels, nine methods. The error is of type I: ~low alone has
 # flopped, so whoever believes that it is of type I puts it first.
 def test_only_missions_that_are_not_ranked_are_ranked(own, tmp_path):
     missing = {("type1_low", 1), ("type2_high", 1)}
@@ -427,7 +427,7 @@ def test_only_missions_that_are_not_ranked_are_ranked(own, tmp_path):
     added = [row for row in rows if row not in kept]
     assert len(rows) == len(kept) + len(added)
     assert {(row.treatment, row.seed) for row in added} == {("type1_low", 1)}
-    assert len(added) == 3 * 3 * 8
+    assert len(added) == 3 * 3 * 9
     (found,) = [
         row for row in added if (row.method, row.labels, row.who) == ("thesis", "typed", "all")
     ]

@@ -139,6 +139,12 @@ def test_a_half_that_is_not_asked_about_is_not_looked_at(out):
     assert wanted(out) == []
 
 
+# Without the smallest change the first flight is that of the value to try.
+def test_one_variant(out):
+    (chain,) = next_round(out, variants=["lasting"])
+    assert (chain.variant, wanted(out)[0]["value"]) == ("lasting", 10)
+
+
 def test_nobody_marked(out):
     recording = log(3)
     save(out / "missions" / MISSION, Recording("m", recording.events, (), 0, recording.end_ns))
@@ -178,7 +184,7 @@ def test_shares_while_flights_are_left():
 
 
 def test_the_command(out):
-    result = CliRunner().invoke(suggestions_command, ["--out", str(out)])
+    result = CliRunner().invoke(suggestions_command, ["--out", str(out), "--variant", "smallest"])
     assert result.exit_code == 0, result.output
     assert "1 mission to fly" in result.output
     shown = CliRunner().invoke(suggestions_command, ["--out", str(out), "--json"])

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pytpc.study.case import Method
 from pytpc.study.methods.importance import importance
 from pytpc.study.methods.ours import tpc, tpc_changes, tpc_reference
-from pytpc.study.methods.plain import by_chance, recent_change
+from pytpc.study.methods.plain import by_chance, largest_change, recent_change
 from pytpc.study.methods.thesis import thesis, thesis_doubt
 
 METHODS: Mapping[str, Method] = {
@@ -15,6 +15,7 @@ METHODS: Mapping[str, Method] = {
     "thesis-doubt": thesis_doubt,
     "importance": importance,
     "recent-change": recent_change,
+    "largest-change": largest_change,
     "random": by_chance,
     "tpc": tpc,
     "tpc+reference": tpc_reference,

@@ -14,10 +14,10 @@ public:
   geometry_msgs::Twist compute(const Localised &robot) override;
 
 protected:
-  /// Whether the robot looks where it has to at the goal.
-  virtual bool aligned(double heading_error) const;
+  /// How far the robot looks away from where it has to at the goal, rad.
+  virtual double misalignment() const;
 
-  double heading_tolerance_;
+  double heading_error_ = 0.0;
 
 private:
   Point target(const Point &robot) const;
@@ -35,6 +35,7 @@ private:
   double slow_down_distance_;
   double min_speed_;
   double goal_tolerance_;
+  double heading_tolerance_;
   double turn_in_place_angle_;
   double turn_exit_angle_;
   double max_turn_rate_;
@@ -49,7 +50,6 @@ private:
   bool arrived_ = false;
   double distance_ = 0.0;
   double bearing_ = 0.0;
-  double heading_error_ = 0.0;
 };
 
 } // namespace navigation

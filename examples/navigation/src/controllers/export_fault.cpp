@@ -10,8 +10,8 @@ namespace navigation {
 
 class PurePursuitFault : public PurePursuit {
 protected:
-  bool aligned(double heading_error) const override {
-    return std::fabs(heading_error) * 180.0 / M_PI < heading_tolerance_;
+  double misalignment() const override {
+    return PurePursuit::misalignment() * 180.0 / M_PI;
   }
 };
 

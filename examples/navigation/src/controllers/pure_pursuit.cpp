@@ -65,9 +65,7 @@ Point PurePursuit::target(const Point &robot) const {
   return {path_[ahead].x, path_[ahead].y};
 }
 
-bool PurePursuit::aligned(double heading_error) const {
-  return std::fabs(heading_error) < heading_tolerance_;
-}
+double PurePursuit::misalignment() const { return std::fabs(heading_error_); }
 
 geometry_msgs::Twist PurePursuit::compute(const Localised &robot) {
   geometry_msgs::Twist twist;
@@ -116,7 +114,7 @@ geometry_msgs::Twist PurePursuit::follow(const Localised &robot,
 }
 
 geometry_msgs::Twist PurePursuit::align() {
-  if (!aligned(heading_error_)) {
+  if (misalignment() > heading_tolerance_) {
     aligned_ = 0;
     return turnTo(heading_error_);
   }
