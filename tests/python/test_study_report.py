@@ -440,7 +440,7 @@ def test_only_missions_that_are_not_ranked_are_ranked(own, tmp_path):
     assert {row.method for row in anew if row.treatment == "clean" and row.seed == 1} == {*METHODS}
 
 
-# Then user1 alone marked it. Two sets of marks, three labels, eight methods.
+# Then user1 alone marked it. Two sets of marks, three labels, nine methods.
 def test_a_mission_that_was_marked_anew_is_ranked_again(own):
     place = own / "missions/alpha/type1_low/seed-1"
     save_done(made_by("flown", marked="people 1"), place)
@@ -450,7 +450,7 @@ def test_a_mission_that_was_marked_anew_is_ranked_again(own):
     write_said(place, [(7, "user1", "I", "I")])
     rank_missions(own, ["tuning"])
     rows = [row for row in rows_in(own) if (row.treatment, row.seed) == ("type1_low", 1)]
-    assert len(rows) == 2 * 3 * 8
+    assert len(rows) == 2 * 3 * 9
     assert {(row.marks, row.digest) for row in rows} == {(1, "flown-people 2")}
     # What was not marked anew stays.
     others = [row for row in before if (row.treatment, row.seed) != ("type1_low", 1)]
