@@ -221,6 +221,17 @@ def test_a_mission_that_lost_a_file_is_flown_again(flier, rig, example, name):
     assert len(rig.calls) == (1 if name == "causes.json" else 2)
 
 
+def test_a_file_of_causes_that_is_broken_is_made_anew_and_stops_no_run(flier, rig, example):
+    flight = treated(example)
+    flier.fly(flight)
+    path = flight.folder(flier.out) / "causes.json"
+    path.write_text("[{")
+    assert flier.kept(flight) is None
+    flier.fly(flight)
+    assert flier.kept(flight) is not None
+    assert len(rig.calls) == 1
+
+
 def test_a_mission_that_does_not_end_is_not_done(flier, rig, example):
     flight = treated(example)
     flier.fly(flight)
