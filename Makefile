@@ -1,4 +1,4 @@
-.PHONY: demo demo-water demo-navigation test test-llvm22 fuzz setup bench lint
+.PHONY: demo demo-water demo-navigation test test-llvm22 fuzz setup bench lint help
 PYTHON = .venv/bin/python
 
 demo: setup   ## a robot with a wrong parameter, and its name
@@ -7,7 +7,7 @@ demo: setup   ## a robot with a wrong parameter, and its name
 demo-water: setup  ## the same with a robot in Python and C++
 	$(PYTHON) examples/water_sampler/demo.py --out out/demo-water
 
-demo-navigation: setup  ## the same with a ground robot, its controller in a plugin
+demo-navigation: setup  ## the same with a ground robot in Python and C++, its controller a plugin
 	$(PYTHON) examples/navigation/demo.py --out out/demo-navigation
 
 test: setup   ## all tests: passes, Python, a real ROS graph
@@ -27,3 +27,6 @@ lint:         ## what CI asks of the sources
 
 bench: setup  ## figures of cost and speed, one line each
 	tools/bench
+
+help:         ## this list
+	@sed -n 's/^\([a-z0-9-]*\):.*## */\1\t/p' Makefile | expand -t 18

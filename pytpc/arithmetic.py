@@ -34,6 +34,13 @@ def _power(base: float, exponent: float) -> float:
         return -math.inf if base < 0 and exponent % 2 == 1 else math.inf
 
 
+def _exponential(exponent: float) -> float:
+    try:
+        return math.exp(exponent)
+    except OverflowError:
+        return math.inf
+
+
 _ONE: dict[str, Callable[[float], float]] = {
     "sqrt": math.sqrt,
     "abs": abs,
@@ -47,7 +54,7 @@ _ONE: dict[str, Callable[[float], float]] = {
     "asin": math.asin,
     "acos": math.acos,
     "atan": math.atan,
-    "exp": math.exp,
+    "exp": _exponential,
     "log": math.log,
     "log2": math.log2,
     "log10": math.log10,

@@ -161,7 +161,13 @@ def read_table(path: Path, what: str, of: Callable[[pa.Table], Read]) -> Read:
         InputError: the file cannot be read, is no Parquet, or ``of`` finds fault with it.
     """
     try:
-        return of(pq.read_table(pa.BufferReader(path.read_bytes())))
+        # Its error is in the words of the system.
+        path.open("rb").close()
+        # Arrow's threads let go of what they read after the table is there. Where that is of Python
+        # (a stream, bytes), a process that ends just then is aborted (apache/arrow#34314, #33975).
+        with pa.OSFile(str(path)) as file:
+            table = pq.ParquetFile(file).read()
+        return of(table)
     except InputError as error:
         raise InputError(error.message, path) from error
     except OSError as error:

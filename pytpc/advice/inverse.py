@@ -3,7 +3,8 @@
 A tree is inverted from its outermost operator to its innermost. One operator, as a function of its
 one operand that holds the parameter, is monotone on pieces, which are written down here; on a piece
 an end of an interval is found by bisection over the doubles, with the very arithmetic that
-``evaluate`` does, so that a double is in the result just where its threshold is in the set. Of
+``evaluate`` does, so that a double is in the result just where its threshold is in the set. What
+overflows on the way is a number like others: 1 / (1 / x) is 0 where 1 / x is infinite. Of
 operators that begin anew for ever (sines, remainders) only the pieces next to a given value are
 looked at.
 """
@@ -22,11 +23,11 @@ _LARGEST = 1.7976931348623157e308
 _SMALLEST = 5e-324
 _PERIODS = 2
 _ROUNDER = 4
-_EVERYWHERE = [(-_LARGEST, _LARGEST)]
-_NOT_NEGATIVE = (0.0, _LARGEST)
-_NOT_POSITIVE = (-_LARGEST, 0.0)
-_POSITIVE = (_SMALLEST, _LARGEST)
-_NEGATIVE = (-_LARGEST, -_SMALLEST)
+_EVERYWHERE = [(-math.inf, math.inf)]
+_NOT_NEGATIVE = (0.0, math.inf)
+_NOT_POSITIVE = (-math.inf, 0.0)
+_POSITIVE = (_SMALLEST, math.inf)
+_NEGATIVE = (-math.inf, -_SMALLEST)
 
 Pieces = list[tuple[float, float]]
 Function = Callable[[float], float]
@@ -38,6 +39,21 @@ def preimage(tree: Tree, wanted: Intervals, near: float) -> Intervals:
     Infinite values of the parameter are in no result. Where the sine and its kind round
     differently at two neighbouring doubles, the ends are exact but for such a neighbour.
     """
+    # What overflows is beyond every number, and so in an interval without that end.
+    extended = tuple(
+        Interval(
+            part.low,
+            part.high,
+            part.low_inclusive or math.isinf(part.low),
+            part.high_inclusive or math.isinf(part.high),
+        )
+        for part in wanted
+    )
+    return _finite(_extended_preimage(tree, extended, near))
+
+
+def _extended_preimage(tree: Tree, wanted: Intervals, near: float) -> Intervals:
+    """The same with infinity as a number, which is in an interval that includes it."""
     if not isinstance(tree, tuple):
         return wanted if isinstance(tree, str) else ()
     inner, apply, pieces = _operator(tree, near)
@@ -45,7 +61,21 @@ def preimage(tree: Tree, wanted: Intervals, near: float) -> Intervals:
     for low, high in pieces:
         for interval in wanted:
             found.append(_on_piece(apply, low, high, interval))
-    return preimage(inner, union(part for part in found if part is not None), near)
+    return _extended_preimage(inner, union(part for part in found if part is not None), near)
+
+
+def _finite(wanted: Intervals) -> Intervals:
+    """The finite numbers of a set; one that goes up to the last of them has no end there."""
+    return union(
+        Interval(
+            part.low if part.first() > -_LARGEST else -math.inf,
+            part.high if part.last() < _LARGEST else math.inf,
+            part.low_inclusive and part.first() > -_LARGEST,
+            part.high_inclusive and part.last() < _LARGEST,
+        )
+        for part in wanted
+        if part.first() <= _LARGEST and part.last() >= -_LARGEST
+    )
 
 
 def _operator(tree: tuple[Tree, ...], near: float) -> tuple[Tree, Function, Pieces]:
@@ -155,19 +185,17 @@ def _remainder_pieces(value: float, divisor: float) -> Pieces:
 
 def _on_piece(apply: Function, low: float, high: float, wanted: Interval) -> Interval | None:
     """The values of a piece that ``apply`` takes into ``wanted``; None where there are none."""
+    # Where infinity gives no number (0 * x), the piece ends before it.
+    low, high = (_nearest_with_value(apply, end) for end in (low, high))
     at_low, at_high = apply(low), apply(high)
     if math.isnan(at_low) or math.isnan(at_high):
         return None
 
-    # What overflows is beyond every number, and so in an interval without that end.
-    at_least = wanted.low_inclusive or math.isinf(wanted.low)
-    at_most = wanted.high_inclusive or math.isinf(wanted.high)
-
     def is_above(y: float) -> bool:
-        return apply(y) >= wanted.low if at_least else apply(y) > wanted.low
+        return apply(y) >= wanted.low if wanted.low_inclusive else apply(y) > wanted.low
 
     def is_below(y: float) -> bool:
-        return apply(y) <= wanted.high if at_most else apply(y) < wanted.high
+        return apply(y) <= wanted.high if wanted.high_inclusive else apply(y) < wanted.high
 
     rises = at_low <= at_high
     enters, leaves = (is_above, is_below) if rises else (is_below, is_above)
@@ -181,6 +209,11 @@ def _on_piece(apply: Function, low: float, high: float, wanted: Interval) -> Int
     return None if found.is_empty else found
 
 
+def _nearest_with_value(apply: Function, end: float) -> float:
+    endless = math.isinf(end) and math.isnan(apply(end))
+    return math.copysign(_LARGEST, end) if endless else end
+
+
 def _end(
     apply: Function, inside: float, outside: float, is_in: Callable[[float], bool], bound: float
 ) -> tuple[float, bool]:
@@ -188,8 +221,7 @@ def _end(
     if is_in(outside):
         if abs(outside) == _SMALLEST:
             return 0.0, False
-        endless = abs(outside) == _LARGEST
-        return (math.copysign(math.inf, outside), False) if endless else (outside, True)
+        return outside, True
     yes, no = _boundary(inside, outside, is_in)
     # Of two neighbours the one that reads better: "below 3", not "at most 2.9999999999999996".
     is_round = len(repr(no)) < len(repr(yes)) - _ROUNDER

@@ -12,8 +12,8 @@ from rich.text import Text
 
 from pytpc.cli.console import console, progress
 from pytpc.cli.options import JSON, PATH
-from pytpc.study.data import Half
 from pytpc.study.methods import METHODS
+from pytpc.study.plan import Half
 from pytpc.study.suggested import WANTED_FILE
 from pytpc.study.suggestion_chains import VARIANTS, Chain, shares
 from pytpc.study.suggestions import next_round

@@ -17,16 +17,14 @@ from pytpc.marks import MARK_TYPES, Mark, MarkType
 from pytpc.static_info import StaticInfo
 from pytpc.static_json import parse_json
 from pytpc.study.case import Case, Change
+from pytpc.study.changes import CHANGES_FILE
+from pytpc.study.dataset import DONE_FILE, MARKED_FILE, STUDY_FILE, load_done
+from pytpc.study.plan import Half
 from pytpc.treatment import TREATMENT_FILE
 
-Half = Literal["tuning", "held-back"]
 Labels = Literal["typed", "untyped", "confused"]
 LABELS: tuple[Labels, ...] = get_args(Labels)
 ALL = "all"
-STUDY_FILE = "study.json"
-MARKS_TABLE = "marks.parquet"
-CHANGES_FILE = "changes.json"
-DONE_FILE = "done.json"
 MISSIONS = "missions"
 
 
@@ -51,7 +49,7 @@ class Mission:
     """A mission of the study.
 
     ``type`` is that of the treatment; ``parameter`` and ``node`` are what it changed, None where
-    nothing was.
+    nothing was. ``digest`` is `Done.digest`, empty where it is not known.
     """
 
     system: str
@@ -66,6 +64,7 @@ class Mission:
     marks: tuple[UserMark, ...]
     reference: Recording | None
     changes: tuple[Change, ...]
+    digest: str = ""
 
     def case(self, labels: Labels, who: str = ALL) -> Case:
         """What a method gets to see, with the marks of all users or of one."""
@@ -106,6 +105,7 @@ def load_mission(out: Path, path: Path, half: Half) -> Mission:
     """
     system = path.parent.parent.name
     treatment = _treatment(path / TREATMENT_FILE)
+    done = load_done(path)
     return Mission(
         system=system,
         treatment=path.parent.name,
@@ -116,9 +116,10 @@ def load_mission(out: Path, path: Path, half: Half) -> Mission:
         node=treatment["node"],
         recording=load_recording(path),
         static_info=_static(out / "systems" / system / "static.json"),
-        marks=user_marks(path / MARKS_TABLE),
+        marks=user_marks(path / MARKED_FILE),
         reference=_reference(out / "reference" / system),
         changes=_changes(path / CHANGES_FILE),
+        digest="" if done is None else done.digest,
     )
 
 

@@ -57,6 +57,11 @@ class Done:
     marks: int
     remarks: tuple[str, ...] = ()
 
+    @property
+    def digest(self) -> str:
+        """Of the flight and of its marks: what was made of others is out of date."""
+        return f"{self.flight}-{self.marked}"
+
 
 def save_done(done: Done, folder: Path) -> None:
     """Write ``done.json``.

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pytpc.atomic import write_atomic
-from pytpc.errors import RunError, TpcError
+from pytpc.errors import InputError, RunError, TpcError
 from pytpc.ingest.reading import read
 from pytpc.ingest.recording import (
     EVENTS_FILE,
@@ -81,9 +81,13 @@ class Flier:
             return None
         if not _has(folder, (*_OF_FLIGHT, *_OF_PEOPLE)):
             return None
+        try:
+            causes = load_causes(folder / CAUSES_FILE)
+        except InputError:
+            return None
         # What the treatment says of itself may be put better than it was.
         save_treatment(flight.treatment, folder)
-        remarks = remarks_of(flight, load_causes(folder / CAUSES_FILE), reached=done.reached)
+        remarks = remarks_of(flight, causes, reached=done.reached)
         if remarks != done.remarks:
             done = replace(done, remarks=remarks)
             save_done(done, folder)

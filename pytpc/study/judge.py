@@ -37,13 +37,17 @@ SCHEMA = pa.schema(
         pa.field("top", pa.string()),
         pa.field("confidence", pa.float64()),
         pa.field("marks", pa.int64()),
+        pa.field("digest", pa.string()),
     ]
 )
 
 
 @dataclass(frozen=True, slots=True)
 class Judged:
-    """A row: one verdict. ``position`` and ``confidence`` are None where there is none."""
+    """A row: one verdict. ``position`` and ``confidence`` are None where there is none.
+
+    ``digest`` is that of the mission that was judged.
+    """
 
     system: str
     treatment: str
@@ -58,6 +62,7 @@ class Judged:
     top: str
     confidence: float | None
     marks: int
+    digest: str = ""
 
 
 def judge(
@@ -97,6 +102,7 @@ def judge(
                     verdict.order[0] if verdict.order else "",
                     verdict.confidence if known else None,
                     marks,
+                    mission.digest,
                 )
 
 

@@ -134,7 +134,8 @@ def reliability(confidence: npt.ArrayLike, right: npt.ArrayLike, bins: int = 5) 
         bins: how many; the last one has its end. Empty ones are left out.
     """
     given, hits = np.asarray(confidence, np.float64), np.asarray(right, np.float64)
-    edges = np.linspace(0.0, 1.0, bins + 1)
+    # linspace has an edge a little above 0.6.
+    edges = np.arange(bins + 1) / bins
     place = np.clip(np.digitize(given, edges) - 1, 0, bins - 1)
     return [
         Bin(

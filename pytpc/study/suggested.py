@@ -20,7 +20,7 @@ from pytpc.study.dataset import CAUSES_FILE, Cause, load_causes, load_done
 from pytpc.study.plan import Flight, Setting
 
 WANTED_FILE = Path("results") / "suggestions-wanted.json"
-TRIED_FILE = Path("results") / "suggestions.parquet"
+TRIED_FILE = Path("results") / "suggestions-flown.parquet"
 SUGGESTION_FILE = "suggestion.json"
 _FIELDS = ("system", "treatment", "seed", "parameter", "node", "value")
 _TRIED = pa.schema(
@@ -151,10 +151,12 @@ def try_of(flight: Flight, out: Path) -> Tried:
         TpcError: the file cannot be written.
     """
     treated = replace(flight, kind="mission", suggested=None)
+    done = load_done(treated.folder(out))
     before = load_causes(treated.folder(out) / CAUSES_FILE)
     tried = judged(before, load_causes(flight.folder(out) / CAUSES_FILE))
     setting = {} if flight.suggested is None else asdict(flight.suggested)
-    text = json.dumps({"schema": 1, **setting, **asdict(tried)}, indent=1)
+    mission = "" if done is None else done.digest
+    text = json.dumps({"schema": 1, "mission": mission, **setting, **asdict(tried)}, indent=1)
     write_atomic(flight.folder(out) / SUGGESTION_FILE, text.encode() + b"\n")
     return tried
 
@@ -162,7 +164,7 @@ def try_of(flight: Flight, out: Path) -> Tried:
 def save_tried(
     flights: Iterable[Flight], failures: Mapping[str, str], out: Path
 ) -> list[dict[str, object]]:
-    """Write ``results/suggestions.parquet``: a row for each flight that tried a suggestion.
+    """Write ``TRIED_FILE``: a row for each of these flights, and of no earlier ones.
 
     Args:
         flights: what was flown.

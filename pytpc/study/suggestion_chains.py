@@ -1,16 +1,25 @@
-"""Chains of suggestions for the missions of the study, and the shares that come of them."""
+"""Chains of suggestions for the missions of the study, and the shares that come of them.
+
+They are kept in ``results/suggestion-chains.json``.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from pytpc.advice.known import Source
 from pytpc.advice.remedy import EVERY_SOURCE
+from pytpc.errors import InputError
+from pytpc.static_json import parse_json
 
+CHAINS_FILE = Path("results") / "suggestion-chains.json"
+HEADLINE = "lasting"
+"""What is shown of the tool: nothing in it knows the value before the treatment."""
 SUSPECTS = "suspects"
 VARIANTS: Mapping[str, frozenset[Source] | None] = {
     "smallest": None,
@@ -50,7 +59,8 @@ class Chain:
     """The tries of one variant for one mission.
 
     ``old`` and ``new`` are values of the changed parameter; ``order`` are the first suspects, empty
-    of variants that are told the changed one.
+    of variants that are told the changed one. ``digest`` is that of the mission from which the
+    values are (`Done.digest`).
     """
 
     system: str
@@ -63,6 +73,7 @@ class Chain:
     new: float
     order: tuple[str, ...] = ()
     tries: list[Try] = field(default_factory=list)
+    digest: str = ""
 
     @property
     def mission(self) -> str:
@@ -91,6 +102,47 @@ class Chain:
         return cls(**{**document, "order": tuple(document["order"]), "tries": tries})
 
 
+def load_chains(path: Path) -> list[Chain]:
+    """All chains; none where there is no such file.
+
+    Raises:
+        InputError: the file cannot be read, or is not of chains.
+    """
+    if not path.is_file():
+        return []
+    document = parse_json(path)
+    try:
+        if not isinstance(document, list):
+            raise TypeError("a list is expected")
+        return [Chain.from_json(one) for one in document]
+    except (KeyError, TypeError) as error:
+        raise InputError(f"not chains of suggestions: {error}", path) from error
+
+
+class Outcome(NamedTuple):
+    """What came of a chain within so many tries; a new error counts if it is of the last one."""
+
+    unit: tuple[str, str]
+    gone: bool
+    new_error: bool
+
+
+def outcomes(chains: Iterable[Chain], variant: str, most: int) -> tuple[list[Outcome], int]:
+    """What came of a variant within ``most`` tries, and how many of its chains wait for flights.
+
+    Where no error was seen in the treated mission, nothing could come of it.
+    """
+    found, waiting = [], 0
+    for chain in (one for one in chains if one.variant == variant):
+        tries = chain.tries[:most]
+        if any(one.is_open for one in tries) or not (chain.is_over or len(tries) == most):
+            waiting += 1
+        elif any(one.gone is not None or one.value is None for one in tries):
+            unit = (chain.system, chain.treatment)
+            found.append(Outcome(unit, tries[-1].gone is True, tries[-1].new_error is True))
+    return found, waiting
+
+
 @dataclass(frozen=True, slots=True)
 class Share:
     """Of how many treatments of a variant the error was gone within so many tries, and a new one.
@@ -114,14 +166,9 @@ def shares(chains: Sequence[Chain]) -> list[Share]:
     for variant in VARIANTS:
         for most in range(1, MOST_TRIES.get(variant, 1) + 1):
             rows: dict[tuple[str, str], list[tuple[bool, bool]]] = {}
-            waiting = 0
-            for chain in (one for one in chains if one.variant == variant):
-                tries = chain.tries[:most]
-                if any(one.is_open for one in tries) or not (chain.is_over or len(tries) == most):
-                    waiting += 1
-                elif any(one.gone is not None or one.value is None for one in tries):
-                    came = (tries[-1].gone is True, tries[-1].new_error is True)
-                    rows.setdefault((chain.system, chain.treatment), []).append(came)
+            came, waiting = outcomes(chains, variant, most)
+            for one in came:
+                rows.setdefault(one.unit, []).append((one.gone, one.new_error))
             if rows or waiting:
                 means = [np.mean(one, axis=0) for one in rows.values()]
                 gone, new = np.mean(means, axis=0).tolist() if rows else (None, None)

@@ -5,7 +5,8 @@ asks for next, and writes
 
 - ``results/suggestions-wanted.json``: the next flights, at most one for each mission;
 - ``results/suggestion-tries.parquet``: every try of every variant;
-- ``results/suggestions.parquet``: the first tries of ``HEADLINE``, one for each mission;
+- ``results/suggestions.parquet``: the first tries of ``HEADLINE``, one for each mission, flown or
+  to be flown;
 - ``results/suggestion-chains.json``: how far each chain is.
 
 A chain is one mission and one variant. ``smallest`` is SPEC 8's value; ``lasting`` has what the log
@@ -35,16 +36,23 @@ from pytpc.parameters import DYNAMIC, same_parameter
 from pytpc.static_info import StaticInfo
 from pytpc.static_json import parse_json
 from pytpc.study.case import Method
-from pytpc.study.data import Half, load_mission
-from pytpc.study.dataset import DONE_FILE, STUDY_FILE
-from pytpc.study.suggested import SUGGESTION_FILE, TRIED_FILE, WANTED_FILE
-from pytpc.study.suggestion_chains import MOST_TRIES, SUSPECTS, VARIANTS, Chain, Try
+from pytpc.study.data import load_mission
+from pytpc.study.dataset import DONE_FILE, STUDY_FILE, load_done
+from pytpc.study.plan import Half
+from pytpc.study.suggested import SUGGESTION_FILE, WANTED_FILE
+from pytpc.study.suggestion_chains import (
+    CHAINS_FILE,
+    HEADLINE,
+    MOST_TRIES,
+    SUSPECTS,
+    VARIANTS,
+    Chain,
+    Try,
+    load_chains,
+)
 
-CHAINS_FILE = Path("results") / "suggestion-chains.json"
 TRIES_FILE = Path("results") / "suggestion-tries.parquet"
-
-HEADLINE = "lasting"
-"""What is shown of the tool: nothing in it knows the value before the treatment."""
+HEADLINE_FILE = Path("results") / "suggestions.parquet"
 
 _TRIES = pa.schema(
     [
@@ -104,15 +112,22 @@ def next_round(
 def _chains(
     out: Path, halves: Sequence[Half], method: Method | None, variants: Sequence[str]
 ) -> list[Chain]:
-    """Those of before, and new ones of ``variants`` for what was flown with an error since."""
-    known = {(one.mission, one.variant): one for one in _saved(out)}
+    """Those of before, and new ones of ``variants`` for what was flown or marked since."""
+    known = {(one.mission, one.variant): one for one in load_chains(out / CHAINS_FILE)}
     for row in _missions(out):
         if row["half"] not in halves:
             continue
+        done = load_done(out / "missions" / _name(row))
+        digest = "" if done is None else done.digest
+        known = {
+            place: one
+            for place, one in known.items()
+            if one.digest == digest or one.mission != _name(row)
+        }
         for variant in variants:
             chain = Chain(
                 row["system"], row["treatment"], row["type"], row["half"],
-                int(row["seed"]), variant, float(row["old"]), float(row["new"]),
+                int(row["seed"]), variant, float(row["old"]), float(row["new"]), digest=digest,
             )  # fmt: skip
             place = (chain.mission, variant)
             if place in known or (variant == SUSPECTS and method is None):
@@ -125,19 +140,6 @@ def _chains(
     return sorted(known.values(), key=lambda one: (one.mission, order.index(one.variant)))
 
 
-def _saved(out: Path) -> list[Chain]:
-    path = out / CHAINS_FILE
-    if not path.is_file():
-        return []
-    document = parse_json(path)
-    try:
-        if not isinstance(document, list):
-            raise TypeError("a list is expected")
-        return [Chain.from_json(one) for one in document]
-    except (KeyError, TypeError) as error:
-        raise InputError(f"not chains of suggestions: {error}", path) from error
-
-
 def _missions(out: Path) -> Iterator[Mapping[str, Any]]:
     """The treated missions in study.json that were flown."""
     document = parse_json(out / STUDY_FILE)
@@ -146,11 +148,16 @@ def _missions(out: Path) -> Iterator[Mapping[str, Any]]:
         if not isinstance(rows, list):
             raise TypeError("it does not say which missions there are")
         for row in rows:
-            flown = out / "missions" / row["system"] / row["treatment"] / f"seed-{row['seed']}"
-            if row["type"] in {"type1", "type2"} and (flown / DONE_FILE).is_file():
+            flown = out / "missions" / _name(row) / DONE_FILE
+            if row["type"] in {"type1", "type2"} and flown.is_file():
                 yield row
     except (KeyError, TypeError) as error:
         raise InputError(f"not about a study: {error}", out / STUDY_FILE) from error
+
+
+def _name(row: Mapping[str, Any]) -> str:
+    """As `Chain.mission`."""
+    return f"{row['system']}/{row['treatment']}/seed-{row['seed']}"
 
 
 def _take_in(chain: Chain, out: Path) -> None:
@@ -167,6 +174,8 @@ def _take_in(chain: Chain, out: Path) -> None:
         if not isinstance(flown, dict):
             raise TypeError("an object is expected")
         if (flown["parameter"], flown["value"]) != (last.parameter, last.value):
+            return
+        if flown.get("mission", chain.digest) != chain.digest:
             return
         chain.tries[-1] = Try(
             last.parameter, last.node, last.value, last.basis,
@@ -235,29 +244,30 @@ def _node(recording: Recording, key: str | None) -> str | None:
 
 
 def _save(chains: Sequence[Chain], out: Path) -> None:
-    rows = list(_rows(chains))
+    rows = [
+        row for chain in chains for row in _rows(chain, [t for t in chain.tries if not t.is_open])
+    ]
     write_table(pa.Table.from_pylist(rows, schema=_TRIES), out / TRIES_FILE)
     first = [
         {**row, "new": row["new_error"], "failure": ""}
-        for row in rows
-        if (row["variant"], row["tries"]) == (HEADLINE, 1) and row["value"] is not None
+        for chain in chains
+        for row in _rows(chain, chain.tries[:1])
+        if chain.variant == HEADLINE and row["value"] is not None
     ]
     schema = _TRIES.append(pa.field("new", pa.bool_())).append(pa.field("failure", pa.string()))
-    write_table(pa.Table.from_pylist(first, schema=schema), out / TRIED_FILE)
+    write_table(pa.Table.from_pylist(first, schema=schema), out / HEADLINE_FILE)
     _write_json([asdict(chain) for chain in chains], out / CHAINS_FILE)
     # Last: with it the next flights can begin.
     _write_json(list(_wanted(chains)), out / WANTED_FILE)
 
 
-def _rows(chains: Sequence[Chain]) -> Iterator[dict[str, object]]:
-    for chain in chains:
-        head = asdict(chain)
-        del head["tries"], head["new"], head["order"]
-        for number, one in enumerate(chain.tries, start=1):
-            if not one.is_open:
-                # Where nothing is suggested the error stays.
-                gone = False if one.value is None else one.gone
-                yield {**head, **asdict(one), "gone": gone, "tries": number}
+def _rows(chain: Chain, tries: Sequence[Try]) -> Iterator[dict[str, object]]:
+    head = asdict(chain)
+    del head["tries"], head["new"], head["order"], head["digest"]
+    for number, one in enumerate(tries, start=1):
+        # Where nothing is suggested the error stays.
+        gone = False if one.value is None else one.gone
+        yield {**head, **asdict(one), "gone": gone, "tries": number}
 
 
 def _wanted(chains: Sequence[Chain]) -> Iterator[dict[str, object]]:

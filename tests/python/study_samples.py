@@ -94,6 +94,7 @@ def make_study(folder: Path) -> Path:
     (folder / "study.json").write_text(json.dumps(document))
     write_rows(folder / "results/positions.parquet", [asdict(row) for row in positions()])
     write_rows(folder / "results/suggestions.parquet", suggestions())
+    (folder / "results/suggestion-chains.json").write_text(json.dumps(chains()))
     return folder
 
 
@@ -196,4 +197,25 @@ def suggestions() -> list[dict[str, Any]]:
     return [
         {**own, "seed": 1, "value": 9.5, "gone": True, "new": False},
         {**own, "seed": 2, "value": 12.0, "gone": False, "new": True},
+    ]
+
+
+def chains() -> list[dict[str, Any]]:
+    """By hand: of ``type2_high`` with two seeds, and of ``type1_low``, which waits."""
+
+    def chain(name: str, seed: int, half: str, variant: str, *came: tuple[Any, Any]):
+        place = {"system": "alpha", "treatment": name, "type": name[:5], "half": half, "seed": seed}
+        tries = [
+            {"parameter": "~high", "node": "/node", "value": 1.0 + n, "basis": "log",
+             "gone": gone, "new_error": new, "reason": ""}
+            for n, (gone, new) in enumerate(came)
+        ]  # fmt: skip
+        return {**place, "variant": variant, "old": 1.0, "new": 2.0, "order": [], "tries": tries}
+
+    high = ("type2_high", "held-back")
+    return [
+        chain(high[0], 1, high[1], "smallest", (True, True)),
+        chain(high[0], 1, high[1], "lasting", (True, False)),
+        chain(high[0], 2, high[1], "lasting", (False, True), (True, False)),
+        chain("type1_low", 1, "tuning", "lasting", (False, False), (None, None)),
     ]

@@ -177,3 +177,15 @@ def test_files_that_are_not_events(tmp_path):
     pq.write_table(empty_place, path)
     with pytest.raises(InputError, match="column cmp has 1 empty places"):
         read_parquet(path)
+
+
+# A process that ends while a thread of Arrow's lets go of something of Python is aborted: now and
+# then, after all of its work. Neither bytes nor a stream of Python's may be what is read.
+def test_what_is_read_is_nothing_of_python(tmp_path, monkeypatch):
+    path = tmp_path / "events.parquet"
+    write_parquet(events([(1, 0, 1, 5, 0)]), path)
+    read, sources = pq.ParquetFile, []
+    monkeypatch.setattr(pq, "ParquetFile", lambda source: sources.append(source) or read(source))
+    monkeypatch.setattr(pq, "read_table", None)
+    assert len(read_parquet(path)) == 1
+    assert [type(source) for source in sources] == [pa.OSFile]

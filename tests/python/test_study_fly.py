@@ -221,6 +221,17 @@ def test_a_mission_that_lost_a_file_is_flown_again(flier, rig, example, name):
     assert len(rig.calls) == (1 if name == "causes.json" else 2)
 
 
+def test_a_file_of_causes_that_is_broken_is_made_anew_and_stops_no_run(flier, rig, example):
+    flight = treated(example)
+    flier.fly(flight)
+    path = flight.folder(flier.out) / "causes.json"
+    path.write_text("[{")
+    assert flier.kept(flight) is None
+    flier.fly(flight)
+    assert flier.kept(flight) is not None
+    assert len(rig.calls) == 1
+
+
 def test_a_mission_that_does_not_end_is_not_done(flier, rig, example):
     flight = treated(example)
     flier.fly(flight)
@@ -254,6 +265,26 @@ def test_an_observer_that_fails_says_why_in_a_line(example, tmp_path):
     script.write_text("import sys\nsys.exit('first\\nno such\\nbag')\n")
     with pytest.raises(RunError, match=r"observer\.py: ended with status 1: bag"):
         people.see(example, {}, Path("mission.bag"), tmp_path)
+
+
+@pytest.mark.parametrize("deaths", [1, 2])
+def test_an_observer_that_a_signal_ends_is_asked_once_more(example, tmp_path, deaths):
+    script, told = example.observer, tmp_path / "told"
+    script.parent.mkdir()
+    script.write_text(
+        "import os, pathlib, signal\n"
+        f"told = pathlib.Path({str(told)!r})\n"
+        "before = told.read_text() if told.exists() else ''\n"
+        "told.write_text(before + 'x')\n"
+        f"if len(before) < {deaths}:\n"
+        "    os.kill(os.getpid(), signal.SIGTERM)\n"
+    )
+    if deaths == 1:
+        people.see(example, {}, Path("mission.bag"), tmp_path)
+    else:
+        with pytest.raises(RunError, match=r"observer\.py: ended with status -15: it says nothing"):
+            people.see(example, {}, Path("mission.bag"), tmp_path)
+    assert told.read_text() == "xx"
 
 
 def test_the_observer_sees_the_shared_package_before_all_others(example, tmp_path):

@@ -147,7 +147,7 @@ def test_suggestions_are_flown_and_judged(fleet):
     result = CliRunner().invoke(main, ["study", "suggested", "--out", str(fleet.out)])
     assert result.exit_code == 0, result.output
     assert fleet.flown == ["suggested/robot/type1_b/seed-1", "suggested/robot/type2_b/seed-1"]
-    rows = pq.read_table(fleet.out / "results/suggestions.parquet").to_pylist()
+    rows = pq.read_table(fleet.out / "results/suggestions-flown.parquet").to_pylist()
     # sha256sum: robot/type1_b and robot/type2_b are the only ones of their types.
     assert rows[0] == {**ROW, "type": "type1", "half": "tuning", "gone": True, "new": False} | {
         "reached": True,
@@ -159,6 +159,7 @@ def test_suggestions_are_flown_and_judged(fleet):
     )
     assert suggestion == {
         "schema": 1,
+        "mission": "1-2",
         "parameter": "~b",
         "node": "/pump",
         "value": 1.9,

@@ -9,14 +9,17 @@ import pyarrow.parquet as pq
 import pytest
 from click.testing import CliRunner
 from mission_samples import comparison, events, ns, static_info
+from study_flights import made
 
 from pytpc.cli.study_suggestions import suggestions_command
 from pytpc.errors import InputError
 from pytpc.ingest.recording import Recording, save_recording
 from pytpc.marks import Mark
 from pytpc.study.case import Verdict
+from pytpc.study.dataset import save_done
+from pytpc.study.suggested import TRIED_FILE
 from pytpc.study.suggestion_chains import Chain, Try, shares
-from pytpc.study.suggestions import next_round
+from pytpc.study.suggestions import HEADLINE_FILE, next_round
 
 MISSION = "robot/type1_limit/seed-1"
 OTHER = "~other"
@@ -189,6 +192,33 @@ def test_the_command(out):
         "variant": "smallest", "tries": 1, "treatments": 0, "gone": None, "new_error": None,
         "open": 1,
     }  # fmt: skip
+
+
+# What `study suggested` leaves is of its last flights, of any variant: the headline's table is
+# another file, and a value that was not flown yet stands in it.
+def test_the_headline_is_written_by_nobody_else(out):
+    assert TRIED_FILE != HEADLINE_FILE
+    next_round(out)
+    (row,) = pq.read_table(out / HEADLINE_FILE).to_pylist()
+    assert (row["value"], row["gone"], row["new"]) == (10, None, None)
+
+
+def test_a_mission_that_was_marked_anew_is_asked_about_anew(out):
+    save_done(made(marked="people 1"), out / "missions" / MISSION)
+    next_round(out)
+    fly(out, 4, gone=True)
+    next_round(out)
+    assert wanted(out)[0]["value"] == 10
+    save_done(made(marked="people 2"), out / "missions" / MISSION)
+    # What was flown of a mission with other marks says nothing.
+    path = out / "suggested" / MISSION / "suggestion.json"
+    path.write_text(json.dumps({**json.loads(path.read_text()), "mission": "1-people 1"}))
+    chains = next_round(out)
+    assert [len(chain.tries) for chain in chains] == [1, 1, 1, 1]
+    assert all(chain.tries[0].is_open for chain in chains)
+    path.write_text(json.dumps({**json.loads(path.read_text()), "mission": "1-people 2"}))
+    next_round(out)
+    assert wanted(out)[0]["value"] == 10
 
 
 def test_files_that_are_broken(out):

@@ -50,6 +50,14 @@ from pytpc.arithmetic import evaluate
         (("pow", 0.5, "x"), Interval.above(4), "below -2"),
         (("pow", -2.0, "x"), Interval.above(4), "no value"),
         (("asin", "x"), Interval.above(0, True), "from 0 to 1"),
+        # 1 / e^x is 0 from the first double on where e^x overflows, 709.78.
+        (("/", 1.0, ("exp", "x")), Interval.point(0), "at least 709.783"),
+        # 1 / (1 / x) is 0 where 1 / x overflows: next to 0, up to 1 / the largest double.
+        (
+            ("/", 1.0, ("/", 1.0, "x")),
+            Interval.point(0),
+            "from -5.56268e-309 to below 0 or above 0 to 5.56268e-309",
+        ),
         # 2 * (x - 1)^2 <= 8: |x - 1| <= 2.
         (("*", 2.0, ("pow", ("+", "x", -1.0), 2.0)), Interval.below(8, True), "from -1 to 3"),
     ],
@@ -135,6 +143,8 @@ def test_overflow_keeps_its_sign():
     assert evaluate(("pow", "x", 3.0), -1e200) == -math.inf
     assert evaluate(("pow", "x", 2.0), -1e200) == math.inf
     assert evaluate(("floor", ("*", 1e300, "x")), -1e300) == -math.inf
+    assert evaluate(("*", -1.0, ("exp", "x")), 800) == -math.inf
+    assert evaluate(("/", 1.0, ("exp", "x")), 800) == 0
 
 
 CONSTANTS = st.one_of(st.integers(1, 9).map(float), st.sampled_from([0.5, 0.25, 2.5, 100.0]))
@@ -176,6 +186,9 @@ def has_rough(tree):
 @given(TREES, WANTED, VALUES)
 @example(("pow", ("*", -1.0, "x"), 3.0), Interval.below(-8), 3.0)
 @example(("/", 1.0, ("abs", "x")), Interval.above(2), -0.25)
+@example(("sqrt", ("/", 1.0, ("/", 1.0, "x"))), Interval.below(1.0), -5e-324)
+@example(("/", 1.0, ("/", 1.0, "x")), Interval.above(0), 5e-324)
+@example(("/", 1.0, ("*", 0.0, "x")), Interval.below(0), 1.0)
 def test_membership_is_that_of_the_threshold(tree, wanted, x):
     threshold = evaluate(tree, x)
     assume(math.isfinite(threshold))

@@ -26,9 +26,13 @@ def accuses(row: Position) -> bool:
     return row.marks > 0 and row.confidence is not None and row.confidence >= CONFIDENT
 
 
-def calibration(rows: Sequence[Position]) -> list[Bin]:
-    """How often verdicts are right, by their confidence; those without a mark are left out."""
-    found = [row for row in rows if row.marks > 0 and row.confidence is not None]
+def calibration(rows: Iterable[Position], half: str) -> list[Bin]:
+    """How often verdicts are right, by their confidence; those without a mark are left out.
+
+    Of one half alone: what was fitted on the other is well calibrated there by its making.
+    """
+    own = (row for row in judged(rows) if row.half == half)
+    found = [row for row in own if row.marks > 0 and row.confidence is not None]
     return reliability([row.confidence or 0.0 for row in found], [is_right(row) for row in found])
 
 
@@ -39,13 +43,14 @@ def calibration_error(bins: Sequence[Bin]) -> float | None:
     return sum(gaps) / total if total else None
 
 
-def reliability_table(bins: Sequence[Bin]) -> Table:
+def reliability_table(bins: Sequence[Bin], half: str) -> Table:
     """The numbers of the diagram."""
     columns = (Column("Verdicts", 0), Column("Mean confidence", 2), Column("Share right", 2))
     rows = tuple(
         (f"{b.low:.1f} to {b.high:.1f}", (b.verdicts, b.confidence, b.right)) for b in bins
     )
-    return Table("reliability", "Reliability", columns, rows, (), "Confidence")
+    title = f"Reliability, the {half} half"
+    return Table(f"reliability-{half}", title, columns, rows, (), "Confidence")
 
 
 def accusations_table(rows: Sequence[Position]) -> Table:
@@ -66,9 +71,10 @@ def accusations_table(rows: Sequence[Position]) -> Table:
     return Table("accusations", "Where nobody is to blame", columns, tuple(lines), (), "System")
 
 
-def accusation_counts(rows: Sequence[Position]) -> Table:
+def accusation_counts(rows: Sequence[Position], halves: Sequence[str]) -> Table:
     """How many verdicts are confident, and how many of those are right, by what was done."""
     columns = (
+        Column("Half", 0),
         Column("Labels", 0),
         Column("Missions", 0),
         Column("Confident", 0),
@@ -80,12 +86,13 @@ def accusation_counts(rows: Sequence[Position]) -> Table:
         ("fault in the source", {"fault"}),
         ("clean", {"clean"}),
     ):
-        own = [row for row in judged(rows) if row.type in kinds]
-        for labels in ordered((row.labels for row in own), LABELS):
-            here = [row for row in own if row.labels == labels]
-            confident = [row for row in here if accuses(row)]
-            right = sum(is_right(row) for row in confident)
-            lines.append((name, (labels, len(here), len(confident), right)))
+        for half in halves:
+            own = [row for row in judged(rows) if row.type in kinds and row.half == half]
+            for labels in ordered((row.labels for row in own), LABELS):
+                here = [row for row in own if row.labels == labels]
+                confident = [row for row in here if accuses(row)]
+                right = sum(is_right(row) for row in confident)
+                lines.append((name, (half, labels, len(here), len(confident), right)))
     return Table("confident", "Confident verdicts", columns, tuple(lines), (), "Missions with")
 
 

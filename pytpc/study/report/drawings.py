@@ -12,7 +12,7 @@ from pytpc.stats.drawing import save, style
 from pytpc.stats.figures import state_of, trial_figure
 from pytpc.stats.missions import Trial
 from pytpc.study.report.charts import reliability_chart, result_chart
-from pytpc.study.report.confidence import calibration, judged
+from pytpc.study.report.confidence import calibration
 from pytpc.study.report.folder import Flight, System
 from pytpc.study.report.original import KIND_NAMES, Original
 from pytpc.study.report.positions import Position
@@ -82,7 +82,7 @@ def draw_systems(
 
 
 def draw_results(rows: Sequence[Position], folder: Path, halves: Sequence[str]) -> list[Drawing]:
-    """Draw the main result of each half, and the calibration.
+    """Draw the main result and the calibration of each half.
 
     Raises:
         TpcError: a file cannot be written.
@@ -95,12 +95,13 @@ def draw_results(rows: Sequence[Position], folder: Path, halves: Sequence[str]) 
                 save(result_chart(rows, half), folder / name, "png", DPI, palette=True)
                 said = f"Top 3 by method and labels, the {half} half; lines are 95 % intervals."
                 drawn.append(Drawing(name, "", said))
-        bins = calibration(judged(rows))
-        if bins:
-            target = folder / "confidence.png"
-            save(reliability_chart(bins), target, "png", DPI, palette=True)
-            said = "How often verdicts are right, by their confidence; all labels, all missions."
-            drawn.append(Drawing("confidence.png", "", said))
+        for half in halves:
+            bins = calibration(rows, half)
+            if bins:
+                name = f"confidence-{half}.png"
+                save(reliability_chart(bins), folder / name, "png", DPI, palette=True)
+                said = f"How often verdicts are right, by confidence; all labels, the {half} half."
+                drawn.append(Drawing(name, "", said))
     return drawn
 
 

@@ -19,7 +19,8 @@ from pytpc.source_lines import count_lines
 from pytpc.static_info import StaticInfo
 from pytpc.static_json import parse_json
 from pytpc.stats.missions import StudyMission, load_missions
-from pytpc.study.data import DONE_FILE, MARKS_TABLE, MISSIONS, STUDY_FILE, user_marks
+from pytpc.study.data import MISSIONS, user_marks
+from pytpc.study.dataset import DONE_FILE, MARKED_FILE, STUDY_FILE
 from pytpc.study.plan import Half
 from pytpc.treatment import Treatment
 from pytpc.words import many
@@ -170,7 +171,7 @@ def _flight(path: Path, system: str, halves: Mapping[tuple[str, int], str]) -> F
         raise TpcError("it has no treatment.json")
     seed = int(path.name.removeprefix(_SEED))
     half = halves.get((mission.treatment.name, seed), UNKNOWN)
-    said = [mark.mark("confused") for mark in user_marks(path / MARKS_TABLE)]
+    said = [mark.mark("confused") for mark in user_marks(path / MARKED_FILE)]
     marks = tuple(sorted(said, key=Mark.order))
     return Flight(system, half, seed, mission, mission.treatment, marks)
 

@@ -23,6 +23,8 @@ def rank_missions(
 ) -> None:
     """Complete ``results/positions.parquet`` by the missions of ``halves`` that it does not have.
 
+    A mission that was flown or marked anew since it was ranked is ranked again.
+
     Args:
         folder: the study's.
         halves: nothing is read of other missions; what stands about them stays.
@@ -36,16 +38,24 @@ def rank_missions(
     path = folder / POSITIONS_FILE
     known: list[Judged] = list(read_positions(path)) if path.exists() else []
     kept = [row for row in known if not (again and row.half in halves)]
-    ranked = {_mission(row) for row in kept}
-    added = [
-        row
-        for mission in missions(folder, halves, on_progress)
-        if (mission.system, mission.treatment, mission.seed) not in ranked
-        for row in judge(mission, METHODS)
-    ]
-    if added or len(kept) != len(known):
-        rows = [Judged(**{f.name: getattr(row, f.name) for f in fields(Judged)}) for row in kept]
-        save_positions(sorted([*rows, *added], key=_mission), folder)
+    ranked: dict[tuple[str, str, int], list[Judged]] = {}
+    for row in kept:
+        ranked.setdefault(_mission(row), []).append(row)
+    is_new = len(kept) != len(known)
+    for mission in missions(folder, halves, on_progress):
+        place = (mission.system, mission.treatment, mission.seed)
+        if place in ranked and all(row.digest == mission.digest for row in ranked[place]):
+            continue
+        ranked[place] = list(judge(mission, METHODS))
+        is_new = True
+    if is_new:
+        names = [field.name for field in fields(Judged)]
+        rows = [
+            Judged(**{name: getattr(row, name) for name in names})
+            for place in sorted(ranked)
+            for row in ranked[place]
+        ]
+        save_positions(rows, folder)
 
 
 def _mission(row: Judged) -> tuple[str, str, int]:

@@ -18,7 +18,6 @@ from pytpc.study.report.confidence import (
     accusation_counts,
     accusations_table,
     calibration,
-    judged,
     reliability_table,
 )
 from pytpc.study.report.drawings import Advance, Drawing, draw_results, draw_systems
@@ -41,9 +40,11 @@ from pytpc.study.report.repairs import (
     read_repairs,
     repairs_summary,
     repairs_table,
+    tries_table,
 )
 from pytpc.study.report.systems import systems_table, treatments_table
-from pytpc.study.suggested import TRIED_FILE
+from pytpc.study.suggestion_chains import CHAINS_FILE, Chain, load_chains
+from pytpc.study.suggestions import HEADLINE_FILE
 from pytpc.tables import Table, as_csv, as_json
 
 RESULTS_FILE = "results.json"
@@ -51,7 +52,7 @@ _NOT_HELPED_FILE = "tried.md"
 _DISCUSSION_FILE = "discussion.md"
 _SCHEMA = 1
 
-Row = TypeVar("Row", Position, Repair)
+Row = TypeVar("Row", Position, Repair, Chain)
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,11 +101,12 @@ def make_report(
     positions = [row for row in ranked if row.half in halves]
     flights = [f for system in study.systems for f in system.flights if f.half in halves]
     repairs = _results(
-        folder / TRIED_FILE,
+        folder / HEADLINE_FILE,
         lambda path: read_repairs(path, flights),
         troubles,
         "flown again as suggested",
     )
+    chains = _results(folder / CHAINS_FILE, load_chains, troubles, "asked for suggestions")
     advance = progress("working out tables")
     originals = []
     for number, system in enumerate(study.systems, start=1):
@@ -118,6 +120,7 @@ def make_report(
         # Where the folder happens to be is nobody's business on the page.
         troubles += [trouble.replace(f"{folder}/", "") for trouble in undrawn]
     tables, full = _tables(study, originals, positions, repairs, halves)
+    tables["tries"] = tries_table(chains, halves)
     own = [one for half in halves for one in headlines(positions, repairs, half)]
     beside = target.parent / BESIDE
     contents = Contents(
@@ -170,8 +173,8 @@ def _tables(
         *(against_table(positions, half) for half in halves),
         *(users_table(positions, half) for half in halves),
         *(positions_table(positions, labels) for labels in LABELS),
-        reliability_table(calibration(judged(positions))),
-        accusation_counts(positions),
+        *(reliability_table(calibration(positions, half), half) for half in halves),
+        accusation_counts(positions, halves),
         accusations_table(positions),
         repairs_summary(repairs),
         repairs_table(repairs),

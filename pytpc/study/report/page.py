@@ -14,6 +14,7 @@ from pytpc.study.report.drawings import Drawing
 from pytpc.study.report.headline import Headline
 from pytpc.study.report.repairs import TARGET
 from pytpc.study.report.systems import NEAR
+from pytpc.study.suggestion_chains import HEADLINE
 from pytpc.tables import Table, as_markdown, markdown
 
 IMAGES = "images/study"
@@ -70,6 +71,7 @@ def page(contents: Contents) -> str:
         near=f"{NEAR:g}",
         confident=f"{CONFIDENT:g}",
         target=f"{100 * TARGET:.0f}",
+        headline=HEADLINE,
     )
     return _GAPS.sub("\n\n", text).strip() + "\n"
 

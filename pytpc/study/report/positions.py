@@ -16,6 +16,9 @@ from pytpc.errors import InputError
 from pytpc.study.data import ALL
 from pytpc.study.judge import Judged
 
+_LATER = "digest"
+"""Tables that were written before it do not have this column."""
+
 
 @dataclass(frozen=True, slots=True)
 class Position(Judged):
@@ -60,10 +63,11 @@ def read_positions(path: Path) -> list[Position]:
     names = [field.name for field in fields(Position)]
 
     def rows(table: pa.Table) -> list[Position]:
-        missing = [name for name in names if name not in table.column_names]
+        there = [name for name in names if name in table.column_names]
+        missing = [name for name in names if name not in (*there, _LATER)]
         if missing:
             raise InputError(f"no column {missing[0]}")
-        found = [Position(**_known(row)) for row in table.select(names).to_pylist()]
+        found = [Position(**_known(row)) for row in table.select(there).to_pylist()]
         return sorted(found, key=lambda p: (p.system, p.type, p.treatment, p.seed, p.who))
 
     return read_table(path, "positions", rows)

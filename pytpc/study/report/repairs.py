@@ -14,6 +14,7 @@ from pytpc.errors import InputError
 from pytpc.study.metrics import Estimate, estimate
 from pytpc.study.report.folder import HALVES, Flight
 from pytpc.study.report.ranked import percent
+from pytpc.study.suggestion_chains import HEADLINE, MOST_TRIES, VARIANTS, Chain, outcomes
 from pytpc.tables import Cell, Column, Table
 from pytpc.words import show
 
@@ -102,6 +103,46 @@ def repairs_summary(rows: Sequence[Repair]) -> Table:
             cells = (half, share.treatments, percent(share), percent(fresh))
             lines.append((name, (*cells, f">= {100 * TARGET:.0f}", verdict)))
     return Table("repairs", "Suggestions, flown", columns, tuple(lines), (), "Treatments of")
+
+
+def tries_table(chains: Sequence[Chain], halves: Sequence[str]) -> Table:
+    """What came of each variant within so many tries, by half; chains that wait are left out."""
+    columns = (
+        Column("Half", 0),
+        Column("Tries", 0),
+        Column("Treatments", 0),
+        Column("Error gone %", 0),
+        Column("New error %", 0),
+        Column("Gone, and no new one %", 0),
+        Column("Missions waiting", 0),
+        Column("Target", 0),
+        Column("Verdict", 0),
+    )
+    lines: list[tuple[str, tuple[Cell, ...]]] = []
+    for half in halves:
+        own = [chain for chain in chains if chain.half == half]
+        for variant in VARIANTS:
+            for most in range(1, MOST_TRIES.get(variant, 1) + 1):
+                found, waiting = outcomes(own, variant, most)
+                if not found and not waiting:
+                    continue
+                units = [one.unit for one in found]
+                share = estimate([float(one.gone) for one in found], units)
+                fresh = estimate([float(one.new_error) for one in found], units)
+                whole = estimate([float(one.gone and not one.new_error) for one in found], units)
+                verdict = "hit" if share.value >= TARGET else "miss"
+                name = f"{variant} (headline)" if (variant, most) == (HEADLINE, 1) else variant
+                cells: tuple[Cell, ...] = (
+                    half,
+                    most,
+                    share.treatments,
+                    *map(percent, (share, fresh, whole)),
+                    waiting,
+                    f">= {100 * TARGET:.0f}",
+                    verdict if found else None,
+                )
+                lines.append((name, cells))
+    return Table("tries", "Suggestions by variant", columns, tuple(lines), (), "Variant")
 
 
 def repairs_table(rows: Sequence[Repair]) -> Table:
