@@ -18,7 +18,7 @@ from pytpc.errors import InputError
 from pytpc.parameters import same_parameter
 from pytpc.static_info import StaticInfo
 from pytpc.static_json import parse_json
-from pytpc.study.case import Change
+from pytpc.changes import Change
 from pytpc.treatment import Treatment
 from pytpc.values.recording import read_parameters
 

@@ -12,7 +12,8 @@ from pytpc.advice.blamed import advise_blamed
 from pytpc.ingest import Recording
 from pytpc.marks import Mark
 from pytpc.scoring.evidence import Evaluation
-from pytpc.study.case import Case, Change
+from pytpc.changes import Change
+from pytpc.study.case import Case
 from pytpc.study.methods import METHODS
 from pytpc.summaries import Summary, SummaryBuilder
 from pytpc.words import percent

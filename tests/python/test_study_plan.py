@@ -11,7 +11,7 @@ from study_flights import robot, treatment
 
 from pytpc.demo_examples import EXAMPLES
 from pytpc.errors import InputError
-from pytpc.study.case import Change
+from pytpc.changes import Change
 from pytpc.study.changes import Candidate, candidates, drawn_changes, save_changes
 from pytpc.study.plan import (
     Flight,

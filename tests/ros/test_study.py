@@ -18,7 +18,7 @@ from pytpc.ingest.reading import read
 from pytpc.paths import cmake_file, log_library, plugin
 from pytpc.scoring.ranking import unknown_keys
 from pytpc.static_info import StaticInfo
-from pytpc.study.case import Change
+from pytpc.changes import Change
 from pytpc.treatment import load_treatment
 from pytpc.values.recording import read_parameters
 

@@ -8,7 +8,8 @@ from collections.abc import Sequence
 
 from pytpc.parameters import same_parameter
 from pytpc.scoring.tables import Tpcs
-from pytpc.study.case import Case, Change, Verdict
+from pytpc.changes import Change
+from pytpc.study.case import Case, Verdict
 
 
 def recent_change(case: Case) -> Verdict:
