@@ -41,10 +41,10 @@ from pytpc.scoring.diagnosis_streams import Stream, Streams
 from pytpc.scoring.tables import Tpcs
 from pytpc.static_info import StaticInfo
 
-MOMENT_S = 1.0
+MOMENT_S = 2.0
 """A turn of this length weighs half of one that lasts."""
 
-LEAST = 0.01
+LEAST = 0.001
 """No turn weighs less."""
 
 SLOPE_S = 2.0
