@@ -9,10 +9,10 @@ from mission_samples import comparison, events, key, ns, static_info
 
 from pytpc.advice.blame import Accused, Blame, blame
 from pytpc.advice.blamed import advise_blamed
+from pytpc.changes import Change
 from pytpc.ingest import Recording
 from pytpc.marks import Mark
 from pytpc.scoring.evidence import Evaluation
-from pytpc.changes import Change
 from pytpc.study.case import Case
 from pytpc.study.methods import METHODS
 from pytpc.summaries import Summary, SummaryBuilder

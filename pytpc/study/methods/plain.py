@@ -6,9 +6,9 @@ import hashlib
 import random
 from collections.abc import Sequence
 
+from pytpc.changes import Change
 from pytpc.parameters import same_parameter
 from pytpc.scoring.tables import Tpcs
-from pytpc.changes import Change
 from pytpc.study.case import Case, Verdict
 
 
