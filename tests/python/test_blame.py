@@ -203,6 +203,28 @@ def test_what_to_do_with_the_first():
     assert advice.what_if.marks == 2
 
 
+# Whatever the log says: with 0.9 it went right, or with what the clean run had. What is no number,
+# or was not changed, is no value to try.
+def test_the_value_of_before_comes_first():
+    recording = mission((*MARKS, Mark(ns(70), "II")))
+    clean = Recording("clean", events([(1, 0, 0, 0.1, 0.9), (2, 1, 0, 1, 9)]), (), 0, ns(80))
+
+    def tried(**known):
+        found = blame(recording, STATIC, **known)
+        (advice,) = advise_blamed(found, recording, STATIC, top=1, **known)
+        assert advice.accused.parameter == "~gate"
+        return advice.remedy
+
+    before = tried(changes=[("gate", 0.2, 0.375)])
+    assert (before.direction, before.value, before.basis) == ("lower", 0.2, "before")
+    assert before.text == "lower ~gate from 0.375 to 0.2 (the value before it was changed)"
+    assert tried(reference=clean).value == 0.9
+    found = blame(recording, STATIC)
+    for nothing in (("gate", math.nan, 0.375), ("gate", 0.375, 0.375), ("safe", 1, 9)):
+        (advice,) = advise_blamed(found, recording, STATIC, top=1, changes=[nothing])
+        assert advice.remedy.basis != "before"
+
+
 def test_percent():
     assert [percent(x) for x in (0, 0.004, 0.006, 0.721, 0.996, 1)] == [
         "0 %",
