@@ -6,7 +6,7 @@ What a notebook needs is here, and documented in `pytpc.library` and docs/tutori
 
     static = pytpc.load_static("my_workspace")
     mission = pytpc.read("mission.bag")
-    pytpc.rank(mission, static)
+    pytpc.diagnose(mission, static)
 
 It is imported when it is asked for, so that ``import pytpc`` costs nothing.
 """
@@ -19,9 +19,12 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from pytpc.library import (
         Advices,
+        Change,
+        Diagnosed,
         Rankings,
         StudyTable,
         curves,
+        diagnose,
         load_static,
         rank,
         read,
@@ -33,9 +36,12 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Advices",
+    "Change",
+    "Diagnosed",
     "Rankings",
     "StudyTable",
     "curves",
+    "diagnose",
     "load_static",
     "rank",
     "read",

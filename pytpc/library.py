@@ -16,15 +16,19 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import overload
 
-from pytpc.advice.advise import Advice, advise
+from pytpc.advice.advise import advise
+from pytpc.advice.blame import blame
+from pytpc.advice.blamed import advise_blamed
 from pytpc.advice.counterfactual import WhatIf
 from pytpc.advice.counterfactual import what_if as replay
 from pytpc.advice.declared import Declared, declared_in
+from pytpc.changes import Change
 from pytpc.errors import InputError
 from pytpc.ingest import Recording
 from pytpc.ingest import read as read_recording
 from pytpc.marks import Mark, MarkType
 from pytpc.notebook import StudyTable, Table
+from pytpc.notebook_answers import Advices, Diagnosed
 from pytpc.report.html import MissionReport
 from pytpc.report.html import write_report as write_page
 from pytpc.scoring.curves import STEP_S, RankCurves, rank_curves
@@ -36,10 +40,10 @@ from pytpc.stats.study import NUMBERS
 from pytpc.stats.study import study_tables as tables_of_study
 from pytpc.treatment import TREATMENT_FILE, load_treatment
 from pytpc.values.origins import read_origins
-from pytpc.words import Number, exact, show
+from pytpc.words import Number
 
-__all__ = ["Advices", "Rankings", "StudyTable", "curves", "load_static", "rank", "read"]
-__all__ += ["study_tables", "suggest", "what_if", "write_report"]
+__all__ = ["Advices", "Change", "Diagnosed", "Rankings", "StudyTable", "curves", "diagnose"]
+__all__ += ["load_static", "rank", "read", "study_tables", "suggest", "what_if", "write_report"]
 
 Source = str | os.PathLike[str]
 
@@ -136,61 +140,6 @@ class Rankings(Sequence[MarkRanking]):
         return self.table()._repr_html_()
 
 
-@dataclass(frozen=True, slots=True)
-class Advices(Sequence[Advice]):
-    """What to do with the suspects at one mark, in their order.
-
-    A sequence of `pytpc.advice.advise.Advice`: suspect, suggestion, what it would have changed.
-    """
-
-    advices: tuple[Advice, ...]
-    ranking: MarkRanking
-
-    def __len__(self) -> int:
-        """The number of suspects."""
-        return len(self.advices)
-
-    @overload
-    def __getitem__(self, index: int) -> Advice: ...
-
-    @overload
-    def __getitem__(self, index: slice) -> tuple[Advice, ...]: ...
-
-    def __getitem__(self, index: int | slice) -> Advice | tuple[Advice, ...]:
-        """The advice for a suspect."""
-        return self.advices[index]
-
-    def __iter__(self) -> Iterator[Advice]:
-        """The advices in the order of the suspects."""
-        return iter(self.advices)
-
-    def table(self) -> Table:
-        """A row for each suspect."""
-        rows = []
-        for advice in self.advices:
-            suggestion = advice.suggestion
-            what = f"{suggestion.direction} to {exact(suggestion.value)}"
-            rows.append(
-                (
-                    f"{advice.suspect.position}{'=' if advice.suspect.tied else ''}",
-                    advice.suspect.parameter,
-                    show(suggestion.current),
-                    what if suggestion.direction else f"none: {suggestion.reason}",
-                    advice.what_if.text if advice.what_if else "",
-                )
-            )
-        headings = ("#", "parameter", "value", "suggestion", "in the recorded run")
-        return Table(headings, tuple(rows), frozenset({0, 2}))
-
-    def __str__(self) -> str:
-        """The table as text."""
-        return str(self.table())
-
-    def _repr_html_(self) -> str:
-        """The table for a notebook, escaped."""
-        return self.table()._repr_html_()
-
-
 def load_static(source: StaticInfo | Source) -> StaticInfo:
     """The static information of a workspace that ``pytpc build`` built, or of a static.json.
 
@@ -231,12 +180,43 @@ def rank(
     Raises:
         InputError: the mission has no marks, or something cannot be read.
     """
-    recording, static = read(mission), load_static(static_info)
-    if not recording.marks:
-        raise InputError("no marks; `pytpc mark` makes some beside it", recording.name)
+    recording, static = _marked(mission), load_static(static_info)
     found = rank_marks(recording, static, types=types, window_s=window_s)
     source = None if isinstance(mission, Recording) else Path(mission)
     return Rankings(tuple(found), recording, static, source, types, window_s)
+
+
+def diagnose(
+    mission: Recording | Source,
+    static_info: StaticInfo | Source,
+    *,
+    types: Types = "believe",
+    reference: Recording | Source | None = None,
+    changes: Sequence[Change] = (),
+    top: int = _SHOWN,
+) -> Diagnosed:
+    """How likely it is each parameter, by all marks of a mission together, and what to do.
+
+    Args:
+        mission: the mission with its marks.
+        static_info: what the analysis found.
+        types: with ``ignore`` what the marks say of the type does not count.
+        reference: a mission of the same build that went right.
+        changes: what was changed since it went right, empty where that is not known; see
+            `pytpc.changes.read_changes` and `pytpc.changes.changes_between`.
+        top: for how many suspects there is a value to try.
+
+    Raises:
+        InputError: the mission has no marks, or something cannot be read.
+    """
+    recording, static = _marked(mission), load_static(static_info)
+    clean = None if reference is None else read(reference)
+    known = [(one.parameter, one.old, one.new) for one in changes]
+    found = blame(recording, static, types=types, reference=clean, changes=known)
+    places = [] if isinstance(mission, Recording) else [Path(mission)]
+    declared = declared_in(static, places)
+    advice = advise_blamed(found, recording, static, top=top, declared=declared, reference=clean)
+    return Diagnosed(found, tuple(advice))
 
 
 def curves(
@@ -355,6 +335,14 @@ def write_report(path: Source, *rankings: Rankings, title: str = "Suspected para
     """
     write_page(Path(path), [_for_report(one) for one in rankings], title=title)
     return Path(path)
+
+
+def _marked(mission: Recording | Source) -> Recording:
+    """The mission, which has to have marks."""
+    recording = read(mission)
+    if not recording.marks:
+        raise InputError("no marks; `pytpc mark` makes some beside it", recording.name)
+    return recording
 
 
 def _declared(rankings: Rankings) -> list[Declared]:

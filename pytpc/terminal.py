@@ -10,19 +10,23 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
+from pytpc.advice.blame import Blame
+from pytpc.advice.blamed import BlamedAdvice
 from pytpc.advice.declared import Declared, declared_for
 from pytpc.advice.suggest import Suggestion, suggest
 from pytpc.ingest.recording import Recording
+from pytpc.marks import MarkType
 from pytpc.scoring.ranking import MarkRanking, Suspect
 from pytpc.scoring.scores import WINDOW_S
-from pytpc.static_info import StaticInfo
-from pytpc.words import exact, plain, show
+from pytpc.static_info import Comparison, StaticInfo
+from pytpc.words import exact, percent, plain, show
 
 _WHAT = {
     "I": "type I, did what it should not",
     "II": "type II, does not do what it should",
     None: "no type",
 }
+_KINDS: dict[MarkType, str] = {"I": "I: did", "II": "II: does not"}
 _WAYS = {"raise": "raise to", "lower": "lower to", "switch": "switch to"}
 
 
@@ -76,6 +80,44 @@ def print_rankings(
         console.print(_mark(number, ranking, recording, rows), highlight=False)
 
 
+def print_blame(console: Console, blame: Blame, advice: Sequence[BlamedAdvice]) -> None:
+    """Print what all marks say together: the verdict, and a table of the suspects with advice."""
+    verdict = Text(plain(blame.text), style="bold" if blame.accused is not None else "yellow")
+    parts: list[RenderableType] = [Text(blame.title, style="bold"), _indented(verdict)]
+    parts += [_indented(Text(plain(note), style="yellow")) for note in blame.notes]
+    if advice:
+        table = _table()
+        table.add_column("#", justify="right")
+        table.add_column("Parameter", overflow="fold")
+        table.add_column("Probability", justify="right")
+        table.add_column("Type")
+        table.add_column("Value", justify="right")
+        table.add_column("To try", overflow="fold")
+        table.add_column("Compared at", overflow="fold")
+        for one in advice:
+            table.add_row(*_blamed_cells(one))
+        parts.append(_indented(table))
+    console.print(Padding(Group(*parts), (0, 0, 1, 0), expand=False), highlight=False)
+
+
+def _blamed_cells(one: BlamedAdvice) -> list[Text]:
+    accused, tried = one.accused, one.remedy
+    current = accused.last.thresh if tried.current is None else tried.current
+    if tried.direction is None:
+        what = Text(plain(f"none: {tried.reason}"), style="dim")
+    else:
+        what = Text(f"{_WAYS[tried.direction]} ").append(exact(tried.value), style="bold")
+    return [
+        Text(f"{accused.position}=" if accused.tied else str(accused.position)),
+        Text(plain(accused.parameter), style="bold" if accused.position == 1 else ""),
+        Text(percent(accused.probability)),
+        Text(_KINDS[accused.type]),
+        Text(show(current)),
+        what,
+        _place(accused.comparison),
+    ]
+
+
 def _mark(
     number: int, ranking: MarkRanking, recording: Recording, rows: list[Row]
 ) -> RenderableType:
@@ -85,10 +127,10 @@ def _mark(
     title = Text(f"Mark {number} at {seconds:.1f} s: {_WHAT[mark.type]}{plain(by)}", style="bold")
     heading: list[RenderableType] = [title]
     if not ranking.enough:
-        heading.append(Padding(_lack(ranking), (0, 0, 0, 2)))
+        heading.append(_indented(_lack(ranking)))
     if not rows:
         return Padding(Group(*heading), (0, 0, 1, 0))
-    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
+    table = _table()
     table.add_column("#", justify="right")
     table.add_column("Parameter", overflow="fold")
     table.add_column("Value", justify="right")
@@ -104,17 +146,21 @@ def _mark(
     return Group(*heading, Padding(table, (0, 0, 1, 2)))
 
 
+def _table() -> Table:
+    return Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
+
+
+def _indented(part: RenderableType) -> RenderableType:
+    return Padding(part, (0, 0, 0, 2), expand=False)
+
+
 def _lack(ranking: MarkRanking) -> Text:
     return Text(plain(f"not enough evidence: {ranking.reason}"), style="yellow")
 
 
 def _cells(row: Row, mixed: bool) -> list[Text]:
     suspect, advice = row.suspect, row.advice
-    found = suspect.comparison
     current = advice.current if advice.current is not None else suspect.last.thresh
-    place = Text(plain(f"{found.file}:{found.lineno}"))
-    if found.source_code:
-        place.append("\n" + plain(found.source_code.strip()), style="dim")
     if advice.direction is None:
         what = Text(plain(f"none: {advice.reason}"), style="dim")
     else:
@@ -126,5 +172,13 @@ def _cells(row: Row, mixed: bool) -> list[Text]:
         what,
         *([Text(suspect.type)] if mixed else []),
         Text(f"{suspect.score:.3g}"),
-        place,
+        _place(suspect.comparison),
     ]
+
+
+def _place(found: Comparison) -> Text:
+    """The source line and the condition below it."""
+    place = Text(plain(f"{found.file}:{found.lineno}"))
+    if found.source_code:
+        place.append("\n" + plain(found.source_code.strip()), style="dim")
+    return place

@@ -35,3 +35,15 @@ def exact(value: Number | None) -> str:
     if isinstance(value, float) and float(f"{value:.6g}") != value:
         return repr(value)
     return show(value)
+
+
+def percent(part: float) -> str:
+    """``72 %``; what is neither 0 nor 1 is not shown as such.
+
+    >>> percent(0.721), percent(0.001), percent(0.999), percent(0.0)
+    ('72 %', '<1 %', '>99 %', '0 %')
+    """
+    whole = round(100 * part)
+    if whole == 0 and part > 0:
+        return "<1 %"
+    return ">99 %" if whole == 100 and part < 1 else f"{whole} %"

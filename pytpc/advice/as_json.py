@@ -1,10 +1,13 @@
-"""Advice as JSON: what docs/diagnosing.md says of ``pytpc suggest --json``."""
+"""Advice as JSON: what docs/diagnosing.md and docs/formats.md say of ``suggest`` and ``rank``."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from pytpc.advice.advise import Advice
+from pytpc.advice.blame import Blame
+from pytpc.advice.blamed import BlamedAdvice
 from pytpc.advice.counterfactual import WhatIf
 from pytpc.advice.declared import Declared
 from pytpc.advice.intervals import Intervals
@@ -124,6 +127,38 @@ def group_json(group: MarkGroup, start_ns: int) -> Json:
         "marks": [_mark(mark, start_ns) for mark in group.marks],
         "reasons": list(group.reasons),
         "suspects": [_joined(joined) for joined in group.suspects],
+    }
+
+
+def blame_json(blame: Blame, advice: Sequence[BlamedAdvice]) -> Json:
+    """What all marks say together, with the suspects that have an advice."""
+    return {
+        "text": blame.text,
+        "accused": blame.accused,
+        "confidence": blame.confidence,
+        "none": blame.none,
+        "parameters": blame.parameters,
+        "notes": list(blame.notes),
+        "suspects": [_blamed(one) for one in advice],
+    }
+
+
+def _blamed(found: BlamedAdvice) -> Json:
+    accused = found.accused
+    tried = None if found.what_if is None else what_if_json(found.what_if)
+    return {
+        "position": accused.position,
+        "tied": accused.tied,
+        "parameter": accused.parameter,
+        "probability": accused.probability,
+        "type": accused.type,
+        "key": accused.key,
+        "file": accused.comparison.file,
+        "lineno": accused.comparison.lineno,
+        "source_code": accused.comparison.source_code,
+        "topic": accused.comparison.topic,
+        "node": accused.last.node,
+        "remedy": {**remedy_json(found.remedy), "what_if": tried},
     }
 
 

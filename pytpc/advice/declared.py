@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from pytpc.advice.blame import Accused
 from pytpc.advice.declaration import Declared
 from pytpc.advice.declared_bag import is_bag, read_bag
 from pytpc.advice.declared_cfg import read_cfg
@@ -67,7 +68,7 @@ def declared_in(
 
 
 def declared_for(
-    declared: Sequence[Declared], suspect: Suspect, source: Path | None = None
+    declared: Sequence[Declared], suspect: Suspect | Accused, source: Path | None = None
 ) -> Declared | None:
     """What is declared of the parameter of a suspect; None where nothing is, or not one thing.
 

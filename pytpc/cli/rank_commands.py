@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import click
 from rich.table import Table
 from rich.text import Text
 
-from pytpc.advice.declared import declared_in, read_declared
+from pytpc.advice.as_json import blame_json
+from pytpc.advice.blame import Blame
+from pytpc.advice.blamed import BlamedAdvice
+from pytpc.advice.declared import Declared, declared_in, read_declared
 from pytpc.cli.console import console, warn
 from pytpc.cli.options import (
     JSON,
@@ -25,6 +28,7 @@ from pytpc.cli.options import (
     recording_of,
     warn_about,
 )
+from pytpc.cli.rank_together import TOGETHER, Judge, Score
 from pytpc.cli.sources import static_of
 from pytpc.errors import InputError, TpcError
 from pytpc.ingest import Recording
@@ -33,13 +37,15 @@ from pytpc.marking.session import Change
 from pytpc.marks import MARK_TYPES, Mark, MarkType, joined, marks_beside, marks_text, read_marks
 from pytpc.scoring.clocks import two_clocks
 from pytpc.scoring.ranking import MarkRanking, Types, rank_marks
-from pytpc.terminal import Row, print_rankings, rows_of
+from pytpc.static_info import StaticInfo
+from pytpc.terminal import Row, print_blame, print_rankings, rows_of
 from pytpc.words import many, plain
 
 
 @click.command("rank")
 @click.argument("recordings", type=PATH, nargs=-1, required=True, metavar="RECORDING...")
 @STATIC
+@TOGETHER
 @TYPES
 @WINDOW
 @TOP
@@ -56,15 +62,31 @@ def rank_command(
     *,
     recordings: tuple[Path, ...],
     static_source: Path,
+    score: Score,
+    each: bool,
+    reference: Path | None,
+    changes_file: Path | None,
+    before: Path | None,
     types: Types,
     window_s: float,
     top: int,
     at_s: tuple[float, ...],
     as_json: bool,
 ) -> None:
-    """Name the suspected parameters at each mark in each RECORDING (any INPUT of `convert`)."""
+    """Name the suspected parameters in each RECORDING (any INPUT of `convert`), from its marks.
+
+    One table has all marks together: how likely it is each parameter, and a value to try. With
+    --each, or --score thesis, there is a table for each mark, by the thesis's scores.
+    """
+    beside = (reference, changes_file, before)
+    if score == "thesis" and any(beside):
+        raise click.UsageError("--reference, --changes and --before are for --score tpc")
+    if changes_file and before:
+        raise click.UsageError("one of --changes and --before at a time")
     static = static_of([static_source])
+    judge = None if score == "thesis" else Judge.of(static, *beside)
     in_sources = declared_in(static, (), _warn_plainly)
+    asked = _Asked(static, judge, each or as_json, types, window_s, top)
     items: list[dict[str, object]] = []
     unmarked: list[Path] = []
     for source in recordings:
@@ -74,25 +96,78 @@ def rank_command(
         if not recording.marks:
             unmarked.append(source)
             continue
-        check_reports(recording, static, source)
-        rankings = rank_marks(recording, static, types=types, window_s=window_s)
-        warn_about(recording, static)
-        for clock in two_clocks(recording):
-            warn(f"{plain(recording.name)}: {plain(clock)}")
         declared = [*in_sources, *read_declared([source], _warn_plainly)]
-        shown = [
-            (one, rows_of(one, recording, static, top, declared=declared, window_s=window_s))
-            for one in rankings
-        ]
+        found = asked.ranked(recording, source, declared)
         if as_json:
-            items += [_json_of(ranking, recording, rows) for ranking, rows in shown]
+            items += found.as_json()
             continue
         if len(recordings) > 1:
             click.echo(f"{plain(str(source))}:\n")
-        print_rankings(console(), recording, shown)
+        found.show()
     _tell_unmarked(unmarked, len(recordings))
     if as_json:
         click.echo(json.dumps(items, indent=1, ensure_ascii=False))
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """What is asked for of each mission; ``judge`` is None where only its marks' tables are."""
+
+    static: StaticInfo
+    judge: Judge | None
+    each: bool
+    types: Types
+    window_s: float
+    top: int
+
+    def ranked(self, recording: Recording, source: Path, declared: Sequence[Declared]) -> _Ranked:
+        """The answer for a mission with marks; what is wrong with it is warned of.
+
+        Raises:
+            InputError: none of its reports is known, or what it is compared with is not there.
+        """
+        check_reports(recording, self.static, source)
+        warn_about(recording, self.static)
+        for clock in two_clocks(recording):
+            warn(f"{plain(recording.name)}: {plain(clock)}")
+        types, window_s, top = self.types, self.window_s, self.top
+        together = None
+        if self.judge is not None:
+            together = self.judge.judge(
+                recording, source, types=types, top=top, declared=declared, window_s=window_s
+            )
+        # Of summaries all marks together say little.
+        if together is not None and not self.each and not len(recording.summaries):
+            return _Ranked(recording, together, [])
+        rankings = rank_marks(recording, self.static, types=types, window_s=window_s)
+        marks = [
+            (one, rows_of(one, recording, self.static, top, declared=declared, window_s=window_s))
+            for one in rankings
+        ]
+        return _Ranked(recording, together, marks)
+
+
+@dataclass(frozen=True)
+class _Ranked:
+    """A mission's answer: of all marks together, and of each."""
+
+    recording: Recording
+    together: tuple[Blame, list[BlamedAdvice]] | None
+    marks: list[tuple[MarkRanking, list[Row]]]
+
+    def show(self) -> None:
+        """Print it."""
+        if self.together is not None:
+            print_blame(console(), *self.together)
+        print_rankings(console(), self.recording, self.marks)
+
+    def as_json(self) -> list[dict[str, object]]:
+        """An object for each mark; what all say together is in each of them."""
+        diagnosis = None if self.together is None else blame_json(*self.together)
+        return [
+            {**_json_of(ranking, self.recording, rows), "diagnosis": diagnosis}
+            for ranking, rows in self.marks
+        ]
 
 
 @click.command("marks")

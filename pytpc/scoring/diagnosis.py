@@ -17,6 +17,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -82,13 +83,22 @@ REPEAT = 0.5
 """How much the number of marks counts: those of one observer are not independent."""
 
 
+class Decisive(NamedTuple):
+    """The comparison that a parameter has its score by: whose it is, and P(I) if it is to blame."""
+
+    key: str
+    node: str
+    type1: float
+
+
 @dataclass(frozen=True)
 class Diagnosis:
     """The parameters and what speaks against them.
 
     ``names`` as `Tpcs.names`; ``scores`` float64[p], the greater the more suspicious, -inf where
     the parameter was never compared; ``posterior`` float64[p]; ``none`` the probability that it is
-    none of them; ``type1`` that the error is of type I, from the marks alone.
+    none of them; ``type1`` that the error is of type I, from the marks alone. ``decisive`` has an
+    entry for each parameter, None where it was never compared.
     """
 
     names: tuple[str, ...]
@@ -96,6 +106,7 @@ class Diagnosis:
     posterior: Floats
     none: float
     type1: float
+    decisive: tuple[Decisive | None, ...]
 
     @property
     def order(self) -> list[int]:
@@ -130,7 +141,8 @@ def diagnose(
     marks = recording.marks
     if not marks or not streams.streams:
         nobody = np.full(len(tpcs.names), -np.inf)
-        return Diagnosis(tpcs.names, nobody, np.zeros(len(tpcs.names)), 1.0, 0.5)
+        nothing = (None,) * len(tpcs.names)
+        return Diagnosis(tpcs.names, nobody, np.zeros(len(tpcs.names)), 1.0, 0.5, nothing)
     times = np.array([mark.time_ns for mark in marks], np.int64)
     found = evidence(streams, marked(times, tuple(mark.observer for mark in marks), streams))
     columns = np.array([stream.column for stream in streams.streams])
@@ -138,7 +150,19 @@ def diagnose(
     scores = parameter_scores(found, columns, len(tpcs.names), odds, weights)
     scores = scores + weights.ranked * ranked(recording, tpcs, times) + extra
     posterior, none = softmax(scores, weights.none)
-    return Diagnosis(tpcs.names, scores, posterior, none, 1.0 / (1.0 + math.exp(odds)))
+    by = _decisive(streams, tpcs, *stream_scores(found, odds, weights))
+    return Diagnosis(tpcs.names, scores, posterior, none, 1.0 / (1.0 + math.exp(odds)), by)
+
+
+def _decisive(
+    streams: Streams, tpcs: Tpcs, scores: Floats, type1: Floats
+) -> tuple[Decisive | None, ...]:
+    """The best stream of each parameter, the first of equal ones."""
+    best: list[Decisive | None] = [None] * len(tpcs.names)
+    for n in reversed(np.argsort(-scores, kind="stable").tolist()):
+        stream = streams.streams[n]
+        best[stream.column] = Decisive(tpcs.keys[stream.code], stream.node, float(type1[n]))
+    return tuple(best)
 
 
 def ranked(recording: Recording, tpcs: Tpcs, times_ns: Int64s) -> Floats:
@@ -187,6 +211,16 @@ def parameter_scores(
         odds: of the types, see ``type_odds``; of all or of each stream.
         weights: what the evidence counts.
     """
+    best = np.full(parameters, -np.inf)
+    np.maximum.at(best, columns, stream_scores(found, odds, weights)[0])
+    return best
+
+
+def stream_scores(found: Evidence, odds: float | Floats, weights: Weights) -> tuple[Floats, Floats]:
+    """float64[streams] each: the score, and the part of it that is an error of type I.
+
+    A latch is of type II: what is not done any more since.
+    """
     first = weights.acted * found.acted + weights.far * found.far
     second = (
         weights.type2
@@ -203,9 +237,7 @@ def parameter_scores(
     latched, held = -np.logaddexp(0.0, -weights.latch), -np.logaddexp(0.0, weights.latch)
     other, one = -np.logaddexp(0.0, -np.asarray(odds)), -np.logaddexp(0.0, odds)
     score = np.logaddexp(first + np.logaddexp(one, other + latched), second + other + held)
-    best = np.full(parameters, -np.inf)
-    np.maximum.at(best, columns, score)
-    return best
+    return score, np.exp(first + one - score)
 
 
 def softmax(scores: Floats, none: float) -> tuple[Floats, float]:

@@ -142,8 +142,8 @@ def marked(times_ns: Int64s, observers: Sequence[str], streams: Streams) -> Mark
 
 def evidence(streams: Streams, marks: Marked) -> Evidence:
     """The evidence of all streams; there is at least one mark."""
-    wait = _Wait.before(marks, streams.seconds)
-    chance = _any_time(streams.seconds, marks)
+    wait = Wait.before(marks, streams.seconds)
+    chance = any_time(streams.seconds, marks)
     rows = [
         (
             _acted(s, streams, marks) - chance,
@@ -182,9 +182,22 @@ def _acted(stream: Stream, streams: Streams, marks: Marked) -> float:
     )
     follows = np.maximum(0, follows)
     prior = prior * np.where(first, 1.0, LATER) * (IDLE + follows / (follows + HALF))
-    fits = _fits(turns, streams.seconds, marks)
+    return caused(turns, prior, streams.seconds, marks)
+
+
+def caused(turns: Floats, weights: Floats, seconds: float, marks: Marked) -> float:
+    """How well the first marks fit to one of these turns as their cause: ``acted`` but for chance.
+
+    Args:
+        turns: float64[turns], at least one; their times.
+        weights: float64[turns], u(t) of the formula.
+        seconds: the length of the log.
+        marks: those to explain.
+    """
+    fits = _fits(turns, seconds, marks)
     top = fits.max()
-    return float(top + np.log(np.sum(prior * np.exp(fits - top)) / (OTHERS + prior.sum())))
+    total = np.sum(weights * np.exp(fits - top)) / (OTHERS + weights.sum())
+    return float(top + np.log(total))
 
 
 def _fits(turns: Floats, seconds: float, marks: Marked) -> Floats:
@@ -193,7 +206,7 @@ def _fits(turns: Floats, seconds: float, marks: Marked) -> Floats:
     return np.asarray(np.log(STRAY + (1 - STRAY) * times).sum(axis=1))
 
 
-def _any_time(seconds: float, marks: Marked) -> float:
+def any_time(seconds: float, marks: Marked) -> float:
     """The same for a cause at any time up to the last mark: the marks of all come together."""
     last = float(np.clip(marks.firsts.max(initial=0.0), 0.0, seconds))
     fits = _fits(np.linspace(0.0, last, GRID), seconds, marks)
@@ -213,7 +226,7 @@ class _Waited(NamedTuple):
     flat: float = 0.0
 
 
-class _Wait(NamedTuple):
+class Wait(NamedTuple):
     """Sorted, disjoint spans that are taken for waits; ``begins`` and ``ends`` float64[spans]."""
 
     begins: Floats
@@ -221,7 +234,7 @@ class _Wait(NamedTuple):
     seconds: float
 
     @classmethod
-    def before(cls, marks: Marked, seconds: float) -> _Wait:
+    def before(cls, marks: Marked, seconds: float) -> Wait:
         begins = np.sort(marks.times) - WAIT_S
         ends = begins + WAIT_S
         new = np.concatenate([[True], begins[1:] > ends[:-1]])
@@ -238,7 +251,7 @@ class _Wait(NamedTuple):
         return max(float(np.sum(np.maximum(ends - np.maximum(self.begins, 0.0), 0.0))), 1.0)
 
 
-def _waited(stream: Stream, wait: _Wait, marks: Marked) -> _Waited:
+def _waited(stream: Stream, wait: Wait, marks: Marked) -> _Waited:
     inside = wait.holds(stream.times)
     if not inside.any():
         nothing = float(np.log(STRAY)) * marks.firsts.size

@@ -16,7 +16,7 @@ from pytpc.events import Events
 from pytpc.parameters import same_parameter
 from pytpc.scoring.tables import Tpcs
 
-UNCHANGED = -4.0
+UNCHANGED = -8.0
 """The log odds of a parameter that is as it was; not less, as what is on record may be wrong, and
 the robot may be elsewhere than where that value was right."""
 
@@ -40,7 +40,7 @@ def of_reference(tpcs: Tpcs, events: Events, reference: Events) -> Floats:
     A parameter none of whose comparisons was evaluated in both, or that changed while the robot
     ran, is between: nothing is known of it.
     """
-    here, there = _thresholds(events, tpcs), _thresholds(reference, tpcs)
+    here, there = thresholds_of(events, tpcs), thresholds_of(reference, tpcs)
     prior: dict[str, float] = {}
     for now, then, name in zip(here, there, tpcs.parameters, strict=True):
         if np.isnan(now) or np.isnan(then):
@@ -55,7 +55,7 @@ def of_change(old: float, new: float) -> float:
     return UNCHANGED if old == new else 0.0
 
 
-def _thresholds(events: Events, tpcs: Tpcs) -> Floats:
+def thresholds_of(events: Events, tpcs: Tpcs) -> Floats:
     """float64[n]: the threshold of each comparison, nan where it has none or several."""
     own = events.with_keys(tpcs.keys)
     found = np.full(len(tpcs.keys), np.nan)

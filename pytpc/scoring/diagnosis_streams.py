@@ -41,12 +41,15 @@ class Stream:
 
     ``times`` float64[n], sorted; ``weight`` float64[n], the seconds for which each was the last
     word; ``res`` bool[n]; ``margin`` float64[n], |cmp - thresh|, nan where it is not finite;
-    ``spread`` is the range of all its finite values, of cmp and of thresh. ``column`` is the
-    parameter's place in `Tpcs.names`, ``distance`` that of the comparison from what it exposes.
+    ``spread`` is the range of all its finite values, of cmp and of thresh. ``code`` is the
+    comparison's place in `Tpcs.keys`, ``column`` its parameter's in `Tpcs.names`, ``distance`` that
+    of the comparison from what it exposes.
     ``changes`` are when its result changed, noise taken together; ``starts`` and ``stops`` when it
-    began to be evaluated after a pause, and was before one (those of the log included).
+    began to be evaluated after a pause, and was before one (those of the log included). ``node``
+    is the one that evaluates.
     """
 
+    code: int
     column: int
     distance: float
     times: Floats
@@ -59,6 +62,7 @@ class Stream:
     changes: Floats
     starts: Floats
     stops: Floats
+    node: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,7 +98,7 @@ class Streams:
         for rows in np.split(order, ends[:-1] + 1):
             code = int(events.key[rows[0]])
             column = place[tpcs.parameters[code]]
-            streams.append(_stream(events, rows, begin, column, float(tpcs.distance[code])))
+            streams.append(_stream(events, rows, begin, (code, column), float(tpcs.distance[code])))
         return cls(tuple(streams), begin, seconds)
 
     @cached_property
@@ -118,7 +122,9 @@ class Streams:
 _KEPT: WeakKeyDictionary[Events, tuple[tuple[str, ...], Streams]] = WeakKeyDictionary()
 
 
-def _stream(events: Events, rows: Int64s, begin_ns: int, column: int, distance: float) -> Stream:
+def _stream(
+    events: Events, rows: Int64s, begin_ns: int, places: tuple[int, int], distance: float
+) -> Stream:
     times = (events.time_ns[rows] - begin_ns) / 1e9
     cmp, thresh, res = events.cmp[rows], events.thresh[rows], events.res[rows]
     gaps = np.diff(times)
@@ -133,7 +139,8 @@ def _stream(events: Events, rows: Int64s, begin_ns: int, column: int, distance: 
     changed = np.flatnonzero(res[1:] != res[:-1]) + 1
     paused = np.flatnonzero(gaps > pause)
     return Stream(
-        column=column,
+        code=places[0],
+        column=places[1],
         distance=distance,
         times=times,
         weight=weight,
@@ -145,6 +152,7 @@ def _stream(events: Events, rows: Int64s, begin_ns: int, column: int, distance: 
         changes=_first_of_bursts(times[changed]),
         starts=times[np.concatenate([[0], paused + 1])],
         stops=times[np.concatenate([paused, [times.size - 1]])],
+        node=events.nodes[events.node[rows[0]]],
     )
 
 

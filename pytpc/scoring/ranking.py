@@ -254,9 +254,9 @@ class Ranker:
         first = self.evidence.first_ns
         if not self.tpcs.keys:
             return "the static information has no comparison with a parameter"
-        outside = self._outside(mark)
-        if outside:
-            return outside
+        beyond = outside(mark, self.evidence, self.window_s)
+        if beyond:
+            return beyond
         evaluated = {
             name
             for key, name in zip(self.tpcs.keys, self.tpcs.parameters, strict=True)
@@ -270,27 +270,28 @@ class Ranker:
             return f"all {len(suspects)} parameters with a score have the same one"
         return ""
 
-    def _outside(self, mark: Mark) -> str:
-        """What is wrong with the time of the mark; empty where nothing is."""
-        first = self.evidence.first_ns
-        if not first:
-            return "no comparison was reported"
-        last = self.evidence.reported_ns(mark.time_ns)
-        away = min(first.values()) - mark.time_ns if last is None else mark.time_ns - last
-        if away > APART_NS:
-            return "the mark is on another clock than the reports"
-        if last is None:
-            return f"the mark is {_seconds(away)} before the first report"
-        if away > self.window_s * 1e9:
-            return f"the last report up to the mark is {_seconds(away)} before it"
-        return ""
-
     def _why_nobody(self, mark: Mark) -> str:
         change = "no result had changed up to the mark"
         near = f"nothing that ever had two different values was compared in the {self.window_s:g} s"
         if self.types != "believe" or mark.type is None:
             return f"{change}, and {near} before it"
         return change if mark.type == "I" else f"{near} before the mark"
+
+
+def outside(mark: Mark, evidence: Evidence, window_s: float = WINDOW_S) -> str:
+    """What is wrong with the time of a mark; empty where nothing is."""
+    first = evidence.first_ns
+    if not first:
+        return "no comparison was reported"
+    last = evidence.reported_ns(mark.time_ns)
+    away = min(first.values()) - mark.time_ns if last is None else mark.time_ns - last
+    if away > APART_NS:
+        return "the mark is on another clock than the reports"
+    if last is None:
+        return f"the mark is {_seconds(away)} before the first report"
+    if away > window_s * 1e9:
+        return f"the last report up to the mark is {_seconds(away)} before it"
+    return ""
 
 
 def _seconds(time_ns: int) -> str:

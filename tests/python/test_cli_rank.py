@@ -55,9 +55,9 @@ def one_line(result, *parts):
         assert part in text
 
 
-def test_rank_prints_a_table_for_each_mark(files):
+def test_the_thesis_has_a_table_for_each_mark(files):
     bag, static = files
-    result = run("rank", bag, "--static", static)
+    result = run("rank", bag, "--static", static, "--score", "thesis")
     assert result.exit_code == 0, result.output
     lines = result.stdout.splitlines()
     assert lines[0] == "Mark 1 at 15.0 s: type I, did what it should not"
@@ -70,6 +70,132 @@ def test_rank_prints_a_table_for_each_mark(files):
     second = [text.split() for text in lines[5:] if text.strip()]
     assert second[2][:7] == ["1", "faces", "3", "raise", "to", "5", "0.526"]
     assert second[4][:7] == ["2", "coverage", "0.6", "lower", "to", "0.499", "0.667"]
+
+
+# Both marks come after faces has turned and stayed so; coverage is 0.3 and 0.5 below 0.6 all the
+# time. To have faces at 15 s as before, its 4 must stay below the value.
+def test_all_marks_stand_together_first(files):
+    bag, static = files
+    result = run("rank", bag, "--static", static)
+    assert result.exit_code == 0, result.output
+    lines = [row.strip() for row in result.stdout.splitlines()]
+    assert lines[0] == "All 2 marks together: 1 of type I, 1 of type II"
+    assert lines[2].split() == [
+        "#",
+        "Parameter",
+        *["Probability", "Type", "Value", "To", "try", "Compared", "at"],
+    ]
+    (suspect,) = [row for row in lines if row.startswith("1 ")]
+    assert suspect.split()[1] == "faces"
+    assert suspect.endswith("src/node.cpp:10")
+    assert "if (value >= faces_) {" in lines
+    assert "Mark 1" not in result.stdout
+    # What each mark says by itself comes behind it.
+    each = [
+        row for row in run("rank", bag, "--static", static, "--each").stdout.splitlines() if row
+    ]
+    titles = [row.strip() for row in each if row.startswith(("All", "Mark"))]
+    assert titles == [
+        lines[0],
+        "Mark 1 at 15.0 s: type I, did what it should not",
+        "Mark 2 at 19.0 s: type II, does not do what it should",
+    ]
+
+
+def test_all_marks_together_as_json(files):
+    bag, static = files
+    marks = json.loads(run("rank", bag, "--static", static, "--json", "--top", "1").stdout)
+    together = marks[0]["diagnosis"]
+    assert marks[1]["diagnosis"] == together
+    (first,) = together["suspects"]
+    assert (first["position"], first["parameter"], first["lineno"]) == (1, "faces", 10)
+    assert together["confidence"] == first["probability"]
+    assert together["accused"] == ("faces" if first["probability"] >= 0.5 else None)
+    assert together["parameters"] == 2
+    assert 0 < first["probability"] + together["none"] < 1
+    assert first["remedy"]["direction"] in {"raise", "lower"}
+    thesis = json.loads(run("rank", bag, "--static", static, "--json", "--score", "thesis").stdout)
+    assert [mark["diagnosis"] for mark in thesis] == [None, None]
+    assert (
+        thesis[0]["suspects"]
+        == json.loads(run("rank", bag, "--static", static, "--json").stdout)[0]["suspects"]
+    )
+
+
+def probabilities(*arguments):
+    """The probabilities by parameter."""
+    result = run("rank", *arguments, "--json")
+    assert result.exit_code == 0, result.output
+    suspects = json.loads(result.stdout)[0]["diagnosis"]["suspects"]
+    return {suspect["parameter"]: suspect["probability"] for suspect in suspects}
+
+
+# With 0.4 coverage's 0.5 would have been beyond it all the time; faces was not changed.
+def test_what_was_changed_is_likelier(files, tmp_path):
+    bag, static = files
+    words = (bag, "--static", static)
+    plainly = probabilities(*words)
+    changes = tmp_path / "changes.json"
+    entry = {"parameter": "/node/coverage", "node": "/node", "old": 0.4, "new": 0.6}
+    changes.write_text(json.dumps([entry]))
+    known = probabilities(*words, "--changes", changes)
+    assert plainly["faces"] > plainly["coverage"]
+    assert known["coverage"] > 0.5
+    assert known["faces"] < 0.01
+    # The same from what stood on the parameter server before.
+    before = tmp_path / "before.yaml"
+    before.write_text("node: {coverage: 0.4, faces: 3, name: a}\n")
+    (tmp_path / "params.yaml").write_text("node: {coverage: 0.6, faces: 3, name: a}\n")
+    assert probabilities(*words, "--before", before) == pytest.approx(known)
+
+
+# In the clean run coverage was compared with 0.4, faces with the same 3.
+def test_what_differs_from_a_clean_run_is_likelier(files, tmp_path):
+    bag, static = files
+    clean = tmp_path / "clean.bag"
+    with BagFile(clean) as writer:
+        for t in range(1, 20):
+            writer.log(t, "/uav", line(0, 0, 1, 3))
+            writer.log(t, "/uav", line(1, 0, 0.3, 0.4))
+    found = probabilities(bag, "--static", static, "--reference", clean)
+    assert found["coverage"] > 0.5
+    assert found["faces"] < 0.01
+    other = tmp_path / "other.bag"
+    with BagFile(other) as writer:
+        writer.log(1, "/uav", line(7, 0, 1, 2))
+    one_line(
+        run("rank", bag, "--static", static, "--reference", other),
+        "other.bag: none of its reports is known",
+    )
+
+
+def test_what_is_known_beside_the_log_and_does_not_fit(files, tmp_path):
+    bag, static = files
+    words = ("rank", bag, "--static", static)
+    file = tmp_path / "known"
+    file.write_text("{}")
+    one_line(run(*words, "--changes", file), "known: not a history of changes: a list")
+    file.write_text("[]")
+    assert "known: no parameter that is compared anywhere was changed" in (
+        run(*words, "--changes", file).stderr
+    )
+    one_line(run(*words, "--before", file), "m.bag: no params.yaml beside it")
+    one_line(run(*words, "--changes", tmp_path / "none"), "none: cannot be read")
+    for more in (
+        ("--changes", file, "--before", file),
+        ("--score", "thesis", "--changes", file),
+        ("--score", "thesis", "--reference", bag),
+    ):
+        result = run(*words, *more)
+        assert (result.exit_code, result.stdout) == (2, "")
+
+
+def test_types_that_are_not_believed_do_not_count_together(files):
+    bag, static = files
+    ignored = run("rank", bag, "--static", static, "--types", "ignore").stdout
+    assert "All 2 marks together: 2 without a type" in ignored
+    believed = probabilities(bag, "--static", static)
+    assert probabilities(bag, "--static", static, "--types", "doubt") == believed
 
 
 def test_rank_as_json(files):
@@ -104,9 +230,9 @@ def test_types_and_their_older_name(files):
 # faces: by type I alone. coverage has no score by it.
 def test_whose_score_it_is_where_types_are_mixed(files):
     bag, static = files
-    believed = run("rank", bag, "--static", static).stdout
-    assert "By type" not in believed
-    doubted = run("rank", bag, "--static", static, "--types", "doubt").stdout.splitlines()
+    thesis = ("rank", bag, "--static", static, "--score", "thesis")
+    assert "By type" not in run(*thesis).stdout
+    doubted = run(*thesis, "--types", "doubt").stdout.splitlines()
     assert "By type" in doubted[1]
     assert doubted[2].split()[1:8] == ["faces", "3", "raise", "to", "5", "I", "2"]
     assert doubted[4].split()[1:7] == ["coverage", "0.6", "lower", "to", "0.499", "II"]
@@ -161,9 +287,14 @@ def test_a_time_that_nobody_marked(files, quiet):
     assert [s["parameter"] for s in early["suspects"]] == ["coverage", "faces"]
     outside = run("rank", quiet, "--static", static, "--at", "100")
     assert outside.exit_code == 0
-    assert (
-        "not enough evidence: the last report up to the mark is 80.1 s before it" in outside.stdout
-    )
+    said = [row.strip() for row in outside.stdout.splitlines() if row.strip()]
+    assert said == [
+        "The one mark: 1 without a type",
+        "not enough evidence to suspect anybody",
+        "mark 1: the last report up to the mark is 80.1 s before it",
+    ]
+    thesis = run("rank", quiet, "--static", static, "--at", "100", "--score", "thesis")
+    assert "not enough evidence: the last report up to the mark is 80.1 s before" in thesis.stdout
 
 
 @pytest.mark.parametrize("option", ["--at", "--window"])
@@ -180,7 +311,7 @@ def test_several_missions(files, quiet):
     result = run("rank", bag, quiet, bag, "--static", static)
     assert result.exit_code == 0
     assert result.stdout.count(f"{bag}:\n") == 2
-    assert result.stdout.count("Mark 1 at 15.0 s") == 2
+    assert result.stdout.count("All 2 marks together: 1 of type I, 1 of type II") == 2
     (warning,) = result.stderr.splitlines()
     assert warning.startswith(f"pytpc: warning: {quiet}: no marks")
     items = json.loads(run("rank", bag, quiet, "--static", static, "--json").stdout)
@@ -246,7 +377,7 @@ def test_ties_in_the_table(tmp_path):
     static = tmp_path / "static.json"
     names = ("a", "b", "c")
     static_info(*(comparison(number, name) for number, name in enumerate(names))).save(static)
-    result = run("rank", bag, "--static", static)
+    result = run("rank", bag, "--static", static, "--score", "thesis")
     starts = [row.split()[:2] for row in result.stdout.splitlines()]
     assert [start for start in starts if len(start) == 2 and start[1] in names] == [
         ["1", "c"],
@@ -262,7 +393,8 @@ def test_marks_on_another_clock_are_told_in_one_line(files, tmp_path):
         write_reports(writer)
         writer.mark(16, "/mark_action", marked=1_790_000_000)
     result = run("rank", bag, "--static", static)
-    assert "not enough evidence: the mark is on another clock than the reports" in result.stdout
+    assert "not enough evidence to suspect anybody" in result.stdout
+    assert "mark 1: the mark is on another clock than the reports" in result.stdout
     (warning,) = [row for row in result.stderr.splitlines() if "marks are" in row]
     # 1,790,000,000 s after 1970 are 20,717 days and some hours: 2026-09-21.
     assert "1 of 1 marks are on another clock than the reports" in warning

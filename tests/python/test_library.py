@@ -162,3 +162,40 @@ def test_declared_ranges_are_on_the_page(tmp_path: Path):
     static = static_info(comparison(0, "~limit"), comparison(1, "~far"), source_root=str(tmp_path))
     page = pytpc.write_report(tmp_path / "page.html", pytpc.rank(MISSION, static)).read_text()
     assert "double from 1.5 to 5" in page
+
+
+# ~limit is the one whose value comes nearer. The first line is which marks they are, the second the
+# verdict, the third of one mark that it is not sure.
+def test_all_marks_together():
+    found = pytpc.diagnose(MISSION, STATIC)
+    lines = str(found).splitlines()
+    assert lines[0] == "The one mark: 1 of type II"
+    assert lines[1] == found.blame.text
+    assert [row["parameter"] for row in found.rows()] == [s.parameter for s in found.blame.suspects]
+    assert {row["place"] for row in found.rows()} == {"src/node.cpp:10", "src/node.cpp:11"}
+    assert found.confidence == found.rows()[0]["probability"]
+    assert found.accused in {None, found.rows()[0]["parameter"]}
+    assert len(pytpc.diagnose(MISSION, STATIC, top=1).advice) == 1
+    # What is not as it was is the likelier.
+    for name in ("~limit", "~far"):
+        changed = pytpc.diagnose(MISSION, STATIC, changes=[pytpc.Change(name, "", 1, 2)])
+        plainly = {row["parameter"]: row["probability"] for row in found.rows()}
+        chances = {row["parameter"]: row["probability"] for row in changed.rows()}
+        assert chances[name] > plainly[name]
+    reference = replace(MISSION, marks=())
+    same = pytpc.diagnose(MISSION, STATIC, reference=reference)
+    assert same.blame.none > found.blame.none
+    with pytest.raises(InputError, match="no marks"):
+        pytpc.diagnose(replace(MISSION, marks=()), STATIC)
+
+
+def test_all_marks_together_are_escaped():
+    found = pytpc.diagnose(MISSION, static_info(comparison(0, BAD), comparison(1, "~far")))
+    assert "<script" not in found._repr_html_()
+    assert "\x1b" not in found._repr_html_() + str(found)
+    nobody = pytpc.diagnose(replace(MISSION, marks=(Mark(ns(100), "II"),)), STATIC)
+    assert str(nobody).splitlines()[1:] == [
+        "not enough evidence to suspect anybody",
+        "mark 1: the last report up to the mark is 96 s before it",
+    ]
+    assert "<table" not in nobody._repr_html_()

@@ -1,0 +1,48 @@
+"""The diagnosis with what is known beside the log: a clean run, or what was changed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from pytpc.advice.other_values import before_changes, diagnose_replayed, of_clean_run
+from pytpc.ingest.recording import Recording
+from pytpc.scoring.diagnosis import Diagnosis, diagnose
+from pytpc.scoring.diagnosis_priors import of_changes, of_reference
+from pytpc.scoring.tables import Tpcs
+from pytpc.static_info import StaticInfo
+
+Changed = tuple[str, float, float]
+"""A parameter that was changed, the value before and after."""
+
+
+def diagnose_beside(
+    recording: Recording,
+    static_info: StaticInfo,
+    *,
+    reference: Recording | None = None,
+    changes: Sequence[Changed] = (),
+) -> Diagnosis:
+    """Judge all parameters by all marks, and by what the other values would have changed.
+
+    Args:
+        recording: the mission with its marks, of any types or none.
+        static_info: what the analysis found.
+        reference: a clean run, whose thresholds are looked at; None where there is none.
+        changes: what was changed since the robot went right, empty where that is not known. Their
+            order says nothing. Beside a reference, what either of them says is as it was is
+            unlikely; the values of before are taken from the changes first.
+    """
+    tpcs = Tpcs.of(static_info)
+    priors, others = [], {}
+    if reference is not None:
+        events, clean = recording.events, reference.events
+        priors.append(of_reference(tpcs, events, clean))
+        others.update(of_clean_run(tpcs, events, clean))
+    if changes:
+        priors.append(of_changes(tpcs.names, changes))
+        others.update(before_changes(static_info, [(name, old) for name, old, _ in changes]))
+    if not priors:
+        return diagnose(recording, static_info)
+    return diagnose_replayed(recording, static_info, np.min(priors, axis=0), others)

@@ -1,0 +1,213 @@
+"""Replay: what would the robot have decided with the other value, the one of before or of a clean run.
+
+That is what an engineer does who knows that six parameters are not as they were: with which of them
+would the robot have decided otherwise before the marks, when, and for how long? The logged
+comparisons of a parameter are evaluated again with its other threshold. Turns are spans in which
+the outcome would be another one. A turn ends where the outcome is the same again; where the
+comparison is left alone before, the way of its value is followed on, at the slope of the last
+seconds, until it would be. So a decision that would have come a moment sooner or later weighs
+little, whatever the number by which the value was changed. Of each comparison it is asked
+
+    acted  = log( sum of u fit / (sum of u + c) ) - log( mean of fit ),  u = d / (d + MOMENT_S)
+    waited = log( (turned in the wait + s) / (turned elsewhere + s) )
+
+with the duration d of each turn; ``fit`` and the wait are those of
+`pytpc.scoring.diagnosis_evidence`, of the marks. Type I is charged with ``acted`` of the begins of
+the turns, type II with ``waited``; both by the odds of the types. A comparison that no other value
+turns before the last mark is acquitted.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from pytpc.advice.inverse import kept_as
+from pytpc.advice.thresholds import outcomes
+from pytpc.advice.units import NoUnitError, is_text, read_type, tree_of
+from pytpc.arithmetic import evaluate
+from pytpc.columns import Bools, Floats
+from pytpc.events import Events
+from pytpc.ingest.recording import Recording
+from pytpc.parameters import same_parameter
+from pytpc.scoring.diagnosis import Diagnosis, diagnose, softmax, type_odds
+from pytpc.scoring.diagnosis_evidence import SHARE, Marked, Wait, any_time, caused, marked
+from pytpc.scoring.diagnosis_priors import thresholds_of
+from pytpc.scoring.diagnosis_streams import Stream, Streams
+from pytpc.scoring.tables import Tpcs
+from pytpc.static_info import StaticInfo
+
+MOMENT_S = 1.0
+"""A turn of this length weighs half of one that lasts."""
+
+LEAST = 0.01
+"""No turn weighs less."""
+
+SLOPE_S = 2.0
+"""Over so long the slope is taken with which a value is followed on."""
+
+ACQUITTED = -4.0
+"""The log odds of a parameter whose other value would have turned nothing before the marks."""
+
+
+ALONE = 0.4
+"""What the log by itself counts beside the replay, which looks at the same marks."""
+
+REPLAYED = 1.5
+"""What the replay counts. Both, and ``NOBODY``, are chosen on the tuning half of the study."""
+
+NOBODY = -3.0
+"""The score of "none of them" where it is known what differs."""
+
+
+def diagnose_replayed(
+    recording: Recording, static_info: StaticInfo, prior: Floats, others: Mapping[str, float]
+) -> Diagnosis:
+    """The diagnosis of `pytpc.scoring.diagnosis` with what the replay says.
+
+    Args:
+        recording: the mission with its marks.
+        static_info: what the analysis found.
+        prior: float64[p], see `pytpc.scoring.diagnosis_priors`.
+        others: the other threshold of each comparison of which one is known, by its key.
+    """
+    alone = diagnose(recording, static_info)
+    if not np.isfinite(alone.scores).any():
+        return alone
+    found = replayed(recording, static_info, others)
+    charges = np.array([found.get(name, 0.0) for name in alone.names])
+    scores = ALONE * alone.scores + REPLAYED * charges + prior
+    posterior, none = softmax(scores, NOBODY)
+    return replace(alone, scores=scores, posterior=posterior, none=none)
+
+
+def before_changes(
+    static_info: StaticInfo, changes: Iterable[tuple[str, float]]
+) -> dict[str, float]:
+    """The threshold of each comparison, by its key, with the old values of (parameter, old).
+
+    Left out is what compares text, or where the way from the parameter to the threshold is not
+    known.
+    """
+    found = {}
+    values = list(changes)
+    for key, comparison in static_info.thresholds.items():
+        unit = static_info.unit_of(key)
+        if comparison.source is None or is_text(comparison, unit):
+            continue
+        for parameter, old in values:
+            if not same_parameter(parameter, comparison.source):
+                continue
+            try:
+                tree = kept_as(tree_of(comparison), read_type(comparison, unit))
+            except NoUnitError:
+                continue
+            threshold = evaluate(tree, old)
+            if not math.isnan(threshold):
+                found[key] = threshold
+    return found
+
+
+def of_clean_run(tpcs: Tpcs, events: Events, reference: Events) -> dict[str, float]:
+    """The threshold of each comparison in a clean run, by its key, where it is another one."""
+    here, there = thresholds_of(events, tpcs), thresholds_of(reference, tpcs)
+    differs = (here != there) & ~np.isnan(here) & ~np.isnan(there)
+    return {tpcs.keys[code]: float(there[code]) for code in np.flatnonzero(differs)}
+
+
+def replayed(
+    recording: Recording, static_info: StaticInfo, others: Mapping[str, float]
+) -> dict[str, float]:
+    """What speaks against the parameters whose comparisons are replayed, in log odds.
+
+    Args:
+        recording: with its marks, at least one.
+        static_info: what the analysis found.
+        others: the other threshold of each comparison to replay.
+
+    Returns:
+        By the parameter's name; the worst of its comparisons counts.
+    """
+    tpcs = Tpcs.of(static_info)
+    streams = Streams.of(recording.events, tpcs)
+    times = np.array([mark.time_ns for mark in recording.marks], np.int64)
+    marks = marked(times, tuple(mark.observer for mark in recording.marks), streams)
+    odds = type_odds(recording.marks)
+    wait = Wait.before(marks, streams.seconds)
+    found: dict[str, float] = {}
+    for stream in streams.streams:
+        key, name = tpcs.keys[stream.code], tpcs.names[stream.column]
+        if key not in others:
+            continue
+        other = others[key]
+        turned = _turned(static_info.thresholds[key].relation, stream, other)
+        charge = ACQUITTED
+        if np.any(turned & (stream.times <= marks.times.max())):
+            charge = max(charge, _charge(stream, turned, other, (marks, wait), odds))
+        found[name] = max(charge, found.get(name, ACQUITTED))
+    return found
+
+
+def _turned(relation: str, stream: Stream, other: float) -> Bools:
+    """bool[n]: whether the outcome would be another one."""
+    if relation == "flag":
+        return np.asarray((stream.thresh != 0) != (other != 0))
+    now = outcomes(relation, stream.cmp, stream.thresh)
+    return np.asarray(now != outcomes(relation, stream.cmp, other))
+
+
+def _charge(
+    stream: Stream, turned: Bools, other: float, evidence: tuple[Marked, Wait], odds: float
+) -> float:
+    marks, wait = evidence
+    begins, lengths = turns(stream, turned, other)
+    early = begins <= marks.firsts.max()
+    acted = ACQUITTED
+    if early.any():
+        weights = np.maximum(1.0 - MOMENT_S / (lengths[early] + MOMENT_S), LEAST)
+        acted = caused(begins[early], weights, wait.seconds, marks) - any_time(wait.seconds, marks)
+    inside = wait.holds(stream.times)
+    share = min(1.0, float(stream.weight[turned & inside].sum()) / wait.length)
+    rest = max(wait.seconds - wait.length, 1.0)
+    elsewhere = min(1.0, float(stream.weight[turned & ~inside].sum()) / rest)
+    waited = math.log((share + SHARE) / (elsewhere + SHARE)) + math.log(share + SHARE)
+    latched = np.logaddexp(acted, waited) - math.log(2.0)
+    return float(np.logaddexp(acted - np.logaddexp(0.0, odds), latched - np.logaddexp(0.0, -odds)))
+
+
+def turns(stream: Stream, turned: Bools, other: float) -> tuple[Floats, Floats]:
+    """The spans in which the outcome would be another one.
+
+    Args:
+        stream: n evaluations.
+        turned: bool[n].
+        other: the other threshold.
+
+    Returns:
+        float64[turns] each: when they begin, and their lengths in s; infinite where nothing says
+        that the value would ever have got to the other threshold.
+    """
+    last = np.zeros(turned.size, np.bool_)
+    last[np.searchsorted(stream.times, stream.stops, side="right") - 1] = True
+    goes_on = np.concatenate([[False], turned[:-1] & ~last[:-1]])
+    begins = np.flatnonzero(turned & ~goes_on)
+    ends = np.flatnonzero(turned & (last | ~np.append(turned[1:], False)))
+    lengths = [
+        stream.times[end] + _until_alike(stream, end, other) if last[end] else stream.times[end + 1]
+        for end in ends.tolist()
+    ]
+    return stream.times[begins], np.array(lengths, np.float64) - stream.times[begins]
+
+
+def _until_alike(stream: Stream, place: int, other: float) -> float:
+    """The seconds after an evaluation until its value is at the other threshold, on a line."""
+    first = int(np.searchsorted(stream.times, stream.times[place] - SLOPE_S))
+    span = float(stream.times[place] - stream.times[first])
+    way = other - float(stream.cmp[place])
+    rise = float(stream.cmp[place]) - float(stream.cmp[first])
+    if span <= 0.0 or not rise * way > 0.0:
+        return math.inf
+    return way * span / rise

@@ -1,0 +1,143 @@
+"""What `pytpc.library` answers, to look at in a terminal or a notebook."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from html import escape
+from typing import overload
+
+from pytpc.advice.advise import Advice
+from pytpc.advice.blame import Blame
+from pytpc.advice.blamed import BlamedAdvice
+from pytpc.notebook import Table
+from pytpc.scoring.ranking import MarkRanking
+from pytpc.words import exact, percent, plain, show
+
+
+@dataclass(frozen=True, slots=True)
+class Advices(Sequence[Advice]):
+    """What to do with the suspects at one mark, in their order.
+
+    A sequence of `pytpc.advice.advise.Advice`: suspect, suggestion, what it would have changed.
+    """
+
+    advices: tuple[Advice, ...]
+    ranking: MarkRanking
+
+    def __len__(self) -> int:
+        """The number of suspects."""
+        return len(self.advices)
+
+    @overload
+    def __getitem__(self, index: int) -> Advice: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> tuple[Advice, ...]: ...
+
+    def __getitem__(self, index: int | slice) -> Advice | tuple[Advice, ...]:
+        """The advice for a suspect."""
+        return self.advices[index]
+
+    def __iter__(self) -> Iterator[Advice]:
+        """The advices in the order of the suspects."""
+        return iter(self.advices)
+
+    def table(self) -> Table:
+        """A row for each suspect."""
+        rows = []
+        for advice in self.advices:
+            suggestion = advice.suggestion
+            what = f"{suggestion.direction} to {exact(suggestion.value)}"
+            rows.append(
+                (
+                    f"{advice.suspect.position}{'=' if advice.suspect.tied else ''}",
+                    advice.suspect.parameter,
+                    show(suggestion.current),
+                    what if suggestion.direction else f"none: {suggestion.reason}",
+                    advice.what_if.text if advice.what_if else "",
+                )
+            )
+        headings = ("#", "parameter", "value", "suggestion", "in the recorded run")
+        return Table(headings, tuple(rows), frozenset({0, 2}))
+
+    def __str__(self) -> str:
+        """The table as text."""
+        return str(self.table())
+
+    def _repr_html_(self) -> str:
+        """The table for a notebook, escaped."""
+        return self.table()._repr_html_()
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnosed:
+    """What all marks of a mission say together, and what to do with the first suspects.
+
+    ``blame`` has all suspects with their probabilities, and what keeps them from being surer;
+    ``advice`` is the value to try of the first ones (`pytpc.advice.blamed.BlamedAdvice`).
+    """
+
+    blame: Blame
+    advice: tuple[BlamedAdvice, ...]
+
+    @property
+    def accused(self) -> str | None:
+        """The parameter to blame; None where it is not sure (a probability below one half)."""
+        return self.blame.accused
+
+    @property
+    def confidence(self) -> float:
+        """The probability of the first suspect."""
+        return self.blame.confidence
+
+    def rows(self) -> list[dict[str, object]]:
+        """All suspects, flat; ``pandas.DataFrame(diagnosed.rows())``.
+
+        Each has ``position``, ``parameter``, ``probability``, ``type``, ``place`` (``file:line``)
+        and ``key``.
+        """
+        return [
+            {
+                "position": one.position,
+                "parameter": one.parameter,
+                "probability": one.probability,
+                "type": one.type,
+                "place": f"{one.comparison.file}:{one.comparison.lineno}",
+                "key": one.key,
+            }
+            for one in self.blame.suspects
+        ]
+
+    def table(self) -> Table:
+        """A row for each suspect that has an advice."""
+        rows = []
+        for one in self.advice:
+            accused, tried = one.accused, one.remedy
+            what = f"{tried.direction} to {exact(tried.value)}"
+            rows.append(
+                (
+                    f"{accused.position}{'=' if accused.tied else ''}",
+                    accused.parameter,
+                    percent(accused.probability),
+                    accused.type,
+                    show(accused.last.thresh if tried.current is None else tried.current),
+                    what if tried.direction else f"none: {tried.reason}",
+                    f"{accused.comparison.file}:{accused.comparison.lineno}",
+                )
+            )
+        headings = ("#", "parameter", "probability", "type", "value", "to try", "compared at")
+        return Table(headings, tuple(rows), frozenset({0, 2, 4}))
+
+    def _said(self) -> list[str]:
+        return [self.blame.title, self.blame.text, *self.blame.notes]
+
+    def __str__(self) -> str:
+        """The verdict and the table as text."""
+        said = [plain(line) for line in self._said()]
+        return "\n".join([*said, str(self.table())] if self.advice else said)
+
+    def _repr_html_(self) -> str:
+        """The same for a notebook, escaped."""
+        said = "<br>".join(escape(plain(line)) for line in self._said())
+        return f"<p>{said}</p>{self.table()._repr_html_() if self.advice else ''}"

@@ -1,0 +1,213 @@
+"""All marks together: the verdict in words, and what there is to say where evidence is short."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from mission_samples import comparison, events, key, ns, static_info
+
+from pytpc.advice.blame import Accused, Blame, blame
+from pytpc.advice.blamed import advise_blamed
+from pytpc.ingest import Recording
+from pytpc.marks import Mark
+from pytpc.scoring.evidence import Evaluation
+from pytpc.study.case import Case, Change
+from pytpc.study.methods import METHODS
+from pytpc.summaries import Summary, SummaryBuilder
+from pytpc.words import percent
+
+STATIC = static_info(comparison(0, "~gate"), comparison(1, "~safe"), comparison(2, "~never"))
+MARKS = (Mark(ns(33), "I", "ana"), Mark(ns(34), "I", "bob"))
+
+
+def rows():
+    """~gate turns at 30 s of 80, for it grows by 1/80 a second; ~safe stays 8 from its 9."""
+    found = []
+    for tick in range(160):
+        t = tick / 2
+        found.append((t, 0, t >= 30, t / 80, 30 / 80))
+        found.append((t + 0.01, 1, 0, 1 + 0.1 * math.sin(t), 9))
+    return found
+
+
+def mission(marks=MARKS, **more):
+    return Recording("mission", events(rows()), tuple(marks), 0, ns(80), **more)
+
+
+def accused(probability, parameter="~gate"):
+    last = Evaluation(0, True, 1.0, 2.0, True, "/node")
+    known = comparison(0, parameter)
+    return Accused(1, False, parameter, probability, "I", known.key, known, last)
+
+
+def said(probability, none):
+    return Blame((accused(probability),), none, 3, MARKS, ()).text
+
+
+def test_a_verdict_is_an_accusation_from_one_half_on():
+    assert said(0.5, 0.2) == "blame ~gate: 50 %; none of the parameters: 20 %"
+    assert said(0.499, 0.2) == "not sure: ~gate is likeliest (50 %); none of the parameters: 20 %"
+    assert said(0.3, 0.6) == (
+        "not sure: none of the parameters is likeliest (60 %; a fault in the code is none of them),"
+        " then ~gate (30 %)"
+    )
+    surest = Blame((accused(0.7),), 0.1, 3, MARKS, ())
+    assert (surest.accused, surest.confidence) == ("~gate", 0.7)
+    assert Blame((accused(0.49),), 0.1, 3, MARKS, ()).accused is None
+    nobody = Blame((), 1.0, 3, MARKS, ())
+    assert (nobody.accused, nobody.confidence) == (None, 0.0)
+    assert nobody.text == "not enough evidence to suspect anybody"
+
+
+def test_which_marks_they_are():
+    assert blame(mission(), STATIC).title == "All 2 marks of 2 observers together: 2 of type I"
+    mixed = [Mark(ns(33), None), Mark(ns(34), "II"), Mark(ns(35), "I"), Mark(ns(36), "I")]
+    assert blame(mission(mixed), STATIC).title == (
+        "All 4 marks together: 2 of type I, 1 of type II, 1 without a type"
+    )
+    assert blame(mission(MARKS[:1]), STATIC).title == "The one mark: 1 of type I"
+
+
+def test_the_parameter_that_turned_before_the_marks():
+    found = blame(mission(), STATIC)
+    first, second = found.suspects
+    assert [(s.position, s.tied, s.parameter) for s in found.suspects] == [
+        (1, False, "~gate"),
+        (2, False, "~safe"),
+    ]
+    assert (first.type, first.key) == ("I", STATIC.comparisons[first.key].key)
+    # The last evaluation up to 34 s, the last mark.
+    assert first.last == Evaluation(ns(34), True, 34 / 80, 30 / 80, True, "/node")
+    assert first.probability + second.probability + found.none == pytest.approx(1)
+    assert (found.parameters, found.notes) == (3, ())
+
+
+# Of two parameters that are compared alike none is before the other.
+def test_equal_ones_share_a_position():
+    alike = [(t, key, t >= 30, t / 80, 30 / 80) for t in range(80) for key in (0, 1)]
+    found = blame(Recording("m", events(alike), MARKS, 0, ns(80)), STATIC)
+    assert [(s.position, s.tied) for s in found.suspects] == [(1, True), (1, True)]
+
+
+def test_one_mark_says_little_where_it_is_not_sure():
+    still = [(t / 2, 1, 0, 1 + 0.1 * math.sin(t), 9) for t in range(160)]
+    one = Recording("m", events(still), (Mark(ns(40), None),), 0, ns(80))
+    found = blame(one, STATIC)
+    assert found.accused is None
+    assert found.notes == ("one mark says little: mark it each time that it happens",)
+
+
+# The log ends at 79.5 s: 100 s and 200 s are 20.5 and 120 s later. The two others count.
+def test_marks_that_have_no_report_are_named():
+    late = (*MARKS, Mark(ns(100), "I"), Mark(ns(200), "I"), Mark(ns(200), "II"))
+    found = blame(mission(late), STATIC)
+    assert found.suspects
+    assert found.notes == (
+        "mark 3: the last report up to the mark is 20.5 s before it",
+        "marks 4, 5: the last report up to the mark is 120 s before it",
+    )
+    nobody = blame(mission(late[2:]), STATIC)
+    assert (nobody.suspects, nobody.none) == ((), 1.0)
+    assert nobody.notes[0].startswith("mark 1: ")
+
+
+def test_nothing_marked_and_nothing_reported():
+    assert blame(mission(()), STATIC).suspects == ()
+    empty = blame(Recording("m", events([]), MARKS, 0, ns(80)), STATIC)
+    assert empty.notes == ("marks 1, 2: no comparison was reported",)
+
+
+# Without the types the marks say the same of both.
+def test_types_that_are_ignored():
+    ignored = blame(mission(), STATIC, types="ignore")
+    untyped = blame(mission([Mark(m.time_ns, None, m.observer) for m in MARKS]), STATIC)
+    assert ignored.suspects == untyped.suspects != blame(mission(), STATIC).suspects
+    assert {mark.type for mark in ignored.marks} == {None}
+
+
+def same(found, verdict):
+    """Whether users get what the study judges."""
+    assert tuple(suspect.parameter for suspect in found.suspects) == verdict.order
+    return found.confidence == verdict.confidence
+
+
+# In the clean run ~gate's threshold was higher, and ~safe's the same: so it is in the history.
+def test_users_get_what_the_study_judges():
+    clean = Recording("clean", events([(1, 0, 0, 0.1, 0.9), (2, 1, 0, 1, 9)]), (), 0, ns(80))
+    changed = Change("~gate", "/node", 0.9, 0.375)
+    case = Case(mission(), STATIC, clean, (changed,))
+    alone = blame(mission(), STATIC)
+    assert same(alone, METHODS["tpc"](case))
+    known = {"reference": clean}, {"changes": [("~gate", 0.9, 0.375)]}
+    for method, beside in zip(("tpc+reference", "tpc+changes"), known, strict=True):
+        found = blame(mission(), STATIC, **beside)
+        assert same(found, METHODS[method](case))
+        assert found.suspects[0].parameter == "~gate"
+        assert found.confidence > alone.confidence
+
+
+# The clean run says that ~safe is what it was, the history that ~gate is. By both it is neither.
+def test_a_clean_run_and_the_changes_together():
+    clean = Recording("clean", events([(1, 0, 0, 0.1, 0.9), (2, 1, 0, 1, 9)]), (), 0, ns(80))
+    of_safe = [("safe", 5.0, 9.0)]
+    found = blame(mission(), STATIC, reference=clean, changes=of_safe)
+    assert found.none > blame(mission(), STATIC, reference=clean).none
+    assert found.none > blame(mission(), STATIC, changes=of_safe).none
+
+
+# Only the changes of results were reported; the rest came as a summary.
+def test_summaries_are_told():
+    builder = SummaryBuilder()
+    builder.add(
+        Summary(
+            key=key(0),
+            node="/node",
+            begin_ns=ns(31),
+            end_ns=ns(33),
+            count=1200,
+            flops=0,
+            far=1200,
+            odd=0,
+            cmp=0.4,
+            thresh=0.375,
+            result=True,
+            res=True,
+            diff_min=0.0,
+            diff_max=0.1,
+            diff_mean=0.05,
+            abs_mean=0.05,
+            low=0.3,
+            high=0.4,
+        )
+    )
+    found = blame(mission(summaries=builder.build()), STATIC)
+    assert found.notes == (
+        "1,200 evaluations came as summaries (policy edges) and are not judged here, so that what"
+        " the robot waits for is not seen: look at each mark, too",
+    )
+    only = Recording("m", events([]), MARKS, 0, ns(80), summaries=builder.build())
+    assert blame(only, STATIC).suspects == ()
+
+
+# The value to try is by the marks of the suspect's type: ~gate turned at 30 s. To have it not turn
+# before the marks it has to be above 34/80; of marks of the other type alone all count.
+def test_what_to_do_with_the_first():
+    recording = mission((*MARKS, Mark(ns(70), "II")))
+    found = blame(recording, STATIC)
+    (advice,) = advise_blamed(found, recording, STATIC, top=1)
+    assert (advice.accused.type, advice.remedy.kind) == ("I", "I")
+    assert advice.remedy.direction == "raise"
+    assert advice.what_if is not None
+    assert advice.what_if.marks == 2
+
+
+def test_percent():
+    assert [percent(x) for x in (0, 0.004, 0.006, 0.721, 0.996, 1)] == [
+        "0 %",
+        "<1 %",
+        "1 %",
+        "72 %",
+        ">99 %",
+        "100 %",
+    ]
