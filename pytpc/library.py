@@ -215,7 +215,9 @@ def diagnose(
     found = blame(recording, static, types=types, reference=clean, changes=known)
     places = [] if isinstance(mission, Recording) else [Path(mission)]
     declared = declared_in(static, places)
-    advice = advise_blamed(found, recording, static, top=top, declared=declared, reference=clean)
+    advice = advise_blamed(
+        found, recording, static, top=top, declared=declared, reference=clean, changes=known
+    )
     return Diagnosed(found, tuple(advice))
 
 

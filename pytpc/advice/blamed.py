@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from pytpc.advice.blame import Accused, Blame
 from pytpc.advice.counterfactual import WhatIf, what_if
 from pytpc.advice.declared import Declared, declared_for
-from pytpc.advice.remedy import Remedy, remedy
+from pytpc.advice.diagnosing import Changed
+from pytpc.advice.known import NAMES, value_in
+from pytpc.advice.remedy import Basis, Remedy, remedy
+from pytpc.advice.suggest import Direction
 from pytpc.ingest.recording import Recording
 from pytpc.marks import Mark
+from pytpc.parameters import same_parameter
 from pytpc.scoring.scores import WINDOW_S
 from pytpc.static_info import StaticInfo
+from pytpc.words import Number, exact, show
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,13 +38,16 @@ def advise_blamed(
     top: int = 5,
     declared: Sequence[Declared] = (),
     reference: Recording | None = None,
+    changes: Sequence[Changed] = (),
     window_s: float = WINDOW_S,
 ) -> list[BlamedAdvice]:
     """The first ``top`` of them with the value to try, as `pytpc.advice.remedy.remedy` has it.
 
     Of the marks those count that can be of the kind of error that the parameter is suspected of;
     where none can, the observers were wrong, and all count. ``declared`` is what is declared of
-    parameters, ``reference`` a mission that went right.
+    parameters, ``reference`` a mission that went right, ``changes`` what was changed since. The
+    value of before a change, or of the reference, comes before what the log says: with it the robot
+    went right.
     """
     found = []
     for accused in blame.suspects[:top]:
@@ -54,6 +63,8 @@ def advise_blamed(
             declared=about,
             window_s=window_s,
         )
+        flown = None if reference is None else value_in(reference, static_info, name)
+        value = _as_before(value, changes, flown)
         then = None
         if value.value is not None:
             then = what_if(
@@ -61,6 +72,28 @@ def advise_blamed(
             )
         found.append(BlamedAdvice(accused, value, then))
     return found
+
+
+def _as_before(found: Remedy, changes: Sequence[Changed], flown: float | None) -> Remedy:
+    """The remedy with the value that the parameter had when it went right, if that is known."""
+    current = found.current
+    values = [
+        old
+        for name, old, new in changes
+        if same_parameter(name, found.parameter) and math.isfinite(old) and old != new
+    ]
+    basis: Basis = "before"
+    words = "the value before it was changed"
+    if not values:
+        values = [] if flown is None else [flown]
+        basis, words = "reference", NAMES["reference"]
+    if not values or current is None or values[0] == current or found.direction == "switch":
+        return found
+    kept = isinstance(current, int) and values[0].is_integer()
+    value: Number = int(values[0]) if kept else values[0]
+    direction: Direction = "raise" if value > current else "lower"
+    text = f"{direction} {found.parameter} from {show(current)} to {exact(value)} ({words})"
+    return replace(found, value=value, direction=direction, basis=basis, text=text, reason=None)
 
 
 def _marks_for(marks: Sequence[Mark], accused: Accused) -> list[Mark]:

@@ -1,14 +1,15 @@
-"""Replay: what would the robot have decided with the other value, the one of before or of a clean run.
+"""Replay: what would have been decided with the other value, that of before or of a clean run.
 
-That is what an engineer does who knows that six parameters are not as they were: with which of them
+That is what an engineer does who knows which parameters are not as they were: with which of them
 would the robot have decided otherwise before the marks, when, and for how long? The logged
 comparisons of a parameter are evaluated again with its other threshold. Turns are spans in which
 the outcome would be another one. A turn ends where the outcome is the same again; where the
-comparison is left alone before, the way of its value is followed on, at the slope of the last
-seconds, until it would be. So a decision that would have come a moment sooner or later weighs
+comparison is left alone before, the way of its value is followed on, as it rose or fell last, until
+it would be. So a decision that would have come a moment sooner or later weighs
 little, whatever the number by which the value was changed. Of each comparison it is asked
 
-    acted  = log( sum of u fit / (sum of u + c) ) - log( mean of fit ),  u = d / (d + MOMENT_S)
+    acted  = log( sum of u fit / (sum of u + c) ) - log( mean of fit )
+    u      = d^2 / (d^2 + MOMENT_S^2)
     waited = log( (turned in the wait + s) / (turned elsewhere + s) )
 
 with the duration d of each turn; ``fit`` and the wait are those of
@@ -40,10 +41,10 @@ from pytpc.scoring.diagnosis_streams import Stream, Streams
 from pytpc.scoring.tables import Tpcs
 from pytpc.static_info import StaticInfo
 
-MOMENT_S = 1.0
+MOMENT_S = 2.0
 """A turn of this length weighs half of one that lasts."""
 
-LEAST = 0.01
+LEAST = 0.001
 """No turn weighs less."""
 
 SLOPE_S = 2.0
@@ -56,10 +57,10 @@ ACQUITTED = -4.0
 ALONE = 0.4
 """What the log by itself counts beside the replay, which looks at the same marks."""
 
-REPLAYED = 1.5
+REPLAYED = 2.0
 """What the replay counts. Both, and ``NOBODY``, are chosen on the tuning half of the study."""
 
-NOBODY = -3.0
+NOBODY = -5.0
 """The score of "none of them" where it is known what differs."""
 
 
@@ -167,7 +168,7 @@ def _charge(
     early = begins <= marks.firsts.max()
     acted = ACQUITTED
     if early.any():
-        weights = np.maximum(1.0 - MOMENT_S / (lengths[early] + MOMENT_S), LEAST)
+        weights = np.maximum(1.0 - 1.0 / (1.0 + (lengths[early] / MOMENT_S) ** 2), LEAST)
         acted = caused(begins[early], weights, wait.seconds, marks) - any_time(wait.seconds, marks)
     inside = wait.holds(stream.times)
     share = min(1.0, float(stream.weight[turned & inside].sum()) / wait.length)
@@ -203,11 +204,18 @@ def turns(stream: Stream, turned: Bools, other: float) -> tuple[Floats, Floats]:
 
 
 def _until_alike(stream: Stream, place: int, other: float) -> float:
-    """The seconds after an evaluation until its value is at the other threshold, on a line."""
-    first = int(np.searchsorted(stream.times, stream.times[place] - SLOPE_S))
-    span = float(stream.times[place] - stream.times[first])
-    way = other - float(stream.cmp[place])
-    rise = float(stream.cmp[place]) - float(stream.cmp[first])
-    if span <= 0.0 or not rise * way > 0.0:
+    """The seconds after an evaluation until its value is past the other threshold, on a line.
+
+    The line is through what led there: the evaluations of the last ``SLOPE_S`` since the value
+    last went the other way, as a timer does that is set back.
+    """
+    since = int(np.searchsorted(stream.times, stream.times[place] - SLOPE_S))
+    way, last = other - float(stream.cmp[place]), float(stream.cmp[place])
+    steps = np.diff(stream.cmp[since : place + 1]) * (1.0 if way >= 0.0 else -1.0)
+    back = np.flatnonzero(~(steps >= 0.0))
+    first = since + (int(back[-1]) + 1 if back.size else 0)
+    rise = abs(last - float(stream.cmp[first]))
+    if first == place or rise == 0.0:
         return math.inf
-    return way * span / rise
+    span = float(stream.times[place] - stream.times[first])
+    return abs(way) * span / rise + span / (place - first)

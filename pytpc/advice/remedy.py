@@ -43,7 +43,9 @@ from pytpc.scoring.scores import WINDOW_S
 from pytpc.static_info import StaticInfo
 from pytpc.words import Number, exact, many, show
 
-Basis = Literal["reference", "default", "declared", "lasting", "growth", "between", "smallest"]
+Basis = Literal[
+    "reference", "default", "declared", "lasting", "growth", "between", "smallest", "before"
+]
 EVERY_SOURCE: frozenset[Source] = frozenset(NAMES)
 
 
@@ -53,11 +55,12 @@ class Remedy:
 
     ``current`` and ``value`` are in the parameter's unit, as `Suggestion` has them; ``basis`` is
     the evidence that decided: a known value, the lasting one, one that is stepped to because the
-    values ``growth`` bounds nothing, one ``between`` those that were flown, or the ``smallest``
-    change. ``smallest`` is SPEC 8's suggestion that does at the most of the marks. ``kind`` is the
-    type of error that is answered and ``key`` the comparison by which. ``known`` are all values
-    that somebody knows to be good. Where nothing can be suggested ``value``, ``direction`` and
-    ``basis`` are None and ``reason`` says why.
+    values ``growth`` bounds nothing, one ``between`` those that were flown, the ``smallest``
+    change, or the one of ``before`` it was changed (`pytpc.advice.blamed`). ``smallest`` is SPEC
+    8's suggestion that does at the most of the marks. ``kind`` is the type of error that is
+    answered and ``key`` the comparison by which. ``known`` are all values that somebody knows to be
+    good. Where nothing can be suggested ``value``, ``direction`` and ``basis`` are None and
+    ``reason`` says why.
     """
 
     parameter: str

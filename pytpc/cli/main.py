@@ -31,7 +31,7 @@ SUMMARIES = {
     "marks": ("rank_commands", "List the marks of a recording; add or remove some."),
     "origin": ("value_commands", "Say where the values of parameters came from."),
     "patch": ("workspace_commands", "Put TPC's three lines into each CMakeLists.txt."),
-    "rank": ("rank_commands", "Name the suspected parameters at each mark."),
+    "rank": ("rank_commands", "Name the suspected parameters, from all marks."),
     "record": ("mission_commands", "Record the running graph, or a launch file's mission."),
     "relay": ("graph_commands", "Pass reports on from /rosout to /threshold_information."),
     "report": ("report_commands", "Write a page with the suspects at each mark, and why."),

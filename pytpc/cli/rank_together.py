@@ -135,6 +135,7 @@ class Judge:
             top=top,
             declared=declared,
             reference=self.reference,
+            changes=known,
             window_s=window_s,
         )
         return found, advice

@@ -90,7 +90,8 @@ def watch_command(
 
     The reports are those of the graph of ROS_MASTER_URI; ROS itself is not needed on this machine.
     With RECORDING, a clock goes through it. The keys are those of `mark`; the ranking at each mark
-    is kept. --json prints what --once prints, for programs.
+    is kept. All marks together are judged afterwards, by `rank`. --json prints what --once prints,
+    for programs.
     """
     check_observer(observer)
     static = static_of([static_source])

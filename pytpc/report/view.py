@@ -27,6 +27,7 @@ from pytpc.report.cards import (
 from pytpc.report.mission import CARDS, MissionReport
 from pytpc.report.payload import embedded, marks_of
 from pytpc.report.timeline import timeline
+from pytpc.report.together import TogetherView, together
 from pytpc.scoring.clocks import two_clocks
 from pytpc.scoring.ranking import MarkRanking, Types
 from pytpc.words import many
@@ -76,6 +77,7 @@ class MissionView:
     marks_i: int
     marks_ii: int
     marks_untyped: int
+    together: TogetherView | None
     answers: list[AnswerView]
     changed_parameter: str | None
     changed_positions: str
@@ -114,6 +116,7 @@ def mission_view(mission: MissionReport, number: int, on_figure: Callable[[], No
         marks_i=kinds.count("I"),
         marks_ii=kinds.count("II"),
         marks_untyped=kinds.count(None),
+        together=together(mission),
         answers=answers([mark.cards for mark in marks], [mark.reason for mark in marks]),
         changed_parameter=mission.changed_parameter,
         changed_positions=_positions(mission),

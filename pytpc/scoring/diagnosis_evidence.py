@@ -235,6 +235,7 @@ class Wait(NamedTuple):
 
     @classmethod
     def before(cls, marks: Marked, seconds: float) -> Wait:
+        """The ``WAIT_S`` before each mark."""
         begins = np.sort(marks.times) - WAIT_S
         ends = begins + WAIT_S
         new = np.concatenate([[True], begins[1:] > ends[:-1]])
@@ -242,11 +243,13 @@ class Wait(NamedTuple):
         return cls(begins[joined], ends[np.append(joined[1:], begins.size) - 1], seconds)
 
     def holds(self, times: Floats) -> Bools:
+        """Whether each time is in one of them."""
         place = np.searchsorted(self.begins, times, side="right") - 1
         return np.asarray((place >= 0) & (times <= self.ends[np.maximum(place, 0)]))
 
     @property
     def length(self) -> float:
+        """Of all together, in s; 1 at least."""
         ends = np.minimum(self.ends, self.seconds)
         return max(float(np.sum(np.maximum(ends - np.maximum(self.begins, 0.0), 0.0))), 1.0)
 

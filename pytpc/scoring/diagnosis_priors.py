@@ -16,7 +16,7 @@ from pytpc.events import Events
 from pytpc.parameters import same_parameter
 from pytpc.scoring.tables import Tpcs
 
-UNCHANGED = -8.0
+UNCHANGED = -12.0
 """The log odds of a parameter that is as it was; not less, as what is on record may be wrong, and
 the robot may be elsewhere than where that value was right."""
 

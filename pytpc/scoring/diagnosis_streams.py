@@ -42,8 +42,8 @@ class Stream:
     ``times`` float64[n], sorted; ``weight`` float64[n], the seconds for which each was the last
     word; ``res`` bool[n]; ``margin`` float64[n], |cmp - thresh|, nan where it is not finite;
     ``spread`` is the range of all its finite values, of cmp and of thresh. ``code`` is the
-    comparison's place in `Tpcs.keys`, ``column`` its parameter's in `Tpcs.names`, ``distance`` that
-    of the comparison from what it exposes.
+    comparison's place in `Tpcs.keys`, ``column`` its parameter's in `Tpcs.names`; ``distance`` is
+    how far the comparison is from what it exposes.
     ``changes`` are when its result changed, noise taken together; ``starts`` and ``stops`` when it
     began to be evaluated after a pause, and was before one (those of the log included). ``node``
     is the one that evaluates.

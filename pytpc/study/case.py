@@ -9,18 +9,9 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from pytpc.changes import Change
 from pytpc.ingest.recording import Recording
 from pytpc.static_info import StaticInfo
-
-
-@dataclass(frozen=True)
-class Change:
-    """A parameter that was changed on the robot, by the name that its node reads it by."""
-
-    parameter: str
-    node: str
-    old: float
-    new: float
 
 
 @dataclass(frozen=True)

@@ -13,12 +13,12 @@ from hashlib import sha256
 from pathlib import Path
 
 from pytpc.atomic import write_atomic
+from pytpc.changes import Change
 from pytpc.demo_examples import Example
 from pytpc.errors import InputError
 from pytpc.parameters import same_parameter
 from pytpc.static_info import StaticInfo
 from pytpc.static_json import parse_json
-from pytpc.study.case import Change
 from pytpc.treatment import Treatment
 from pytpc.values.recording import read_parameters
 

@@ -10,13 +10,14 @@ from typing import Any, Literal, get_args
 
 import pyarrow as pa
 
+from pytpc.changes import Change, read_changes
 from pytpc.columns import read_table
 from pytpc.errors import InputError, TpcError
 from pytpc.ingest.recording import Recording, load_recording
 from pytpc.marks import MARK_TYPES, Mark, MarkType
 from pytpc.static_info import StaticInfo
 from pytpc.static_json import parse_json
-from pytpc.study.case import Case, Change
+from pytpc.study.case import Case
 from pytpc.study.changes import CHANGES_FILE
 from pytpc.study.dataset import DONE_FILE, MARKED_FILE, STUDY_FILE, load_done
 from pytpc.study.plan import Half
@@ -178,15 +179,7 @@ def _treatment(path: Path) -> dict[str, Any]:
 
 
 def _changes(path: Path) -> tuple[Change, ...]:
-    if not path.is_file():
-        return ()
-    document = parse_json(path)
-    try:
-        if not isinstance(document, list):
-            raise TypeError("a list is expected")
-        return tuple(Change(**change) for change in document)
-    except TypeError as error:
-        raise InputError(f"not a history of changes: {error}", path) from error
+    return read_changes(path) if path.is_file() else ()
 
 
 @cache

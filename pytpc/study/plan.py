@@ -12,9 +12,9 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Literal
 
+from pytpc.changes import Change
 from pytpc.demo_examples import EXAMPLES, Example
 from pytpc.errors import InputError
-from pytpc.study.case import Change
 from pytpc.study.changes import Candidate, drawn_changes
 from pytpc.treatment import Treatment
 from pytpc.values.recording import read_parameters

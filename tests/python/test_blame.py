@@ -9,10 +9,11 @@ from mission_samples import comparison, events, key, ns, static_info
 
 from pytpc.advice.blame import Accused, Blame, blame
 from pytpc.advice.blamed import advise_blamed
+from pytpc.changes import Change
 from pytpc.ingest import Recording
 from pytpc.marks import Mark
 from pytpc.scoring.evidence import Evaluation
-from pytpc.study.case import Case, Change
+from pytpc.study.case import Case
 from pytpc.study.methods import METHODS
 from pytpc.summaries import Summary, SummaryBuilder
 from pytpc.words import percent
@@ -150,10 +151,10 @@ def test_users_get_what_the_study_judges():
 # The clean run says that ~safe is what it was, the history that ~gate is. By both it is neither.
 def test_a_clean_run_and_the_changes_together():
     clean = Recording("clean", events([(1, 0, 0, 0.1, 0.9), (2, 1, 0, 1, 9)]), (), 0, ns(80))
-    of_safe = [("safe", 5.0, 9.0)]
-    found = blame(mission(), STATIC, reference=clean, changes=of_safe)
-    assert found.none > blame(mission(), STATIC, reference=clean).none
-    assert found.none > blame(mission(), STATIC, changes=of_safe).none
+    found = blame(mission(), STATIC, reference=clean, changes=[("safe", 5.0, 9.0)])
+    assert blame(mission(), STATIC, reference=clean).accused == "~gate"
+    assert found.accused is None
+    assert found.none > 0.5
 
 
 # Only the changes of results were reported; the rest came as a summary.
@@ -200,6 +201,28 @@ def test_what_to_do_with_the_first():
     assert advice.remedy.direction == "raise"
     assert advice.what_if is not None
     assert advice.what_if.marks == 2
+
+
+# Whatever the log says: with 0.9 it went right, or with what the clean run had. What is no number,
+# or was not changed, is no value to try.
+def test_the_value_of_before_comes_first():
+    recording = mission((*MARKS, Mark(ns(70), "II")))
+    clean = Recording("clean", events([(1, 0, 0, 0.1, 0.9), (2, 1, 0, 1, 9)]), (), 0, ns(80))
+
+    def tried(**known):
+        found = blame(recording, STATIC, **known)
+        (advice,) = advise_blamed(found, recording, STATIC, top=1, **known)
+        assert advice.accused.parameter == "~gate"
+        return advice.remedy
+
+    before = tried(changes=[("gate", 0.2, 0.375)])
+    assert (before.direction, before.value, before.basis) == ("lower", 0.2, "before")
+    assert before.text == "lower ~gate from 0.375 to 0.2 (the value before it was changed)"
+    assert tried(reference=clean).value == 0.9
+    found = blame(recording, STATIC)
+    for nothing in (("gate", math.nan, 0.375), ("gate", 0.375, 0.375), ("safe", 1, 9)):
+        (advice,) = advise_blamed(found, recording, STATIC, top=1, changes=[nothing])
+        assert advice.remedy.basis != "before"
 
 
 def test_percent():

@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 from mission_samples import comparison, events, key, ns, static_info
 from report_samples import NASTY, Page, mission, written
 
+from pytpc.advice.blame import blame
 from pytpc.advice.declared import Declared
 from pytpc.errors import TpcError
 from pytpc.ingest import MalformedRecord, Recording
@@ -35,6 +36,7 @@ from pytpc.report.series import (
 from pytpc.scoring.ranking import rank_marks
 from pytpc.summaries import Summary, SummaryBuilder
 from pytpc.values.origins import Origin
+from pytpc.words import percent
 
 NAN = math.nan
 
@@ -352,7 +354,7 @@ def test_marks_without_enough_evidence_do_not_make_the_answer(tmp_path):
     report = MissionReport("m", recording, static, rank_marks(recording, static))
     text = " ".join("".join(Page(written(tmp_path, report)).text).split())
     first, _, rest = text.partition("The whole mission")
-    assert first.index("near from") < first.index("alone from")
+    assert first.index("Lower near from") < first.index("Lower alone from")
     assert "Raise" not in first
     assert "First suspect at marks 4-5 of 5" in first
     assert first.count("(not enough evidence)") == 1
@@ -363,6 +365,33 @@ def test_marks_without_enough_evidence_do_not_make_the_answer(tmp_path):
     text = " ".join("".join(Page(written(tmp_path, report)).text).split())
     why = "Not enough evidence to go by this: only alone had been compared up to the mark. ▼ Lower"
     assert why in text
+
+
+# What all marks say together comes before what any of them says; where the marks are outside of the
+# log (it ends at 6.9 s) it says why there is nothing.
+def test_all_marks_together_come_first(tmp_path):
+    static = static_info(comparison(0, "<b>gate"), comparison(1, "safe"))
+    rows = [(t / 10, 0, t >= 50, t / 10, 5) for t in range(70)]
+    rows += [(t / 10, 1, False, 1 + t / 100, 9) for t in range(70)]
+    recording = Recording("m", events(rows), (Mark(ns(6), "I"), Mark(ns(6.5), "I")), 0, ns(60))
+    report = MissionReport("m", recording, static, rank_marks(recording, static))
+    text = " ".join("".join(Page(written(tmp_path, report)).text).split())
+    found = blame(recording, static)
+    said = f"All 2 marks together: 2 of type I. {found.text}. To try: "
+    assert said in text
+    others = ", ".join(f"{s.parameter} ({percent(s.probability)})" for s in found.suspects[1:])
+    assert f"Next: {others}." in text
+    assert text.index(said) < text.index("First suspect at all 2 marks")
+    late = replace(recording, marks=(Mark(ns(50), "I"),))
+    report = MissionReport("m", late, static, rank_marks(late, static))
+    text = " ".join("".join(Page(written(tmp_path, report)).text).split())
+    assert (
+        "The one mark: 1 of type I. not enough evidence to suspect anybody. "
+        "mark 1: the last report up to the mark is 43.1 s before it." in text
+    )
+    assert "To try: " not in text
+    report = replace(report, recording=replace(late, marks=()), rankings=[])
+    assert "The one mark" not in written(tmp_path, report)
 
 
 # 30 summaries of 10 evaluations each, and no report.

@@ -9,11 +9,12 @@ import pyarrow.parquet as pq
 import pytest
 from mission_samples import comparison, events, ns, static_info
 
+from pytpc.changes import Change
 from pytpc.errors import InputError
 from pytpc.ingest import Recording, save_recording
 from pytpc.marks import Mark
 from pytpc.scoring.diagnosis import REASONED, diagnose
-from pytpc.study.case import Case, Change
+from pytpc.study.case import Case
 from pytpc.study.data import Mission, UserMark, missions
 from pytpc.study.fit import Batch, fit, samples
 from pytpc.study.judge import judge, save_positions

@@ -9,9 +9,9 @@ import pytest
 from mission_samples import comparison, static_info
 from study_flights import robot, treatment
 
+from pytpc.changes import Change
 from pytpc.demo_examples import EXAMPLES
 from pytpc.errors import InputError
-from pytpc.study.case import Change
 from pytpc.study.changes import Candidate, candidates, drawn_changes, save_changes
 from pytpc.study.plan import (
     Flight,

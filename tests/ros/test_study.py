@@ -10,6 +10,7 @@ import pyarrow.parquet as pq
 import pytest
 from click.testing import CliRunner, Result
 
+from pytpc.changes import Change
 from pytpc.cli.main import main
 from pytpc.demo_examples import WATER_SAMPLER
 from pytpc.demo_show import Built
@@ -18,7 +19,6 @@ from pytpc.ingest.reading import read
 from pytpc.paths import cmake_file, log_library, plugin
 from pytpc.scoring.ranking import unknown_keys
 from pytpc.static_info import StaticInfo
-from pytpc.study.case import Change
 from pytpc.treatment import load_treatment
 from pytpc.values.recording import read_parameters
 

@@ -6,9 +6,10 @@ import hashlib
 import random
 from collections.abc import Sequence
 
+from pytpc.changes import Change
 from pytpc.parameters import same_parameter
 from pytpc.scoring.tables import Tpcs
-from pytpc.study.case import Case, Change, Verdict
+from pytpc.study.case import Case, Verdict
 
 
 def recent_change(case: Case) -> Verdict:

@@ -1,0 +1,155 @@
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from mission_samples import comparison, events, key, ns, static_info
+
+from pytpc.advice.other_values import (
+    ACQUITTED,
+    before_changes,
+    diagnose_replayed,
+    of_clean_run,
+    replayed,
+    turns,
+)
+from pytpc.ingest import Recording
+from pytpc.link_unit import Transform
+from pytpc.marks import Mark
+from pytpc.scoring.diagnosis_priors import UNCHANGED
+from pytpc.scoring.diagnosis_streams import Streams
+from pytpc.scoring.tables import Tpcs
+
+STATIC = static_info(
+    comparison(0, "~height"),
+    comparison(1, "~speed"),
+    comparison(2, "~range"),
+    comparison(
+        3,
+        "~angle_deg",
+        transform=Transform("affine", scale=2.0, offset=1.0),
+    ),
+)
+
+
+def recording(rows, *marks, kind=None):
+    found = [Mark(ns(t), kind, f"user{n}") for n, t in enumerate(marks)]
+    return Recording("mission", events(rows), tuple(found), 0, ns(100))
+
+
+def turned_spans(values, thresh, other, step=1.0):
+    """The turns of ``value > thresh`` at these values, ``step`` apart, and of a log of 30 s."""
+    rows = [(n * step, 0, v > thresh, v, thresh) for n, v in enumerate(values)]
+    rows.append((30.0, 1, 0, 0, 1))
+    stream = Streams.of(events(rows), Tpcs.of(STATIC)).streams[0]
+    turned = (stream.cmp > thresh) != (stream.cmp > other)
+    begins, lengths = turns(stream, turned, other)
+    return list(zip(begins.tolist(), lengths.tolist(), strict=True))
+
+
+# 0 1 2 3 4 5 at 0..5 s: above 2 from 3 s on, above 4 from 5 s on.
+def test_a_turn_lasts_until_the_outcome_is_the_same_again():
+    assert turned_spans([0, 1, 2, 3, 4, 5], 2, 4) == [(3.0, 2.0)]
+
+
+# Left alone at 3 s with 3, rising by 1 a second: at 4 s it is 4, and above it at the next look.
+def test_where_it_is_left_alone_the_value_is_followed_on():
+    assert turned_spans([0, 1, 2, 3], 2, 4) == [(3.0, pytest.approx(2.0))]
+
+
+# The same with the threshold on the line itself, 3 > 3: only the look after is needed.
+def test_a_value_on_the_other_threshold_is_past_it_at_the_next_look():
+    assert turned_spans([0, 1, 2, 3], 2.5, 3) == [(3.0, pytest.approx(1.0))]
+
+
+# A timer that is set back from 5 to 0, and left at 2: it rises by 1 in 0.5 s, to 3 in 0.5 s and one
+# look of 0.5 s. With the step from 5 it would fall.
+def test_a_timer_that_is_set_back_is_followed_from_there():
+    assert turned_spans([5, 0, 1, 2], 1.5, 3, step=0.5) == [(1.5, pytest.approx(1.0))]
+
+
+def test_what_is_asked_once_or_goes_away_never_gets_there():
+    assert turned_spans([3], 2, 4) == [(0.0, math.inf)]
+    assert turned_spans([5, 3.9, 3.5], 2, 4) == [(1.0, math.inf)]
+
+
+# 3 at 0 s and 1 s are two turns, as 5 was between: 0 to 1 s, and from 2 s on with no way to 4.
+def test_two_turns_are_two():
+    assert turned_spans([3, 5, 3], 2, 4) == [(0.0, 1.0), (2.0, math.inf)]
+
+
+def test_old_values_become_thresholds_in_their_own_unit():
+    changes = [("/node/angle_deg", 3.0), ("~height", 1.5), ("~unknown", 1.0)]
+    assert before_changes(STATIC, changes) == {key(3): 7.0, key(0): 1.5}
+
+
+def test_of_a_clean_run_only_what_differs_is_replayed():
+    here = events([(1, 0, 0, 1, 4), (1, 1, 0, 1, 4), (1, 2, 0, 1, 4)])
+    there = events([(1, 0, 0, 1, 2), (1, 1, 0, 1, 4)])
+    assert of_clean_run(Tpcs.of(STATIC), here, there) == {key(0): 2.0}
+
+
+def mission():
+    """height turns at 30 s and stays; speed crosses its threshold at 30 s, and falls back at 40 s.
+
+    range never comes near.
+    """
+    rows = []
+    for tick in range(200):
+        t = tick / 2
+        high, fast = (3.0 if t >= 30 else 1.0), (t / 10 if t < 40 else 0.0)
+        rows.append((t, 0, high > 2, high, 2))
+        rows.append((t + 0.01, 1, fast > 3, fast, 3))
+        rows.append((t + 0.02, 2, 0, 1 + 0.1 * math.sin(t), 9))
+    return rows
+
+
+def test_what_turns_nothing_before_the_marks_is_acquitted():
+    others = {key(0): 4.0, key(2): 8.0}
+    found = replayed(recording(mission(), 36, 38), STATIC, others)
+    assert found["~range"] == ACQUITTED
+    assert found["~height"] > 0.0
+    assert set(found) == {"~height", "~range"}
+    assert replayed(recording(mission(), 20), STATIC, others)["~height"] == ACQUITTED
+
+
+# With 3.06 speed's decision would have come at 31 s instead of 30.5 s, half a second later; with 9
+# never: 9.5 s, until it falls back.
+def test_a_decision_a_moment_later_is_hardly_another_one():
+    charge = [
+        replayed(recording(mission(), 36, 38, kind="I"), STATIC, {key(1): other})["~speed"]
+        for other in (3.06, 9.0)
+    ]
+    assert charge[0] < charge[1] - 1.0
+
+
+# Not by the number: 2.5 and 2000 turn the same evaluations of height, 1 before and 3 after.
+def test_the_size_of_the_change_is_not_asked():
+    near, far = (
+        replayed(recording(mission(), 36), STATIC, {key(0): other})["~height"]
+        for other in (3.5, 2000.0)
+    )
+    assert near == far
+
+
+def test_what_is_turned_in_the_whole_wait_is_charged_where_nothing_is_done():
+    marks = (40, 47, 54, 61)
+    others = {key(0): 4.0, key(1): 3.9}
+    found = replayed(recording(mission(), *marks, kind="II"), STATIC, others)
+    assert found["~height"] > found["~speed"]
+
+
+def test_the_replay_decides_among_what_differs():
+    rows, others = mission(), {key(0): 4.0, key(2): 8.0}
+    names = Tpcs.of(STATIC).names
+    prior = np.where([name in ("~height", "~range") for name in names], 0.0, UNCHANGED)
+    found = diagnose_replayed(recording(rows, 36, 38), STATIC, prior, others)
+    assert [found.names[n] for n in found.order] == ["~height", "~range", "~speed"]
+    assert found.posterior.sum() + found.none == pytest.approx(1.0)
+    assert found.posterior[names.index("~height")] > 0.5
+
+
+def test_without_marks_nobody_is_charged():
+    found = diagnose_replayed(recording(mission()), STATIC, np.zeros(4), {key(0): 4.0})
+    assert (found.order, found.none) == ([], 1.0)
