@@ -1,6 +1,7 @@
 //===- ClassHierarchy.cpp -------------------------------------------------===//
 #include "ClassHierarchy.h"
 
+#include "llvm/ADT/SmallPtrSet.h"
 #include "llvm/IR/Constants.h"
 #include "llvm/IR/Instructions.h"
 #include "llvm/IR/Operator.h"
@@ -53,6 +54,9 @@ void ClassHierarchy::addTable(const GlobalVariable &Variable) {
   if (!Group)
     return;
   Table Found;
+  // Of several classes of one name, each a file's own, the linker renames the
+  // tables; their type information says whose they are.
+  StringRef Name = Variable.getName();
   for (const Use &U : Group->operands()) {
     const auto *Entries = dyn_cast<ConstantArray>(U.get());
     if (!Entries)
@@ -65,14 +69,72 @@ void ClassHierarchy::addTable(const GlobalVariable &Variable) {
     for (unsigned N = 0; N < Entries->getNumOperands(); ++N)
       if (const auto *Info = dyn_cast<GlobalVariable>(
               Entries->getOperand(N)->stripPointerCasts());
-          Info && Info->getName().starts_with("_ZTI"))
+          Info && Info->getName().starts_with("_ZTI")) {
+        Name = Info->getName();
         Begin = N + 1;
+      }
     for (unsigned N = Begin; N < Entries->getNumOperands(); ++N)
       Found.back().push_back(
           dyn_cast<Function>(Entries->getOperand(N)->stripPointerCasts()));
   }
-  Classes[numberOf(Variable.getName().drop_front(4))].Functions =
-      std::move(Found);
+  unsigned Number = numberOf(Name.drop_front(4));
+  Classes[Number].Functions = std::move(Found);
+  addObjects(Variable, Number);
+}
+
+/// True where \p Address is what \p Object begins with.
+static bool beginsWith(const Constant *Object, const Constant *Address) {
+  while (Object && Object != Address)
+    Object = isa<ConstantAggregate>(Object) ? Object->getAggregateElement(0U)
+                                            : nullptr;
+  return Object;
+}
+
+/// Finds out whose \p Table is by who gets its address: `this` in a
+/// constructor or destructor, or a global object that needs no constructor.
+void ClassHierarchy::addObjects(const GlobalVariable &Table, unsigned Number) {
+  auto Add = [&](const Value *Object) {
+    const auto *Class =
+        dyn_cast_or_null<DICompositeType>(Debug.pointee(Object));
+    if (Class && Class->getIdentifier().empty())
+      OfOneFile.try_emplace(Class, Number);
+  };
+  SmallPtrSet<const Constant *, 4> Known;
+  SmallVector<const Constant *, 4> Addresses;
+  for (const User *U : Table.users())
+    if (const auto *Address = dyn_cast<ConstantExpr>(U))
+      Addresses.push_back(Address);
+  for (const Constant *Address : Addresses) {
+    SmallVector<const User *, 4> Users(Address->users());
+    while (!Users.empty()) {
+      const User *U = Users.pop_back_val();
+      if (const auto *Store = dyn_cast<StoreInst>(U)) {
+        const auto *This = dyn_cast<Argument>(Store->getPointerOperand());
+        if (This && This->getArgNo() == 0 &&
+            This->getParent()->getParent() == Table.getParent())
+          Add(This);
+      } else if (const auto *Global = dyn_cast<GlobalVariable>(U)) {
+        if (Global->getParent() == Table.getParent() &&
+            beginsWith(Global->getInitializer(), Address))
+          Add(Global);
+      } else if (const auto *Outer = dyn_cast<ConstantAggregate>(U)) {
+        if (Known.insert(Outer).second)
+          append_range(Users, Outer->users());
+      }
+    }
+  }
+}
+
+std::optional<unsigned>
+ClassHierarchy::find(const DICompositeType &Class) const {
+  if (auto It = OfOneFile.find(&Class); It != OfOneFile.end())
+    return It->second;
+  const std::string Identifier = DebugTypes::identifierOf(Class);
+  StringRef Name = Identifier;
+  if (!Name.consume_front("_ZTS"))
+    return std::nullopt;
+  auto It = Numbers.find(Name);
+  return It == Numbers.end() ? std::nullopt : std::optional(It->second);
 }
 
 /// `_ZTI4Base`: a class with one base at its beginning has that base third,
@@ -169,11 +231,8 @@ SmallVector<Function *, 4> ClassHierarchy::targets(const CallBase &Call,
   SmallVector<Function *, 4> Found;
   const auto *Class =
       dyn_cast_or_null<DICompositeType>(Debug.pointee(How.Object));
-  StringRef Name = Class ? Class->getIdentifier() : "";
-  if (!Name.consume_front("_ZTS"))
-    return Found;
-  if (auto It = Numbers.find(Name); It != Numbers.end())
-    collect(It->second, /*AtBeginning=*/true, How.Slot, Call, Found);
+  if (std::optional<unsigned> Number = Class ? find(*Class) : std::nullopt)
+    collect(*Number, /*AtBeginning=*/true, How.Slot, Call, Found);
   return Found;
 }
 

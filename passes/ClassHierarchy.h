@@ -11,6 +11,7 @@
 
 #include "DebugTypes.h"
 
+#include "llvm/ADT/DenseMap.h"
 #include "llvm/ADT/MapVector.h"
 #include "llvm/ADT/SetVector.h"
 #include "llvm/ADT/SmallVector.h"
@@ -63,7 +64,9 @@ private:
   };
 
   unsigned numberOf(llvm::StringRef Name);
+  std::optional<unsigned> find(const llvm::DICompositeType &Class) const;
   void addTable(const llvm::GlobalVariable &Table);
+  void addObjects(const llvm::GlobalVariable &Table, unsigned Class);
   void addBases(const llvm::GlobalVariable &TypeInfo);
   void collect(unsigned Class, bool AtBeginning, unsigned Slot,
                const llvm::CallBase &Call,
@@ -71,6 +74,9 @@ private:
 
   llvm::StringMap<unsigned> Numbers; ///< by the name as it is mangled
   llvm::SmallVector<Class, 0> Classes;
+  /// Classes that have no name across files, by the objects that are given
+  /// their tables.
+  llvm::DenseMap<const llvm::DICompositeType *, unsigned> OfOneFile;
   DebugTypes Debug;
 };
 

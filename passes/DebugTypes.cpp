@@ -181,6 +181,25 @@ static std::string declaredAt(const DICompositeType &Class) {
       .str();
 }
 
+std::string DebugTypes::identifierOf(const DICompositeType &Class) {
+  // clang leaves it out in the one file that has the class's table of virtual
+  // functions: that of the first of them that is not inline. An instance of a
+  // template has no such file.
+  if (!Class.getIdentifier().empty() || !Class.getVTableHolder())
+    return Class.getIdentifier().str();
+  std::string Name;
+  unsigned Depth = 0;
+  for (const DIScope *S = &Class; S && !isa<DIFile>(S); S = S->getScope()) {
+    StringRef Own = S->getName();
+    if (!isa<DINamespace, DICompositeType>(S) || Own.empty() ||
+        Own.contains('<'))
+      return "";
+    Name = (Twine(Own.size()) + Own + Name).str();
+    ++Depth;
+  }
+  return Depth == 1 ? "_ZTS" + Name : "_ZTSN" + Name + "E";
+}
+
 unsigned DebugTypes::numberOf(const DICompositeType *Class) {
   if (!Class)
     return 0;
@@ -190,8 +209,9 @@ unsigned DebugTypes::numberOf(const DICompositeType *Class) {
   // Classes with a name across files carry it as their identifier. Those of C
   // do not, and are the same where a header declares them.
   SmallVector<StringRef, 2> Names;
-  const std::string Place = declaredAt(*Class);
-  for (StringRef Name : {Class->getIdentifier(), StringRef(Place)})
+  const std::string Identifier = identifierOf(*Class),
+                    Place = declaredAt(*Class);
+  for (StringRef Name : {StringRef(Identifier), StringRef(Place)})
     if (!Name.empty())
       Names.push_back(Name);
   for (StringRef Name : Names)

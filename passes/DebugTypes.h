@@ -49,6 +49,9 @@ public:
   llvm::StringRef fieldName(const llvm::DICompositeType *Class,
                             llvm::StructType *Struct, unsigned Index) const;
 
+  /// The name of \p Class across files, as it is mangled: `_ZTS4Node`; empty
+  /// where it has none, as in an unnamed namespace.
+  static std::string identifierOf(const llvm::DICompositeType &Class);
   /// A number for \p Class, the same in all files; 0 for null.
   unsigned numberOf(const llvm::DICompositeType *Class);
   const llvm::DICompositeType *classOf(unsigned Number) const {

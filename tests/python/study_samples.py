@@ -135,9 +135,11 @@ def fly(
 
 
 def fly_recorded(folder: Path) -> Path:
-    """The recorded mission, with its treatment under another half."""
+    """The recorded mission, its treatment without a known tipping point."""
     target = folder / "missions/image_capture/type2_min_coverage_limit/seed-1"
     shutil.copytree(RECORDED, target)
+    treatment = json.loads((target / "treatment.json").read_text())
+    (target / "treatment.json").write_text(json.dumps({**treatment, "tipping": None}))
     marks = json.loads((target / "marks.json").read_text())["marks"]
     write_said(target, [(m["time_ns"] / 1e9, "user1", m["type"], m["type"]) for m in marks])
     (target / "done.json").write_text("{}")

@@ -1,0 +1,46 @@
+// RUN: %compile -O2 %s -o %t.o
+// RUN: %opt -disable-output -passes='tpc-prepare,print<tpc-gather-results>' %t.o | FileCheck %s
+//
+// What a function leaves in a variable of its caller is taken to be there when
+// it is called again, although that is another run's variable. This is a limit
+// (docs/analysis-limits.md): 'slow' is compared where it is stored alone.
+#include <ros/ros.h>
+
+#include <algorithm>
+
+double sensed();
+
+struct Node {
+  double Slow, Near;
+  std_msgs::Number Command;
+  ros::Publisher Out;
+
+  explicit Node(ros::NodeHandle &Handle) {
+    // CHECK: comparisons of {{.*}}: 3
+    Handle.param("slow", Slow, 1.0);
+    Handle.param("near", Near, 1.0);
+  }
+
+  void guard(std_msgs::Number &Twist) {
+    // CHECK-DAG: 'slow' relation >= as x {{.*}} at [[#@LINE+1]]:20
+    if (Twist.data <= 0)
+      return;
+    // CHECK-DAG: 'near' relation < as x {{.*}} at [[#@LINE+1]]:18
+    if (sensed() < Near)
+      // CHECK-DAG: 'slow' relation > as x {{.*}} at [[#@LINE+1]]:20
+      Twist.data = std::min(Twist.data, Slow);
+  }
+
+  void step() {
+    std_msgs::Number Twist = Command;
+    guard(Twist);
+    Out.publish(Twist);
+  }
+};
+
+int main() {
+  ros::NodeHandle Handle;
+  Node It(Handle);
+  It.Command.data = sensed();
+  It.step();
+}
