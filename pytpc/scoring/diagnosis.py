@@ -68,8 +68,8 @@ WEIGHTS = Weights(
 )
 """Fitted by `python -m pytpc.study.fit` on the whole tuning half of the study: 24 treatments of
 types I and II, three faults and the clean missions of three robots, 699 sets of marks. Their loss
-is 2.410 (2.886 with ``REASONED``). With one robot left out it is on that robot 3.437 (image_capture;
-reasoned 3.174), 2.805 (navigation; 3.160), 2.115 (water_sampler; 2.324)."""
+is 2.410 (2.886 with ``REASONED``). With one robot left out it is on that robot 3.437
+(image_capture; reasoned 3.174), 2.805 (navigation; 3.160), 2.115 (water_sampler; 2.324)."""
 
 LIED = 0.5
 """Before any mark is seen: that these observers cannot tell the types apart (table 6.13)."""
