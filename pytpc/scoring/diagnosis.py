@@ -53,22 +53,24 @@ REASONED = Weights()
 """The weights by reason alone: where the fit begins, and what it stays near."""
 
 WEIGHTS = Weights(
-    acted=0.85,
-    waited=0.87,
-    since=0.17,
-    held=0.82,
-    near=-0.73,
-    restless=-0.47,
-    clock=-0.5,
-    flat=-1.54,
-    far=-0.14,
-    type2=-1.51,
-    latch=0.01,
-    ranked=0.6,
-    none=0.05,
+    acted=0.77,
+    waited=0.86,
+    since=0.16,
+    held=1.05,
+    near=-0.82,
+    restless=-0.1,
+    clock=-0.59,
+    flat=-1.52,
+    far=0.01,
+    type2=-1.39,
+    latch=-0.13,
+    ranked=0.89,
+    none=-0.15,
 )
-"""Fitted by `pytpc.study.fit` on flights (seed 11, two crowds each) of 16 treatments of types I and
-II, two faults and the clean missions in the tuning halves of image_capture and water_sampler."""
+"""Fitted by `python -m pytpc.study.fit` on the whole tuning half of the study: 24 treatments of
+types I and II, three faults and the clean missions of three robots, 699 sets of marks. Their loss
+is 2.410 (2.886 with ``REASONED``). With one robot left out it is on that robot 3.437
+(image_capture; reasoned 3.174), 2.805 (navigation; 3.160), 2.115 (water_sampler; 2.324)."""
 
 LIED = 0.5
 """Before any mark is seen: that these observers cannot tell the types apart (table 6.13)."""
