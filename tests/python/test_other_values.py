@@ -53,12 +53,8 @@ def test_a_turn_lasts_until_the_outcome_is_the_same_again():
     assert turned_spans([0, 1, 2, 3, 4, 5], 2, 4) == [(3.0, 2.0)]
 
 
-<<<<<<< HEAD
-# Left alone at 3 s with 3, rising by 1 a second: at 4 s it is 4, and above it at the next look.
-=======
 # Left alone at 3 s with 3, rising by 1 a second: at 4 s it is 4, and above it at the next look, 1 s
 # later.
->>>>>>> 2c6076812e59ee21f19cdd96bde7de80747da202
 def test_where_it_is_left_alone_the_value_is_followed_on():
     assert turned_spans([0, 1, 2, 3], 2, 4) == [(3.0, pytest.approx(2.0))]
 
