@@ -40,6 +40,11 @@ class Row(Protocol):
         ...
 
     @property
+    def tied(self) -> int:
+        """How many share that place, itself included."""
+        ...
+
+    @property
     def parameters(self) -> int:
         """How many parameters there are."""
         ...
@@ -77,16 +82,31 @@ def merit(rows: Iterable[Row]) -> Merit:
     """The figures of one method, from the rows of missions with a changed parameter."""
     found = list(rows)
     places = [(row.parameters + 1) / 2 if row.position is None else row.position for row in found]
-    marked = np.array([row.position is not None for row in found], np.bool_)
+    shares = [
+        [0.0 if row.position is None else top_share(row.position, row.tied, k) for row in found]
+        for k in (1, 3)
+    ]
     where = np.array(places, np.float64)
     ranks = [1.0 - (place - 1.0) / row.parameters for row, place in zip(found, places, strict=True)]
     units = [(row.system, row.treatment) for row in found]
     return Merit(
-        estimate(marked & (where <= 1), units),
-        estimate(marked & (where <= 3), units),
+        estimate(shares[0], units),
+        estimate(shares[1], units),
         estimate(where, units),
         estimate(np.array(ranks), units),
     )
+
+
+def top_share(position: float, tied: int, k: int) -> float:
+    """The probability of a place among the first ``k`` if those that are tied were drawn.
+
+    Args:
+        position: from 1, the mean of the places that are shared.
+        tied: how many share them; 1 or more.
+        k: how many are looked at.
+    """
+    first = position - (tied - 1) / 2
+    return min(1.0, max(0.0, (k + 1 - first) / tied))
 
 
 def estimate(

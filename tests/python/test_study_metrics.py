@@ -7,7 +7,7 @@ import pytest
 
 from pytpc.study.case import Verdict
 from pytpc.study.judge import place, position
-from pytpc.study.metrics import accusations, brier, estimate, merit, reliability
+from pytpc.study.metrics import accusations, brier, estimate, merit, reliability, top_share
 
 NAMES = ("~a", "~b", "~c", "~d", "~e")
 
@@ -19,23 +19,36 @@ class Row:
     confidence: float | None = None
     parameters: int = 10
     system: str = "robot"
+    tied: int = 1
 
 
 # b and c share the places 2 and 3; d and e, which are not named, the places 4 and 5.
 def test_tied_parameters_have_the_mean_of_their_places():
     verdict = Verdict(("~a", "~b", "~c"), scores=(9.0, 4.0, 4.0))
-    assert [place(verdict, name, 5) for name in NAMES] == [1.0, 2.5, 2.5, 4.5, 4.5]
+    assert [place(verdict, name, 5) for name in NAMES] == [
+        (1.0, 1),
+        (2.5, 2),
+        (2.5, 2),
+        (4.5, 2),
+        (4.5, 2),
+    ]
 
 
 def test_without_scores_only_the_unnamed_are_tied():
     verdict = Verdict(("~b", "~a"))
-    assert [place(verdict, name, 5) for name in NAMES] == [2.0, 1.0, 4.0, 4.0, 4.0]
-    assert [place(Verdict(()), name, 5) for name in NAMES] == [3.0] * 5
+    assert [place(verdict, name, 5) for name in NAMES] == [
+        (2.0, 1),
+        (1.0, 1),
+        (4.0, 3),
+        (4.0, 3),
+        (4.0, 3),
+    ]
+    assert [place(Verdict(()), name, 5) for name in NAMES] == [(3.0, 5)] * 5
 
 
 def test_a_parameter_is_found_by_any_of_its_names_and_no_other():
     verdict = Verdict(("~b", "~a"))
-    assert position(verdict, "/node/a", NAMES) == 2.0
+    assert position(verdict, "/node/a", NAMES) == (2.0, 1)
     assert position(verdict, None, NAMES) is None
     assert position(verdict, "~unknown", NAMES) is None
 
@@ -57,9 +70,17 @@ def test_merit_by_hand():
     assert found.top1.treatments == 3
 
 
-def test_a_tie_across_the_third_place_is_not_among_the_first_three():
-    assert merit([Row("x", 3.5)]).top3.value == 0.0
-    assert merit([Row("x", 3.0)]).top3.value == 1.0
+# Two share 3 and 4, three share 2 to 4, two share 2 and 3; of ten that share all places three are
+# among the first three.
+@pytest.mark.parametrize(
+    ("position", "tied", "first", "three"),
+    [(3.5, 2, 0.0, 1 / 2), (3.0, 3, 0.0, 2 / 3), (2.5, 2, 0.0, 1.0), (5.5, 10, 0.1, 0.3)],
+)
+def test_of_a_tie_the_expected_share_is_among_the_first(position, tied, first, three):
+    assert top_share(position, tied, 1) == pytest.approx(first)
+    assert top_share(position, tied, 3) == pytest.approx(three)
+    found = merit([Row("x", position, tied=tied)])
+    assert (found.top1.value, found.top3.value) == pytest.approx((first, three))
 
 
 # Of two treatments with 0 and 1 a draw has mean 0 or 1 with 1/4 each: both 95 % ends are outside

@@ -18,7 +18,7 @@ def judged(rows: Iterable[Position], method: str = OURS) -> list[Position]:
 
 def is_right(row: Position) -> bool:
     """Whether the first is to blame; on clean missions and faults nobody is."""
-    return row.changed and row.within(1)
+    return row.changed and row.within(1) == 1.0
 
 
 def accuses(row: Position) -> bool:

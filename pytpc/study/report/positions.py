@@ -15,9 +15,10 @@ from pytpc.columns import read_table
 from pytpc.errors import InputError
 from pytpc.study.data import ALL
 from pytpc.study.judge import Judged
+from pytpc.study.metrics import top_share
 
-_LATER = "digest"
-"""Tables that were written before it do not have this column."""
+_LATER = ("digest", "tied")
+"""Tables that were written before them do not have these columns."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,9 +39,13 @@ class Position(Judged):
         """How many users marked it; None for all of them."""
         return None if self.who == ALL else self.who.count("+") + 1
 
-    def within(self, k: int) -> bool:
-        """Whether the changed parameter is among the first k; without a mark it is not."""
-        return self.marks > 0 and self.position is not None and self.position <= k
+    def within(self, k: int) -> float:
+        """How likely the changed parameter is among the first k, see `top_share`; 0 without a mark.
+
+        It is 0 or 1 where it is tied with nobody.
+        """
+        known = self.marks > 0 and self.position is not None
+        return top_share(self.position or 0.0, self.tied, k) if known else 0.0
 
     @property
     def place(self) -> float:
@@ -64,7 +69,7 @@ def read_positions(path: Path) -> list[Position]:
 
     def rows(table: pa.Table) -> list[Position]:
         there = [name for name in names if name in table.column_names]
-        missing = [name for name in names if name not in (*there, _LATER)]
+        missing = [name for name in names if name not in (*there, *_LATER)]
         if missing:
             raise InputError(f"no column {missing[0]}")
         found = [Position(**_known(row)) for row in table.select(there).to_pylist()]
