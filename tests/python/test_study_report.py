@@ -97,7 +97,7 @@ def test_the_main_table(text):
     ]
 
 
-# With typed marks: the missions of type2_high are 1 against 3 and 4 shared and 4 against 2: one half
+# With typed marks: the missions of type2_high are 1 against 3 and 4 shared, and 4 against 2: half
 # better, one worse, and positions -2.5 and 2, mean -0.25; the other system's is 2 against 30, one
 # better. The thesis's ranking has no row with other marks.
 def test_against_the_baseline(text):
