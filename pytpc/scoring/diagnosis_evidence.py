@@ -94,9 +94,6 @@ OTHERS = 0.3
 """Added to the sum of the turns' weights: of a comparison whose turns have no effect none is likely
 to be the cause."""
 
-CLOCK_S = 1.0
-"""What rises like a clock is looked for over this time at least."""
-
 
 class Marked(NamedTuple):
     """The marks in seconds from the begin of the log: all, and the first of each observer.
@@ -114,10 +111,8 @@ class Evidence:
 
     ``acted``, ``waited`` and ``since`` see above; ``held`` the share of the wait with one result;
     ``near`` the logarithm of the mean distance from the threshold in the wait as a part of the
-    stream's range; ``restless`` the logarithm of 1 + changes in the wait; ``clock`` 1 where the
-    value rises by a second each second in the wait, as the time since something does; ``flat`` 1
-    where there is but one value, as of a flag; ``far`` the logarithm of the distance from what is
-    exposed.
+    stream's range; ``flat`` 1 where there is but one value, as of a flag. ``ranked1`` and
+    ``ranked`` say how high the baseline puts the parameter, by type I and by the better of both.
     """
 
     acted: Floats
@@ -125,10 +120,16 @@ class Evidence:
     since: Floats
     held: Floats
     near: Floats
-    restless: Floats
-    clock: Floats
     flat: Floats
-    far: Floats
+    ranked1: Floats
+    ranked: Floats
+
+
+class Witness(NamedTuple):
+    """What the baseline says of the p parameters, float64[p] each: see ``Evidence``."""
+
+    ranked1: Floats
+    ranked: Floats
 
 
 def marked(times_ns: Int64s, observers: Sequence[str], streams: Streams) -> Marked:
@@ -140,15 +141,21 @@ def marked(times_ns: Int64s, observers: Sequence[str], streams: Streams) -> Mark
     return Marked(times, np.sort(np.array([*firsts.values()], np.float64)))
 
 
-def evidence(streams: Streams, marks: Marked) -> Evidence:
-    """The evidence of all streams; there is at least one mark."""
+def evidence(streams: Streams, marks: Marked, witness: Witness | None = None) -> Evidence:
+    """The evidence of all streams; there is at least one mark.
+
+    Args:
+        streams: those of a recording.
+        marks: the marks.
+        witness: what the baseline says; None where it is not asked.
+    """
     wait = Wait.before(marks, streams.seconds)
     chance = any_time(streams.seconds, marks)
     rows = [
         (
             _acted(s, streams, marks) - chance,
             *_waited(s, wait, marks),
-            float(np.log(max(s.distance, 1.0))),
+            *((0.0, 0.0) if witness is None else (part[s.column] for part in witness)),
         )
         for s in streams.streams
     ]
@@ -221,8 +228,6 @@ class _Waited(NamedTuple):
     since: float
     held: float = 0.0
     near: float = 0.0
-    restless: float = 0.0
-    clock: float = 0.0
     flat: float = 0.0
 
 
@@ -279,8 +284,6 @@ def _waited(stream: Stream, wait: Wait, marks: Marked) -> _Waited:
         since=_since(stream.times[alike], wait.seconds, marks),
         held=share,
         near=near,
-        restless=float(np.log1p(np.count_nonzero(wait.holds(stream.changes)))),
-        clock=float(_is_clock(stream, one)),
         flat=float(flat),
     )
 
@@ -298,22 +301,6 @@ def _since(times: Floats, seconds: float, marks: Marked) -> float:
     fits = max(seconds, 1.0) * reaction(firsts - begun, PATIENCE_LOG, PATIENCE_SIGMA)
     fits[(last < 0) | (firsts - times[last] > BRIEF_S)] = 0.0
     return float(np.log(STRAY + (1 - STRAY) * fits).sum())
-
-
-def _is_clock(stream: Stream, rows: Bools) -> bool:
-    """Whether the value rises with time at one second a second, most of the time.
-
-    Compared are values at least ``CLOCK_S`` apart, as they may come in coarse steps.
-    """
-    times, values = stream.times[rows], stream.cmp[rows]
-    later = np.searchsorted(times, times + CLOCK_S)
-    some = later < times.size
-    if not some.any():
-        return False
-    span = times[later[some]] - times[some]
-    with np.errstate(invalid="ignore", over="ignore"):
-        rate = (values[later[some]] - values[some]) / span
-    return bool(np.median(np.abs(rate - 1.0)) <= 0.1)
 
 
 def _between(times: Floats, begins: Floats, ends: Floats) -> Int64s:

@@ -42,8 +42,7 @@ class Stream:
     ``times`` float64[n], sorted; ``weight`` float64[n], the seconds for which each was the last
     word; ``res`` bool[n]; ``margin`` float64[n], |cmp - thresh|, nan where it is not finite;
     ``spread`` is the range of all its finite values, of cmp and of thresh. ``code`` is the
-    comparison's place in `Tpcs.keys`, ``column`` its parameter's in `Tpcs.names`; ``distance`` is
-    how far the comparison is from what it exposes.
+    comparison's place in `Tpcs.keys`, ``column`` its parameter's in `Tpcs.names`.
     ``changes`` are when its result changed, noise taken together; ``starts`` and ``stops`` when it
     began to be evaluated after a pause, and was before one (those of the log included). ``node``
     is the one that evaluates.
@@ -51,7 +50,6 @@ class Stream:
 
     code: int
     column: int
-    distance: float
     times: Floats
     weight: Floats
     res: Bools
@@ -98,7 +96,7 @@ class Streams:
         for rows in np.split(order, ends[:-1] + 1):
             code = int(events.key[rows[0]])
             column = place[tpcs.parameters[code]]
-            streams.append(_stream(events, rows, begin, (code, column), float(tpcs.distance[code])))
+            streams.append(_stream(events, rows, begin, (code, column)))
         return cls(tuple(streams), begin, seconds)
 
     @cached_property
@@ -122,9 +120,7 @@ class Streams:
 _KEPT: WeakKeyDictionary[Events, tuple[tuple[str, ...], Streams]] = WeakKeyDictionary()
 
 
-def _stream(
-    events: Events, rows: Int64s, begin_ns: int, places: tuple[int, int], distance: float
-) -> Stream:
+def _stream(events: Events, rows: Int64s, begin_ns: int, places: tuple[int, int]) -> Stream:
     times = (events.time_ns[rows] - begin_ns) / 1e9
     cmp, thresh, res = events.cmp[rows], events.thresh[rows], events.res[rows]
     gaps = np.diff(times)
@@ -141,7 +137,6 @@ def _stream(
     return Stream(
         code=places[0],
         column=places[1],
-        distance=distance,
         times=times,
         weight=weight,
         res=res,

@@ -29,7 +29,7 @@ from pytpc.study.data import ALL, LABELS, Mission, missions
 ALONE = 0.3
 """What the marks of single users count beside those of all together, which the study judges by."""
 
-WIDTH = 1.0
+WIDTH = 0.5
 """The standard deviation of the prior of a weight about the reasoned one."""
 
 STEPS = 150
@@ -39,23 +39,18 @@ STEPS = 150
 class Sample:
     """One set of marks on one mission: the evidence, and whose fault it was.
 
-    ``columns`` int64[streams] as in `parameter_scores`; ``ranked`` float64[p]; ``right`` are the
-    columns of the parameter that is to blame, empty for none.
+    ``columns`` int64[streams] as in `parameter_scores`, ``parameters`` how many there are;
+    ``right`` are the columns of the parameter that is to blame, empty for none.
     """
 
     system: str
     treatment: str
     found: Evidence
     columns: Int64s
-    ranked: Floats
+    parameters: int
     odds: float
     right: tuple[int, ...]
     weight: float
-
-    @property
-    def parameters(self) -> int:
-        """How many there are."""
-        return int(self.ranked.size)
 
     @property
     def unit(self) -> tuple[str, str]:
@@ -68,13 +63,12 @@ class Batch:
     """All samples in one table: the streams of all, one after the other.
 
     ``columns`` are places in the flat table [samples, width] of parameters, ``odds`` float64 that
-    of each stream's sample; ``ranked`` float64[samples, width]; ``right`` bool[samples, width + 1],
-    where the last column is "none"; ``share`` float64[samples] sums to 1.
+    of each stream's sample; ``right`` bool[samples, width + 1], where the last column is "none";
+    ``share`` float64[samples] sums to 1.
     """
 
     found: Evidence
     columns: Int64s
-    ranked: Floats
     odds: Floats
     right: Bools
     share: Floats
@@ -87,10 +81,8 @@ class Batch:
         for sample in parts:
             sums[sample.unit] = sums.get(sample.unit, 0.0) + sample.weight
         right = np.zeros((len(parts), width + 1), np.bool_)
-        baseline = np.zeros((len(parts), width))
         for row, sample in enumerate(parts):
             right[row, list(sample.right) or [width]] = True
-            baseline[row, : sample.parameters] = sample.ranked
         columns = [
             np.concatenate([getattr(sample.found, field.name) for sample in parts])
             for field in fields(Evidence)
@@ -98,7 +90,6 @@ class Batch:
         return cls(
             Evidence(*columns),
             np.concatenate([sample.columns + row * width for row, sample in enumerate(parts)]),
-            baseline,
             np.concatenate([np.full(sample.columns.size, sample.odds) for sample in parts]),
             right,
             np.array([sample.weight / sums[sample.unit] / len(sums) for sample in parts]),
@@ -108,8 +99,7 @@ class Batch:
         """The mean of minus the log posterior of what is to blame."""
         rows, width = self.right.shape[0], self.right.shape[1] - 1
         scores = parameter_scores(self.found, self.columns, rows * width, self.odds, weights)
-        table = scores.reshape(rows, width) + weights.ranked * self.ranked
-        table = np.column_stack([table, np.full(rows, weights.none)])
+        table = np.column_stack([scores.reshape(rows, width), np.full(rows, weights.none)])
         table -= table.max(axis=1, keepdims=True)
         mass = np.exp(table)
         share = (mass * self.right).sum(axis=1) / mass.sum(axis=1)
@@ -131,8 +121,8 @@ def samples(mission: Mission) -> list[Sample]:
     for who in (ALL, *users):
         own = [mark for mark in mission.marks if who in {ALL, mark.observer}]
         times = np.array([mark.time_ns for mark in own], np.int64)
-        found = evidence(streams, marked(times, tuple(m.observer for m in own), streams))
-        baseline = ranked(mission.recording, tpcs, times)
+        observed = marked(times, tuple(m.observer for m in own), streams)
+        found = evidence(streams, observed, ranked(mission.recording, tpcs, times))
         share = (1.0 if who == ALL else ALONE / len(users)) / len(LABELS)
         made += [
             Sample(
@@ -140,7 +130,7 @@ def samples(mission: Mission) -> list[Sample]:
                 mission.treatment,
                 found,
                 columns,
-                baseline,
+                len(tpcs.names),
                 type_odds([mark.mark(labels) for mark in own]),
                 right,
                 share,

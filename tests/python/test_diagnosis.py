@@ -122,10 +122,9 @@ def test_a_parameter_has_the_score_of_its_best_comparison():
         since=zero,
         held=np.full(3, 1 - SHARE),
         near=zero,
-        restless=zero,
-        clock=zero,
         flat=zero,
-        far=zero,
+        ranked1=zero,
+        ranked=zero,
     )
     columns = np.array([0, 0, 1])
     weights = Weights(acted=1, waited=1, type2=0, latch=-50)
@@ -138,17 +137,24 @@ def test_a_parameter_has_the_score_of_its_best_comparison():
     assert scores.tolist() == pytest.approx([1.0, -1.0, -math.inf])
 
 
-# At 50 s by type I: gate (50-49)*2 = 2 before noisy (50-40)*2 = 20. By type II only gate has been
-# evaluated in the window: first. safe was compared before, and has no score: behind the three that
-# were compared, like never. Nobody is before gate, one before noisy.
+# At 50 s by type I: gate (50-49)*2 = 2 before noisy (50-37)*2 = 26. By type II in the window: safe
+# 0.2/(2-1) before gate 1/(3-1). So by the better of both nobody is before gate and safe, and one of
+# five (rank 4/5) before noisy. Who has no score is behind the three that were compared.
 def test_the_baseline_is_a_witness():
     rows = [(1, 0, 0, 1, 2), (49, 0, 1, 3, 2), (1, 1, 0, 1, 2), (37, 1, 1, 3, 2), (1, 2, 0, 1, 2)]
+    rows += [(48, 2, 0, 1.8, 2)]
     tpcs = Tpcs.of(STATIC)
     found = ranked(recording(rows, []), tpcs, np.array([ns(50)]))
-    by_name = dict(zip(tpcs.names, np.exp(-found), strict=True))
-    assert by_name == pytest.approx(
-        {"~gate": 2.0, "~noisy": 3.0, "~safe": 5.0, "~never": 5.0, "~enable": 5.0}
-    )
+    nobody = {"~never": 5.0, "~enable": 5.0}
+    first = dict(zip(tpcs.names, np.exp(-found.ranked1), strict=True))
+    assert first == pytest.approx({"~gate": 2.0, "~noisy": 3.0, "~safe": 5.0, **nobody})
+    either = dict(zip(tpcs.names, np.exp(-found.ranked), strict=True))
+    assert either == pytest.approx({"~gate": 2.0, "~noisy": 3.0, "~safe": 2.0, **nobody})
+    table = Streams.of(events(rows), tpcs)
+    seen = evidence(table, marked(np.array([ns(50)]), ("",), table), found)
+    by_name = {tpcs.names[one.column]: n for n, one in enumerate(table.streams)}
+    assert math.exp(-seen.ranked1[by_name["~noisy"]]) == pytest.approx(3.0)
+    assert math.exp(-seen.ranked[by_name["~safe"]]) == pytest.approx(2.0)
 
 
 # At the median z = 0: 3/8 / (sigma t). Before the mark there is no reaction.
@@ -187,6 +193,17 @@ def test_agreement_is_believed_more_and_disagreement_not_at_all():
 
     assert said(["I"] * 4) < said(["I"]) < 0
     assert abs(said(["I", "II", "I", "II"])) < abs(said(["I"]))
+
+
+# I, II and II by one count 1, 1/2 and 1/4: so 1 against 3/4, whatever the order in the list.
+def test_what_an_observer_says_first_counts_most():
+    own = [*marks(9, 12, kind="II"), *marks(5, kind="I")]
+    vague = 0.5 * (28 / 68) * (40 / 68) ** 0.75
+    one = 0.5 * 0.95 * 0.05**0.75 + vague
+    two = 0.5 * 0.95**0.75 * 0.05 + vague
+    plain = type_odds([replace(mark, type=None) for mark in own])
+    assert type_odds(own) - plain == pytest.approx(math.log(two / one))
+    assert two < one
 
 
 # gate has one turn at 30 s, the first evaluation is a start at 0 s. The mark is at 33 s.
@@ -244,10 +261,8 @@ def test_waited_by_hand():
     # It has been so for 11.5 s at the mark.
     fit = 79.53 * reaction(np.array([11.5]), PATIENCE_LOG, PATIENCE_SIGMA)[0]
     assert found.since[0] == pytest.approx(math.log(STRAY + (1 - STRAY) * fit))
-    assert (found.restless[0], found.clock[0], found.flat[0]) == (0.0, 0.0, 0.0)
-    # The flag has one value, the noisy one changes each second.
+    # The flag has one value.
     assert found.flat.tolist() == [0.0, 0.0, 0.0, 1.0]
-    assert found.restless[1] == pytest.approx(math.log(1 + 8))
 
 
 # At 50 s it has been so for 1 s, since its break of 3 s; before the break for 46 s, which ended
@@ -265,14 +280,6 @@ def test_a_break_ends_a_wait_and_a_short_one_does_not():
     assert found[0] == pytest.approx(math.log(STRAY + (1 - STRAY) * fits[0]))
     assert found[1] == pytest.approx(math.log(STRAY))
     assert found[2] == pytest.approx(math.log(STRAY + (1 - STRAY) * fits[1]))
-
-
-def test_a_timer_is_known_as_one_in_coarse_steps_too():
-    rows = [(t / 10, 0, 0, math.floor(t / 5) / 2, 99) for t in range(800)]
-    rows += [(t / 10, 1, 0, t / 20, 99) for t in range(800)]
-    streams = Streams.of(events(rows), Tpcs.of(STATIC))
-    found = evidence(streams, marked(np.array([ns(40)]), ("",), streams))
-    assert found.clock.tolist() == [1.0, 0.0]
 
 
 def test_only_the_first_mark_of_an_observer_tells_when_it_began():
