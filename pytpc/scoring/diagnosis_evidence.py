@@ -111,8 +111,7 @@ class Evidence:
 
     ``acted``, ``waited`` and ``since`` see above; ``held`` the share of the wait with one result;
     ``near`` the logarithm of the mean distance from the threshold in the wait as a part of the
-    stream's range; ``flat`` 1 where there is but one value, as of a flag. ``ranked1`` and
-    ``ranked`` say how high the baseline puts the parameter, by type I and by the better of both.
+    stream's range; ``flat`` 1 where there is but one value, as of a flag.
     """
 
     acted: Floats
@@ -121,15 +120,6 @@ class Evidence:
     held: Floats
     near: Floats
     flat: Floats
-    ranked1: Floats
-    ranked: Floats
-
-
-class Witness(NamedTuple):
-    """What the baseline says of the p parameters, float64[p] each: see ``Evidence``."""
-
-    ranked1: Floats
-    ranked: Floats
 
 
 def marked(times_ns: Int64s, observers: Sequence[str], streams: Streams) -> Marked:
@@ -141,24 +131,11 @@ def marked(times_ns: Int64s, observers: Sequence[str], streams: Streams) -> Mark
     return Marked(times, np.sort(np.array([*firsts.values()], np.float64)))
 
 
-def evidence(streams: Streams, marks: Marked, witness: Witness | None = None) -> Evidence:
-    """The evidence of all streams; there is at least one mark.
-
-    Args:
-        streams: those of a recording.
-        marks: the marks.
-        witness: what the baseline says; None where it is not asked.
-    """
+def evidence(streams: Streams, marks: Marked) -> Evidence:
+    """The evidence of all streams; there is at least one mark."""
     wait = Wait.before(marks, streams.seconds)
     chance = any_time(streams.seconds, marks)
-    rows = [
-        (
-            _acted(s, streams, marks) - chance,
-            *_waited(s, wait, marks),
-            *((0.0, 0.0) if witness is None else (part[s.column] for part in witness)),
-        )
-        for s in streams.streams
-    ]
+    rows = [(_acted(s, streams, marks) - chance, *_waited(s, wait, marks)) for s in streams.streams]
     return Evidence(*np.array(rows, np.float64).reshape(len(rows), len(fields(Evidence))).T)
 
 

@@ -20,7 +20,7 @@ import numpy as np
 from pytpc.columns import Bools, Floats, Int64s
 from pytpc.errors import TpcError
 from pytpc.parameters import same_parameter
-from pytpc.scoring.diagnosis import REASONED, Weights, parameter_scores, ranked, type_odds
+from pytpc.scoring.diagnosis import REASONED, Said, Weights, mixture, ranked, type_odds
 from pytpc.scoring.diagnosis_evidence import Evidence, evidence, marked
 from pytpc.scoring.diagnosis_streams import Streams
 from pytpc.scoring.tables import Tpcs
@@ -39,18 +39,23 @@ STEPS = 150
 class Sample:
     """One set of marks on one mission: the evidence, and whose fault it was.
 
-    ``columns`` int64[streams] as in `parameter_scores`, ``parameters`` how many there are;
-    ``right`` are the columns of the parameter that is to blame, empty for none.
+    ``columns`` int64[streams] is the parameter of each; ``ranked`` as in `Said`, of one set of
+    marks; ``right`` are the columns of the parameter that is to blame, empty for none.
     """
 
     system: str
     treatment: str
     found: Evidence
     columns: Int64s
-    parameters: int
+    ranked: Floats
     odds: float
     right: tuple[int, ...]
     weight: float
+
+    @property
+    def parameters(self) -> int:
+        """How many there are."""
+        return int(self.ranked.shape[2])
 
     @property
     def unit(self) -> tuple[str, str]:
@@ -62,14 +67,12 @@ class Sample:
 class Batch:
     """All samples in one table: the streams of all, one after the other.
 
-    ``columns`` are places in the flat table [samples, width] of parameters, ``odds`` float64 that
-    of each stream's sample; ``right`` bool[samples, width + 1], where the last column is "none";
+    ``right`` bool[samples, width + 1] is who is to blame, where the last column is "none";
     ``share`` float64[samples] sums to 1.
     """
 
     found: Evidence
-    columns: Int64s
-    odds: Floats
+    said: Said
     right: Bools
     share: Floats
 
@@ -81,28 +84,28 @@ class Batch:
         for sample in parts:
             sums[sample.unit] = sums.get(sample.unit, 0.0) + sample.weight
         right = np.zeros((len(parts), width + 1), np.bool_)
+        baseline = np.full((2, len(parts), width), -np.inf)
         for row, sample in enumerate(parts):
             right[row, list(sample.right) or [width]] = True
+            baseline[:, row, : sample.parameters] = sample.ranked[:, 0]
         columns = [
             np.concatenate([getattr(sample.found, field.name) for sample in parts])
             for field in fields(Evidence)
         ]
         return cls(
             Evidence(*columns),
-            np.concatenate([sample.columns + row * width for row, sample in enumerate(parts)]),
-            np.concatenate([np.full(sample.columns.size, sample.odds) for sample in parts]),
+            Said(
+                np.concatenate([sample.columns + row * width for row, sample in enumerate(parts)]),
+                baseline,
+                np.array([sample.odds for sample in parts]),
+            ),
             right,
             np.array([sample.weight / sums[sample.unit] / len(sums) for sample in parts]),
         )
 
     def loss(self, weights: Weights) -> float:
         """The mean of minus the log posterior of what is to blame."""
-        rows, width = self.right.shape[0], self.right.shape[1] - 1
-        scores = parameter_scores(self.found, self.columns, rows * width, self.odds, weights)
-        table = np.column_stack([scores.reshape(rows, width), np.full(rows, weights.none)])
-        table -= table.max(axis=1, keepdims=True)
-        mass = np.exp(table)
-        share = (mass * self.right).sum(axis=1) / mass.sum(axis=1)
+        share = (mixture(self.found, self.said, weights).shares * self.right).sum(axis=1)
         return -float(np.sum(self.share * np.log(np.maximum(share, 1e-9))))
 
 
@@ -122,7 +125,8 @@ def samples(mission: Mission) -> list[Sample]:
         own = [mark for mark in mission.marks if who in {ALL, mark.observer}]
         times = np.array([mark.time_ns for mark in own], np.int64)
         observed = marked(times, tuple(m.observer for m in own), streams)
-        found = evidence(streams, observed, ranked(mission.recording, tpcs, times))
+        found = evidence(streams, observed)
+        baseline = ranked(mission.recording, tpcs, times)
         share = (1.0 if who == ALL else ALONE / len(users)) / len(LABELS)
         made += [
             Sample(
@@ -130,7 +134,7 @@ def samples(mission: Mission) -> list[Sample]:
                 mission.treatment,
                 found,
                 columns,
-                len(tpcs.names),
+                baseline,
                 type_odds([mark.mark(labels) for mark in own]),
                 right,
                 share,

@@ -14,9 +14,10 @@ from pytpc.scoring.diagnosis import (
     MARKS_I,
     MARKS_II,
     REPEAT,
+    Said,
     Weights,
     diagnose,
-    parameter_scores,
+    mixture,
     ranked,
     softmax,
     type_odds,
@@ -111,10 +112,11 @@ def test_the_posterior_of_two_by_hand():
     assert (posterior.tolist(), none) == ([0.0, 0.0], 1.0)
 
 
-# Streams 0 and 1 are of parameter 0, 2 of parameter 1; both types are as likely. With the weights 1
-# of acted and of waited alone: (e^0 + e^1)/2, (e^2 + e^0)/2 and (e^-1 + e^-1)/2; the better of the
-# first two counts.
-def test_a_parameter_has_the_score_of_its_best_comparison():
+# Streams 0 and 1 are of parameter 0, 2 of parameter 1, nobody is of parameter 2. By acted, with the
+# weight 1, parameter 0 has e^2 and 1 has e^-1, none of them e^0; waited has e^1, e^-1 and e^0. The
+# baseline has 1/1 and 1/2, so 2/3 and 1/3 of what is not "none of them", by type I, and the other
+# way round by the better of both.
+def test_the_witnesses_are_mixed_by_hand():
     zero = np.zeros(3)
     found = Evidence(
         acted=np.array([0.0, 2.0, -1.0]),
@@ -123,38 +125,45 @@ def test_a_parameter_has_the_score_of_its_best_comparison():
         held=np.full(3, 1 - SHARE),
         near=zero,
         flat=zero,
-        ranked1=zero,
-        ranked=zero,
     )
-    columns = np.array([0, 0, 1])
-    weights = Weights(acted=1, waited=1, type2=0, latch=-50)
-    scores = parameter_scores(found, columns, 3, 0.0, weights)
-    assert scores.tolist() == pytest.approx([math.log((math.e**2 + 1) / 2), -1.0, -math.inf])
-    # Surely of type II: of its share of latches, 1/2, it is the change after all.
-    scores = parameter_scores(found, columns, 3, 50.0, replace(weights, latch=0))
-    assert scores.tolist() == pytest.approx([math.log((math.e**2 + 1) / 2), -1.0, -math.inf])
-    scores = parameter_scores(found, columns, 3, 50.0, weights)
-    assert scores.tolist() == pytest.approx([1.0, -1.0, -math.inf])
+    ranks = np.log([[[1, 1 / 2, 1e-300]], [[1 / 2, 1, 1e-300]]])
+    weights = Weights(acted=1, waited=1, ranked=1, none=0, latch=-50)
+
+    def mixed(odds, **changes):
+        said = Said(np.array([0, 0, 1]), ranks, np.array([odds]))
+        return mixture(found, said, replace(weights, **changes))
+
+    did = np.array([math.e**2, 1 / math.e, 0, 1]) / (math.e**2 + 1 / math.e + 1)
+    some = 1 - did[3]
+    did = (did + np.array([some * 2 / 3, some / 3, 0, did[3]])) / 2
+    waits = np.array([math.e, 1 / math.e, 0, 1]) / (math.e + 1 / math.e + 1)
+    some = 1 - waits[3]
+    waits = (waits + np.array([some / 3, some * 2 / 3, 0, waits[3]])) / 2
+    assert mixed(-50.0).shares[0].tolist() == pytest.approx(did.tolist())
+    assert mixed(50.0).shares[0].tolist() == pytest.approx(waits.tolist())
+    both = mixed(0.0)
+    assert both.shares[0].tolist() == pytest.approx(((did + waits) / 2).tolist())
+    assert both.type1[0, 0] == pytest.approx(did[0] / (did[0] + waits[0]))
+    # Surely of type II: half of that are latches, which are changes after all.
+    latched = mixed(50.0, latch=0.0)
+    assert latched.shares[0].tolist() == pytest.approx(((did + waits) / 2).tolist())
+    assert latched.type1[0, 0] == pytest.approx(0.0, abs=1e-9)
+    assert latched.turned[0, 0] == pytest.approx(did[0] / (did[0] + waits[0]))
 
 
-# At 50 s by type I: gate (50-49)*2 = 2 before noisy (50-37)*2 = 26. By type II in the window: safe
-# 0.2/(2-1) before gate 1/(3-1). So by the better of both nobody is before gate and safe, and one of
-# five (rank 4/5) before noisy. Who has no score is behind the three that were compared.
+# At 50 s by type I: gate (50-49)*2 = 2 before noisy (50-37)*2 = 26, then safe, which has no score.
+# By type II in the window: safe 0.2/(2-1) before gate 1/(3-1). So by the better of both gate and
+# safe share the places 1 and 2. The others were never compared.
 def test_the_baseline_is_a_witness():
     rows = [(1, 0, 0, 1, 2), (49, 0, 1, 3, 2), (1, 1, 0, 1, 2), (37, 1, 1, 3, 2), (1, 2, 0, 1, 2)]
     rows += [(48, 2, 0, 1.8, 2)]
     tpcs = Tpcs.of(STATIC)
     found = ranked(recording(rows, []), tpcs, np.array([ns(50)]))
-    nobody = {"~never": 5.0, "~enable": 5.0}
-    first = dict(zip(tpcs.names, np.exp(-found.ranked1), strict=True))
-    assert first == pytest.approx({"~gate": 2.0, "~noisy": 3.0, "~safe": 5.0, **nobody})
-    either = dict(zip(tpcs.names, np.exp(-found.ranked), strict=True))
-    assert either == pytest.approx({"~gate": 2.0, "~noisy": 3.0, "~safe": 2.0, **nobody})
-    table = Streams.of(events(rows), tpcs)
-    seen = evidence(table, marked(np.array([ns(50)]), ("",), table), found)
-    by_name = {tpcs.names[one.column]: n for n, one in enumerate(table.streams)}
-    assert math.exp(-seen.ranked1[by_name["~noisy"]]) == pytest.approx(3.0)
-    assert math.exp(-seen.ranked[by_name["~safe"]]) == pytest.approx(2.0)
+    nobody = {"~never": math.inf, "~enable": math.inf}
+    first = dict(zip(tpcs.names, np.exp(-found[0, 0]), strict=True))
+    assert first == pytest.approx({"~gate": 1.0, "~noisy": 2.0, "~safe": 3.0, **nobody})
+    either = dict(zip(tpcs.names, np.exp(-found[1, 0]), strict=True))
+    assert either == pytest.approx({"~gate": 1.5, "~noisy": 3.0, "~safe": 1.5, **nobody})
 
 
 # At the median z = 0: 3/8 / (sigma t). Before the mark there is no reaction.
@@ -349,7 +358,8 @@ def test_names_do_not_matter(rows, own):
     by_name = dict(zip(found.names, found.scores, strict=True))
     names = ["~gate", "~noisy", "~safe", "~never", "~enable"]
     for number, name in enumerate(names):
-        assert by_name[f"~z{9 - number}"] == plain.scores[plain.names.index(name)]
+        score = plain.scores[plain.names.index(name)]
+        assert by_name[f"~z{9 - number}"] == pytest.approx(score, rel=1e-12)
 
 
 @pytest.mark.parametrize(("rows", "own"), CASES)
