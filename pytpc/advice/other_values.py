@@ -62,8 +62,8 @@ REPLAYED = 1.0
 missions have eight large harmless changes each, by the likelihood of what was to blame."""
 
 NOBODY = -0.4
-"""The score of "none of them" where it is known what differs. The likeliest is -1; with -0.4 no clean
-mission and no fault of the tuning half has an accusation."""
+"""The score of "none of them" where it is known what differs. The likeliest is lower; with -0.4 no
+clean mission and no fault of the tuning half has an accusation."""
 
 
 def diagnose_replayed(
