@@ -74,9 +74,9 @@ def text(made) -> str:
 
 # Of two treatments held back: type2_high has its parameter at 1 and 4, so top 1 is 1/2 and top 3 is
 # 1/2; the other system's is at 2: 0 and 1. Means 25 % and 75 %; position (2.5 + 2) / 2. Ranks of
-# the first: 1 and 1 - 3/4, mean 0.625; of the second: 1 - 1/41. Untyped: 1 and 1.5 (shared by two, so
-# that each is first with 1/2), and 3: top 1 is 3/8, positions (1.25 + 3) / 2. Confused: 3 and no mark
-# at all, and 20. No mark is a miss at place (4 + 1) / 2: positions (2.75 + 20) / 2. Drawing two of
+# the first: 1 and 1 - 3/4, mean 0.625; of the second: 1 - 1/41. Untyped: 1 and 1.5 (of two, so that
+# each is first with 1/2), and 3: top 1 is 3/8, positions (1.25 + 3) / 2. Confused: 3 and no mark at
+# all, and 20. No mark is a miss at place (4 + 1) / 2: positions (2.75 + 20) / 2. Drawing two of
 # two gives either, both, or the other.
 def test_the_main_table(text):
     heading = "The held-back half"
@@ -174,7 +174,7 @@ def test_table_6_16(text):
 
 
 def test_confidence(text, made):
-    # Held back: 0.1; 0.2 0.3 0.3, of which one is tied with another; 0.6 0.7 0.6 0.7, of which those
+    # Held back: 0.1; 0.2 0.3 0.3, of which one is tied with another; 0.6 0.7 0.6 0.7, of which two
     # of 0.7 are right. The other half, on which weights are fitted, is apart: 0.2 and 0.55 of the
     # clean and the faulty mission, which are never right, and 0.9.
     tables = made.numbers["tables"]
