@@ -418,7 +418,7 @@ def rows_in(study: Path) -> list[Position]:
 
 
 # One mission was taken out of the table, of the half that is asked for, and one of the other. Its
-# two users and both together, three labels, nine methods. The error is of type I: ~low alone has
+# two users and both together, three labels, all methods. The error is of type I: ~low alone has
 # flopped, so whoever believes that it is of type I puts it first.
 def test_only_missions_that_are_not_ranked_are_ranked(own, tmp_path):
     missing = {("type1_low", 1), ("type2_high", 1)}
@@ -429,7 +429,7 @@ def test_only_missions_that_are_not_ranked_are_ranked(own, tmp_path):
     added = [row for row in rows if row not in kept]
     assert len(rows) == len(kept) + len(added)
     assert {(row.treatment, row.seed) for row in added} == {("type1_low", 1)}
-    assert len(added) == 3 * 3 * 9
+    assert len(added) == 3 * 3 * len(METHODS)
     (found,) = [
         row for row in added if (row.method, row.labels, row.who) == ("thesis", "typed", "all")
     ]
@@ -442,7 +442,7 @@ def test_only_missions_that_are_not_ranked_are_ranked(own, tmp_path):
     assert {row.method for row in anew if row.treatment == "clean" and row.seed == 1} == {*METHODS}
 
 
-# Then user1 alone marked it. Two sets of marks, three labels, nine methods.
+# Then user1 alone marked it. Two sets of marks, three labels, all methods.
 def test_a_mission_that_was_marked_anew_is_ranked_again(own):
     place = own / "missions/alpha/type1_low/seed-1"
     save_done(made_by("flown", marked="people 1"), place)
@@ -452,7 +452,7 @@ def test_a_mission_that_was_marked_anew_is_ranked_again(own):
     write_said(place, [(7, "user1", "I", "I")])
     rank_missions(own, ["tuning"])
     rows = [row for row in rows_in(own) if (row.treatment, row.seed) == ("type1_low", 1)]
-    assert len(rows) == 2 * 3 * 9
+    assert len(rows) == 2 * 3 * len(METHODS)
     assert {(row.marks, row.digest) for row in rows} == {(1, "flown-people 2")}
     # What was not marked anew stays.
     others = [row for row in before if (row.treatment, row.seed) != ("type1_low", 1)]

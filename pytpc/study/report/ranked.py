@@ -18,7 +18,8 @@ from pytpc.tables import Cell, Column, Table
 OURS = "tpc"
 BASELINE = "thesis"
 METHODS = (OURS, "tpc+reference", "tpc+changes", BASELINE, "thesis-doubt", "importance",
-           "recent-change", "largest-change", "random")  # fmt: skip
+           "turned-decisions", "largest-change", "recent-change", "differs-at-random",
+           "random")  # fmt: skip
 TARGETS: Mapping[str, float] = {"typed": 0.90, "untyped": 0.80, "confused": 0.80}
 """The share of treatments with the changed parameter in the top 3 (the issue's targets)."""
 
