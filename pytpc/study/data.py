@@ -50,7 +50,8 @@ class Mission:
     """A mission of the study.
 
     ``type`` is that of the treatment; ``parameter`` and ``node`` are what it changed, None where
-    nothing was. ``digest`` is `Done.digest`, empty where it is not known.
+    nothing was. ``digest`` is `Done.digest`, empty where it is not known; ``round`` is when the
+    treatment was made.
     """
 
     system: str
@@ -66,6 +67,7 @@ class Mission:
     reference: Recording | None
     changes: tuple[Change, ...]
     digest: str = ""
+    round: int = 1
 
     def case(self, labels: Labels, who: str = ALL) -> Case:
         """What a method gets to see, with the marks of all users or of one."""
@@ -121,6 +123,7 @@ def load_mission(out: Path, path: Path, half: Half) -> Mission:
         reference=_reference(out / "reference" / system),
         changes=_changes(path / CHANGES_FILE),
         digest="" if done is None else done.digest,
+        round=treatment.get("round", 1),
     )
 
 

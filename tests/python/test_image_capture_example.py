@@ -161,10 +161,3 @@ def test_faults_are_those_that_the_launch_file_knows():
     launch = (PACKAGE / "launch/image_capture.launch").read_text()
     known = set(re.findall(r"'(\w+)'", " ".join(re.findall(r"eval fault [^\"]*", launch))))
     assert known == {"none"} | {treatment.launch["fault"] for treatment in treatments("fault")}
-
-
-def test_what_never_is_a_decoy_is_configured():
-    own = yaml.safe_load((PACKAGE / "config/params.yaml").read_text())
-    for name in json.loads((PACKAGE / "study.json").read_text())["never_decoys"]:
-        _, node, parameter = name.split("/")
-        assert isinstance(own[node][parameter], float)

@@ -18,13 +18,10 @@ from pytpc.ingest.recording import Recording, load_recording
 from pytpc.marks import Mark
 from pytpc.mission import MissionRun
 from pytpc.study import digest, fly, people
-from pytpc.study.changes import Candidate
 from pytpc.study.dataset import Cause, load_done
 from pytpc.study.fly import Flier, remarks_of
 from pytpc.study.plan import Flight, flights_of
 from pytpc.study.system import System
-
-AMONG = (Candidate("/pump", "a", 1.0), Candidate("/pump", "c", 0.004))
 
 
 @pytest.fixture
@@ -33,7 +30,7 @@ def example(tmp_path, monkeypatch):
 
 
 def missions(example) -> list[Flight]:
-    return flights_of(example, AMONG)
+    return flights_of(example)
 
 
 # --- how a mission went against what its treatment demands
