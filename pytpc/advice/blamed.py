@@ -38,6 +38,7 @@ def advise_blamed(
     reference: Recording | None = None,
     changes: Sequence[Changed] = (),
     sources: Collection[Source] = EVERY_SOURCE,
+    flown: Sequence[float] = (),
     window_s: float = WINDOW_S,
 ) -> list[BlamedAdvice]:
     """The first ``top`` of them with the value to try, as `pytpc.advice.remedy.remedy` has it.
@@ -46,7 +47,8 @@ def advise_blamed(
     where none can, the observers were wrong, and all count. ``declared`` is what is declared of
     parameters, ``reference`` a mission that went right, ``changes`` what was changed since. The
     value of before a change, or of the reference, comes before what the log says: with it the robot
-    went right. ``sources`` are the known values that may be taken.
+    went right. ``sources`` are the known values that may be taken, ``flown`` values
+    of the one suspect that did not help.
     """
     found = []
     for accused in blame.suspects[:top]:
@@ -61,6 +63,7 @@ def advise_blamed(
             sources=sources,
             reference=reference,
             declared=about,
+            flown=flown,
             window_s=window_s,
         )
         value = _as_before(value, changes)
