@@ -217,7 +217,10 @@ def test_the_value_of_before_comes_first():
 
     before = tried(changes=[("gate", 0.2, 0.375)])
     assert (before.direction, before.value, before.basis) == ("lower", 0.2, "before")
-    assert before.text == "lower ~gate from 0.375 to 0.2 (the value before it was changed)"
+    assert before.text == (
+        "lower ~gate from 0.375 to 0.2 (the value before it was changed; the log alone points the"
+        " other way)"
+    )
     assert tried(reference=clean).value == 0.9
     found = blame(recording, STATIC)
     for nothing in (("gate", math.nan, 0.375), ("gate", 0.375, 0.375), ("safe", 1, 9)):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections import Counter
 
@@ -133,12 +132,6 @@ def test_faults_are_those_that_the_launch_file_knows():
     launch = NAVIGATION.launch.read_text()
     known = set(re.findall(r"'(\w+)'", " ".join(re.findall(r"eval fault [^\"]*", launch))))
     assert known == {"none"} | {treatment.launch["fault"] for treatment in treatments("fault")}
-
-
-def test_what_never_is_a_decoy_is_configured():
-    for name in json.loads((PACKAGE / "study.json").read_text())["never_decoys"]:
-        _, node, parameter = name.split("/")
-        assert isinstance(ROBOT.configured[node][parameter], float)
 
 
 def test_observer_knows_the_arena_as_it_is_simulated():

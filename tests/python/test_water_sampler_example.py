@@ -176,12 +176,6 @@ def test_faults_are_those_of_the_launch_file():
         assert launch.count(f"$(eval fault == '{each.launch['fault']}')") == 2
 
 
-def test_no_decoy_list_names_a_parameter_that_is_not_there():
-    own = yaml.safe_load((PACKAGE / "config/params.yaml").read_text())
-    never = json.loads((PACKAGE / "study.json").read_text())["never_decoys"]
-    assert set(never) <= {f"/{node}/{name}" for node, values in own.items() for name in values}
-
-
 def test_demonstration_flies_treatments_that_are_there():
     assert WATER_SAMPLER.shown[0] == "clean"
     assert set(WATER_SAMPLER.shown) <= {each.name for each in treatments()}

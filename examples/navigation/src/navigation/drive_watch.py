@@ -17,7 +17,6 @@ class DriveWatch:
         self._planned = None
         self._control = None
         self.given_up = False
-        self.recovering = False
         self.sure = True
 
     def update_pose(self, pose):
@@ -44,7 +43,6 @@ class DriveWatch:
     def update_recovery(self, status):
         """What is done against being stuck."""
         self.given_up = status.given_up
-        self.recovering = status.action != status.NONE
 
     def forget(self, now):
         """A new leg: what was said of the last one does not count."""

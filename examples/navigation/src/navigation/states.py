@@ -194,6 +194,9 @@ class Done(State):
     def enter(self, now):
         super().enter(now)
         self.mission.pilot.stand()
+        # The time may be up while they are on.
+        self.mission.light(False)
+        self.mission.sound(False)
         self.mission.finish()
 
     def step(self, now):
