@@ -8,10 +8,12 @@ import shutil
 from pathlib import Path
 
 import matplotlib.image
+import pyarrow.parquet as pq
 import pytest
 from study_pages import row_of, rows_of
 
 from pytpc.study.report.making import make_report
+from pytpc.study.report.positions import read_positions
 from pytpc.study.report.systems import nearness
 from pytpc.treatment import load_treatment
 
@@ -91,7 +93,7 @@ def test_confidence(study_text, made_study):
     # clean and the faulty mission, which are never right, and 0.9.
     tables = made_study.numbers["tables"]
     found = {
-        half: [(r["verdicts"], r["share right"]) for r in tables[f"reliability-{half}"]["rows"]]
+        half: [(r["verdicts"], r["share right"]) for r in tables[f"reliability-tpc-{half}"]["rows"]]
         for half in ("held-back", "tuning")
     }
     assert found == {
@@ -99,9 +101,17 @@ def test_confidence(study_text, made_study):
         "tuning": [(1, 0.0), (1, 0.0), (1, 1.0)],
     }
     heading = "Confident verdicts"
-    assert row_of(study_text, heading, "changed parameter", "held-back", "typed") == ["3", "2", "1"]
-    assert row_of(study_text, heading, "changed parameter", "tuning", "typed") == ["2", "1", "1"]
-    assert row_of(study_text, heading, "clean", "tuning", "typed") == ["1", "0", "0"]
+    assert row_of(study_text, heading, "changed parameter", "tpc", "held-back", "typed") == [
+        "3",
+        "2",
+        "1",
+    ]
+    assert row_of(study_text, heading, "changed parameter", "tpc", "tuning", "typed") == [
+        "2",
+        "1",
+        "1",
+    ]
+    assert row_of(study_text, heading, "clean", "tpc", "tuning", "typed") == ["1", "0", "0"]
     assert row_of(study_text, "Clean missions and faults", "alpha", "fault_wires")[-2:] == [
         "0.55",
         "yes",
@@ -124,14 +134,75 @@ def test_near_and_far(study, tmp_path, tipping, word):
     assert nearness(load_treatment(folder)) == word
 
 
+# Of the second round is the other system's treatment alone.
+def test_the_result(study_text, made_study):
+    tables = made_study.numbers["tables"]
+    heading = (
+        "marks",
+        "first",
+        "target",
+        "the thesis's ranking",
+        "no clean run",
+        "verdict without",
+    )
+
+    def rows(part):
+        found = tables[f"result-{part}"]["rows"]
+        return [tuple(row[name] for name in heading) for row in found]
+
+    assert rows("held-back")[:2] == [
+        ("typed", 1, None, "0 [0, 0]", "25 [0, 50]", None),
+        ("typed", 3, ">= 90", "38 [0, 75]", "75 [50, 100]", "miss"),
+    ]
+    assert rows("second-round") == [
+        ("typed", 1, None, "0 [0, 0]", "0 [0, 0]", None),
+        ("typed", 3, ">= 90", "0 [0, 0]", "100 [100, 100]", "hit"),
+        ("untyped", 1, None, "-", "0 [0, 0]", None),
+        ("untyped", 3, ">= 80", "-", "100 [100, 100]", "hit"),
+        ("confused", 1, None, "-", "0 [0, 0]", None),
+        ("confused", 3, ">= 80", "-", "0 [0, 0]", "miss"),
+    ]
+    assert {row["with a clean run"] for row in tables["result-held-back"]["rows"]} == {"-"}
+    assert row_of(study_text, "The second round alone", "tpc", "untyped")[:4] == [
+        "1", "0 [0, 0]", "100 [100, 100]", "3.0"
+    ]  # fmt: skip
+
+
+def test_without_a_second_round_there_is_no_part_of_it(own_study, tmp_path):
+    path = own_study / "missions/image_capture/type2_min_coverage_limit/seed-1/treatment.json"
+    treatment = json.loads(path.read_text())
+    del treatment["round"]
+    path.write_text(json.dumps(treatment))
+    made = make_report(own_study, tmp_path / "study.md", draw=False)
+    assert "second round alone" not in made.page.read_text()
+    assert not any("second-round" in one["name"] for one in made.numbers["figures"])
+
+
+# Rows of the table that were written before there were rounds are of the first one, ties are those
+# of their places: 1.5 is shared by two.
+def test_a_table_of_the_first_round_is_read(own_study):
+    path = own_study / "results/positions.parquet"
+    table = pq.read_table(path)
+    pq.write_table(table.drop_columns(["tied", "round"]), path)
+    rows = read_positions(path)
+    assert {row.round for row in rows} == {1}
+    assert [row.within(1) for row in rows if row.position == 1.5] == [0.5]
+
+
 def test_the_headlines(made_study):
     found = {one["name"]: (one["value"], one["hit"]) for one in made_study.numbers["figures"]}
     assert found == {
         "top3-typed-held-back": (75.0, False),
+        "top3-typed-thesis-held-back": (37.5, False),
         "top3-untyped-held-back": (100.0, True),
         "top3-confused-held-back": (25.0, False),
         "suggestions-gone-held-back": (25.0, False),
         "accusations-clean-held-back": (0, True),
+        "top3-typed-second-round": (100.0, True),
+        "top3-typed-thesis-second-round": (0.0, False),
+        "top3-untyped-second-round": (100.0, True),
+        "top3-confused-second-round": (0.0, False),
+        "suggestions-gone-second-round": (0.0, False),
         "top3-typed-tuning": (50.0, False),
         "suggestions-gone-tuning": (0.0, False),
         "accusations-clean-tuning": (0, True),

@@ -8,7 +8,10 @@ from study_samples import suggestions, write_rows
 
 from pytpc.study.report.folder import load_study
 from pytpc.study.report.making import make_report
+from pytpc.study.report.parts import Part
 from pytpc.study.report.repairs import gone, read_repairs
+
+HELD_BACK = Part("held-back", "held-back half", "held-back")
 
 
 # type2_high: gone in one of two; of the other system nothing was suggested, which counts: 1/4. A
@@ -33,7 +36,7 @@ def test_suggestions(study_text):
 # after the first of type1_low is still to come: it counts for one try alone.
 def test_suggestions_by_variant(study_text):
     heading = "Other ways to suggest"
-    assert rows_of(study_text, heading)[0][:4] == ["Variant", "Half", "Tries", "Treatments"]
+    assert rows_of(study_text, heading)[0][:4] == ["Variant", "Part", "Tries", "Treatments"]
     assert row_of(study_text, heading, "lasting (headline)", "held-back", "1") == [
         "1", "50 [50, 50]", "50 [50, 50]", "50 [50, 50]", "0", ">= 80", "miss"
     ]  # fmt: skip
@@ -51,7 +54,7 @@ def test_suggestions_by_variant(study_text):
 
 def test_suggestions_by_variant_of_one_half(study, tmp_path):
     made = make_report(study, tmp_path / "study.md", ["tuning"], draw=False)
-    assert {row["half"] for row in made.numbers["tables"]["tries"]["rows"]} == {"tuning"}
+    assert {row["part"] for row in made.numbers["tables"]["tries"]["rows"]} == {"tuning"}
 
 
 def test_broken_chains_are_said(own_study, tmp_path):
@@ -86,4 +89,4 @@ def test_suggestions_that_cannot_be_judged(study, tmp_path, failure, said, mean)
         ("type2_high", 2): "gone",
         ("type2_min_coverage_limit", 1): "nothing was suggested",
     }
-    assert gone(rows, "held-back").value == mean
+    assert gone(rows, HELD_BACK).value == mean

@@ -14,15 +14,17 @@ from pytpc.stats.drawing import COLOURS, CULPRIT, FAINT, GRID, INK
 from pytpc.study.data import LABELS
 from pytpc.study.metrics import CONFIDENT, Bin, Estimate
 from pytpc.study.report.confidence import calibration_error
+from pytpc.study.report.parts import Part
 from pytpc.study.report.positions import Position, ordered
-from pytpc.study.report.ranked import METHODS, OURS, TARGETS, changed_rows, top
+from pytpc.study.report.ranked import BESIDE_CLEAN, METHODS, OURS, TARGETS, changed_rows, top
 
 _WIDTH = 8.6
+_BOLD = (OURS, BESIDE_CLEAN)
 
 
-def result_chart(rows: Sequence[Position], half: str) -> Figure:
+def result_chart(rows: Sequence[Position], part: Part) -> Figure:
     """Top 3 by method, a panel for each labels, with the intervals and the targets."""
-    own = changed_rows(rows, half)
+    own = changed_rows(rows, part)
     methods = ordered((row.method for row in own), METHODS)
     height = 1.3 + 0.26 * max(3, len(methods))
     figure = Figure(figsize=(_WIDTH, height))
@@ -31,13 +33,13 @@ def result_chart(rows: Sequence[Position], half: str) -> Figure:
         left=0.145, right=0.985, top=1 - 0.62 / height, bottom=0.5 / height, wspace=0.13
     )
     figure.suptitle(
-        f"Changed parameter among the first three, the {half} half", x=0.008, y=1 - 0.08 / height,
+        f"Changed parameter among the first three, the {part.title}", x=0.008, y=1 - 0.08 / height,
         ha="left", va="top", fontsize=10.5, weight="bold",
     )  # fmt: skip
     for axes, labels in zip(panels, LABELS, strict=True):
         for place, method in enumerate(methods):
             here = [row for row in own if (row.method, row.labels) == (method, labels)]
-            _bar(axes, place, top(here, 3), method == OURS)
+            _bar(axes, place, top(here, 3), method in _BOLD)
         axes.axvline(100 * TARGETS[labels], color=CULPRIT, linewidth=1.2, linestyle=(0, (4, 2)))
         axes.set_title(f"{labels} marks", loc="left", fontsize=9)
         axes.set_xlim(0, 100)
@@ -49,11 +51,11 @@ def result_chart(rows: Sequence[Position], half: str) -> Figure:
         axes.grid(axis="x", color=GRID, linewidth=0.6)
         axes.set_axisbelow(True)
     for label, method in zip(panels[0].get_yticklabels(), methods, strict=True):
-        label.set_fontweight("bold" if method == OURS else "normal")
+        label.set_fontweight("bold" if method in _BOLD else "normal")
     return figure
 
 
-def reliability_chart(bins: Sequence[Bin]) -> Figure:
+def reliability_chart(bins: Sequence[Bin], method: str) -> Figure:
     """Share of right verdicts over confidence; the dashed line is where they would be equal."""
     figure = Figure(figsize=(4.6, 4.2))
     axes = figure.subplots()
@@ -83,7 +85,7 @@ def reliability_chart(bins: Sequence[Bin]) -> Figure:
         )  # fmt: skip
     error = calibration_error(bins)
     said = "" if error is None else f", calibration error {error:.2f}"
-    axes.set_title(f"Confidence of {OURS}{said}", loc="left", fontsize=9.5, weight="bold")
+    axes.set_title(f"Confidence of {method}{said}", loc="left", fontsize=9.5, weight="bold")
     axes.set_xlim(0, 1)
     axes.set_ylim(0, 1.18)
     axes.set_yticks([0, 0.2, 0.4, 0.6, 0.8, 1.0])

@@ -12,6 +12,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from pytpc.changes import Change, read_changes
 from pytpc.errors import InputError, TpcError
 from pytpc.marks import Mark
 from pytpc.parameters import parameter_name, same_parameter
@@ -19,6 +20,7 @@ from pytpc.source_lines import count_lines
 from pytpc.static_info import StaticInfo
 from pytpc.static_json import parse_json
 from pytpc.stats.missions import StudyMission, load_missions
+from pytpc.study.changes import CHANGES_FILE
 from pytpc.study.data import MISSIONS, user_marks
 from pytpc.study.dataset import DONE_FILE, MARKED_FILE, STUDY_FILE
 from pytpc.study.plan import Half
@@ -36,6 +38,8 @@ Progress = Callable[[int, int], None]
 class Flight:
     """A mission of the study; ``said`` are its marks with the types that the users gave.
 
+    ``changes`` are the treatment's own and the harmless ones.
+
     The recording's own marks have the types that were right to give. ``half`` is of ``HALVES``, or
     ``UNKNOWN``.
     """
@@ -46,6 +50,7 @@ class Flight:
     mission: StudyMission
     treatment: Treatment
     said: tuple[Mark, ...]
+    changes: tuple[Change, ...] = ()
 
     def as_said(self) -> StudyMission:
         """The mission with the marks as the users set them."""
@@ -173,7 +178,9 @@ def _flight(path: Path, system: str, halves: Mapping[tuple[str, int], str]) -> F
     half = halves.get((mission.treatment.name, seed), UNKNOWN)
     said = [mark.mark("confused") for mark in user_marks(path / MARKED_FILE)]
     marks = tuple(sorted(said, key=Mark.order))
-    return Flight(system, half, seed, mission, mission.treatment, marks)
+    changes = path / CHANGES_FILE
+    made = read_changes(changes) if changes.is_file() else ()
+    return Flight(system, half, seed, mission, mission.treatment, marks, made)
 
 
 def _reference(folder: Path, name: str, troubles: list[str]) -> StudyMission | None:

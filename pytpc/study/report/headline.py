@@ -9,8 +9,20 @@ from typing import Any
 from pytpc.study.data import LABELS
 from pytpc.study.metrics import Estimate
 from pytpc.study.report.confidence import false_accusations
+from pytpc.study.report.parts import Part
 from pytpc.study.report.positions import Position
-from pytpc.study.report.ranked import OURS, TARGETS, changed_rows, percent, top
+from pytpc.study.report.ranked import (
+    BASELINE,
+    BESIDE_CLEAN,
+    CHANCE,
+    CHANCE_OF_DIFFERENT,
+    OURS,
+    TARGET_PLACES,
+    TARGETS,
+    changed_rows,
+    percent,
+    top,
+)
 from pytpc.study.report.repairs import TARGET, Repair, gone
 
 
@@ -31,26 +43,49 @@ class Headline:
         return asdict(self)
 
 
+_RANKED = {
+    "": ("", OURS),
+    "-with-clean-run": (", with a clean run", BESIDE_CLEAN),
+    "-thesis": (", by the thesis's ranking", BASELINE),
+    "-chance": (", by chance", CHANCE),
+    "-chance-of-different": (
+        ", by chance among what differs from a clean run",
+        CHANCE_OF_DIFFERENT,
+    ),
+}
+"""Whose shares are told: the end of the name, words, and the method."""
+
+TOP = f"top{TARGET_PLACES}-"
+"""The names of shares begin with it."""
+
+
 def headlines(
-    positions: Sequence[Position], repairs: Sequence[Repair], half: str
+    positions: Sequence[Position], repairs: Sequence[Repair], part: Part
 ) -> list[Headline]:
-    """The numbers of one half; those for which there is no data are left out."""
+    """The numbers of one part; those for which there is no data are left out."""
     found = []
+    own = changed_rows(positions, part)
     for labels in LABELS:
-        own = changed_rows(positions, half)
-        ours = [row for row in own if (row.method, row.labels) == (OURS, labels)]
-        text = f"Changed parameter in the top 3, {labels} marks, {half} half"
-        found += _share(f"top3-{labels}-{half}", text, top(ours, 3), TARGETS[labels])
-    text = f"Error gone with the suggested value, {half} half"
-    found += _share(f"suggestions-gone-{half}", text, gone(repairs, half), TARGET)
-    for kind, what in (("clean", "clean missions"), ("fault", "faults in the source")):
-        count, verdicts = false_accusations(positions, half, kind)
-        if verdicts:
-            text = f"Confident accusations on {what}, {half} half"
-            name = f"accusations-{kind}-{half}"
-            found.append(
-                Headline(name, text, count, "verdicts", f"{count} of {verdicts}", "0", count == 0)
+        for end, (words, method) in _RANKED.items():
+            rows = [row for row in own if (row.method, row.labels) == (method, labels)]
+            text = (
+                f"Changed parameter in the top {TARGET_PLACES}, {labels} marks{words}, {part.title}"
             )
+            name = f"{TOP}{labels}{end}-{part.name}"
+            found += _share(name, text, top(rows, TARGET_PLACES), TARGETS[labels])
+    text = f"Error gone with the suggested value, {part.title}"
+    found += _share(f"suggestions-gone-{part.name}", text, gone(repairs, part), TARGET)
+    # What is clean or has a fault belongs to no round: it is told of the halves.
+    for kind, what in (("clean", "clean missions"), ("fault", "faults in the source")):
+        for end, (words, method) in _RANKED.items():
+            if part.since > 1 or method not in (OURS, BESIDE_CLEAN):
+                continue
+            count, verdicts = false_accusations(positions, part.half, kind, method)
+            if verdicts:
+                text = f"Confident accusations on {what}{words}, {part.title}"
+                name = f"accusations-{kind}{end}-{part.name}"
+                said = f"{count} of {verdicts}"
+                found.append(Headline(name, text, count, "verdicts", said, "0", count == 0))
     return found
 
 

@@ -14,7 +14,9 @@ from pytpc.study.data import LABELS
 from pytpc.study.judge import POSITIONS_FILE
 from pytpc.study.plan import Half
 from pytpc.study.report import original as thesis_tables
+from pytpc.study.report.changed import changed_in, changes_table
 from pytpc.study.report.confidence import (
+    SURE_METHODS,
     accusation_counts,
     accusations_table,
     calibration,
@@ -26,6 +28,7 @@ from pytpc.study.report.headline import Headline, headlines
 from pytpc.study.report.judging import rank_missions
 from pytpc.study.report.original import Original
 from pytpc.study.report.page import BESIDE, IMAGES, Contents, page
+from pytpc.study.report.parts import Part, parts_of
 from pytpc.study.report.positions import Position, read_positions
 from pytpc.study.report.ranked import (
     against_table,
@@ -33,6 +36,7 @@ from pytpc.study.report.ranked import (
     groups_of,
     main_table,
     positions_table,
+    result_table,
     users_table,
 )
 from pytpc.study.report.repairs import (
@@ -42,7 +46,7 @@ from pytpc.study.report.repairs import (
     repairs_table,
     tries_table,
 )
-from pytpc.study.report.systems import systems_table, treatments_table
+from pytpc.study.report.systems import rounds_of, systems_table, treatments_table
 from pytpc.study.suggestion_chains import CHAINS_FILE, Chain, load_chains
 from pytpc.study.suggestions import HEADLINE_FILE
 from pytpc.tables import Table, as_csv, as_json
@@ -109,6 +113,7 @@ def make_report(
         "flown again as suggested",
     )
     chains = _results(folder / CHAINS_FILE, load_chains, troubles, "asked for suggestions")
+    parts = parts_of(halves, ((one.half, one.treatment.round) for one in flights))
     advance = progress("working out tables")
     originals = []
     for number, system in enumerate(study.systems, start=1):
@@ -118,17 +123,22 @@ def make_report(
     drawn: list[Drawing] = []
     if draw:
         drawn, undrawn = draw_systems(originals, study.systems, images, halves, progress("drawing"))
-        drawn = [*draw_results(positions, images, halves), *drawn]
+        drawn = [*draw_results(positions, images, parts), *drawn]
         # Where the folder happens to be is nobody's business on the page.
         troubles += [trouble.replace(f"{folder}/", "") for trouble in undrawn]
-    tables, full = _tables(study, originals, positions, repairs, halves)
-    tables["tries"] = tries_table(chains, halves)
-    own = [one for half in halves for one in headlines(positions, repairs, half)]
+    tables, full = _tables(study, originals, positions, repairs, parts)
+    changed = changed_in(study.systems)
+    tables["changes"] = changes_table(changed, study.systems)
+    tables["tries"] = tries_table(chains, parts, flights)
+    own = [one for part in parts for one in headlines(positions, repairs, part)]
     beside = target.parent / BESIDE
     contents = Contents(
+        changed=changed,
+        rounds=rounds_of(study.systems),
         systems=[system.name for system in study.systems],
         missions=sum(len(system.flights) for system in study.systems),
         halves=halves,
+        parts=parts,
         tables=tables,
         drawings=drawn,
         headlines=own,
@@ -158,10 +168,11 @@ def _tables(
     originals: Sequence[Original],
     positions: Sequence[Position],
     repairs: Sequence[Repair],
-    halves: Sequence[str],
+    parts: Sequence[Part],
 ) -> tuple[dict[str, Table], dict[str, Table]]:
     """The tables of the page by label, and those that are too long for it by their file's name."""
     systems = study.systems
+    halves = [part.half for part in parts if part.since == 1]
     found = [
         systems_table(systems),
         treatments_table(systems),
@@ -171,19 +182,26 @@ def _tables(
         thesis_tables.delays_compared(originals),
         thesis_tables.marks_compared(originals),
         thesis_tables.thesis_found(),
-        *(main_table(positions, half) for half in halves),
-        *(against_table(positions, half) for half in halves),
-        *(users_table(positions, half) for half in halves),
+        *(result_table(positions, part) for part in parts),
+        *(main_table(positions, part) for part in parts),
+        *(against_table(positions, part) for part in parts),
+        *(users_table(positions, part) for part in parts),
         *(positions_table(positions, labels) for labels in LABELS),
-        *(reliability_table(calibration(positions, half), half) for half in halves),
+        *(
+            reliability_table(calibration(positions, half, method), half, method)
+            for half in halves
+            for method in SURE_METHODS
+        ),
         accusation_counts(positions, halves),
         accusations_table(positions),
-        repairs_summary(repairs),
+        repairs_summary(repairs, parts),
         repairs_table(repairs),
     ]
     for heading, group in groups_of(systems).items():
         name = heading.lower().replace(" ", "-")
-        found += [grouped_table(f"{name}-{h}", positions, h, heading, group) for h in halves]
+        found += [
+            grouped_table(f"{name}-{part.name}", positions, part, heading, group) for part in parts
+        ]
     tables = {table.label: table for table in found}
     full: dict[str, Table] = {}
     for one in originals:

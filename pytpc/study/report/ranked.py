@@ -11,24 +11,31 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pytpc.study.data import ALL, LABELS
 from pytpc.study.metrics import Estimate, estimate
 from pytpc.study.report.folder import UNKNOWN, System
+from pytpc.study.report.parts import Part
 from pytpc.study.report.positions import Position, by_treatment, ordered, with_absent
 from pytpc.study.report.systems import language_of, nearness, one_of_each
 from pytpc.tables import Cell, Column, Table
 
 OURS = "tpc"
+BESIDE_CLEAN = "tpc+reference"
+"""Ours where there is a clean run."""
 BASELINE = "thesis"
-METHODS = (OURS, "tpc+reference", "tpc+changes", BASELINE, "thesis-doubt", "importance",
-           "turned-decisions", "largest-change", "recent-change", "differs-at-random",
-           "random")  # fmt: skip
+CHANCE = "random"
+CHANCE_OF_DIFFERENT = "differs-at-random"
+METHODS = (OURS, BESIDE_CLEAN, "tpc+changes", BASELINE, "thesis-doubt", "importance",
+           "turned-decisions", "largest-change", "recent-change", CHANCE_OF_DIFFERENT,
+           CHANCE)  # fmt: skip
 TARGETS: Mapping[str, float] = {"typed": 0.90, "untyped": 0.80, "confused": 0.80}
 """The share of treatments with the changed parameter in the top 3 (the issue's targets)."""
+TARGET_PLACES = 3
 
 Group = Callable[[Position], str]
 
 
-def changed_rows(rows: Iterable[Position], half: str = "", who: str = ALL) -> list[Position]:
-    """The verdicts about missions with a changed parameter, of one half, by marks of ``who``."""
-    return [r for r in rows if r.changed and r.who == who and (not half or r.half == half)]
+def changed_rows(rows: Iterable[Position], part: Part | None = None) -> list[Position]:
+    """The verdicts about missions with a changed parameter, of one part, by all users' marks."""
+    own = (row for row in rows if row.changed and row.who == ALL)
+    return [row for row in own if part is None or part.has(row.half, row.round)]
 
 
 def top(rows: Iterable[Position], k: int) -> Estimate:
@@ -49,8 +56,42 @@ def percent(share: Estimate) -> str:
     return f"{100 * share.value:.0f} [{100 * share.low:.0f}, {100 * share.high:.0f}]"
 
 
-def main_table(rows: Sequence[Position], half: str) -> Table:
-    """Method by labels, on one half."""
+def result_table(rows: Sequence[Position], part: Part) -> Table:
+    """The result: ours without and with a clean run beside the thesis's ranking and chance."""
+    names = {
+        "the thesis's ranking": BASELINE,
+        "no clean run": OURS,
+        "with a clean run": BESIDE_CLEAN,
+        "chance": CHANCE,
+        "chance among what differs": CHANCE_OF_DIFFERENT,
+    }
+    headings = ("First", "Target", *names, "Verdict without", "Verdict with a clean run")
+    own = changed_rows(rows, part)
+    lines: list[tuple[str, tuple[Cell, ...]]] = []
+    for labels in ordered((row.labels for row in own), LABELS):
+        for k in (1, 3):
+            shares = {
+                method: top([r for r in own if (r.method, r.labels) == (method, labels)], k)
+                for method in names.values()
+            }
+            aimed = TARGETS.get(labels) if k == TARGET_PLACES else None
+            told = [percent(shares[method]) for method in names.values()]
+            verdicts = [_verdict(shares[method], aimed) for method in (OURS, BESIDE_CLEAN)]
+            target = None if aimed is None else f">= {100 * aimed:.0f}"
+            lines.append((labels, (k, target, *told, *verdicts)))
+    columns = tuple(Column(heading, 0) for heading in headings)
+    title = f"The result, the {part.title}"
+    return Table(f"result-{part.name}", title, columns, tuple(lines), (), "Marks")
+
+
+def _verdict(share: Estimate, aimed: float | None) -> str | None:
+    if aimed is None or not share.treatments:
+        return None
+    return "hit" if share.value >= aimed else "miss"
+
+
+def main_table(rows: Sequence[Position], part: Part) -> Table:
+    """Method by labels, of one part."""
     columns = (
         Column("Labels", 0),
         Column("Treatments", 0),
@@ -62,14 +103,14 @@ def main_table(rows: Sequence[Position], half: str) -> Table:
         Column("Target", 0),
         Column("Verdict", 0),
     )
-    own = changed_rows(rows, half)
+    own = changed_rows(rows, part)
     lines: list[tuple[str, tuple[Cell, ...]]] = []
     for labels in ordered((row.labels for row in own), LABELS):
         for method in _methods(own):
             found = [row for row in own if (row.method, row.labels) == (method, labels)]
             if not found:
                 continue
-            three = top(found, 3)
+            three = top(found, TARGET_PLACES)
             aimed = TARGETS.get(labels)
             cells: tuple[Cell, ...] = (
                 labels,
@@ -80,18 +121,18 @@ def main_table(rows: Sequence[Position], half: str) -> Table:
                 mean_of(found, lambda row: float(row.parameters)),
                 mean_of(found, lambda row: row.rank),
                 None if aimed is None else f">= {100 * aimed:.0f}",
-                None if aimed is None else "hit" if three.value >= aimed else "miss",
+                _verdict(three, aimed),
             )
             lines.append((method, cells))
-    return Table(f"main-{half}", f"The {half} half", columns, tuple(lines), (), "Method")
+    return Table(f"main-{part.name}", f"The {part.title}", columns, tuple(lines), (), "Method")
 
 
-def against_table(rows: Sequence[Position], half: str) -> Table:
+def against_table(rows: Sequence[Position], part: Part) -> Table:
     """By how much each method is better than the baseline, mission by mission.
 
     A difference has a narrower interval than two shares: what is hard is hard for both.
     """
-    own = changed_rows(rows, half)
+    own = changed_rows(rows, part)
     columns = (Column("Labels", 0), Column("Top 3, difference in %", 0), Column("Mean position", 1))
     base = {_mission(row): row for row in own if row.method == BASELINE}
     lines: list[tuple[str, tuple[Cell, ...]]] = []
@@ -105,15 +146,15 @@ def against_table(rows: Sequence[Position], half: str) -> Table:
             three = estimate([r.within(3) - b.within(3) for r, b in pairs], units)
             places = estimate([row.place - other.place for row, other in pairs], units)
             lines.append((method, (labels, percent(three), places.value)))
-    title = f"Against {BASELINE}, the {half} half"
-    return Table(f"against-{half}", title, columns, tuple(lines), (), "Method")
+    title = f"Against {BASELINE}, the {part.title}"
+    return Table(f"against-{part.name}", title, columns, tuple(lines), (), "Method")
 
 
 def grouped_table(
-    label: str, rows: Sequence[Position], half: str, first: str, group: Group
+    label: str, rows: Sequence[Position], part: Part, first: str, group: Group
 ) -> Table:
     """Top 3 by labels of each method, in groups of treatments."""
-    own = changed_rows(rows, half)
+    own = changed_rows(rows, part)
     methods = _methods(own)
     columns = (Column("Labels", 0), Column("Treatments", 0), *(Column(m, 0) for m in methods))
     lines: list[tuple[str, tuple[Cell, ...]]] = []
@@ -123,7 +164,7 @@ def grouped_table(
             shares = [top([row for row in here if row.method == m], 3) for m in methods]
             count = max((share.treatments for share in shares), default=0)
             lines.append((name, (labels, count, *map(percent, shares))))
-    title = f"Top 3 in %, the {half} half"
+    title = f"Top 3 in %, the {part.title}"
     return Table(label, title, columns, tuple(lines), (), first)
 
 
@@ -143,9 +184,9 @@ def groups_of(systems: Sequence[System]) -> dict[str, Group]:
     }
 
 
-def users_table(rows: Sequence[Position], half: str) -> Table:
+def users_table(rows: Sequence[Position], part: Part) -> Table:
     """Top 3 by how many users marked; of single users the mean over all of them."""
-    own = [row for row in with_absent(rows) if row.changed and row.half == half]
+    own = [row for row in with_absent(rows) if row.changed and part.has(row.half, row.round)]
     methods = _methods(own)
     columns = (Column("Labels", 0), *(Column(method, 0) for method in methods))
     most = 1 + max((row.users or 0 for row in own), default=0)
@@ -156,7 +197,7 @@ def users_table(rows: Sequence[Position], half: str) -> Table:
             shares = (top([row for row in here if row.method == m], 3) for m in methods)
             name = "all users" if users == most else f"{users} user{'s' if users > 1 else ''}"
             lines.append((name, (labels, *map(percent, shares))))
-    return Table(f"users-{half}", "Top 3 in %", columns, tuple(lines), (), "Marks of")
+    return Table(f"users-{part.name}", "Top 3 in %", columns, tuple(lines), (), "Marks of")
 
 
 def positions_table(rows: Sequence[Position], labels: str) -> Table:

@@ -12,7 +12,9 @@ import pyarrow as pa
 from pytpc.columns import read_table
 from pytpc.errors import InputError
 from pytpc.study.metrics import Estimate, estimate
-from pytpc.study.report.folder import HALVES, Flight
+from pytpc.study.report.folder import Flight
+from pytpc.study.report.parts import Part
+from pytpc.study.report.positions import ordered
 from pytpc.study.report.ranked import percent
 from pytpc.study.suggestion_chains import HEADLINE, MOST_TRIES, VARIANTS, Chain, outcomes
 from pytpc.tables import Cell, Column, Table
@@ -74,15 +76,15 @@ def read_repairs(path: Path, flights: Iterable[Flight]) -> list[Repair]:
     return [_repair(one, found.get((one.system, one.treatment.name, one.seed))) for one in treated]
 
 
-def gone(rows: Iterable[Repair], half: str) -> Estimate:
-    """The share of treatments of a half in which the error is gone."""
-    return _gone([row for row in rows if row.flight.half == half])
+def gone(rows: Iterable[Repair], part: Part) -> Estimate:
+    """The share of treatments of a part in which the error is gone."""
+    return _gone(_of(rows, part))
 
 
-def repairs_summary(rows: Sequence[Repair]) -> Table:
-    """Shares by half and type of treatment."""
+def repairs_summary(rows: Sequence[Repair], parts: Sequence[Part]) -> Table:
+    """Shares by part and type of treatment."""
     columns = (
-        Column("Half", 0),
+        Column("Part", 0),
         Column("Treatments", 0),
         Column("Error gone %", 0),
         Column("New error %", 0),
@@ -91,24 +93,31 @@ def repairs_summary(rows: Sequence[Repair]) -> Table:
     )
     lines: list[tuple[str, tuple[Cell, ...]]] = []
     kinds = {"all": ("type1", "type2"), "type I": ("type1",), "type II": ("type2",)}
-    for half in HALVES:
+    for part in parts:
         for name, of in kinds.items():
-            own = [r for r in rows if r.flight.half == half and r.flight.treatment.type in of]
+            own = [row for row in _of(rows, part) if row.flight.treatment.type in of]
             share = _gone(own)
             if not share.treatments:
                 continue
             flown = [row for row in own if row.fresh is not None]
             fresh = estimate([float(row.fresh or 0) for row in flown], _units(flown))
             verdict = "hit" if share.value >= TARGET else "miss"
-            cells = (half, share.treatments, percent(share), percent(fresh))
+            cells = (part.name, share.treatments, percent(share), percent(fresh))
             lines.append((name, (*cells, f">= {100 * TARGET:.0f}", verdict)))
     return Table("repairs", "Suggestions, flown", columns, tuple(lines), (), "Treatments of")
 
 
-def tries_table(chains: Sequence[Chain], halves: Sequence[str]) -> Table:
-    """What came of each variant within so many tries, by half; chains that wait are left out."""
+def tries_table(chains: Sequence[Chain], parts: Sequence[Part], flights: Iterable[Flight]) -> Table:
+    """What came of each variant within so many tries, by part; chains that wait are left out.
+
+    Args:
+        chains: of any variants.
+        parts: those that are shown.
+        flights: the treated missions, which say of what round a treatment is.
+    """
+    rounds = {(one.system, one.treatment.name): one.treatment.round for one in flights}
     columns = (
-        Column("Half", 0),
+        Column("Part", 0),
         Column("Tries", 0),
         Column("Treatments", 0),
         Column("Error gone %", 0),
@@ -119,9 +128,13 @@ def tries_table(chains: Sequence[Chain], halves: Sequence[str]) -> Table:
         Column("Verdict", 0),
     )
     lines: list[tuple[str, tuple[Cell, ...]]] = []
-    for half in halves:
-        own = [chain for chain in chains if chain.half == half]
-        for variant in VARIANTS:
+    for part in parts:
+        own = [
+            chain
+            for chain in chains
+            if part.has(chain.half, rounds.get((chain.system, chain.treatment), 1))
+        ]
+        for variant in ordered((chain.variant for chain in own), list(VARIANTS)):
             for most in range(1, MOST_TRIES.get(variant, 1) + 1):
                 found, waiting = outcomes(own, variant, most)
                 if not found and not waiting:
@@ -133,7 +146,7 @@ def tries_table(chains: Sequence[Chain], halves: Sequence[str]) -> Table:
                 verdict = "hit" if share.value >= TARGET else "miss"
                 name = f"{variant} (headline)" if (variant, most) == (HEADLINE, 1) else variant
                 cells: tuple[Cell, ...] = (
-                    half,
+                    part.name,
                     most,
                     share.treatments,
                     *map(percent, (share, fresh, whole)),
@@ -170,6 +183,10 @@ def repairs_table(rows: Sequence[Repair]) -> Table:
         lines.append((row.flight.system, cells))
     columns = tuple(Column(heading, 0) for heading in headings)
     return Table("repairs-all", "Missions flown again", columns, tuple(lines), (), "System")
+
+
+def _of(rows: Iterable[Repair], part: Part) -> list[Repair]:
+    return [row for row in rows if part.has(row.flight.half, row.flight.treatment.round)]
 
 
 def _gone(rows: Iterable[Repair]) -> Estimate:
