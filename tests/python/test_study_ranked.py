@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 from collections import Counter
 from dataclasses import asdict
+from multiprocessing import active_children
 from pathlib import Path
 
 import pytest
@@ -160,6 +161,18 @@ def test_an_interrupted_ranking_is_gone_on_with(own, monkeypatch, asked):
     rank_missions(own, ["tuning"])
     assert {name for name, _, _ in asked} == {"type1_low"}
     assert len(contents(own)) < len(before)
+
+
+def test_an_interruption_ends_all_processes_and_keeps_what_they_did(own):
+    shutil.rmtree(own / "results")
+
+    def interrupt(done, total):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        rank_missions(own, ["tuning"], interrupt, jobs=2)
+    assert active_children() == []
+    assert len({(row.treatment, row.seed) for row in rows_in(own)}) == 1
 
 
 def test_a_broken_mission_does_not_keep_others_from_being_ranked(own):

@@ -35,7 +35,7 @@ def test_suggestions(study_text):
 # flight had a new error. The smallest change took the error away and made another one. The flight
 # after the first of type1_low is still to come: it counts for one try alone.
 def test_suggestions_by_variant(study_text):
-    heading = "Other ways to suggest"
+    heading = "All ways to suggest"
     assert rows_of(study_text, heading)[0][:4] == ["Variant", "Part", "Tries", "Treatments"]
     assert row_of(study_text, heading, "lasting (headline)", "held-back", "1") == [
         "1", "50 [50, 50]", "50 [50, 50]", "50 [50, 50]", "0", ">= 80", "miss"

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import os
 import signal
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Generator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import closing
 from dataclasses import dataclass, replace
-from multiprocessing import get_context
+from multiprocessing import active_children, get_context, parent_process
 from pathlib import Path
+from threading import Thread
 
 from pytpc.errors import RunError, TpcError
+from pytpc.signals import signals_end
 from pytpc.study.data import ALL, LABELS, load_mission, places, seed_of
 from pytpc.study.judge import POSITIONS_FILE, Judged, judge, save_positions
 from pytpc.study.methods import METHODS
@@ -76,9 +80,9 @@ def rank_missions(
     if not tasks and sum(map(len, ranked.values())) == len(known):
         return
     errors: list[TpcError] = []
-    with alone_with_results(folder):
+    with alone_with_results(folder), signals_end(), closing(_ranked(tasks, jobs)) as results:
         try:
-            for done, (task, found) in enumerate(_ranked(tasks, jobs), start=1):
+            for done, (task, found) in enumerate(results, start=1):
                 place = _place(task.mission)
                 if isinstance(found, TpcError):
                     errors.append(found)
@@ -103,24 +107,25 @@ def _task(folder: Path, mission: Path, half: Half, rows: Sequence[Judged]) -> _T
     return _Task(folder, mission, half, missing)
 
 
-def _ranked(tasks: Sequence[_Task], jobs: int) -> Iterator[tuple[_Task, list[Judged] | TpcError]]:
+def _ranked(tasks: Sequence[_Task], jobs: int) -> Generator[tuple[_Task, list[Judged] | TpcError]]:
     """The rows of each task, or why there are none; in any order."""
     if jobs == 1 or len(tasks) < _FEW:
         yield from ((task, _rank(task)) for task in tasks)
         return
-    pool = ProcessPoolExecutor(
-        min(jobs, len(tasks)), mp_context=get_context("spawn"), initializer=_leave_interrupts
-    )
-    try:
-        running = {pool.submit(_rank, task): task for task in tasks}
-        for future in as_completed(running):
-            yield running[future], future.result()
-    except BrokenProcessPool as error:
-        raise RunError(
-            "a process that ranks has died; it may have had too little memory"
-        ) from error
-    finally:
-        pool.shutdown(cancel_futures=True)
+    with ProcessPoolExecutor(
+        min(jobs, len(tasks)), mp_context=get_context("spawn"), initializer=_end_with_parent
+    ) as pool:
+        try:
+            running = {pool.submit(_rank, task): task for task in tasks}
+            for future in as_completed(running):
+                yield running[future], future.result()
+        except BrokenProcessPool as error:
+            raise RunError("a process that ranks has died: is there memory for more?") from error
+        except BaseException:
+            # The pool would wait for all that they have begun.
+            for process in active_children():
+                process.terminate()
+            raise
 
 
 def _rank(task: _Task) -> list[Judged] | TpcError:
@@ -132,9 +137,17 @@ def _rank(task: _Task) -> list[Judged] | TpcError:
     return [replace(row, digest=task.digests[row.method]) for row in judge(mission, methods)]
 
 
-def _leave_interrupts() -> None:
-    """An interrupt is for the process that hands out tasks: it lets the others end theirs."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+def _end_with_parent() -> None:
+    """An interrupt ends this process, and so does the end of the one that hands out tasks."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    Thread(target=_wait_for_parent, daemon=True).start()
+
+
+def _wait_for_parent() -> None:
+    parent = parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)
 
 
 def _place(mission: Path) -> _Place:
