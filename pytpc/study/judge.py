@@ -50,8 +50,8 @@ SCHEMA = pa.schema(
 class Judged:
     """A row: one verdict. ``position`` and ``confidence`` are None where there is none.
 
-    ``digest`` is that of the mission that was judged. ``tied`` is how many parameters share the
-    position, itself among them; ``round`` is when the treatment was made.
+    ``digest`` is `verdict_digest`, empty where it is not known. ``tied`` is how many parameters
+    share the position, itself among them; ``round`` is when the treatment was made.
     """
 
     system: str
@@ -117,9 +117,8 @@ def judge(
                     verdict.order[0] if verdict.order else "",
                     verdict.confidence if known else None,
                     marks,
-                    mission.digest,
-                    1 if found is None else found.tied,
-                    mission.round,
+                    tied=1 if found is None else found.tied,
+                    round=mission.round,
                 )
 
 
