@@ -125,8 +125,11 @@ WATER_SAMPLER = Example(
     reached_under=frozenset(
         {
             "type1_min_land_height",
+            "type1_waypoint_tolerance",
             "type2_hold_time",
+            "type2_max_climb_rate",
             "type2_max_sink_rate",
+            "type2_max_velocity",
             "type2_start_delay",
         }
     ),
