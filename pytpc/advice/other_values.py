@@ -152,6 +152,25 @@ def replayed(
     return found
 
 
+def turned_by_clean_run(
+    recording: Recording, static_info: StaticInfo, reference: Recording
+) -> dict[str, int]:
+    """How many recorded results would be others with the thresholds of a clean run.
+
+    Returns:
+        By the name of each parameter that has another threshold there; all of its comparisons.
+    """
+    tpcs = Tpcs.of(static_info)
+    others = of_clean_run(tpcs, recording.events, reference.events)
+    found: dict[str, int] = {}
+    for stream in Streams.of(recording.events, tpcs).streams:
+        key, name = tpcs.keys[stream.code], tpcs.names[stream.column]
+        if key in others:
+            turned = _turned(static_info.thresholds[key].relation, stream, others[key])
+            found[name] = found.get(name, 0) + int(np.count_nonzero(turned))
+    return found
+
+
 def _turned(relation: str, stream: Stream, other: float) -> Bools:
     """bool[n]: whether the outcome would be another one."""
     if relation == "flag":

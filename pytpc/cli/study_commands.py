@@ -146,7 +146,7 @@ def halves_command(*, as_json: bool) -> None:
     Within each type of treatment the names are sorted by SHA-256 of SYSTEM/NAME, and go into the
     two halves by turns; of the clean missions the first seed is for tuning.
     """
-    flights = [one for example in EXAMPLES for one in flights_of(example, ()) if one.half]
+    flights = [one for example in EXAMPLES for one in flights_of(example) if one.half]
     if as_json:
         rows = [{**_of(flight), "half": flight.half} for flight in flights]
         click.echo(dump_json(rows).decode(), nl=False)

@@ -14,6 +14,7 @@ from pytpc.cli.console import console, progress, warn
 from pytpc.cli.options import JSON, PATH
 from pytpc.study.methods import METHODS
 from pytpc.study.plan import Half
+from pytpc.study.resume import alone_with_results
 from pytpc.study.suggested import WANTED_FILE
 from pytpc.study.suggestion_chains import VARIANTS, Chain, shares
 from pytpc.study.suggestions import next_round
@@ -59,7 +60,7 @@ def suggestions_command(
     By turns with ``study suggested``, until nothing is left.
     """
     ranking = None if method is None else METHODS[method]
-    with progress("working out suggestions") as advance:
+    with alone_with_results(out), progress("working out suggestions") as advance:
         chains = next_round(
             out, _HALVES[half], ranking, variants or tuple(VARIANTS), advance, again=again
         )

@@ -1,8 +1,9 @@
 """Where each method puts the parameter that a treatment changed: ``results/positions.parquet``.
 
 The position is the place in the order, from 1. Parameters that are tied have the mean of their
-places, so that nobody gains by making no difference; those that a method does not name are tied
-behind all that it names. Where the mission has no mark there is no position: that is a miss.
+places and stand there with how many they are, so that nobody gains by making no difference; those
+that a method does not name are tied behind all that it names. Where the mission has no mark there
+is no position: that is a miss.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pyarrow as pa
@@ -38,6 +40,8 @@ SCHEMA = pa.schema(
         pa.field("confidence", pa.float64()),
         pa.field("marks", pa.int64()),
         pa.field("digest", pa.string()),
+        pa.field("tied", pa.int64()),
+        pa.field("round", pa.int64()),
     ]
 )
 
@@ -46,7 +50,8 @@ SCHEMA = pa.schema(
 class Judged:
     """A row: one verdict. ``position`` and ``confidence`` are None where there is none.
 
-    ``digest`` is that of the mission that was judged.
+    ``digest`` is `verdict_digest`, empty where it is not known. ``tied`` is how many parameters
+    share the position, itself among them; ``round`` is when the treatment was made.
     """
 
     system: str
@@ -63,6 +68,15 @@ class Judged:
     confidence: float | None
     marks: int
     digest: str = ""
+    tied: int = 1
+    round: int = 1
+
+
+class Place(NamedTuple):
+    """A place from 1, the mean of those of all that are ``tied`` there."""
+
+    mean: float
+    tied: int
 
 
 def judge(
@@ -88,6 +102,7 @@ def judge(
             for name, method in methods.items():
                 verdict = method(case) if marks else Verdict(())
                 known = marks > 0 and not np.isnan(verdict.confidence)
+                found = position(verdict, mission.parameter, names) if marks else None
                 yield Judged(
                     mission.system,
                     mission.treatment,
@@ -97,16 +112,17 @@ def judge(
                     label,
                     who,
                     name,
-                    position(verdict, mission.parameter, names) if marks else None,
+                    None if found is None else found.mean,
                     len(names),
                     verdict.order[0] if verdict.order else "",
                     verdict.confidence if known else None,
                     marks,
-                    mission.digest,
+                    tied=1 if found is None else found.tied,
+                    round=mission.round,
                 )
 
 
-def position(verdict: Verdict, parameter: str | None, names: Sequence[str]) -> float | None:
+def position(verdict: Verdict, parameter: str | None, names: Sequence[str]) -> Place | None:
     """The place of a parameter among ``names``, None where none was changed.
 
     A name that several parameters of the source can have means the first of them in the order.
@@ -117,15 +133,16 @@ def position(verdict: Verdict, parameter: str | None, names: Sequence[str]) -> f
     return min(places, default=None)
 
 
-def place(verdict: Verdict, name: str, parameters: int) -> float:
-    """The place of a name, from 1; the mean of their places for those that are tied."""
+def place(verdict: Verdict, name: str, parameters: int) -> Place:
+    """The place of a name among so many parameters."""
     if name not in verdict.order:
-        return (len(verdict.order) + 1 + parameters) / 2
+        named = len(verdict.order)
+        return Place((named + 1 + parameters) / 2, parameters - named)
     index = verdict.order.index(name)
     if not verdict.scores:
-        return index + 1.0
+        return Place(index + 1.0, 1)
     tied = [n for n, score in enumerate(verdict.scores) if score == verdict.scores[index]]
-    return sum(tied) / len(tied) + 1.0
+    return Place(sum(tied) / len(tied) + 1.0, len(tied))
 
 
 def save_positions(rows: Iterable[Judged], out: Path) -> None:

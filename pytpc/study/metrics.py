@@ -7,9 +7,8 @@ treatments. Two seeds of one treatment are not two findings.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -21,35 +20,6 @@ CONFIDENT = 0.5
 "none of them" included."""
 
 
-class Row(Protocol):
-    """What is asked of a row of the table of positions."""
-
-    @property
-    def system(self) -> str:
-        """The robot."""
-        ...
-
-    @property
-    def treatment(self) -> str:
-        """What was done to it."""
-        ...
-
-    @property
-    def position(self) -> float | None:
-        """The place of the changed parameter, None where there is no mark."""
-        ...
-
-    @property
-    def parameters(self) -> int:
-        """How many parameters there are."""
-        ...
-
-    @property
-    def confidence(self) -> float | None:
-        """That of the method, None where it has none."""
-        ...
-
-
 class Estimate(NamedTuple):
     """A figure with its interval, and of how many treatments it is."""
 
@@ -59,34 +29,18 @@ class Estimate(NamedTuple):
     treatments: int
 
 
-@dataclass(frozen=True)
-class Merit:
-    """How well a method ranks: shares of top 1 and top 3, mean position, and mean rank.
+def within(k: int, place: float, tied: int) -> float:
+    """The probability that a parameter is among the first ``k`` if ties are broken by chance.
 
-    The rank is 1 - (position - 1) / n, 1 for the most suspicious (SPEC 7). A mission without a mark
-    is a miss, and counts as the middle of all places.
+    So the shares of a method that makes no difference are those of chance, k / n.
+
+    Args:
+        k: how many are looked at.
+        place: the parameter's, from 1: the mean of the places that it shares.
+        tied: how many parameters share them, itself among them.
     """
-
-    top1: Estimate
-    top3: Estimate
-    position: Estimate
-    rank: Estimate
-
-
-def merit(rows: Iterable[Row]) -> Merit:
-    """The figures of one method, from the rows of missions with a changed parameter."""
-    found = list(rows)
-    places = [(row.parameters + 1) / 2 if row.position is None else row.position for row in found]
-    marked = np.array([row.position is not None for row in found], np.bool_)
-    where = np.array(places, np.float64)
-    ranks = [1.0 - (place - 1.0) / row.parameters for row, place in zip(found, places, strict=True)]
-    units = [(row.system, row.treatment) for row in found]
-    return Merit(
-        estimate(marked & (where <= 1), units),
-        estimate(marked & (where <= 3), units),
-        estimate(where, units),
-        estimate(np.array(ranks), units),
-    )
+    before = place - (tied + 1) / 2
+    return min(max(k - before, 0.0), tied) / tied
 
 
 def estimate(
@@ -129,8 +83,8 @@ def reliability(confidence: npt.ArrayLike, right: npt.ArrayLike, bins: int = 5) 
 
     Args:
         confidence: float64[n] in [0, 1].
-        right: bool[n], whether the first suspect was to blame; of clean runs and of faults in the
-            source never.
+        right: float64[n], whether the first suspect was to blame, a share where several are tied;
+            of clean runs and of faults in the source never.
         bins: how many; the last one has its end. Empty ones are left out.
     """
     given, hits = np.asarray(confidence, np.float64), np.asarray(right, np.float64)
@@ -148,16 +102,3 @@ def reliability(confidence: npt.ArrayLike, right: npt.ArrayLike, bins: int = 5) 
         for n in range(bins)
         if np.any(place == n)
     ]
-
-
-def brier(confidence: npt.ArrayLike, right: npt.ArrayLike) -> float:
-    """The mean of (confidence - right)^2: 0 is perfect, 0.25 is always one half (Brier 1950)."""
-    given, hits = np.asarray(confidence, np.float64), np.asarray(right, np.float64)
-    return float(np.mean((given - hits) ** 2)) if given.size else np.nan
-
-
-def accusations(rows: Iterable[Row], limit: float = CONFIDENT) -> Estimate:
-    """The share of missions with a confident accusation; one without a mark has none."""
-    found = list(rows)
-    accused = [row.confidence is not None and row.confidence >= limit for row in found]
-    return estimate(accused, [(row.system, row.treatment) for row in found])

@@ -24,14 +24,11 @@ from pytpc.study.dataset import CAUSES_FILE, MARKED_FILE, SIGHTS_FILE
 
 USERS = 4
 _PATIENCE_S = 120.0
-_TRIES = 2
 _MODULES = "PYTHONPATH"
 
 
 def see(example: Example, env: Mapping[str, str], bag: Path, folder: Path) -> None:
     """Write what a person sees of a mission, ``sights.parquet``, into its folder.
-
-    An observer that a signal ends is asked once more.
 
     Args:
         example: the robot.
@@ -75,22 +72,17 @@ def _run(example: Example, env: Mapping[str, str], words: Sequence[str]) -> None
     command = [sys.executable, str(example.observer), *words]
     modules = [str(SHARED_PACKAGE / "src"), *env.get(_MODULES, "").split(os.pathsep)]
     environment = {**env, _MODULES: os.pathsep.join(one for one in modules if one)}
-    for number in range(1, _TRIES + 1):
-        try:
-            ended = subprocess.run(
-                command,
-                env=environment,
-                stdin=subprocess.DEVNULL,
-                capture_output=True,
-                check=False,
-                timeout=_PATIENCE_S,
-            )
-        except subprocess.TimeoutExpired as error:
-            raise RunError(f"does not end in {_PATIENCE_S:.0f} s", example.observer) from error
-        # Arrow's threads may abort a Python that ends before they let go of a file that it opened
-        # (apache/arrow#34314, #33975). The same again gives the same files; a flight is dear.
-        if ended.returncode >= 0 or number == _TRIES:
-            break
+    try:
+        ended = subprocess.run(
+            command,
+            env=environment,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            check=False,
+            timeout=_PATIENCE_S,
+        )
+    except subprocess.TimeoutExpired as error:
+        raise RunError(f"does not end in {_PATIENCE_S:.0f} s", example.observer) from error
     if ended.returncode:
         said = ended.stderr.decode("utf-8", "replace").strip().splitlines()[-1:]
         what = f"ended with status {ended.returncode}: {' '.join(said) or 'it says nothing'}"

@@ -66,6 +66,7 @@ class Row:
     method: str = "tpc"
     parameters: int = 4
     top: str = "~low"
+    tied: int = 1
 
 
 def make_study(folder: Path) -> Path:
@@ -176,12 +177,12 @@ def positions() -> list[Row]:
         Row(*high, "held-back", 2, "typed", 4, 0.3),
         Row(*picture, "typed", 2, 0.6, parameters=41),
         Row(*high, "held-back", 1, "untyped", 1, 0.7),
-        Row(*high, "held-back", 2, "untyped", 1.5, 0.3),
+        Row(*high, "held-back", 2, "untyped", 1.5, 0.3, tied=2),
         Row(*picture, "untyped", 3, 0.6, parameters=41),
         Row(*high, "held-back", 1, "confused", 3, 0.2),
         Row(*high, "held-back", 2, "confused", None, None, marks=0),
         Row(*picture, "confused", 20, 0.1, parameters=41),
-        Row(*high, "held-back", 1, "typed", 3.5, None, method="thesis"),
+        Row(*high, "held-back", 1, "typed", 3.5, None, method="thesis", tied=2),
         Row(*high, "held-back", 2, "typed", 2, None, method="thesis"),
         Row(*picture, "typed", 30, None, method="thesis", parameters=41),
         Row(*high, "held-back", 1, "typed", 1, 0.7, who="user1"),

@@ -17,10 +17,16 @@ from pytpc.scoring.diagnosis import REASONED, diagnose
 from pytpc.study.case import Case
 from pytpc.study.data import Mission, UserMark, missions
 from pytpc.study.fit import Batch, fit, samples
-from pytpc.study.judge import judge, save_positions
+from pytpc.study.judge import judge, position, save_positions
 from pytpc.study.methods import METHODS
 from pytpc.study.methods.importance import importance, importance_of, windows
-from pytpc.study.methods.plain import by_chance, largest_change, recent_change
+from pytpc.study.methods.plain import (
+    by_chance,
+    differs_at_random,
+    largest_change,
+    recent_change,
+    turned_decisions,
+)
 from pytpc.study.methods.thesis import thesis, thesis_doubt
 
 STATIC = static_info(
@@ -121,11 +127,26 @@ def test_the_largest_change_is_by_its_part_of_the_value():
     assert largest_change(case([], [], changes=changes)).order == ("~b", "~a", "~c")
 
 
-def test_chance_is_the_same_for_the_same_marks():
-    drawn = [by_chance(case([], [Mark(ns(t), None)])).order for t in (1, 1, 2, 3, 4)]
-    assert drawn[0] == drawn[1]
-    assert len(set(drawn)) > 1
-    assert all(sorted(order) == ["~a", "~b", "~c", "~never"] for order in drawn)
+# Of a the clean run's 3.5 turns the 3 alone; of b its 5 turns one in each of
+# its nodes; c is as it was, and ~never is in neither.
+def test_what_the_clean_run_would_have_turned():
+    rows = [(t, 0, t > 2, t, 2) for t in range(1, 5)] + [(1, 2, 0, 1, 2), (2, 2, 0, 1, 2)]
+    rows += [(t, 1, 1, 4 * t, 3, node) for t in (1, 2) for node in ("/left", "/right")]
+    clean = Recording(
+        "clean", events([(1, 0, 0, 1, 3.5), (1, 1, 0, 1, 5), (1, 2, 0, 1, 2)]), (), 0, ns(9)
+    )
+    known = case(rows, [], reference=clean)
+    found = turned_decisions(known)
+    assert (found.order, found.scores) == (("~b", "~a"), (2.0, 1.0))
+    tied = differs_at_random(known)
+    assert (set(tied.order), tied.scores) == ({"~a", "~b"}, (0.0, 0.0))
+    assert turned_decisions(case(rows, [])) == differs_at_random(case(rows, []))
+
+
+# Of four that share the places 1 to 4.
+def test_chance_is_exact():
+    names = ("~a", "~b", "~c", "~never")
+    assert position(by_chance(case([], [])), "~b", names) == (2.5, 4)
 
 
 def mission(marks, parameter="~a", rows=((1, 0, 0, 1, 2), (49, 0, 1, 3, 2), (10, 1, 0, 1, 2))):

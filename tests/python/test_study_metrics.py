@@ -1,41 +1,33 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import pytest
 
 from pytpc.study.case import Verdict
 from pytpc.study.judge import place, position
-from pytpc.study.metrics import accusations, brier, estimate, merit, reliability
+from pytpc.study.metrics import estimate, reliability, within
 
 NAMES = ("~a", "~b", "~c", "~d", "~e")
-
-
-@dataclass(frozen=True)
-class Row:
-    treatment: str
-    position: float | None
-    confidence: float | None = None
-    parameters: int = 10
-    system: str = "robot"
 
 
 # b and c share the places 2 and 3; d and e, which are not named, the places 4 and 5.
 def test_tied_parameters_have_the_mean_of_their_places():
     verdict = Verdict(("~a", "~b", "~c"), scores=(9.0, 4.0, 4.0))
-    assert [place(verdict, name, 5) for name in NAMES] == [1.0, 2.5, 2.5, 4.5, 4.5]
+    assert [place(verdict, name, 5) for name in NAMES] == [
+        (1.0, 1), (2.5, 2), (2.5, 2), (4.5, 2), (4.5, 2)
+    ]  # fmt: skip
 
 
 def test_without_scores_only_the_unnamed_are_tied():
     verdict = Verdict(("~b", "~a"))
-    assert [place(verdict, name, 5) for name in NAMES] == [2.0, 1.0, 4.0, 4.0, 4.0]
-    assert [place(Verdict(()), name, 5) for name in NAMES] == [3.0] * 5
+    assert [place(verdict, name, 5) for name in NAMES] == [(2, 1), (1, 1), (4, 3), (4, 3), (4, 3)]
+    assert [place(Verdict(()), name, 5) for name in NAMES] == [(3.0, 5)] * 5
 
 
 def test_a_parameter_is_found_by_any_of_its_names_and_no_other():
     verdict = Verdict(("~b", "~a"))
-    assert position(verdict, "/node/a", NAMES) == 2.0
+    assert position(verdict, "/node/a", NAMES) == (2.0, 1)
     assert position(verdict, None, NAMES) is None
     assert position(verdict, "~unknown", NAMES) is None
 
@@ -45,21 +37,18 @@ def test_scores_have_to_fit():
         Verdict(("~a", "~b"), scores=(1.0,))
 
 
-# Treatment x: places 1 and 3, y: no mark (the middle of ten places is 5.5, and a miss), z: 2.
-# Top 1: x 1/2, y 0, z 0: 1/6. Top 3: 1, 0, 1: 2/3. Places: 2, 5.5, 2: 9.5/3.
-# Ranks 1 - (place - 1)/10: x (1 + 0.8)/2 = 0.9, y 0.55, z 0.9: 2.35/3.
-def test_merit_by_hand():
-    found = merit([Row("x", 1.0), Row("x", 3.0), Row("y", None), Row("z", 2.0)])
-    assert found.top1.value == pytest.approx(1 / 6)
-    assert found.top3.value == pytest.approx(2 / 3)
-    assert found.position.value == pytest.approx(9.5 / 3)
-    assert found.rank.value == pytest.approx(2.35 / 3)
-    assert found.top1.treatments == 3
-
-
-def test_a_tie_across_the_third_place_is_not_among_the_first_three():
-    assert merit([Row("x", 3.5)]).top3.value == 0.0
-    assert merit([Row("x", 3.0)]).top3.value == 1.0
+# Alone at 2 it is there or not. Of three that share the places 2 to 4 (mean 3) each is second with
+# 1/3, and among the first three with 2/3. All of five tied (mean 3) is chance: k / 5.
+@pytest.mark.parametrize(
+    ("mean", "tied", "shares"),
+    [
+        (2.0, 1, [0, 1, 1, 1, 1]),
+        (3.0, 3, [0, 1 / 3, 2 / 3, 1, 1]),
+        (3.0, 5, [0.2, 0.4, 0.6, 0.8, 1.0]),
+    ],
+)
+def test_of_tied_parameters_each_is_as_likely_before_the_others(mean, tied, shares):
+    assert [within(k, mean, tied) for k in range(1, 6)] == pytest.approx(shares)
 
 
 # Of two treatments with 0 and 1 a draw has mean 0 or 1 with 1/4 each: both 95 % ends are outside
@@ -89,15 +78,3 @@ def test_reliability_by_hand():
     ]
     assert [b.confidence for b in found] == pytest.approx([0.1, 0.95])
     assert [b.right for b in found] == pytest.approx([0.5, 2 / 3])
-
-
-# (0.1^2 + 0.6^2) / 2.
-def test_brier_by_hand():
-    assert brier([0.9, 0.6], [True, False]) == pytest.approx(0.185)
-    assert math.isnan(brier([], []))
-
-
-def test_a_mission_without_a_mark_is_no_accusation():
-    rows = [Row("clean", None, 0.5), Row("clean", None), Row("fault", None, 0.49)]
-    assert accusations(rows).value == pytest.approx(0.25)
-    assert accusations(rows, limit=0.4).value == pytest.approx(0.75)

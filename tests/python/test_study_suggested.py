@@ -102,14 +102,14 @@ def test_a_wrong_list_is_an_error(tmp_path, document, what):
 
 
 def test_a_mission_has_to_be_there_before_it_is_flown_again(example, tmp_path):
-    flights = flights_of(example, ())
+    flights = flights_of(example)
     wanted = Wanted("robot", "type1_b", 1, Setting("~b", "/pump", 1.9))
     with pytest.raises(InputError, match="has not been flown"):
         suggested_flight(wanted, flights, tmp_path)
     save_done(made(), tmp_path / "missions/robot/type1_b/seed-1")
     flight = suggested_flight(wanted, flights, tmp_path)
     assert flight.label == "suggested/robot/type1_b/seed-1"
-    assert flight.settings() == {"/pump/b": 1.9}
+    assert flight.settings() == {"/pump/a": 1.5, "/pump/b": 1.9, "/pump/c": 0.008}
     # The same people look on.
     (mission,) = [one for one in flights if one.label == "missions/robot/type1_b/seed-1"]
     assert flight.people == mission.people

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import json
+import os
+import subprocess
+import sys
 from collections import Counter
+from pathlib import Path
 
 import pytest
 from flown import Fly, expected, flights, found, need_cpp_half
@@ -11,6 +16,7 @@ from rich.console import Console
 from pytpc.demo import gone_wrong
 from pytpc.demo_examples import NAVIGATION
 from pytpc.demo_show import Built, build
+from pytpc.graph import RosGraph
 from pytpc.scoring.ranking import unknown_keys
 
 IN_CPP = {
@@ -35,7 +41,7 @@ def robot(tmp_path_factory: pytest.TempPathFactory) -> Built:
 
 
 @pytest.fixture(scope="module")
-def fly(robot, tmp_path_factory: pytest.TempPathFactory) -> Fly:
+def fly(robot, quiet, tmp_path_factory: pytest.TempPathFactory) -> Fly:
     return flights(NAVIGATION, robot, RATE, tmp_path_factory)
 
 
@@ -69,3 +75,24 @@ def test_changed_parameter_is_compared_where_it_decides(robot, fly):
             for key in mission.recording.events.keys
         }
         assert mission.treatment.parameter.lstrip("~") in compared
+
+
+@pytest.mark.parametrize(
+    ("node", "answer"),
+    [
+        # It stood at the goal before; this one is 2 m away.
+        ("controller_host", {"goal": 2, "arrived": False, "drives": True}),
+        # NONE: it does not turn round for what was before.
+        ("recovery", {"action": 0}),
+    ],
+)
+def test_node_waits_for_what_comes_by_another_connection(robot, tmp_path, node, answer):
+    installed = robot.env["CMAKE_PREFIX_PATH"].split(os.pathsep)[0]
+    probe = [sys.executable, str(Path(__file__).with_name("navigation_probe.py")), node]
+    with RosGraph(robot.env, tmp_path) as graph:
+        graph.start(node, [f"{installed}/lib/navigation/{node}"])
+        done = subprocess.run(
+            probe, check=False, env=graph.env, capture_output=True, text=True, timeout=120
+        )
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout) == answer

@@ -41,7 +41,7 @@ def robot(water: Built) -> Built:
 
 
 @pytest.fixture(scope="module")
-def fly(robot, tmp_path_factory: pytest.TempPathFactory) -> Fly:
+def fly(robot, quiet, tmp_path_factory: pytest.TempPathFactory) -> Fly:
     return flights(WATER_SAMPLER, robot, RATE, tmp_path_factory)
 
 

@@ -7,7 +7,13 @@ from collections.abc import Mapping
 from pytpc.study.case import Method
 from pytpc.study.methods.importance import importance
 from pytpc.study.methods.ours import tpc, tpc_changes, tpc_reference
-from pytpc.study.methods.plain import by_chance, largest_change, recent_change
+from pytpc.study.methods.plain import (
+    by_chance,
+    differs_at_random,
+    largest_change,
+    recent_change,
+    turned_decisions,
+)
 from pytpc.study.methods.thesis import thesis, thesis_doubt
 
 METHODS: Mapping[str, Method] = {
@@ -16,6 +22,8 @@ METHODS: Mapping[str, Method] = {
     "importance": importance,
     "recent-change": recent_change,
     "largest-change": largest_change,
+    "turned-decisions": turned_decisions,
+    "differs-at-random": differs_at_random,
     "random": by_chance,
     "tpc": tpc,
     "tpc+reference": tpc_reference,

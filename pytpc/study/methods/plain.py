@@ -1,11 +1,13 @@
-"""Methods that look at no log: what was changed last, what was changed most, and chance."""
+"""Methods that look at no mark: what was changed last or most, what turns most, and chance.
+
+Chance is exact: those that are drawn from are tied, and the judge counts the expected place.
+"""
 
 from __future__ import annotations
 
-import hashlib
-import random
 from collections.abc import Sequence
 
+from pytpc.advice.other_values import turned_by_clean_run
 from pytpc.changes import Change
 from pytpc.parameters import same_parameter
 from pytpc.scoring.tables import Tpcs
@@ -20,8 +22,8 @@ def recent_change(case: Case) -> Verdict:
 def largest_change(case: Case) -> Verdict:
     """By the part of its value by which each was changed, the largest first.
 
-    The study's harmless changes are of 3 %, and a treatment has to change more to be seen: this
-    says how much of a result with changes is the study's own making.
+    A treatment has to change enough to be seen: this says how much of a result with changes is the
+    study's own making.
     """
 
     def part(change: Change) -> float:
@@ -40,10 +42,24 @@ def _newest_first(changes: Sequence[Change], case: Case) -> Verdict:
     return Verdict(tuple(order))
 
 
-def by_chance(case: Case) -> Verdict:
-    """Any order, drawn anew for each mission and set of marks; the same for the same."""
-    marks = [(mark.time_ns, mark.observer, mark.type) for mark in case.recording.marks]
-    drawn = hashlib.sha256(repr((case.recording.name, case.recording.end_ns, marks)).encode())
-    order = list(Tpcs.of(case.static_info).names)
-    random.Random(drawn.digest()).shuffle(order)
-    return Verdict(tuple(order))
+def turned_decisions(case: Case) -> Verdict:
+    """By how many recorded results the value of the clean run would have turned, the most first.
+
+    Of the parameters that differ from it; all others, and all without a clean run, are tied.
+    """
+    if case.reference is None:
+        return Verdict(())
+    found = turned_by_clean_run(case.recording, case.static_info, case.reference)
+    order = sorted(found, key=lambda name: (-found[name], name))
+    return Verdict(tuple(order), scores=tuple(float(found[name]) for name in order))
+
+
+def differs_at_random(case: Case) -> Verdict:
+    """Those that differ from the clean run are tied before all others, and chance decides."""
+    order = turned_decisions(case).order
+    return Verdict(order, scores=(0.0,) * len(order))
+
+
+def by_chance(_: Case) -> Verdict:
+    """All are tied."""
+    return Verdict(())

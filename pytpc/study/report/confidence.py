@@ -16,9 +16,9 @@ def judged(rows: Iterable[Position], method: str = OURS) -> list[Position]:
     return [row for row in rows if row.method == method and row.who == ALL]
 
 
-def is_right(row: Position) -> bool:
-    """Whether the first is to blame; on clean missions and faults nobody is."""
-    return row.changed and row.within(1)
+def rightness(row: Position) -> float:
+    """Whether the first is to blame, a share where it is tied; on clean runs and faults nobody."""
+    return row.within(1) if row.changed else 0.0
 
 
 def accuses(row: Position) -> bool:
@@ -33,7 +33,7 @@ def calibration(rows: Iterable[Position], half: str) -> list[Bin]:
     """
     own = (row for row in judged(rows) if row.half == half)
     found = [row for row in own if row.marks > 0 and row.confidence is not None]
-    return reliability([row.confidence or 0.0 for row in found], [is_right(row) for row in found])
+    return reliability([row.confidence or 0.0 for row in found], [rightness(row) for row in found])
 
 
 def calibration_error(bins: Sequence[Bin]) -> float | None:
@@ -91,7 +91,7 @@ def accusation_counts(rows: Sequence[Position], halves: Sequence[str]) -> Table:
             for labels in ordered((row.labels for row in own), LABELS):
                 here = [row for row in own if row.labels == labels]
                 confident = [row for row in here if accuses(row)]
-                right = sum(is_right(row) for row in confident)
+                right = sum(rightness(row) for row in confident)
                 lines.append((name, (half, labels, len(here), len(confident), right)))
     return Table("confident", "Confident verdicts", columns, tuple(lines), (), "Missions with")
 

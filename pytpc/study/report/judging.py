@@ -1,17 +1,39 @@
-"""Lets all methods rank the missions that nobody has ranked yet."""
+"""Lets the methods rank what they have not ranked yet, in several processes."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import fields
+import signal
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass, replace
+from multiprocessing import get_context
 from pathlib import Path
 
-from pytpc.study.data import missions
+from pytpc.errors import RunError, TpcError
+from pytpc.study.data import ALL, LABELS, load_mission, places, seed_of
 from pytpc.study.judge import POSITIONS_FILE, Judged, judge, save_positions
 from pytpc.study.methods import METHODS
 from pytpc.study.plan import Half
 from pytpc.study.report.folder import Progress
 from pytpc.study.report.positions import read_positions
+from pytpc.study.resume import alone_with_results
+from pytpc.study.verdict_digest import method_digest, mission_digest, verdict_digest
+
+_FEW = 3
+"""Fewer missions are ranked before another process has begun."""
+
+_Place = tuple[str, str, int]
+
+
+@dataclass(frozen=True)
+class _Task:
+    """A mission, and the digest of each method that is to rank it."""
+
+    out: Path
+    mission: Path
+    half: Half
+    digests: Mapping[str, str]
 
 
 def rank_missions(
@@ -20,43 +42,108 @@ def rank_missions(
     on_progress: Progress | None = None,
     *,
     again: bool = False,
+    jobs: int = 1,
 ) -> None:
-    """Complete ``results/positions.parquet`` by the missions of ``halves`` that it does not have.
+    """Complete ``results/positions.parquet`` by the verdicts on ``halves`` that it does not have.
 
-    A mission that was flown or marked anew since it was ranked is ranked again.
+    A method ranks a mission again where it, or anything that it is given, is not as it was. What
+    was ranked when this is interrupted is kept. The table is the same however many jobs there are.
 
     Args:
         folder: the study's.
         halves: nothing is read of other missions; what stands about them stays.
-        on_progress: called with (missions read, missions in all).
-        again: rank those of ``halves`` anew, for the methods have changed.
+        on_progress: called with (missions ranked, missions to rank).
+        again: rank all of ``halves``.
+        jobs: how many processes rank.
 
     Raises:
-        InputError: a mission or the table cannot be read.
+        InputError: a mission or the table cannot be read; all others are ranked.
+        RunError: another command is at work on the results, or a process died.
         TpcError: the table cannot be written.
     """
     path = folder / POSITIONS_FILE
     known: list[Judged] = list(read_positions(path)) if path.exists() else []
-    kept = [row for row in known if not (again and row.half in halves)]
-    ranked: dict[tuple[str, str, int], list[Judged]] = {}
-    for row in kept:
-        ranked.setdefault(_mission(row), []).append(row)
-    is_new = len(kept) != len(known)
-    for mission in missions(folder, halves, on_progress):
-        place = (mission.system, mission.treatment, mission.seed)
-        if place in ranked and all(row.digest == mission.digest for row in ranked[place]):
-            continue
-        ranked[place] = list(judge(mission, METHODS))
-        is_new = True
-    if is_new:
-        names = [field.name for field in fields(Judged)]
-        rows = [
-            Judged(**{name: getattr(row, name) for name in names})
-            for place in sorted(ranked)
-            for row in ranked[place]
-        ]
-        save_positions(rows, folder)
+    ranked: dict[_Place, list[Judged]] = {}
+    for row in known:
+        ranked.setdefault((row.system, row.treatment, row.seed), []).append(row)
+    tasks = []
+    for mission, half in places(folder, halves):
+        own = [row for row in ranked.get(_place(mission), []) if row.method in METHODS]
+        ranked[_place(mission)] = own
+        task = _task(folder, mission, half, [] if again else own)
+        if task.digests:
+            tasks.append(task)
+    if not tasks and sum(map(len, ranked.values())) == len(known):
+        return
+    errors: list[TpcError] = []
+    with alone_with_results(folder):
+        try:
+            for done, (task, found) in enumerate(_ranked(tasks, jobs), start=1):
+                place = _place(task.mission)
+                if isinstance(found, TpcError):
+                    errors.append(found)
+                else:
+                    old = [row for row in ranked[place] if row.method not in task.digests]
+                    ranked[place] = old + found
+                if on_progress is not None:
+                    on_progress(done, len(tasks))
+        finally:
+            rows = [row for place in sorted(ranked) for row in sorted(ranked[place], key=_order)]
+            save_positions(rows, folder)
+    if errors:
+        raise min(errors, key=str)
 
 
-def _mission(row: Judged) -> tuple[str, str, int]:
-    return (row.system, row.treatment, row.seed)
+def _task(folder: Path, mission: Path, half: Half, rows: Sequence[Judged]) -> _Task:
+    """What is not among the rows about a mission."""
+    inputs = mission_digest(folder, mission, half)
+    wanted = {name: verdict_digest(inputs, method_digest(of)) for name, of in METHODS.items()}
+    there = {row.method for row in rows if row.digest == wanted[row.method]}
+    missing = {name: digest for name, digest in wanted.items() if name not in there}
+    return _Task(folder, mission, half, missing)
+
+
+def _ranked(tasks: Sequence[_Task], jobs: int) -> Iterator[tuple[_Task, list[Judged] | TpcError]]:
+    """The rows of each task, or why there are none; in any order."""
+    if jobs == 1 or len(tasks) < _FEW:
+        yield from ((task, _rank(task)) for task in tasks)
+        return
+    pool = ProcessPoolExecutor(
+        min(jobs, len(tasks)), mp_context=get_context("spawn"), initializer=_leave_interrupts
+    )
+    try:
+        running = {pool.submit(_rank, task): task for task in tasks}
+        for future in as_completed(running):
+            yield running[future], future.result()
+    except BrokenProcessPool as error:
+        raise RunError(
+            "a process that ranks has died; it may have had too little memory"
+        ) from error
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+def _rank(task: _Task) -> list[Judged] | TpcError:
+    methods = {name: METHODS[name] for name in task.digests}
+    try:
+        mission = load_mission(task.out, task.mission, task.half)
+    except TpcError as error:
+        return error
+    return [replace(row, digest=task.digests[row.method]) for row in judge(mission, methods)]
+
+
+def _leave_interrupts() -> None:
+    """An interrupt is for the process that hands out tasks: it lets the others end theirs."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def _place(mission: Path) -> _Place:
+    return (mission.parent.parent.name, mission.parent.name, seed_of(mission))
+
+
+def _order(row: Judged) -> tuple[object, ...]:
+    """All users before single ones, and methods as in ``METHODS``."""
+    methods, labels = list(METHODS), [*LABELS]
+    method = methods.index(row.method) if row.method in methods else len(methods)
+    label = labels.index(row.labels) if row.labels in labels else len(labels)
+    return (label, row.who != ALL, row.who, method, row.method)

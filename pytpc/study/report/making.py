@@ -72,6 +72,7 @@ def make_report(
     on_progress: Callable[[str], Advance] | None = None,
     *,
     rank: Literal["missing", "again"] | None = None,
+    jobs: int = 1,
     draw: bool = True,
 ) -> Made:
     """Write the page, with its figures and tables beside it.
@@ -83,6 +84,7 @@ def make_report(
         halves: the halves whose results are shown; others are not even ranked.
         on_progress: called with what begins, gives what is called with (done, all).
         rank: let the methods rank the missions that are not ranked yet, or all of ``halves`` again.
+        jobs: how many processes rank.
         draw: draw the figures, which takes most of the time.
 
     Raises:
@@ -94,7 +96,7 @@ def make_report(
     troubles = list(study.troubles)
     if rank is not None:
         try:
-            rank_missions(folder, halves, progress("ranking"), again=rank == "again")
+            rank_missions(folder, halves, progress("ranking"), again=rank == "again", jobs=jobs)
         except InputError as error:
             troubles.append(f"Not all missions are ranked: {told(error, folder)}.")
     ranked = _results(folder / POSITIONS_FILE, read_positions, troubles, "ranked")

@@ -15,9 +15,10 @@ from pytpc.columns import read_table
 from pytpc.errors import InputError
 from pytpc.study.data import ALL
 from pytpc.study.judge import Judged
+from pytpc.study.metrics import within
 
-_LATER = "digest"
-"""Tables that were written before it do not have this column."""
+_LATER = frozenset({"digest", "tied", "round"})
+"""Tables that were written before them do not have these columns."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,9 +39,14 @@ class Position(Judged):
         """How many users marked it; None for all of them."""
         return None if self.who == ALL else self.who.count("+") + 1
 
-    def within(self, k: int) -> bool:
-        """Whether the changed parameter is among the first k; without a mark it is not."""
-        return self.marks > 0 and self.position is not None and self.position <= k
+    def within(self, k: int) -> float:
+        """Whether the changed parameter is among the first k, a share where it is tied.
+
+        Without a mark it is not.
+        """
+        if self.marks == 0 or self.position is None:
+            return 0.0
+        return within(k, self.position, self.tied)
 
     @property
     def place(self) -> float:
@@ -64,7 +70,7 @@ def read_positions(path: Path) -> list[Position]:
 
     def rows(table: pa.Table) -> list[Position]:
         there = [name for name in names if name in table.column_names]
-        missing = [name for name in names if name not in (*there, _LATER)]
+        missing = [name for name in names if name not in there and name not in _LATER]
         if missing:
             raise InputError(f"no column {missing[0]}")
         found = [Position(**_known(row)) for row in table.select(there).to_pylist()]

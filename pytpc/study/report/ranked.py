@@ -1,7 +1,7 @@
 """How high each method ranks the changed parameter: the main tables.
 
 A share is that of a treatment's missions, its mean that of the treatments; the interval is the
-bootstrap's over treatments (`measures`).
+bootstrap's over treatments (`metrics`).
 """
 
 from __future__ import annotations
@@ -18,7 +18,8 @@ from pytpc.tables import Cell, Column, Table
 OURS = "tpc"
 BASELINE = "thesis"
 METHODS = (OURS, "tpc+reference", "tpc+changes", BASELINE, "thesis-doubt", "importance",
-           "recent-change", "largest-change", "random")  # fmt: skip
+           "turned-decisions", "largest-change", "recent-change", "differs-at-random",
+           "random")  # fmt: skip
 TARGETS: Mapping[str, float] = {"typed": 0.90, "untyped": 0.80, "confused": 0.80}
 """The share of treatments with the changed parameter in the top 3 (the issue's targets)."""
 
@@ -32,7 +33,7 @@ def changed_rows(rows: Iterable[Position], half: str = "", who: str = ALL) -> li
 
 def top(rows: Iterable[Position], k: int) -> Estimate:
     """The share of treatments with the changed parameter among the first ``k``."""
-    return _over(rows, lambda row: float(row.within(k)))
+    return _over(rows, lambda row: row.within(k))
 
 
 def mean_of(rows: Iterable[Position], of: Callable[[Position], float]) -> float | None:
@@ -101,7 +102,7 @@ def against_table(rows: Sequence[Position], half: str) -> Table:
             if method == BASELINE or not pairs:
                 continue
             units = [(row.system, row.treatment) for row, _ in pairs]
-            three = estimate([float(r.within(3)) - float(b.within(3)) for r, b in pairs], units)
+            three = estimate([r.within(3) - b.within(3) for r, b in pairs], units)
             places = estimate([row.place - other.place for row, other in pairs], units)
             lines.append((method, (labels, percent(three), places.value)))
     title = f"Against {BASELINE}, the {half} half"
