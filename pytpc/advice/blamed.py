@@ -13,7 +13,6 @@ from pytpc.advice.diagnosing import Changed
 from pytpc.advice.known import Source
 from pytpc.advice.remedy import EVERY_SOURCE, Remedy, remedy, restored
 from pytpc.ingest.recording import Recording
-from pytpc.marks import Mark
 from pytpc.parameters import same_parameter
 from pytpc.scoring.scores import WINDOW_S
 from pytpc.static_info import StaticInfo
@@ -43,8 +42,9 @@ def advise_blamed(
 ) -> list[BlamedAdvice]:
     """The first ``top`` of them with the value to try, as `pytpc.advice.remedy.remedy` has it.
 
-    Of the marks those count that can be of the kind of error that the parameter is suspected of;
-    where none can, the observers were wrong, and all count. ``declared`` is what is declared of
+    All marks count, without the types that were said: most people confuse them (thesis, table
+    6.13), and the value depends on the type more than on all else. The type is what the log says
+    for this parameter (`Remedy.kind`). ``declared`` is what is declared of
     parameters, ``reference`` a mission that went right, ``changes`` what was changed since. The
     value of before a change, or of the reference, comes before what the log says: with it the robot
     went right. ``sources`` are the known values that may be taken, ``flown`` values
@@ -52,14 +52,13 @@ def advise_blamed(
     """
     found = []
     for accused in blame.suspects[:top]:
-        name, kind = accused.parameter, accused.type
-        marks = _marks_for(blame.marks, accused)
+        name = accused.parameter
         about = declared_for(declared, accused, static_info.source_path(accused.key))
         value = remedy(
             recording,
             static_info,
             name,
-            marks,
+            [replace(mark, type=None) for mark in blame.marks],
             sources=sources,
             reference=reference,
             declared=about,
@@ -69,6 +68,8 @@ def advise_blamed(
         value = _as_before(value, changes)
         then = None
         if value.value is not None:
+            kind = value.kind or accused.type
+            marks = [replace(mark, type=kind) for mark in blame.marks]
             then = what_if(
                 recording, static_info, name, value.value, kind=kind, marks=marks, window_s=window_s
             )
@@ -82,8 +83,3 @@ def _as_before(found: Remedy, changes: Sequence[Changed]) -> Remedy:
         if same_parameter(name, found.parameter) and math.isfinite(old) and old != new:
             return restored(found, old, "before", "the value before it was changed")
     return found
-
-
-def _marks_for(marks: Sequence[Mark], accused: Accused) -> list[Mark]:
-    fitting = [mark for mark in marks if mark.type in {accused.type, None}]
-    return [replace(mark, type=accused.type) for mark in fitting or marks]

@@ -24,6 +24,7 @@ from pytpc.study.suggested import (
     TRIED_FILE,
     WANTED_FILE,
     load_wanted,
+    not_to_be_set,
     save_tried,
     suggested_flight,
 )
@@ -103,7 +104,7 @@ def run_command(
         click.echo(dump_json([_run_json(result) for result in results]).decode(), nl=False)
     else:
         _show(results, out)
-    _fail_where_any(results)
+    _fail_where_any([result.error for result in results if result.error])
 
 
 @study_group.command("suggested")
@@ -126,14 +127,15 @@ def suggested_command(
         opened(out, selection, rate=rate, on_build=progress.building) as study,
     ):
         flights = [suggested_flight(one, study.flights[one.system], out) for one in suggestions]
-        results = study.fly(flights, progress, jobs)
-        failures = {result.flight.label: result.error for result in results if result.error}
+        failures = not_to_be_set(flights)
+        results = study.fly([one for one in flights if one.label not in failures], progress, jobs)
+        failures |= {result.flight.label: result.error for result in results if result.error}
         rows = save_tried(flights, failures, out)
     if as_json:
         click.echo(dump_json(rows).decode(), nl=False)
     else:
         _show_tried(rows, out)
-    _fail_where_any(results)
+    _fail_where_any(list(failures.values()))
 
 
 @study_group.command("halves")
@@ -223,7 +225,6 @@ def _table(*headings: str) -> Table:
     return table
 
 
-def _fail_where_any(results: Sequence[Result]) -> None:
-    failed = [one for one in results if one.error]
-    if failed:
-        raise RunError(f"{many(len(failed), 'mission')} failed, the first: {failed[0].error}")
+def _fail_where_any(failures: Sequence[str]) -> None:
+    if failures:
+        raise RunError(f"{many(len(failures), 'mission')} failed, the first: {failures[0]}")

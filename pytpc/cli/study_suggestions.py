@@ -10,7 +10,7 @@ import click
 from rich.table import Table
 from rich.text import Text
 
-from pytpc.cli.console import console, progress
+from pytpc.cli.console import console, progress, warn
 from pytpc.cli.options import JSON, PATH
 from pytpc.study.methods import METHODS
 from pytpc.study.plan import Half
@@ -42,9 +42,18 @@ _HALVES: dict[str, tuple[Half, ...]] = {
     type=click.Choice(list(METHODS)),
     help="Also try the first suspects of this ranking.",
 )
+@click.option(
+    "--again", is_flag=True, help="Ask anew: the ranking or the advice changed; flights are kept."
+)
 @JSON
 def suggestions_command(
-    *, out: Path, half: str, variants: tuple[str, ...], method: str | None, as_json: bool
+    *,
+    out: Path,
+    half: str,
+    variants: tuple[str, ...],
+    method: str | None,
+    again: bool,
+    as_json: bool,
 ) -> None:
     """Take in the suggestions that were flown, and say which are to be flown next.
 
@@ -52,8 +61,14 @@ def suggestions_command(
     """
     ranking = None if method is None else METHODS[method]
     with alone_with_results(out), progress("working out suggestions") as advance:
-        chains = next_round(out, _HALVES[half], ranking, variants or tuple(VARIANTS), advance)
+        chains = next_round(
+            out, _HALVES[half], ranking, variants or tuple(VARIANTS), advance, again=again
+        )
     mine = [chain for chain in chains if chain.half in _HALVES[half]]
+    for chain in mine:
+        for one in chain.tries:
+            if one.failed:
+                warn(plain(f"{chain.mission}, {chain.variant}: {one.reason}"))
     if as_json:
         document = [asdict(share) for share in shares(mine)]
         click.echo(json.dumps(document, indent=1))

@@ -7,11 +7,13 @@ import json
 import re
 from collections import Counter
 from pathlib import Path
+from statistics import median
 
 import pytest
 import yaml
 
 from pytpc.demo_examples import WATER_SAMPLER
+from pytpc.study.changes import harmless_changes
 from pytpc.treatment import Treatment
 
 PACKAGE = WATER_SAMPLER.folder
@@ -174,6 +176,22 @@ def test_faults_are_those_of_the_launch_file():
         assert list(each.launch) == ["fault"]
         assert each.name == f"fault_{each.launch['fault']}"
         assert launch.count(f"$(eval fault == '{each.launch['fault']}')") == 2
+
+
+def test_decoys_change_parameters_of_both_languages_by_as_much_as_the_treatments_do():
+    decoys = harmless_changes(WATER_SAMPLER)
+    changed = [(each.old, each.new) for each in treatments() if each.parameter is not None]
+
+    def factor(old: float, new: float) -> float:
+        return max(new / old, old / new)
+
+    usual = median(factor(old, new) for old, new in changed)
+    assert median(factor(each.old, each.new) for each in decoys) >= usual
+    ups = sum(each.new > each.old for each in decoys)
+    assert len(decoys) / 3 < ups < len(decoys) * 2 / 3
+    for document in (CPP, PYTHON):
+        compared = {entry["parameter"] for entry in document["tpcs"]}
+        assert len(compared & {each.parameter for each in decoys}) >= 5
 
 
 def test_demonstration_flies_treatments_that_are_there():

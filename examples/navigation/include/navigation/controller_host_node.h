@@ -36,8 +36,8 @@ private:
   std::vector<Pose> poses_; ///< of the path
   geometry_msgs::Twist last_;
   double path_timeout_;
-  double max_speed_step_;
-  double max_turn_step_;
+  double max_speed_step_; ///< m/s, from one pose to the next: it brakes at once
+  double max_turn_step_;  ///< rad/s
   double careful_quality_;
   double careful_speed_;
   int wait_for_ready_;

@@ -79,6 +79,7 @@ void RecoveryNode::takeIn() {
   command_pub_.publish(out);
   RecoveryStatus status;
   status.header.stamp = now;
+  status.goal_id = goal_id_;
   status.action = action_;
   status.recoveries = static_cast<std::uint32_t>(recoveries_);
   status.given_up = given_up_;
