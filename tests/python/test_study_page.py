@@ -197,6 +197,7 @@ def test_the_headlines(made_study):
         "top3-untyped-held-back": (100.0, True),
         "top3-confused-held-back": (25.0, False),
         "suggestions-gone-held-back": (25.0, False),
+        "suggestions-gone-smallest-held-back": (100.0, True),
         "accusations-clean-held-back": (0, True),
         "top3-typed-second-round": (100.0, True),
         "top3-typed-thesis-second-round": (0.0, False),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import pytest
 from study_pages import row_of, rows_of
 from study_samples import suggestions, write_rows
@@ -55,6 +57,30 @@ def test_suggestions_by_variant(study_text):
 def test_suggestions_by_variant_of_one_half(study, tmp_path):
     made = make_report(study, tmp_path / "study.md", ["tuning"], draw=False)
     assert {row["part"] for row in made.numbers["tables"]["tries"]["rows"]} == {"tuning"}
+
+
+# A chain of the ranking's first parameter, which was flown in vain, beside the other variants.
+def test_what_is_ranked_first_is_told_apart(own_study, tmp_path):
+    path = own_study / "results/suggestion-chains.json"
+    chains = json.loads(path.read_text())
+    (first,) = [one for one in chains if one["variant"] == "smallest"]
+    ranked = {**first["tries"][0], "gone": False, "new_error": False}
+    chains += [{**first, "variant": "ranked", "tries": [ranked]}, {**first, "variant": "another"}]
+    path.write_text(json.dumps(chains))
+    made = make_report(own_study, tmp_path / "study.md", draw=False)
+    rows = [r for r in made.numbers["tables"]["tries"]["rows"] if r["part"] == "held-back"]
+    assert [(r["variant"], r["tries"], r["error gone %"]) for r in rows] == [
+        ("smallest", 1, "100 [100, 100]"),
+        ("lasting (headline)", 1, "50 [50, 50]"),
+        ("lasting", 2, "100 [100, 100]"),
+        ("lasting", 3, "100 [100, 100]"),
+        ("ranked", 1, "0 [0, 0]"),
+        ("another", 1, "100 [100, 100]"),
+    ]
+    found = {one["name"]: one["value"] for one in made.numbers["figures"]}
+    assert found["suggestions-gone-smallest-held-back"] == 100.0
+    assert found["suggestions-gone-ranked-held-back"] == 0.0
+    assert "suggestions-gone-ranked-reference-held-back" not in found
 
 
 def test_broken_chains_are_said(own_study, tmp_path):

@@ -20,7 +20,7 @@ from pytpc.errors import InputError
 from pytpc.ingest.recording import Recording
 from pytpc.parameters import same_parameter
 from pytpc.static_info import StaticInfo
-from pytpc.study.report.folder import Flight, System
+from pytpc.study.report.folder import Flight, Progress, System
 from pytpc.tables import Cell, Column, Table
 
 
@@ -70,17 +70,24 @@ class Changed:
         return "-" if not self.harmless else f"{_turned_percent(self.harmless):.0f}"
 
 
-def changed_in(systems: Sequence[System]) -> Changed:
-    """The changes of all missions."""
+def changed_in(systems: Sequence[System], on_progress: Progress | None = None) -> Changed:
+    """The changes of all missions.
+
+    Args:
+        systems: with their missions.
+        on_progress: called with (missions done, missions in all).
+    """
     harmless, treated, counts = [], [], []
-    for system in systems:
-        for flight in system.flights:
-            found = [_made(flight, change, system.static_info) for change in flight.changes]
-            own = [made for made in found if _is_treated(made.change, flight)]
-            others = [made for made in found if made not in own]
-            harmless += others
-            treated += own
-            counts.append(len(others))
+    flights = [(flight, system.static_info) for system in systems for flight in system.flights]
+    for number, (flight, static_info) in enumerate(flights, start=1):
+        found = [_made(flight, change, static_info) for change in flight.changes]
+        own = [made for made in found if _is_treated(made.change, flight)]
+        others = [made for made in found if made not in own]
+        harmless += others
+        treated += own
+        counts.append(len(others))
+        if on_progress is not None:
+            on_progress(number, len(flights))
     return Changed(tuple(harmless), tuple(treated), tuple(counts))
 
 

@@ -23,7 +23,8 @@ from pytpc.study.report.ranked import (
     percent,
     top,
 )
-from pytpc.study.report.repairs import TARGET, Repair, gone
+from pytpc.study.report.repairs import TARGET, Repair, first_try, gone
+from pytpc.study.suggestion_chains import RANKED, RANKED_REFERENCE, Chain
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,14 +56,21 @@ _RANKED = {
 }
 """Whose shares are told: the end of the name, words, and the method."""
 
+_VARIANTS = {
+    "smallest": "the smallest change",
+    RANKED: "the suggested value of the parameter that is ranked first",
+    RANKED_REFERENCE: "the clean run's value of the parameter that is ranked first",
+}
+"""The variants of suggestions that are told beside the headline, of their first tries."""
+
 TOP = f"top{TARGET_PLACES}-"
 """The names of shares begin with it."""
 
 
 def headlines(
-    positions: Sequence[Position], repairs: Sequence[Repair], part: Part
+    positions: Sequence[Position], repairs: Sequence[Repair], chains: Sequence[Chain], part: Part
 ) -> list[Headline]:
-    """The numbers of one part; those for which there is no data are left out."""
+    """The numbers of one part, of which the chains are; those without data are left out."""
     found = []
     own = changed_rows(positions, part)
     for labels in LABELS:
@@ -75,6 +83,10 @@ def headlines(
             found += _share(name, text, top(rows, TARGET_PLACES), TARGETS[labels])
     text = f"Error gone with the suggested value, {part.title}"
     found += _share(f"suggestions-gone-{part.name}", text, gone(repairs, part), TARGET)
+    for variant, words in _VARIANTS.items():
+        name = f"suggestions-gone-{variant}-{part.name}"
+        text = f"Error gone with {words}, {part.title}"
+        found += _share(name, text, first_try(chains, variant), TARGET)
     # What is clean or has a fault belongs to no round: it is told of the halves.
     for kind, what in (("clean", "clean missions"), ("fault", "faults in the source")):
         for end, (words, method) in _RANKED.items():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, TypeVar
@@ -14,7 +14,7 @@ from pytpc.study.data import LABELS
 from pytpc.study.judge import POSITIONS_FILE
 from pytpc.study.plan import Half
 from pytpc.study.report import original as thesis_tables
-from pytpc.study.report.changed import changed_in, changes_table
+from pytpc.study.report.changed import Changed, changed_in, changes_table
 from pytpc.study.report.confidence import (
     SURE_METHODS,
     accusation_counts,
@@ -23,7 +23,7 @@ from pytpc.study.report.confidence import (
     reliability_table,
 )
 from pytpc.study.report.drawings import Advance, Drawing, draw_results, draw_systems
-from pytpc.study.report.folder import HALVES, Study, load_study, told
+from pytpc.study.report.folder import HALVES, Flight, Study, load_study, told
 from pytpc.study.report.headline import Headline, headlines
 from pytpc.study.report.judging import rank_missions
 from pytpc.study.report.original import Original
@@ -41,6 +41,7 @@ from pytpc.study.report.ranked import (
 )
 from pytpc.study.report.repairs import (
     Repair,
+    chains_in,
     read_repairs,
     repairs_summary,
     repairs_table,
@@ -103,17 +104,7 @@ def make_report(
             rank_missions(folder, halves, progress("ranking"), again=rank == "again", jobs=jobs)
         except InputError as error:
             troubles.append(f"Not all missions are ranked: {told(error, folder)}.")
-    ranked = _results(folder / POSITIONS_FILE, read_positions, troubles, "ranked")
-    positions = [row for row in ranked if row.half in halves]
-    flights = [f for system in study.systems for f in system.flights if f.half in halves]
-    repairs = _results(
-        folder / HEADLINE_FILE,
-        lambda path: read_repairs(path, flights),
-        troubles,
-        "flown again as suggested",
-    )
-    chains = _results(folder / CHAINS_FILE, load_chains, troubles, "asked for suggestions")
-    parts = parts_of(halves, ((one.half, one.treatment.round) for one in flights))
+    results = _read_results(folder, study, halves, troubles)
     advance = progress("working out tables")
     originals = []
     for number, system in enumerate(study.systems, start=1):
@@ -123,14 +114,11 @@ def make_report(
     drawn: list[Drawing] = []
     if draw:
         drawn, undrawn = draw_systems(originals, study.systems, images, halves, progress("drawing"))
-        drawn = [*draw_results(positions, images, parts), *drawn]
+        drawn = [*draw_results(results.positions, images, results.parts), *drawn]
         # Where the folder happens to be is nobody's business on the page.
         troubles += [trouble.replace(f"{folder}/", "") for trouble in undrawn]
-    tables, full = _tables(study, originals, positions, repairs, parts)
-    changed = changed_in(study.systems)
-    tables["changes"] = changes_table(changed, study.systems)
-    tables["tries"] = tries_table(chains, parts, flights)
-    own = [one for part in parts for one in headlines(positions, repairs, part)]
+    changed = changed_in(study.systems, progress("replaying what was changed"))
+    tables, full = _tables(study, originals, results, changed)
     beside = target.parent / BESIDE
     contents = Contents(
         changed=changed,
@@ -138,24 +126,80 @@ def make_report(
         systems=[system.name for system in study.systems],
         missions=sum(len(system.flights) for system in study.systems),
         halves=halves,
-        parts=parts,
+        parts=results.parts,
         tables=tables,
         drawings=drawn,
-        headlines=own,
+        headlines=_headlines(results),
         troubles=troubles,
         remarks=[remark for system in study.systems for remark in system.remarks],
         tried=_text(beside / _NOT_HELPED_FILE),
         discussion=_text(beside / _DISCUSSION_FILE),
     )
-    numbers = _numbers(own, tables, troubles)
-    written = [images / drawing.file for drawing in drawn]
+    return _write(contents, full, target)
+
+
+def _write(contents: Contents, full: Mapping[str, Table], target: Path) -> Made:
+    """Write the page and what stands beside it, but its figures, which are drawn already."""
+    numbers = {
+        "schema": _SCHEMA,
+        "figures": [one.to_json() for one in contents.headlines],
+        "tables": {label: as_json(table) for label, table in contents.tables.items()},
+        "missing": list(contents.troubles),
+    }
+    beside = target.parent / BESIDE
+    written = [target.parent / IMAGES / drawing.file for drawing in contents.drawings]
     for name, table in full.items():
         written.append(beside / f"{name}.csv")
         write_atomic(written[-1], as_csv(table).encode())
     written.append(beside / RESULTS_FILE)
     write_atomic(written[-1], json_text(numbers).encode())
     write_atomic(target, page(contents).encode())
-    return Made(target, tuple(written), numbers, tuple(troubles))
+    return Made(target, tuple(written), numbers, tuple(contents.troubles))
+
+
+@dataclass(frozen=True, eq=False)
+class _Results:
+    """What is shown of the results: that of ``parts``, with the missions ``flights``."""
+
+    flights: Sequence[Flight]
+    parts: Sequence[Part]
+    positions: Sequence[Position]
+    repairs: Sequence[Repair]
+    chains: Sequence[Chain]
+
+
+def _read_results(
+    folder: Path, study: Study, halves: Sequence[str], troubles: list[str]
+) -> _Results:
+    """What there is in the study's folder; a sentence among ``troubles`` for what is not."""
+    ranked = _results(folder / POSITIONS_FILE, read_positions, troubles, "ranked")
+    flights = [f for system in study.systems for f in system.flights if f.half in halves]
+    repairs = _results(
+        folder / HEADLINE_FILE,
+        lambda path: read_repairs(path, flights),
+        troubles,
+        "flown again as suggested",
+    )
+    return _Results(
+        flights=flights,
+        parts=parts_of(halves, ((one.half, one.treatment.round) for one in flights)),
+        positions=[row for row in ranked if row.half in halves],
+        repairs=repairs,
+        chains=_results(folder / CHAINS_FILE, load_chains, troubles, "asked for suggestions"),
+    )
+
+
+def _headlines(results: _Results) -> list[Headline]:
+    return [
+        one
+        for part in results.parts
+        for one in headlines(
+            results.positions,
+            results.repairs,
+            chains_in(results.chains, part, results.flights),
+            part,
+        )
+    ]
 
 
 def json_text(numbers: object) -> str:
@@ -164,14 +208,10 @@ def json_text(numbers: object) -> str:
 
 
 def _tables(
-    study: Study,
-    originals: Sequence[Original],
-    positions: Sequence[Position],
-    repairs: Sequence[Repair],
-    parts: Sequence[Part],
+    study: Study, originals: Sequence[Original], results: _Results, changed: Changed
 ) -> tuple[dict[str, Table], dict[str, Table]]:
     """The tables of the page by label, and those that are too long for it by their file's name."""
-    systems = study.systems
+    systems, parts, positions = study.systems, results.parts, results.positions
     halves = [part.half for part in parts if part.since == 1]
     found = [
         systems_table(systems),
@@ -194,8 +234,10 @@ def _tables(
         ),
         accusation_counts(positions, halves),
         accusations_table(positions),
-        repairs_summary(repairs, parts),
-        repairs_table(repairs),
+        changes_table(changed, systems),
+        repairs_summary(results.repairs, parts),
+        tries_table(results.chains, parts, results.flights),
+        repairs_table(results.repairs),
     ]
     for heading, group in groups_of(systems).items():
         name = heading.lower().replace(" ", "-")
@@ -223,17 +265,6 @@ def _results(
     except TpcError as error:
         troubles.append(f"{path.name} is left out: {error.message}.")
         return []
-
-
-def _numbers(
-    own: Sequence[Headline], tables: dict[str, Table], troubles: Sequence[str]
-) -> dict[str, Any]:
-    return {
-        "schema": _SCHEMA,
-        "figures": [one.to_json() for one in own],
-        "tables": {label: as_json(table) for label, table in tables.items()},
-        "missing": list(troubles),
-    }
 
 
 def _text(path: Path) -> str:

@@ -107,15 +107,30 @@ def repairs_summary(rows: Sequence[Repair], parts: Sequence[Part]) -> Table:
     return Table("repairs", "Suggestions, flown", columns, tuple(lines), (), "Treatments of")
 
 
-def tries_table(chains: Sequence[Chain], parts: Sequence[Part], flights: Iterable[Flight]) -> Table:
+def chains_in(chains: Iterable[Chain], part: Part, flights: Iterable[Flight]) -> list[Chain]:
+    """The chains of a part; ``flights`` say of what round a treatment is."""
+    rounds = {(one.system, one.treatment.name): one.treatment.round for one in flights}
+    return [
+        chain
+        for chain in chains
+        if part.has(chain.half, rounds.get((chain.system, chain.treatment), 1))
+    ]
+
+
+def first_try(chains: Sequence[Chain], variant: str) -> Estimate:
+    """The share of treatments in which the first try of a variant took the error away."""
+    found, _ = outcomes(chains, variant, 1)
+    return estimate([float(one.gone) for one in found], [one.unit for one in found])
+
+
+def tries_table(chains: Sequence[Chain], parts: Sequence[Part], flights: Sequence[Flight]) -> Table:
     """What came of each variant within so many tries, by part; chains that wait are left out.
 
     Args:
         chains: of any variants.
         parts: those that are shown.
-        flights: the treated missions, which say of what round a treatment is.
+        flights: see ``chains_in``.
     """
-    rounds = {(one.system, one.treatment.name): one.treatment.round for one in flights}
     columns = (
         Column("Part", 0),
         Column("Tries", 0),
@@ -129,11 +144,7 @@ def tries_table(chains: Sequence[Chain], parts: Sequence[Part], flights: Iterabl
     )
     lines: list[tuple[str, tuple[Cell, ...]]] = []
     for part in parts:
-        own = [
-            chain
-            for chain in chains
-            if part.has(chain.half, rounds.get((chain.system, chain.treatment), 1))
-        ]
+        own = chains_in(chains, part, flights)
         for variant in ordered((chain.variant for chain in own), list(VARIANTS)):
             for most in range(1, MOST_TRIES.get(variant, 1) + 1):
                 found, waiting = outcomes(own, variant, most)
