@@ -190,6 +190,23 @@ def test_two_do_not_rank_at_once(own):
             rank_missions(own, ["tuning"], again=True)
 
 
+# Between the look at the table and the lock another command has ranked all of it.
+def test_what_another_one_has_ranked_meanwhile_is_kept(own, asked, monkeypatch):
+    before = contents(own)
+    shutil.rmtree(own / "results")
+    lock = judging.alone_with_results
+
+    def late(folder):
+        (own / POSITIONS_FILE).parent.mkdir()
+        (own / POSITIONS_FILE).write_bytes(before)
+        return lock(folder)
+
+    monkeypatch.setattr(judging, "alone_with_results", late)
+    rank_missions(own, ["tuning"])
+    assert asked == []
+    assert contents(own) == before
+
+
 @pytest.fixture
 def package(tmp_path, monkeypatch):
     """Sources of a package ``pytpc`` of its own, by module, in place of ours."""

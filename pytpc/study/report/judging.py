@@ -65,37 +65,68 @@ def rank_missions(
         RunError: another command is at work on the results, or a process died.
         TpcError: the table cannot be written.
     """
-    path = folder / POSITIONS_FILE
-    known: list[Judged] = list(read_positions(path)) if path.exists() else []
-    ranked: dict[_Place, list[Judged]] = {}
-    for row in known:
-        ranked.setdefault((row.system, row.treatment, row.seed), []).append(row)
-    tasks = []
-    for mission, half in places(folder, halves):
-        own = [row for row in ranked.get(_place(mission), []) if row.method in METHODS]
-        ranked[_place(mission)] = own
-        task = _task(folder, mission, half, [] if again else own)
-        if task.digests:
-            tasks.append(task)
-    if not tasks and sum(map(len, ranked.values())) == len(known):
+    if _Plan.of(folder, halves, again=again).is_done:
         return
     errors: list[TpcError] = []
-    with alone_with_results(folder), signals_end(), closing(_ranked(tasks, jobs)) as results:
+    with alone_with_results(folder), signals_end():
+        # Another one may have been at work until now.
+        plan = _Plan.of(folder, halves, again=again)
         try:
-            for done, (task, found) in enumerate(results, start=1):
-                place = _place(task.mission)
-                if isinstance(found, TpcError):
-                    errors.append(found)
-                else:
-                    old = [row for row in ranked[place] if row.method not in task.digests]
-                    ranked[place] = old + found
-                if on_progress is not None:
-                    on_progress(done, len(tasks))
+            with closing(_ranked(plan.tasks, jobs)) as results:
+                for done, (task, found) in enumerate(results, start=1):
+                    if isinstance(found, TpcError):
+                        errors.append(found)
+                    else:
+                        plan.take_in(task, found)
+                    if on_progress is not None:
+                        on_progress(done, len(plan.tasks))
         finally:
-            rows = [row for place in sorted(ranked) for row in sorted(ranked[place], key=_order)]
-            save_positions(rows, folder)
+            save_positions(plan.rows(), folder)
     if errors:
         raise min(errors, key=str)
+
+
+@dataclass
+class _Plan:
+    """What has been ranked, by mission, and what is to be ranked; ``gone`` rows are of no use."""
+
+    ranked: dict[_Place, list[Judged]]
+    tasks: list[_Task]
+    gone: int
+
+    @classmethod
+    def of(cls, folder: Path, halves: Sequence[Half], *, again: bool) -> _Plan:
+        """By the table and the missions in the study's folder."""
+        path = folder / POSITIONS_FILE
+        known: list[Judged] = list(read_positions(path)) if path.exists() else []
+        ranked: dict[_Place, list[Judged]] = {}
+        for row in known:
+            ranked.setdefault((row.system, row.treatment, row.seed), []).append(row)
+        tasks = []
+        for mission, half in places(folder, halves):
+            own = [row for row in ranked.get(_place(mission), []) if row.method in METHODS]
+            ranked[_place(mission)] = own
+            task = _task(folder, mission, half, [] if again else own)
+            if task.digests:
+                tasks.append(task)
+        return cls(ranked, tasks, len(known) - sum(map(len, ranked.values())))
+
+    @property
+    def is_done(self) -> bool:
+        """Whether the table is as it should be."""
+        return not self.tasks and not self.gone
+
+    def take_in(self, task: _Task, found: Sequence[Judged]) -> None:
+        """Put the new verdicts of a task in the place of its methods' old ones."""
+        place = _place(task.mission)
+        old = [row for row in self.ranked[place] if row.method not in task.digests]
+        self.ranked[place] = [*old, *found]
+
+    def rows(self) -> list[Judged]:
+        """The whole table, sorted."""
+        return [
+            row for place in sorted(self.ranked) for row in sorted(self.ranked[place], key=_order)
+        ]
 
 
 def _task(folder: Path, mission: Path, half: Half, rows: Sequence[Judged]) -> _Task:
