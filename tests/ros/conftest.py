@@ -38,12 +38,17 @@ def water(study_out: Path) -> Built:
     return build(WATER_SAMPLER, Console(quiet=True), system_folder(WATER_SAMPLER, study_out))
 
 
-@pytest.fixture(scope="session")
-def quiet() -> None:
-    """Wait until this machine is ours: a live observer is late on a busy one, as a person is.
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """What needs a quiet machine comes last."""
+    items.sort(key=lambda item: item.get_closest_marker("quiet") is not None)
+
+
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Wait until this machine is ours, where a test needs that.
 
     ``tools/test`` holds a lock for as long as it does anything else; TPC_TEST_BUSY names it.
     """
-    if busy := os.environ.get("TPC_TEST_BUSY"):
+    busy = os.environ.get("TPC_TEST_BUSY")
+    if busy and item.get_closest_marker("quiet"):
         with Path(busy).open("rb") as lock:
             fcntl.flock(lock, fcntl.LOCK_SH)

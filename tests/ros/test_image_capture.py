@@ -39,7 +39,7 @@ except MissingToolError as error:
 
 
 @pytest.fixture(scope="module")
-def env(built, quiet) -> dict[str, str]:
+def env(built) -> dict[str, str]:
     return workspace_env(built.bases.install)
 
 
@@ -122,6 +122,7 @@ def test_clean_mission_gets_no_mark_and_loses_no_report(built, env, tmp_path):
     assert re.search(r"^ +face_detection_threshold: 25$", parameters, re.MULTILINE)
 
 
+@pytest.mark.quiet
 @pytest.mark.parametrize(
     ("treatment", "kind_and_pictures"),
     [("type1_face_detection_threshold", ("I", 1)), ("type2_min_coverage_limit", ("II", 0))],
@@ -209,6 +210,7 @@ def test_graph_is_one_of_its_own_and_ends_what_it_started(env, tmp_path):
                 subprocess.run(["sleep", "0.05"], check=True)
 
 
+@pytest.mark.quiet
 def test_ends_quickly_where_sigint_is_ignored(env, tmp_path):
     # As in a job that a script put into the background; SIGTERM would come after 5 s.
     before = signal.signal(signal.SIGINT, signal.SIG_IGN)

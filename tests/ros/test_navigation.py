@@ -41,7 +41,7 @@ def robot(tmp_path_factory: pytest.TempPathFactory) -> Built:
 
 
 @pytest.fixture(scope="module")
-def fly(robot, quiet, tmp_path_factory: pytest.TempPathFactory) -> Fly:
+def fly(robot, tmp_path_factory: pytest.TempPathFactory) -> Fly:
     return flights(NAVIGATION, robot, RATE, tmp_path_factory)
 
 
