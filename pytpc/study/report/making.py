@@ -27,6 +27,7 @@ from pytpc.study.report.folder import HALVES, Flight, Study, load_study, told
 from pytpc.study.report.headline import Headline, headlines
 from pytpc.study.report.judging import rank_missions
 from pytpc.study.report.original import Original
+from pytpc.study.report.other_people import others_table, parts_with_others
 from pytpc.study.report.page import BESIDE, IMAGES, Contents, page
 from pytpc.study.report.parts import Part, parts_of
 from pytpc.study.report.positions import Position, read_positions
@@ -47,6 +48,7 @@ from pytpc.study.report.repairs import (
     repairs_table,
     tries_table,
 )
+from pytpc.study.report.sensitivity import SENSITIVITY_FILE
 from pytpc.study.report.systems import rounds_of, systems_table, treatments_table
 from pytpc.study.suggestion_chains import CHAINS_FILE, Chain, load_chains
 from pytpc.study.suggestions import HEADLINE_FILE
@@ -127,6 +129,7 @@ def make_report(
         missions=sum(len(system.flights) for system in study.systems),
         halves=halves,
         parts=results.parts,
+        others=parts_with_others(results.others, results.parts),
         tables=tables,
         drawings=drawn,
         headlines=_headlines(results),
@@ -159,11 +162,15 @@ def _write(contents: Contents, full: Mapping[str, Table], target: Path) -> Made:
 
 @dataclass(frozen=True, eq=False)
 class _Results:
-    """What is shown of the results: that of ``parts``, with the missions ``flights``."""
+    """What is shown of the results: that of ``parts``, with the missions ``flights``.
+
+    ``others`` are verdicts by other people's marks, of all halves; there may be none.
+    """
 
     flights: Sequence[Flight]
     parts: Sequence[Part]
     positions: Sequence[Position]
+    others: Sequence[Position]
     repairs: Sequence[Repair]
     chains: Sequence[Chain]
 
@@ -184,6 +191,7 @@ def _read_results(
         flights=flights,
         parts=parts_of(halves, ((one.half, one.treatment.round) for one in flights)),
         positions=[row for row in ranked if row.half in halves],
+        others=_others(folder / SENSITIVITY_FILE, troubles),
         repairs=repairs,
         chains=_results(folder / CHAINS_FILE, load_chains, troubles, "asked for suggestions"),
     )
@@ -226,6 +234,7 @@ def _tables(
         *(main_table(positions, part) for part in parts),
         *(against_table(positions, part) for part in parts),
         *(users_table(positions, part) for part in parts),
+        *(others_table(results.others, p) for p in parts_with_others(results.others, parts)),
         *(positions_table(positions, labels) for labels in LABELS),
         *(
             reliability_table(calibration(positions, half, method), half, method)
@@ -265,6 +274,11 @@ def _results(
     except TpcError as error:
         troubles.append(f"{path.name} is left out: {error.message}.")
         return []
+
+
+def _others(path: Path, troubles: list[str]) -> list[Position]:
+    # Without them the page is whole.
+    return _results(path, read_positions, troubles, "ranked by others") if path.exists() else []
 
 
 def _text(path: Path) -> str:

@@ -31,7 +31,8 @@ _GAPS = re.compile(r"\n{3,}")
 
 @dataclass(frozen=True, eq=False)
 class Contents:
-    """All that is on the page: ``tables`` by label; ``halves`` and ``parts`` are what is shown.
+    """All that is on the page: ``tables`` by label; ``halves`` and ``parts`` are what is shown,
+    ``others`` the parts that were ranked by other people's marks, too.
     ``rounds`` are counts of treatments with a changed parameter, see `rounds_of`.
 
     ``tried`` and ``discussion`` are Markdown that people wrote, empty where nobody did.
@@ -43,6 +44,7 @@ class Contents:
     missions: int
     halves: Sequence[str]
     parts: Sequence[Part]
+    others: Sequence[Part]
     tables: Mapping[str, Table]
     drawings: Sequence[Drawing]
     headlines: Sequence[Headline]
