@@ -188,6 +188,19 @@ def test_the_page_shows_them(own_study, tmp_path):
     assert second["people"] == "delays x 0.5"
 
 
+def troubles_of(study: Path, target: Path) -> list[str]:
+    made = make_report(study, target / "study.md", ["tuning", "held-back"], draw=False)
+    return [trouble for trouble in made.troubles if "other people" in trouble]
+
+
+# The other half has none, which nobody asked for.
+def test_what_is_out_of_date_is_said(own, tmp_path):
+    assert troubles_of(own, tmp_path) == []
+    seen(own / "missions/alpha/clean/seed-1", [], people=78)
+    said = "Rankings by other people's marks are out of date: `study sensitivity`."
+    assert troubles_of(own, tmp_path) == [said]
+
+
 def test_without_them_the_page_says_nothing_of_them(study_text, made_study):
     assert "Other people" not in study_text
     assert not any("ensitivity" in trouble for trouble in made_study.troubles)

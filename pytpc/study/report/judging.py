@@ -125,6 +125,15 @@ def complete(
         raise min(errors, key=str)
 
 
+def is_complete(ranking: Ranking, folder: Path, halves: Sequence[Half]) -> bool:
+    """Whether ``complete`` would have nothing to do.
+
+    Raises:
+        InputError: a mission or the table cannot be read.
+    """
+    return _Plan.of(ranking, folder, halves, again=False).is_done
+
+
 @dataclass
 class _Plan:
     """What has been ranked, by mission, and what is to be ranked; ``gone`` rows are of no use."""

@@ -48,7 +48,7 @@ from pytpc.study.report.repairs import (
     repairs_table,
     tries_table,
 )
-from pytpc.study.report.sensitivity import SENSITIVITY_FILE
+from pytpc.study.report.sensitivity import SENSITIVITY_FILE, is_up_to_date
 from pytpc.study.report.systems import rounds_of, systems_table, treatments_table
 from pytpc.study.suggestion_chains import CHAINS_FILE, Chain, load_chains
 from pytpc.study.suggestions import HEADLINE_FILE
@@ -176,7 +176,7 @@ class _Results:
 
 
 def _read_results(
-    folder: Path, study: Study, halves: Sequence[str], troubles: list[str]
+    folder: Path, study: Study, halves: Sequence[Half], troubles: list[str]
 ) -> _Results:
     """What there is in the study's folder; a sentence among ``troubles`` for what is not."""
     ranked = _results(folder / POSITIONS_FILE, read_positions, troubles, "ranked")
@@ -191,7 +191,7 @@ def _read_results(
         flights=flights,
         parts=parts_of(halves, ((one.half, one.treatment.round) for one in flights)),
         positions=[row for row in ranked if row.half in halves],
-        others=_others(folder / SENSITIVITY_FILE, troubles),
+        others=_others(folder, halves, troubles),
         repairs=repairs,
         chains=_results(folder / CHAINS_FILE, load_chains, troubles, "asked for suggestions"),
     )
@@ -276,9 +276,20 @@ def _results(
         return []
 
 
-def _others(path: Path, troubles: list[str]) -> list[Position]:
-    # Without them the page is whole.
-    return _results(path, read_positions, troubles, "ranked by others") if path.exists() else []
+def _others(folder: Path, halves: Sequence[Half], troubles: list[str]) -> list[Position]:
+    """By other people's marks; without them the page is whole."""
+    if not (folder / SENSITIVITY_FILE).exists():
+        return []
+    rows = _results(folder / SENSITIVITY_FILE, read_positions, troubles, "ranked by others")
+    own = {row.half for row in rows}
+    try:
+        current = is_up_to_date(folder, [half for half in halves if half in own])
+    except InputError:
+        # What cannot be read is said already.
+        return rows
+    if not current:
+        troubles.append("Rankings by other people's marks are out of date: `study sensitivity`.")
+    return rows
 
 
 def _text(path: Path) -> str:

@@ -28,7 +28,7 @@ from pytpc.study.methods import METHODS
 from pytpc.study.people import look_on
 from pytpc.study.plan import Half
 from pytpc.study.report.folder import Progress
-from pytpc.study.report.judging import Ranking, complete
+from pytpc.study.report.judging import Ranking, complete, is_complete
 from pytpc.study.verdict_digest import contents, digest_of, mission_digest
 
 SENSITIVITY_FILE = Path("results") / "sensitivity.parquet"
@@ -48,9 +48,21 @@ def rank_by_others(
     jobs: int = 1,
 ) -> None:
     """Complete ``results/sensitivity.parquet``; arguments and errors as of ``complete``."""
+    complete(_others(), folder, halves, on_progress, again=again, jobs=jobs)
+
+
+def is_up_to_date(folder: Path, halves: Sequence[Half]) -> bool:
+    """Whether the table has what there is to know of ``halves``, as missions and code are now.
+
+    Raises:
+        InputError: a mission or the table cannot be read.
+    """
+    return is_complete(_others(), folder, halves)
+
+
+def _others() -> Ranking:
     methods = {name: METHODS[name] for name in _METHODS}
-    others = Ranking(SENSITIVITY_FILE, methods, inputs_digest, judge_by_others, save_sensitivity)
-    complete(others, folder, halves, on_progress, again=again, jobs=jobs)
+    return Ranking(SENSITIVITY_FILE, methods, inputs_digest, judge_by_others, save_sensitivity)
 
 
 def inputs_digest(out: Path, mission: Path, half: str) -> str:
