@@ -134,6 +134,7 @@ def test_the_way_to_where_it_stood_does_not_count():
 def test_a_counter_does_not_get_below_0():
     found = ask(">=", [5, 5, 4, 0, 0], 2, marks(95), default=2)
     assert (found.direction, found.value) == ("lower", 0)
+    assert "(at most 0: " in found.text
 
 
 # A height that sinks from 2.4 to the 1.7 at which the program goes on to wait (below 1.75), and is
