@@ -2,11 +2,13 @@
 
 A treatment is what was drawn from the population of faults, so it is the unit: the value of a
 treatment is the mean over its missions, a figure the mean over treatments, and the bootstrap draws
-treatments. Two seeds of one treatment are not two findings.
+treatments. Two seeds of one treatment are not two findings. Where all treatments are 0, or all are
+1, the bootstrap has nothing to draw, and the interval is that of Clopper and Pearson (1934).
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -14,10 +16,16 @@ import numpy as np
 import numpy.typing as npt
 
 DRAWS = 2000
+BINS = 5
+"""Of confidence, for its calibration."""
+SPARSE = 5
+"""A bin with verdicts about fewer treatments says little."""
 SEED = 8
 CONFIDENT = 0.5
 """From here on a method accuses: it holds its first suspect for likelier than all else together,
 "none of them" included."""
+_TAIL = 0.025
+"""What an interval of 95 % leaves out at each end."""
 
 
 class Estimate(NamedTuple):
@@ -58,47 +66,140 @@ def estimate(
         All nan where there is no value.
     """
     numbers = np.asarray(values, dtype=np.float64)
-    known: dict[object, int] = {}
-    codes = np.array([known.setdefault(unit, len(known)) for unit in units], np.int64)
+    codes = _codes(units)
     if not codes.size:
         return Estimate(np.nan, np.nan, np.nan, 0)
     means = np.bincount(codes, numbers) / np.bincount(codes)
     drawn = np.random.default_rng(seed).integers(means.size, size=(draws, means.size))
-    low, high = np.quantile(means[drawn].mean(axis=1), [0.025, 0.975])
+    low, high = np.quantile(means[drawn].mean(axis=1), [_TAIL, 1 - _TAIL])
     return Estimate(float(means.mean()), float(low), float(high), means.size)
 
 
+def share(values: npt.ArrayLike, units: Sequence[object]) -> Estimate:
+    """As ``estimate``, of values in [0, 1]: where all are 0 or all are 1 the interval has a width.
+
+    Args:
+        values: float64[n].
+        units: whose each value is; n of them.
+    """
+    found = estimate(values, units)
+    if found.treatments and found.value in (0.0, 1.0):
+        end = _TAIL ** (1 / found.treatments)
+        low, high = (end, 1.0) if found.value else (0.0, 1.0 - end)
+        return found._replace(low=low, high=high)
+    return found
+
+
+def upper_limit(count: int, of: int) -> float:
+    """The largest share that ``count`` of ``of`` leave possible (Clopper and Pearson, 95 %).
+
+    With it as few as ``count`` are seen in 2.5 % of all cases.
+
+    Args:
+        count: how many were seen, at most ``of``.
+        of: how many could be; at least one.
+    """
+    if count == of:
+        return 1.0
+    low, high = count / of, 1.0
+    # 60 halvings are more than a double can tell apart.
+    for _ in range(60):
+        middle = (low + high) / 2
+        few = sum(math.comb(of, k) * middle**k * (1 - middle) ** (of - k) for k in range(count + 1))
+        low, high = (middle, high) if few > _TAIL else (low, middle)
+    return low
+
+
 class Bin(NamedTuple):
-    """A row of a reliability table: confidences in [low, high), and how often they were right."""
+    """A row of a reliability table: confidences in [low, high), and how often they were right.
+
+    ``treatments`` is of how many its ``verdicts`` are.
+    """
 
     low: float
     high: float
     verdicts: int
+    treatments: int
     confidence: float
     right: float
 
+    @property
+    def is_sparse(self) -> bool:
+        """Whether its share hangs on single treatments."""
+        return self.treatments < SPARSE
 
-def reliability(confidence: npt.ArrayLike, right: npt.ArrayLike, bins: int = 5) -> list[Bin]:
-    """How often the first suspect was right, by confidence, in bins of equal width.
+
+def reliability(
+    confidence: npt.ArrayLike, right: npt.ArrayLike, units: Sequence[object]
+) -> list[Bin]:
+    """How often the first suspect was right, by confidence, in ``BINS`` of equal width.
 
     Args:
         confidence: float64[n] in [0, 1].
         right: float64[n], whether the first suspect was to blame, a share where several are tied;
             of clean runs and of faults in the source never.
-        bins: how many; the last one has its end. Empty ones are left out.
+        units: the treatment of each.
+
+    Returns:
+        Those with verdicts; the last one has its end.
     """
     given, hits = np.asarray(confidence, np.float64), np.asarray(right, np.float64)
-    # linspace has an edge a little above 0.6.
-    edges = np.arange(bins + 1) / bins
-    place = np.clip(np.digitize(given, edges) - 1, 0, bins - 1)
+    place = _bins(given)
+    codes = _codes(units)
     return [
         Bin(
-            float(edges[n]),
-            float(edges[n + 1]),
+            n / BINS,
+            (n + 1) / BINS,
             int(np.count_nonzero(place == n)),
+            np.unique(codes[place == n]).size,
             float(given[place == n].mean()),
             float(hits[place == n].mean()),
         )
-        for n in range(bins)
+        for n in range(BINS)
         if np.any(place == n)
     ]
+
+
+def calibration_error(
+    confidence: npt.ArrayLike, right: npt.ArrayLike, units: Sequence[object]
+) -> Estimate:
+    """The expected calibration error (Naeini et al. 2015), with the bootstrap's 95 % interval.
+
+    It is the mean over verdicts of the gap between mean confidence and share of right ones in their
+    bin of ``BINS``. The bootstrap draws treatments, with all of their verdicts. Of few verdicts the
+    error is above 0 even where confidence is right, and that of a draw is above that of all.
+
+    Args:
+        confidence: float64[n], as in ``reliability``.
+        right: float64[n].
+        units: the treatment of each.
+
+    Returns:
+        All nan where there is no verdict.
+    """
+    given, hits = np.asarray(confidence, np.float64), np.asarray(right, np.float64)
+    codes = _codes(units)
+    if not codes.size:
+        return Estimate(np.nan, np.nan, np.nan, 0)
+    count = int(codes.max()) + 1
+    # float64[treatment, bin]: their verdicts' sum of the gap, of which a bin's is the sum.
+    gaps = np.zeros((count, BINS))
+    np.add.at(gaps, (codes, _bins(given)), given - hits)
+    verdicts = np.bincount(codes, minlength=count)
+    drawn = np.random.default_rng(SEED).integers(count, size=(DRAWS, count))
+    errors = np.abs(gaps[drawn].sum(axis=1)).sum(axis=1) / verdicts[drawn].sum(axis=1)
+    low, high = np.quantile(errors, [_TAIL, 1 - _TAIL])
+    value = np.abs(gaps.sum(axis=0)).sum() / verdicts.sum()
+    return Estimate(float(value), float(low), float(high), count)
+
+
+def _bins(confidence: npt.NDArray[np.float64]) -> npt.NDArray[np.intp]:
+    # linspace has an edge a little above 0.6.
+    edges = np.arange(BINS + 1) / BINS
+    return np.clip(np.digitize(confidence, edges) - 1, 0, BINS - 1)
+
+
+def _codes(units: Sequence[object]) -> npt.NDArray[np.int64]:
+    """int64[n]: the same number for the same unit, from 0 in the order of their first."""
+    known: dict[object, int] = {}
+    return np.array([known.setdefault(unit, len(known)) for unit in units], np.int64)

@@ -6,7 +6,14 @@ import pytest
 
 from pytpc.study.case import Verdict
 from pytpc.study.judge import place, position
-from pytpc.study.metrics import estimate, reliability, within
+from pytpc.study.metrics import (
+    calibration_error,
+    estimate,
+    reliability,
+    share,
+    upper_limit,
+    within,
+)
 
 NAMES = ("~a", "~b", "~c", "~d", "~e")
 
@@ -70,11 +77,59 @@ def test_the_interval_has_the_width_of_the_binomial():
     assert found == estimate([0.0, 1.0] * 50, list(range(100)))
 
 
+# Where nothing was seen in n, a share p leaves it so with (1 - p)^n, which is 0.025 at the end of
+# the interval: of 1 at p = 0.975; of 2 at 1 - 0.158; of 6 at 1 - 0.541; of 18 at 1 - 0.815.
+@pytest.mark.parametrize(
+    ("treatments", "end"), [(1, 0.025), (2, 0.1581), (6, 0.5407), (18, 0.8147)]
+)
+def test_a_share_of_all_or_nothing_has_an_interval(treatments, end):
+    units = [place // 2 for place in range(2 * treatments)]
+    every, nothing = share([1.0] * len(units), units), share([0.0] * len(units), units)
+    assert (every.value, every.high, every.treatments) == (1.0, 1.0, treatments)
+    assert (nothing.value, nothing.low, nothing.treatments) == (0.0, 0.0, treatments)
+    assert every.low == pytest.approx(end, abs=5e-5)
+    assert nothing.high == pytest.approx(1 - end, abs=5e-5)
+
+
+# A difference that is 0 in all treatments is no share.
+def test_other_shares_and_differences_are_drawn():
+    assert share([0.0, 0.0, 1.0], ["x", "x", "y"]) == estimate([0.0, 0.0, 1.0], ["x", "x", "y"])
+    assert estimate([0.0, 0.0], ["x", "y"])[:3] == (0.0, 0.0, 0.0)
+    assert share([], []).treatments == 0
+
+
+# 0 of 3: (1 - p)^3 = 0.025. 1 of 2: p^2 = 0.975, for at most one has to be as rare as 0.025. 1 of
+# 10 is 0.4450 in the tables of Clopper and Pearson.
+@pytest.mark.parametrize(
+    ("count", "of", "limit"),
+    [(0, 3, 0.70760), (0, 6, 0.45926), (1, 2, 0.98742), (1, 10, 0.44502), (2, 2, 1.0)],
+)
+def test_what_cannot_be_ruled_out(count, of, limit):
+    assert upper_limit(count, of) == pytest.approx(limit, abs=5e-6)
+
+
 def test_reliability_by_hand():
-    found = reliability([0.05, 0.15, 0.95, 1.0, 0.9], [False, True, True, True, False])
-    assert [(round(b.low, 9), round(b.high, 9), b.verdicts) for b in found] == [
-        (0.0, 0.2, 2),
-        (0.8, 1.0, 3),
+    found = reliability(
+        [0.05, 0.15, 0.95, 1.0, 0.9], [False, True, True, True, False], ["a", "a", "a", "b", "c"]
+    )
+    assert [(round(b.low, 9), round(b.high, 9), b.verdicts, b.treatments) for b in found] == [
+        (0.0, 0.2, 2, 1),
+        (0.8, 1.0, 3, 3),
     ]
     assert [b.confidence for b in found] == pytest.approx([0.1, 0.95])
     assert [b.right for b in found] == pytest.approx([0.5, 2 / 3])
+
+
+# In the bin below 0.2 the confidences are 0.1 too high in sum, in the one from 0.8 on 0.8: 0.9 of
+# four verdicts. Of treatment a alone the gaps are 0.1 of two, of b alone 0.8 of two; of both 0.9 of
+# four. Each alone is a quarter of the draws, so that they are the ends.
+def test_the_error_of_calibration_and_its_interval():
+    found = calibration_error([0.05, 0.05, 0.9, 0.9], [0, 0, 1, 0], ["a", "a", "b", "b"])
+    assert found == pytest.approx((0.9 / 4, 0.05, 0.4, 2))
+    assert calibration_error([], [], []).treatments == 0
+
+
+# In one bin too much here and too little there make up for each other, in two they do not.
+def test_the_error_of_calibration_is_that_of_bins():
+    assert calibration_error([0.5, 0.5], [0, 1], "ab").value == 0.0
+    assert calibration_error([0.3, 0.7], [1, 0], "ab").value == pytest.approx(0.7)

@@ -12,12 +12,36 @@ import pyarrow.parquet as pq
 import pytest
 from study_pages import row_of, rows_of
 
+from pytpc.study.report.confidence import Accusations, calibration, false_accusations
+from pytpc.study.report.drawings import draw_results
 from pytpc.study.report.making import make_report
-from pytpc.study.report.positions import read_positions
+from pytpc.study.report.parts import Part
+from pytpc.study.report.positions import Position, read_positions
 from pytpc.study.report.systems import nearness
 from pytpc.treatment import load_treatment
 
 ROOT = Path(__file__).parents[2]
+OPEN = "interval holds the target"
+HALVES = ("tuning", "held-back")
+
+
+def surest(treatment, seed, confidence, *, kind="type1", labels="confused", **changes):
+    """A verdict of a mission; the changed parameter is ~low."""
+    right = changes.get("top", "~low") == "~low"
+    values = {
+        "system": "alpha", "treatment": treatment, "type": kind, "half": "tuning", "seed": seed,
+        "labels": labels, "who": "all", "method": "tpc", "position": 1.0 if right else 2.0,
+        "parameters": 4, "top": "~low", "confidence": confidence, "marks": 1, **changes,
+    }  # fmt: skip
+    return Position(**values)
+
+
+CLEAN = [
+    *(surest("clean", 1, 0.6, kind="clean", labels=labels) for labels in ("typed", "untyped")),
+    surest("clean", 1, 0.1, kind="clean"),
+    surest("clean", 2, 0.1, kind="clean"),
+    surest("clean", 3, None, kind="clean", marks=0),
+]
 
 
 # Of two treatments held back: type2_high has its parameter at 1 and 4, so top 1 is 1/2 and top 3 is
@@ -25,25 +49,25 @@ ROOT = Path(__file__).parents[2]
 # the first: 1 and 1 - 3/4, mean 0.625; of the second: 1 - 1/41. Untyped: 1 and 1.5 (of two, so that
 # each is first with 1/2), and 3: top 1 is 3/8, positions (1.25 + 3) / 2. Confused: 3 and no mark at
 # all, and 20. No mark is a miss at place (4 + 1) / 2: positions (2.75 + 20) / 2. Drawing two of
-# two gives either, both, or the other.
+# two gives either, both, or the other. Where both are 1 or 0 the other end is 0.16 or 0.84.
 def test_the_main_table(study_text):
     heading = "The held-back half"
     assert row_of(study_text, heading, "tpc", "typed") == [
-        "2", "25 [0, 50]", "75 [50, 100]", "2.2", "22", "0.80", ">= 90", "miss"
+        "2", "25 [0, 50]", "75 [50, 100]", "2.2", "22", "0.80", ">= 90", f"miss, {OPEN}"
     ]  # fmt: skip
     assert row_of(study_text, heading, "tpc", "untyped") == [
-        "2", "38 [0, 75]", "100 [100, 100]", "2.1", "22", "0.94", ">= 80", "hit"
+        "2", "38 [0, 75]", "100 [16, 100]", "2.1", "22", "0.94", ">= 80", f"hit, {OPEN}"
     ]  # fmt: skip
     assert row_of(study_text, heading, "tpc", "confused")[:4] == [
         "2",
-        "0 [0, 0]",
+        "0 [0, 84]",
         "25 [0, 50]",
         "11.4",
     ]
     # 3.5, which two share, and 2, and 30.
     assert row_of(study_text, heading, "thesis", "typed")[:4] == [
         "2",
-        "0 [0, 0]",
+        "0 [0, 84]",
         "38 [0, 75]",
         "16.4",
     ]
@@ -73,11 +97,11 @@ def test_the_groups(study_text):
         "50 [50, 50]",
     ]
     assert row_of(study_text, by.format("tipping point"), "unknown", "typed")[:2] == [
-        "1", "100 [100, 100]"
+        "1", "100 [2, 100]"
     ]  # fmt: skip
     assert row_of(study_text, by.format("language"), "C++", "untyped")[:2] == [
         "2",
-        "100 [100, 100]",
+        "100 [16, 100]",
     ]
     # Users 1 and 2 alone: 1 and 4 with the first seed; none with the second, and none in the other
     # system: 1/4 and 0.
@@ -88,20 +112,22 @@ def test_the_groups(study_text):
 
 
 def test_confidence(study_text, made_study):
-    # Held back: 0.1; 0.2 0.3 0.3, of which one is tied with another; 0.6 0.7 0.6 0.7, of which two
-    # of 0.7 are right. The other half, on which weights are fitted, is apart: 0.2 and 0.55 of the
-    # clean and the faulty mission, which are never right, and 0.9.
+    # Held back, confused marks: 0.1 and 0.2 of two treatments, both wrong, which is 0.15 in the mean,
+    # and 0.1 or 0.2 where one alone is drawn. Of the other half there are only typed ones.
     tables = made_study.numbers["tables"]
     found = {
-        half: [(r["verdicts"], r["share right"]) for r in tables[f"reliability-tpc-{half}"]["rows"]]
+        half: [
+            (row["verdicts"], row["treatments"], row["mean confidence"], row["share right"])
+            for row in tables[f"reliability-tpc-{half}"]["rows"]
+        ]
         for half in ("held-back", "tuning")
     }
-    assert found == {
-        "held-back": [(1, 0.0), (3, 1 / 6), (4, 0.5)],
-        "tuning": [(1, 0.0), (1, 0.0), (1, 1.0)],
-    }
+    assert found == {"held-back": [(1, 1, 0.1, 0.0), (1, 1, 0.2, 0.0)], "tuning": []}
+    said = "Calibration error 0.15 [0.10, 0.20]. Bins of fewer than 5 treatments are not drawn."
+    assert said in study_text.replace("\\", "")
     heading = "Confident verdicts"
     assert row_of(study_text, heading, "changed parameter", "tpc", "held-back", "typed") == [
+        "3",
         "3",
         "2",
         "1",
@@ -110,8 +136,10 @@ def test_confidence(study_text, made_study):
         "2",
         "1",
         "1",
+        "1",
     ]
-    assert row_of(study_text, heading, "clean", "tpc", "tuning", "typed") == ["1", "0", "0"]
+    clean = {half: row_of(study_text, heading, "clean", "tpc", half, "typed") for half in HALVES}
+    assert clean == {"tuning": ["1", "1", "0", "0"], "held-back": ["1", "0", "0", "0"]}
     assert row_of(study_text, "Clean missions and faults", "alpha", "fault_wires")[-2:] == [
         "0.55",
         "yes",
@@ -137,34 +165,27 @@ def test_near_and_far(study, tmp_path, tipping, word):
 # Of the second round is the other system's treatment alone.
 def test_the_result(study_text, made_study):
     tables = made_study.numbers["tables"]
-    heading = (
-        "marks",
-        "first",
-        "target",
-        "the thesis's ranking",
-        "no clean run",
-        "verdict without",
-    )
+    names = ("marks", "among the first", "target", "thesis", "tpc", "verdict on tpc")
 
     def rows(part):
         found = tables[f"result-{part}"]["rows"]
-        return [tuple(row[name] for name in heading) for row in found]
+        return [tuple(row[name] for name in names) for row in found]
 
     assert rows("held-back")[:2] == [
-        ("typed", 1, None, "0 [0, 0]", "25 [0, 50]", None),
-        ("typed", 3, ">= 90", "38 [0, 75]", "75 [50, 100]", "miss"),
+        ("typed", 1, None, "0 [0, 84]", "25 [0, 50]", None),
+        ("typed", 3, ">= 90", "38 [0, 75]", "75 [50, 100]", f"miss, {OPEN}"),
     ]
     assert rows("second-round") == [
-        ("typed", 1, None, "0 [0, 0]", "0 [0, 0]", None),
-        ("typed", 3, ">= 90", "0 [0, 0]", "100 [100, 100]", "hit"),
-        ("untyped", 1, None, "-", "0 [0, 0]", None),
-        ("untyped", 3, ">= 80", "-", "100 [100, 100]", "hit"),
-        ("confused", 1, None, "-", "0 [0, 0]", None),
-        ("confused", 3, ">= 80", "-", "0 [0, 0]", "miss"),
+        ("typed", 1, None, "0 [0, 98]", "0 [0, 98]", None),
+        ("typed", 3, ">= 90", "0 [0, 98]", "100 [2, 100]", f"hit, {OPEN}"),
+        ("untyped", 1, None, "-", "0 [0, 98]", None),
+        ("untyped", 3, ">= 80", "-", "100 [2, 100]", f"hit, {OPEN}"),
+        ("confused", 1, None, "-", "0 [0, 98]", None),
+        ("confused", 3, ">= 80", "-", "0 [0, 98]", f"miss, {OPEN}"),
     ]
-    assert {row["with a clean run"] for row in tables["result-held-back"]["rows"]} == {"-"}
+    assert {row["tpc+reference"] for row in tables["result-held-back"]["rows"]} == {"-"}
     assert row_of(study_text, "The second round alone", "tpc", "untyped")[:4] == [
-        "1", "0 [0, 0]", "100 [100, 100]", "3.0"
+        "1", "0 [0, 98]", "100 [2, 100]", "3.0"
     ]  # fmt: skip
 
 
@@ -197,18 +218,50 @@ def test_the_headlines(made_study):
         "top3-untyped-held-back": (100.0, True),
         "top3-confused-held-back": (25.0, False),
         "suggestions-gone-held-back": (25.0, False),
+        "suggestions-gone-none-new-held-back": (25.0, False),
         "suggestions-gone-smallest-held-back": (100.0, True),
-        "accusations-clean-held-back": (0, True),
+        "suggestions-gone-none-new-smallest-held-back": (0.0, False),
         "top3-typed-second-round": (100.0, True),
         "top3-typed-thesis-second-round": (0.0, False),
         "top3-untyped-second-round": (100.0, True),
         "top3-confused-second-round": (0.0, False),
         "suggestions-gone-second-round": (0.0, False),
+        "suggestions-gone-none-new-second-round": (0.0, False),
         "top3-typed-tuning": (50.0, False),
         "suggestions-gone-tuning": (0.0, False),
+        "suggestions-gone-none-new-tuning": (0.0, False),
         "accusations-clean-tuning": (0, True),
         "accusations-fault-tuning": (1, False),
     }
+
+
+# A mission is accused once, by whichever labels; those without marks could not be. (1 - p)^1 is
+# 0.025 for p = 0.975.
+def test_accusations_are_told_of_missions_that_have_marks(study_text):
+    assert false_accusations(CLEAN, "tuning", "clean", "tpc") == Accusations(1, 2, 3)
+    assert Accusations(1, 2, 3).said == (
+        "1 of 2 missions with marks (of 3); up to 99 % cannot be ruled out"
+    )
+    told = study_text.replace("\\", "")
+    assert (
+        "| Confident accusations on clean missions, tuning half |"
+        " 0 of 1 mission with marks (of 1); up to 98 % cannot be ruled out | 0 | hit |" in told
+    )
+
+
+# Five treatments make a bar, of two verdicts each; in the bin of four there is none. 0.9 is 0.1 too
+# little of 10, 0.5 is 0.5 too much of 4: 3 of 14.
+def test_sparse_bins_are_not_drawn(tmp_path):
+    rows = [surest(f"a{n}", seed, 0.9) for n in range(5) for seed in (1, 2)]
+    few = [surest(f"b{n}", 1, 0.5, top="~high") for n in range(4)]
+    found = calibration([*rows, *few], "tuning", "tpc")
+    assert [(one.verdicts, one.treatments) for one in found.bins] == [(4, 4), (10, 5)]
+    assert [one.verdicts for one in found.drawn] == [10]
+    assert found.error.value == pytest.approx(3 / 14)
+    part = Part("tuning", "tuning half", "tuning")
+    names = {one.file for one in draw_results([*rows, *few], tmp_path, [part])}
+    assert names == {"top3-tuning.png", "confidence-tuning-tpc.png"}
+    assert {one.file for one in draw_results(few, tmp_path, [part])} == {"top3-tuning.png"}
 
 
 def test_links_and_pictures_are_there_and_small(made_study, study_text):

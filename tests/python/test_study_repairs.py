@@ -13,6 +13,7 @@ from pytpc.study.report.making import make_report
 from pytpc.study.report.parts import Part
 from pytpc.study.report.repairs import gone, read_repairs
 
+OPEN = "interval holds the target"
 HELD_BACK = Part("held-back", "held-back half", "held-back")
 
 
@@ -43,12 +44,15 @@ def test_suggestions_by_variant(study_text):
         "1", "50 [50, 50]", "50 [50, 50]", "50 [50, 50]", "0", ">= 80", "miss"
     ]  # fmt: skip
     assert row_of(study_text, heading, "lasting", "held-back", "2") == [
-        "1", "100 [100, 100]", "0 [0, 0]", "100 [100, 100]", "0", ">= 80", "hit"
+        "1", "100 [2, 100]", "0 [0, 98]", "100 [2, 100]", "0", ">= 80", f"hit, {OPEN}"
     ]  # fmt: skip
     assert row_of(study_text, heading, "smallest", "held-back", "1") == [
-        "1", "100 [100, 100]", "100 [100, 100]", "0 [0, 0]", "0", ">= 80", "hit"
+        "1", "100 [2, 100]", "100 [2, 100]", "0 [0, 98]", "0", ">= 80", f"hit, {OPEN}"
     ]  # fmt: skip
-    assert row_of(study_text, heading, "lasting (headline)", "tuning", "1")[:2] == ["1", "0 [0, 0]"]
+    assert row_of(study_text, heading, "lasting (headline)", "tuning", "1")[:2] == [
+        "1",
+        "0 [0, 98]",
+    ]
     assert row_of(study_text, heading, "lasting", "tuning", "2") == [
         "0", "-", "-", "-", "1", ">= 80", "-"
     ]  # fmt: skip
@@ -70,15 +74,16 @@ def test_what_is_ranked_first_is_told_apart(own_study, tmp_path):
     made = make_report(own_study, tmp_path / "study.md", draw=False)
     rows = [r for r in made.numbers["tables"]["tries"]["rows"] if r["part"] == "held-back"]
     assert [(r["variant"], r["tries"], r["error gone %"]) for r in rows] == [
-        ("smallest", 1, "100 [100, 100]"),
+        ("smallest", 1, "100 [2, 100]"),
         ("lasting (headline)", 1, "50 [50, 50]"),
-        ("lasting", 2, "100 [100, 100]"),
-        ("lasting", 3, "100 [100, 100]"),
-        ("ranked", 1, "0 [0, 0]"),
-        ("another", 1, "100 [100, 100]"),
+        ("lasting", 2, "100 [2, 100]"),
+        ("lasting", 3, "100 [2, 100]"),
+        ("ranked", 1, "0 [0, 98]"),
+        ("another", 1, "100 [2, 100]"),
     ]
     found = {one["name"]: one["value"] for one in made.numbers["figures"]}
     assert found["suggestions-gone-smallest-held-back"] == 100.0
+    assert found["suggestions-gone-none-new-smallest-held-back"] == 0.0
     assert found["suggestions-gone-ranked-held-back"] == 0.0
     assert "suggestions-gone-ranked-reference-held-back" not in found
 

@@ -62,13 +62,16 @@ def test_the_figures_of_the_benchmark(study, made_study, tmp_path, capsys, monke
         "FIGURE study top3-untyped value=100 unit=% target=>=80 verdict=hit",
         "FIGURE study top3-confused value=25 unit=% target=>=80 verdict=miss",
         "FIGURE study suggestions-gone value=25 unit=% target=>=80 verdict=miss",
+        "FIGURE study suggestions-gone-none-new value=25 unit=% target=>=80 verdict=miss",
         "FIGURE study suggestions-gone-smallest value=100 unit=% target=>=80 verdict=hit",
-        "FIGURE study accusations-clean value=0 unit=verdicts target=0 verdict=hit",
+        "FIGURE study suggestions-gone-none-new-smallest value=0 unit=% target=>=80 verdict=miss",
         "FIGURE study top3-typed-second-round value=100 unit=% target=>=90 verdict=hit",
         "FIGURE study top3-typed-thesis-second-round value=0 unit=% target=>=90 verdict=miss",
         "FIGURE study top3-untyped-second-round value=100 unit=% target=>=80 verdict=hit",
         "FIGURE study top3-confused-second-round value=0 unit=% target=>=80 verdict=miss",
         "FIGURE study suggestions-gone-second-round value=0 unit=% target=>=80 verdict=miss",
+        "FIGURE study suggestions-gone-none-new-second-round value=0 unit=% target=>=80"
+        " verdict=miss",
     ]
 
 

@@ -12,13 +12,15 @@ from matplotlib.figure import Figure
 
 from pytpc.stats.drawing import COLOURS, CULPRIT, FAINT, GRID, INK
 from pytpc.study.data import LABELS
-from pytpc.study.metrics import CONFIDENT, Bin, Estimate
-from pytpc.study.report.confidence import calibration_error
+from pytpc.study.metrics import CONFIDENT, Estimate
+from pytpc.study.report.confidence import Calibration
 from pytpc.study.report.parts import Part
 from pytpc.study.report.positions import Position, ordered
 from pytpc.study.report.ranked import BESIDE_CLEAN, METHODS, OURS, TARGETS, changed_rows, top
 
 _WIDTH = 8.6
+_NUMBER_WIDTH = 11
+"""So much of the axis, in %, does a number take."""
 _BOLD = (OURS, BESIDE_CLEAN)
 
 
@@ -55,8 +57,11 @@ def result_chart(rows: Sequence[Position], part: Part) -> Figure:
     return figure
 
 
-def reliability_chart(bins: Sequence[Bin], method: str) -> Figure:
-    """Share of right verdicts over confidence; the dashed line is where they would be equal."""
+def reliability_chart(found: Calibration, method: str) -> Figure:
+    """Share of right verdicts over confidence; the dashed line is where they would be equal.
+
+    Sparse bins have no bar.
+    """
     figure = Figure(figsize=(4.6, 4.2))
     axes = figure.subplots()
     figure.subplots_adjust(left=0.13, right=0.97, top=0.9, bottom=0.12)
@@ -71,7 +76,7 @@ def reliability_chart(bins: Sequence[Bin], method: str) -> Figure:
         fontsize=7.5,
         color=CULPRIT,
     )
-    for one in bins:
+    for one in found.drawn:
         axes.bar(
             one.low, one.right, width=one.high - one.low, align="edge", color="#cfe3f1",
             edgecolor=COLOURS[0], linewidth=0.8,
@@ -83,9 +88,7 @@ def reliability_chart(bins: Sequence[Bin], method: str) -> Figure:
             textcoords="offset points", ha="center", fontsize=7.5,
             bbox={"boxstyle": "round,pad=0.15", "facecolor": "white", "edgecolor": "none"},
         )  # fmt: skip
-    error = calibration_error(bins)
-    said = "" if error is None else f", calibration error {error:.2f}"
-    axes.set_title(f"Confidence of {method}{said}", loc="left", fontsize=9.5, weight="bold")
+    axes.set_title(f"{method}: {found.said}", loc="left", fontsize=9, weight="bold")
     axes.set_xlim(0, 1)
     axes.set_ylim(0, 1.18)
     axes.set_yticks([0, 0.2, 0.4, 0.6, 0.8, 1.0])
@@ -107,7 +110,8 @@ def _bar(axes: Axes, place: int, share: Estimate, ours: bool) -> None:
     axes.plot([low, high], [place, place], color=INK, linewidth=1.3, solid_capstyle="butt")
     for end in (low, high):
         axes.plot([end, end], [place - 0.16, place + 0.16], color=INK, linewidth=1.3)
-    inside = value > 25
+    # Within the bar there has to be room for it before the interval begins.
+    inside = low > _NUMBER_WIDTH or high > 100 - _NUMBER_WIDTH
     axes.annotate(
         f"{value:.0f}", (0 if inside else high, place), xytext=(4, 0), textcoords="offset points",
         va="center", fontsize=7.5, color="white" if inside and ours else INK,

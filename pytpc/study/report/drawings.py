@@ -13,7 +13,7 @@ from pytpc.stats.drawing import save, style
 from pytpc.stats.figures import state_of, trial_figure
 from pytpc.stats.missions import Trial
 from pytpc.study.report.charts import reliability_chart, result_chart
-from pytpc.study.report.confidence import SURE_METHODS, calibration
+from pytpc.study.report.confidence import SAID, SURE_METHODS, calibration
 from pytpc.study.report.folder import Flight, System
 from pytpc.study.report.original import KIND_NAMES, Original
 from pytpc.study.report.parts import Part
@@ -98,11 +98,11 @@ def draw_results(rows: Sequence[Position], folder: Path, parts: Sequence[Part]) 
                 said = f"Top 3 by method and labels, the {part.title}; lines are 95 % intervals."
                 drawn.append(Drawing(name, "", said))
         for half, method in product(dict.fromkeys(part.half for part in parts), SURE_METHODS):
-            bins = calibration(rows, half, method)
-            if bins:
+            found = calibration(rows, half, method)
+            if found.drawn:
                 name = f"confidence-{half}-{method.replace('+', '-')}.png"
-                save(reliability_chart(bins, method), folder / name, "png", DPI, palette=True)
-                said = f"How often verdicts of {method} are right, by confidence; all labels"
+                save(reliability_chart(found, method), folder / name, "png", DPI, palette=True)
+                said = f"How often verdicts of {method} are right, by confidence; {SAID} marks"
                 drawn.append(Drawing(name, "", f"{said}, the {half} half."))
     return drawn
 

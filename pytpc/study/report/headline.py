@@ -16,10 +16,12 @@ from pytpc.study.report.ranked import (
     BESIDE_CLEAN,
     CHANCE,
     CHANCE_OF_DIFFERENT,
+    OPEN,
     OURS,
     TARGET_PLACES,
     TARGETS,
     changed_rows,
+    holds_target,
     percent,
     top,
 )
@@ -29,7 +31,10 @@ from pytpc.study.suggestion_chains import RANKED, RANKED_REFERENCE, Chain
 
 @dataclass(frozen=True, slots=True)
 class Headline:
-    """One number: ``name`` for programs, ``text`` for people; ``shown`` has its interval."""
+    """One number: ``name`` for programs, ``text`` for people; ``shown`` has its interval.
+
+    ``hit`` is by the number itself; ``open`` is whether its interval holds the target.
+    """
 
     name: str
     text: str
@@ -38,6 +43,13 @@ class Headline:
     shown: str
     target: str
     hit: bool
+    open: bool = False
+
+    @property
+    def verdict(self) -> str:
+        """In words."""
+        word = "hit" if self.hit else "miss"
+        return f"{word}, {OPEN}" if self.open else word
 
     def to_json(self) -> dict[str, Any]:
         """As an object for JSON."""
@@ -57,12 +69,14 @@ _RANKED = {
 """Whose shares are told: the end of the name, words, and the method."""
 
 _VARIANTS = {
-    "smallest": "the smallest change",
-    RANKED: "the suggested value of the parameter that is ranked first",
-    RANKED_REFERENCE: "the clean run's value of the parameter that is ranked first",
+    "smallest": "the smallest change, the changed parameter being known",
+    RANKED: "the suggested value of what is ranked first by confused marks, nothing being known",
+    RANKED_REFERENCE: "the clean run's value of what is ranked first by confused marks (the value"
+    " before the treatment is put back where the ranking is right)",
 }
 """The variants of suggestions that are told beside the headline, of their first tries."""
 
+_GONE = {False: "gone", True: "gone-none-new"}
 TOP = f"top{TARGET_PLACES}-"
 """The names of shares begin with it."""
 
@@ -81,29 +95,43 @@ def headlines(
             )
             name = f"{TOP}{labels}{end}-{part.name}"
             found += _share(name, text, top(rows, TARGET_PLACES), TARGETS[labels])
-    text = f"Error gone with the suggested value, {part.title}"
-    found += _share(f"suggestions-gone-{part.name}", text, gone(repairs, part), TARGET)
-    for variant, words in _VARIANTS.items():
-        name = f"suggestions-gone-{variant}-{part.name}"
-        text = f"Error gone with {words}, {part.title}"
-        found += _share(name, text, first_try(chains, variant), TARGET)
+    found += _suggested(repairs, chains, part)
     # What is clean or has a fault belongs to no round: it is told of the halves.
     for kind, what in (("clean", "clean missions"), ("fault", "faults in the source")):
         for end, (words, method) in _RANKED.items():
             if part.since > 1 or method not in (OURS, BESIDE_CLEAN):
                 continue
-            count, verdicts = false_accusations(positions, part.half, kind, method)
-            if verdicts:
+            made = false_accusations(positions, part.half, kind, method)
+            # Where nobody set a mark nobody could be accused.
+            if made.marked:
                 text = f"Confident accusations on {what}{words}, {part.title}"
                 name = f"accusations-{kind}{end}-{part.name}"
-                said = f"{count} of {verdicts}"
-                found.append(Headline(name, text, count, "verdicts", said, "0", count == 0))
+                count = made.accused
+                found.append(Headline(name, text, count, "missions", made.said, "0", count == 0))
     return found
 
 
-def _share(name: str, text: str, share: Estimate, target: float) -> list[Headline]:
-    if not share.treatments:
+def _suggested(repairs: Sequence[Repair], chains: Sequence[Chain], part: Part) -> list[Headline]:
+    """What came of the first tries: is the error gone, and has no other one come?"""
+    told = {False: "gone", True: "gone and no new one"}
+    found = []
+    for clean, what in told.items():
+        text = f"Error {what} with the suggested value, the changed parameter being known"
+        name = f"suggestions-{_GONE[clean]}-{part.name}"
+        share = gone(repairs, part, clean=clean)
+        found += _share(name, f"{text}, {part.title}", share, TARGET)
+    for variant, words in _VARIANTS.items():
+        for clean, what in told.items():
+            name = f"suggestions-{_GONE[clean]}-{variant}-{part.name}"
+            text = f"Error {what} with {words}, {part.title}"
+            found += _share(name, text, first_try(chains, variant, clean=clean), TARGET)
+    return found
+
+
+def _share(name: str, text: str, found: Estimate, target: float) -> list[Headline]:
+    if not found.treatments:
         return []
     aimed = f">={100 * target:.0f}"
-    value = 100 * share.value
-    return [Headline(name, text, value, "%", percent(share), aimed, share.value >= target)]
+    hit, still_open = found.value >= target, holds_target(found, target)
+    value = 100 * found.value
+    return [Headline(name, text, value, "%", percent(found), aimed, hit, still_open)]

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from pytpc.study.data import ALL, LABELS
-from pytpc.study.metrics import Estimate, estimate
+from pytpc.study.metrics import Estimate, estimate, share
 from pytpc.study.report.folder import UNKNOWN, System
 from pytpc.study.report.parts import Part
 from pytpc.study.report.positions import Position, by_treatment, ordered, with_absent
@@ -28,6 +28,8 @@ METHODS = (OURS, BESIDE_CLEAN, "tpc+changes", BASELINE, "thesis-doubt", "importa
 TARGETS: Mapping[str, float] = {"typed": 0.90, "untyped": 0.80, "confused": 0.80}
 """The share of treatments with the changed parameter in the top 3 (the issue's targets)."""
 TARGET_PLACES = 3
+OPEN = "interval holds the target"
+"""What is said of a verdict that other treatments might have turned."""
 
 Group = Callable[[Position], str]
 
@@ -40,54 +42,59 @@ def changed_rows(rows: Iterable[Position], part: Part | None = None) -> list[Pos
 
 def top(rows: Iterable[Position], k: int) -> Estimate:
     """The share of treatments with the changed parameter among the first ``k``."""
-    return _over(rows, lambda row: row.within(k))
+    found = list(rows)
+    return share([row.within(k) for row in found], _units(found))
 
 
 def mean_of(rows: Iterable[Position], of: Callable[[Position], float]) -> float | None:
     """The mean over treatments of something."""
-    found = _over(rows, of)
+    own = list(rows)
+    found = estimate([of(row) for row in own], _units(own))
     return found.value if found.treatments else None
 
 
-def percent(share: Estimate) -> str:
+def percent(found: Estimate) -> str:
     """``83 [67, 100]``, a dash where nothing is known."""
-    if not share.treatments:
+    if not found.treatments:
         return "-"
-    return f"{100 * share.value:.0f} [{100 * share.low:.0f}, {100 * share.high:.0f}]"
+    return f"{100 * found.value:.0f} [{100 * found.low:.0f}, {100 * found.high:.0f}]"
 
 
 def result_table(rows: Sequence[Position], part: Part) -> Table:
     """The result: ours without and with a clean run beside the thesis's ranking and chance."""
-    names = {
-        "the thesis's ranking": BASELINE,
-        "no clean run": OURS,
-        "with a clean run": BESIDE_CLEAN,
-        "chance": CHANCE,
-        "chance among what differs": CHANCE_OF_DIFFERENT,
-    }
-    headings = ("First", "Target", *names, "Verdict without", "Verdict with a clean run")
+    methods = (BASELINE, OURS, BESIDE_CLEAN, CHANCE, CHANCE_OF_DIFFERENT)
+    judged = (OURS, BESIDE_CLEAN)
+    verdicts = (f"Verdict on {method}" for method in judged)
+    headings = ("Among the first", "Target", *methods, *verdicts)
     own = changed_rows(rows, part)
     lines: list[tuple[str, tuple[Cell, ...]]] = []
     for labels in ordered((row.labels for row in own), LABELS):
         for k in (1, 3):
             shares = {
                 method: top([r for r in own if (r.method, r.labels) == (method, labels)], k)
-                for method in names.values()
+                for method in methods
             }
             aimed = TARGETS.get(labels) if k == TARGET_PLACES else None
-            told = [percent(shares[method]) for method in names.values()]
-            verdicts = [_verdict(shares[method], aimed) for method in (OURS, BESIDE_CLEAN)]
+            told = [percent(shares[method]) for method in methods]
             target = None if aimed is None else f">= {100 * aimed:.0f}"
-            lines.append((labels, (k, target, *told, *verdicts)))
+            hits = [verdict_of(shares[method], aimed) for method in judged]
+            lines.append((labels, (k, target, *told, *hits)))
     columns = tuple(Column(heading, 0) for heading in headings)
     title = f"The result, the {part.title}"
     return Table(f"result-{part.name}", title, columns, tuple(lines), (), "Marks")
 
 
-def _verdict(share: Estimate, aimed: float | None) -> str | None:
-    if aimed is None or not share.treatments:
+def verdict_of(found: Estimate, aimed: float | None) -> str | None:
+    """Whether a share is as it should be, by itself; and whether its interval leaves that open."""
+    if aimed is None or not found.treatments:
         return None
-    return "hit" if share.value >= aimed else "miss"
+    word = "hit" if found.value >= aimed else "miss"
+    return f"{word}, {OPEN}" if holds_target(found, aimed) else word
+
+
+def holds_target(found: Estimate, aimed: float) -> bool:
+    """Whether the interval has values on both sides of the target."""
+    return found.low < aimed <= found.high
 
 
 def main_table(rows: Sequence[Position], part: Part) -> Table:
@@ -121,7 +128,7 @@ def main_table(rows: Sequence[Position], part: Part) -> Table:
                 mean_of(found, lambda row: float(row.parameters)),
                 mean_of(found, lambda row: row.rank),
                 None if aimed is None else f">= {100 * aimed:.0f}",
-                _verdict(three, aimed),
+                verdict_of(three, aimed),
             )
             lines.append((method, cells))
     return Table(f"main-{part.name}", f"The {part.title}", columns, tuple(lines), (), "Method")
@@ -142,7 +149,7 @@ def against_table(rows: Sequence[Position], part: Part) -> Table:
             pairs = [(row, base[_mission(row)]) for row in found if _mission(row) in base]
             if method == BASELINE or not pairs:
                 continue
-            units = [(row.system, row.treatment) for row, _ in pairs]
+            units = _units(row for row, _ in pairs)
             three = estimate([r.within(3) - b.within(3) for r, b in pairs], units)
             places = estimate([row.place - other.place for row, other in pairs], units)
             lines.append((method, (labels, percent(three), places.value)))
@@ -233,6 +240,5 @@ def _methods(rows: Iterable[Position]) -> list[str]:
     return ordered((row.method for row in rows), METHODS)
 
 
-def _over(rows: Iterable[Position], of: Callable[[Position], float]) -> Estimate:
-    found = list(rows)
-    return estimate([of(row) for row in found], [(row.system, row.treatment) for row in found])
+def _units(rows: Iterable[Position]) -> list[tuple[str, str]]:
+    return [(row.system, row.treatment) for row in rows]

@@ -7,15 +7,16 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pyarrow as pa
 
 from pytpc.columns import read_table
 from pytpc.errors import InputError
-from pytpc.study.metrics import Estimate, estimate
+from pytpc.study.metrics import Estimate, share
 from pytpc.study.report.folder import Flight
 from pytpc.study.report.parts import Part
 from pytpc.study.report.positions import ordered
-from pytpc.study.report.ranked import percent
+from pytpc.study.report.ranked import percent, verdict_of
 from pytpc.study.suggestion_chains import HEADLINE, MOST_TRIES, VARIANTS, Chain, outcomes
 from pytpc.tables import Cell, Column, Table
 from pytpc.words import show
@@ -76,9 +77,9 @@ def read_repairs(path: Path, flights: Iterable[Flight]) -> list[Repair]:
     return [_repair(one, found.get((one.system, one.treatment.name, one.seed))) for one in treated]
 
 
-def gone(rows: Iterable[Repair], part: Part) -> Estimate:
-    """The share of treatments of a part in which the error is gone."""
-    return _gone(_of(rows, part))
+def gone(rows: Iterable[Repair], part: Part, *, clean: bool = False) -> Estimate:
+    """The share of treatments of a part in which the error is gone; ``clean``: and no new one."""
+    return _gone(_of(rows, part), clean=clean)
 
 
 def repairs_summary(rows: Sequence[Repair], parts: Sequence[Part]) -> Table:
@@ -96,14 +97,13 @@ def repairs_summary(rows: Sequence[Repair], parts: Sequence[Part]) -> Table:
     for part in parts:
         for name, of in kinds.items():
             own = [row for row in _of(rows, part) if row.flight.treatment.type in of]
-            share = _gone(own)
-            if not share.treatments:
+            went = _gone(own)
+            if not went.treatments:
                 continue
             flown = [row for row in own if row.fresh is not None]
-            fresh = estimate([float(row.fresh or 0) for row in flown], _units(flown))
-            verdict = "hit" if share.value >= TARGET else "miss"
-            cells = (part.name, share.treatments, percent(share), percent(fresh))
-            lines.append((name, (*cells, f">= {100 * TARGET:.0f}", verdict)))
+            fresh = share([float(row.fresh or 0) for row in flown], _units(flown))
+            cells = (part.name, went.treatments, percent(went), percent(fresh))
+            lines.append((name, (*cells, f">= {100 * TARGET:.0f}", verdict_of(went, TARGET))))
     return Table("repairs", "Suggestions, flown", columns, tuple(lines), (), "Treatments of")
 
 
@@ -117,10 +117,14 @@ def chains_in(chains: Iterable[Chain], part: Part, flights: Iterable[Flight]) ->
     ]
 
 
-def first_try(chains: Sequence[Chain], variant: str) -> Estimate:
-    """The share of treatments in which the first try of a variant took the error away."""
+def first_try(chains: Sequence[Chain], variant: str, *, clean: bool = False) -> Estimate:
+    """The share of treatments in which the first try of a variant took the error away.
+
+    ``clean``: and brought no new one.
+    """
     found, _ = outcomes(chains, variant, 1)
-    return estimate([float(one.gone) for one in found], [one.unit for one in found])
+    well = [one.gone and not (clean and one.new_error) for one in found]
+    return share(np.array(well, np.float64), [one.unit for one in found])
 
 
 def tries_table(chains: Sequence[Chain], parts: Sequence[Part], flights: Sequence[Flight]) -> Table:
@@ -151,19 +155,18 @@ def tries_table(chains: Sequence[Chain], parts: Sequence[Part], flights: Sequenc
                 if not found and not waiting:
                     continue
                 units = [one.unit for one in found]
-                share = estimate([float(one.gone) for one in found], units)
-                fresh = estimate([float(one.new_error) for one in found], units)
-                whole = estimate([float(one.gone and not one.new_error) for one in found], units)
-                verdict = "hit" if share.value >= TARGET else "miss"
+                went = share([float(one.gone) for one in found], units)
+                fresh = share([float(one.new_error) for one in found], units)
+                whole = share([float(one.gone and not one.new_error) for one in found], units)
                 name = f"{variant} (headline)" if (variant, most) == (HEADLINE, 1) else variant
                 cells: tuple[Cell, ...] = (
                     part.name,
                     most,
-                    share.treatments,
-                    *map(percent, (share, fresh, whole)),
+                    went.treatments,
+                    *map(percent, (went, fresh, whole)),
                     waiting,
                     f">= {100 * TARGET:.0f}",
-                    verdict if found else None,
+                    verdict_of(went, TARGET),
                 )
                 lines.append((name, cells))
     return Table("tries", "Suggestions by variant", columns, tuple(lines), (), "Variant")
@@ -200,10 +203,11 @@ def _of(rows: Iterable[Repair], part: Part) -> list[Repair]:
     return [row for row in rows if part.has(row.flight.half, row.flight.treatment.round)]
 
 
-def _gone(rows: Iterable[Repair]) -> Estimate:
+def _gone(rows: Iterable[Repair], *, clean: bool = False) -> Estimate:
     """Where no error was seen before there is nothing that could go."""
     judged = [row for row in rows if row.gone is not None]
-    return estimate([float(row.gone or 0) for row in judged], _units(judged))
+    well = [bool(row.gone) and not (clean and row.fresh) for row in judged]
+    return share(np.array(well, np.float64), _units(judged))
 
 
 def _units(rows: Iterable[Repair]) -> list[tuple[str, str]]:
