@@ -34,6 +34,7 @@ class Contents:
     """All that is on the page: ``tables`` by label; ``halves`` and ``parts`` are what is shown.
     ``rounds`` are counts of treatments with a changed parameter, see `rounds_of`.
 
+    ``judged`` is how often the half that is held back was judged, empty where that is not known.
     ``tried`` and ``discussion`` are Markdown that people wrote, empty where nobody did.
     """
 
@@ -48,6 +49,7 @@ class Contents:
     headlines: Sequence[Headline]
     troubles: Sequence[str]
     remarks: Sequence[str]
+    judged: str
     tried: str
     discussion: str
 
