@@ -8,7 +8,7 @@ the clean run" is a trivial answer.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import asdict
 from hashlib import sha256
 from pathlib import Path
@@ -25,42 +25,50 @@ CHANGES_FILE = "changes.json"
 DECOYS = 8
 _LIST_FILE = "study.json"
 _LIST = "decoys"
+_FIELDS = ("parameter", "node", "new")
 
 
-def harmless_changes(example: Example) -> tuple[Change, ...]:
-    """The changes that may be decoys: ``decoys`` in ``study.json`` of the example, as they stand.
+def harmless_changes(example: Example) -> dict[Change, frozenset[str]]:
+    """The changes that may be decoys, and with which treatments they may not: ``study.json``.
 
-    An entry has ``parameter`` (``~name``), ``node`` and ``new``, a number; the old value is that of
-    the robot's own file. None is the simulator's, which is the world. Without a file there is none.
+    In the example's file ``decoys`` is a list; an entry has ``parameter`` (``~name``), ``node`` and
+    ``new``, a number; the old value is that of the robot's own file. None is the simulator's, which
+    is the world. ``not_with`` may name treatments whose error was not seen together with it: what
+    does no harm may still hide another's. Without a file there is none.
 
     Raises:
         InputError: the file is no such list, or an entry changes no number of this robot's nodes.
     """
     path = example.folder / _LIST_FILE
     if not path.exists():
-        return ()
+        return {}
     document = parse_json(path)
     entries = document.get(_LIST, []) if isinstance(document, dict) else None
     if not isinstance(entries, list):
         raise InputError(f"{_LIST} is not a list", path)
     own = read_parameters(example.parameters)
-    found: dict[tuple[str, str], Change] = {}
+    treatments = {one.name for one in example.all_treatments()}
+    found: dict[Change, frozenset[str]] = {}
+    names: set[tuple[str, str]] = set()
     for number, entry in enumerate(entries, 1):
         try:
-            change = _harmless(entry, own)
+            change, not_with = _harmless(entry, own)
+            if (change.node, change.parameter) in names:
+                raise ValueError(f"{change.parameter} is there twice")
+            if change.node == example.simulator:
+                raise ValueError(f"{change.node} is the world")
+            if not_with - treatments:
+                raise ValueError(f"there is no treatment {min(not_with - treatments)}")
         except ValueError as error:
             raise InputError(f"{_LIST}, entry {number}: {error}", path) from error
-        known = found.setdefault((change.node, change.parameter), change)
-        if known is not change:
-            raise InputError(f"{_LIST}, entry {number}: {change.parameter} is there twice", path)
-        if change.node == example.simulator:
-            raise InputError(f"{_LIST}, entry {number}: {change.node} is the world", path)
-    return tuple(found.values())
+        names.add((change.node, change.parameter))
+        found[change] = not_with
+    return found
 
 
-def _harmless(entry: object, own: Mapping[str, object]) -> Change:
-    if not isinstance(entry, dict) or sorted(entry) != ["new", "node", "parameter"]:
-        raise ValueError("an object with parameter, node and new is expected")
+def _harmless(entry: object, own: Mapping[str, object]) -> tuple[Change, frozenset[str]]:
+    if not isinstance(entry, dict) or sorted({*entry} - {"not_with"}) != sorted(_FIELDS):
+        raise ValueError(f"an object with {', '.join(_FIELDS)} is expected")
     parameter, node = entry["parameter"], entry["node"]
     if not isinstance(parameter, str) or not parameter.startswith("~") or not isinstance(node, str):
         raise ValueError("parameter is ~name, and node a text")
@@ -69,7 +77,10 @@ def _harmless(entry: object, own: Mapping[str, object]) -> Change:
     if old is None or new is None or old == new:
         what = "changes no number of this robot"
         raise ValueError(f"{full} {own.get(full)!r} -> {entry['new']!r} {what}")
-    return Change(parameter, node, old, new)
+    not_with = entry.get("not_with", [])
+    if not isinstance(not_with, list) or not all(isinstance(name, str) for name in not_with):
+        raise ValueError("not_with is no list of treatments")
+    return Change(parameter, node, old, new), frozenset(not_with)
 
 
 def _number(value: object) -> float | None:
@@ -79,7 +90,7 @@ def _number(value: object) -> float | None:
 
 
 def drawn_changes(
-    system: str, treatment: Treatment, seed: int, among: Sequence[Change]
+    system: str, treatment: Treatment, seed: int, among: Mapping[Change, Collection[str]]
 ) -> tuple[Change, ...]:
     """The changes of a mission in a drawn order, newest last: decoys, and the treatment's own.
 
@@ -93,16 +104,17 @@ def drawn_changes(
         among: see ``harmless_changes``.
     """
     drawn = f"{system}/{treatment.name}/{seed}"
-    others = [one for one in among if one.parameter.lstrip("~") != _own_name(treatment)]
+    own = (treatment.parameter or "").lstrip("~/")
+    others = [
+        one
+        for one, not_with in among.items()
+        if one.parameter.lstrip("~") != own and treatment.name not in not_with
+    ]
     changes = sorted(others, key=lambda c: _hash(f"{drawn}{c.node}{c.parameter}"))[:DECOYS]
     if treatment.parameter is not None and treatment.old is not None and treatment.new is not None:
         node = treatment.node or ""
         changes.append(Change(treatment.parameter, node, treatment.old, treatment.new))
     return tuple(sorted(changes, key=lambda c: _hash(f"{drawn}/order{c.node}{c.parameter}")))
-
-
-def _own_name(treatment: Treatment) -> str:
-    return (treatment.parameter or "").lstrip("~/")
 
 
 def _hash(text: str) -> str:

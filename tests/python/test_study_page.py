@@ -165,18 +165,11 @@ def test_near_and_far(study, tmp_path, tipping, word):
 # Of the second round is the other system's treatment alone.
 def test_the_result(study_text, made_study):
     tables = made_study.numbers["tables"]
-    heading = (
-        "marks",
-        "first",
-        "target",
-        "the thesis's ranking",
-        "no clean run",
-        "verdict without",
-    )
+    names = ("marks", "among the first", "target", "thesis", "tpc", "verdict on tpc")
 
     def rows(part):
         found = tables[f"result-{part}"]["rows"]
-        return [tuple(row[name] for name in heading) for row in found]
+        return [tuple(row[name] for name in names) for row in found]
 
     assert rows("held-back")[:2] == [
         ("typed", 1, None, "0 [0, 84]", "25 [0, 50]", None),
@@ -190,7 +183,7 @@ def test_the_result(study_text, made_study):
         ("confused", 1, None, "-", "0 [0, 98]", None),
         ("confused", 3, ">= 80", "-", "0 [0, 98]", f"miss, {OPEN}"),
     ]
-    assert {row["with a clean run"] for row in tables["result-held-back"]["rows"]} == {"-"}
+    assert {row["tpc+reference"] for row in tables["result-held-back"]["rows"]} == {"-"}
     assert row_of(study_text, "The second round alone", "tpc", "untyped")[:4] == [
         "1", "0 [0, 98]", "100 [2, 100]", "3.0"
     ]  # fmt: skip

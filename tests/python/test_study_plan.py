@@ -25,7 +25,7 @@ from pytpc.study.plan import (
 )
 from pytpc.values.recording import read_parameters
 
-AMONG = tuple(Change(f"~{name}", "/pump", 2.0, 5.0) for name in "abcdefghijk")
+AMONG = {Change(f"~{name}", "/pump", 2.0, 5.0): frozenset[str]() for name in "abcdefghijk"}
 
 
 def test_halves_are_dealt_by_the_sorted_hashes_of_the_names():
@@ -81,34 +81,47 @@ def test_the_changed_parameter_is_no_decoy_and_has_its_place_in_the_history():
 
 
 def test_no_decoy_is_called_like_the_changed_parameter():
-    among = [Change("~b", "/arm", 1.0, 2.0), Change("~c", "/arm", 1.0, 2.0)]
+    among = {Change("~b", "/arm", 1.0, 2.0): (), Change("~c", "/arm", 1.0, 2.0): ()}
     found = drawn_changes("robot", treatment("type1_b"), 1, among)
     assert sorted((one.node, one.parameter) for one in found) == [("/arm", "~c"), ("/pump", "~b")]
 
 
-def listed(example: Example, *entries: object) -> tuple[Change, ...]:
+def test_what_hides_a_treatments_error_is_not_drawn_with_it():
+    hidden = {one: {"type1_b"} if one.parameter in ("~a", "~c") else set() for one in AMONG}
+    for seed in range(20):
+        found = drawn_changes("robot", treatment("type1_b"), seed, hidden)
+        assert not {"~a", "~c"} & {one.parameter for one in found}
+        assert len(found) == 9
+        # Others are drawn as they were.
+        other = treatment("type2_b")
+        assert drawn_changes("robot", other, seed, hidden) == drawn_changes(
+            "robot", other, seed, AMONG
+        )
+
+
+def listed(example: Example, *entries: object) -> dict[Change, frozenset[str]]:
     (example.folder / "study.json").write_text(json.dumps({"decoys": entries}))
     return harmless_changes(example)
 
 
 def test_harmless_changes_are_those_that_the_robot_lists(tmp_path, monkeypatch):
     example = robot(tmp_path, monkeypatch)
-    assert harmless_changes(example) == (
+    assert list(harmless_changes(example)) == [
         Change("~a", "/pump", 1.0, 1.5),
         Change("~c", "/pump", 0.004, 0.008),
-    )
+    ]
     (example.folder / "study.json").unlink()
-    assert harmless_changes(example) == ()
+    assert harmless_changes(example) == {}
     assert listed(
         example,
         {"parameter": "~c", "node": "/pump", "new": 1},
         {"parameter": "~count", "node": "/pump", "new": 9},
-        {"parameter": "~deep/er", "node": "/mission", "new": 0.5},
-    ) == (
-        Change("~c", "/pump", 0.004, 1.0),
-        Change("~count", "/pump", 3.0, 9.0),
-        Change("~deep/er", "/mission", 4.0, 0.5),
-    )
+        {"parameter": "~deep/er", "node": "/mission", "new": 0.5, "not_with": ["clean"]},
+    ) == {
+        Change("~c", "/pump", 0.004, 1.0): frozenset(),
+        Change("~count", "/pump", 3.0, 9.0): frozenset(),
+        Change("~deep/er", "/mission", 4.0, 0.5): {"clean"},
+    }
 
 
 @pytest.mark.parametrize(
@@ -120,9 +133,11 @@ def test_harmless_changes_are_those_that_the_robot_lists(tmp_path, monkeypatch):
         ({"node": 3}, "parameter is ~name, and node a text"),
         ({"new": "7"}, "/pump/b 2.0 -> '7' changes no number of this robot"),
         ({"new": 2}, "/pump/b 2.0 -> 2 changes no number of this robot"),
-        ({"old": 2}, "an object with parameter, node and new is expected"),
+        ({"old": 2}, "an object with parameter, node, new is expected"),
         ({"parameter": "~wind", "node": "/world"}, "/world is the world"),
         ({"parameter": "~a"}, "~a is there twice"),
+        ({"not_with": "clean"}, "not_with is no list of treatments"),
+        ({"not_with": ["type9"]}, "there is no treatment type9"),
     ],
 )
 def test_a_wrong_decoy_is_an_error(tmp_path, monkeypatch, change, what):

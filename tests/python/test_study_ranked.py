@@ -10,8 +10,10 @@ from multiprocessing import active_children
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 from study_samples import write_rows, write_said
 
+from pytpc.cli.main import main
 from pytpc.errors import InputError, RunError
 from pytpc.study import verdict_digest
 from pytpc.study.case import Verdict
@@ -190,6 +192,16 @@ def test_two_do_not_rank_at_once(own):
         rank_missions(own, ["tuning"])
         with pytest.raises(RunError, match="another command is at work on these results"):
             rank_missions(own, ["tuning"], again=True)
+
+
+@pytest.mark.parametrize("words", [["report", "--again", "--docs", "x.md"], ["suggestions"]])
+def test_commands_that_make_results_do_so_one_at_a_time(own, words, monkeypatch):
+    monkeypatch.chdir(own)
+    with alone_with_results(own):
+        result = CliRunner().invoke(main, ["study", *words, "--out", str(own)])
+    assert result.exit_code == 1
+    said = result.stderr.splitlines()[-1]
+    assert said == f"pytpc: error: {own}/results: another command is at work on these results"
 
 
 # Between the look at the table and the lock another command has ranked all of it.

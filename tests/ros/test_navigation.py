@@ -28,7 +28,8 @@ IN_CPP = {
     "recovery",
     "safety_stop",
 }
-# Of simulated time. A machine that cannot keep up is slower, and drives the same: the time waits.
+# Of simulated time. A machine that cannot keep up is slower, and drives the same: the time waits,
+# but for the first moment: all that is sent then is sent again until the last node is there.
 RATE = "8"
 MISSIONS = ("clean", "type1_goal_tolerance", "type2_min_start_quality")
 
@@ -53,6 +54,7 @@ def test_analysis_finds_what_was_expected_by_hand_in_nodes_and_plugins(robot):
     assert found(robot.static) - wanted - expected(NAVIGATION, in_python, "either") == Counter()
 
 
+@pytest.mark.quiet
 @pytest.mark.parametrize("name", MISSIONS)
 def test_mission_goes_as_its_treatment_demands(robot, fly, name):
     mission = fly(name)
@@ -61,12 +63,14 @@ def test_mission_goes_as_its_treatment_demands(robot, fly, name):
     assert (mission.recording.malformed, mission.recording.lost) == (0, {})
 
 
+@pytest.mark.quiet
 def test_many_parameters_act_in_a_clean_mission_in_each_link_unit(robot, fly):
     keys = fly("clean").recording.events.keys
     assert {robot.static.unit_of(key).link_unit for key in keys} == IN_CPP | {"mission"}
     assert len({robot.static.comparisons[key].source for key in keys}) >= 70
 
 
+@pytest.mark.quiet
 def test_changed_parameter_is_compared_where_it_decides(robot, fly):
     for name in MISSIONS[1:]:
         mission = fly(name)

@@ -19,6 +19,8 @@ from pytpc.study.report.positions import Position, ordered
 from pytpc.study.report.ranked import BESIDE_CLEAN, METHODS, OURS, TARGETS, changed_rows, top
 
 _WIDTH = 8.6
+_NUMBER_WIDTH = 11
+"""So much of the axis, in %, does a number take."""
 _BOLD = (OURS, BESIDE_CLEAN)
 
 
@@ -108,7 +110,8 @@ def _bar(axes: Axes, place: int, share: Estimate, ours: bool) -> None:
     axes.plot([low, high], [place, place], color=INK, linewidth=1.3, solid_capstyle="butt")
     for end in (low, high):
         axes.plot([end, end], [place - 0.16, place + 0.16], color=INK, linewidth=1.3)
-    inside = value > 25
+    # Within the bar there has to be room for it before the interval begins.
+    inside = low > _NUMBER_WIDTH or high > 100 - _NUMBER_WIDTH
     axes.annotate(
         f"{value:.0f}", (0 if inside else high, place), xytext=(4, 0), textcoords="offset points",
         va="center", fontsize=7.5, color="white" if inside and ours else INK,

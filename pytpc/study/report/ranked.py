@@ -62,27 +62,23 @@ def percent(found: Estimate) -> str:
 
 def result_table(rows: Sequence[Position], part: Part) -> Table:
     """The result: ours without and with a clean run beside the thesis's ranking and chance."""
-    names = {
-        "the thesis's ranking": BASELINE,
-        "no clean run": OURS,
-        "with a clean run": BESIDE_CLEAN,
-        "chance": CHANCE,
-        "chance among what differs": CHANCE_OF_DIFFERENT,
-    }
-    headings = ("First", "Target", *names, "Verdict without", "Verdict with a clean run")
+    methods = (BASELINE, OURS, BESIDE_CLEAN, CHANCE, CHANCE_OF_DIFFERENT)
+    judged = (OURS, BESIDE_CLEAN)
+    verdicts = (f"Verdict on {method}" for method in judged)
+    headings = ("Among the first", "Target", *methods, *verdicts)
     own = changed_rows(rows, part)
     lines: list[tuple[str, tuple[Cell, ...]]] = []
     for labels in ordered((row.labels for row in own), LABELS):
         for k in (1, 3):
             shares = {
                 method: top([r for r in own if (r.method, r.labels) == (method, labels)], k)
-                for method in names.values()
+                for method in methods
             }
             aimed = TARGETS.get(labels) if k == TARGET_PLACES else None
-            told = [percent(shares[method]) for method in names.values()]
-            verdicts = [verdict_of(shares[method], aimed) for method in (OURS, BESIDE_CLEAN)]
+            told = [percent(shares[method]) for method in methods]
             target = None if aimed is None else f">= {100 * aimed:.0f}"
-            lines.append((labels, (k, target, *told, *verdicts)))
+            hits = [verdict_of(shares[method], aimed) for method in judged]
+            lines.append((labels, (k, target, *told, *hits)))
     columns = tuple(Column(heading, 0) for heading in headings)
     title = f"The result, the {part.title}"
     return Table(f"result-{part.name}", title, columns, tuple(lines), (), "Marks")
