@@ -13,6 +13,7 @@ from pytpc.cli.console import console
 from pytpc.cli.options import JSON, PATH, Command
 from pytpc.cli.study_progress import StudyProgress
 from pytpc.cli.study_report import report_command
+from pytpc.cli.study_sensitivity import sensitivity_command
 from pytpc.cli.study_suggestions import suggestions_command
 from pytpc.demo_examples import EXAMPLES
 from pytpc.errors import RunError
@@ -159,6 +160,7 @@ def halves_command(*, as_json: bool) -> None:
 
 study_group.add_command(report_command)
 study_group.add_command(suggestions_command)
+study_group.add_command(sensitivity_command)
 
 COMMANDS: list[click.Command] = [study_group]
 

@@ -20,7 +20,7 @@ from pytpc.study.suggestion_chains import VARIANTS, Chain, shares
 from pytpc.study.suggestions import next_round
 from pytpc.words import many, plain
 
-_HALVES: dict[str, tuple[Half, ...]] = {
+HALVES: dict[str, tuple[Half, ...]] = {
     "tuning": ("tuning",),
     "held-back": ("held-back",),
     "both": ("tuning", "held-back"),
@@ -29,7 +29,7 @@ _HALVES: dict[str, tuple[Half, ...]] = {
 
 @click.command("suggestions")
 @click.option("--out", type=PATH, default=Path("out") / "study", show_default=True)
-@click.option("--half", type=click.Choice(list(_HALVES)), default="both", show_default=True)
+@click.option("--half", type=click.Choice(list(HALVES)), default="both", show_default=True)
 @click.option(
     "--variant",
     "variants",
@@ -62,9 +62,9 @@ def suggestions_command(
     ranking = None if method is None else METHODS[method]
     with alone_with_results(out), progress("working out suggestions") as advance:
         chains = next_round(
-            out, _HALVES[half], ranking, variants or tuple(VARIANTS), advance, again=again
+            out, HALVES[half], ranking, variants or tuple(VARIANTS), advance, again=again
         )
-    mine = [chain for chain in chains if chain.half in _HALVES[half]]
+    mine = [chain for chain in chains if chain.half in HALVES[half]]
     for chain in mine:
         for one in chain.tries:
             if one.failed:

@@ -39,7 +39,7 @@ def see(example: Example, env: Mapping[str, str], bag: Path, folder: Path) -> No
     Raises:
         RunError: the observer fails; one line, what it said last.
     """
-    _run(example, env, ["--bag", str(bag), "--sights", str(folder / SIGHTS_FILE)])
+    look_on(example.observer, env, ["--bag", str(bag), "--sights", str(folder / SIGHTS_FILE)])
 
 
 def cut_sights(path: Path, end_s: float) -> None:
@@ -65,11 +65,21 @@ def mark(example: Example, env: Mapping[str, str], folder: Path, seed: int) -> N
     """
     words = ["--sights", str(folder / SIGHTS_FILE), "--seed", str(seed), "--users", str(USERS)]
     words += ["--causes", str(folder / CAUSES_FILE), "--marks", str(folder / MARKED_FILE)]
-    _run(example, env, words)
+    look_on(example.observer, env, words)
 
 
-def _run(example: Example, env: Mapping[str, str], words: Sequence[str]) -> None:
-    command = [sys.executable, str(example.observer), *words]
+def look_on(program: Path, env: Mapping[str, str], words: Sequence[str]) -> None:
+    """Run a program of those who look on, with what all of them share.
+
+    Args:
+        program: in Python.
+        env: its environment.
+        words: its command line.
+
+    Raises:
+        RunError: it fails; one line, what it said last.
+    """
+    command = [sys.executable, str(program), *words]
     modules = [str(SHARED_PACKAGE / "src"), *env.get(_MODULES, "").split(os.pathsep)]
     environment = {**env, _MODULES: os.pathsep.join(one for one in modules if one)}
     try:
@@ -82,11 +92,11 @@ def _run(example: Example, env: Mapping[str, str], words: Sequence[str]) -> None
             timeout=_PATIENCE_S,
         )
     except subprocess.TimeoutExpired as error:
-        raise RunError(f"does not end in {_PATIENCE_S:.0f} s", example.observer) from error
+        raise RunError(f"does not end in {_PATIENCE_S:.0f} s", program) from error
     if ended.returncode:
         said = ended.stderr.decode("utf-8", "replace").strip().splitlines()[-1:]
         what = f"ended with status {ended.returncode}: {' '.join(said) or 'it says nothing'}"
-        raise RunError(what, example.observer)
+        raise RunError(what, program)
 
 
 def read_marked(path: Path) -> tuple[Mark, ...]:

@@ -43,7 +43,7 @@ def mission_digest(out: Path, mission: Path, half: str) -> str:
     files = [mission / name for name in own]
     files += [out / "reference" / system / name for name in _RECORDING]
     files.append(out / "systems" / system / "static.json")
-    return _of([half, *map(_contents, files)])
+    return digest_of([half, *map(contents, files)])
 
 
 def method_digest(method: Method) -> str:
@@ -53,13 +53,13 @@ def method_digest(method: Method) -> str:
 
 def verdict_digest(mission: str, method: str) -> str:
     """Of both digests."""
-    return _of([mission, method])
+    return digest_of([mission, method])
 
 
 @cache
 def _code_digest(module: str) -> str:
     names = [*sorted(modules_used(module)), *_JUDGES]
-    return _of([(name, sha256(_code(name).encode()).hexdigest()) for name in names])
+    return digest_of([(name, sha256(_code(name).encode()).hexdigest()) for name in names])
 
 
 def modules_used(name: str) -> frozenset[str]:
@@ -121,7 +121,12 @@ def _is_said(node: ast.stmt) -> bool:
     return isinstance(node.value.value, str)
 
 
-def _contents(path: Path) -> str:
+def contents(path: Path) -> str:
+    """The digest of a file, empty where there is none.
+
+    Raises:
+        InputError: it cannot be read.
+    """
     try:
         return sha256(path.read_bytes()).hexdigest()
     except FileNotFoundError:
@@ -130,5 +135,6 @@ def _contents(path: Path) -> str:
         raise InputError(f"cannot be read: {error.strerror}", path) from error
 
 
-def _of(document: object) -> str:
+def digest_of(document: object) -> str:
+    """Of what can be written as JSON."""
     return sha256(json.dumps(document).encode()).hexdigest()

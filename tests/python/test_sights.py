@@ -414,6 +414,7 @@ def imported_by(paths: list[Path], names: set[str]) -> set[str]:
 
 def test_observers_and_tpc_know_nothing_of_each_other():
     observers = [*EXAMPLES.glob("*/scripts/observer.py"), *SHARED_PACKAGE.rglob("*.py")]
+    observers += (EXAMPLES / "other_people").glob("*.py")
     tpc = list((EXAMPLES.parent / "pytpc").rglob("*.py"))
     robots = {path.parts[-3] for path in EXAMPLES.glob("*/scripts/observer.py")}
     assert robots >= {"image_capture", "water_sampler"}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
-from collections.abc import Generator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import closing
@@ -15,7 +15,8 @@ from threading import Thread
 
 from pytpc.errors import RunError, TpcError
 from pytpc.signals import signals_end
-from pytpc.study.data import ALL, LABELS, load_mission, places, seed_of
+from pytpc.study.case import Method
+from pytpc.study.data import ALL, LABELS, Mission, load_mission, places, seed_of
 from pytpc.study.judge import POSITIONS_FILE, Judged, judge, save_positions
 from pytpc.study.methods import METHODS
 from pytpc.study.plan import Half
@@ -32,9 +33,26 @@ _Place = tuple[str, str, int]
 
 
 @dataclass(frozen=True)
+class Ranking:
+    """A table of verdicts, and how it comes about; other processes get it, too.
+
+    ``file`` is below the study's folder. ``inputs`` is the digest of all that is read of a mission
+    (study's folder, mission's, half). ``judge`` gives the verdicts of methods on a mission that was
+    read from a folder. ``save`` writes the table into the study's folder.
+    """
+
+    file: Path
+    methods: Mapping[str, Method]
+    inputs: Callable[[Path, Path, str], str]
+    judge: Callable[[Mission, Path, Mapping[str, Method]], Iterable[Judged]]
+    save: Callable[[Iterable[Judged], Path], None]
+
+
+@dataclass(frozen=True)
 class _Task:
     """A mission, and the digest of each method that is to rank it."""
 
+    ranking: Ranking
     out: Path
     mission: Path
     half: Half
@@ -49,13 +67,34 @@ def rank_missions(
     again: bool = False,
     jobs: int = 1,
 ) -> None:
-    """Complete ``results/positions.parquet`` by the verdicts on ``halves`` that it does not have.
+    """Complete ``results/positions.parquet``, see ``complete``."""
+    positions = Ranking(POSITIONS_FILE, METHODS, mission_digest, _by_own_marks, save_positions)
+    complete(positions, folder, halves, on_progress, again=again, jobs=jobs)
+
+
+def _by_own_marks(
+    mission: Mission, _folder: Path, methods: Mapping[str, Method]
+) -> Iterable[Judged]:
+    return judge(mission, methods)
+
+
+def complete(
+    ranking: Ranking,
+    folder: Path,
+    halves: Sequence[Half],
+    on_progress: Progress | None = None,
+    *,
+    again: bool = False,
+    jobs: int = 1,
+) -> None:
+    """Complete a table by the verdicts on ``halves`` that it does not have.
 
     A method ranks a mission again where it, or anything that it is given, is not as it was. What
     was ranked when this is interrupted is kept. The table is the same however many jobs there are.
     Each time missions were judged that are held back, ``results/judged.json`` has a row more.
 
     Args:
+        ranking: what the table has.
         folder: the study's.
         halves: nothing is read of other missions; what stands about them stays.
         on_progress: called with (missions ranked, missions to rank).
@@ -67,12 +106,12 @@ def rank_missions(
         RunError: another command is at work on the results, or a process died.
         TpcError: the table cannot be written.
     """
-    if _Plan.of(folder, halves, again=again).is_done:
+    if _Plan.of(ranking, folder, halves, again=again).is_done:
         return
     errors: list[TpcError] = []
     with alone_with_results(folder), signals_end():
         # Another one may have been at work until now.
-        plan = _Plan.of(folder, halves, again=again)
+        plan = _Plan.of(ranking, folder, halves, again=again)
         try:
             with closing(_ranked(plan.tasks, jobs)) as results:
                 for done, (task, found) in enumerate(results, start=1):
@@ -83,10 +122,19 @@ def rank_missions(
                     if on_progress is not None:
                         on_progress(done, len(plan.tasks))
         finally:
-            save_positions(plan.rows(), folder)
+            ranking.save(plan.rows(), folder)
             plan.save_judging(folder)
     if errors:
         raise min(errors, key=str)
+
+
+def is_complete(ranking: Ranking, folder: Path, halves: Sequence[Half]) -> bool:
+    """Whether ``complete`` would have nothing to do.
+
+    Raises:
+        InputError: a mission or the table cannot be read.
+    """
+    return _Plan.of(ranking, folder, halves, again=False).is_done
 
 
 @dataclass
@@ -102,18 +150,18 @@ class _Plan:
     judged: list[_Task] = field(default_factory=list)
 
     @classmethod
-    def of(cls, folder: Path, halves: Sequence[Half], *, again: bool) -> _Plan:
+    def of(cls, ranking: Ranking, folder: Path, halves: Sequence[Half], *, again: bool) -> _Plan:
         """By the table and the missions in the study's folder."""
-        path = folder / POSITIONS_FILE
+        path = folder / ranking.file
         known: list[Judged] = list(read_positions(path)) if path.exists() else []
         ranked: dict[_Place, list[Judged]] = {}
         for row in known:
             ranked.setdefault((row.system, row.treatment, row.seed), []).append(row)
         tasks = []
         for mission, half in places(folder, halves):
-            own = [row for row in ranked.get(_place(mission), []) if row.method in METHODS]
+            own = [row for row in ranked.get(_place(mission), []) if row.method in ranking.methods]
             ranked[_place(mission)] = own
-            task = _task(folder, mission, half, [] if again else own)
+            task = _task(ranking, folder, mission, half, [] if again else own)
             if task.digests:
                 tasks.append(task)
         return cls(ranked, tasks, len(known) - sum(map(len, ranked.values())))
@@ -145,13 +193,16 @@ class _Plan:
         ]
 
 
-def _task(folder: Path, mission: Path, half: Half, rows: Sequence[Judged]) -> _Task:
+def _task(
+    ranking: Ranking, folder: Path, mission: Path, half: Half, rows: Sequence[Judged]
+) -> _Task:
     """What is not among the rows about a mission."""
-    inputs = mission_digest(folder, mission, half)
-    wanted = {name: verdict_digest(inputs, method_digest(of)) for name, of in METHODS.items()}
+    inputs = ranking.inputs(folder, mission, half)
+    known = ranking.methods.items()
+    wanted = {name: verdict_digest(inputs, method_digest(of)) for name, of in known}
     there = {row.method for row in rows if row.digest == wanted[row.method]}
     missing = {name: digest for name, digest in wanted.items() if name not in there}
-    return _Task(folder, mission, half, missing)
+    return _Task(ranking, folder, mission, half, missing)
 
 
 def _ranked(tasks: Sequence[_Task], jobs: int) -> Generator[tuple[_Task, list[Judged] | TpcError]]:
@@ -176,12 +227,13 @@ def _ranked(tasks: Sequence[_Task], jobs: int) -> Generator[tuple[_Task, list[Ju
 
 
 def _rank(task: _Task) -> list[Judged] | TpcError:
-    methods = {name: METHODS[name] for name in task.digests}
+    methods = {name: task.ranking.methods[name] for name in task.digests}
     try:
         mission = load_mission(task.out, task.mission, task.half)
+        rows = list(task.ranking.judge(mission, task.mission, methods))
     except TpcError as error:
         return error
-    return [replace(row, digest=task.digests[row.method]) for row in judge(mission, methods)]
+    return [replace(row, digest=task.digests[row.method]) for row in rows]
 
 
 def _end_with_parent() -> None:

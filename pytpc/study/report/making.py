@@ -28,6 +28,7 @@ from pytpc.study.report.headline import Headline, headlines
 from pytpc.study.report.judged import HELD_BACK, JUDGED_FILE, load_judgings, told_judgings
 from pytpc.study.report.judging import rank_missions
 from pytpc.study.report.original import Original
+from pytpc.study.report.other_people import others_table, parts_with_others
 from pytpc.study.report.page import BESIDE, IMAGES, Contents, page
 from pytpc.study.report.parts import Part, parts_of
 from pytpc.study.report.positions import Position, read_positions
@@ -48,6 +49,7 @@ from pytpc.study.report.repairs import (
     repairs_table,
     tries_table,
 )
+from pytpc.study.report.sensitivity import SENSITIVITY_FILE, is_up_to_date
 from pytpc.study.report.systems import rounds_of, systems_table, treatments_table
 from pytpc.study.suggestion_chains import CHAINS_FILE, Chain, load_chains
 from pytpc.study.suggestions import HEADLINE_FILE
@@ -128,6 +130,7 @@ def make_report(
         missions=sum(len(system.flights) for system in study.systems),
         halves=halves,
         parts=results.parts,
+        others=parts_with_others(results.others, results.parts),
         tables=tables,
         drawings=drawn,
         headlines=_headlines(results),
@@ -164,18 +167,20 @@ class _Results:
     """What is shown of the results: that of ``parts``, with the missions ``flights``.
 
     ``judged`` says how often the half that is held back was judged; empty if it is not shown.
+    ``others`` are verdicts by other people's marks, of all halves; there may be none.
     """
 
     flights: Sequence[Flight]
     parts: Sequence[Part]
     positions: Sequence[Position]
+    others: Sequence[Position]
     repairs: Sequence[Repair]
     chains: Sequence[Chain]
     judged: str
 
 
 def _read_results(
-    folder: Path, study: Study, halves: Sequence[str], troubles: list[str]
+    folder: Path, study: Study, halves: Sequence[Half], troubles: list[str]
 ) -> _Results:
     """What there is in the study's folder; a sentence among ``troubles`` for what is not."""
     ranked = _results(folder / POSITIONS_FILE, read_positions, troubles, "ranked")
@@ -190,6 +195,7 @@ def _read_results(
         flights=flights,
         parts=parts_of(halves, ((one.half, one.treatment.round) for one in flights)),
         positions=[row for row in ranked if row.half in halves],
+        others=_others(folder, halves, troubles),
         repairs=repairs,
         chains=_results(folder / CHAINS_FILE, load_chains, troubles, "asked for suggestions"),
         judged=_judged(folder, troubles) if HELD_BACK in halves else "",
@@ -241,6 +247,7 @@ def _tables(
         *(main_table(positions, part) for part in parts),
         *(against_table(positions, part) for part in parts),
         *(users_table(positions, part) for part in parts),
+        *(others_table(results.others, p) for p in parts_with_others(results.others, parts)),
         *(positions_table(positions, labels) for labels in LABELS),
         *(
             reliability_table(calibration(positions, half, method), half, method)
@@ -280,6 +287,22 @@ def _results(
     except TpcError as error:
         troubles.append(f"{path.name} is left out: {error.message}.")
         return []
+
+
+def _others(folder: Path, halves: Sequence[Half], troubles: list[str]) -> list[Position]:
+    """By other people's marks; without them the page is whole."""
+    if not (folder / SENSITIVITY_FILE).exists():
+        return []
+    rows = _results(folder / SENSITIVITY_FILE, read_positions, troubles, "ranked by others")
+    own = {row.half for row in rows}
+    try:
+        current = is_up_to_date(folder, [half for half in halves if half in own])
+    except InputError:
+        # What cannot be read is said already.
+        return rows
+    if not current:
+        troubles.append("Rankings by other people's marks are out of date: `study sensitivity`.")
+    return rows
 
 
 def _text(path: Path) -> str:

@@ -31,7 +31,8 @@ _GAPS = re.compile(r"\n{3,}")
 
 @dataclass(frozen=True, eq=False)
 class Contents:
-    """All that is on the page: ``tables`` by label; ``halves`` and ``parts`` are what is shown.
+    """All that is on the page: ``tables`` by label; ``halves`` and ``parts`` are what is shown,
+    ``others`` the parts that were ranked by other people's marks, too.
     ``rounds`` are counts of treatments with a changed parameter, see `rounds_of`.
 
     ``judged`` is how often the half that is held back was judged, empty where that is not known.
@@ -44,6 +45,7 @@ class Contents:
     missions: int
     halves: Sequence[str]
     parts: Sequence[Part]
+    others: Sequence[Part]
     tables: Mapping[str, Table]
     drawings: Sequence[Drawing]
     headlines: Sequence[Headline]
