@@ -45,10 +45,10 @@ def advise_blamed(
     All marks count, without the types that were said: most people confuse them (thesis, table
     6.13), and the value depends on the type more than on all else. The type is what the log says
     for this parameter (`Remedy.kind`). ``declared`` is what is declared of
-    parameters, ``reference`` a mission that went right, ``changes`` what was changed since. The
-    value of before a change, or of the reference, comes before what the log says: with it the robot
-    went right. ``sources`` are the known values that may be taken, ``flown`` values
-    of the one suspect that did not help.
+    parameters, ``reference`` a mission that went right, ``changes`` what was changed since, newest
+    last. The value of before a change, or of the reference, comes before what the log says: with it
+    the robot went right; of several changes of one parameter that is the oldest. ``sources`` are
+    the known values that may be taken, ``flown`` values of the one suspect that did not help.
     """
     found = []
     for accused in blame.suspects[:top]:

@@ -112,8 +112,8 @@ def test_the_groups(study_text):
 
 
 def test_confidence(study_text, made_study):
-    # Held back, confused marks: 0.1 and 0.2 of two treatments, both wrong, which is 0.15 in the
-    # mean, and 0.1 or 0.2 where one alone is drawn. Of the other half there are only typed ones.
+    # Held back, confused marks: 0.1 and 0.2 of two treatments, both wrong: 0.15 in the mean, 0.1 or
+    # 0.2 where one alone is drawn. Of the other half there are only typed ones.
     tables = made_study.numbers["tables"]
     found = {
         half: [

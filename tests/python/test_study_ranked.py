@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 from collections import Counter
 from dataclasses import asdict
+from datetime import datetime, timedelta
 from multiprocessing import active_children
 from pathlib import Path
 
@@ -19,6 +20,7 @@ from pytpc.study.case import Verdict
 from pytpc.study.judge import POSITIONS_FILE, judge
 from pytpc.study.methods import METHODS
 from pytpc.study.report import judging
+from pytpc.study.report.judged import JUDGED_FILE, load_judgings, told_judgings
 from pytpc.study.report.judging import rank_missions
 from pytpc.study.report.making import make_report
 from pytpc.study.report.positions import Position, read_positions
@@ -217,6 +219,48 @@ def test_what_another_one_has_ranked_meanwhile_is_kept(own, asked, monkeypatch):
     rank_missions(own, ["tuning"])
     assert asked == []
     assert contents(own) == before
+
+
+# Four missions are held back; judged once, again by the same code, and by other code. The tuning
+# half is not counted, nor is a page for which there was nothing to rank.
+def test_each_judging_of_what_is_held_back_is_written_down(own, tmp_path, monkeypatch):
+    rank_missions(own, ["tuning"], again=True)
+    assert load_judgings(own) == []
+    rank_missions(own, ["held-back"])
+    rank_missions(own, ["held-back"])
+    rank_missions(own, ["held-back", "tuning"], again=True)
+    monkeypatch.setattr(judging, "method_digest", lambda of: f"new {method_digest(of)}")
+    rank_missions(own, ["held-back"])
+    found = load_judgings(own)
+    assert [one.missions for one in found] == [4, 4, 4]
+    assert found[0].digest == found[1].digest != found[2].digest
+    times = [datetime.fromisoformat(one.time) for one in found]
+    assert times == sorted(times)
+    assert {time.utcoffset() for time in times} == {timedelta(0)}
+    text = make_report(own, tmp_path / "study.md", draw=False).page.read_text()
+    said = f"judged 3 times, from {found[0].time} to {found[2].time}, by 2 states of the methods."
+    assert said in text.replace("\\", "")
+    tuning = make_report(own, tmp_path / "study.md", ["tuning"], draw=False).page.read_text()
+    assert "was judged 3 times" not in tuning
+
+
+def test_an_interrupted_judging_counts(own):
+    def interrupt(done, total):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        rank_missions(own, ["held-back"], interrupt)
+    (found,) = load_judgings(own)
+    assert found.missions == 1
+    assert told_judgings([found]).endswith(
+        f"judged once, on {found.time}, by one state of the methods."
+    )
+
+
+def test_judgings_that_cannot_be_read_are_said(own, tmp_path):
+    (own / JUDGED_FILE).write_text('[{"time": 1}]')
+    made = make_report(own, tmp_path / "study.md", draw=False)
+    assert any(one.startswith("judged.json is left out: not about") for one in made.troubles)
 
 
 @pytest.fixture

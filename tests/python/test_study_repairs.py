@@ -34,6 +34,23 @@ def test_suggestions(study_text):
     assert "The headline is the variant `lasting` with one try" in every
 
 
+# Of type2_high, which is of type II, the first error of the second seed is of type I, that of the
+# first one is not; one that came later says nothing. There the error was not gone: 0 of 1.
+def test_where_the_first_error_is_another_one_it_is_told_apart(own_study, tmp_path):
+    other = {"kind": "I", "start": 12.0, "end": 12.0, "reason": "it jumps"}
+    right = {"kind": "II", "start": 11.0, "end": 20.0, "reason": "it stands"}
+    for seed, causes in ((1, [other, right]), (2, [other])):
+        path = own_study / f"missions/alpha/type2_high/seed-{seed}/causes.json"
+        path.write_text(json.dumps(causes))
+    made = make_report(own_study, tmp_path / "study.md", draw=False)
+    rows = [row for row in made.numbers["tables"]["repairs"]["rows"] if row["part"] == "held-back"]
+    assert [(row["treatments of"], row["treatments"], row["error gone %"]) for row in rows] == [
+        ("all", 2, "25 [0, 50]"),
+        ("type II", 2, "25 [0, 50]"),
+        ("first error of another type", 1, "0 [0, 98]"),
+    ]
+
+
 # Of the two seeds of type2_high one is helped by the first try, the other by the second; its first
 # flight had a new error. The smallest change took the error away and made another one. The flight
 # after the first of type1_low is still to come: it counts for one try alone.

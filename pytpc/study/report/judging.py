@@ -8,7 +8,7 @@ from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import closing
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from multiprocessing import active_children, get_context, parent_process
 from pathlib import Path
 from threading import Thread
@@ -21,6 +21,7 @@ from pytpc.study.judge import POSITIONS_FILE, Judged, judge, save_positions
 from pytpc.study.methods import METHODS
 from pytpc.study.plan import Half
 from pytpc.study.report.folder import Progress
+from pytpc.study.report.judged import HELD_BACK, save_judging
 from pytpc.study.report.positions import read_positions
 from pytpc.study.resume import alone_with_results
 from pytpc.study.verdict_digest import method_digest, mission_digest, verdict_digest
@@ -90,6 +91,7 @@ def complete(
 
     A method ranks a mission again where it, or anything that it is given, is not as it was. What
     was ranked when this is interrupted is kept. The table is the same however many jobs there are.
+    Each time missions were judged that are held back, ``results/judged.json`` has a row more.
 
     Args:
         ranking: what the table has.
@@ -121,6 +123,7 @@ def complete(
                         on_progress(done, len(plan.tasks))
         finally:
             ranking.save(plan.rows(), folder)
+            plan.save_judging(folder)
     if errors:
         raise min(errors, key=str)
 
@@ -136,11 +139,15 @@ def is_complete(ranking: Ranking, folder: Path, halves: Sequence[Half]) -> bool:
 
 @dataclass
 class _Plan:
-    """What has been ranked, by mission, and what is to be ranked; ``gone`` rows are of no use."""
+    """What has been ranked, by mission, and what is to be ranked; ``gone`` rows are of no use.
+
+    ``judged`` are the tasks that are done whose missions are held back.
+    """
 
     ranked: dict[_Place, list[Judged]]
     tasks: list[_Task]
     gone: int
+    judged: list[_Task] = field(default_factory=list)
 
     @classmethod
     def of(cls, ranking: Ranking, folder: Path, halves: Sequence[Half], *, again: bool) -> _Plan:
@@ -169,6 +176,15 @@ class _Plan:
         place = _place(task.mission)
         old = [row for row in self.ranked[place] if row.method not in task.digests]
         self.ranked[place] = [*old, *found]
+        if task.half == HELD_BACK:
+            self.judged.append(task)
+
+    def save_judging(self, folder: Path) -> None:
+        """Have it known that missions which are held back were judged, if any were."""
+        if self.judged:
+            methods = {name for task in self.judged for name in task.digests}
+            made_by = [(name, method_digest(METHODS[name])) for name in methods]
+            save_judging(folder, made_by, len(self.judged))
 
     def rows(self) -> list[Judged]:
         """The whole table, sorted."""

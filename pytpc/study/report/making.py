@@ -25,6 +25,7 @@ from pytpc.study.report.confidence import (
 from pytpc.study.report.drawings import Advance, Drawing, draw_results, draw_systems
 from pytpc.study.report.folder import HALVES, Flight, Study, load_study, told
 from pytpc.study.report.headline import Headline, headlines
+from pytpc.study.report.judged import HELD_BACK, JUDGED_FILE, load_judgings, told_judgings
 from pytpc.study.report.judging import rank_missions
 from pytpc.study.report.original import Original
 from pytpc.study.report.other_people import others_table, parts_with_others
@@ -135,6 +136,7 @@ def make_report(
         headlines=_headlines(results),
         troubles=troubles,
         remarks=[remark for system in study.systems for remark in system.remarks],
+        judged=results.judged,
         tried=_text(beside / _NOT_HELPED_FILE),
         discussion=_text(beside / _DISCUSSION_FILE),
     )
@@ -164,6 +166,7 @@ def _write(contents: Contents, full: Mapping[str, Table], target: Path) -> Made:
 class _Results:
     """What is shown of the results: that of ``parts``, with the missions ``flights``.
 
+    ``judged`` says how often the half that is held back was judged; empty if it is not shown.
     ``others`` are verdicts by other people's marks, of all halves; there may be none.
     """
 
@@ -173,6 +176,7 @@ class _Results:
     others: Sequence[Position]
     repairs: Sequence[Repair]
     chains: Sequence[Chain]
+    judged: str
 
 
 def _read_results(
@@ -194,7 +198,16 @@ def _read_results(
         others=_others(folder, halves, troubles),
         repairs=repairs,
         chains=_results(folder / CHAINS_FILE, load_chains, troubles, "asked for suggestions"),
+        judged=_judged(folder, troubles) if HELD_BACK in halves else "",
     )
+
+
+def _judged(folder: Path, troubles: list[str]) -> str:
+    try:
+        return told_judgings(load_judgings(folder))
+    except InputError as error:
+        troubles.append(f"{JUDGED_FILE.name} is left out: {error.message}.")
+        return ""
 
 
 def _headlines(results: _Results) -> list[Headline]:

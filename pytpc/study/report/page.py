@@ -35,6 +35,7 @@ class Contents:
     ``others`` the parts that were ranked by other people's marks, too.
     ``rounds`` are counts of treatments with a changed parameter, see `rounds_of`.
 
+    ``judged`` is how often the half that is held back was judged, empty where that is not known.
     ``tried`` and ``discussion`` are Markdown that people wrote, empty where nobody did.
     """
 
@@ -50,6 +51,7 @@ class Contents:
     headlines: Sequence[Headline]
     troubles: Sequence[str]
     remarks: Sequence[str]
+    judged: str
     tried: str
     discussion: str
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -83,7 +83,7 @@ def gone(rows: Iterable[Repair], part: Part, *, clean: bool = False) -> Estimate
 
 
 def repairs_summary(rows: Sequence[Repair], parts: Sequence[Part]) -> Table:
-    """Shares by part and type of treatment."""
+    """Shares by part and type of treatment, and where the first error is not the treatment's."""
     columns = (
         Column("Part", 0),
         Column("Treatments", 0),
@@ -93,10 +93,15 @@ def repairs_summary(rows: Sequence[Repair], parts: Sequence[Part]) -> Table:
         Column("Verdict", 0),
     )
     lines: list[tuple[str, tuple[Cell, ...]]] = []
-    kinds = {"all": ("type1", "type2"), "type I": ("type1",), "type II": ("type2",)}
+    kinds: dict[str, Callable[[Flight], bool]] = {
+        "all": lambda _: True,
+        "type I": lambda flight: flight.treatment.type == "type1",
+        "type II": lambda flight: flight.treatment.type == "type2",
+        "first error of another type": lambda flight: flight.strayed,
+    }
     for part in parts:
-        for name, of in kinds.items():
-            own = [row for row in _of(rows, part) if row.flight.treatment.type in of]
+        for name, is_of in kinds.items():
+            own = [row for row in _of(rows, part) if is_of(row.flight)]
             went = _gone(own)
             if not went.treatments:
                 continue
