@@ -1,5 +1,7 @@
 """What the study found on the treatments that were held back, each with its target.
 
+Names that end with ``-second-round`` are of its treatments that nobody had ever seen judged.
+
 From the study's folder where there is one, else from the numbers of the page in docs/.
 """
 
@@ -16,6 +18,7 @@ from figures import figure
 
 from pytpc.study.judge import POSITIONS_FILE
 from pytpc.study.report.making import RESULTS_FILE, make_report
+from pytpc.study.report.parts import SECOND_ROUND
 
 TOPIC = "study"
 HALF = "held-back"
@@ -38,15 +41,10 @@ def main(words: Sequence[str] | None = None) -> None:
         print(f"# neither {args.out} nor {args.results} is there", flush=True)
         return
     for one in numbers["figures"]:
-        name, apart, _ = one["name"].partition(f"-{HALF}")
-        if apart:
+        if one["name"].endswith((f"-{HALF}", f"-{SECOND_ROUND.name}")):
+            name = one["name"].removesuffix(f"-{HALF}")
             figure(
-                TOPIC,
-                name,
-                one["value"],
-                unit=one["unit"],
-                target=one["target"],
-                hit=one["hit"],
+                TOPIC, name, one["value"], unit=one["unit"], target=one["target"], hit=one["hit"]
             )
 
 

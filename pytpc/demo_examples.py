@@ -125,8 +125,11 @@ WATER_SAMPLER = Example(
     reached_under=frozenset(
         {
             "type1_min_land_height",
+            "type1_waypoint_tolerance",
             "type2_hold_time",
+            "type2_max_climb_rate",
             "type2_max_sink_rate",
+            "type2_max_velocity",
             "type2_start_delay",
         }
     ),
@@ -147,6 +150,8 @@ NAVIGATION = Example(
     missed="the lamp was not lit at the goal",
     # With some treatments of type I the robot gets there, and touches something on the way.
     missed_under=frozenset({"type2", "fault"}),
+    # It gets there late.
+    reached_under=frozenset({"type2_retry_period", "type2_settle_time"}),
     shown=(
         "clean",
         "type1_goal_tolerance",

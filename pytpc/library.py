@@ -22,6 +22,7 @@ from pytpc.advice.blamed import advise_blamed
 from pytpc.advice.counterfactual import WhatIf
 from pytpc.advice.counterfactual import what_if as replay
 from pytpc.advice.declared import Declared, declared_in
+from pytpc.advice.joining import with_remedies
 from pytpc.changes import Change
 from pytpc.errors import InputError
 from pytpc.ingest import Recording
@@ -246,6 +247,9 @@ def suggest(
 ) -> Advices:
     """What to do with suspects at a mark, and what it would have changed in the recorded run.
 
+    Of each it has ``remedy``, the value to try by all marks that say the same (as `pytpc suggest`),
+    and ``suggestion``, the smallest change at this mark.
+
     Args:
         rankings: what ``rank`` gave.
         mark: which of them, counted from 1.
@@ -258,19 +262,15 @@ def suggest(
     """
     if not 1 <= mark <= len(rankings):
         raise IndexError(f"mark {mark} of {len(rankings)}")
-    ranking = rankings[mark - 1]
-    static = rankings.static_info
+    recording, static, window_s = rankings.recording, rankings.static_info, rankings.window_s
     if declared is None:
         declared = _declared(rankings)
-    found = advise(
-        rankings.recording,
-        static,
-        ranking,
-        top=top,
-        declared=declared,
-        window_s=rankings.window_s,
-    )
-    return Advices(tuple(found), ranking)
+    lists = [
+        advise(recording, static, ranking, top=top, declared=declared, window_s=window_s)
+        for ranking in rankings
+    ]
+    found = with_remedies(recording, static, list(rankings), lists, window_s=window_s)
+    return Advices(tuple(found[mark - 1]), rankings[mark - 1])
 
 
 def what_if(

@@ -19,7 +19,8 @@ from pytpc.words import exact, percent, plain, show
 class Advices(Sequence[Advice]):
     """What to do with the suspects at one mark, in their order.
 
-    A sequence of `pytpc.advice.advise.Advice`: suspect, suggestion, what it would have changed.
+    A sequence of `pytpc.advice.advise.Advice`: suspect, value to try, smallest change, and what
+    they would have changed.
     """
 
     advices: tuple[Advice, ...]
@@ -47,18 +48,21 @@ class Advices(Sequence[Advice]):
         """A row for each suspect."""
         rows = []
         for advice in self.advices:
-            suggestion = advice.suggestion
-            what = f"{suggestion.direction} to {exact(suggestion.value)}"
+            least, remedy = advice.suggestion, advice.remedy
+            told = least if remedy is None or remedy.value is None else remedy
+            then = advice.what_if if told is least else advice.tried
+            what = f"{told.direction} to {exact(told.value)}"
             rows.append(
                 (
                     f"{advice.suspect.position}{'=' if advice.suspect.tied else ''}",
                     advice.suspect.parameter,
-                    show(suggestion.current),
-                    what if suggestion.direction else f"none: {suggestion.reason}",
-                    advice.what_if.text if advice.what_if else "",
+                    show(told.current),
+                    what if told.direction else f"none: {told.reason}",
+                    then.text if then else "",
+                    f"{least.direction} to {exact(least.value)}" if least.direction else "none",
                 )
             )
-        headings = ("#", "parameter", "value", "suggestion", "in the recorded run")
+        headings = ("#", "parameter", "value", "to try", "in the recorded run", "smallest change")
         return Table(headings, tuple(rows), frozenset({0, 2}))
 
     def __str__(self) -> str:

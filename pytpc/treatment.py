@@ -22,7 +22,7 @@ OVERLAY_FILE = "params.yaml"
 TreatmentType = Literal["clean", "type1", "type2", "fault"]
 _MARK_TYPES: Mapping[str, MarkType] = {"type1": "I", "type2": "II"}
 _FIELDS = ("name", "type", "parameter", "node", "old", "new", "launch", "effect")
-_OPTIONAL = "tipping"
+_TIPPING, _ROUND = "tipping", "round"
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +34,7 @@ class Treatment:
     ``old`` and ``new`` its values; all None where no parameter is changed. ``launch`` are arguments
     for the launch file, ``overlay`` is the file with the parameters, ``effect`` a sentence.
     ``tipping`` is the value at which the behaviour tips, None where nobody looked for it.
+    ``round`` counts the rounds of the study: in which it was added.
     """
 
     name: str
@@ -46,6 +47,7 @@ class Treatment:
     effect: str
     overlay: Path
     tipping: float | None = None
+    round: int = 1
 
     @property
     def mark_type(self) -> MarkType | None:
@@ -93,9 +95,11 @@ def save_treatment(treatment: Treatment, mission: Path) -> None:
 
 
 def _treatment(document: object, overlay: Path) -> Treatment:
-    if not isinstance(document, dict) or sorted({*document} - {_OPTIONAL}) != sorted(_FIELDS):
+    optional = {_TIPPING, _ROUND}
+    if not isinstance(document, dict) or sorted({*document} - optional) != sorted(_FIELDS):
         fields = ", ".join(_FIELDS)
-        raise ValueError(f"it has to have exactly the fields {fields}, and may have {_OPTIONAL}")
+        may = " and ".join(sorted(optional))
+        raise ValueError(f"it has to have exactly the fields {fields}, and may have {may}")
     kind = document["type"]
     if kind not in get_args(TreatmentType):
         raise ValueError(f"type is {kind!r}, not one of {', '.join(get_args(TreatmentType))}")
@@ -109,8 +113,11 @@ def _treatment(document: object, overlay: Path) -> Treatment:
     for field in ("old", "new"):
         if _is_number(document[field]) != changed:
             raise ValueError(f"{field} is not {'a number' if changed else 'null'}")
-    if document.get(_OPTIONAL) is not None and not (changed and _is_number(document[_OPTIONAL])):
-        raise ValueError(f"{_OPTIONAL} is not {'a number or ' if changed else ''}null")
+    if document.get(_TIPPING) is not None and not (changed and _is_number(document[_TIPPING])):
+        raise ValueError(f"{_TIPPING} is not {'a number or ' if changed else ''}null")
+    number = document.get(_ROUND, 1)
+    if not isinstance(number, int) or isinstance(number, bool) or number < 1:
+        raise ValueError(f"{_ROUND} is not a whole number from 1")
     launch = document["launch"]
     if not isinstance(launch, dict) or not all(isinstance(v, str) for v in launch.values()):
         raise ValueError("launch is not an object of texts")

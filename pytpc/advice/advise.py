@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from pytpc.advice.counterfactual import WhatIf, what_if
 from pytpc.advice.declared import Declared, declared_for
+from pytpc.advice.remedy import Remedy
 from pytpc.advice.suggest import Suggestion, suggest
 from pytpc.ingest.recording import Recording
 from pytpc.marks import Mark
@@ -17,12 +18,19 @@ from pytpc.static_info import StaticInfo
 
 @dataclass(frozen=True, slots=True)
 class Advice:
-    """A suspect with what to do: ``what_if`` is None where nothing is suggested."""
+    """A suspect with what to do.
+
+    ``suggestion`` is SPEC 8's smallest change, and ``what_if`` what it would have changed, None
+    where nothing is suggested. ``remedy`` is the value to try, and ``tried`` what that would have
+    changed; `pytpc.advice.joining.with_remedies` fills them, for they need the other marks.
+    """
 
     suspect: Suspect
     suggestion: Suggestion
     what_if: WhatIf | None
     declared: Declared | None
+    remedy: Remedy | None = None
+    tried: WhatIf | None = None
 
 
 def advise(

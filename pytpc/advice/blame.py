@@ -15,6 +15,7 @@ from pytpc.advice.diagnosing import Changed, diagnose_beside
 from pytpc.events import Events
 from pytpc.ingest.recording import Recording
 from pytpc.marks import Mark, MarkType
+from pytpc.parameters import same_parameter
 from pytpc.scoring.diagnosis import Decisive, Diagnosis
 from pytpc.scoring.evidence import Evaluation, Log
 from pytpc.scoring.ranking import Types, outside
@@ -91,6 +92,12 @@ class Blame:
         return (
             f"not sure: {name} is likeliest ({sure}); none of the parameters: {percent(self.none)}"
         )
+
+    def only(self, parameter: str) -> Blame:
+        """The same with the one suspect, at its position; with none where it is not suspected."""
+        exact = [one for one in self.suspects if one.parameter == parameter]
+        same = [one for one in self.suspects if same_parameter(parameter, one.parameter)]
+        return replace(self, suspects=tuple(exact or same))
 
     @property
     def title(self) -> str:

@@ -3,22 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 from pytpc.advice.blame import Accused, Blame
 from pytpc.advice.counterfactual import WhatIf, what_if
 from pytpc.advice.declared import Declared, declared_for
 from pytpc.advice.diagnosing import Changed
-from pytpc.advice.known import NAMES, value_in
-from pytpc.advice.remedy import Basis, Remedy, remedy
-from pytpc.advice.suggest import Direction
+from pytpc.advice.known import Source
+from pytpc.advice.remedy import EVERY_SOURCE, Remedy, remedy, restored
 from pytpc.ingest.recording import Recording
-from pytpc.marks import Mark
 from pytpc.parameters import same_parameter
 from pytpc.scoring.scores import WINDOW_S
 from pytpc.static_info import StaticInfo
-from pytpc.words import Number, exact, show
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,34 +36,40 @@ def advise_blamed(
     declared: Sequence[Declared] = (),
     reference: Recording | None = None,
     changes: Sequence[Changed] = (),
+    sources: Collection[Source] = EVERY_SOURCE,
+    flown: Sequence[float] = (),
     window_s: float = WINDOW_S,
 ) -> list[BlamedAdvice]:
     """The first ``top`` of them with the value to try, as `pytpc.advice.remedy.remedy` has it.
 
-    Of the marks those count that can be of the kind of error that the parameter is suspected of;
-    where none can, the observers were wrong, and all count. ``declared`` is what is declared of
-    parameters, ``reference`` a mission that went right, ``changes`` what was changed since. The
-    value of before a change, or of the reference, comes before what the log says: with it the robot
-    went right.
+    All marks count, without the types that were said: most people confuse them (thesis, table
+    6.13), and the value depends on the type more than on all else. The type is what the log says
+    for this parameter (`Remedy.kind`). ``declared`` is what is declared of
+    parameters, ``reference`` a mission that went right, ``changes`` what was changed since, newest
+    last. The value of before a change, or of the reference, comes before what the log says: with it
+    the robot went right; of several changes of one parameter that is the oldest. ``sources`` are
+    the known values that may be taken, ``flown`` values of the one suspect that did not help.
     """
     found = []
     for accused in blame.suspects[:top]:
-        name, kind = accused.parameter, accused.type
-        marks = _marks_for(blame.marks, accused)
+        name = accused.parameter
         about = declared_for(declared, accused, static_info.source_path(accused.key))
         value = remedy(
             recording,
             static_info,
             name,
-            marks,
+            [replace(mark, type=None) for mark in blame.marks],
+            sources=sources,
             reference=reference,
             declared=about,
+            flown=flown,
             window_s=window_s,
         )
-        flown = None if reference is None else value_in(reference, static_info, name)
-        value = _as_before(value, changes, flown)
+        value = _as_before(value, changes)
         then = None
         if value.value is not None:
+            kind = value.kind or accused.type
+            marks = [replace(mark, type=kind) for mark in blame.marks]
             then = what_if(
                 recording, static_info, name, value.value, kind=kind, marks=marks, window_s=window_s
             )
@@ -74,28 +77,9 @@ def advise_blamed(
     return found
 
 
-def _as_before(found: Remedy, changes: Sequence[Changed], flown: float | None) -> Remedy:
-    """The remedy with the value that the parameter had when it went right, if that is known."""
-    current = found.current
-    values = [
-        old
-        for name, old, new in changes
-        if same_parameter(name, found.parameter) and math.isfinite(old) and old != new
-    ]
-    basis: Basis = "before"
-    words = "the value before it was changed"
-    if not values:
-        values = [] if flown is None else [flown]
-        basis, words = "reference", NAMES["reference"]
-    if not values or current is None or values[0] == current or found.direction == "switch":
-        return found
-    kept = isinstance(current, int) and values[0].is_integer()
-    value: Number = int(values[0]) if kept else values[0]
-    direction: Direction = "raise" if value > current else "lower"
-    text = f"{direction} {found.parameter} from {show(current)} to {exact(value)} ({words})"
-    return replace(found, value=value, direction=direction, basis=basis, text=text, reason=None)
-
-
-def _marks_for(marks: Sequence[Mark], accused: Accused) -> list[Mark]:
-    fitting = [mark for mark in marks if mark.type in {accused.type, None}]
-    return [replace(mark, type=accused.type) for mark in fitting or marks]
+def _as_before(found: Remedy, changes: Sequence[Changed]) -> Remedy:
+    """The remedy with the value that the parameter had before it was changed, if that is known."""
+    for name, old, new in changes:
+        if same_parameter(name, found.parameter) and math.isfinite(old) and old != new:
+            return restored(found, old, "before", "the value before it was changed")
+    return found

@@ -30,9 +30,10 @@ def diagnose_beside(
         recording: the mission with its marks, of any types or none.
         static_info: what the analysis found.
         reference: a clean run, whose thresholds are looked at; None where there is none.
-        changes: what was changed since the robot went right, empty where that is not known. Their
-            order says nothing. Beside a reference, what either of them says is as it was is
-            unlikely; the values of before are taken from the changes first.
+        changes: what was changed since the robot went right, newest last, empty where that is not
+            known. Their order says nothing; of several changes of one parameter the oldest has the
+            value with which the robot went right. Beside a reference, what either of them says is
+            as it was is unlikely; the values of before are taken from the changes first.
     """
     tpcs = Tpcs.of(static_info)
     priors, others = [], {}
@@ -42,7 +43,9 @@ def diagnose_beside(
         others.update(of_clean_run(tpcs, events, clean))
     if changes:
         priors.append(of_changes(tpcs.names, changes))
-        others.update(before_changes(static_info, [(name, old) for name, old, _ in changes]))
+        # The last of them counts there.
+        oldest_last = [(name, old) for name, old, _ in reversed(changes)]
+        others.update(before_changes(static_info, oldest_last))
     if not priors:
         return diagnose(recording, static_info)
     return diagnose_replayed(recording, static_info, np.min(priors, axis=0), others)

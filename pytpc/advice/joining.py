@@ -85,12 +85,7 @@ def join_advice(
         advice = advise(
             recording, static_info, ranking, top=top, declared=declared, window_s=window_s
         )
-        first = advice[0] if advice else None
-        same = (
-            ranking.mark.type,
-            first and (first.suspect.parameter, first.suspect.type, first.suggestion.direction),
-        )
-        group = groups.setdefault(same, _Open())
+        group = groups.setdefault(_says(ranking.mark, advice), _Open())
         group.marks.append(ranking.mark)
         group.lists.append(advice)
         if ranking.reason and ranking.reason not in group.reasons:
@@ -100,16 +95,21 @@ def join_advice(
             tuple(group.marks),
             group.marks[0].type,
             tuple(
-                _with_remedy(
-                    recording,
-                    static_info,
-                    group.marks,
-                    advice,
-                    reference=reference,
-                    flown=flown,
-                    window_s=window_s,
+                JoinedAdvice(
+                    one.advice,
+                    one.named,
+                    one.count,
+                    *_tried(
+                        recording,
+                        static_info,
+                        group.marks,
+                        one.advice,
+                        reference=reference,
+                        flown=flown,
+                        window_s=window_s,
+                    ),
                 )
-                for advice in _joined(group.lists, top)
+                for one in _joined(group.lists, top)
             ),
             tuple(group.reasons),
         )
@@ -117,18 +117,66 @@ def join_advice(
     ]
 
 
-def _with_remedy(
+def with_remedies(
+    recording: Recording,
+    static_info: StaticInfo,
+    rankings: Sequence[MarkRanking],
+    lists: Sequence[Sequence[Advice]],
+    *,
+    window_s: float = WINDOW_S,
+) -> list[list[Advice]]:
+    """The advice for each mark with the values to try, the same as ``join_advice`` has.
+
+    They are from all the marks that say the same.
+
+    Args:
+        recording: the mission.
+        static_info: what the analysis found.
+        rankings: of its marks.
+        lists: for each the advice for its first suspects.
+        window_s: the window of type II in seconds.
+    """
+    marks: dict[tuple[object, ...], list[Mark]] = {}
+    for ranking, advice in zip(rankings, lists, strict=True):
+        marks.setdefault(_says(ranking.mark, advice), []).append(ranking.mark)
+    known: dict[tuple[object, ...], tuple[Remedy, WhatIf | None]] = {}
+    found = []
+    for ranking, advice in zip(rankings, lists, strict=True):
+        says, filled = _says(ranking.mark, advice), []
+        for one in advice:
+            place = (says, one.suspect.parameter, one.suspect.type)
+            if place not in known:
+                known[place] = _tried(
+                    recording, static_info, marks[says], one,
+                    reference=None, flown=(), window_s=window_s,
+                )  # fmt: skip
+            filled.append(replace(one, remedy=known[place][0], tried=known[place][1]))
+        found.append(filled)
+    return found
+
+
+def _says(mark: Mark, advice: Sequence[Advice]) -> tuple[object, ...]:
+    """What marks say that are joined: the type, the first suspect and what to do with it."""
+    if not advice:
+        return (mark.type,)
+    first = advice[0]
+    return (
+        mark.type, first.suspect.parameter, first.suspect.type, first.suggestion.direction,
+    )  # fmt: skip
+
+
+def _tried(
     recording: Recording,
     static_info: StaticInfo,
     marks: Sequence[Mark],
-    agreed: _Agreed,
+    advice: Advice,
     *,
     reference: Recording | None,
     flown: Sequence[float],
     window_s: float,
-) -> JoinedAdvice:
-    """What was agreed on with the value to try, by the type that the parameter is suspected for."""
-    advice, kind = agreed.advice, agreed.advice.suspect.type
+) -> tuple[Remedy, WhatIf | None]:
+    """The value to try, by the type that the parameter is suspected for."""
+    kind = advice.suspect.type
     typed = [replace(mark, type=kind) for mark in marks]
     name = advice.suspect.parameter
     found = remedy(
@@ -146,7 +194,7 @@ def _with_remedy(
         then = what_if(
             recording, static_info, name, found.value, kind=kind, marks=typed, window_s=window_s
         )
-    return JoinedAdvice(advice, agreed.named, agreed.count, found, then)
+    return found, then
 
 
 def _joined(lists: Sequence[Sequence[Advice]], top: int) -> list[_Agreed]:

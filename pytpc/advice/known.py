@@ -7,12 +7,14 @@ from typing import Literal
 
 import numpy as np
 
-from pytpc.advice.case import Case
+from pytpc.advice.case import Case, case_of, shown_current
+from pytpc.advice.evidence import Evidence, NoneBecauseError
 from pytpc.advice.replay import tracks_of
-from pytpc.advice.units import NoUnitError, unit_of
+from pytpc.advice.units import NoUnitError
 from pytpc.errors import InputError
 from pytpc.ingest.recording import Recording
 from pytpc.static_info import Default, StaticInfo
+from pytpc.words import Number
 
 Source = Literal["reference", "default", "declared"]
 NAMES: dict[Source, str] = {
@@ -48,7 +50,7 @@ def known_values(
     found: list[Known] = []
     flown = None if reference is None else value_in(reference, static_info, parameter)
     if flown is not None:
-        found.append(Known("reference", flown))
+        found.append(Known("reference", float(flown)))
     declared = case.possible.declared
     defaults: list[tuple[Source, Default]] = [
         ("default", case.comparison.default),
@@ -60,22 +62,21 @@ def known_values(
     return found
 
 
-def value_in(recording: Recording, static_info: StaticInfo, parameter: str) -> float | None:
+def value_in(recording: Recording, static_info: StaticInfo, parameter: str) -> Number | None:
     """The value that a parameter last had in a mission; None where the log does not say."""
     try:
         _, tracks, _ = tracks_of(recording.events, recording.summaries, static_info, parameter)
     except InputError:
         return None
     for track in tracks:
-        seen = np.concatenate([track.kept.thresh[-1:], track.thresh[-1:]])
+        seen = np.concatenate([track.kept.thresh, track.thresh])
         seen = seen[np.isfinite(seen)]
         if not seen.size:
             continue
-        found = track.comparison
+        found, nothing = track.comparison, np.zeros(0)
+        evidence = Evidence(nothing, nothing, float(seen[-1]), seen, bool(len(track.kept)))
         try:
-            value = unit_of(found, static_info.unit_of(found.key), float(seen[-1])).current
-        except NoUnitError:
+            return shown_current(case_of(found, static_info.unit_of(found.key), evidence, None))
+        except (NoneBecauseError, NoUnitError):
             continue
-        if value is not None:
-            return value
     return None

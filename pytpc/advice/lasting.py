@@ -249,7 +249,8 @@ def _stays(
     ground: Ground = "peaks" if any(ended) else "growth"
     least = sign * float(values[change[first]])
     near = (int(marks[0]) - int(when[first])) / 1e9
-    return Lasting("I", base, sign * edge, least, up, ground, count, near)
+    # Of -0.0 it would be said "at most -0".
+    return Lasting("I", base, sign * edge + 0.0, least, up, ground, count, near)
 
 
 def _first_change(when: Int64s, marks: Int64s, window: int) -> int | None:

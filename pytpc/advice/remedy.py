@@ -3,9 +3,10 @@
 SPEC 8's suggestion is the smallest change; a counter reaches the next number, too, and noise the
 next bit. Here all marks of a mission are asked at once, and the evidence counts in this order:
 
-1. the direction is that of the log (`pytpc.advice.lasting`), never one that makes what the robot
-   stood by stronger;
-2. a value of a clean run that lies there: it was flown, and nothing went wrong;
+1. a value of a clean run, whichever way it is: it was flown, and nothing went wrong, while the way
+   that the log shows hangs on what people said of the type of the error;
+2. the direction of the log (`pytpc.advice.lasting`), never one that makes what the robot stood by
+   stronger;
 3. the default in the source, or a declared one, that lies in the lasting set; where the log cannot
    say how far is enough (values that grow until the program acts), anywhere beyond the smallest
    change: a guess by its author is better than one by nobody;
@@ -30,10 +31,10 @@ from pytpc.advice.choice import choose
 from pytpc.advice.declared import Declared
 from pytpc.advice.evidence import Evidence, NoneBecauseError
 from pytpc.advice.intervals import Interval, Intervals, holds, intersection, words
-from pytpc.advice.known import NAMES, Known, Source, known_values
+from pytpc.advice.known import NAMES, Known, Source, known_values, value_in
 from pytpc.advice.lasting import Lasting, lasting
 from pytpc.advice.replay import Track, tracks_of
-from pytpc.advice.suggest import Direction, Suggestion, suggest
+from pytpc.advice.suggest import Direction, Suggestion, suggest_for_most
 from pytpc.advice.thresholds import thresholds_for
 from pytpc.advice.units import NoUnitError
 from pytpc.columns import Floats
@@ -115,7 +116,7 @@ def remedy(
         parameter: its name in the source, or what `same_parameter` takes for it.
         marks: at least one, of any type or none.
         sources: which known values may be taken.
-        reference: a clean run of the same build.
+        reference: a clean run of the same build; its value is taken whatever the log says.
         declared: what is declared of the parameter.
         flown: values of it in earlier missions that did not help, without this one's.
         window_s: the window before a mark in seconds.
@@ -123,11 +124,49 @@ def remedy(
     Raises:
         InputError: there is no such parameter, or several.
     """
+    right = None if reference is None else value_in(reference, static_info, parameter)
+    found = _by_log(
+        recording,
+        static_info,
+        parameter,
+        marks,
+        sources=sources,
+        reference=reference,
+        declared=declared,
+        flown=flown,
+        window_s=window_s,
+    )
+    if right is None or right in flown or "reference" not in sources:
+        return found
+    if found.current is None:
+        found = replace(found, current=value_in(recording, static_info, parameter))
+    return restored(found, float(right), "reference", NAMES["reference"])
+
+
+def _by_log(
+    recording: Recording,
+    static_info: StaticInfo,
+    parameter: str,
+    marks: Sequence[Mark],
+    *,
+    sources: Collection[Source],
+    reference: Recording | None,
+    declared: Declared | None,
+    flown: Sequence[float],
+    window_s: float,
+) -> Remedy:
+    """The remedy in the direction that the log shows; the arguments are those of ``remedy``."""
     name, tracks, without = tracks_of(recording.events, recording.summaries, static_info, parameter)
     reason = "; ".join(without) or "none of its comparisons was evaluated"
     for kind, times_ns in _kinds(marks, tracks, window_s):
-        smallest = _smallest(
-            recording, static_info, tracks, kind, times_ns, declared=declared, window_s=window_s
+        smallest = suggest_for_most(
+            recording,
+            static_info,
+            [track.comparison for track in tracks],
+            times_ns,
+            kind,
+            declared=declared,
+            window_s=window_s,
         )
         wanted = []
         for track in tracks:
@@ -150,6 +189,30 @@ def remedy(
             return _as_smallest(name, kind, *smallest)
         reason = smallest[0].reason or reason
     return Remedy(name, None, None, None, None, reason, reason, None, None, None)
+
+
+def restored(found: Remedy, value: float, basis: Basis, words: str) -> Remedy:
+    """A remedy with the value that the parameter had when the robot went right, in its place.
+
+    It stays as it is where the present value is not known, or is that one. ``words`` say when that
+    was. Where the log would have the other direction the text says so: it is worked out from the
+    types of error that people named, and they confuse these.
+    """
+    current = found.current
+    if current is None or not math.isfinite(value) or value == current:
+        return found
+    number: Number = value
+    if isinstance(current, bool):
+        number = bool(value)
+    elif isinstance(current, int) and value.is_integer():
+        number = int(value)
+    direction: Direction = "raise" if number > current else "lower"
+    if isinstance(current, bool) or found.direction == "switch":
+        direction = "switch"
+    elif found.basis != "reference" and found.direction not in {None, direction}:
+        words += "; the log alone points the other way"
+    text = f"{direction} {found.parameter} from {show(current)} to {exact(number)} ({words})"
+    return replace(found, direction=direction, value=number, basis=basis, text=text, reason=None)
 
 
 def _kinds(
@@ -260,8 +323,8 @@ def _value(
     """The value inside of ``within`` that evidence is for, and which; None where there is none."""
     possible = case.possible
     for one in known:
-        is_sure = one.source == "reference" or found.ground == "growth"
-        if within.holds(one.value) and holds(least if is_sure else lasts, one.value):
+        anywhere = found.ground == "growth"
+        if within.holds(one.value) and holds(least if anywhere else lasts, one.value):
             return one.value, one.source
     chosen = choose(lasts, case.present, possible, up_first=found.up)
     if isinstance(chosen, str):
@@ -309,47 +372,6 @@ def _why(found: Lasting, basis: Basis, lasts: Intervals, least: Intervals, tries
 
 def _ordinal(tries: int) -> str:
     return ["a first", "a second", "a third"][tries] if tries <= 2 else "one more"
-
-
-def _smallest(
-    recording: Recording,
-    static_info: StaticInfo,
-    tracks: Sequence[Track],
-    kind: MarkType,
-    times_ns: Sequence[int],
-    *,
-    declared: Declared | None,
-    window_s: float,
-) -> tuple[Suggestion, str | None]:
-    """SPEC 8's suggestion that does at the most marks, and the comparison that it is by."""
-    found: list[tuple[Suggestion, str]] = []
-    for track in tracks:
-        key = track.comparison.key
-        for time_ns in times_ns:
-            found.append(
-                (
-                    suggest(
-                        recording.events,
-                        track.comparison,
-                        time_ns,
-                        kind,
-                        unit=static_info.unit_of(key),
-                        window_s=window_s,
-                        summaries=recording.summaries,
-                        declared=declared,
-                    ),
-                    key,
-                )
-            )
-    best, most = found[0], 0
-    for one in found:
-        value = one[0].value
-        if value is None:
-            continue
-        count = sum(holds(other.feasible, float(value)) for other, _ in found)
-        if count > most:
-            best, most = one, count
-    return best
 
 
 def _as_smallest(name: str, kind: MarkType, found: Suggestion, key: str | None) -> Remedy:

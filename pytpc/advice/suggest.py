@@ -11,6 +11,7 @@ that the parameter can take.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -32,10 +33,11 @@ from pytpc.advice.intervals import Interval, Intervals, gaps, holds, intersectio
 from pytpc.advice.thresholds import outcomes, thresholds_for, thresholds_for_one
 from pytpc.advice.units import NoUnitError
 from pytpc.events import Bools, Events, Floats
+from pytpc.ingest.recording import Recording
 from pytpc.marks import MarkType
 from pytpc.parameters import parameter_name
 from pytpc.scoring.scores import WINDOW_S
-from pytpc.static_info import Comparison, LinkUnit
+from pytpc.static_info import Comparison, LinkUnit, StaticInfo
 from pytpc.summaries import Summaries
 from pytpc.words import Number, exact, show
 
@@ -109,6 +111,55 @@ def suggest(
         reason = str(why)
         name = parameter_name(comparison)
         return Suggestion(name, current, None, None, None, False, reason, reason, feasible)
+
+
+def suggest_for_most(
+    recording: Recording,
+    static_info: StaticInfo,
+    comparisons: Sequence[Comparison],
+    times_ns: Sequence[int],
+    kind: MarkType,
+    *,
+    declared: Declared | None = None,
+    window_s: float = WINDOW_S,
+) -> tuple[Suggestion, str]:
+    """The suggestion that does at the most marks, and the key of the comparison that it is by.
+
+    Args:
+        recording: the mission.
+        static_info: what the analysis found.
+        comparisons: those of one parameter, at least one.
+        times_ns: of the marks, at least one.
+        kind: their type of error.
+        declared: what is declared of the parameter.
+        window_s: the window of type II in seconds.
+    """
+    found = [
+        (
+            suggest(
+                recording.events,
+                comparison,
+                time_ns,
+                kind,
+                unit=static_info.unit_of(comparison.key),
+                window_s=window_s,
+                summaries=recording.summaries,
+                declared=declared,
+            ),
+            comparison.key,
+        )
+        for comparison in comparisons
+        for time_ns in times_ns
+    ]
+    best, most = found[0], 0
+    for one in found:
+        value = one[0].value
+        if value is None:
+            continue
+        count = sum(holds(other.feasible, float(value)) for other, _ in found)
+        if count > most:
+            best, most = one, count
+    return best
 
 
 def _first_type(case: Case) -> Intervals:

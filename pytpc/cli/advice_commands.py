@@ -12,7 +12,9 @@ from rich.console import Group, RenderableType
 from rich.padding import Padding
 from rich.text import Text
 
-from pytpc.advice.as_json import group_json, what_if_json
+from pytpc.advice.as_json import blame_json, group_json, what_if_json
+from pytpc.advice.blame import Blame, blame
+from pytpc.advice.blamed import BlamedAdvice, advise_blamed
 from pytpc.advice.counterfactual import WhatIf, what_if
 from pytpc.advice.declared import Declared, declared_in
 from pytpc.advice.joining import JoinedAdvice, MarkGroup, join_advice
@@ -34,8 +36,8 @@ from pytpc.ingest import Recording
 from pytpc.marks import MARK_TYPES, MarkType
 from pytpc.parameters import parameter_name, same_parameter
 from pytpc.scoring.ranking import MarkRanking, Types, rank_marks
-from pytpc.static_info import StaticInfo
-from pytpc.words import Number, many, plain, show
+from pytpc.static_info import Comparison, StaticInfo
+from pytpc.words import Number, many, percent, plain, show
 
 _WHAT: dict[MarkType | None, str] = {
     "I": "type I, did what it should not",
@@ -86,9 +88,10 @@ def suggest_command(
     top: int,
     as_json: bool,
 ) -> None:
-    """Say what to do with the suspects at each mark of RECORDING, and what it would have changed.
+    """Say what to do with the suspects in RECORDING, and what it would have changed.
 
-    With PARAMETER it is about that one alone, wherever it stands in the ranking. A number below
+    First by all marks together, where that is not the same as at each mark; then at the marks. With
+    PARAMETER it is about that one alone, wherever it stands in the ranking. A number below
     zero is given as --value=-1.
     """
     if value_text is not None and parameter is None:
@@ -110,22 +113,31 @@ def suggest_command(
     rankings = rank_marks(found, static, types=types, window_s=window_s)
     if parameter is not None:
         rankings = _only(rankings, static, parameter)
-    clean = None if reference is None else recording_of(reference)
+    clean = None if reference is None else _clean(reference, static)
+    declared = _declared(static, recording)
     with progress("replaying the mission") as advance:
         advance(0, len(rankings))
+        together = blame(found, static, types=types, reference=clean, window_s=window_s)
+        asked = together if parameter is None else together.only(parameter)
+        first = advise_blamed(
+            asked, found, static, top=1, declared=declared, reference=clean, flown=flown,
+            window_s=window_s,
+        )  # fmt: skip
         groups = join_advice(
-            found, static, rankings, top=top, declared=_declared(static, recording),
+            found, static, rankings, top=top, declared=declared,
             reference=clean, flown=flown, window_s=window_s,
         )  # fmt: skip
     if as_json:
         document = {
             "mission": found.name,
+            "together": blame_json(together, first),
             "groups": [group_json(group, found.start_ns) for group in groups],
         }
         click.echo(json.dumps(document, indent=1, ensure_ascii=False))
         return
-    for group in groups:
-        console().print(_group(group, found, parameter), highlight=False)
+    parts = [_together(together, one, parameter) for one in first if not _is_said(one, groups)]
+    for part in [*parts, *(_group(group, found, parameter) for group in groups)]:
+        console().print(part, highlight=False)
 
 
 COMMANDS: list[click.Command] = [suggest_command]
@@ -152,6 +164,17 @@ def _number(text: str) -> Number:
         return int(text)
     except ValueError:
         return value
+
+
+def _clean(source: Path, static: StaticInfo) -> Recording:
+    """A mission that went right.
+
+    Raises:
+        InputError: it cannot be read, or is of another build.
+    """
+    found = recording_of(source)
+    check_reports(found, static, source)
+    return found
 
 
 def _declared(static: StaticInfo, source: Path) -> list[Declared]:
@@ -213,6 +236,32 @@ def _tell_caveats(answer: WhatIf) -> None:
         click.echo(plain(f"  note: {caveat}"))
 
 
+def _is_said(first: BlamedAdvice, groups: Sequence[MarkGroup]) -> bool:
+    """Whether what all marks say together is what each of them says."""
+    if len(groups) != 1 or not groups[0].suspects:
+        return False
+    joined = groups[0].suspects[0]
+    same = joined.advice.suspect.parameter == first.accused.parameter
+    return same and joined.remedy.value == first.remedy.value
+
+
+def _together(found: Blame, first: BlamedAdvice, parameter: str | None) -> RenderableType:
+    """What all marks of a mission say of its first suspect, or of the one that is asked about."""
+    accused, tried = first.accused, first.remedy
+    said = f"{percent(accused.probability)} that it is {accused.parameter}"
+    verdict = found.text if parameter is None else said
+    line = Text(f"{accused.position}  ")
+    if tried.value is None:
+        line.append(plain(f"{tried.parameter}: {tried.reason}"), style="dim")
+    else:
+        line.append(plain(tried.text), style="bold")
+    parts = [Text(plain(verdict)), line, _place(accused.comparison)]
+    if first.what_if is not None:
+        parts.append(Text(plain(f"   {first.what_if.text}")))
+    title = Text(found.title, style="bold")
+    return Padding(Group(title, *map(_indented, parts)), (0, 0, 1, 0), expand=False)
+
+
 def _group(group: MarkGroup, recording: Recording, parameter: str | None) -> RenderableType:
     seconds = [f"{(mark.time_ns - recording.start_ns) / 1e9:.1f}" for mark in group.marks]
     title = f"{many(len(seconds), 'mark').capitalize()} at {_list(seconds)} s: {_WHAT[group.type]}"
@@ -246,9 +295,7 @@ def _suspect(number: int, joined: JoinedAdvice, marks: int) -> RenderableType:
     else:
         line.append(plain(tried.text), style="bold" if number == 1 else "")
     lines = [line]
-    place = plain(f"{found.file}:{found.lineno}")
-    code = f"  {plain(found.source_code.strip())}" if found.source_code else ""
-    lines.append(Text(f"   {place}{code}", style="dim"))
+    lines.append(_place(found))
     if joined.what_if is not None:
         lines.append(Text(plain(f"   {joined.what_if.text}")))
     if smallest.value is not None and smallest.value != tried.value:
@@ -260,3 +307,9 @@ def _suspect(number: int, joined: JoinedAdvice, marks: int) -> RenderableType:
     if advice.declared is not None:
         lines.append(Text(plain(f"   declared at {advice.declared.place}"), style="dim"))
     return Group(*lines)
+
+
+def _place(found: Comparison) -> Text:
+    place = plain(f"{found.file}:{found.lineno}")
+    code = f"  {plain(found.source_code.strip())}" if found.source_code else ""
+    return Text(f"   {place}{code}", style="dim")

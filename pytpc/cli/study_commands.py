@@ -13,6 +13,7 @@ from pytpc.cli.console import console
 from pytpc.cli.options import JSON, PATH, Command
 from pytpc.cli.study_progress import StudyProgress
 from pytpc.cli.study_report import report_command
+from pytpc.cli.study_sensitivity import sensitivity_command
 from pytpc.cli.study_suggestions import suggestions_command
 from pytpc.demo_examples import EXAMPLES
 from pytpc.errors import RunError
@@ -24,6 +25,7 @@ from pytpc.study.suggested import (
     TRIED_FILE,
     WANTED_FILE,
     load_wanted,
+    not_to_be_set,
     save_tried,
     suggested_flight,
 )
@@ -103,7 +105,7 @@ def run_command(
         click.echo(dump_json([_run_json(result) for result in results]).decode(), nl=False)
     else:
         _show(results, out)
-    _fail_where_any(results)
+    _fail_where_any([result.error for result in results if result.error])
 
 
 @study_group.command("suggested")
@@ -126,14 +128,15 @@ def suggested_command(
         opened(out, selection, rate=rate, on_build=progress.building) as study,
     ):
         flights = [suggested_flight(one, study.flights[one.system], out) for one in suggestions]
-        results = study.fly(flights, progress, jobs)
-        failures = {result.flight.label: result.error for result in results if result.error}
+        failures = not_to_be_set(flights)
+        results = study.fly([one for one in flights if one.label not in failures], progress, jobs)
+        failures |= {result.flight.label: result.error for result in results if result.error}
         rows = save_tried(flights, failures, out)
     if as_json:
         click.echo(dump_json(rows).decode(), nl=False)
     else:
         _show_tried(rows, out)
-    _fail_where_any(results)
+    _fail_where_any(list(failures.values()))
 
 
 @study_group.command("halves")
@@ -144,7 +147,7 @@ def halves_command(*, as_json: bool) -> None:
     Within each type of treatment the names are sorted by SHA-256 of SYSTEM/NAME, and go into the
     two halves by turns; of the clean missions the first seed is for tuning.
     """
-    flights = [one for example in EXAMPLES for one in flights_of(example, ()) if one.half]
+    flights = [one for example in EXAMPLES for one in flights_of(example) if one.half]
     if as_json:
         rows = [{**_of(flight), "half": flight.half} for flight in flights]
         click.echo(dump_json(rows).decode(), nl=False)
@@ -157,6 +160,7 @@ def halves_command(*, as_json: bool) -> None:
 
 study_group.add_command(report_command)
 study_group.add_command(suggestions_command)
+study_group.add_command(sensitivity_command)
 
 COMMANDS: list[click.Command] = [study_group]
 
@@ -223,7 +227,6 @@ def _table(*headings: str) -> Table:
     return table
 
 
-def _fail_where_any(results: Sequence[Result]) -> None:
-    failed = [one for one in results if one.error]
-    if failed:
-        raise RunError(f"{many(len(failed), 'mission')} failed, the first: {failed[0].error}")
+def _fail_where_any(failures: Sequence[str]) -> None:
+    if failures:
+        raise RunError(f"{many(len(failures), 'mission')} failed, the first: {failures[0]}")

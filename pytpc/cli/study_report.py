@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from contextlib import ExitStack
 from pathlib import Path
 
@@ -36,13 +37,22 @@ from pytpc.words import many, plain
     show_default=True,
     help="Whose results are shown.",
 )
-@click.option("--again", is_flag=True, help="Rank also what has been ranked; the methods changed.")
+@click.option("--again", is_flag=True, help="Rank also what has been ranked.")
+@click.option(
+    "--jobs",
+    type=click.IntRange(1, 64),
+    default=os.cpu_count() or 1,
+    show_default="cores of this machine",
+    help="How many processes rank.",
+)
 @JSON
-def report_command(out: Path, docs: Path, half: str, again: bool, as_json: bool) -> None:
+def report_command(
+    *, out: Path, docs: Path, half: str, again: bool, jobs: int, as_json: bool
+) -> None:
     """Write every table and figure of the study: a page, with figures and CSV beside it.
 
-    Missions that were not ranked yet are ranked first, by all methods. What is missing in the
-    folder is said on the page.
+    First each method ranks the missions that it has not ranked yet, or that, as the method itself,
+    are not as they were then. What is missing in the folder is said on the page.
     """
     # matplotlib takes half a second to import, which other commands need not wait for.
     from pytpc.study.report.folder import HALVES  # noqa: PLC0415
@@ -55,6 +65,7 @@ def report_command(out: Path, docs: Path, half: str, again: bool, as_json: bool)
             [one for one in HALVES if half in {one, "both"}],
             lambda what: stack.enter_context(progress(what)),
             rank="again" if again else "missing",
+            jobs=jobs,
         )
     for trouble in made.troubles:
         warn(plain(trouble))

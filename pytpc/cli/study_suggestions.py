@@ -10,16 +10,17 @@ import click
 from rich.table import Table
 from rich.text import Text
 
-from pytpc.cli.console import console, progress
+from pytpc.cli.console import console, progress, warn
 from pytpc.cli.options import JSON, PATH
 from pytpc.study.methods import METHODS
 from pytpc.study.plan import Half
+from pytpc.study.resume import alone_with_results
 from pytpc.study.suggested import WANTED_FILE
 from pytpc.study.suggestion_chains import VARIANTS, Chain, shares
 from pytpc.study.suggestions import next_round
 from pytpc.words import many, plain
 
-_HALVES: dict[str, tuple[Half, ...]] = {
+HALVES: dict[str, tuple[Half, ...]] = {
     "tuning": ("tuning",),
     "held-back": ("held-back",),
     "both": ("tuning", "held-back"),
@@ -28,7 +29,7 @@ _HALVES: dict[str, tuple[Half, ...]] = {
 
 @click.command("suggestions")
 @click.option("--out", type=PATH, default=Path("out") / "study", show_default=True)
-@click.option("--half", type=click.Choice(list(_HALVES)), default="both", show_default=True)
+@click.option("--half", type=click.Choice(list(HALVES)), default="both", show_default=True)
 @click.option(
     "--variant",
     "variants",
@@ -41,18 +42,33 @@ _HALVES: dict[str, tuple[Half, ...]] = {
     type=click.Choice(list(METHODS)),
     help="Also try the first suspects of this ranking.",
 )
+@click.option(
+    "--again", is_flag=True, help="Ask anew: the ranking or the advice changed; flights are kept."
+)
 @JSON
 def suggestions_command(
-    *, out: Path, half: str, variants: tuple[str, ...], method: str | None, as_json: bool
+    *,
+    out: Path,
+    half: str,
+    variants: tuple[str, ...],
+    method: str | None,
+    again: bool,
+    as_json: bool,
 ) -> None:
     """Take in the suggestions that were flown, and say which are to be flown next.
 
     By turns with ``study suggested``, until nothing is left.
     """
     ranking = None if method is None else METHODS[method]
-    with progress("working out suggestions") as advance:
-        chains = next_round(out, _HALVES[half], ranking, variants or tuple(VARIANTS), advance)
-    mine = [chain for chain in chains if chain.half in _HALVES[half]]
+    with alone_with_results(out), progress("working out suggestions") as advance:
+        chains = next_round(
+            out, HALVES[half], ranking, variants or tuple(VARIANTS), advance, again=again
+        )
+    mine = [chain for chain in chains if chain.half in HALVES[half]]
+    for chain in mine:
+        for one in chain.tries:
+            if one.failed:
+                warn(plain(f"{chain.mission}, {chain.variant}: {one.reason}"))
     if as_json:
         document = [asdict(share) for share in shares(mine)]
         click.echo(json.dumps(document, indent=1))

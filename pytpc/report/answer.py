@@ -15,10 +15,11 @@ from pytpc.words import many
 class AnswerView:
     """Marks that name the same first suspect and the same direction, and that suspect's card.
 
-    Of the values that the marks suggest it is the one that answers most of them, and among these
-    the one that changes least elsewhere. ``numbers`` are the marks' numbers from 1, ``marks`` says
-    in words which they are, ``types`` by which scores it comes first there. ``reason`` says why the
-    evidence at these marks is not enough to go by the answer; empty where it is.
+    It leads with the value to try. Of the values of these marks it is the one that answers most of
+    them, and among these the one that changes least elsewhere. ``numbers`` are the marks' numbers
+    from 1, ``marks`` says in words which they are, ``types`` by which scores it comes first there.
+    ``reason`` says why the evidence at these marks is not enough to go by the answer; empty where
+    it is.
     """
 
     numbers: tuple[int, ...]
@@ -49,7 +50,8 @@ def answers(cards: Sequence[Sequence[CardView]], reasons: Sequence[str]) -> list
     for place, first in enumerate(cards):
         if first:
             row, lacking = first[0].row, bool(reasons[place])
-            groups.setdefault((row.parameter, row.direction, lacking), []).append(place)
+            way = first[0].lead.direction
+            groups.setdefault((row.parameter, way, lacking), []).append(place)
     found = []
     for places in groups.values():
         best = min(places, key=lambda place: _worth(cards[place][0]))

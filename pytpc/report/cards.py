@@ -11,6 +11,7 @@ from markupsafe import Markup
 from pytpc.advice.advise import Advice, alternatives
 from pytpc.advice.counterfactual import WhatIf
 from pytpc.advice.declared import Declared
+from pytpc.advice.remedy import Remedy
 from pytpc.advice.suggest import Suggestion
 from pytpc.arithmetic import evaluate
 from pytpc.marks import Mark
@@ -65,11 +66,26 @@ class OriginView:
 
 
 @dataclass(frozen=True)
+class LeadView:
+    """What the page says to do with a suspect: the value to try, or where there is none why.
+
+    ``smallest`` is the smallest change at this mark in words, where it is another value.
+    """
+
+    direction: str
+    current: str
+    value: str
+    reason: str
+    smallest: str
+
+
+@dataclass(frozen=True)
 class CardView:
     """A suspect at a mark with its evidence; ``ident`` names its figure."""
 
     ident: str
     row: SuspectView
+    lead: LeadView
     why: str
     compared: str
     threshold: str
@@ -165,6 +181,7 @@ def card_view(
     return CardView(
         ident=ident,
         row=row_view(mission, advice),
+        lead=_lead(advice),
         why=why(mission, suspect, mark),
         compared=show(last.cmp),
         threshold=show(last.thresh),
@@ -185,8 +202,27 @@ def card_view(
         origin=_origin_view(mission, suspect),
         declared=_declared(declared) if declared is not None else "",
         declared_at=declared.place if declared is not None else "",
-        what_if=advice.what_if,
+        what_if=advice.what_if if advice.tried is None else advice.tried,
         alternatives=_alternatives(mission, ranking, suspect),
+    )
+
+
+def _told(advice: Advice) -> Suggestion | Remedy:
+    """The value to try, or the smallest change where there is none."""
+    tried = advice.remedy
+    return advice.suggestion if tried is None or tried.value is None else tried
+
+
+def _lead(advice: Advice) -> LeadView:
+    told, least = _told(advice), advice.suggestion
+    value = exact(told.value) if told.value is not None else ""
+    why = told.text.partition(f" to {value} (")[2].removesuffix(")")
+    return LeadView(
+        direction=told.direction or "",
+        current=show(told.current),
+        value=value,
+        reason=told.reason or why,
+        smallest="" if least.value in {None, told.value} else least.text,
     )
 
 
@@ -199,7 +235,7 @@ def _evidence(mission: MissionReport, advice: Advice, mark: Mark) -> tuple[Evide
         mark=at,
         mark_type=mark.type,
         window=at - mission.window_s if suspect.type == "II" else None,
-        suggested=_suggested_threshold(found, advice.suggestion),
+        suggested=_suggested_threshold(found, _told(advice)),
         culprit=mission.is_changed(suspect.parameter),
         feasible=_feasible_thresholds(found, advice.suggestion),
     )
@@ -241,10 +277,10 @@ def _threshold_of(found: Comparison, value: float) -> float:
         return math.nan
 
 
-def _suggested_threshold(found: Comparison, suggestion: Suggestion) -> float | None:
-    if suggestion.value is None or suggestion.direction == "switch":
+def _suggested_threshold(found: Comparison, told: Suggestion | Remedy) -> float | None:
+    if told.value is None or told.direction == "switch":
         return None
-    return _threshold_of(found, float(suggestion.value))
+    return _threshold_of(found, float(told.value))
 
 
 def _feasible_thresholds(

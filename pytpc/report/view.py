@@ -7,13 +7,14 @@ too, for they are the larger part of the time; ``on_figure`` is called after eac
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from markupsafe import Markup
 
-from pytpc.advice.advise import advise
+from pytpc.advice.advise import Advice, advise
+from pytpc.advice.joining import with_remedies
 from pytpc.complaints import complaints
 from pytpc.marks import MarkType
 from pytpc.report.answer import AnswerView, answers, spoken
@@ -101,8 +102,8 @@ def mission_view(mission: MissionReport, number: int, on_figure: Callable[[], No
     kinds = [mark.type for mark in recording.marks]
     drawn = Figures(mission)
     marks = [
-        _mark_view(mission, ranking, (ident, place), drawn, on_figure)
-        for place, ranking in enumerate(mission.rankings, start=1)
+        _mark_view(mission, advised, (ident, place), drawn, on_figure)
+        for place, advised in enumerate(_advised(mission), start=1)
     ]
     still, moving = timeline(mission, ident)
     on_figure()
@@ -138,23 +139,35 @@ def mission_view(mission: MissionReport, number: int, on_figure: Callable[[], No
     )
 
 
+def _advised(mission: MissionReport) -> Iterator[tuple[MarkRanking, list[Advice]]]:
+    """The advice at each mark; for the suspects that have cards with the value to try."""
+    recording, static = mission.recording, mission.static_info
+    lists = [
+        advise(
+            recording,
+            static,
+            ranking,
+            top=len(ranking.suspects),
+            declared=mission.declared,
+            window_s=mission.window_s,
+        )
+        for ranking in mission.rankings
+    ]
+    first = [advice[: mission.top] for advice in lists]
+    tried = with_remedies(recording, static, mission.rankings, first, window_s=mission.window_s)
+    for ranking, own, rest in zip(mission.rankings, tried, lists, strict=True):
+        yield ranking, [*own, *rest[mission.top :]]
+
+
 def _mark_view(
     mission: MissionReport,
-    ranking: MarkRanking,
+    advised: tuple[MarkRanking, Sequence[Advice]],
     at: tuple[str, int],
     drawn: Figures,
     on_figure: Callable[[], None],
 ) -> MarkView:
-    mark = ranking.mark
-    ident = f"{at[0]}-{at[1]}"
-    advice = advise(
-        mission.recording,
-        mission.static_info,
-        ranking,
-        top=len(ranking.suspects),
-        declared=mission.declared,
-        window_s=mission.window_s,
-    )
+    ranking, advice = advised
+    mark, ident = ranking.mark, f"{at[0]}-{at[1]}"
     cards = []
     for place, one in enumerate(advice[: mission.top], start=1):
         cards.append(card_view(mission, one, ranking, drawn, f"{ident}-{place}"))

@@ -1,14 +1,15 @@
 """What was changed on a robot before a mission, newest last; the harmless changes among it.
 
-Every mission has decoys: parameters that are a little off, so that neither "what was changed last"
-nor "what differs from the clean run" is a trivial answer.
+Every mission has decoys: other parameters that were changed by as much as the treatments' are, and
+do no harm. So neither "what was changed last", nor "what was changed most", nor "what differs from
+the clean run" is a trivial answer.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import asdict
 from hashlib import sha256
 from pathlib import Path
 
@@ -16,86 +17,80 @@ from pytpc.atomic import write_atomic
 from pytpc.changes import Change
 from pytpc.demo_examples import Example
 from pytpc.errors import InputError
-from pytpc.parameters import same_parameter
-from pytpc.static_info import StaticInfo
 from pytpc.static_json import parse_json
 from pytpc.treatment import Treatment
 from pytpc.values.recording import read_parameters
 
 CHANGES_FILE = "changes.json"
-DECOYS = 5
-_PART = 0.03
-_EXCEPTIONS_FILE = "study.json"
-_EXCEPTIONS = "never_decoys"
+DECOYS = 8
+_LIST_FILE = "study.json"
+_LIST = "decoys"
+_FIELDS = ("parameter", "node", "new")
 
 
-@dataclass(frozen=True, slots=True, order=True)
-class Candidate:
-    """A parameter that may be a decoy: whose it is, its name below that node, its value."""
+def harmless_changes(example: Example) -> dict[Change, frozenset[str]]:
+    """The changes that may be decoys, and with which treatments they may not: ``study.json``.
 
-    node: str
-    name: str
-    value: float
-
-    @property
-    def full(self) -> str:
-        """The name on the parameter server."""
-        return f"{self.node}/{self.name}"
-
-
-def candidates(example: Example, static: StaticInfo) -> tuple[Candidate, ...]:
-    """The parameters of a robot that a decoy may change, sorted.
-
-    They are numbers with a fraction that are not 0 and are compared somewhere. The simulator's are
-    none: it is the world. Those of the example's own list are none: to change them does harm.
+    In the example's file ``decoys`` is a list; an entry has ``parameter`` (``~name``), ``node`` and
+    ``new``, a number; the old value is that of the robot's own file. None is the simulator's, which
+    is the world. ``not_with`` may name treatments whose error was not seen together with it: what
+    does no harm may still hide another's. Without a file there is none.
 
     Raises:
-        InputError: the robot's file of parameters, or its list, cannot be read.
+        InputError: the file is no such list, or an entry changes no number of this robot's nodes.
     """
-    compared = {found.source for found in static.thresholds.values() if found.source is not None}
-    never = never_decoys(example)
-    found = set()
-    for full, value in read_parameters(example.parameters).items():
-        _, node, name = full.split("/", 2) if full.count("/") > 1 else ("", "", full)
-        one_of_a_node = node and f"/{node}" != example.simulator
-        if not one_of_a_node or not isinstance(value, float) or value == 0.0:
-            continue
-        if full not in never and any(same_parameter(full, source) for source in compared):
-            found.add(Candidate(f"/{node}", name, value))
-    return tuple(sorted(found))
-
-
-def never_decoys(example: Example) -> frozenset[str]:
-    """The full names of the parameters that no decoy may change: ``study.json`` of the example.
-
-    There they stand as ``~name``, ``name`` or ``/node/name``.
-
-    Raises:
-        InputError: the file is no such list, or a name in it is that of no parameter.
-    """
-    path = example.folder / _EXCEPTIONS_FILE
+    path = example.folder / _LIST_FILE
     if not path.exists():
-        return frozenset()
+        return {}
     document = parse_json(path)
-    names = document.get(_EXCEPTIONS, []) if isinstance(document, dict) else None
-    if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
-        raise InputError(f"{_EXCEPTIONS} is not a list of texts", path)
-    known = read_parameters(example.parameters)
-    found: set[str] = set()
-    for name in names:
-        meant = {full for full in known if _means(name, full)}
-        if not meant:
-            raise InputError(f"{_EXCEPTIONS}: {name} is no parameter of this robot", path)
-        found |= meant
-    return frozenset(found)
+    entries = document.get(_LIST, []) if isinstance(document, dict) else None
+    if not isinstance(entries, list):
+        raise InputError(f"{_LIST} is not a list", path)
+    own = read_parameters(example.parameters)
+    treatments = {one.name for one in example.all_treatments()}
+    found: dict[Change, frozenset[str]] = {}
+    names: set[tuple[str, str]] = set()
+    for number, entry in enumerate(entries, 1):
+        try:
+            change, not_with = _harmless(entry, own)
+            if (change.node, change.parameter) in names:
+                raise ValueError(f"{change.parameter} is there twice")
+            if change.node == example.simulator:
+                raise ValueError(f"{change.node} is the world")
+            if not_with - treatments:
+                raise ValueError(f"there is no treatment {min(not_with - treatments)}")
+        except ValueError as error:
+            raise InputError(f"{_LIST}, entry {number}: {error}", path) from error
+        names.add((change.node, change.parameter))
+        found[change] = not_with
+    return found
 
 
-def _means(name: str, full: str) -> bool:
-    return full == name if name.startswith("/") else full.split("/", 2)[-1] == name.lstrip("~")
+def _harmless(entry: object, own: Mapping[str, object]) -> tuple[Change, frozenset[str]]:
+    if not isinstance(entry, dict) or sorted({*entry} - {"not_with"}) != sorted(_FIELDS):
+        raise ValueError(f"an object with {', '.join(_FIELDS)} is expected")
+    parameter, node = entry["parameter"], entry["node"]
+    if not isinstance(parameter, str) or not parameter.startswith("~") or not isinstance(node, str):
+        raise ValueError("parameter is ~name, and node a text")
+    full = f"{node}/{parameter[1:]}"
+    old, new = _number(own.get(full)), _number(entry["new"])
+    if old is None or new is None or old == new:
+        what = "changes no number of this robot"
+        raise ValueError(f"{full} {own.get(full)!r} -> {entry['new']!r} {what}")
+    not_with = entry.get("not_with", [])
+    if not isinstance(not_with, list) or not all(isinstance(name, str) for name in not_with):
+        raise ValueError("not_with is no list of treatments")
+    return Change(parameter, node, old, new), frozenset(not_with)
+
+
+def _number(value: object) -> float | None:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return None
+    return float(value)
 
 
 def drawn_changes(
-    system: str, treatment: Treatment, seed: int, among: Sequence[Candidate]
+    system: str, treatment: Treatment, seed: int, among: Mapping[Change, Collection[str]]
 ) -> tuple[Change, ...]:
     """The changes of a mission in a drawn order, newest last: decoys, and the treatment's own.
 
@@ -106,24 +101,20 @@ def drawn_changes(
         system: the robot's name.
         treatment: its changed parameter is none of the decoys, and is among the changes.
         seed: of the mission.
-        among: see ``candidates``.
+        among: see ``harmless_changes``.
     """
     drawn = f"{system}/{treatment.name}/{seed}"
-    others = [one for one in among if one.name != (treatment.parameter or "").lstrip("~/")]
-    chosen = sorted(others, key=lambda one: _hash(f"{drawn}{one.full}"))[:DECOYS]
-    changes = [_decoy(one, drawn) for one in chosen]
+    own = (treatment.parameter or "").lstrip("~/")
+    others = [
+        one
+        for one, not_with in among.items()
+        if one.parameter.lstrip("~") != own and treatment.name not in not_with
+    ]
+    changes = sorted(others, key=lambda c: _hash(f"{drawn}{c.node}{c.parameter}"))[:DECOYS]
     if treatment.parameter is not None and treatment.old is not None and treatment.new is not None:
         node = treatment.node or ""
         changes.append(Change(treatment.parameter, node, treatment.old, treatment.new))
     return tuple(sorted(changes, key=lambda c: _hash(f"{drawn}/order{c.node}{c.parameter}")))
-
-
-def _decoy(one: Candidate, drawn: str) -> Change:
-    sign = 1 if int(_hash(f"{drawn}/sign{one.full}"), 16) % 2 else -1
-    # Nine digits: nobody sees where the third of a percent ended.
-    return Change(
-        f"~{one.name}", one.node, one.value, float(f"{one.value * (1 + sign * _PART):.9g}")
-    )
 
 
 def _hash(text: str) -> str:

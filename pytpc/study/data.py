@@ -19,7 +19,7 @@ from pytpc.static_info import StaticInfo
 from pytpc.static_json import parse_json
 from pytpc.study.case import Case
 from pytpc.study.changes import CHANGES_FILE
-from pytpc.study.dataset import DONE_FILE, MARKED_FILE, STUDY_FILE, load_done
+from pytpc.study.dataset import DONE_FILE, MARKED_FILE, STUDY_FILE
 from pytpc.study.plan import Half
 from pytpc.treatment import TREATMENT_FILE
 
@@ -50,7 +50,7 @@ class Mission:
     """A mission of the study.
 
     ``type`` is that of the treatment; ``parameter`` and ``node`` are what it changed, None where
-    nothing was. ``digest`` is `Done.digest`, empty where it is not known.
+    nothing was; ``round`` is when the treatment was made.
     """
 
     system: str
@@ -65,7 +65,7 @@ class Mission:
     marks: tuple[UserMark, ...]
     reference: Recording | None
     changes: tuple[Change, ...]
-    digest: str = ""
+    round: int = 1
 
     def case(self, labels: Labels, who: str = ALL) -> Case:
         """What a method gets to see, with the marks of all users or of one."""
@@ -91,8 +91,8 @@ def missions(
     Raises:
         InputError: a file is missing or broken.
     """
-    found = [(path, half) for half in wanted for path in _places(out, [half])]
-    for number, (path, half) in enumerate(sorted(found), start=1):
+    found = places(out, wanted)
+    for number, (path, half) in enumerate(found, start=1):
         yield load_mission(out, path, half)
         if on_progress is not None:
             on_progress(number, len(found))
@@ -106,13 +106,12 @@ def load_mission(out: Path, path: Path, half: Half) -> Mission:
     """
     system = path.parent.parent.name
     treatment = _treatment(path / TREATMENT_FILE)
-    done = load_done(path)
     return Mission(
         system=system,
         treatment=path.parent.name,
         type=treatment["type"],
         half=half,
-        seed=_seed(path),
+        seed=seed_of(path),
         parameter=treatment["parameter"],
         node=treatment["node"],
         recording=load_recording(path),
@@ -120,7 +119,7 @@ def load_mission(out: Path, path: Path, half: Half) -> Mission:
         marks=user_marks(path / MARKED_FILE),
         reference=_reference(out / "reference" / system),
         changes=_changes(path / CHANGES_FILE),
-        digest="" if done is None else done.digest,
+        round=treatment.get("round", 1),
     )
 
 
@@ -145,22 +144,25 @@ def user_marks(path: Path) -> tuple[UserMark, ...]:
     return read_table(path, "marks", rows)
 
 
-def _places(out: Path, wanted: Sequence[Half]) -> list[Path]:
-    """The folders of the flown missions in the wanted halves.
+def places(out: Path, wanted: Sequence[Half]) -> list[tuple[Path, Half]]:
+    """The folders of the flown missions in the wanted halves, sorted, each with its half.
 
     The halves are those that the study was begun with: worked out from what has been flown so far
     they would change as it grows.
+
+    Raises:
+        InputError: ``study.json`` is missing or broken.
     """
     document = parse_json(out / STUDY_FILE)
     rows = document.get("missions") if isinstance(document, dict) else None
     try:
         if not isinstance(rows, list):
             raise ValueError("it does not say which missions there are")
-        halves = {out / row["folder"]: row["half"] for row in rows}
+        halves: dict[Path, Half] = {out / row["folder"]: row["half"] for row in rows}
     except (KeyError, TypeError, ValueError) as error:
         raise InputError(f"not about a study: {error}", out / STUDY_FILE) from error
     return sorted(
-        path
+        (path, half)
         for path, half in halves.items()
         if half in wanted
         and path.parent.parent.parent == out / MISSIONS
@@ -192,7 +194,12 @@ def _reference(path: Path) -> Recording | None:
     return load_recording(path) if path.is_dir() else None
 
 
-def _seed(path: Path) -> int:
+def seed_of(path: Path) -> int:
+    """The seed of a mission, from its folder.
+
+    Raises:
+        TpcError: the folder is not called after one.
+    """
     try:
         return int(path.name.removeprefix("seed-"))
     except ValueError as error:

@@ -133,6 +133,7 @@ class State:
             "old": treatment.old,
             "new": treatment.new,
             "tipping": treatment.tipping,
+            "round": treatment.round,
             "seed": self.flight.seed,
             "half": self.flight.half,
             "state": self.word,
@@ -173,7 +174,7 @@ class StudyFile:
         states = [
             State(flight, load_done(flight.folder(self.out)), self.errors.get(flight.label, ""))
             for example in examples
-            for flight in flights_of(example, ())
+            for flight in flights_of(example)
         ]
         document = {
             "schema": SCHEMA,

@@ -120,7 +120,7 @@ def opened(
             system, _ = prepare(example, out, _told(on_build, example))
             flown_at = example.study_rate if rate is None else rate
             study.fliers[example.name] = Flier(system, out, flown_at, people)
-            study.flights[example.name] = flights_of(example, system.candidates, selection)
+            study.flights[example.name] = flights_of(example, selection)
         yield study
 
 

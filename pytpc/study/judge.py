@@ -1,10 +1,9 @@
 """Where each method puts the parameter that a treatment changed: ``results/positions.parquet``.
 
 The position is the place in the order, from 1. Parameters that are tied have the mean of their
-places, so that nobody gains by making no difference; those that a method does not name are tied
-behind all that it names. With how many it is tied stands beside it: so the share of the first k is
-the expected one, as if tied parameters were drawn (`metrics.top_share`). Where the mission has no
-mark there is no position: that is a miss.
+places and stand there with how many they are, so that nobody gains by making no difference; those
+that a method does not name are tied behind all that it names. Where the mission has no mark there
+is no position: that is a miss.
 """
 
 from __future__ import annotations
@@ -36,12 +35,13 @@ SCHEMA = pa.schema(
         pa.field("who", pa.string()),
         pa.field("method", pa.string()),
         pa.field("position", pa.float64()),
-        pa.field("tied", pa.int64()),
         pa.field("parameters", pa.int64()),
         pa.field("top", pa.string()),
         pa.field("confidence", pa.float64()),
         pa.field("marks", pa.int64()),
         pa.field("digest", pa.string()),
+        pa.field("tied", pa.int64()),
+        pa.field("round", pa.int64()),
     ]
 )
 
@@ -50,8 +50,8 @@ SCHEMA = pa.schema(
 class Judged:
     """A row: one verdict. ``position`` and ``confidence`` are None where there is none.
 
-    ``tied`` is how many parameters share the position, the one in question among them; ``digest``
-    that of the mission that was judged.
+    ``digest`` is `verdict_digest`, empty where it is not known. ``tied`` is how many parameters
+    share the position, itself among them; ``round`` is when the treatment was made.
     """
 
     system: str
@@ -69,6 +69,14 @@ class Judged:
     marks: int
     digest: str = ""
     tied: int = 1
+    round: int = 1
+
+
+class Place(NamedTuple):
+    """A place from 1, the mean of those of all that are ``tied`` there."""
+
+    mean: float
+    tied: int
 
 
 def judge(
@@ -104,21 +112,14 @@ def judge(
                     label,
                     who,
                     name,
-                    None if found is None else found.position,
+                    None if found is None else found.mean,
                     len(names),
                     verdict.order[0] if verdict.order else "",
                     verdict.confidence if known else None,
                     marks,
-                    mission.digest,
-                    1 if found is None else found.tied,
+                    tied=1 if found is None else found.tied,
+                    round=mission.round,
                 )
-
-
-class Place(NamedTuple):
-    """Where a parameter is: the mean of the places that ``tied`` parameters share, from 1."""
-
-    position: float
-    tied: int = 1
 
 
 def position(verdict: Verdict, parameter: str | None, names: Sequence[str]) -> Place | None:
@@ -139,7 +140,7 @@ def place(verdict: Verdict, name: str, parameters: int) -> Place:
         return Place((named + 1 + parameters) / 2, parameters - named)
     index = verdict.order.index(name)
     if not verdict.scores:
-        return Place(index + 1.0)
+        return Place(index + 1.0, 1)
     tied = [n for n, score in enumerate(verdict.scores) if score == verdict.scores[index]]
     return Place(sum(tied) / len(tied) + 1.0, len(tied))
 

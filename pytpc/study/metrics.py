@@ -2,57 +2,30 @@
 
 A treatment is what was drawn from the population of faults, so it is the unit: the value of a
 treatment is the mean over its missions, a figure the mean over treatments, and the bootstrap draws
-treatments. Two seeds of one treatment are not two findings.
+treatments. Two seeds of one treatment are not two findings. Where all treatments are 0, or all are
+1, the bootstrap has nothing to draw, and the interval is that of Clopper and Pearson (1934).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 DRAWS = 2000
+BINS = 5
+"""Of confidence, for its calibration."""
+SPARSE = 5
+"""A bin with verdicts about fewer treatments says little."""
 SEED = 8
 CONFIDENT = 0.5
 """From here on a method accuses: it holds its first suspect for likelier than all else together,
 "none of them" included."""
-
-
-class Row(Protocol):
-    """What is asked of a row of the table of positions."""
-
-    @property
-    def system(self) -> str:
-        """The robot."""
-        ...
-
-    @property
-    def treatment(self) -> str:
-        """What was done to it."""
-        ...
-
-    @property
-    def position(self) -> float | None:
-        """The place of the changed parameter, None where there is no mark."""
-        ...
-
-    @property
-    def tied(self) -> int:
-        """How many share that place, itself included."""
-        ...
-
-    @property
-    def parameters(self) -> int:
-        """How many parameters there are."""
-        ...
-
-    @property
-    def confidence(self) -> float | None:
-        """That of the method, None where it has none."""
-        ...
+_TAIL = 0.025
+"""What an interval of 95 % leaves out at each end."""
 
 
 class Estimate(NamedTuple):
@@ -64,49 +37,18 @@ class Estimate(NamedTuple):
     treatments: int
 
 
-@dataclass(frozen=True)
-class Merit:
-    """How well a method ranks: shares of top 1 and top 3, mean position, and mean rank.
+def within(k: int, place: float, tied: int) -> float:
+    """The probability that a parameter is among the first ``k`` if ties are broken by chance.
 
-    The rank is 1 - (position - 1) / n, 1 for the most suspicious (SPEC 7). A mission without a mark
-    is a miss, and counts as the middle of all places.
-    """
-
-    top1: Estimate
-    top3: Estimate
-    position: Estimate
-    rank: Estimate
-
-
-def merit(rows: Iterable[Row]) -> Merit:
-    """The figures of one method, from the rows of missions with a changed parameter."""
-    found = list(rows)
-    places = [(row.parameters + 1) / 2 if row.position is None else row.position for row in found]
-    shares = [
-        [0.0 if row.position is None else top_share(row.position, row.tied, k) for row in found]
-        for k in (1, 3)
-    ]
-    where = np.array(places, np.float64)
-    ranks = [1.0 - (place - 1.0) / row.parameters for row, place in zip(found, places, strict=True)]
-    units = [(row.system, row.treatment) for row in found]
-    return Merit(
-        estimate(shares[0], units),
-        estimate(shares[1], units),
-        estimate(where, units),
-        estimate(np.array(ranks), units),
-    )
-
-
-def top_share(position: float, tied: int, k: int) -> float:
-    """The probability of a place among the first ``k`` if those that are tied were drawn.
+    So the shares of a method that makes no difference are those of chance, k / n.
 
     Args:
-        position: from 1, the mean of the places that are shared.
-        tied: how many share them; 1 or more.
         k: how many are looked at.
+        place: the parameter's, from 1: the mean of the places that it shares.
+        tied: how many parameters share them, itself among them.
     """
-    first = position - (tied - 1) / 2
-    return min(1.0, max(0.0, (k + 1 - first) / tied))
+    before = place - (tied + 1) / 2
+    return min(max(k - before, 0.0), tied) / tied
 
 
 def estimate(
@@ -124,60 +66,140 @@ def estimate(
         All nan where there is no value.
     """
     numbers = np.asarray(values, dtype=np.float64)
-    known: dict[object, int] = {}
-    codes = np.array([known.setdefault(unit, len(known)) for unit in units], np.int64)
+    codes = _codes(units)
     if not codes.size:
         return Estimate(np.nan, np.nan, np.nan, 0)
     means = np.bincount(codes, numbers) / np.bincount(codes)
     drawn = np.random.default_rng(seed).integers(means.size, size=(draws, means.size))
-    low, high = np.quantile(means[drawn].mean(axis=1), [0.025, 0.975])
+    low, high = np.quantile(means[drawn].mean(axis=1), [_TAIL, 1 - _TAIL])
     return Estimate(float(means.mean()), float(low), float(high), means.size)
 
 
+def share(values: npt.ArrayLike, units: Sequence[object]) -> Estimate:
+    """As ``estimate``, of values in [0, 1]: where all are 0 or all are 1 the interval has a width.
+
+    Args:
+        values: float64[n].
+        units: whose each value is; n of them.
+    """
+    found = estimate(values, units)
+    if found.treatments and found.value in (0.0, 1.0):
+        end = _TAIL ** (1 / found.treatments)
+        low, high = (end, 1.0) if found.value else (0.0, 1.0 - end)
+        return found._replace(low=low, high=high)
+    return found
+
+
+def upper_limit(count: int, of: int) -> float:
+    """The largest share that ``count`` of ``of`` leave possible (Clopper and Pearson, 95 %).
+
+    With it as few as ``count`` are seen in 2.5 % of all cases.
+
+    Args:
+        count: how many were seen, at most ``of``.
+        of: how many could be; at least one.
+    """
+    if count == of:
+        return 1.0
+    low, high = count / of, 1.0
+    # 60 halvings are more than a double can tell apart.
+    for _ in range(60):
+        middle = (low + high) / 2
+        few = sum(math.comb(of, k) * middle**k * (1 - middle) ** (of - k) for k in range(count + 1))
+        low, high = (middle, high) if few > _TAIL else (low, middle)
+    return low
+
+
 class Bin(NamedTuple):
-    """A row of a reliability table: confidences in [low, high), and how often they were right."""
+    """A row of a reliability table: confidences in [low, high), and how often they were right.
+
+    ``treatments`` is of how many its ``verdicts`` are.
+    """
 
     low: float
     high: float
     verdicts: int
+    treatments: int
     confidence: float
     right: float
 
+    @property
+    def is_sparse(self) -> bool:
+        """Whether its share hangs on single treatments."""
+        return self.treatments < SPARSE
 
-def reliability(confidence: npt.ArrayLike, right: npt.ArrayLike, bins: int = 5) -> list[Bin]:
-    """How often the first suspect was right, by confidence, in bins of equal width.
+
+def reliability(
+    confidence: npt.ArrayLike, right: npt.ArrayLike, units: Sequence[object]
+) -> list[Bin]:
+    """How often the first suspect was right, by confidence, in ``BINS`` of equal width.
 
     Args:
         confidence: float64[n] in [0, 1].
-        right: bool[n], whether the first suspect was to blame; of clean runs and of faults in the
-            source never.
-        bins: how many; the last one has its end. Empty ones are left out.
+        right: float64[n], whether the first suspect was to blame, a share where several are tied;
+            of clean runs and of faults in the source never.
+        units: the treatment of each.
+
+    Returns:
+        Those with verdicts; the last one has its end.
     """
     given, hits = np.asarray(confidence, np.float64), np.asarray(right, np.float64)
-    # linspace has an edge a little above 0.6.
-    edges = np.arange(bins + 1) / bins
-    place = np.clip(np.digitize(given, edges) - 1, 0, bins - 1)
+    place = _bins(given)
+    codes = _codes(units)
     return [
         Bin(
-            float(edges[n]),
-            float(edges[n + 1]),
+            n / BINS,
+            (n + 1) / BINS,
             int(np.count_nonzero(place == n)),
+            np.unique(codes[place == n]).size,
             float(given[place == n].mean()),
             float(hits[place == n].mean()),
         )
-        for n in range(bins)
+        for n in range(BINS)
         if np.any(place == n)
     ]
 
 
-def brier(confidence: npt.ArrayLike, right: npt.ArrayLike) -> float:
-    """The mean of (confidence - right)^2: 0 is perfect, 0.25 is always one half (Brier 1950)."""
+def calibration_error(
+    confidence: npt.ArrayLike, right: npt.ArrayLike, units: Sequence[object]
+) -> Estimate:
+    """The expected calibration error (Naeini et al. 2015), with the bootstrap's 95 % interval.
+
+    It is the mean over verdicts of the gap between mean confidence and share of right ones in their
+    bin of ``BINS``. The bootstrap draws treatments, with all of their verdicts. Of few verdicts the
+    error is above 0 even where confidence is right, and that of a draw is above that of all.
+
+    Args:
+        confidence: float64[n], as in ``reliability``.
+        right: float64[n].
+        units: the treatment of each.
+
+    Returns:
+        All nan where there is no verdict.
+    """
     given, hits = np.asarray(confidence, np.float64), np.asarray(right, np.float64)
-    return float(np.mean((given - hits) ** 2)) if given.size else np.nan
+    codes = _codes(units)
+    if not codes.size:
+        return Estimate(np.nan, np.nan, np.nan, 0)
+    count = int(codes.max()) + 1
+    # float64[treatment, bin]: their verdicts' sum of the gap, of which a bin's is the sum.
+    gaps = np.zeros((count, BINS))
+    np.add.at(gaps, (codes, _bins(given)), given - hits)
+    verdicts = np.bincount(codes, minlength=count)
+    drawn = np.random.default_rng(SEED).integers(count, size=(DRAWS, count))
+    errors = np.abs(gaps[drawn].sum(axis=1)).sum(axis=1) / verdicts[drawn].sum(axis=1)
+    low, high = np.quantile(errors, [_TAIL, 1 - _TAIL])
+    value = np.abs(gaps.sum(axis=0)).sum() / verdicts.sum()
+    return Estimate(float(value), float(low), float(high), count)
 
 
-def accusations(rows: Iterable[Row], limit: float = CONFIDENT) -> Estimate:
-    """The share of missions with a confident accusation; one without a mark has none."""
-    found = list(rows)
-    accused = [row.confidence is not None and row.confidence >= limit for row in found]
-    return estimate(accused, [(row.system, row.treatment) for row in found])
+def _bins(confidence: npt.NDArray[np.float64]) -> npt.NDArray[np.intp]:
+    # linspace has an edge a little above 0.6.
+    edges = np.arange(BINS + 1) / BINS
+    return np.clip(np.digitize(confidence, edges) - 1, 0, BINS - 1)
+
+
+def _codes(units: Sequence[object]) -> npt.NDArray[np.int64]:
+    """int64[n]: the same number for the same unit, from 0 in the order of their first."""
+    known: dict[object, int] = {}
+    return np.array([known.setdefault(unit, len(known)) for unit in units], np.int64)

@@ -24,14 +24,11 @@ from pytpc.study.dataset import CAUSES_FILE, MARKED_FILE, SIGHTS_FILE
 
 USERS = 4
 _PATIENCE_S = 120.0
-_TRIES = 2
 _MODULES = "PYTHONPATH"
 
 
 def see(example: Example, env: Mapping[str, str], bag: Path, folder: Path) -> None:
     """Write what a person sees of a mission, ``sights.parquet``, into its folder.
-
-    An observer that a signal ends is asked once more.
 
     Args:
         example: the robot.
@@ -42,7 +39,7 @@ def see(example: Example, env: Mapping[str, str], bag: Path, folder: Path) -> No
     Raises:
         RunError: the observer fails; one line, what it said last.
     """
-    _run(example, env, ["--bag", str(bag), "--sights", str(folder / SIGHTS_FILE)])
+    look_on(example.observer, env, ["--bag", str(bag), "--sights", str(folder / SIGHTS_FILE)])
 
 
 def cut_sights(path: Path, end_s: float) -> None:
@@ -68,33 +65,38 @@ def mark(example: Example, env: Mapping[str, str], folder: Path, seed: int) -> N
     """
     words = ["--sights", str(folder / SIGHTS_FILE), "--seed", str(seed), "--users", str(USERS)]
     words += ["--causes", str(folder / CAUSES_FILE), "--marks", str(folder / MARKED_FILE)]
-    _run(example, env, words)
+    look_on(example.observer, env, words)
 
 
-def _run(example: Example, env: Mapping[str, str], words: Sequence[str]) -> None:
-    command = [sys.executable, str(example.observer), *words]
+def look_on(program: Path, env: Mapping[str, str], words: Sequence[str]) -> None:
+    """Run a program of those who look on, with what all of them share.
+
+    Args:
+        program: in Python.
+        env: its environment.
+        words: its command line.
+
+    Raises:
+        RunError: it fails; one line, what it said last.
+    """
+    command = [sys.executable, str(program), *words]
     modules = [str(SHARED_PACKAGE / "src"), *env.get(_MODULES, "").split(os.pathsep)]
     environment = {**env, _MODULES: os.pathsep.join(one for one in modules if one)}
-    for number in range(1, _TRIES + 1):
-        try:
-            ended = subprocess.run(
-                command,
-                env=environment,
-                stdin=subprocess.DEVNULL,
-                capture_output=True,
-                check=False,
-                timeout=_PATIENCE_S,
-            )
-        except subprocess.TimeoutExpired as error:
-            raise RunError(f"does not end in {_PATIENCE_S:.0f} s", example.observer) from error
-        # Arrow's threads may abort a Python that ends before they let go of a file that it opened
-        # (apache/arrow#34314, #33975). The same again gives the same files; a flight is dear.
-        if ended.returncode >= 0 or number == _TRIES:
-            break
+    try:
+        ended = subprocess.run(
+            command,
+            env=environment,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            check=False,
+            timeout=_PATIENCE_S,
+        )
+    except subprocess.TimeoutExpired as error:
+        raise RunError(f"does not end in {_PATIENCE_S:.0f} s", program) from error
     if ended.returncode:
         said = ended.stderr.decode("utf-8", "replace").strip().splitlines()[-1:]
         what = f"ended with status {ended.returncode}: {' '.join(said) or 'it says nothing'}"
-        raise RunError(what, example.observer)
+        raise RunError(what, program)
 
 
 def read_marked(path: Path) -> tuple[Mark, ...]:

@@ -1,7 +1,8 @@
 """Which missions the study has, which half of it each is in, and what is set in each.
 
 The halves are a rule that was fixed before anything was flown: whoever works on the ranking looks
-at ``tuning`` alone, and ``held-back`` is judged once, at the end.
+at ``tuning`` alone, and ``held-back`` is judged once, at the end. What was added to the study after
+its first judgement (round 2) is held back as a whole.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from typing import Literal
 from pytpc.changes import Change
 from pytpc.demo_examples import EXAMPLES, Example
 from pytpc.errors import InputError
-from pytpc.study.changes import Candidate, drawn_changes
+from pytpc.study.changes import drawn_changes, harmless_changes
 from pytpc.treatment import Treatment
 from pytpc.values.recording import read_parameters
 from pytpc.values.scalars import number_text
@@ -157,13 +158,15 @@ def _text(value: float | int | bool) -> str:
 def halves(system: str, treatments: Sequence[Treatment]) -> dict[tuple[str, int], Half]:
     """The half of each mission of a system, by treatment and seed.
 
-    Within each type the treatments are sorted by SHA-256 of ``SYSTEM/NAME``; the first is
-    ``tuning``, the second ``held-back``, and so on. Of the clean missions the first seed is
-    ``tuning``.
+    Within each type the treatments of round 1 are sorted by SHA-256 of ``SYSTEM/NAME``; the first
+    is ``tuning``, the second ``held-back``, and so on. Of the clean missions the first seed is
+    ``tuning``. All treatments of later rounds are ``held-back``.
     """
-    found: dict[tuple[str, int], Half] = {}
-    for kind in sorted({one.type for one in treatments}):
-        names = [one.name for one in treatments if one.type == kind]
+    later = [one.name for one in treatments if one.round > 1]
+    found: dict[tuple[str, int], Half] = {(name, s): "held-back" for name in later for s in SEEDS}
+    first = [one for one in treatments if one.round == 1]
+    for kind in sorted({one.type for one in first}):
+        names = [one.name for one in first if one.type == kind]
         names.sort(key=lambda name: sha256(f"{system}/{name}".encode()).hexdigest())
         for place, name in enumerate(names):
             for number, seed in enumerate(SEEDS):
@@ -215,20 +218,18 @@ def check_treatments(selection: Selection, examples: Sequence[Example]) -> None:
         )
 
 
-def flights_of(
-    example: Example, among: Sequence[Candidate], selection: Selection | None = None
-) -> list[Flight]:
+def flights_of(example: Example, selection: Selection | None = None) -> list[Flight]:
     """The flights of a system: the reference, then the missions by treatment and seed.
 
     Args:
         example: the robot.
-        among: see ``changes.candidates``.
         selection: all where None.
 
     Raises:
-        InputError: a treatment cannot be read.
+        InputError: a treatment, or the list of decoys, cannot be read.
     """
     chosen = selection or Selection()
+    among = harmless_changes(example)
     treatments = example.all_treatments()
     half = halves(example.name, treatments)
     flights = [

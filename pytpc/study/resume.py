@@ -1,4 +1,4 @@
-"""One run of a study at a time, and nothing left of one that was killed."""
+"""One run of a study at a time, one that works on its results, and nothing left of a killed one."""
 
 from __future__ import annotations
 
@@ -8,11 +8,13 @@ import os
 import signal
 import time
 from collections.abc import Iterator
+from contextlib import AbstractContextManager
 from pathlib import Path
 
 from pytpc.errors import RunError, TpcError
 
 _LOCK_FILE = ".lock"
+_RESULTS = "results"
 _HOME = b"ROS_HOME="
 _PATIENCE_S = 3.0
 
@@ -25,9 +27,26 @@ def alone_in(out: Path) -> Iterator[None]:
         RunError: another run is at work.
         TpcError: the folder cannot be written.
     """
-    path = out / _LOCK_FILE
+    with _only_one(out, "another run is at work in this folder"):
+        end_leftovers(out)
+        yield
+
+
+def alone_with_results(out: Path) -> AbstractContextManager[None]:
+    """Within it this is the only command that makes results of the study; others may fly.
+
+    Raises:
+        RunError: another command is at work on them.
+        TpcError: the folder cannot be written.
+    """
+    return _only_one(out / _RESULTS, "another command is at work on these results")
+
+
+@contextlib.contextmanager
+def _only_one(folder: Path, refusal: str) -> Iterator[None]:
+    path = folder / _LOCK_FILE
     try:
-        out.mkdir(parents=True, exist_ok=True)
+        folder.mkdir(parents=True, exist_ok=True)
         lock = path.open("wb")
     except OSError as error:
         raise TpcError(f"cannot be written: {error.strerror}", path) from error
@@ -35,8 +54,7 @@ def alone_in(out: Path) -> Iterator[None]:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError as error:
-            raise RunError("another run is at work in this folder", out) from error
-        end_leftovers(out)
+            raise RunError(refusal, folder) from error
         yield
 
 

@@ -9,6 +9,7 @@ import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import pyarrow as pa
 
@@ -21,7 +22,10 @@ from pytpc.study.plan import Flight, Setting
 
 WANTED_FILE = Path("results") / "suggestions-wanted.json"
 TRIED_FILE = Path("results") / "suggestions-flown.parquet"
+FAILED_FILE = Path("results") / "suggestions-failed.json"
 SUGGESTION_FILE = "suggestion.json"
+MOST_FAILURES = 2
+"""So often ``pytpc study suggested`` flies a value whose flight fails (each time twice)."""
 _FIELDS = ("system", "treatment", "seed", "parameter", "node", "value")
 _TRIED = pa.schema(
     [
@@ -70,6 +74,19 @@ class Tried:
     errors: tuple[str, ...]
 
 
+@dataclass(frozen=True)
+class Failed:
+    """A value whose flight failed, how often, and why at last; ``digest`` is the mission's."""
+
+    mission: str
+    digest: str
+    parameter: str
+    node: str
+    value: float
+    times: int
+    failure: str
+
+
 def load_wanted(path: Path) -> list[Wanted]:
     """The list of what is to be tried; ``node`` may be null where one node has the parameter.
 
@@ -113,7 +130,7 @@ def suggested_flight(wanted: Wanted, missions: Sequence[Flight], out: Path) -> F
         out: the study's folder.
 
     Raises:
-        InputError: there is no such mission, it has not been flown, or no such parameter.
+        InputError: there is no such mission, or it has not been flown.
     """
     system, treatment, seed = wanted.mission
     for mission in missions:
@@ -121,10 +138,22 @@ def suggested_flight(wanted: Wanted, missions: Sequence[Flight], out: Path) -> F
             continue
         if load_done(mission.folder(out)) is None:
             raise InputError("has not been flown: pytpc study run", mission.folder(out))
-        flight = replace(mission, kind="suggested", suggested=wanted.setting)
-        flight.settings()
-        return flight
+        return replace(mission, kind="suggested", suggested=wanted.setting)
     raise InputError(f"there is no mission {system}/{treatment}/seed-{seed}")
+
+
+def not_to_be_set(flights: Iterable[Flight]) -> dict[str, str]:
+    """The flights, by their labels, whose parameter is not in the robot's own file, and why.
+
+    A program may read one that nobody set: the ranking names it, and the study cannot set it.
+    """
+    found = {}
+    for flight in flights:
+        try:
+            flight.settings()
+        except InputError as error:
+            found[flight.label] = str(error)
+    return found
 
 
 def judged(before: Sequence[Cause], after: Sequence[Cause]) -> Tried:
@@ -166,6 +195,8 @@ def save_tried(
 ) -> list[dict[str, object]]:
     """Write ``TRIED_FILE``: a row for each of these flights, and of no earlier ones.
 
+    What failed is counted in ``FAILED_FILE``, over all calls.
+
     Args:
         flights: what was flown.
         failures: why a flight failed, by its label.
@@ -179,7 +210,46 @@ def save_tried(
     """
     rows = [_row(flight, failures.get(flight.label, ""), out) for flight in flights]
     write_table(pa.Table.from_pylist(rows, schema=_TRIED), out / TRIED_FILE)
+    _save_failed(rows, out)
     return rows
+
+
+def load_failed(out: Path) -> list[Failed]:
+    """The values whose flights failed; none where there is no such file.
+
+    Raises:
+        InputError: it cannot be read.
+    """
+    path = out / FAILED_FILE
+    if not path.is_file():
+        return []
+    document = parse_json(path)
+    try:
+        if not isinstance(document, list):
+            raise TypeError("a list is expected")
+        return [Failed(**one) for one in document]
+    except TypeError as error:
+        raise InputError(f"not about flights that failed: {error}", path) from error
+
+
+def _save_failed(rows: Sequence[Mapping[str, Any]], out: Path) -> None:
+    """Count the failures of these rows, and forget those of what was flown after all."""
+    found = {_place(asdict(one)): one for one in load_failed(out)}
+    for row in rows:
+        mission = f"{row['system']}/{row['treatment']}/seed-{row['seed']}"
+        done = load_done(out / "missions" / mission)
+        one = {**row, "mission": mission, "digest": "" if done is None else done.digest}
+        earlier = found.pop(_place(one), None)
+        if row["failure"]:
+            times = 1 if earlier is None else earlier.times + 1
+            fields = ("mission", "digest", "parameter", "node", "value", "failure")
+            found[_place(one)] = Failed(**{name: one[name] for name in fields}, times=times)
+    text = json.dumps([asdict(found[place]) for place in sorted(found)], indent=1)
+    write_atomic(out / FAILED_FILE, text.encode() + b"\n")
+
+
+def _place(one: Mapping[str, Any]) -> tuple[Any, ...]:
+    return tuple(one[name] for name in ("mission", "digest", "parameter", "node", "value"))
 
 
 def _row(flight: Flight, failure: str, out: Path) -> dict[str, object]:

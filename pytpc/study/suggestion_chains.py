@@ -15,17 +15,22 @@ import numpy as np
 from pytpc.advice.known import Source
 from pytpc.advice.remedy import EVERY_SOURCE
 from pytpc.errors import InputError
+from pytpc.parameters import same_parameter
 from pytpc.static_json import parse_json
 
 CHAINS_FILE = Path("results") / "suggestion-chains.json"
 HEADLINE = "lasting"
 """What is shown of the tool: nothing in it knows the value before the treatment."""
 SUSPECTS = "suspects"
+RANKED = "ranked"
+RANKED_REFERENCE = "ranked-reference"
 VARIANTS: Mapping[str, frozenset[Source] | None] = {
     "smallest": None,
     "lasting": frozenset(),
     "with-default": frozenset({"default", "declared"}),
     "with-reference": EVERY_SOURCE,
+    RANKED: frozenset(),
+    RANKED_REFERENCE: EVERY_SOURCE,
     SUSPECTS: frozenset(),
 }
 """The known values that each may take; None for the smallest change."""
@@ -37,7 +42,8 @@ class Try:
     """A value that was asked for, and what came of it.
 
     ``gone`` and ``new_error`` are None until it is flown, ``reason`` are the errors that were seen
-    then. Where nothing was suggested ``value`` is None, and ``reason`` says why.
+    then. Where nothing was suggested ``value`` is None, and ``reason`` says why. Where the flight
+    ``failed`` too often nothing is known of a new error, and the one of before counts as not gone.
     """
 
     parameter: str
@@ -47,11 +53,18 @@ class Try:
     gone: bool | None = None
     new_error: bool | None = None
     reason: str = ""
+    failed: bool = False
 
     @property
     def is_open(self) -> bool:
         """Whether it is to be flown."""
-        return self.value is not None and self.new_error is None
+        return self.value is not None and self.new_error is None and not self.failed
+
+    def is_same(self, parameter: str, node: str | None, value: float | None) -> bool:
+        """Whether it sets the same parameter, however it is called, to the same value."""
+        mine = self.parameter
+        same = same_parameter(mine, parameter) or same_parameter(parameter, mine)
+        return same and self.value == value and (self.node or node) == (node or self.node)
 
 
 @dataclass
@@ -90,6 +103,9 @@ class Chain:
             return False
         if len(self.tries) >= MOST_TRIES.get(self.variant, 1):
             return True
+        if last.failed:
+            # There is no log from which to go on; the next suspect does not need it.
+            return self.variant != SUSPECTS
         if last.value is None:
             # The next suspect may have a value.
             return self.variant != SUSPECTS or not last.parameter

@@ -12,34 +12,38 @@ asks for next, and writes
 A chain is one mission and one variant. ``smallest`` is SPEC 8's value; ``lasting`` has what the log
 alone says, again from the log of each flight that did not help; ``with-default`` may take the
 source's default, too (in these robots it is the value before the treatment, so that this flatters),
-and ``with-reference`` a clean run's. They are told the changed parameter. ``suspects`` is not: it
-tries the first of a ranking in turn, each with what the log alone says. Every value is from the
-marks as they are typed rightly, of all users. Two chains that want one value share the flight.
+and ``with-reference`` a clean run's. They are told the changed parameter and the right types of the
+marks, of all users. ``suspects`` is told the types: it tries the first of a ranking in turn, each
+with what the log alone says. ``ranked`` is told nothing: the first of the ranking beside a clean
+run, by the marks as they were said, with what the log alone says; ``ranked-reference`` is that with
+the clean run's value. What was flown for one chain counts for all that want the same.
 """
 
 from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
 import pyarrow as pa
 
-from pytpc.advice.remedy import Remedy, remedy
 from pytpc.atomic import write_atomic
 from pytpc.columns import write_table
 from pytpc.errors import InputError
-from pytpc.ingest.recording import Recording, load_recording
-from pytpc.parameters import DYNAMIC, same_parameter
-from pytpc.static_info import StaticInfo
 from pytpc.static_json import parse_json
 from pytpc.study.case import Method
 from pytpc.study.data import load_mission
 from pytpc.study.dataset import DONE_FILE, STUDY_FILE, load_done
 from pytpc.study.plan import Half
-from pytpc.study.suggested import SUGGESTION_FILE, WANTED_FILE
+from pytpc.study.suggested import (
+    MOST_FAILURES,
+    SUGGESTION_FILE,
+    WANTED_FILE,
+    Failed,
+    load_failed,
+)
 from pytpc.study.suggestion_chains import (
     CHAINS_FILE,
     HEADLINE,
@@ -50,6 +54,7 @@ from pytpc.study.suggestion_chains import (
     Try,
     load_chains,
 )
+from pytpc.study.suggestion_values import next_try
 
 TRIES_FILE = Path("results") / "suggestion-tries.parquet"
 HEADLINE_FILE = Path("results") / "suggestions.parquet"
@@ -71,6 +76,7 @@ _TRIES = pa.schema(
         ("gone", pa.bool_()),
         ("new_error", pa.bool_()),
         ("reason", pa.string()),
+        ("failed", pa.bool_()),
     ]
 )
 
@@ -81,6 +87,8 @@ def next_round(
     method: Method | None = None,
     variants: Sequence[str] = tuple(VARIANTS),
     on_progress: Callable[[int, int], None] | None = None,
+    *,
+    again: bool = False,
 ) -> list[Chain]:
     """Take in what was flown, and write what is to be flown next.
 
@@ -90,6 +98,8 @@ def next_round(
         method: for the chains ``suspects``, of which there are none without it.
         variants: for which there are new chains.
         on_progress: called with (chains done, chains in all).
+        again: whether the chains of ``variants`` in ``halves`` begin anew, for the ranking or the
+            advice has changed. What was flown for them is not forgotten.
 
     Returns:
         All chains, in the order of the missions and variants.
@@ -98,22 +108,67 @@ def next_round(
         InputError: a file of the study is missing or broken.
         TpcError: a file cannot be written.
     """
-    chains = _chains(out, halves, method, variants)
+    before = load_chains(out / CHAINS_FILE)
+    failed = load_failed(out)
+    for chain in before:
+        _take_in(chain, out, failed)
+    kept = [one for one in before if not (again and one.variant in variants and one.half in halves)]
+    chains = _chains(kept, out, halves, method, variants)
     for number, chain in enumerate(chains, start=1):
-        _take_in(chain, out)
-        while not chain.is_over and not (chain.tries and chain.tries[-1].is_open):
-            chain.tries.append(_next(chain, out))
+        while not chain.is_over:
+            if not (chain.tries and chain.tries[-1].is_open):
+                chain.tries.append(next_try(chain, out))
+            elif not _is_known(chain, [*chains, *before]):
+                break
         if on_progress is not None:
             on_progress(number, len(chains))
     _save(chains, out)
     return chains
 
 
+def _is_known(chain: Chain, chains: Sequence[Chain]) -> bool:
+    """Whether the open try of a chain was flown for another one; what came of it is taken then.
+
+    Not so where the next value comes from the log of that flight, which may not be there any more.
+    """
+    last = chain.tries[-1]
+    goes_on = chain.variant != SUSPECTS and len(chain.tries) < MOST_TRIES.get(chain.variant, 1)
+    for other in chains:
+        if (other.mission, other.digest) != (chain.mission, chain.digest):
+            continue
+        for one in other.tries:
+            if one.is_open or one.value is None or not one.is_same(*_setting(last)):
+                continue
+            if not (goes_on and one.gone is False and not one.failed):
+                chain.tries[-1] = _came(last, one)
+                return True
+    return False
+
+
+def _setting(one: Try) -> tuple[str, str | None, float | None]:
+    return (one.parameter, one.node, one.value)
+
+
+def _came(one: Try, flown: Try) -> Try:
+    """A try with what came of another one of the same value."""
+    return replace(
+        one,
+        gone=flown.gone,
+        new_error=flown.new_error,
+        reason=flown.reason,
+        failed=flown.failed,
+    )
+
+
 def _chains(
-    out: Path, halves: Sequence[Half], method: Method | None, variants: Sequence[str]
+    before: Sequence[Chain],
+    out: Path,
+    halves: Sequence[Half],
+    method: Method | None,
+    variants: Sequence[str],
 ) -> list[Chain]:
     """Those of before, and new ones of ``variants`` for what was flown or marked since."""
-    known = {(one.mission, one.variant): one for one in load_chains(out / CHAINS_FILE)}
+    known = {(one.mission, one.variant): one for one in before}
     for row in _missions(out):
         if row["half"] not in halves:
             continue
@@ -160,87 +215,47 @@ def _name(row: Mapping[str, Any]) -> str:
     return f"{row['system']}/{row['treatment']}/seed-{row['seed']}"
 
 
-def _take_in(chain: Chain, out: Path) -> None:
-    """What came of the last try, where its flight stands in the folder."""
+def _take_in(chain: Chain, out: Path, failed: Sequence[Failed]) -> None:
+    """What came of the last try, where its flight stands in the folder, or failed too often."""
     if not chain.tries or not chain.tries[-1].is_open:
         return
     last = chain.tries[-1]
-    folder = out / "suggested" / chain.mission
-    if not (folder / DONE_FILE).is_file() or not (folder / SUGGESTION_FILE).is_file():
+    flown = _flown(out / "suggested" / chain.mission, chain.digest)
+    if flown is not None and last.is_same(*_setting(flown)):
+        chain.tries[-1] = _came(last, flown)
         return
+    for one in failed:
+        place = (one.mission, one.digest)
+        if place == (chain.mission, chain.digest) and last.is_same(
+            one.parameter, one.node, one.value
+        ):
+            if one.times >= MOST_FAILURES:
+                reason = f"the flight failed {one.times} times: {one.failure}"
+                chain.tries[-1] = replace(last, gone=False, reason=reason, failed=True)
+            return
+
+
+def _flown(folder: Path, digest: str) -> Try | None:
+    """The suggestion that was flown last for a mission; None where there is none of this digest.
+
+    Raises:
+        InputError: what came of it cannot be read.
+    """
     path = folder / SUGGESTION_FILE
+    if not (folder / DONE_FILE).is_file() or not path.is_file():
+        return None
     flown = parse_json(path)
     try:
         if not isinstance(flown, dict):
             raise TypeError("an object is expected")
-        if (flown["parameter"], flown["value"]) != (last.parameter, last.value):
-            return
-        if flown.get("mission", chain.digest) != chain.digest:
-            return
-        chain.tries[-1] = Try(
-            last.parameter, last.node, last.value, last.basis,
+        if flown.get("mission", digest) != digest:
+            return None
+        return Try(
+            flown["parameter"], flown.get("node"), flown["value"], None,
             flown["gone"], bool(flown["new"]), "; ".join(flown["errors"]),
         )  # fmt: skip
     except (KeyError, TypeError) as error:
         raise InputError(f"not what came of a suggestion: {error}", path) from error
-
-
-def _next(chain: Chain, out: Path) -> Try:
-    """The next value of a chain that is not over and has none that is to be flown."""
-    mission = out / "missions" / chain.mission
-    treatment = parse_json(mission / "treatment.json")
-    if not isinstance(treatment, dict) or not isinstance(treatment.get("parameter"), str):
-        raise InputError("not a treatment with a parameter", mission / "treatment.json")
-    parameter, node = treatment["parameter"], treatment.get("node")
-    folder, flown = mission, []
-    if chain.variant == SUSPECTS:
-        if len(chain.tries) >= len(chain.order):
-            return Try("", None, None, None, reason="no more suspects")
-        parameter, node = chain.order[len(chain.tries)], None
-    elif chain.tries:
-        # Its flight is that of this chain: the one that _take_in has just read.
-        folder = out / "suggested" / chain.mission
-        flown = [chain.new, *(one.value for one in chain.tries[:-1] if one.value is not None)]
-    if DYNAMIC in parameter:
-        return Try(parameter, node, None, None, reason="only the running node knows its name")
-    recording = load_recording(folder)
-    if not recording.marks:
-        return Try(parameter, node, None, None, reason="nobody set a mark")
-    found = _asked(chain, out, recording, parameter, flown)
-    if node is None or not same_parameter(parameter, treatment["parameter"]):
-        node = _node(recording, found.key)
-    value, basis = found.value, found.basis
-    if VARIANTS[chain.variant] is None:
-        value, basis = None if found.smallest is None else found.smallest.value, "smallest"
-    if value is None:
-        return Try(parameter, node, None, None, reason=found.reason or "nothing is suggested")
-    return Try(parameter, node, float(value), basis)
-
-
-def _asked(
-    chain: Chain, out: Path, recording: Recording, parameter: str, flown: Sequence[float]
-) -> Remedy:
-    static = StaticInfo.load(out / "systems" / chain.system / "static.json")
-    sources = VARIANTS[chain.variant] or frozenset()
-    reference = load_recording(out / "reference" / chain.system) if "reference" in sources else None
-    return remedy(
-        recording,
-        static,
-        parameter,
-        recording.marks,
-        sources=sources,
-        reference=reference,
-        flown=flown,
-    )
-
-
-def _node(recording: Recording, key: str | None) -> str | None:
-    """The node that evaluated a comparison; None where several did, or none."""
-    events = recording.events
-    if key is None or key not in events.keys:
-        return None
-    codes = set(events.node[events.by_key.rows(events.keys.index(key))].tolist())
-    return events.nodes[codes.pop()] if len(codes) == 1 else None
 
 
 def _save(chains: Sequence[Chain], out: Path) -> None:
@@ -249,7 +264,7 @@ def _save(chains: Sequence[Chain], out: Path) -> None:
     ]
     write_table(pa.Table.from_pylist(rows, schema=_TRIES), out / TRIES_FILE)
     first = [
-        {**row, "new": row["new_error"], "failure": ""}
+        {**row, "new": row["new_error"], "failure": row["reason"] if row["failed"] else ""}
         for chain in chains
         for row in _rows(chain, chain.tries[:1])
         if chain.variant == HEADLINE and row["value"] is not None

@@ -17,7 +17,6 @@ from pytpc.paths import MERGED_FILE
 from pytpc.python_env import mission_env
 from pytpc.static_info import StaticInfo
 from pytpc.static_json import parse_json
-from pytpc.study.changes import Candidate, candidates
 from pytpc.study.digest import build_digest, sources_digest, tools_digest
 
 _BUILT_FILE = "built.json"
@@ -36,15 +35,6 @@ class System:
     env: Mapping[str, str]
     plain_env: Mapping[str, str]
     digest: str
-
-    @property
-    def candidates(self) -> tuple[Candidate, ...]:
-        """Which parameters a decoy may change.
-
-        Raises:
-            InputError: see ``changes.candidates``.
-        """
-        return candidates(self.example, self.static)
 
 
 def system_folder(example: Example, out: Path) -> Path:

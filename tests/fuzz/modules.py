@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 import random
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -42,19 +42,43 @@ class Checked:
     skipped: str = ""
 
 
-def corpus(folder: Path) -> list[Path]:
-    """The modules of the lit tests, unoptimised as a link sees them, as text in ``folder``."""
-    found = []
-    sources = sorted([*(ROOT / "tests/lit").glob("[!I]*/*.cpp"), LIT_INPUTS / "node.cpp"])
-    for source in sources:
-        for level in ("-O0", "-O2"):
-            unit, text = folder / f"{source.stem}{level}.o", folder / f"{source.stem}{level}.ll"
-            flags = [level, "-std=c++17", "-isystem", LIT_INPUTS / "include"]
-            if compile_unit(source, unit, flags).status == 0:
-                disassemble(unit, text)
-                found.append(text)
-                unit.unlink()
-    return found
+class Corpus:
+    """The modules of the lit tests, unoptimised as a link sees them, and further ones.
+
+    Each becomes text when it is drawn for the first time: all of them take longer than many runs.
+
+    Args:
+        folder: for the texts.
+        further: more modules, as bitcode.
+    """
+
+    def __init__(self, folder: Path, further: Sequence[Path] = ()) -> None:
+        self._folder = folder
+        sources = sorted([*(ROOT / "tests/lit").glob("[!I]*/*.cpp"), LIT_INPUTS / "node.cpp"])
+        self._modules = [(source, level) for source in sources for level in ("-O0", "-O2")]
+        self._modules += [(unit, "") for unit in further]
+        self._texts: dict[tuple[Path, str], Path] = {}
+
+    def draw(self, draw: random.Random) -> Path:
+        """One of them, as text; what does not compile is no module."""
+        while True:
+            source, level = entry = draw.choice(self._modules)
+            if entry not in self._texts:
+                self._texts[entry] = self._text(source, level)
+            if self._texts[entry].is_file():
+                return self._texts[entry]
+
+    def _text(self, source: Path, level: str) -> Path:
+        text = self._folder / f"{source.parent.name}-{source.stem}{level}.ll"
+        if not level:
+            disassemble(source, text)
+            return text
+        unit = text.with_suffix(".o")
+        flags = [level, "-std=c++17", "-isystem", LIT_INPUTS / "include"]
+        if compile_unit(source, unit, flags).status == 0:
+            disassemble(unit, text)
+        unit.unlink(missing_ok=True)
+        return text
 
 
 def disassemble(unit: Path, text: Path) -> None:

@@ -40,16 +40,12 @@ class Fuzzer:
     """Runs with one corpus; ``kept`` gets the folders of the runs with findings."""
 
     def __init__(self, folder: Path, kept: Path, further: Sequence[Path] = ()) -> None:
-        """Make the corpus; ``further`` are more modules for it, as bitcode."""
+        """``further`` are more modules for the corpus, as bitcode."""
         self.account = Account()
         self._work, self._kept = folder / "work", kept
         texts = folder / "corpus"
         texts.mkdir()
-        self._corpus = modules.corpus(texts)
-        for unit in further:
-            text = texts / f"{unit.stem}.ll"
-            modules.disassemble(unit, text)
-            self._corpus.append(text)
+        self._corpus = modules.Corpus(texts, further)
 
     def run(self, seed: int) -> None:
         """One run."""
@@ -79,7 +75,7 @@ class Fuzzer:
             modules.stress(seed, text)
         else:
             kind = "mutated modules"
-            source = draw.choice(self._corpus)
+            source = self._corpus.draw(draw)
             origin = source.stem
             shutil.copyfile(source, text)
         done = modules.mutate(text, seed)

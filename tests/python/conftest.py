@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner, Result
 from launch_samples import MISSION_PARAMS
+from study_samples import make_study
 
 from pytpc.cli.main import main
+from pytpc.study.report.making import Made, make_report
 
 
 @pytest.fixture
@@ -31,3 +34,27 @@ def params(tmp_path: Path) -> Path:
     path = tmp_path / "params.yaml"
     path.write_text(MISSION_PARAMS)
     return path
+
+
+@pytest.fixture(scope="session")
+def study(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A small study's folder, which no test changes."""
+    return make_study(tmp_path_factory.mktemp("study"))
+
+
+@pytest.fixture
+def own_study(study: Path, tmp_path: Path) -> Path:
+    """A copy of it that a test may spoil."""
+    return Path(shutil.copytree(study, tmp_path / "own"))
+
+
+@pytest.fixture(scope="session")
+def made_study(study: Path, tmp_path_factory: pytest.TempPathFactory) -> Made:
+    """Its page with all that belongs to it."""
+    return make_report(study, tmp_path_factory.mktemp("docs") / "study.md")
+
+
+@pytest.fixture(scope="session")
+def study_text(made_study: Made) -> str:
+    """The text of its page."""
+    return made_study.page.read_text()

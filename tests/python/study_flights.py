@@ -29,6 +29,11 @@ pump:
 mission: {limit: 20, pace: 0.5, deep/er: 4.0}
 """
 
+DECOYS = (
+    {"parameter": "~a", "node": "/pump", "new": 1.5},
+    {"parameter": "~c", "node": "/pump", "new": 0.008},
+)
+
 
 def treatment(name: str, kind: TreatmentType | None = None, parameter: str | None = None):
     """``type1_b`` changes ``~b`` of /pump from 2 to 0.5, ``clean`` and ``fault_x`` nothing."""
@@ -65,6 +70,7 @@ def robot(folder: Path, monkeypatch: pytest.MonkeyPatch, *names: str) -> Example
         ("config/params.yaml", PARAMETERS),
         ("launch/robot.launch", "<launch/>\n"),
         ("src/node.cpp", "int main() {}\n"),
+        ("study.json", json.dumps({"decoys": DECOYS})),
     ):
         path = example.folder / file
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -67,6 +67,7 @@ class Row:
     parameters: int = 4
     top: str = "~low"
     tied: int = 1
+    round: int = 1
 
 
 def make_study(folder: Path) -> Path:
@@ -136,11 +137,12 @@ def fly(
 
 
 def fly_recorded(folder: Path) -> Path:
-    """The recorded mission, its treatment without a known tipping point."""
+    """The recorded mission, its treatment of the second round and without a known tipping point."""
     target = folder / "missions/image_capture/type2_min_coverage_limit/seed-1"
     shutil.copytree(RECORDED, target)
     treatment = json.loads((target / "treatment.json").read_text())
-    (target / "treatment.json").write_text(json.dumps({**treatment, "tipping": None}))
+    changes = {"tipping": None, "round": 2}
+    (target / "treatment.json").write_text(json.dumps({**treatment, **changes}))
     marks = json.loads((target / "marks.json").read_text())["marks"]
     write_said(target, [(m["time_ns"] / 1e9, "user1", m["type"], m["type"]) for m in marks])
     (target / "done.json").write_text("{}")
@@ -175,16 +177,16 @@ def positions() -> list[Row]:
         Row(*low, 2, "typed", None, None, marks=0),
         Row(*high, "held-back", 1, "typed", 1, 0.7),
         Row(*high, "held-back", 2, "typed", 4, 0.3),
-        Row(*picture, "typed", 2, 0.6, parameters=41),
+        Row(*picture, "typed", 2, 0.6, parameters=41, round=2),
         Row(*high, "held-back", 1, "untyped", 1, 0.7),
         Row(*high, "held-back", 2, "untyped", 1.5, 0.3, tied=2),
-        Row(*picture, "untyped", 3, 0.6, parameters=41),
+        Row(*picture, "untyped", 3, 0.6, parameters=41, round=2),
         Row(*high, "held-back", 1, "confused", 3, 0.2),
         Row(*high, "held-back", 2, "confused", None, None, marks=0),
-        Row(*picture, "confused", 20, 0.1, parameters=41),
+        Row(*picture, "confused", 20, 0.1, parameters=41, round=2),
         Row(*high, "held-back", 1, "typed", 3.5, None, method="thesis", tied=2),
         Row(*high, "held-back", 2, "typed", 2, None, method="thesis"),
-        Row(*picture, "typed", 30, None, method="thesis", parameters=41),
+        Row(*picture, "typed", 30, None, method="thesis", parameters=41, round=2),
         Row(*high, "held-back", 1, "typed", 1, 0.7, who="user1"),
         Row(*high, "held-back", 1, "typed", 4, 0.7, who="user2"),
         Row("alpha", "clean", "clean", "tuning", 1, "typed", None, 0.2),

@@ -25,7 +25,7 @@ RUNS = {
     "watch": (EXAMPLE, *STATIC, "--top", "1"),
 }
 # Objects whose fields stand elsewhere, or are names of columns.
-ELSEWHERE = {"suggestion", "remedy", "what_if", "declared", "rows", "summary"}
+ELSEWHERE = {"suggestion", "remedy", "what_if", "declared", "together", "rows", "summary"}
 
 
 def fields(value: object) -> Iterator[str]:

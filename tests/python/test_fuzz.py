@@ -1,5 +1,6 @@
 """The fuzzer sees what it is there to see."""
 
+import random
 from pathlib import Path
 
 import pytest
@@ -74,3 +75,18 @@ def test_another_checksum_is_a_finding(tmp_path: Path, monkeypatch: pytest.Monke
     monkeypatch.setattr(programs, "run", wrong)
     compared = programs.compare(5, tmp_path)
     assert "became b'other'" in compared.finding
+
+
+# What compiles all modules before the first run has no time left for a run.
+def test_a_module_is_compiled_when_it_is_drawn(tmp_path: Path) -> None:
+    drawn = []
+    for name in ("a", "b"):
+        folder = tmp_path / name
+        folder.mkdir()
+        corpus = modules.Corpus(folder)
+        assert list(folder.iterdir()) == []
+        text = corpus.draw(random.Random(3))
+        assert corpus.draw(random.Random(3)) == text
+        assert list(folder.iterdir()) == [text]
+        drawn.append(text.name)
+    assert drawn[0] == drawn[1]

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import json
+import math
 import re
+import statistics
 from collections import Counter
 from pathlib import Path
 
 import pytest
 import yaml
 
+from pytpc.changes import Change
 from pytpc.demo_examples import IMAGE_CAPTURE
+from pytpc.study.changes import harmless_changes
 from pytpc.treatment import Treatment
 
 PACKAGE = Path(__file__).parents[2] / "examples/image_capture"
@@ -163,8 +167,20 @@ def test_faults_are_those_that_the_launch_file_knows():
     assert known == {"none"} | {treatment.launch["fault"] for treatment in treatments("fault")}
 
 
-def test_what_never_is_a_decoy_is_configured():
-    own = yaml.safe_load((PACKAGE / "config/params.yaml").read_text())
-    for name in json.loads((PACKAGE / "study.json").read_text())["never_decoys"]:
-        _, node, parameter = name.split("/")
-        assert isinstance(own[node][parameter], float)
+def times(one: Treatment | Change) -> float:
+    """How many times as large, or as small, a change makes its number."""
+    return max(one.old, one.new) / min(one.old, one.new) if min(one.old, one.new) else math.inf
+
+
+def test_harmless_changes_are_as_large_as_those_of_the_treatments():
+    decoys = harmless_changes(IMAGE_CAPTURE)
+    assert len(decoys) >= 20
+    factors = [times(one) for one in decoys]
+    assert statistics.median(factors) >= statistics.median(map(times, treatments("type")))
+    assert 1.3 <= min(factors) <= max(factors) <= 60.0
+    greater = sum(one.new > one.old for one in decoys)
+    assert len(decoys) / 3 <= greater <= len(decoys) * 2 / 3
+    assert {one.node for one in decoys} > {"/mission", "/face_detector", "/flight_controller"}
+    # They are compared as the treatments' are.
+    compared = {entry["parameter"] for entry in DOCUMENT["tpcs"]}
+    assert {one.parameter.lstrip("~") for one in decoys} <= compared

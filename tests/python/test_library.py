@@ -12,6 +12,7 @@ from mission_samples import comparison, events, ns, static_info
 
 import pytpc
 from pytpc import library
+from pytpc.advice.joining import join_advice
 from pytpc.errors import InputError
 from pytpc.ingest.recording import Recording
 from pytpc.marks import Mark
@@ -91,7 +92,15 @@ def test_suggestions():
     (one,) = pytpc.suggest(rankings, 1, top=1)
     assert one.suggestion.direction == "lower"
     assert 1 < float(one.suggestion.value or 0) < 2
-    assert "lower to" in str(pytpc.suggest(rankings, 1, top=1))
+    # The value to try is that of the command line, for all marks that say the same.
+    assert one.remedy is not None
+    assert one.tried is not None
+    (group,) = join_advice(MISSION, STATIC, list(rankings), top=1)
+    assert one.remedy == group.suspects[0].remedy
+    assert one.tried.value == one.remedy.value
+    said = str(pytpc.suggest(rankings, 1, top=1))
+    assert f"lower to {one.remedy.value}" in said
+    assert said.endswith(f"lower to {one.suggestion.value}")
     with pytest.raises(IndexError, match="mark 2 of 1"):
         pytpc.suggest(rankings, 2)
     then = pytpc.what_if(MISSION, STATIC, "limit", 0.5, kind="II")

@@ -511,6 +511,9 @@ def test_where_the_behaviour_tips_may_be_said(folder):
         ({"extra": 1}, "exactly the fields"),
         ({"tipping": "7"}, "tipping is not a number or null"),
         ({"tipping": True}, "tipping is not a number or null"),
+        ({"round": 0}, "round is not a whole number from 1"),
+        ({"round": True}, "round is not a whole number from 1"),
+        ({"round": 1.5}, "round is not a whole number from 1"),
     ],
 )
 def test_wrong_treatments_say_what_is_wrong(folder, change, what):
@@ -670,3 +673,9 @@ def test_table_has_a_row_for_each_mark(tmp_path):
     assert cells[1][7] == "yes"
     assert cells[2][2:4] == ["11.0 s", "II (wrong type)"]
     assert cells[2][6:] == ["", ""]
+
+
+def test_a_treatment_may_say_in_which_round_of_the_study_it_was_added(folder):
+    assert load_treatment(folder).round == 1
+    (folder / "treatment.json").write_text(json.dumps({**GOOD, "round": 2}))
+    assert load_treatment(folder).round == 2

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections import Counter
 
@@ -135,10 +134,12 @@ def test_faults_are_those_that_the_launch_file_knows():
     assert known == {"none"} | {treatment.launch["fault"] for treatment in treatments("fault")}
 
 
-def test_what_never_is_a_decoy_is_configured():
-    for name in json.loads((PACKAGE / "study.json").read_text())["never_decoys"]:
-        _, node, parameter = name.split("/")
-        assert isinstance(ROBOT.configured[node][parameter], float)
+def test_treatments_under_which_the_lamp_is_lit_late_are_there():
+    late = {"type2_retry_period", "type2_settle_time"}
+    assert late == NAVIGATION.reached_under
+    for treatment in treatments("type2"):
+        said = [] if treatment.name in late else [NAVIGATION.reached]
+        assert NAVIGATION.goal_remarks(treatment, reached=True) == said
 
 
 def test_observer_knows_the_arena_as_it_is_simulated():

@@ -134,6 +134,7 @@ def test_the_way_to_where_it_stood_does_not_count():
 def test_a_counter_does_not_get_below_0():
     found = ask(">=", [5, 5, 4, 0, 0], 2, marks(95), default=2)
     assert (found.direction, found.value) == ("lower", 0)
+    assert "(at most 0: " in found.text
 
 
 # A height that sinks from 2.4 to the 1.7 at which the program goes on to wait (below 1.75), and is
@@ -214,21 +215,53 @@ def test_summaries():
     assert (found.value, found.direction) == (7.25, "lower")
 
 
-def test_the_value_of_a_clean_run_is_taken_where_it_lies_that_way():
+# What lasts is above 0.1. The clean run's 0.35 lies there; 0.02 would make stronger what the robot
+# stood by, if the marks are of the type that was said. It went right with it all the same.
+@pytest.mark.parametrize(
+    ("flown", "direction", "words"),
+    [
+        (0.35, "raise", "(the value of the clean run)"),
+        (0.02, "lower", "(the value of the clean run; the log alone points the other way)"),
+    ],
+)
+def test_the_value_of_a_clean_run_is_taken_whatever_the_log_says(flown, direction, words):
     static = static_info(comparison(0, "limit", "<"))
     log = recording(rows("<", [0.1] * 5, 0.04))
     typed = marks(95, kind="II")
-    clean = recording(rows("<", [0.1] * 5, 0.35))
+    clean = recording(rows("<", [0.1] * 5, flown))
     found = remedy(log, static, "limit", typed, reference=clean)
-    assert (found.value, found.basis) == (0.35, "reference")
-    assert "the clean run" in found.text
+    assert (found.value, found.basis, found.direction) == (flown, "reference", direction)
+    assert found.text == f"{direction} limit from 0.04 to {flown} {words}"
+    assert [(one.source, one.value) for one in found.known] == [("reference", flown)]
+    # Where it may not be taken, or was tried in vain, the log has the word.
     assert remedy(log, static, "limit", typed, reference=clean, sources=()).value == 0.101
-    # In the other direction it would make stronger what the robot stood by.
-    clean = recording(rows("<", [0.01] * 5, 0.02))
-    assert remedy(log, static, "limit", typed, reference=clean).value == 0.101
-    assert [one.value for one in remedy(log, static, "limit", typed, reference=clean).known] == [
-        0.02
-    ]
+    again = remedy(log, static, "limit", typed, reference=clean, flown=[flown])
+    assert (again.direction, again.basis) == ("raise", "lasting")
+
+
+def test_a_clean_run_with_the_same_value_says_nothing():
+    log = recording(rows("<", [0.1] * 5, 0.04))
+    static = static_info(comparison(0, "limit", "<"))
+    found = remedy(log, static, "limit", marks(95, kind="II"), reference=log)
+    assert (found.value, found.basis) == (0.101, "lasting")
+
+
+# A flag that never changed: to a mark of type I the log has no answer, but the clean run has. The
+# count of 3 is a whole number, and so is what is tried.
+def test_a_clean_run_answers_where_the_log_does_not():
+    flag = static_info(comparison(0, "on", "flag", default=True))
+    found = remedy(
+        recording(rows("flag", [0] * 5, 0)), flag, "on", marks(95), reference=recording(
+            rows("flag", [1] * 5, 1)
+        )
+    )  # fmt: skip
+    assert (found.value, found.direction, found.basis) == (True, "switch", "reference")
+    assert found.text == "switch on from false to true (the value of the clean run)"
+    whole = static_info(comparison(0, "limit", ">=", default=3))
+    clean = recording(rows(">=", [0] * 5, 8))
+    log = recording(rows(">=", [0] * 5, 3))
+    found = remedy(log, whole, "limit", marks(95), reference=clean)
+    assert (found.value, type(found.value)) == (8, int)
 
 
 # A default of 0.05 turns the 0.045 alone, so it does not last.

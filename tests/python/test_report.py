@@ -17,6 +17,7 @@ from report_samples import NASTY, Page, mission, written
 
 from pytpc.advice.blame import blame
 from pytpc.advice.declared import Declared
+from pytpc.advice.joining import join_advice
 from pytpc.errors import TpcError
 from pytpc.ingest import MalformedRecord, Recording
 from pytpc.marks import Mark
@@ -182,15 +183,24 @@ def test_what_it_says(page_text):
     # Marks 1 and 3 name faces first: at 36 s both scores count, and faces, last changed 6 s before,
     # is first by type I: 6 * 2 = 12 against 1 * 15 = 15 of NASTY.
     assert "First suspect at marks 1, 3 of 3, by the score of type I." in text
-    # faces >= 3 became true with 4 faces: above 4 it would not have, and there are whole faces.
-    assert "▲ Raise faces from 3 to 5" in text
+    # faces >= 3 became true with 4 faces: above 4 it would not have, and there are whole faces. It
+    # grew from 1 until the program acted: three times the way is 10, and above it are 11.
+    assert "▲ Raise faces from 3 to 11" in text
     assert "It became true 1.00 s before the mark, with 4 against 3." in text
-    assert "Any value above 4 would do (limited by whole number)." in text
+    assert "Any value above 4 would do at least once." in text
+    assert "Why this valueabove 10: the value grew until the program acted" in text
+    assert "On this recording11 answers 1 of 1 mark of type I" in text
+    assert "Smallest changeraise faces from 3 to 5 (above 4)" in text
     # The nearest evaluation in the window has coverage 0.5 of 0.6: true below 0.5. From 23 to 35 s
-    # there are 121 evaluations, both ends with them.
-    assert "At mark 2 of 3: ▼ Lower coverage changed from 0.6 to 0.499" in text
+    # there are 121 evaluations, both ends with them. They grow to it: what they had reached in the
+    # middle, at 29 s, is 29/60 = 0.48333.
+    assert "At mark 2 of 3: ▼ Lower coverage changed from 0.6 to 0.483" in text
+    assert "Smallest changelower coverage from 0.6 to 0.499 (below 0.5)" in text
     assert "In the 12 s before the mark it was false each of 121 times" in text
-    assert "the compared value came as near as 0.5 to 0.6. Any value below 0.5 would do." in text
+    assert (
+        "the compared value came as near as 0.5 to 0.6. Any value below 0.5 would do at least once."
+        in text
+    )
     assert "4 >= 3 was true, 0.00 s before the mark" in text
     assert "Ranked among 4 parameters." in text
     assert re.search("Comparisons seen *3 of 4 found in the source", text)
@@ -365,6 +375,25 @@ def test_marks_without_enough_evidence_do_not_make_the_answer(tmp_path):
     text = " ".join("".join(Page(written(tmp_path, report)).text).split())
     why = "Not enough evidence to go by this: only alone had been compared up to the mark. ▼ Lower"
     assert why in text
+
+
+# The marks at 26 and 31 s say the same, so that both cards and the answer have one value: what
+# coverage had reached in the middle of the first one's window, 20/60. At the second alone it is
+# 25/60.
+def test_it_leads_with_the_value_of_pytpc_suggest(tmp_path):
+    report = mission(tmp_path)
+    marks = (Mark(ns(26), "II"), Mark(ns(31), "II"))
+    recording = replace(report.recording, marks=marks)
+    rankings = rank_marks(recording, report.static_info)
+    (group,) = join_advice(recording, report.static_info, rankings)
+    tried = group.suspects[0].remedy
+    report = replace(report, recording=recording, rankings=rankings)
+    text = " ".join("".join(Page(written(tmp_path, report)).text).split())
+    claim = f"▼ Lower coverage changed from 0.6 to {tried.value}"
+    assert (tried.parameter, tried.value) == ("coverage", 0.333)
+    assert text.count(claim) == 3
+    (alone,) = join_advice(recording, report.static_info, rankings[1:])
+    assert alone.suspects[0].remedy.value == 0.416
 
 
 # What all marks say together comes before what any of them says; where the marks are outside of the

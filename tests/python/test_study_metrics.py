@@ -1,48 +1,34 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import pytest
 
 from pytpc.study.case import Verdict
 from pytpc.study.judge import place, position
-from pytpc.study.metrics import accusations, brier, estimate, merit, reliability, top_share
+from pytpc.study.metrics import (
+    calibration_error,
+    estimate,
+    reliability,
+    share,
+    upper_limit,
+    within,
+)
 
 NAMES = ("~a", "~b", "~c", "~d", "~e")
-
-
-@dataclass(frozen=True)
-class Row:
-    treatment: str
-    position: float | None
-    confidence: float | None = None
-    parameters: int = 10
-    system: str = "robot"
-    tied: int = 1
 
 
 # b and c share the places 2 and 3; d and e, which are not named, the places 4 and 5.
 def test_tied_parameters_have_the_mean_of_their_places():
     verdict = Verdict(("~a", "~b", "~c"), scores=(9.0, 4.0, 4.0))
     assert [place(verdict, name, 5) for name in NAMES] == [
-        (1.0, 1),
-        (2.5, 2),
-        (2.5, 2),
-        (4.5, 2),
-        (4.5, 2),
-    ]
+        (1.0, 1), (2.5, 2), (2.5, 2), (4.5, 2), (4.5, 2)
+    ]  # fmt: skip
 
 
 def test_without_scores_only_the_unnamed_are_tied():
     verdict = Verdict(("~b", "~a"))
-    assert [place(verdict, name, 5) for name in NAMES] == [
-        (2.0, 1),
-        (1.0, 1),
-        (4.0, 3),
-        (4.0, 3),
-        (4.0, 3),
-    ]
+    assert [place(verdict, name, 5) for name in NAMES] == [(2, 1), (1, 1), (4, 3), (4, 3), (4, 3)]
     assert [place(Verdict(()), name, 5) for name in NAMES] == [(3.0, 5)] * 5
 
 
@@ -58,29 +44,18 @@ def test_scores_have_to_fit():
         Verdict(("~a", "~b"), scores=(1.0,))
 
 
-# Treatment x: places 1 and 3, y: no mark (the middle of ten places is 5.5, and a miss), z: 2.
-# Top 1: x 1/2, y 0, z 0: 1/6. Top 3: 1, 0, 1: 2/3. Places: 2, 5.5, 2: 9.5/3.
-# Ranks 1 - (place - 1)/10: x (1 + 0.8)/2 = 0.9, y 0.55, z 0.9: 2.35/3.
-def test_merit_by_hand():
-    found = merit([Row("x", 1.0), Row("x", 3.0), Row("y", None), Row("z", 2.0)])
-    assert found.top1.value == pytest.approx(1 / 6)
-    assert found.top3.value == pytest.approx(2 / 3)
-    assert found.position.value == pytest.approx(9.5 / 3)
-    assert found.rank.value == pytest.approx(2.35 / 3)
-    assert found.top1.treatments == 3
-
-
-# Two share 3 and 4, three share 2 to 4, two share 2 and 3; of ten that share all places three are
-# among the first three.
+# Alone at 2 it is there or not. Of three that share the places 2 to 4 (mean 3) each is second with
+# 1/3, and among the first three with 2/3. All of five tied (mean 3) is chance: k / 5.
 @pytest.mark.parametrize(
-    ("position", "tied", "first", "three"),
-    [(3.5, 2, 0.0, 1 / 2), (3.0, 3, 0.0, 2 / 3), (2.5, 2, 0.0, 1.0), (5.5, 10, 0.1, 0.3)],
+    ("mean", "tied", "shares"),
+    [
+        (2.0, 1, [0, 1, 1, 1, 1]),
+        (3.0, 3, [0, 1 / 3, 2 / 3, 1, 1]),
+        (3.0, 5, [0.2, 0.4, 0.6, 0.8, 1.0]),
+    ],
 )
-def test_of_a_tie_the_expected_share_is_among_the_first(position, tied, first, three):
-    assert top_share(position, tied, 1) == pytest.approx(first)
-    assert top_share(position, tied, 3) == pytest.approx(three)
-    found = merit([Row("x", position, tied=tied)])
-    assert (found.top1.value, found.top3.value) == pytest.approx((first, three))
+def test_of_tied_parameters_each_is_as_likely_before_the_others(mean, tied, shares):
+    assert [within(k, mean, tied) for k in range(1, 6)] == pytest.approx(shares)
 
 
 # Of two treatments with 0 and 1 a draw has mean 0 or 1 with 1/4 each: both 95 % ends are outside
@@ -102,23 +77,59 @@ def test_the_interval_has_the_width_of_the_binomial():
     assert found == estimate([0.0, 1.0] * 50, list(range(100)))
 
 
+# Where nothing was seen in n, a share p leaves it so with (1 - p)^n, which is 0.025 at the end of
+# the interval: of 1 at p = 0.975; of 2 at 1 - 0.158; of 6 at 1 - 0.541; of 18 at 1 - 0.815.
+@pytest.mark.parametrize(
+    ("treatments", "end"), [(1, 0.025), (2, 0.1581), (6, 0.5407), (18, 0.8147)]
+)
+def test_a_share_of_all_or_nothing_has_an_interval(treatments, end):
+    units = [place // 2 for place in range(2 * treatments)]
+    every, nothing = share([1.0] * len(units), units), share([0.0] * len(units), units)
+    assert (every.value, every.high, every.treatments) == (1.0, 1.0, treatments)
+    assert (nothing.value, nothing.low, nothing.treatments) == (0.0, 0.0, treatments)
+    assert every.low == pytest.approx(end, abs=5e-5)
+    assert nothing.high == pytest.approx(1 - end, abs=5e-5)
+
+
+# A difference that is 0 in all treatments is no share.
+def test_other_shares_and_differences_are_drawn():
+    assert share([0.0, 0.0, 1.0], ["x", "x", "y"]) == estimate([0.0, 0.0, 1.0], ["x", "x", "y"])
+    assert estimate([0.0, 0.0], ["x", "y"])[:3] == (0.0, 0.0, 0.0)
+    assert share([], []).treatments == 0
+
+
+# 0 of 3: (1 - p)^3 = 0.025. 1 of 2: p^2 = 0.975, for at most one has to be as rare as 0.025. 1 of
+# 10 is 0.4450 in the tables of Clopper and Pearson.
+@pytest.mark.parametrize(
+    ("count", "of", "limit"),
+    [(0, 3, 0.70760), (0, 6, 0.45926), (1, 2, 0.98742), (1, 10, 0.44502), (2, 2, 1.0)],
+)
+def test_what_cannot_be_ruled_out(count, of, limit):
+    assert upper_limit(count, of) == pytest.approx(limit, abs=5e-6)
+
+
 def test_reliability_by_hand():
-    found = reliability([0.05, 0.15, 0.95, 1.0, 0.9], [False, True, True, True, False])
-    assert [(round(b.low, 9), round(b.high, 9), b.verdicts) for b in found] == [
-        (0.0, 0.2, 2),
-        (0.8, 1.0, 3),
+    found = reliability(
+        [0.05, 0.15, 0.95, 1.0, 0.9], [False, True, True, True, False], ["a", "a", "a", "b", "c"]
+    )
+    assert [(round(b.low, 9), round(b.high, 9), b.verdicts, b.treatments) for b in found] == [
+        (0.0, 0.2, 2, 1),
+        (0.8, 1.0, 3, 3),
     ]
     assert [b.confidence for b in found] == pytest.approx([0.1, 0.95])
     assert [b.right for b in found] == pytest.approx([0.5, 2 / 3])
 
 
-# (0.1^2 + 0.6^2) / 2.
-def test_brier_by_hand():
-    assert brier([0.9, 0.6], [True, False]) == pytest.approx(0.185)
-    assert math.isnan(brier([], []))
+# In the bin below 0.2 the confidences are 0.1 too high in sum, in the one from 0.8 on 0.8: 0.9 of
+# four verdicts. Of treatment a alone the gaps are 0.1 of two, of b alone 0.8 of two; of both 0.9 of
+# four. Each alone is a quarter of the draws, so that they are the ends.
+def test_the_error_of_calibration_and_its_interval():
+    found = calibration_error([0.05, 0.05, 0.9, 0.9], [0, 0, 1, 0], ["a", "a", "b", "b"])
+    assert found == pytest.approx((0.9 / 4, 0.05, 0.4, 2))
+    assert calibration_error([], [], []).treatments == 0
 
 
-def test_a_mission_without_a_mark_is_no_accusation():
-    rows = [Row("clean", None, 0.5), Row("clean", None), Row("fault", None, 0.49)]
-    assert accusations(rows).value == pytest.approx(0.25)
-    assert accusations(rows, limit=0.4).value == pytest.approx(0.75)
+# In one bin too much here and too little there make up for each other, in two they do not.
+def test_the_error_of_calibration_is_that_of_bins():
+    assert calibration_error([0.5, 0.5], [0, 1], "ab").value == 0.0
+    assert calibration_error([0.3, 0.7], [1, 0], "ab").value == pytest.approx(0.7)

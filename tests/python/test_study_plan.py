@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
+from dataclasses import replace
 
 import pytest
-from mission_samples import comparison, static_info
 from study_flights import robot, treatment
 
 from pytpc.changes import Change
-from pytpc.demo_examples import EXAMPLES
+from pytpc.demo_examples import EXAMPLES, Example
 from pytpc.errors import InputError
-from pytpc.study.changes import Candidate, candidates, drawn_changes, save_changes
+from pytpc.study.changes import DECOYS, drawn_changes, harmless_changes, save_changes
 from pytpc.study.plan import (
     Flight,
     Selection,
@@ -24,7 +25,7 @@ from pytpc.study.plan import (
 )
 from pytpc.values.recording import read_parameters
 
-AMONG = tuple(Candidate("/pump", name, 2.0) for name in "abcdefgh")
+AMONG = {Change(f"~{name}", "/pump", 2.0, 5.0): frozenset[str]() for name in "abcdefghijk"}
 
 
 def test_halves_are_dealt_by_the_sorted_hashes_of_the_names():
@@ -52,65 +53,110 @@ def test_halves_depend_on_the_system_and_not_on_the_order_in_which_treatments_co
     assert halves("robot", these) != halves("other", these)
 
 
+def test_treatments_of_a_later_round_are_held_back_and_move_no_other():
+    first = [treatment(f"type1_{letter}") for letter in "abcd"]
+    later = [replace(treatment(f"type1_{letter}"), round=2) for letter in "wxyz"]
+    found = halves("robot", [*later, *first])
+    assert {found[one.name, seed] for one in later for seed in (1, 2)} == {"held-back"}
+    assert {key: found[key] for key in halves("robot", first)} == halves("robot", first)
+
+
 def test_decoys_and_their_order_are_drawn_by_hashes():
-    # sha256sum of robot/clean/1/pump/NAME: b 0e92, e 13f7, f 1e9f, a 7479, h 94ab, c ae02, g bb47,
-    # d da22: the first five. Of robot/clean/1/order/pump~NAME: a 3835, f 3e27, h 3f92, b 5eb4,
-    # e b75f. Of robot/clean/1/sign/pump/NAME the last digit is odd, and so it is more, for e, h.
+    # The first eight by sha256sum of robot/clean/1/pump~NAME, in the order of those of
+    # robot/clean/1/order/pump~NAME.
     found = drawn_changes("robot", treatment("clean"), 1, AMONG)
-    assert found == tuple(
-        Change(f"~{name}", "/pump", 2.0, new)
-        for name, new in (("a", 1.94), ("f", 1.94), ("h", 2.06), ("b", 1.94), ("e", 2.06))
-    )
+    assert found == tuple(Change(f"~{name}", "/pump", 2.0, 5.0) for name in "daifhkge")
 
 
 def test_the_changed_parameter_is_no_decoy_and_has_its_place_in_the_history():
     places = set()
-    for seed in range(40):
+    for seed in range(60):
         found = drawn_changes("robot", treatment("type1_b"), seed, AMONG)
         mine = [change for change in found if change.parameter == "~b"]
         assert mine == [Change("~b", "/pump", 2.0, 0.5)]
-        assert len(found) == 6
+        assert len(found) == 9
         places.add(found.index(mine[0]))
     # Neither the first nor the last is a giveaway.
-    assert places == set(range(6))
+    assert places == set(range(9))
 
 
-def test_one_of_the_same_name_at_another_node_is_no_decoy_either():
-    among = [Candidate("/arm", "b", 1.0), Candidate("/arm", "c", 1.0)]
+def test_no_decoy_is_called_like_the_changed_parameter():
+    among = {Change("~b", "/arm", 1.0, 2.0): (), Change("~c", "/arm", 1.0, 2.0): ()}
     found = drawn_changes("robot", treatment("type1_b"), 1, among)
     assert sorted((one.node, one.parameter) for one in found) == [("/arm", "~c"), ("/pump", "~b")]
 
 
-def test_candidates_are_fractions_that_are_compared_and_not_the_worlds(tmp_path, monkeypatch):
+def test_what_hides_a_treatments_error_is_not_drawn_with_it():
+    hidden = {one: {"type1_b"} if one.parameter in ("~a", "~c") else set() for one in AMONG}
+    for seed in range(20):
+        found = drawn_changes("robot", treatment("type1_b"), seed, hidden)
+        assert not {"~a", "~c"} & {one.parameter for one in found}
+        assert len(found) == 9
+        # Others are drawn as they were.
+        other = treatment("type2_b")
+        assert drawn_changes("robot", other, seed, hidden) == drawn_changes(
+            "robot", other, seed, AMONG
+        )
+
+
+def listed(example: Example, *entries: object) -> dict[Change, frozenset[str]]:
+    (example.folder / "study.json").write_text(json.dumps({"decoys": entries}))
+    return harmless_changes(example)
+
+
+def test_harmless_changes_are_those_that_the_robot_lists(tmp_path, monkeypatch):
     example = robot(tmp_path, monkeypatch)
-    names = ("~a", "~b", "~c", "~nothing", "~count", "~on", "~wind", "/mission/pace", "~deep/er")
-    static = static_info(*(comparison(number, name) for number, name in enumerate(names)))
-    # ~nothing is 0, ~count is an int, ~on a flag, ~wind the simulator's, ~unused not compared.
-    assert [one.full for one in candidates(example, static)] == [
-        "/mission/deep/er",
-        "/mission/pace",
-        "/pump/a",
-        "/pump/b",
-        "/pump/c",
+    assert list(harmless_changes(example)) == [
+        Change("~a", "/pump", 1.0, 1.5),
+        Change("~c", "/pump", 0.004, 0.008),
     ]
-    (example.folder / "study.json").write_text('{"never_decoys": ["~a", "deep/er", "/pump/b"]}')
-    assert [one.full for one in candidates(example, static)] == ["/mission/pace", "/pump/c"]
+    (example.folder / "study.json").unlink()
+    assert harmless_changes(example) == {}
+    assert listed(
+        example,
+        {"parameter": "~c", "node": "/pump", "new": 1},
+        {"parameter": "~count", "node": "/pump", "new": 9},
+        {"parameter": "~deep/er", "node": "/mission", "new": 0.5, "not_with": ["clean"]},
+    ) == {
+        Change("~c", "/pump", 0.004, 1.0): frozenset(),
+        Change("~count", "/pump", 3.0, 9.0): frozenset(),
+        Change("~deep/er", "/mission", 4.0, 0.5): {"clean"},
+    }
+
+
+@pytest.mark.parametrize(
+    ("change", "what"),
+    [
+        ({"parameter": "~typo"}, "/pump/typo None -> 5.0 changes no number of this robot"),
+        ({"parameter": "~on"}, "/pump/on True -> 5.0 changes no number of this robot"),
+        ({"parameter": "b"}, "parameter is ~name, and node a text"),
+        ({"node": 3}, "parameter is ~name, and node a text"),
+        ({"new": "7"}, "/pump/b 2.0 -> '7' changes no number of this robot"),
+        ({"new": 2}, "/pump/b 2.0 -> 2 changes no number of this robot"),
+        ({"old": 2}, "an object with parameter, node, new is expected"),
+        ({"parameter": "~wind", "node": "/world"}, "/world is the world"),
+        ({"parameter": "~a"}, "~a is there twice"),
+        ({"not_with": "clean"}, "not_with is no list of treatments"),
+        ({"not_with": ["type9"]}, "there is no treatment type9"),
+    ],
+)
+def test_a_wrong_decoy_is_an_error(tmp_path, monkeypatch, change, what):
+    example = robot(tmp_path, monkeypatch)
+    first = {"parameter": "~a", "node": "/pump", "new": 5.0}
+    with pytest.raises(InputError, match=f"decoys, entry 2: {re.escape(what)}") as caught:
+        listed(example, first, {"parameter": "~b", "node": "/pump", "new": 5.0, **change})
+    assert str(caught.value).startswith(f"{example.folder}/study.json:")
 
 
 @pytest.mark.parametrize(
     ("text", "what"),
-    [
-        ('{"never_decoys": ["~typo"]}', "~typo is no parameter of this robot"),
-        ('{"never_decoys": "~a"}', "never_decoys is not a list of texts"),
-        ("[]", "never_decoys is not a list of texts"),
-        ("{", "not JSON"),
-    ],
+    [('{"decoys": "~a"}', "decoys is not a list"), ("[]", "decoys is not a list"), ("{", "JSON")],
 )
-def test_a_wrong_list_of_exceptions_is_an_error(tmp_path, monkeypatch, text, what):
+def test_a_list_of_decoys_that_is_none_is_an_error(tmp_path, monkeypatch, text, what):
     example = robot(tmp_path, monkeypatch)
     (example.folder / "study.json").write_text(text)
     with pytest.raises(InputError, match=what) as caught:
-        candidates(example, static_info(comparison(1, "~a")))
+        harmless_changes(example)
     assert str(caught.value).startswith(f"{example.folder}/study.json:")
 
 
@@ -181,7 +227,7 @@ def test_overlay_is_read_back_as_it_was_set(tmp_path):
 
 def test_flights_are_the_reference_and_each_treatment_with_both_seeds(tmp_path, monkeypatch):
     example = robot(tmp_path, monkeypatch, "type1_b", "fault_x")
-    found = flights_of(example, AMONG)
+    found = flights_of(example)
     assert [one.label for one in found] == [
         "reference/robot",
         "missions/robot/clean/seed-1",
@@ -201,7 +247,7 @@ def test_flights_are_the_reference_and_each_treatment_with_both_seeds(tmp_path, 
 def test_a_part_of_it_may_be_chosen(tmp_path, monkeypatch):
     example = robot(tmp_path, monkeypatch, "type1_b")
     chosen = Selection(treatments=["type1_b"], seeds=[2])
-    assert [one.name for one in flights_of(example, (), chosen)] == [
+    assert [one.name for one in flights_of(example, chosen)] == [
         "robot",
         "robot/type1_b/seed-2",
     ]
@@ -214,7 +260,7 @@ def test_a_part_of_it_may_be_chosen(tmp_path, monkeypatch):
 def test_the_quick_part_is_one_robot_with_an_error_of_each_type():
     quick = Selection(quick=True)
     (example,) = quick.examples()
-    found = flights_of(example, (), quick)
+    found = flights_of(example, quick)
     assert [one.treatment.type for one in found] == ["clean", "clean", "type1", "type2"]
     assert [one.seed for one in found] == [0, 1, 1, 1]
 
@@ -227,3 +273,4 @@ def test_the_examples_can_be_planned(example):
     launch = example.launch.read_text()
     assert [word for word in sorted(words) if f'<arg name="{word}"' not in launch] == []
     assert {one.type for one in example.all_treatments()} == {"clean", "type1", "type2", "fault"}
+    assert len(harmless_changes(example)) >= 2 * DECOYS

@@ -22,14 +22,11 @@ from pytpc.cli.study_progress import StudyProgress, result_line
 from pytpc.colcon import BuildError
 from pytpc.mission import Progress
 from pytpc.study import flying
-from pytpc.study.changes import Candidate
 from pytpc.study.dataset import StudyFile, load_causes, load_done, save_done
 from pytpc.study.plan import Flight, flights_of
 from pytpc.study.resume import alone_in, end_leftovers
 from pytpc.study.run import Result, Runner
 from pytpc.study.system import System
-
-AMONG = (Candidate("/pump", "a", 1.0), Candidate("/pump", "c", 0.004))
 
 
 @pytest.fixture
@@ -38,7 +35,7 @@ def example(tmp_path, monkeypatch):
 
 
 def missions(example) -> list[Flight]:
-    return flights_of(example, AMONG)
+    return flights_of(example)
 
 
 # --- one after the other

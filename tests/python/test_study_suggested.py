@@ -12,11 +12,19 @@ from study_flights import FakeFlier, made, robot
 
 from pytpc.cli import study_commands
 from pytpc.cli.main import main
-from pytpc.errors import InputError, TpcError
+from pytpc.errors import InputError
 from pytpc.study import flying
 from pytpc.study.dataset import Cause, StudyFile, save_done
 from pytpc.study.plan import Selection, Setting, flights_of
-from pytpc.study.suggested import Tried, Wanted, judged, load_wanted, suggested_flight
+from pytpc.study.suggested import (
+    FAILED_FILE,
+    Tried,
+    Wanted,
+    judged,
+    load_failed,
+    load_wanted,
+    suggested_flight,
+)
 from pytpc.study.system import System
 
 LEAKS, STANDS = Cause("I", 20.0, 20.0, "it leaks"), Cause("II", 12.5, 40.0, "it stands there")
@@ -94,23 +102,59 @@ def test_a_wrong_list_is_an_error(tmp_path, document, what):
 
 
 def test_a_mission_has_to_be_there_before_it_is_flown_again(example, tmp_path):
-    flights = flights_of(example, ())
+    flights = flights_of(example)
     wanted = Wanted("robot", "type1_b", 1, Setting("~b", "/pump", 1.9))
     with pytest.raises(InputError, match="has not been flown"):
         suggested_flight(wanted, flights, tmp_path)
     save_done(made(), tmp_path / "missions/robot/type1_b/seed-1")
     flight = suggested_flight(wanted, flights, tmp_path)
     assert flight.label == "suggested/robot/type1_b/seed-1"
-    assert flight.settings() == {"/pump/b": 1.9}
+    assert flight.settings() == {"/pump/a": 1.5, "/pump/b": 1.9, "/pump/c": 0.008}
     # The same people look on.
     (mission,) = [one for one in flights if one.label == "missions/robot/type1_b/seed-1"]
     assert flight.people == mission.people
     none = Wanted("robot", "type9", 1, wanted.setting)
     with pytest.raises(InputError, match="there is no mission robot/type9/seed-1"):
         suggested_flight(none, flights, tmp_path)
-    with pytest.raises(TpcError, match="~gone: no parameter of this robot"):
-        wrong = Wanted("robot", "type1_b", 1, Setting("~gone", "", 1.0))
-        suggested_flight(wrong, flights, tmp_path)
+
+
+def test_a_parameter_that_the_robots_file_has_not(fleet):
+    wanted = fleet.out / "results" / "suggestions-wanted.json"
+    wanted.parent.mkdir()
+    other = {**ROW, "treatment": "type2_b", "parameter": "~gone", "node": None, "value": 1.5}
+    wanted.write_text(json.dumps([ROW, other]))
+    result = CliRunner().invoke(main, ["study", "suggested", "--out", str(fleet.out)])
+    # The other one is flown all the same.
+    assert fleet.flown == ["suggested/robot/type1_b/seed-1"]
+    assert result.exit_code == 1
+    assert "any node ~gone: no parameter of this robot" in result.stderr
+    rows = pq.read_table(fleet.out / "results/suggestions-flown.parquet").to_pylist()
+    assert [row["failure"].partition(": ")[2] for row in rows] == ["", "no parameter of this robot"]
+
+
+# Each call flies it twice. When it goes well the failures are forgotten.
+def test_failures_are_counted(fleet, tmp_path):
+    wanted = tmp_path / "wanted.json"
+    wanted.write_text(json.dumps([ROW]))
+    words = ["study", "suggested", str(wanted), "--out", str(fleet.out)]
+    for times in (1, 2):
+        fleet.failures["suggested/robot/type1_b/seed-1"] = 2
+        assert CliRunner().invoke(main, words).exit_code == 1
+        (found,) = load_failed(fleet.out)
+        assert (found.mission, found.digest) == ("robot/type1_b/seed-1", "1-2")
+        assert (found.parameter, found.node, found.value) == ("~b", "/pump", 1.9)
+        assert (found.times, "pump died" in found.failure) == (times, True)
+    assert CliRunner().invoke(main, words).exit_code == 0
+    assert load_failed(fleet.out) == []
+
+
+def test_failures_that_cannot_be_read(tmp_path):
+    path = tmp_path / FAILED_FILE
+    path.parent.mkdir()
+    for text in ("{}", '[{"mission": 1}]', "[1]"):
+        path.write_text(text)
+        with pytest.raises(InputError, match="not about flights that failed"):
+            load_failed(tmp_path)
 
 
 @pytest.fixture

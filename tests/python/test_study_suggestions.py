@@ -17,7 +17,7 @@ from pytpc.ingest.recording import Recording, save_recording
 from pytpc.marks import Mark
 from pytpc.study.case import Verdict
 from pytpc.study.dataset import save_done
-from pytpc.study.suggested import TRIED_FILE
+from pytpc.study.suggested import FAILED_FILE, TRIED_FILE
 from pytpc.study.suggestion_chains import Chain, Try, shares
 from pytpc.study.suggestions import HEADLINE_FILE, next_round
 
@@ -51,7 +51,18 @@ def out(tmp_path):
         json.dumps({**values, "type": "type1"})
     )
     save(tmp_path / "reference" / "robot", log(25, range(10)))
+    people_say(tmp_path, (94, "II"))
     return tmp_path
+
+
+def people_say(out, *said):
+    """The marks of one user at so many seconds, with the type that was said; I is right."""
+    table = [
+        {"time_ns": ns(time), "observer": "user1", "cause": 0, "right": "I", "said": kind}
+        for time, kind in said
+    ]
+    columns = {name: [one[name] for one in table] for name in USER_MARK}
+    pq.write_table(pa.table(columns), out / "missions" / MISSION / "marks.parquet")
 
 
 def save(folder, recording):
@@ -69,16 +80,14 @@ def fly(out, value, *, gone, new=False, parameter="~limit"):
     (folder / "suggestion.json").write_text(json.dumps(said))
 
 
-def marks_file(out):
-    return out / "missions" / MISSION / "marks.parquet"
-
-
 def wanted(out):
     return json.loads((out / "results" / "suggestions-wanted.json").read_text())
 
 
 # The smallest change is to 4. Three times the way is 9, so it lasts from 10 on; from that log five
-# times the way, 50: 51. The default and the clean run have 25. Seed 2 has not been flown.
+# times the way, 50: 51. The default and the clean run have 25. Seed 2 has not been flown. Who is
+# told nothing suspects the counter, too: what was flown for the others is not flown again, though
+# after it another value was.
 def test_rounds(out):
     next_round(out)
     first = {"system": "robot", "treatment": "type1_limit", "seed": 1}
@@ -108,9 +117,11 @@ def test_rounds(out):
         ("lasting", 2, 51, True),
         ("with-default", 1, 25, True),
         ("with-reference", 1, 25, True),
+        ("ranked", 1, 10, False),
+        ("ranked-reference", 1, 25, True),
     ]
-    assert {row["basis"] for row in rows[3:]} == {"default", "reference"}
-    assert [row["new_error"] for row in rows] == [False, False, False, True, True]
+    assert [row["basis"] for row in rows[3:]] == ["default", "reference", "growth", "reference"]
+    assert [row["new_error"] for row in rows] == [False, False, False, True, True, False, True]
     assert rows[0]["reason"] == "I: too early"
     (headline,) = pq.read_table(out / "results" / "suggestions.parquet").to_pylist()
     assert (headline["value"], headline["gone"], headline["new"]) == (10, False, False)
@@ -120,7 +131,6 @@ def test_rounds(out):
 # I is about it; the third is the counter. Its value is that of the chain `lasting`: one flight.
 def test_suspects_are_tried_in_turn(out):
     method = lambda _: Verdict(("<dynamic> at a.cpp:1", OTHER, "~limit"))  # noqa: E731
-    pq.write_table(pa.table({name: [] for name in USER_MARK}), marks_file(out))
     chains = next_round(out, method=method)
     tries = next(chain.tries for chain in chains if chain.variant == "suspects")
     assert [one.reason for one in tries] == [
@@ -131,7 +141,91 @@ def test_suspects_are_tried_in_turn(out):
     assert (tries[2].parameter, tries[2].node, tries[2].value) == ("~limit", "/brain", 10)
     fly(out, 10, gone=True)
     chains = next_round(out)
-    assert [one.variant for one in chains if one.is_over] == ["lasting", "suspects"]
+    assert [one.variant for one in chains if one.is_over] == ["lasting", "ranked", "suspects"]
+
+
+# A mission in which only the flag was asked, and it never changed; the mark is of what was said.
+# Beside a clean run in which all is the same it is none of the parameters.
+def test_the_ranking_may_say_that_it_is_none_of_them(out):
+    quiet = Recording("m", log(25, range(10)).events, (), 0, ns(100))
+    save(out / "missions" / MISSION, quiet)
+    (chain,) = next_round(out, variants=["ranked"])
+    (only,) = chain.tries
+    assert (only.parameter, only.value) == ("", None)
+    assert only.reason.startswith("none of the parameters comes first: ")
+    assert wanted(out) == []
+    # The error counts as still there.
+    assert shares([chain])[0].gone == 0
+
+
+# Neither the treatment nor the right type is known: what is said of them changes nothing.
+def test_who_is_told_nothing(out):
+    path = out / "missions" / MISSION / "treatment.json"
+    told = {**json.loads(path.read_text()), "parameter": OTHER, "node": "/pump", "type": "type2"}
+    path.write_text(json.dumps(told))
+    chains = next_round(out, variants=["ranked", "ranked-reference"])
+    found = [(one.tries[0].parameter, one.tries[0].node, one.tries[0].value) for one in chains]
+    assert found == [("~limit", "/brain", 10), ("~limit", "/brain", 25)]
+    assert wanted(out)[0]["value"] == 10
+
+
+# 10 was flown for the other chain, 51 after it. The values are still those; nothing is flown.
+def test_asked_anew(out):
+    next_round(out, variants=["lasting", "ranked"])
+    fly(out, 10, gone=False)
+    next_round(out)
+    fly(out, 51, gone=True)
+    chains = next_round(out, variants=["ranked"], again=True)
+    ranked = next(chain for chain in chains if chain.variant == "ranked")
+    assert [(one.value, one.gone) for one in ranked.tries] == [(10, False)]
+
+
+# The second value of `lasting` comes from the log of the first one's flight. What was flown of it
+# for another chain is no longer there.
+def test_a_flight_whose_log_is_wanted_is_flown_again(out):
+    next_round(out, variants=["ranked"])
+    fly(out, 10, gone=False)
+    next_round(out, variants=["ranked"])
+    fly(out, 99, gone=False)
+    chains = next_round(out, variants=["lasting"])
+    assert [chain.is_over for chain in chains] == [False, True]
+    assert wanted(out)[0]["value"] == 10
+
+
+def failed(out, times):
+    """What `pytpc study suggested` leaves where the flight of 10 fails."""
+    one = {"mission": MISSION, "digest": "", "parameter": "~limit", "node": "/brain", "value": 10.0}
+    text = json.dumps([{**one, "times": times, "failure": "the brain died"}])
+    (out / FAILED_FILE).write_text(text)
+
+
+def test_a_flight_that_always_fails_is_given_up(out):
+    next_round(out, variants=["lasting", "ranked"])
+    failed(out, 1)
+    chains = next_round(out, variants=["lasting", "ranked"])
+    assert not any(chain.is_over for chain in chains)
+    failed(out, 2)
+    chains = next_round(out, variants=["lasting", "ranked"])
+    assert all(chain.is_over for chain in chains)
+    assert wanted(out) == []
+    told = {(one.gone, one.new_error, one.failed, one.reason) for c in chains for one in c.tries}
+    assert told == {(False, None, True, "the flight failed 2 times: the brain died")}
+    # The error counts as still there; the page says why.
+    assert [(one.treatments, one.gone, one.open) for one in shares(chains)] == [(1, 0, 0)] * 4
+    (row,) = pq.read_table(out / HEADLINE_FILE).to_pylist()
+    assert (row["gone"], row["new"]) == (False, None)
+    assert row["failure"] == "the flight failed 2 times: the brain died"
+    said = CliRunner().invoke(suggestions_command, ["--out", str(out), "--variant", "lasting"])
+    assert "type1_limit/seed-1, ranked: the flight failed 2 times" in said.stderr
+
+
+# The next suspect needs no log of a flight.
+def test_the_next_suspect_is_tried_where_a_flight_fails(out):
+    method = lambda _: Verdict(("~limit", OTHER))  # noqa: E731
+    next_round(out, method=method, variants=["suspects"])
+    failed(out, 2)
+    (chain,) = next_round(out, method=method, variants=["suspects"])
+    assert [one.parameter for one in chain.tries] == ["~limit", OTHER, ""]
 
 
 def test_a_half_that_is_not_asked_about_is_not_looked_at(out):
@@ -148,8 +242,9 @@ def test_one_variant(out):
 def test_nobody_marked(out):
     recording = log(3)
     save(out / "missions" / MISSION, Recording("m", recording.events, (), 0, recording.end_ns))
+    people_say(out)
     chains = next_round(out)
-    assert [chain.tries[0].reason for chain in chains] == ["nobody set a mark"] * 4
+    assert [chain.tries[0].reason for chain in chains] == ["nobody set a mark"] * 6
     assert wanted(out) == []
     # The error is still there.
     assert [share.gone for share in shares(chains)][:2] == [0, 0]
@@ -214,7 +309,7 @@ def test_a_mission_that_was_marked_anew_is_asked_about_anew(out):
     path = out / "suggested" / MISSION / "suggestion.json"
     path.write_text(json.dumps({**json.loads(path.read_text()), "mission": "1-people 1"}))
     chains = next_round(out)
-    assert [len(chain.tries) for chain in chains] == [1, 1, 1, 1]
+    assert [len(chain.tries) for chain in chains] == [1] * 6
     assert all(chain.tries[0].is_open for chain in chains)
     path.write_text(json.dumps({**json.loads(path.read_text()), "mission": "1-people 2"}))
     next_round(out)

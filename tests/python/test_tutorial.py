@@ -14,6 +14,7 @@ from terminals import pytpc
 
 ROOT = Path(__file__).parents[2]
 TUTORIAL = ROOT / "docs/tutorial.md"
+EXAMPLE = "examples/recorded_mission"
 CONSOLE = re.compile(r"^```console\n\$ pytpc (.*)\n((?:.*\n)*?)```$", re.MULTILINE)
 FLAGS = doctest.ELLIPSIS | doctest.IGNORE_EXCEPTION_DETAIL
 
@@ -55,6 +56,34 @@ def test_the_command_line(command: str, shown: str):
     )
     said = "".join(f"{line.rstrip()}\n" for line in done.stdout.splitlines())
     assert doctest.OutputChecker().check_output(shown, said, FLAGS), said
+
+
+# What hangs on the fitted weights stands there without digits, which would be old soon.
+@pytest.mark.parametrize("command", ["rank --top 2", "suggest --top 1"])
+def test_the_examples_of_diagnosing(command: str):
+    done = subprocess.run(
+        pytpc(*command.split(), EXAMPLE, "--static", f"{EXAMPLE}/static.json"),
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=60,
+    )
+    heading = f"## {'Ranking' if command.startswith('rank') else 'Suggestions'}\n"
+    section = (ROOT / "docs/diagnosing.md").read_text().partition(heading)[2].partition("\n## ")[0]
+    begin = section.index("    All 5 marks together")
+    block = re.match(r"(?:    .*\n|\n(?=    ))+", section[begin:])
+    assert block is not None
+    shown = [line[4:] for line in block[0].splitlines()]
+    said = [_weightless(line.rstrip()) for line in done.stdout.splitlines()]
+    assert said[: len(shown)] == shown
+
+
+def _weightless(line: str) -> str:
+    """Without the probabilities: of the verdict, and in the column of the table."""
+    if re.search(r"sure: | II?: d", line):
+        return re.sub(r"[ \d]\d %", ".. %", line)
+    return line
 
 
 def test_pictures_and_pages_are_there():

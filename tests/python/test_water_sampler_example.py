@@ -7,11 +7,13 @@ import json
 import re
 from collections import Counter
 from pathlib import Path
+from statistics import median
 
 import pytest
 import yaml
 
 from pytpc.demo_examples import WATER_SAMPLER
+from pytpc.study.changes import harmless_changes
 from pytpc.treatment import Treatment
 
 PACKAGE = WATER_SAMPLER.folder
@@ -176,10 +178,20 @@ def test_faults_are_those_of_the_launch_file():
         assert launch.count(f"$(eval fault == '{each.launch['fault']}')") == 2
 
 
-def test_no_decoy_list_names_a_parameter_that_is_not_there():
-    own = yaml.safe_load((PACKAGE / "config/params.yaml").read_text())
-    never = json.loads((PACKAGE / "study.json").read_text())["never_decoys"]
-    assert set(never) <= {f"/{node}/{name}" for node, values in own.items() for name in values}
+def test_decoys_change_parameters_of_both_languages_by_as_much_as_the_treatments_do():
+    decoys = harmless_changes(WATER_SAMPLER)
+    changed = [(each.old, each.new) for each in treatments() if each.parameter is not None]
+
+    def factor(old: float, new: float) -> float:
+        return max(new / old, old / new)
+
+    usual = median(factor(old, new) for old, new in changed)
+    assert median(factor(each.old, each.new) for each in decoys) >= usual
+    ups = sum(each.new > each.old for each in decoys)
+    assert len(decoys) / 3 < ups < len(decoys) * 2 / 3
+    for document in (CPP, PYTHON):
+        compared = {entry["parameter"] for entry in document["tpcs"]}
+        assert len(compared & {each.parameter for each in decoys}) >= 5
 
 
 def test_demonstration_flies_treatments_that_are_there():

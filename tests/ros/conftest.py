@@ -1,7 +1,9 @@
-"""What the tests on a real graph share: the example, built once."""
+"""What the tests on a real graph share: the example, built once; a quiet machine."""
 
 from __future__ import annotations
 
+import fcntl
+import os
 from pathlib import Path
 
 import pytest
@@ -34,3 +36,19 @@ def study_out(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def water(study_out: Path) -> Built:
     """The robot in two languages, built where the study looks for it."""
     return build(WATER_SAMPLER, Console(quiet=True), system_folder(WATER_SAMPLER, study_out))
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """What needs a quiet machine comes last."""
+    items.sort(key=lambda item: item.get_closest_marker("quiet") is not None)
+
+
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Wait until this machine is ours, where a test needs that.
+
+    ``tools/test`` holds a lock for as long as it does anything else; TPC_TEST_BUSY names it.
+    """
+    busy = os.environ.get("TPC_TEST_BUSY")
+    if busy and item.get_closest_marker("quiet"):
+        with Path(busy).open("rb") as lock:
+            fcntl.flock(lock, fcntl.LOCK_SH)

@@ -28,6 +28,8 @@ from pytpc.scoring.ranking import unknown_keys
 PACKAGE = Path(__file__).parents[2] / "examples/image_capture"
 SECOND = 10**9
 LAUNCH = PACKAGE / "launch/image_capture.launch"
+# Of simulated time. A machine that cannot keep up is slower, and flies the same: the time waits.
+RATE = "8"
 
 try:
     for half in (cmake_file, plugin, log_library):
@@ -68,6 +70,7 @@ def fly(name: str, seed: int, built: BuildResult, env: dict[str, str], out: Path
         static_info=built.static,
         out_dir=out,
         timeout_s=150.0,
+        launch_args={"rate": RATE},
     )
 
 
@@ -119,6 +122,7 @@ def test_clean_mission_gets_no_mark_and_loses_no_report(built, env, tmp_path):
     assert re.search(r"^ +face_detection_threshold: 25$", parameters, re.MULTILINE)
 
 
+@pytest.mark.quiet
 @pytest.mark.parametrize(
     ("treatment", "kind_and_pictures"),
     [("type1_face_detection_threshold", ("I", 1)), ("type2_min_coverage_limit", ("II", 0))],
@@ -206,6 +210,7 @@ def test_graph_is_one_of_its_own_and_ends_what_it_started(env, tmp_path):
                 subprocess.run(["sleep", "0.05"], check=True)
 
 
+@pytest.mark.quiet
 def test_ends_quickly_where_sigint_is_ignored(env, tmp_path):
     # As in a job that a script put into the background; SIGTERM would come after 5 s.
     before = signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -133,9 +133,18 @@ def test_the_file(graph, node):
     assert (found.malformed, found.notes) == (0, ())
 
 
+def has_reports(folder: Path) -> bool:
+    files = sorted(folder.glob("*.tpc"))
+    return files != [] and len(read(files).events.cmp) > 0
+
+
 def test_the_file_of_a_node_that_is_killed(graph, node):
     process = start(graph, node, TPC_SINK="file")
-    time.sleep(2.0)
+    deadline = time.monotonic() + 30
+    while not has_reports(node.parent / "tpc"):
+        assert time.monotonic() < deadline
+        assert process.poll() is None
+        time.sleep(0.05)
     process.send_signal(signal.SIGKILL)
     process.communicate(timeout=20)
     found = read(sorted((node.parent / "tpc").glob("*.tpc")))

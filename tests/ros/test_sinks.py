@@ -297,8 +297,9 @@ def test_rosout_has_the_thesis_lines(graph, nodes):
         process = start(graph, nodes, "--rate=1000", "--after=7", "--flops=1", TPC_SINK="rosout")
         rosout(graph, texts, process, subscriber)
     assert made(process)["running"] == 1000
-    # The last ones may still be in roscpp's queue when it shuts down.
-    assert len(texts) > 900
+    # The first ones may be made before the node is connected, and the last ones may still be in
+    # roscpp's queue when it shuts down.
+    assert len(texts) > 500
     for line in texts:
         number = int(re.search(r"cmp:(\d+)", line)[1])
         odd = number % 2

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 
 from pytpc.errors import TpcError
@@ -12,9 +13,10 @@ from pytpc.stats.drawing import save, style
 from pytpc.stats.figures import state_of, trial_figure
 from pytpc.stats.missions import Trial
 from pytpc.study.report.charts import reliability_chart, result_chart
-from pytpc.study.report.confidence import calibration
+from pytpc.study.report.confidence import SAID, SURE_METHODS, calibration
 from pytpc.study.report.folder import Flight, System
 from pytpc.study.report.original import KIND_NAMES, Original
+from pytpc.study.report.parts import Part
 from pytpc.study.report.positions import Position
 from pytpc.study.report.ranked import changed_rows
 from pytpc.study.report.systems import one_of_each
@@ -81,27 +83,27 @@ def draw_systems(
     return drawn, troubles
 
 
-def draw_results(rows: Sequence[Position], folder: Path, halves: Sequence[str]) -> list[Drawing]:
-    """Draw the main result and the calibration of each half.
+def draw_results(rows: Sequence[Position], folder: Path, parts: Sequence[Part]) -> list[Drawing]:
+    """Draw the main result of each part, and the calibration of each half.
 
     Raises:
         TpcError: a file cannot be written.
     """
     drawn = []
     with style():
-        for half in halves:
-            if changed_rows(rows, half):
-                name = f"top3-{half}.png"
-                save(result_chart(rows, half), folder / name, "png", DPI, palette=True)
-                said = f"Top 3 by method and labels, the {half} half; lines are 95 % intervals."
+        for part in parts:
+            if changed_rows(rows, part):
+                name = f"top3-{part.name}.png"
+                save(result_chart(rows, part), folder / name, "png", DPI, palette=True)
+                said = f"Top 3 by method and labels, the {part.title}; lines are 95 % intervals."
                 drawn.append(Drawing(name, "", said))
-        for half in halves:
-            bins = calibration(rows, half)
-            if bins:
-                name = f"confidence-{half}.png"
-                save(reliability_chart(bins), folder / name, "png", DPI, palette=True)
-                said = f"How often verdicts are right, by confidence; all labels, the {half} half."
-                drawn.append(Drawing(name, "", said))
+        for half, method in product(dict.fromkeys(part.half for part in parts), SURE_METHODS):
+            found = calibration(rows, half, method)
+            if found.drawn:
+                name = f"confidence-{half}-{method.replace('+', '-')}.png"
+                save(reliability_chart(found, method), folder / name, "png", DPI, palette=True)
+                said = f"How often verdicts of {method} are right, by confidence; {SAID} marks"
+                drawn.append(Drawing(name, "", f"{said}, the {half} half."))
     return drawn
 
 

@@ -12,6 +12,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from pytpc.changes import Change, read_changes
 from pytpc.errors import InputError, TpcError
 from pytpc.marks import Mark
 from pytpc.parameters import parameter_name, same_parameter
@@ -19,8 +20,9 @@ from pytpc.source_lines import count_lines
 from pytpc.static_info import StaticInfo
 from pytpc.static_json import parse_json
 from pytpc.stats.missions import StudyMission, load_missions
+from pytpc.study.changes import CHANGES_FILE
 from pytpc.study.data import MISSIONS, user_marks
-from pytpc.study.dataset import DONE_FILE, MARKED_FILE, STUDY_FILE
+from pytpc.study.dataset import CAUSES_FILE, DONE_FILE, MARKED_FILE, STUDY_FILE, load_causes
 from pytpc.study.plan import Half
 from pytpc.treatment import Treatment
 from pytpc.words import many
@@ -36,8 +38,11 @@ Progress = Callable[[int, int], None]
 class Flight:
     """A mission of the study; ``said`` are its marks with the types that the users gave.
 
+    ``changes`` are the treatment's own and the harmless ones.
+
     The recording's own marks have the types that were right to give. ``half`` is of ``HALVES``, or
-    ``UNKNOWN``.
+    ``UNKNOWN``. ``strayed``: the first error that was seen is not of the treatment's type, so that
+    it may be one of the flight's own and not the treatment's.
     """
 
     system: str
@@ -46,6 +51,8 @@ class Flight:
     mission: StudyMission
     treatment: Treatment
     said: tuple[Mark, ...]
+    changes: tuple[Change, ...] = ()
+    strayed: bool = False
 
     def as_said(self) -> StudyMission:
         """The mission with the marks as the users set them."""
@@ -173,7 +180,17 @@ def _flight(path: Path, system: str, halves: Mapping[tuple[str, int], str]) -> F
     half = halves.get((mission.treatment.name, seed), UNKNOWN)
     said = [mark.mark("confused") for mark in user_marks(path / MARKED_FILE)]
     marks = tuple(sorted(said, key=Mark.order))
-    return Flight(system, half, seed, mission, mission.treatment, marks)
+    changes = path / CHANGES_FILE
+    made = read_changes(changes) if changes.is_file() else ()
+    strayed = _strayed(path / CAUSES_FILE, mission.treatment)
+    return Flight(system, half, seed, mission, mission.treatment, marks, made, strayed)
+
+
+def _strayed(causes: Path, treatment: Treatment) -> bool:
+    if treatment.mark_type is None or not causes.is_file():
+        return False
+    first = min(load_causes(causes), key=lambda cause: cause.start, default=None)
+    return first is not None and first.kind != treatment.mark_type
 
 
 def _reference(folder: Path, name: str, troubles: list[str]) -> StudyMission | None:

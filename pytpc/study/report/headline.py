@@ -9,14 +9,32 @@ from typing import Any
 from pytpc.study.data import LABELS
 from pytpc.study.metrics import Estimate
 from pytpc.study.report.confidence import false_accusations
+from pytpc.study.report.parts import Part
 from pytpc.study.report.positions import Position
-from pytpc.study.report.ranked import OURS, TARGETS, changed_rows, percent, top
-from pytpc.study.report.repairs import TARGET, Repair, gone
+from pytpc.study.report.ranked import (
+    BASELINE,
+    BESIDE_CLEAN,
+    CHANCE,
+    CHANCE_OF_DIFFERENT,
+    OPEN,
+    OURS,
+    TARGET_PLACES,
+    TARGETS,
+    changed_rows,
+    holds_target,
+    percent,
+    top,
+)
+from pytpc.study.report.repairs import TARGET, Repair, first_try, gone
+from pytpc.study.suggestion_chains import RANKED, RANKED_REFERENCE, Chain
 
 
 @dataclass(frozen=True, slots=True)
 class Headline:
-    """One number: ``name`` for programs, ``text`` for people; ``shown`` has its interval."""
+    """One number: ``name`` for programs, ``text`` for people; ``shown`` has its interval.
+
+    ``hit`` is by the number itself; ``open`` is whether its interval holds the target.
+    """
 
     name: str
     text: str
@@ -25,38 +43,95 @@ class Headline:
     shown: str
     target: str
     hit: bool
+    open: bool = False
+
+    @property
+    def verdict(self) -> str:
+        """In words."""
+        word = "hit" if self.hit else "miss"
+        return f"{word}, {OPEN}" if self.open else word
 
     def to_json(self) -> dict[str, Any]:
         """As an object for JSON."""
         return asdict(self)
 
 
+_RANKED = {
+    "": ("", OURS),
+    "-with-clean-run": (", with a clean run", BESIDE_CLEAN),
+    "-thesis": (", by the thesis's ranking", BASELINE),
+    "-chance": (", by chance", CHANCE),
+    "-chance-of-different": (
+        ", by chance among what differs from a clean run",
+        CHANCE_OF_DIFFERENT,
+    ),
+}
+"""Whose shares are told: the end of the name, words, and the method."""
+
+_VARIANTS = {
+    "smallest": "the smallest change, the changed parameter being known",
+    RANKED: "the suggested value of what is ranked first by confused marks, nothing being known",
+    RANKED_REFERENCE: "the clean run's value of what is ranked first by confused marks (the value"
+    " before the treatment is put back where the ranking is right)",
+}
+"""The variants of suggestions that are told beside the headline, of their first tries."""
+
+_GONE = {False: "gone", True: "gone-none-new"}
+TOP = f"top{TARGET_PLACES}-"
+"""The names of shares begin with it."""
+
+
 def headlines(
-    positions: Sequence[Position], repairs: Sequence[Repair], half: str
+    positions: Sequence[Position], repairs: Sequence[Repair], chains: Sequence[Chain], part: Part
 ) -> list[Headline]:
-    """The numbers of one half; those for which there is no data are left out."""
+    """The numbers of one part, of which the chains are; those without data are left out."""
     found = []
+    own = changed_rows(positions, part)
     for labels in LABELS:
-        own = changed_rows(positions, half)
-        ours = [row for row in own if (row.method, row.labels) == (OURS, labels)]
-        text = f"Changed parameter in the top 3, {labels} marks, {half} half"
-        found += _share(f"top3-{labels}-{half}", text, top(ours, 3), TARGETS[labels])
-    text = f"Error gone with the suggested value, {half} half"
-    found += _share(f"suggestions-gone-{half}", text, gone(repairs, half), TARGET)
-    for kind, what in (("clean", "clean missions"), ("fault", "faults in the source")):
-        count, verdicts = false_accusations(positions, half, kind)
-        if verdicts:
-            text = f"Confident accusations on {what}, {half} half"
-            name = f"accusations-{kind}-{half}"
-            found.append(
-                Headline(name, text, count, "verdicts", f"{count} of {verdicts}", "0", count == 0)
+        for end, (words, method) in _RANKED.items():
+            rows = [row for row in own if (row.method, row.labels) == (method, labels)]
+            text = (
+                f"Changed parameter in the top {TARGET_PLACES}, {labels} marks{words}, {part.title}"
             )
+            name = f"{TOP}{labels}{end}-{part.name}"
+            found += _share(name, text, top(rows, TARGET_PLACES), TARGETS[labels])
+    found += _suggested(repairs, chains, part)
+    # What is clean or has a fault belongs to no round: it is told of the halves.
+    for kind, what in (("clean", "clean missions"), ("fault", "faults in the source")):
+        for end, (words, method) in _RANKED.items():
+            if part.since > 1 or method not in (OURS, BESIDE_CLEAN):
+                continue
+            made = false_accusations(positions, part.half, kind, method)
+            # Where nobody set a mark nobody could be accused.
+            if made.marked:
+                text = f"Confident accusations on {what}{words}, {part.title}"
+                name = f"accusations-{kind}{end}-{part.name}"
+                count = made.accused
+                found.append(Headline(name, text, count, "missions", made.said, "0", count == 0))
     return found
 
 
-def _share(name: str, text: str, share: Estimate, target: float) -> list[Headline]:
-    if not share.treatments:
+def _suggested(repairs: Sequence[Repair], chains: Sequence[Chain], part: Part) -> list[Headline]:
+    """What came of the first tries: is the error gone, and has no other one come?"""
+    told = {False: "gone", True: "gone and no new one"}
+    found = []
+    for clean, what in told.items():
+        text = f"Error {what} with the suggested value, the changed parameter being known"
+        name = f"suggestions-{_GONE[clean]}-{part.name}"
+        share = gone(repairs, part, clean=clean)
+        found += _share(name, f"{text}, {part.title}", share, TARGET)
+    for variant, words in _VARIANTS.items():
+        for clean, what in told.items():
+            name = f"suggestions-{_GONE[clean]}-{variant}-{part.name}"
+            text = f"Error {what} with {words}, {part.title}"
+            found += _share(name, text, first_try(chains, variant, clean=clean), TARGET)
+    return found
+
+
+def _share(name: str, text: str, found: Estimate, target: float) -> list[Headline]:
+    if not found.treatments:
         return []
     aimed = f">={100 * target:.0f}"
-    value = 100 * share.value
-    return [Headline(name, text, value, "%", percent(share), aimed, share.value >= target)]
+    hit, still_open = found.value >= target, holds_target(found, target)
+    value = 100 * found.value
+    return [Headline(name, text, value, "%", percent(found), aimed, hit, still_open)]

@@ -10,8 +10,11 @@ from functools import cache
 from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 
 from pytpc.study.metrics import CONFIDENT, DRAWS
+from pytpc.study.report.changed import Changed
+from pytpc.study.report.confidence import SURE_METHODS
 from pytpc.study.report.drawings import Drawing
-from pytpc.study.report.headline import Headline
+from pytpc.study.report.headline import TOP, Headline
+from pytpc.study.report.parts import Part
 from pytpc.study.report.repairs import TARGET
 from pytpc.study.report.systems import NEAR
 from pytpc.study.suggestion_chains import HEADLINE
@@ -28,19 +31,27 @@ _GAPS = re.compile(r"\n{3,}")
 
 @dataclass(frozen=True, eq=False)
 class Contents:
-    """All that is on the page: ``tables`` by label; ``halves`` are those that are shown.
+    """All that is on the page: ``tables`` by label; ``halves`` and ``parts`` are what is shown,
+    ``others`` the parts that were ranked by other people's marks, too.
+    ``rounds`` are counts of treatments with a changed parameter, see `rounds_of`.
 
+    ``judged`` is how often the half that is held back was judged, empty where that is not known.
     ``tried`` and ``discussion`` are Markdown that people wrote, empty where nobody did.
     """
 
     systems: Sequence[str]
+    changed: Changed
+    rounds: Mapping[str, int]
     missions: int
     halves: Sequence[str]
+    parts: Sequence[Part]
+    others: Sequence[Part]
     tables: Mapping[str, Table]
     drawings: Sequence[Drawing]
     headlines: Sequence[Headline]
     troubles: Sequence[str]
     remarks: Sequence[str]
+    judged: str
     tried: str
     discussion: str
 
@@ -72,6 +83,8 @@ def page(contents: Contents) -> str:
         confident=f"{CONFIDENT:g}",
         target=f"{100 * TARGET:.0f}",
         headline=HEADLINE,
+        top=TOP,
+        sure_methods=SURE_METHODS,
     )
     return _GAPS.sub("\n\n", text).strip() + "\n"
 

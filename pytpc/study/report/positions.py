@@ -15,9 +15,9 @@ from pytpc.columns import read_table
 from pytpc.errors import InputError
 from pytpc.study.data import ALL
 from pytpc.study.judge import Judged
-from pytpc.study.metrics import top_share
+from pytpc.study.metrics import within
 
-_LATER = ("digest", "tied")
+_LATER = frozenset({"digest", "tied", "round"})
 """Tables that were written before them do not have these columns."""
 
 
@@ -40,12 +40,13 @@ class Position(Judged):
         return None if self.who == ALL else self.who.count("+") + 1
 
     def within(self, k: int) -> float:
-        """How likely the changed parameter is among the first k, see `top_share`; 0 without a mark.
+        """Whether the changed parameter is among the first k, a share where it is tied.
 
-        It is 0 or 1 where it is tied with nobody.
+        Without a mark it is not.
         """
-        known = self.marks > 0 and self.position is not None
-        return top_share(self.position or 0.0, self.tied, k) if known else 0.0
+        if self.marks == 0 or self.position is None:
+            return 0.0
+        return within(k, self.position, self.tied)
 
     @property
     def place(self) -> float:
@@ -69,7 +70,7 @@ def read_positions(path: Path) -> list[Position]:
 
     def rows(table: pa.Table) -> list[Position]:
         there = [name for name in names if name in table.column_names]
-        missing = [name for name in names if name not in (*there, *_LATER)]
+        missing = [name for name in names if name not in there and name not in _LATER]
         if missing:
             raise InputError(f"no column {missing[0]}")
         found = [Position(**_known(row)) for row in table.select(there).to_pylist()]

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pyarrow as pa
 
 from pytpc.columns import read_table
 from pytpc.errors import InputError
-from pytpc.study.metrics import Estimate, estimate
-from pytpc.study.report.folder import HALVES, Flight
-from pytpc.study.report.ranked import percent
+from pytpc.study.metrics import Estimate, share
+from pytpc.study.report.folder import Flight
+from pytpc.study.report.parts import Part
+from pytpc.study.report.positions import ordered
+from pytpc.study.report.ranked import percent, verdict_of
 from pytpc.study.suggestion_chains import HEADLINE, MOST_TRIES, VARIANTS, Chain, outcomes
 from pytpc.tables import Cell, Column, Table
 from pytpc.words import show
@@ -74,15 +77,15 @@ def read_repairs(path: Path, flights: Iterable[Flight]) -> list[Repair]:
     return [_repair(one, found.get((one.system, one.treatment.name, one.seed))) for one in treated]
 
 
-def gone(rows: Iterable[Repair], half: str) -> Estimate:
-    """The share of treatments of a half in which the error is gone."""
-    return _gone([row for row in rows if row.flight.half == half])
+def gone(rows: Iterable[Repair], part: Part, *, clean: bool = False) -> Estimate:
+    """The share of treatments of a part in which the error is gone; ``clean``: and no new one."""
+    return _gone(_of(rows, part), clean=clean)
 
 
-def repairs_summary(rows: Sequence[Repair]) -> Table:
-    """Shares by half and type of treatment."""
+def repairs_summary(rows: Sequence[Repair], parts: Sequence[Part]) -> Table:
+    """Shares by part and type of treatment, and where the first error is not the treatment's."""
     columns = (
-        Column("Half", 0),
+        Column("Part", 0),
         Column("Treatments", 0),
         Column("Error gone %", 0),
         Column("New error %", 0),
@@ -90,25 +93,55 @@ def repairs_summary(rows: Sequence[Repair]) -> Table:
         Column("Verdict", 0),
     )
     lines: list[tuple[str, tuple[Cell, ...]]] = []
-    kinds = {"all": ("type1", "type2"), "type I": ("type1",), "type II": ("type2",)}
-    for half in HALVES:
-        for name, of in kinds.items():
-            own = [r for r in rows if r.flight.half == half and r.flight.treatment.type in of]
-            share = _gone(own)
-            if not share.treatments:
+    kinds: dict[str, Callable[[Flight], bool]] = {
+        "all": lambda _: True,
+        "type I": lambda flight: flight.treatment.type == "type1",
+        "type II": lambda flight: flight.treatment.type == "type2",
+        "first error of another type": lambda flight: flight.strayed,
+    }
+    for part in parts:
+        for name, is_of in kinds.items():
+            own = [row for row in _of(rows, part) if is_of(row.flight)]
+            went = _gone(own)
+            if not went.treatments:
                 continue
             flown = [row for row in own if row.fresh is not None]
-            fresh = estimate([float(row.fresh or 0) for row in flown], _units(flown))
-            verdict = "hit" if share.value >= TARGET else "miss"
-            cells = (half, share.treatments, percent(share), percent(fresh))
-            lines.append((name, (*cells, f">= {100 * TARGET:.0f}", verdict)))
+            fresh = share([float(row.fresh or 0) for row in flown], _units(flown))
+            cells = (part.name, went.treatments, percent(went), percent(fresh))
+            lines.append((name, (*cells, f">= {100 * TARGET:.0f}", verdict_of(went, TARGET))))
     return Table("repairs", "Suggestions, flown", columns, tuple(lines), (), "Treatments of")
 
 
-def tries_table(chains: Sequence[Chain], halves: Sequence[str]) -> Table:
-    """What came of each variant within so many tries, by half; chains that wait are left out."""
+def chains_in(chains: Iterable[Chain], part: Part, flights: Iterable[Flight]) -> list[Chain]:
+    """The chains of a part; ``flights`` say of what round a treatment is."""
+    rounds = {(one.system, one.treatment.name): one.treatment.round for one in flights}
+    return [
+        chain
+        for chain in chains
+        if part.has(chain.half, rounds.get((chain.system, chain.treatment), 1))
+    ]
+
+
+def first_try(chains: Sequence[Chain], variant: str, *, clean: bool = False) -> Estimate:
+    """The share of treatments in which the first try of a variant took the error away.
+
+    ``clean``: and brought no new one.
+    """
+    found, _ = outcomes(chains, variant, 1)
+    well = [one.gone and not (clean and one.new_error) for one in found]
+    return share(np.array(well, np.float64), [one.unit for one in found])
+
+
+def tries_table(chains: Sequence[Chain], parts: Sequence[Part], flights: Sequence[Flight]) -> Table:
+    """What came of each variant within so many tries, by part; chains that wait are left out.
+
+    Args:
+        chains: of any variants.
+        parts: those that are shown.
+        flights: see ``chains_in``.
+    """
     columns = (
-        Column("Half", 0),
+        Column("Part", 0),
         Column("Tries", 0),
         Column("Treatments", 0),
         Column("Error gone %", 0),
@@ -119,27 +152,26 @@ def tries_table(chains: Sequence[Chain], halves: Sequence[str]) -> Table:
         Column("Verdict", 0),
     )
     lines: list[tuple[str, tuple[Cell, ...]]] = []
-    for half in halves:
-        own = [chain for chain in chains if chain.half == half]
-        for variant in VARIANTS:
+    for part in parts:
+        own = chains_in(chains, part, flights)
+        for variant in ordered((chain.variant for chain in own), list(VARIANTS)):
             for most in range(1, MOST_TRIES.get(variant, 1) + 1):
                 found, waiting = outcomes(own, variant, most)
                 if not found and not waiting:
                     continue
                 units = [one.unit for one in found]
-                share = estimate([float(one.gone) for one in found], units)
-                fresh = estimate([float(one.new_error) for one in found], units)
-                whole = estimate([float(one.gone and not one.new_error) for one in found], units)
-                verdict = "hit" if share.value >= TARGET else "miss"
+                went = share([float(one.gone) for one in found], units)
+                fresh = share([float(one.new_error) for one in found], units)
+                whole = share([float(one.gone and not one.new_error) for one in found], units)
                 name = f"{variant} (headline)" if (variant, most) == (HEADLINE, 1) else variant
                 cells: tuple[Cell, ...] = (
-                    half,
+                    part.name,
                     most,
-                    share.treatments,
-                    *map(percent, (share, fresh, whole)),
+                    went.treatments,
+                    *map(percent, (went, fresh, whole)),
                     waiting,
                     f">= {100 * TARGET:.0f}",
-                    verdict if found else None,
+                    verdict_of(went, TARGET),
                 )
                 lines.append((name, cells))
     return Table("tries", "Suggestions by variant", columns, tuple(lines), (), "Variant")
@@ -172,10 +204,15 @@ def repairs_table(rows: Sequence[Repair]) -> Table:
     return Table("repairs-all", "Missions flown again", columns, tuple(lines), (), "System")
 
 
-def _gone(rows: Iterable[Repair]) -> Estimate:
+def _of(rows: Iterable[Repair], part: Part) -> list[Repair]:
+    return [row for row in rows if part.has(row.flight.half, row.flight.treatment.round)]
+
+
+def _gone(rows: Iterable[Repair], *, clean: bool = False) -> Estimate:
     """Where no error was seen before there is nothing that could go."""
     judged = [row for row in rows if row.gone is not None]
-    return estimate([float(row.gone or 0) for row in judged], _units(judged))
+    well = [bool(row.gone) and not (clean and row.fresh) for row in judged]
+    return share(np.array(well, np.float64), _units(judged))
 
 
 def _units(rows: Iterable[Repair]) -> list[tuple[str, str]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 
 from pytpc.static_info import StaticInfo
@@ -62,8 +63,8 @@ def treatments_table(systems: Sequence[System]) -> Table:
     columns = tuple(
         Column(heading, 0)
         for heading in (
-            "Treatment", "Type", "Half", "Parameter", "Node", "Language", "Old", "New", "Tipping",
-            "Near or far", "What happens",
+            "Treatment", "Type", "Half", "Round", "Parameter", "Node", "Language", "Old", "New",
+            "Tipping", "Near or far", "What happens",
         )
     )  # fmt: skip
     rows: list[tuple[str, tuple[Cell, ...]]] = []
@@ -77,6 +78,7 @@ def treatments_table(systems: Sequence[System]) -> Table:
                 treated.name,
                 treated.type,
                 " and ".join(sorted(halves[treated.name])),
+                treated.round,
                 treated.parameter,
                 treated.node,
                 language_of(system, treated),
@@ -88,6 +90,17 @@ def treatments_table(systems: Sequence[System]) -> Table:
             )
             rows.append((system.name, cells))
     return Table("treatments", "The treatments", columns, tuple(rows), (), first="System")
+
+
+def rounds_of(systems: Sequence[System]) -> dict[str, int]:
+    """How many treatments changed a parameter: by half and round, ``tuning-1``, ``held-back-2``."""
+    found = Counter(
+        f"{flight.half}-{flight.treatment.round}"
+        for system in systems
+        for flight in one_of_each(system.flights)
+        if flight.treatment.parameter is not None
+    )
+    return dict(sorted(found.items()))
 
 
 def one_of_each(flights: Sequence[Flight]) -> list[Flight]:

@@ -38,7 +38,6 @@ public:
   const Cart &cart() const { return cart_; }
 
 private:
-  double castRay(const Point &from, double angle) const;
   std::vector<Box> obstacles() const;
 
   simulated_world::Noise noise_;

@@ -3,6 +3,7 @@
 #define NAVIGATION_CONTROLLER_HOST_NODE_H
 
 #include <memory>
+#include <vector>
 
 #include <nav_msgs/Path.h>
 #include <navigation/Localised.h>
@@ -32,10 +33,11 @@ private:
   ros::Subscriber path_sub_, mission_sub_, pose_sub_;
   MissionCommand command_;
   nav_msgs::Path path_;
+  std::vector<Pose> poses_; ///< of the path
   geometry_msgs::Twist last_;
   double path_timeout_;
-  double max_speed_step_;
-  double max_turn_step_;
+  double max_speed_step_; ///< m/s, from one pose to the next: it brakes at once
+  double max_turn_step_;  ///< rad/s
   double careful_quality_;
   double careful_speed_;
   int wait_for_ready_;

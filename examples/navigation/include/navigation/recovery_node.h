@@ -42,6 +42,7 @@ private:
   void onStatus(const RobotStatus &status);
   void onMission(const MissionCommand &command);
   void onCommand(const geometry_msgs::TwistStamped &command);
+  void takeIn();
   void begin(std::uint8_t action, const ros::Time &now);
   void decide(const geometry_msgs::Twist &wanted, const ros::Time &now);
   geometry_msgs::Twist act(const ros::Time &now);
@@ -52,7 +53,8 @@ private:
   ros::Publisher command_pub_, status_pub_;
   ros::Subscriber pose_sub_, status_sub_, mission_sub_, command_sub_;
   Pose pose_, begun_at_;
-  ros::Time begun_, lost_since_;
+  geometry_msgs::TwistStamped command_;
+  ros::Time pose_stamp_, begun_, lost_since_;
   double last_yaw_ = 0.0;
   double turned_ = 0.0; ///< in this action, rad
   double rest_time_;
@@ -71,6 +73,7 @@ private:
   int touching_ = 0;   ///< frames in succession
   bool lost_ = false;
   bool given_up_ = false;
+  bool command_pending_ = false;
   std::uint8_t action_ = RecoveryStatus::NONE;
 };
 

@@ -20,6 +20,8 @@ public:
   void step(const geometry_msgs::Twist &command, const Arena &arena,
             double interval);
   nav_msgs::Odometry odometry(const ros::Time &stamp);
+  /// What the base says of itself; where the battery is empty, the wheels stand
+  /// until it says otherwise.
   RobotStatus status(const ros::Time &stamp);
   const Pose &pose() const { return pose_; }
   bool contact() const { return contact_; }

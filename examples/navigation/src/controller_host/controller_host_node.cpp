@@ -1,5 +1,6 @@
 #include "navigation/controller_host_node.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -37,18 +38,23 @@ ControllerHostNode::ControllerHostNode(ros::NodeHandle &nh,
 }
 
 void ControllerHostNode::onMission(const MissionCommand &command) {
+  const bool new_goal = command.goal_id != command_.goal_id;
   command_ = command;
+  // Its path comes by another connection, and may have come before.
+  if (new_goal)
+    controller_->setPath(poses_, command_.goal_id);
 }
 
 void ControllerHostNode::onPath(const nav_msgs::Path &path) {
   path_ = path;
-  std::vector<Pose> poses;
+  poses_.clear();
   for (const geometry_msgs::PoseStamped &stamped : path.poses) {
     const geometry_msgs::Pose &pose = stamped.pose;
-    poses.push_back({pose.position.x, pose.position.y,
-                     2.0 * std::atan2(pose.orientation.z, pose.orientation.w)});
+    poses_.push_back(
+        {pose.position.x, pose.position.y,
+         2.0 * std::atan2(pose.orientation.z, pose.orientation.w)});
   }
-  controller_->setPath(poses, command_.goal_id);
+  controller_->setPath(poses_, command_.goal_id);
 }
 
 void ControllerHostNode::onPose(const Localised &pose) {

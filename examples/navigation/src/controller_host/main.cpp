@@ -6,7 +6,12 @@ int main(int argc, char **argv) {
   ros::init(argc, argv, "controller_host");
   ros::NodeHandle nh;
   ros::NodeHandle private_nh("~");
-  navigation::ControllerHostNode node(nh, private_nh);
-  ros::spin();
+  try {
+    navigation::ControllerHostNode node(nh, private_nh);
+    ros::spin();
+  } catch (const pluginlib::PluginlibException &error) {
+    ROS_FATAL("the controller cannot be loaded: %s", error.what());
+    return 1;
+  }
   return 0;
 }

@@ -1,6 +1,8 @@
 #include "navigation/pure_pursuit.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <navigation/ControllerStatus.h>
 

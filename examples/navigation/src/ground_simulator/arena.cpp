@@ -1,5 +1,6 @@
 #include "navigation/arena.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace navigation {
@@ -18,6 +19,14 @@ const std::vector<Box> &boxes() {
   static const std::vector<Box> Boxes = {
       {2.3, 1.7, 2.7, 2.1}, {5.7, 3.0, 6.2, 3.5}, {6.8, 1.6, 7.2, 2.0}};
   return Boxes;
+}
+
+double castRay(const std::vector<Box> &obstacles, const Point &from,
+               double angle) {
+  double range = std::numeric_limits<double>::infinity();
+  for (const Box &box : obstacles)
+    range = std::min(range, rayToBox(box, from, angle));
+  return range;
 }
 } // namespace
 
@@ -66,13 +75,6 @@ bool Arena::touches(const Point &place) const {
   return false;
 }
 
-double Arena::castRay(const Point &from, double angle) const {
-  double range = std::numeric_limits<double>::infinity();
-  for (const Box &box : obstacles())
-    range = std::min(range, rayToBox(box, from, angle));
-  return range;
-}
-
 sensor_msgs::LaserScan Arena::scan(const ros::Time &stamp, const Pose &robot) {
   sensor_msgs::LaserScan scan;
   scan.header.stamp = stamp;
@@ -84,10 +86,12 @@ sensor_msgs::LaserScan Arena::scan(const ros::Time &stamp, const Pose &robot) {
   scan.range_max = static_cast<float>(LaserRange);
   const bool dusty = enable_dust_ && dust_left_ > 0.0;
   const double dropout = dusty ? dust_dropout_ : laser_dropout_;
+  const std::vector<Box> standing = obstacles();
   for (int beam = 0; beam < Beams; ++beam) {
     const double angle = scan.angle_min + beam * scan.angle_increment;
-    const double range = castRay({robot.x, robot.y}, robot.yaw + angle) +
-                         noise_.gaussian(laser_noise_);
+    const double range =
+        castRay(standing, {robot.x, robot.y}, robot.yaw + angle) +
+        noise_.gaussian(laser_noise_);
     const bool lost = noise_.chance(dropout) || range > LaserRange;
     scan.ranges.push_back(lost ? std::numeric_limits<float>::infinity()
                                : static_cast<float>(range));

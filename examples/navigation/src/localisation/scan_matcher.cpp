@@ -1,6 +1,8 @@
 #include "navigation/scan_matcher.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace navigation {
 

@@ -16,8 +16,7 @@ class DriveWatch:
         self._still = 0
         self._planned = None
         self._control = None
-        self.given_up = False
-        self.recovering = False
+        self._recovery = None
         self.sure = True
 
     def update_pose(self, pose):
@@ -43,19 +42,23 @@ class DriveWatch:
 
     def update_recovery(self, status):
         """What is done against being stuck."""
-        self.given_up = status.given_up
-        self.recovering = status.action != status.NONE
+        self._recovery = status
 
     def forget(self, now):
         """A new leg: what was said of the last one does not count."""
         self._planned = now
         self._control = None
-        self.given_up = False
+        self._recovery = None
 
     def arrived(self, goal_id):
         """Whether the controller is content with where it is."""
         control = self._control
         return control is not None and control.goal_id == goal_id and control.arrived
+
+    def given_up(self, goal_id):
+        """Whether the robot was stuck too often on its way to this goal."""
+        recovery = self._recovery
+        return recovery is not None and recovery.goal_id == goal_id and recovery.given_up
 
     def no_way(self, now):
         """Whether there was no plan for too long."""

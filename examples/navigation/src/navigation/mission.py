@@ -125,6 +125,5 @@ class Mission:
 def main(pilot=Pilot):
     """Run the mission as a node."""
     rospy.init_node("mission")
-    mission = Mission(pilot)
+    Mission(pilot)
     rospy.spin()
-    return mission

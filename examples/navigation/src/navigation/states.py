@@ -80,10 +80,11 @@ class Leg(State):
 
     def step(self, now):
         mission = self.mission
-        if mission.drive.arrived(mission.pilot.goal_id) or mission.pilot.at_goal(mission.pose):
+        goal_id = mission.pilot.goal_id
+        if mission.drive.arrived(goal_id) or mission.pilot.at_goal(mission.pose):
             return self.following
         late = self.age(now) > self._leg_timeout
-        if late or mission.drive.given_up or mission.drive.no_way(now):
+        if late or mission.drive.given_up(goal_id) or mission.drive.no_way(now):
             rospy.logwarn("it does not get there")
             return self.hopeless
         return None
@@ -194,6 +195,9 @@ class Done(State):
     def enter(self, now):
         super().enter(now)
         self.mission.pilot.stand()
+        # The time may be up while they are on.
+        self.mission.light(False)
+        self.mission.sound(False)
         self.mission.finish()
 
     def step(self, now):

@@ -12,7 +12,7 @@ constexpr double WallMargin = 0.15; // m
 constexpr int MostHits = 12;
 constexpr double Weight = 6.0;     // of discomfort near an obstacle
 constexpr double Comfort = 0.25;   // m in which it falls to a third
-constexpr double BehindHit = 0.15; // m before a hit that are not cleared
+constexpr double BeforeHit = 0.15; // m: not cleared so near to a hit
 } // namespace
 
 ObstacleGrid::ObstacleGrid(ros::NodeHandle &private_nh)
@@ -74,7 +74,7 @@ void ObstacleGrid::mark(const Point &point) {
 }
 
 void ObstacleGrid::clear(const Pose &robot, double angle, double range) {
-  const double end = std::min(range - BehindHit, MarkRange);
+  const double end = std::min(range - BeforeHit, MarkRange);
   const double dx = std::cos(angle), dy = std::sin(angle);
   std::size_t last = hits_.size();
   for (double way = 0.0; way < end; way += 0.5 * Resolution) {

@@ -40,6 +40,8 @@ void RecoveryNode::onPose(const Localised &pose) {
   if (pose.lost && !lost_)
     lost_since_ = pose.header.stamp;
   lost_ = pose.lost;
+  pose_stamp_ = pose.header.stamp;
+  takeIn();
 }
 
 void RecoveryNode::onStatus(const RobotStatus &status) {
@@ -55,11 +57,21 @@ void RecoveryNode::onMission(const MissionCommand &command) {
 }
 
 void RecoveryNode::onCommand(const geometry_msgs::TwistStamped &command) {
-  const ros::Time now = command.header.stamp;
+  command_ = command;
+  command_pending_ = true;
+  takeIn();
+}
+
+void RecoveryNode::takeIn() {
+  // The pose that the command goes back to comes by another connection.
+  if (!command_pending_ || pose_stamp_ < command_.header.stamp)
+    return;
+  command_pending_ = false;
+  const ros::Time now = command_.header.stamp;
   turned_ += std::fabs(wrapAngle(pose_.yaw - last_yaw_));
   last_yaw_ = pose_.yaw;
-  decide(command.twist, now);
-  geometry_msgs::TwistStamped out = command;
+  decide(command_.twist, now);
+  geometry_msgs::TwistStamped out = command_;
   if (given_up_)
     out.twist = geometry_msgs::Twist();
   else if (action_ != RecoveryStatus::NONE)
@@ -67,6 +79,7 @@ void RecoveryNode::onCommand(const geometry_msgs::TwistStamped &command) {
   command_pub_.publish(out);
   RecoveryStatus status;
   status.header.stamp = now;
+  status.goal_id = goal_id_;
   status.action = action_;
   status.recoveries = static_cast<std::uint32_t>(recoveries_);
   status.given_up = given_up_;

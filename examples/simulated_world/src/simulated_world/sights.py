@@ -50,7 +50,9 @@ def load_sights(path: Path, sight: type[SightT]) -> list[SightT]:
     """
     try:
         with path.open("rb") as stream:
-            table = pq.read_table(stream)
+            # A thread of Arrow that still holds the stream aborts a Python that ends
+            # (apache/arrow#34314): none is asked.
+            table = pq.ParquetFile(stream, pre_buffer=False).read(use_threads=False)
     except pa.ArrowException as error:
         raise ObserverError(f"{path}: no readable Parquet file") from error
     wanted = schema_of(sight)
