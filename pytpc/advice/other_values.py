@@ -9,13 +9,14 @@ it would be. So a decision that would have come a moment sooner or later weighs
 little, whatever the number by which the value was changed. Of each comparison it is asked
 
     acted  = log( sum of u fit / (sum of u + c) ) - log( mean of fit )
-    u      = d^2 / (d^2 + MOMENT_S^2)
-    waited = log( (turned in the wait + s) / (turned elsewhere + s) )
+    u      = d^2 / (d^2 + MOMENT_S^2), LEAST at least
+    waited = log( (turned in the wait + s) / (turned elsewhere + s) ) + log( turned in the wait + s )
 
-with the duration d of each turn; ``fit`` and the wait are those of
-`pytpc.scoring.diagnosis_evidence`, of the marks. Type I is charged with ``acted`` of the begins of
-the turns, type II with ``waited``; both by the odds of the types. A comparison that no other value
-turns before the last mark is acquitted.
+with the duration d of each turn, and shares of the time; ``fit`` and the wait are those of
+`pytpc.scoring.diagnosis_evidence`, of the marks. Type I is charged with ``acted`` of the turns that
+begin before the last of the observers' first marks, type II with ``waited`` or, half of it each,
+``acted``: a change that cannot be undone. Both go by the odds of the types. A parameter whose other
+value turns nothing before the marks is acquitted.
 """
 
 from __future__ import annotations

@@ -75,7 +75,7 @@ SAID_I = 28 / 68
 """Who cannot says type I this often, whatever it is: the share of all marks in table 6.13."""
 
 MARKS_I, MARKS_II = 17 / 8, 51 / 8
-"""Marks of a user in a trial of either type, by table 6.15."""
+"""Marks of a user in a trial of either type, by table 6.15, those who set none among them."""
 LATER = 0.5
 """What is said at each mark of an observer counts so much of what was said at the one before: what
 comes later is often of another error, that follows from the first."""

@@ -1,8 +1,8 @@
 """What is known of the parameters beside the log: which of them are not as they were.
 
 A parameter that has the value with which the robot went right is hardly to blame. By how much one
-was changed is not asked: what is a lot differs from one parameter to the next, and in the study it
-would give the answer away, as its harmless changes are all small (see ``largest-change`` there).
+was changed is not asked: what is a lot differs from one parameter to the next (in the study, whose
+harmless changes are as large as the others, ``largest-change`` is no better than chance).
 """
 
 from __future__ import annotations
