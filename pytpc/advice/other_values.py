@@ -10,7 +10,7 @@ little, whatever the number by which the value was changed. Of each comparison i
 
     acted  = log( sum of u fit / (sum of u + c) ) - log( mean of fit )
     u      = d^2 / (d^2 + MOMENT_S^2), LEAST at least
-    waited = log( (turned in the wait + s) / (turned elsewhere + s) ) + log( turned in the wait + s )
+    waited = log( (turned in the wait + s)^2 / (turned elsewhere + s) )
 
 with the duration d of each turn, and shares of the time; ``fit`` and the wait are those of
 `pytpc.scoring.diagnosis_evidence`, of the marks. Type I is charged with ``acted`` of the turns that
