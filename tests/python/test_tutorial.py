@@ -59,7 +59,7 @@ def test_the_command_line(command: str, shown: str):
 
 
 # What hangs on the fitted weights stands there without digits, which would be old soon.
-@pytest.mark.parametrize("command", ["rank --top 2", "suggest --top 1"])
+@pytest.mark.parametrize("command", ["rank --top 1", "suggest --top 1"])
 def test_the_examples_of_diagnosing(command: str):
     done = subprocess.run(
         pytpc(*command.split(), EXAMPLE, "--static", f"{EXAMPLE}/static.json"),
