@@ -19,6 +19,7 @@ from pytpc.ingest.reading import read
 from pytpc.paths import cmake_file, log_library, plugin
 from pytpc.scoring.ranking import unknown_keys
 from pytpc.static_info import StaticInfo
+from pytpc.study.changes import DECOYS
 from pytpc.treatment import load_treatment
 from pytpc.values.recording import read_parameters
 
@@ -86,7 +87,7 @@ def test_the_changes_are_what_stood_on_the_robot(out, label):
     stood = read_parameters(out / label / "params.yaml")
     others = {name: stood[name] for name in own if stood[name] != own[name]}
     assert others == {f"{one.node}/{one.parameter.lstrip('~')}": one.new for one in changes}
-    assert len(changes) == (0 if label == REFERENCE else 5 + (label in TREATED))
+    assert len(changes) == (0 if label == REFERENCE else DECOYS + (label in TREATED))
 
 
 @pytest.mark.parametrize("label", TREATED)
