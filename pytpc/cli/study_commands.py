@@ -11,6 +11,7 @@ from rich.text import Text
 
 from pytpc.cli.console import console
 from pytpc.cli.options import JSON, PATH, Command
+from pytpc.cli.study_options import STUDY
 from pytpc.cli.study_progress import StudyProgress
 from pytpc.cli.study_report import report_command
 from pytpc.cli.study_sensitivity import sensitivity_command
@@ -33,14 +34,6 @@ from pytpc.words import many, plain
 
 
 def _flown(command: Command) -> Command:
-    out = click.option(
-        "--out",
-        type=PATH,
-        default=Path("out/study"),
-        show_default=True,
-        metavar="DIR",
-        help="The study's folder.",
-    )
     jobs = click.option(
         "--jobs",
         type=click.IntRange(1, 16),
@@ -54,7 +47,7 @@ def _flown(command: Command) -> Command:
         metavar="R",
         help="Simulated seconds in a second.  [default: that of each system]",
     )
-    return out(jobs(rate(JSON(command))))
+    return STUDY(jobs(rate(JSON(command))))
 
 
 @click.group("study")

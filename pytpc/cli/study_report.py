@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from contextlib import ExitStack
 from pathlib import Path
 
@@ -10,18 +9,12 @@ import click
 
 from pytpc.cli.console import progress, warn
 from pytpc.cli.options import JSON, PATH
+from pytpc.cli.study_options import RANK_AGAIN, RANK_JOBS, STUDY
 from pytpc.words import many, plain
 
 
 @click.command("report")
-@click.option(
-    "--out",
-    type=PATH,
-    default=Path("out/study"),
-    show_default=True,
-    metavar="DIR",
-    help="The study's folder.",
-)
+@STUDY
 @click.option(
     "--docs",
     type=PATH,
@@ -37,14 +30,8 @@ from pytpc.words import many, plain
     show_default=True,
     help="Whose results are shown.",
 )
-@click.option("--again", is_flag=True, help="Rank also what has been ranked.")
-@click.option(
-    "--jobs",
-    type=click.IntRange(1, 64),
-    default=os.cpu_count() or 1,
-    show_default="cores of this machine",
-    help="How many processes rank.",
-)
+@RANK_AGAIN
+@RANK_JOBS
 @JSON
 def report_command(
     *, out: Path, docs: Path, half: str, again: bool, jobs: int, as_json: bool

@@ -2,25 +2,17 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 import click
 
 from pytpc.cli.console import progress
-from pytpc.cli.options import PATH
+from pytpc.cli.study_options import RANK_AGAIN, RANK_JOBS, STUDY
 from pytpc.cli.study_suggestions import HALVES
 
 
 @click.command("sensitivity")
-@click.option(
-    "--out",
-    type=PATH,
-    default=Path("out/study"),
-    show_default=True,
-    metavar="DIR",
-    help="The study's folder.",
-)
+@STUDY
 @click.option(
     "--half",
     type=click.Choice(list(HALVES)),
@@ -28,14 +20,8 @@ from pytpc.cli.study_suggestions import HALVES
     show_default=True,
     help="Whose missions are ranked.",
 )
-@click.option("--again", is_flag=True, help="Rank also what has been ranked.")
-@click.option(
-    "--jobs",
-    type=click.IntRange(1, 64),
-    default=os.cpu_count() or 1,
-    show_default="cores of this machine",
-    help="How many processes rank.",
-)
+@RANK_AGAIN
+@RANK_JOBS
 def sensitivity_command(*, out: Path, half: str, again: bool, jobs: int) -> None:
     """Rank the missions by the marks of other people than the study's.
 

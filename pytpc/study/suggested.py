@@ -18,6 +18,7 @@ from pytpc.columns import write_table
 from pytpc.errors import InputError
 from pytpc.static_json import parse_json
 from pytpc.study.dataset import CAUSES_FILE, Cause, load_causes, load_done
+from pytpc.study.listed import read_list
 from pytpc.study.plan import Flight, Setting
 
 WANTED_FILE = Path("results") / "suggestions-wanted.json"
@@ -220,16 +221,7 @@ def load_failed(out: Path) -> list[Failed]:
     Raises:
         InputError: it cannot be read.
     """
-    path = out / FAILED_FILE
-    if not path.is_file():
-        return []
-    document = parse_json(path)
-    try:
-        if not isinstance(document, list):
-            raise TypeError("a list is expected")
-        return [Failed(**one) for one in document]
-    except TypeError as error:
-        raise InputError(f"not about flights that failed: {error}", path) from error
+    return read_list(out / FAILED_FILE, lambda one: Failed(**one), "not about flights that failed")
 
 
 def _save_failed(rows: Sequence[Mapping[str, Any]], out: Path) -> None:

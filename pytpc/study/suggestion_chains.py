@@ -14,9 +14,8 @@ import numpy as np
 
 from pytpc.advice.known import Source
 from pytpc.advice.remedy import EVERY_SOURCE
-from pytpc.errors import InputError
 from pytpc.parameters import same_parameter
-from pytpc.static_json import parse_json
+from pytpc.study.listed import read_list
 
 CHAINS_FILE = Path("results") / "suggestion-chains.json"
 HEADLINE = "lasting"
@@ -124,15 +123,7 @@ def load_chains(path: Path) -> list[Chain]:
     Raises:
         InputError: the file cannot be read, or is not of chains.
     """
-    if not path.is_file():
-        return []
-    document = parse_json(path)
-    try:
-        if not isinstance(document, list):
-            raise TypeError("a list is expected")
-        return [Chain.from_json(one) for one in document]
-    except (KeyError, TypeError) as error:
-        raise InputError(f"not chains of suggestions: {error}", path) from error
+    return read_list(path, Chain.from_json, "not chains of suggestions")
 
 
 class Outcome(NamedTuple):

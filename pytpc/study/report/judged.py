@@ -14,8 +14,7 @@ from hashlib import sha256
 from pathlib import Path
 
 from pytpc.atomic import write_atomic
-from pytpc.errors import InputError
-from pytpc.static_json import parse_json
+from pytpc.study.listed import read_list
 from pytpc.study.plan import Half
 
 JUDGED_FILE = Path("results") / "judged.json"
@@ -43,16 +42,7 @@ def load_judgings(folder: Path) -> list[Judging]:
     Raises:
         InputError: the file cannot be read, or is not about that.
     """
-    path = folder / JUDGED_FILE
-    if not path.is_file():
-        return []
-    document = parse_json(path)
-    try:
-        if not isinstance(document, list):
-            raise TypeError("a list is expected")
-        return [Judging(**one) for one in document]
-    except TypeError as error:
-        raise InputError(f"not about judgings: {error}", path) from error
+    return read_list(folder / JUDGED_FILE, lambda one: Judging(**one), "not about judgings")
 
 
 def save_judging(folder: Path, methods: Iterable[tuple[str, str]], missions: int) -> None:

@@ -1,0 +1,27 @@
+"""Options that several commands of the study have."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import click
+
+from pytpc.cli.options import PATH
+
+STUDY = click.option(
+    "--out",
+    type=PATH,
+    default=Path("out/study"),
+    show_default=True,
+    metavar="DIR",
+    help="The study's folder.",
+)
+RANK_AGAIN = click.option("--again", is_flag=True, help="Rank also what has been ranked.")
+RANK_JOBS = click.option(
+    "--jobs",
+    type=click.IntRange(1, 64),
+    default=os.cpu_count() or 1,
+    show_default="cores of this machine",
+    help="How many processes rank.",
+)
