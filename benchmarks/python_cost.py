@@ -29,7 +29,7 @@ from pytpc.graph import RosGraph
 
 TOPIC = "python-cost"
 ROOT = Path(__file__).resolve().parents[1]
-RUN = str(ROOT / "pytpc/run.py")
+RUN = str(ROOT / "pytpc/python_runtime/run.py")
 # The interpreter that Debian's rospy is for.
 PYTHON = "/usr/bin/python3"
 ROUNDS = 5

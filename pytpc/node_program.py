@@ -8,8 +8,8 @@ import shutil
 from collections.abc import Sequence
 from pathlib import Path
 
-from pytpc import run
 from pytpc.errors import InputError
+from pytpc.python_runtime import run
 
 _LONGEST_LINE = 512
 

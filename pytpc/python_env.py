@@ -10,9 +10,10 @@ import os
 from collections.abc import Mapping
 from pathlib import Path
 
-from pytpc.pyhook.listed import read_table
+from pytpc import python_runtime
+from pytpc.python_runtime.listed import read_table
 
-ON_PATH = Path(__file__).resolve().parent / "pyhook" / "on_path"
+ON_PATH = Path(python_runtime.__file__).resolve().parent / "on_path"
 SWITCH = "TPC_PYTHON"
 STATIC = "TPC_STATIC"
 _MODULES = "PYTHONPATH"

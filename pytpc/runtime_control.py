@@ -16,7 +16,7 @@ from http.client import HTTPException
 from urllib.parse import urlsplit
 
 from pytpc.errors import RunError
-from pytpc.pyhook.config import NAMES
+from pytpc.python_runtime.config import NAMES
 from pytpc.tcpros import call, decode_header, encode_header, receive
 
 _RELOAD = "/tpc/reload"

@@ -13,7 +13,7 @@ from rich.text import Text
 from pytpc import relay
 from pytpc.cli.console import console, progress, warn
 from pytpc.errors import RunError
-from pytpc.pyhook.config import POLICIES, SINKS
+from pytpc.python_runtime.config import POLICIES, SINKS
 from pytpc.runtime_control import Graph, NodeStatus, Value, chosen
 from pytpc.words import many, plain
 

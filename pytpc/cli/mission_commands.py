@@ -19,8 +19,8 @@ from pytpc.errors import InputError
 from pytpc.ingest.reading import opened
 from pytpc.ingest.recording import REPORTS_FOLDER
 from pytpc.mission import DEFAULT_TOPICS, MissionRun, Progress, run_mission
-from pytpc.pyhook.config import NAMES
 from pytpc.python_env import mission_env
+from pytpc.python_runtime.config import NAMES
 from pytpc.words import many
 
 _PATH = click.Path(path_type=Path)

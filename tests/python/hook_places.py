@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import ast
 
-from pytpc.pyhook.find import RELATIONS, conditions_of, flags_of, operands_of, values_of
-from pytpc.pyhook.listed import Listed
+from pytpc.python_runtime.find import RELATIONS, conditions_of, flags_of, operands_of, values_of
+from pytpc.python_runtime.listed import Listed
 
 # Name of a function that compares inside -> what is compared with its threshold.
 _INSIDE = {

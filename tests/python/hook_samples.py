@@ -15,11 +15,11 @@ from typing import Any
 
 from hook_places import comparisons, others
 
-from pytpc.pyhook import quiet, sites
-from pytpc.pyhook.find import Place
-from pytpc.pyhook.listed import Listed
-from pytpc.pyhook.rewrite import rewrite
-from pytpc.pyhook.sites import Reported
+from pytpc.python_runtime import quiet, sites
+from pytpc.python_runtime.find import Place
+from pytpc.python_runtime.listed import Listed
+from pytpc.python_runtime.rewrite import rewrite
+from pytpc.python_runtime.sites import Reported
 
 PATH = "/somewhere/program.py"
 _POSITION = ("name", "lineno", "end_lineno", "colno", "end_colno")

@@ -32,8 +32,8 @@ class Loader(importlib.machinery.SourceFileLoader):
         # Not there in a plain run.
         from hook_places import comparisons  # noqa: PLC0415
 
-        from pytpc.pyhook.rewrite import rewrite  # noqa: PLC0415
-        from pytpc.pyhook.sites import Reported  # noqa: PLC0415
+        from pytpc.python_runtime.rewrite import rewrite  # noqa: PLC0415
+        from pytpc.python_runtime.sites import Reported  # noqa: PLC0415
 
         path = self.get_filename(fullname)
         data = self.get_data(path)
@@ -66,7 +66,7 @@ def main(words):
         words.pop(0)
     else:
         sys.path.insert(0, words[0])
-        from pytpc.pyhook import quiet, sites  # noqa: PLC0415
+        from pytpc.python_runtime import quiet, sites  # noqa: PLC0415
 
         def take(*_):
             reports[0] += 1

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from hook_samples import PATH, instrumented, listed, outcome, reports, taking, without_addresses
 
-from pytpc.pyhook import sites
+from pytpc.python_runtime import sites
 
 # Text of the call, relation, operand -> cmp, thresh, outcome.
 CALLS: dict[tuple[str, str, str], tuple[float, float, bool]] = {

@@ -11,11 +11,11 @@ from pathlib import Path
 import pytest
 
 from pytpc.ingest import read
-from pytpc.pyhook.entry import program_of
-from pytpc.pyhook.listed import names_script, read_table
+from pytpc.python_runtime.entry import program_of
+from pytpc.python_runtime.listed import names_script, read_table
 
 ROOT = Path(__file__).parents[2]
-RUN = str(ROOT / "pytpc/run.py")
+RUN = str(ROOT / "pytpc/python_runtime/run.py")
 MODULE = """\
 import sys
 def main():
@@ -86,7 +86,7 @@ def script(folder: Path, text: str, name: str = "talker_node") -> Path:
 
 def run(static: Path, *command: str | Path, cwd: Path | None = None, **more: str) -> str:
     """What it says; the environment is that of `pytpc env`."""
-    on_path = ROOT / "pytpc/pyhook/on_path"
+    on_path = ROOT / "pytpc/python_runtime/on_path"
     ours = {
         "PYTHONPATH": f"{on_path}{os.pathsep}{static.parent / 'site'}",
         "TPC_PYTHON": "1",
@@ -189,7 +189,7 @@ def test_an_entry_point_has_the_keys_of_its_unit(static, tmp_path):
     ],
 )
 def test_programs_without_comparisons_import_nothing_of_ours(static, tmp_path, name, imported):
-    text = "import sys\nprint('pytpc.pyhook.listed' in sys.modules)\n"
+    text = "import sys\nprint('pytpc.python_runtime.listed' in sys.modules)\n"
     path = script(tmp_path, text, "tool.py" if name == "link" else name)
     if name == "link":
         path.with_name(name).symlink_to(path)

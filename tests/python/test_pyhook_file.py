@@ -17,10 +17,10 @@ ROOT = Path(__file__).parents[2]
 PRELUDE = """\
 import os, sys, threading, time
 sys.path.insert(0, {root!r})
-from pytpc.pyhook.find import Place
-from pytpc.pyhook.listed import Listed
-from pytpc.pyhook.runtime import RUNTIME
-from pytpc.pyhook.sites import Comparison
+from pytpc.python_runtime.find import Place
+from pytpc.python_runtime.listed import Listed
+from pytpc.python_runtime.runtime import RUNTIME
+from pytpc.python_runtime.sites import Comparison
 def site(key, operator="Gt"):
     listed = Listed(key, ">", 1, 1, None, None, None, "right", None)
     return Comparison(operator, (RUNTIME.register(Place(listed, False)),))
@@ -261,7 +261,7 @@ def test_edges_killed_in_the_middle_of_a_summary(tmp_path):
                 self.real[at] = raw
                 os.kill(os.getpid(), 9)
         import struct
-        from pytpc.pyhook import file_sink
+        from pytpc.python_runtime import file_sink
         real = held.slot._bytes
         file_sink.struct = type("", (), {"pack_into": staticmethod(
             lambda form, where, at, value: struct.pack_into(form, real, at, value))})

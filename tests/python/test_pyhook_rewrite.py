@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from hook_samples import instrumented, listed, register, reports, taking
 
-from pytpc.pyhook import sites
-from pytpc.pyhook.rewrite import rewrite
+from pytpc.python_runtime import sites
+from pytpc.python_runtime.rewrite import rewrite
 
 
 def test_a_comparison_reports_both_sides_and_its_outcome() -> None:

@@ -6,11 +6,11 @@ import sys
 import threading
 from types import SimpleNamespace
 
-from pytpc.pyhook import ros_state
-from pytpc.pyhook.config import Config
-from pytpc.pyhook.policies import Caps, Edges
-from pytpc.pyhook.ros_sinks import RosoutSink
-from pytpc.pyhook.sites import Reported
+from pytpc.python_runtime import ros_state
+from pytpc.python_runtime.config import Config
+from pytpc.python_runtime.policies import Caps, Edges
+from pytpc.python_runtime.ros_sinks import RosoutSink
+from pytpc.python_runtime.sites import Reported
 
 
 def test_a_publisher_may_wait_for_a_thread_that_compares(monkeypatch) -> None:

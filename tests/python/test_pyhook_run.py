@@ -15,10 +15,10 @@ from click.testing import CliRunner
 from pytpc.cli.main import main
 from pytpc.ingest import read
 from pytpc.node_program import command_of, interpreter_of
-from pytpc.pyhook.listed import names_script, read_table
+from pytpc.python_runtime.listed import names_script, read_table
 
 ROOT = Path(__file__).parents[2]
-RUN = [sys.executable, str(ROOT / "pytpc/run.py")]
+RUN = [sys.executable, str(ROOT / "pytpc/python_runtime/run.py")]
 RELAY = Path("/usr/share/catkin/cmake/templates/script.py.in")
 INTERPRETERS = sorted(
     {
@@ -143,7 +143,7 @@ def test_every_python_from_3_8_on(package, python):
 
 def test_as_a_module(package):
     path = f"{package / 'src'}{os.pathsep}{ROOT}"
-    command = (sys.executable, "-m", "pytpc.run", package / "nodes/node.py", "a")
+    command = (sys.executable, "-m", "pytpc.python_runtime", package / "nodes/node.py", "a")
     done = run(package, *command, PYTHONPATH=path)
     assert (done.returncode, done.stderr) == (0, "")
     assert reported(package) == BOTH
@@ -290,7 +290,7 @@ def test_a_package_of_a_devel_space(package, tmp_path):
 
 
 def test_by_the_environment_alone(package):
-    folder = f"{ROOT / 'pytpc/pyhook/on_path'}{os.pathsep}{package / 'src'}"
+    folder = f"{ROOT / 'pytpc/python_runtime/on_path'}{os.pathsep}{package / 'src'}"
     node = package / "nodes/node.py"
     plain = run(package, sys.executable, node, "a")
     done = run(package, sys.executable, node, "a", PYTHONPATH=folder, TPC_PYTHON="1")
@@ -303,7 +303,7 @@ def test_the_environment_leaves_other_programs_alone(package, tmp_path):
     (tmp_path / "elsewhere/sitecustomize.py").write_text("print('theirs')\n")
     other = tmp_path / "other_program.py"
     other.write_text("import sys\nprint(sys.argv, 'pytpc' in sys.modules)\n")
-    folder = f"{ROOT / 'pytpc/pyhook/on_path'}{os.pathsep}{tmp_path / 'elsewhere'}"
+    folder = f"{ROOT / 'pytpc/python_runtime/on_path'}{os.pathsep}{tmp_path / 'elsewhere'}"
     done = run(package, sys.executable, other, PYTHONPATH=folder)
     # Another sitecustomize is run, too; without TPC_PYTHON nothing of ours is imported.
     assert done.stdout == f"theirs\n['{other}'] False\n"
@@ -380,7 +380,7 @@ def test_the_interpreters_options(tmp_path, options):
     static = tmp_path / "static.json"
     place = comparison("a", "node.py", 4, 8, "assert limit > 5, 'not with -O'")
     static.write_text(json.dumps({"schema": 1, "units": [unit(tmp_path, "node", place)]}))
-    hooks = [[], [RUN[1], "--static", static], ["-m", "pytpc.run", "--static", static]]
+    hooks = [[], [RUN[1], "--static", static], ["-m", "pytpc.python_runtime", "--static", static]]
     path = {"PYTHONPATH": str(ROOT)}
     plain, by_path, by_name = (
         subprocess.run(

@@ -9,7 +9,7 @@ import pytest
 from hook_samples import PATH, instrumented, listed
 from test_pyhook_file import files, recording, rows, run
 
-from pytpc.pyhook import sites
+from pytpc.python_runtime import sites
 
 
 class Late(Exception):

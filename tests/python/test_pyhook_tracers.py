@@ -37,7 +37,7 @@ def outputs(folder: Path, begin: str, end: str = "", said: str = "", python: str
     static = folder / "static.json"
     static.write_text(json.dumps({"schema": 1, "units": [unit(folder, "node", *places)]}))
     python = python or sys.executable
-    run = [python, str(ROOT / "pytpc/run.py"), "--static", str(static)]
+    run = [python, str(ROOT / "pytpc/python_runtime/run.py"), "--static", str(static)]
     env = {**os.environ, "TPC_SINK": "off"}
     done = [
         subprocess.run(

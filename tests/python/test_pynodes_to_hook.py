@@ -82,7 +82,7 @@ def reports(
         "PYTHONPATH": os.pathsep.join(map(str, modules)),
     }
     done = subprocess.run(
-        [sys.executable, str(ROOT / "pytpc/run.py"), str(script)],
+        [sys.executable, str(ROOT / "pytpc/python_runtime/run.py"), str(script)],
         env=environment, capture_output=True, text=True, check=False, timeout=60,
     )  # fmt: skip
     assert (done.returncode, done.stderr) == (0, "")

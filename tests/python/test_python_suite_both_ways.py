@@ -37,7 +37,7 @@ def static(folder: Path) -> StaticInfo:
 
 @pytest.fixture(scope="module")
 def results(static: StaticInfo, folder: Path) -> Results:
-    run = [sys.executable, str(ROOT / "pytpc/run.py"), "--static", str(folder / "static.json")]
+    run = [sys.executable, str(ROOT / "pytpc/python_runtime/run.py"), "--static", str(folder / "static.json")]
     able = [node for node in NODES if not missing_modules(node)]
     variants = {"plain": [], "reporting": run}
     return run_nodes(folder, able, variants, env={"TPC_SINK": "rosout"}, least_s=0.0)

@@ -14,7 +14,7 @@ from pytpc.cli.main import main
 from pytpc.colcon import BuildError, build_environment
 from pytpc.errors import MissingToolError
 from pytpc.paths import cmake_file, log_library, plugin
-from pytpc.pyhook.listed import read_table
+from pytpc.python_runtime.listed import read_table
 from pytpc.static_info import StaticInfo
 
 try:

@@ -19,7 +19,7 @@ from pytpc.graph import RosGraph
 from pytpc.ingest import read
 
 PYTHON = "/usr/bin/python3"
-RUN = str(Path(__file__).parents[2] / "pytpc/run.py")
+RUN = str(Path(__file__).parents[2] / "pytpc/python_runtime/run.py")
 KEY = "00000001-0000-5000-8000-000000000001"
 COUNT = 140
 # Numbers 0 to 6 in turn, and 140 of them: 3 of each 7 are above 3.

@@ -6,7 +6,7 @@ from math import inf, isfinite, nan
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from pytpc.pyhook.sites import Reported
+    from pytpc.python_runtime.sites import Reported
 
 
 # |cmp - thresh| above which an evaluation is far (SPEC 7).

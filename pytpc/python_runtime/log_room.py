@@ -11,7 +11,7 @@ import threading
 from time import monotonic_ns, time_ns
 from typing import TYPE_CHECKING
 
-from pytpc.pyhook.log_layout import (
+from pytpc.python_runtime.log_layout import (
     CHUNK,
     CHUNK_BYTES,
     CLOSED,
@@ -28,10 +28,10 @@ from pytpc.pyhook.log_layout import (
     created,
     program,
 )
-from pytpc.pyhook.words import warn
+from pytpc.python_runtime.words import warn
 
 if TYPE_CHECKING:
-    from pytpc.pyhook.config import Config
+    from pytpc.python_runtime.config import Config
 
 _EXTENT_BYTES = 1 << 20
 # Mappings are never given back, because other threads may write to them, and each takes a

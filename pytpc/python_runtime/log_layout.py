@@ -12,7 +12,7 @@ from time import time_ns
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from pytpc.pyhook.config import Config
+    from pytpc.python_runtime.config import Config
 
 MAGIC = b"TPCLOG1\n"
 HEADER_BYTES = 4096

@@ -1,8 +1,8 @@
-"""Runs a Python node with reports: ``python -m pytpc.run [--static FILE]... node.py ARGS...``.
+"""Runs a Python node with reports: ``python -m pytpc.python_runtime [--static FILE]... node.py ARGS``.
 
 It runs under the node's own interpreter, Python 3.8 or newer, which need not have TPC installed:
-``python /path/to/pytpc/run.py`` does the same. ``pytpc run`` finds the interpreter of a node and
-starts this.
+``python /path/to/pytpc/python_runtime/run.py`` does the same. ``pytpc run`` finds the interpreter of
+a node and starts this.
 """
 
 from __future__ import annotations
@@ -16,19 +16,20 @@ if __name__ == "__main__" and not __package__:
     # Started by its path: beside it are modules that are not for the program. Where the interpreter
     # puts no script's folder there (-I, -P) the first place is another's.
     is_safe = sys.flags.isolated or getattr(sys.flags, "safe_path", False)
-    sys.path[: 0 if is_safe else 1] = [os.path.dirname(os.path.dirname(os.path.abspath(__file__)))]
+    room = os.path.dirname(os.path.abspath(__file__))
+    sys.path[: 0 if is_safe else 1] = [os.path.dirname(os.path.dirname(room))]
 
 from pytpc.errors import InputError, TpcError
-from pytpc.pyhook.instrument import Instrument
-from pytpc.pyhook.listed import BUILT, Table, read_table
-from pytpc.pyhook.loader import install
-from pytpc.pyhook.runtime import RUNTIME
-from pytpc.pyhook.script import run_script
-from pytpc.pyhook.sites import unknown_outcomes
-from pytpc.pyhook.words import many, warn
+from pytpc.python_runtime.instrument import Instrument
+from pytpc.python_runtime.listed import BUILT, Table, read_table
+from pytpc.python_runtime.loader import install
+from pytpc.python_runtime.runtime import RUNTIME
+from pytpc.python_runtime.script import run_script
+from pytpc.python_runtime.sites import unknown_outcomes
+from pytpc.python_runtime.words import many, warn
 
 USAGE = """\
-usage: python -m pytpc.run [--static FILE]... [--verbose] NODE.py [ARGUMENT]...
+usage: python -m pytpc.python_runtime [--static FILE]... [--verbose] NODE.py [ARGUMENT]...
 
 Runs a Python node; the comparisons of the static information report.
 

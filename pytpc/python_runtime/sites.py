@@ -13,7 +13,7 @@ classes, and what has none is reported by its outcome alone.
 
 Each function that a rewritten program calls gives an iterator, so that it may change to a class in
 C under a tracer, and so that what a signal's handler raises within it is raised by C in the
-program's own line: see `pytpc.pyhook.quiet`.
+program's own line: see `pytpc.python_runtime.quiet`.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ import threading
 from itertools import repeat, tee
 from typing import TYPE_CHECKING, Any
 
-from pytpc.pyhook.quiet import Site, caller, flat, hidden, is_programs, keep, raising
+from pytpc.python_runtime.quiet import Site, caller, flat, hidden, is_programs, keep, raising
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from pytpc.pyhook.quiet import Function
+    from pytpc.python_runtime.quiet import Function
 
     Operator = Callable[[Any, Any], Any]
     Held = dict[int, tuple[object, object]]

@@ -5,7 +5,7 @@ was, is evaluated exactly once and in the original order, by the program's own f
 ``await`` and ``:=`` in an operand are as before. What was rewritten has the position that the
 comparison had, so that tracebacks, debuggers and coverage see the lines and columns of the source.
 
-The calls go to an object (`pytpc.pyhook.sites`) that is a constant of the code: nothing is added to
+The calls go to an object (`pytpc.python_runtime.sites`) that is a constant of the code: nothing is added to
 any namespace. `ast` knows no such constants, so a text stands in the tree for each, and is replaced
 in the compiled code.
 """
@@ -17,11 +17,11 @@ import sys
 from types import CodeType
 from typing import TYPE_CHECKING, NamedTuple
 
-from pytpc.pyhook.call_sites import Inside, LibraryCall
-from pytpc.pyhook.control_sites import Loop, Subject
-from pytpc.pyhook.find import Found, Place, find, values_of
-from pytpc.pyhook.listed import Listed
-from pytpc.pyhook.sites import Comparison, Flag, Reported
+from pytpc.python_runtime.call_sites import Inside, LibraryCall
+from pytpc.python_runtime.control_sites import Loop, Subject
+from pytpc.python_runtime.find import Found, Place, find, values_of
+from pytpc.python_runtime.listed import Listed
+from pytpc.python_runtime.sites import Comparison, Flag, Reported
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -2,7 +2,7 @@
 
 ``f(a, b, k=c)`` has become ``SITE.call(f, a, b, {"k": c}).__next__()``: the function and its
 arguments are evaluated as before, and the function is called by an iterator of C, with no frame of
-ours between the program and what the function runs. See `pytpc.pyhook.sites`.
+ours between the program and what the function runs. See `pytpc.python_runtime.sites`.
 """
 
 from __future__ import annotations
@@ -12,14 +12,14 @@ from functools import partial
 from itertools import repeat, starmap
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from pytpc.pyhook import sites
-from pytpc.pyhook.quiet import Site, flat, hidden, is_programs, keep, raising
-from pytpc.pyhook.sites import logger, number_of, truth_of
+from pytpc.python_runtime import sites
+from pytpc.python_runtime.quiet import Site, flat, hidden, is_programs, keep, raising
+from pytpc.python_runtime.sites import logger, number_of, truth_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from pytpc.pyhook.sites import Reported
+    from pytpc.python_runtime.sites import Reported
 
     Given = tuple[tuple[Any, ...], dict[str, Any]]
 

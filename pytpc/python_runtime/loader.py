@@ -13,10 +13,10 @@ from collections.abc import Sequence
 from types import CodeType, ModuleType
 from typing import Any
 
-from pytpc.pyhook import quiet
-from pytpc.pyhook.instrument import Instrument
-from pytpc.pyhook.relay import relayed
-from pytpc.pyhook.words import warn
+from pytpc.python_runtime import quiet
+from pytpc.python_runtime.instrument import Instrument
+from pytpc.python_runtime.relay import relayed
+from pytpc.python_runtime.words import warn
 
 
 class ReportingLoader(importlib.machinery.SourceFileLoader):

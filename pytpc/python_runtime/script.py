@@ -8,9 +8,9 @@ import sys
 from types import CodeType, ModuleType
 
 from pytpc.errors import InputError
-from pytpc.pyhook.instrument import Instrument
-from pytpc.pyhook.quiet import foreign_frames
-from pytpc.pyhook.relay import relayed
+from pytpc.python_runtime.instrument import Instrument
+from pytpc.python_runtime.quiet import foreign_frames
+from pytpc.python_runtime.relay import relayed
 
 
 def run_script(path: str, arguments: list[str], instrument: Instrument) -> None:

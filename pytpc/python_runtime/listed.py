@@ -13,7 +13,7 @@ from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 from pytpc.errors import InputError
-from pytpc.pyhook.entry import program_of, stem_of
+from pytpc.python_runtime.entry import program_of, stem_of
 
 # What `pytpc build` leaves in a workspace; it has all in it.
 BUILT = os.path.join(".tpc", "static.json")
@@ -82,7 +82,7 @@ class Table:
         """The files that the one at ``path`` may be a copy of; the very file alone where it is one.
 
         A file that was installed, or lies on another machine, is told by its text: see
-        `pytpc.pyhook.find.matching`.
+        `pytpc.python_runtime.find.matching`.
         """
         named = self.by_name.get(os.path.basename(path), [])
         if not named:

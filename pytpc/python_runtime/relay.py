@@ -10,10 +10,10 @@ import ast
 from types import CodeType
 from typing import TYPE_CHECKING, TextIO
 
-from pytpc.pyhook.rewrite import constant_text, with_constants
+from pytpc.python_runtime.rewrite import constant_text, with_constants
 
 if TYPE_CHECKING:
-    from pytpc.pyhook.instrument import Instrument
+    from pytpc.python_runtime.instrument import Instrument
 
 _SIGNS = (
     b"generated from catkin/cmake/template/script.py.in",

@@ -16,9 +16,9 @@ from itertools import count
 from time import monotonic_ns, time_ns
 from typing import TYPE_CHECKING, Any
 
-from pytpc.pyhook import ros_state
-from pytpc.pyhook.config import Config
-from pytpc.pyhook.log_layout import (
+from pytpc.python_runtime import ros_state
+from pytpc.python_runtime.config import Config
+from pytpc.python_runtime.log_layout import (
     CHUNK_BYTES,
     CHUNK_HEADER_BYTES,
     DROPPED,
@@ -44,10 +44,10 @@ from pytpc.pyhook.log_layout import (
     pack_integers,
     pack_report,
 )
-from pytpc.pyhook.log_room import Extent, Room
+from pytpc.python_runtime.log_room import Extent, Room
 
 if TYPE_CHECKING:
-    from pytpc.pyhook.sites import Reported, Take
+    from pytpc.python_runtime.sites import Reported, Take
 
 _INTEGERS = struct.Struct("<Iqqq")
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from pytpc.pyhook.config import NAMES, Config, parsed
-from pytpc.pyhook.trigger import trigger
-from pytpc.pyhook.words import warn
+from pytpc.python_runtime.config import NAMES, Config, parsed
+from pytpc.python_runtime.trigger import trigger
+from pytpc.python_runtime.words import warn
 
 if TYPE_CHECKING:
-    from pytpc.pyhook.runtime import Runtime
+    from pytpc.python_runtime.runtime import Runtime
 
 _PLACES = ("/tpc", "~tpc")
 _SERVICE = "~tpc/reload"

@@ -6,12 +6,12 @@ import struct
 from time import monotonic_ns
 from typing import TYPE_CHECKING, Any
 
-from pytpc.pyhook.log_layout import OUTCOME_BIT, RESULT_BIT, SUMMARY
-from pytpc.pyhook.sinks import Sink, Summary
+from pytpc.python_runtime.log_layout import OUTCOME_BIT, RESULT_BIT, SUMMARY
+from pytpc.python_runtime.sinks import Sink, Summary
 
 if TYPE_CHECKING:
-    from pytpc.pyhook.log_file import LogFile
-    from pytpc.pyhook.sites import Reported
+    from pytpc.python_runtime.log_file import LogFile
+    from pytpc.python_runtime.sites import Reported
 
 # A summary without its first word, up to its two spare words.
 _SUMMARY = struct.Struct("<IqddqIIQQQddddddQqq16x")

@@ -1,7 +1,7 @@
 """Lets Python nodes report: this folder on PYTHONPATH, TPC_PYTHON=1, and TPC_STATIC.
 
-A script of the static information is started again by pytpc/run.py, in the same process and with
-the same options of the interpreter; every other program goes on as it was. Another sitecustomize,
+A script of the static information is started again by pytpc/python_runtime/run.py, in the same
+process and with the same options of the interpreter; every other program goes on as it was. Another sitecustomize,
 which this one hides, is run as well.
 
 Every Python program that is started in such an environment comes by here, roslaunch and rosparam
@@ -77,15 +77,15 @@ def _is_in(text: bytes, name: bytes) -> bool:
 
 def _start(script: str, paths: "list[str]") -> None:
     """Start the script again, where its name is among the static information's."""
-    pytpc = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-    root = os.path.dirname(pytpc)
-    run = os.path.join(pytpc, "run.py")
+    room = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+    root = os.path.dirname(os.path.dirname(room))
+    run = os.path.join(room, "run.py")
     if os.path.realpath(script) == os.path.realpath(run):
         return
     sys.path.insert(0, root)
     try:
         from pytpc.errors import TpcError  # noqa: PLC0415
-        from pytpc.pyhook.listed import names_script  # noqa: PLC0415
+        from pytpc.python_runtime.listed import names_script  # noqa: PLC0415
     finally:
         sys.path.remove(root)
     try:

@@ -6,15 +6,15 @@ import threading
 from time import monotonic_ns
 from typing import TYPE_CHECKING
 
-from pytpc.pyhook import ros_state
-from pytpc.pyhook.file_sink import FileSink, LiveSlot
-from pytpc.pyhook.sinks import Sink, Summary
+from pytpc.python_runtime import ros_state
+from pytpc.python_runtime.file_sink import FileSink, LiveSlot
+from pytpc.python_runtime.sinks import Sink, Summary
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from pytpc.pyhook.config import Config
-    from pytpc.pyhook.sites import Reported
+    from pytpc.python_runtime.config import Config
+    from pytpc.python_runtime.sites import Reported
 
 _SECOND = 1_000_000_000
 

@@ -8,8 +8,8 @@ from collections import deque
 from time import monotonic_ns
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from pytpc.pyhook import ros_state
-from pytpc.pyhook.sinks import (
+from pytpc.python_runtime import ros_state
+from pytpc.python_runtime.sinks import (
     Sink,
     Summary,
     dropped_line,
@@ -17,10 +17,10 @@ from pytpc.pyhook.sinks import (
     seconds,
     summary_line,
 )
-from pytpc.pyhook.words import many, warn
+from pytpc.python_runtime.words import many, warn
 
 if TYPE_CHECKING:
-    from pytpc.pyhook.sites import Reported
+    from pytpc.python_runtime.sites import Reported
 
 TOPIC = "/threshold_information"
 _MOST_WAITING = 65536

@@ -12,7 +12,7 @@ import ast
 import re
 from typing import TYPE_CHECKING, NamedTuple
 
-from pytpc.pyhook.listed import Listed, ListedFile
+from pytpc.python_runtime.listed import Listed, ListedFile
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

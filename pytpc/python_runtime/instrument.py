@@ -7,14 +7,14 @@ from io import BytesIO
 from types import CodeType
 from typing import TYPE_CHECKING, NamedTuple
 
-from pytpc.pyhook import quiet
-from pytpc.pyhook.find import matching
-from pytpc.pyhook.listed import ListedFile, Table
-from pytpc.pyhook.rewrite import rewrite
-from pytpc.pyhook.words import many, warn
+from pytpc.python_runtime import quiet
+from pytpc.python_runtime.find import matching
+from pytpc.python_runtime.listed import ListedFile, Table
+from pytpc.python_runtime.rewrite import rewrite
+from pytpc.python_runtime.words import many, warn
 
 if TYPE_CHECKING:
-    from pytpc.pyhook.rewrite import Register
+    from pytpc.python_runtime.rewrite import Register
 
 # What a module that traces by itself has in its text.
 _TRACING = (b"settrace", b"setprofile", b"sys.monitoring")

@@ -15,19 +15,19 @@ import threading
 import time
 from typing import TYPE_CHECKING
 
-from pytpc.pyhook import ros_state, sites
-from pytpc.pyhook.config import Config, of_environment
-from pytpc.pyhook.control import Control
-from pytpc.pyhook.file_sink import FileSink
-from pytpc.pyhook.log_file import LogFile
-from pytpc.pyhook.policies import Caps, Edges, forget
-from pytpc.pyhook.ros_sinks import RosoutSink, TopicSink
-from pytpc.pyhook.sinks import Sink
-from pytpc.pyhook.sites import Reported
-from pytpc.pyhook.words import warn
+from pytpc.python_runtime import ros_state, sites
+from pytpc.python_runtime.config import Config, of_environment
+from pytpc.python_runtime.control import Control
+from pytpc.python_runtime.file_sink import FileSink
+from pytpc.python_runtime.log_file import LogFile
+from pytpc.python_runtime.policies import Caps, Edges, forget
+from pytpc.python_runtime.ros_sinks import RosoutSink, TopicSink
+from pytpc.python_runtime.sinks import Sink
+from pytpc.python_runtime.sites import Reported
+from pytpc.python_runtime.words import warn
 
 if TYPE_CHECKING:
-    from pytpc.pyhook.find import Place
+    from pytpc.python_runtime.find import Place
 
 _TURN_S = 0.02
 _LATE_S = 0.25

@@ -1,4 +1,4 @@
-"""What rewritten ``for`` and ``match`` statements call. See `pytpc.pyhook.sites`."""
+"""What rewritten ``for`` and ``match`` statements call. See `pytpc.python_runtime.sites`."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from itertools import chain, repeat
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
-from pytpc.pyhook.quiet import Site, caller, flat, keep, raising
-from pytpc.pyhook.sites import FALSE, TRUE, logger
+from pytpc.python_runtime.quiet import Site, caller, flat, keep, raising
+from pytpc.python_runtime.sites import FALSE, TRUE, logger
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from pytpc.pyhook.sites import Held, Reported
+    from pytpc.python_runtime.sites import Held, Reported
 
 
 class Loop(Site):
