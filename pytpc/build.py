@@ -30,7 +30,7 @@ from pytpc.paths import (
     require_ros,
     require_tools,
 )
-from pytpc.pynodes.rules_file import Rules, load_rules
+from pytpc.python_analysis.rules_file import Rules, load_rules
 from pytpc.python_build import python_of_build
 from pytpc.python_units import names_of
 from pytpc.reconcile import left_out_units, stale_files

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 
 from pytpc.link_unit import LinkUnit
-from pytpc.pynodes.rules_file import Rules
+from pytpc.python_analysis.rules_file import Rules
 from pytpc.python_kept import KEPT_FILE, digest_of, load_kept, save_kept
 from pytpc.python_units import (
     Name,

@@ -17,7 +17,7 @@ from pathlib import Path
 from pytpc.atomic import write_atomic
 from pytpc.errors import InputError
 from pytpc.link_unit import LeftOut, LinkUnit
-from pytpc.pynodes.rules_file import Rules
+from pytpc.python_analysis.rules_file import Rules
 from pytpc.python_units import PythonUnits, analysis_files
 from pytpc.static_info import python_unit_file
 from pytpc.static_json import dump_json, parse_json

@@ -14,10 +14,10 @@ from pathlib import Path
 from pytpc.atomic import write_atomic
 from pytpc.errors import InputError
 from pytpc.link_unit import LeftOut, LinkUnit
-from pytpc.pynodes.analysis import analyse_entry
-from pytpc.pynodes.budget import SECONDS
-from pytpc.pynodes.packages import Entry, entries, entry_of
-from pytpc.pynodes.rules_file import Rules
+from pytpc.python_analysis.analysis import analyse_entry
+from pytpc.python_analysis.budget import SECONDS
+from pytpc.python_analysis.packages import Entry, entries, entry_of
+from pytpc.python_analysis.rules_file import Rules
 from pytpc.static_info import python_unit_file
 from pytpc.static_json import dump_json
 from pytpc.words import plain

@@ -30,7 +30,7 @@ from pytpc.conditions import lines_of
 from pytpc.details import Details, details
 from pytpc.explain import Explanation, look_up, why_no_comparison
 from pytpc.places import Tpc
-from pytpc.pynodes.rules_file import load_rules
+from pytpc.python_analysis.rules_file import load_rules
 from pytpc.python_units import PythonUnits, analyse_workspaces
 from pytpc.report.catalogue import write_catalogue
 from pytpc.sarif import sarif_log

@@ -14,9 +14,9 @@ from collections import Counter
 from pathlib import Path
 
 from pytpc.errors import InputError
-from pytpc.pynodes.analysis import analyse_entry
-from pytpc.pynodes.packages import entry_of
-from pytpc.pynodes.rules_file import load_rules
+from pytpc.python_analysis.analysis import analyse_entry
+from pytpc.python_analysis.packages import entry_of
+from pytpc.python_analysis.rules_file import load_rules
 
 _SLOWEST = 10
 _SAID_EVERY = 10.0

@@ -112,7 +112,7 @@ def outcome(code: CodeType, names: dict[str, object]) -> tuple[object, ...]:
 
     def trace(frame: FrameType, event: str, _: object) -> object:
         file = frame.f_code.co_filename
-        if file != PATH and "pyhook" not in file:
+        if file != PATH and "python_runtime" not in file:
             # Of a library, as when numpy gives a warning for the first time.
             return None
         lines.append((event, frame.f_code.co_name, frame.f_lineno))

@@ -7,9 +7,9 @@ from textwrap import dedent
 import pytest
 from pynode_samples import analysed, found, marked, only
 
-from pytpc.pynodes.analysis import analyse_entry
-from pytpc.pynodes.packages import entry_of
-from pytpc.pynodes.rules_file import load_rules
+from pytpc.python_analysis.analysis import analyse_entry
+from pytpc.python_analysis.packages import entry_of
+from pytpc.python_analysis.rules_file import load_rules
 
 _READ = "limit = rospy.get_param('~limit')\n"
 

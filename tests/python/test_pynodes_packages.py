@@ -10,9 +10,9 @@ from click.testing import CliRunner
 
 from pytpc.cli.main import main
 from pytpc.errors import InputError
-from pytpc.pynodes.cmake_programs import read_programs
-from pytpc.pynodes.packages import Entry, NameFault, entries
-from pytpc.pynodes.setup_files import read_setup
+from pytpc.python_analysis.cmake_programs import read_programs
+from pytpc.python_analysis.packages import Entry, NameFault, entries
+from pytpc.python_analysis.setup_files import read_setup
 from pytpc.static_info import StaticInfo
 
 MANIFEST = """<package format="2"><name>{}</name><version>0.0.1</version>

@@ -15,14 +15,14 @@ from pynode_samples import PRELUDE, analysed, only
 from pytpc.cli.main import main
 from pytpc.errors import InputError
 from pytpc.link_unit import LinkUnit
-from pytpc.pynodes import analysis
-from pytpc.pynodes.analysis import analyse_entry
-from pytpc.pynodes.budget import Budget, BudgetSpentError
-from pytpc.pynodes.constants import Constants
-from pytpc.pynodes.packages import entry_of
-from pytpc.pynodes.reads import find_reads
-from pytpc.pynodes.rules_file import load_rules
-from pytpc.pynodes.sources import parse
+from pytpc.python_analysis import analysis
+from pytpc.python_analysis.analysis import analyse_entry
+from pytpc.python_analysis.budget import Budget, BudgetSpentError
+from pytpc.python_analysis.constants import Constants
+from pytpc.python_analysis.packages import entry_of
+from pytpc.python_analysis.reads import find_reads
+from pytpc.python_analysis.rules_file import load_rules
+from pytpc.python_analysis.sources import parse
 from pytpc.static_info import StaticInfo
 
 NODE = """limit = rospy.get_param('~limit')
@@ -205,7 +205,7 @@ def test_a_budget_that_is_not_spent_leaves_nothing_behind() -> None:
 
 TRACED = """\
 import sys
-from pytpc.pynodes.budget import Budget
+from pytpc.python_analysis.budget import Budget
 with Budget(60.0):
     pass
 sys.settrace(lambda *_: None)

@@ -7,7 +7,7 @@ from mixed_workspace import make_mixed
 
 from pytpc import condition_lookup
 from pytpc.condition_lookup import CHANGED, GONE, NOT_IN_PYTHON, look_up_conditions
-from pytpc.pynodes.rules_file import load_rules
+from pytpc.python_analysis.rules_file import load_rules
 from pytpc.python_conditions import PythonSource
 from pytpc.python_units import analyse_scripts, scripts_at
 from pytpc.static_info import StaticInfo

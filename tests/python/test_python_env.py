@@ -18,7 +18,7 @@ from pytpc.errors import InputError
 from pytpc.python_env import has_python, mission_env, with_python, without_python
 from pytpc.shell_words import Change
 
-ON_PATH = f"{Path(pytpc.__file__).parent}/pyhook/on_path"
+ON_PATH = f"{Path(pytpc.__file__).parent}/python_runtime/on_path"
 
 
 def static_text(file: str) -> str:

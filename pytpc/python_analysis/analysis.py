@@ -1,0 +1,349 @@
+"""One link unit of Python, analysed: the passes in their order, and their result as a LinkUnit."""
+
+from __future__ import annotations
+
+import gc
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from importlib.metadata import PackageNotFoundError, version
+
+from pytpc.errors import InputError
+from pytpc.link_unit import (
+    BlindSpot,
+    Comparison,
+    Counts,
+    Exposing,
+    LinkUnit,
+    NotExposed,
+    ParameterRead,
+    Place,
+    Tool,
+)
+from pytpc.python_analysis.budget import SECONDS, Budget, BudgetSpentError, what_failed
+from pytpc.python_analysis.constant_finder import find_constants
+from pytpc.python_analysis.constants import DYNAMIC, Constants
+from pytpc.python_analysis.flow import Flow
+from pytpc.python_analysis.follow import Fact, Follower
+from pytpc.python_analysis.gather import Found, Gatherer, end_position, key_of, position
+from pytpc.python_analysis.ir import Instr
+from pytpc.python_analysis.names import named_variable
+from pytpc.python_analysis.packages import Entry
+from pytpc.python_analysis.path import path_of
+from pytpc.python_analysis.pointsto import PointsTo
+from pytpc.python_analysis.program import Loader, Program
+from pytpc.python_analysis.raising import add_raising_calls
+from pytpc.python_analysis.reads import Exposed, Read, find_exposing, find_reads
+from pytpc.python_analysis.rules_file import Rules
+from pytpc.python_analysis.slicing import Slice, Slicer
+from pytpc.python_analysis.sources import lines_of
+
+_AT_MOST = 200
+
+
+@dataclass
+class Analysed:
+    """All that was worked out of a link unit."""
+
+    program: Program
+    rules: Rules
+    flow: Flow
+    reads: list[Read]
+    exposed: list[Exposed]
+    follower: Follower
+    slice: Slice
+    found: list[Found]
+    others: list[Found]
+
+
+def analyse(program: Program, rules: Rules) -> Analysed:
+    """Run all passes on a program."""
+    points = PointsTo(program, rules)
+    raising = add_raising_calls(points)
+    flow = Flow(points)
+    constants = Constants(flow)
+    reads = find_reads(flow, constants, rules)
+    exposed = find_exposing(flow, constants, rules)
+    follower = Follower(flow, constants, rules)
+    follower.run(reads)
+    follower.decide()
+    fixed = find_constants(follower, constants) if rules.constants else []
+    found_slice = Slicer(flow, raising, follower.outcomes.selecting).run(exposed)
+    gatherer = Gatherer(follower, found_slice)
+    found, others = gatherer.run()
+    found += gatherer.constants(fixed, [*found, *others])
+    return Analysed(program, rules, flow, reads, exposed, follower, found_slice, found, others)
+
+
+def analyse_entry(
+    entry: Entry,
+    rules: Rules,
+    seconds: float = SECONDS,
+    on_fault: Callable[[InputError], None] | None = None,
+) -> LinkUnit:
+    """The static information of a script.
+
+    Its status is ``failed`` where the analysis takes longer than ``seconds`` (0: no limit), or ends
+    in an error of its own; no other exception than the following comes out.
+
+    Args:
+        entry: which script.
+        rules: what reads and what exposes.
+        seconds: time on the wall.
+        on_fault: is told of imported modules that cannot be read or parsed: they are taken for
+            modules of a library, which nothing is known of, and listed as blind spots.
+
+    Raises:
+        InputError: the script itself cannot be read or parsed.
+    """
+    program = Program(entry.name, entry.package, entry.root)
+    collecting = gc.isenabled()
+    # Everything lives to the end, in millions of cycles: to look for garbage doubles the time.
+    gc.disable()
+    try:
+        with Budget(seconds):
+            Loader(program, entry).load()
+            unit = Writer(analyse(program, rules)).unit()
+    except InputError:
+        raise
+    except BudgetSpentError:
+        why = f"the analysis took more than {seconds:g} s (more: --max-seconds)"
+        return _failed(program, rules, why)
+    except Exception as error:
+        return _failed(program, rules, what_failed(error))
+    finally:
+        if collecting:
+            gc.enable()
+    if on_fault is not None:
+        for fault in program.faults:
+            on_fault(fault.error)
+    return unit
+
+
+def _failed(program: Program, rules: Rules, why: str) -> LinkUnit:
+    nothing = {field.name: 0 for field in fields(Counts)}
+    tool = Tool("tpc", _version(), "", rules.profile, "python")
+    return LinkUnit(
+        program.name, program.package, str(program.root), tool, "failed", why, Counts(**nothing),
+        (), (), (),
+    )  # fmt: skip
+
+
+class Writer:
+    """Writes what was found in the terms of docs/formats.md."""
+
+    def __init__(self, analysed: Analysed) -> None:
+        """Sources are at hand for the texts of lines."""
+        self.all = analysed
+        self._lines = {module.path: lines_of(module.source) for module in analysed.program.modules}
+
+    def unit(self) -> LinkUnit:
+        """The link unit, its lists in the order of the format."""
+        program = self.all.program
+        comparisons = self._comparisons()
+        not_exposed = self._not_exposed()
+        spots = self._blind_spots()
+        reads = self._reads()
+        return LinkUnit(
+            link_unit=program.name,
+            package=program.package,
+            source_root=str(program.root),
+            tool=Tool("tpc", _version(), "", self.all.rules.profile, "python"),
+            status="ok",
+            failure=None,
+            counts=self._counts(comparisons, len(not_exposed), len(spots), len(reads)),
+            parameters=tuple(reads),
+            exposing=tuple(self._exposing()),
+            comparisons=tuple(comparisons),
+            not_exposed=tuple(not_exposed[:_AT_MOST]),
+            blind_spots=tuple(spots[:_AT_MOST]),
+        )
+
+    def _counts(self, comparisons: list[Comparison], others: int, spots: int, reads: int) -> Counts:
+        predicates = [each for each in self.all.program.instructions() if each.op == "branch"]
+        places = {_where(each) for each in predicates}
+        within = {_where(each) for each in self.all.slice.distance}
+        dynamic = sum(1 for read in self.all.reads if DYNAMIC in read.name)
+        return Counts(
+            functions=len(self.all.program.functions),
+            predicates=len(places | within),
+            predicates_in_slice=len(within),
+            parameter_reads=reads,
+            exposing_statements=len({_where(each.instr) for each in self.all.exposed}),
+            comparisons=sum(1 for each in comparisons if each.type != "constant"),
+            constants=sum(1 for each in comparisons if each.type == "constant"),
+            dynamic_names=dynamic,
+            indirect_calls=len(self._unknown_calls()),
+            without_debug_info=0,
+            outside_sources=0,
+            lost_values=len(self.all.follower.lost),
+            not_instrumented=0,
+            given_up=len(self.all.flow.points.given_up),
+            not_exposed=others,
+            blind_spots=spots,
+        )
+
+    def _unknown_calls(self) -> list[Instr]:
+        points = self.all.flow.points
+        return [
+            each
+            for each in self.all.program.instructions()
+            if each.op == "call" and not list(points.of(each.args[0]))
+        ]
+
+    def _source(self, instr: Instr, number: int) -> str | None:
+        lines = self._lines[instr.function.module.path]
+        return lines[number - 1].strip() if 0 < number <= len(lines) else None
+
+    def _place(self, instr: Instr) -> Place:
+        return Place(instr.function.module.path, position(instr)[0])
+
+    def _reads(self) -> list[ParameterRead]:
+        found: dict[ParameterRead, None] = {}
+        for read in self.all.reads:
+            if not read.is_table:
+                found[self._read(read, read.name, read.instr)] = None
+        for facts in self.all.follower.facts.values():
+            for fact in facts:
+                if fact.before is not None and fact.before.name == "" and fact.name:
+                    found[self._read(fact.read, fact.name, fact.at)] = None
+        return sorted(found, key=lambda read: (read.file, read.lineno, read.column, read.name))
+
+    def _read(self, read: Read, name: str, at: Instr) -> ParameterRead:
+        line, column = position(at)
+        return ParameterRead(
+            name, read.api, read.type, read.default, at.function.module.path, line, column,
+            at.function.qualname,
+        )  # fmt: skip
+
+    def _exposing(self) -> list[Exposing]:
+        found: dict[Exposing, None] = {}
+        for each in self.all.exposed:
+            line, column = position(each.instr)
+            function = each.instr.function
+            file = function.module.path
+            found[Exposing(each.api, each.topic, file, line, column, function.qualname)] = None
+        return sorted(found, key=lambda each: (each.file, each.lineno, each.column))
+
+    def _comparisons(self) -> list[Comparison]:
+        conditions: dict[object, set[object]] = {}
+        for found in self.all.found:
+            place = (found.at.function.module.path, found.span)
+            conditions.setdefault(self._condition(found), set()).add((place, found.parameter))
+        keys: dict[tuple[str, ...], int] = {}
+        comparisons = []
+        for found in sorted(self.all.found, key=_order):
+            others = len(conditions[self._condition(found)]) - 1
+            comparisons.append(self._comparison(found, others, keys))
+        return comparisons
+
+    def _condition(self, found: Found) -> object:
+        """What stands for the condition that a comparison is part of."""
+        assert found.predicate is not None
+        function = found.at.function
+        return function.module.path, function.conditions.get(found.at.node, found.at.node)
+
+    def _comparison(
+        self, found: Found, others: int, keys: dict[tuple[str, ...], int]
+    ) -> Comparison:
+        program = self.all.program
+        (line, column), (end_line, end_column) = found.span
+        function = found.at.function
+        file = function.module.path
+        what = found.parameter if found.facts else f"constant {found.parameter}"
+        parts = (
+            program.package, program.name, file, function.qualname, str(line), str(column),
+            what,
+        )  # fmt: skip
+        ordinal = keys.get(parts, 0)
+        keys[parts] = ordinal + 1
+        key = key_of([*parts, str(ordinal)] if ordinal else list(parts))
+        assert found.predicate is not None
+        exposed = self.all.slice.nearest[found.predicate]
+        reads = [self._read_place(fact) for fact in found.facts]
+        return Comparison(
+            key=str(key),
+            type=found.type,
+            name=named_variable(found.threshold) if found.facts else found.parameter,
+            source=found.parameter if found.facts else None,
+            file=file,
+            lineno=line,
+            column=column,
+            function=function.qualname,
+            distance=found.distance,
+            relation=found.relation,
+            topic=exposed.topic,
+            source_code=self._source(found.at, line),
+            other_thresholds=others,
+            param_reads=tuple(dict.fromkeys(reads)),
+            publishes=(self._place(exposed.instr),),
+            transform=found.facts[0].how.to_json() if found.facts else None,
+            default=found.facts[0].read.default if found.facts else None,
+            read_at=reads[0] if reads else None,
+            exposed_at=self._place(exposed.instr),
+            path=path_of(found, self.all.slice, self._source) if found.facts else (),
+            end_lineno=end_line,
+            end_column=end_column,
+            operand=found.operand_text,
+        )
+
+    def _read_place(self, fact: Fact) -> Place:
+        return self._place(fact.read.instr)
+
+    def _not_exposed(self) -> list[NotExposed]:
+        found = []
+        for each in sorted(self.all.others, key=_order):
+            line, column = each.span[0]
+            function = each.at.function
+            found.append(
+                NotExposed(
+                    each.parameter, function.module.path, line, column, function.qualname,
+                    self._source(each.at, line),
+                )
+            )  # fmt: skip
+        return list(dict.fromkeys(found))
+
+    def _blind_spots(self) -> list[BlindSpot]:
+        spots = []
+        for lost in self.all.follower.lost.values():
+            what = "the value is not followed from here on"
+            spots.append(self._spot("lost_value", lost.fact.name or None, lost.at, what))
+        for read in self.all.reads:
+            if DYNAMIC in read.name:
+                what = "the parameter's name is put together at run time"
+                spots.append(self._spot("dynamic_name", read.name, read.instr, what))
+        for call in self._unknown_calls():
+            what = "what is called here is not known"
+            spots.append(self._spot("indirect_call", None, call, what))
+        for fault in self.all.program.faults:
+            what = f"this module is imported, and is left out: {fault.error.message}"
+            line = fault.error.line or 1
+            spots.append(
+                BlindSpot("unread_module", None, fault.path, line, 1, "<module>", what, None)
+            )
+        unique = dict.fromkeys(spots)
+        return sorted(unique, key=lambda each: (each.kind, each.file, each.lineno, each.column))
+
+    def _spot(self, kind: str, parameter: str | None, at: Instr, what: str) -> BlindSpot:
+        line, column = position(at)
+        function = at.function
+        return BlindSpot(
+            kind, parameter, function.module.path, line, column, function.qualname, what,
+            self._source(at, line),
+        )  # fmt: skip
+
+
+def _order(found: Found) -> tuple[object, ...]:
+    return (
+        found.at.function.module.path, found.span, found.parameter, found.operand,
+    )  # fmt: skip
+
+
+def _where(instr: Instr) -> tuple[object, ...]:
+    return instr.function.module.path, position(instr), end_position(instr)
+
+
+def _version() -> str:
+    try:
+        return version("pytpc")
+    except PackageNotFoundError:
+        return "0"
