@@ -20,8 +20,8 @@ from pathlib import Path
 
 from figures import figure
 
+from pytpc.base.paths import cmake_file
 from pytpc.demo_examples import IMAGE_CAPTURE, SHARED_PACKAGE
-from pytpc.paths import cmake_file
 
 ROUNDS = 3
 PLAIN = (

@@ -17,7 +17,7 @@ from pathlib import Path
 from figures import figure
 from large_units import large_unit
 
-from pytpc.paths import defer_plugin, plugin
+from pytpc.base.paths import defer_plugin, plugin
 
 STUB = Path(__file__).resolve().parents[1] / "tests" / "lit" / "Inputs" / "include"
 SIZES = (200, 2_000, 20_000)

@@ -37,8 +37,8 @@ import numpy as np
 import numpy.typing as npt
 from figures import figure
 
+from pytpc.base.paths import compiler_wrapper
 from pytpc.graph import RosGraph
-from pytpc.paths import compiler_wrapper
 from pytpc.static_info import load_link_unit
 
 SOURCES = Path(__file__).resolve().parent / "runtime"

@@ -24,9 +24,9 @@ import numpy as np
 from figures import figure
 from rosbags.rosbag1 import Reader
 
+from pytpc.base.paths import prefix, project_root
 from pytpc.graph import GraphProcess, RosGraph
 from pytpc.ingest.ros1 import decode_log, decode_string
-from pytpc.paths import prefix, project_root
 
 SOURCES = project_root() / "tests" / "ros" / "sinks"
 TOPIC = "runtime-cost"

@@ -10,7 +10,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
-from pytpc.errors import MissingToolError, RunError
+from pytpc.base.errors import MissingToolError, RunError
 from pytpc.ingest.recording import RUN_FILE
 from pytpc.mission import (
     BAG_FILE,

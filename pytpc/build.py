@@ -15,13 +15,9 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from pytpc.atomic import write_atomic
-from pytpc.cmake_targets import ask_for_targets
-from pytpc.colcon import Bases, BuildError, colcon_command, run_colcon
-from pytpc.collecting import find_copies
-from pytpc.errors import RunError, WorkspaceError
-from pytpc.left_alone import LeftAlone
-from pytpc.paths import (
+from pytpc.base.atomic import write_atomic
+from pytpc.base.errors import RunError, WorkspaceError
+from pytpc.base.paths import (
     SYSTEM_PATH,
     cmake_file,
     cmake_place,
@@ -30,6 +26,10 @@ from pytpc.paths import (
     require_ros,
     require_tools,
 )
+from pytpc.cmake_targets import ask_for_targets
+from pytpc.colcon import Bases, BuildError, colcon_command, run_colcon
+from pytpc.collecting import find_copies
+from pytpc.left_alone import LeftAlone
 from pytpc.python_analysis.rules_file import Rules, load_rules
 from pytpc.python_build import python_of_build
 from pytpc.python_units import names_of

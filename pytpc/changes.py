@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 from pathlib import Path
 
-from pytpc.errors import InputError
-from pytpc.static_json import parse_json
+from pytpc.base.checked_json import parse_json
+from pytpc.base.errors import InputError
 from pytpc.values.recording import read_parameters
 
 

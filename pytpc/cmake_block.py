@@ -10,8 +10,8 @@ import os
 import re
 from dataclasses import dataclass
 
+from pytpc.base.errors import WorkspaceError
 from pytpc.cmake_syntax import UTF8_BOM
-from pytpc.errors import WorkspaceError
 
 _OPENING = (
     b"# >>> tpc >>> These three lines are TPC's; `pytpc patch --restore WORKSPACE` removes them."

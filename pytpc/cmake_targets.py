@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from pytpc.errors import InputError
-from pytpc.static_json import parse_json
+from pytpc.base.checked_json import parse_json
+from pytpc.base.errors import InputError
 
 _API = Path(".cmake/api/v1")
 _LINKED = frozenset({"EXECUTABLE", "SHARED_LIBRARY", "MODULE_LIBRARY"})

@@ -16,9 +16,9 @@ from dataclasses import dataclass
 from glob import escape
 from pathlib import Path
 
-from pytpc.errors import RunError, WorkspaceError
-from pytpc.paths import MERGED_FILE, OWN_FOLDER, search_path
-from pytpc.signals import signals_end
+from pytpc.base.errors import RunError, WorkspaceError
+from pytpc.base.paths import MERGED_FILE, OWN_FOLDER, search_path
+from pytpc.base.signals import signals_end
 from pytpc.workspace import Package
 
 _TAIL_LINES = 25

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from itertools import takewhile
 from pathlib import Path
 
-from pytpc.errors import WorkspaceError
+from pytpc.base.errors import WorkspaceError
+from pytpc.base.paths import OWN_FOLDER
 from pytpc.link_unit import LeftOut, LinkUnit
-from pytpc.paths import OWN_FOLDER
 from pytpc.python_units import PythonUnits, named_beside, names_of
 from pytpc.reconcile import build_folders, known_targets, left_out_units, target_names
 from pytpc.stale import (

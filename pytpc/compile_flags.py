@@ -13,10 +13,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from pytpc.errors import InputError
+from pytpc.base.checked_json import parse_json
+from pytpc.base.errors import InputError
+from pytpc.base.paths import ROS_PREFIXES
 from pytpc.link_unit import LinkUnit
-from pytpc.paths import ROS_PREFIXES
-from pytpc.static_json import parse_json
 
 _REPLY = Path(".cmake/api/v1/reply")
 _WITH_VALUE = frozenset(

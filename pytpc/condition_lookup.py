@@ -13,10 +13,10 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from pytpc.atomic import write_atomic
+from pytpc.base.atomic import write_atomic
+from pytpc.base.errors import InputError, TpcError
 from pytpc.compile_flags import Flags, flags_for
 from pytpc.conditions import Condition, Macro, Parsed, libclang, parse_conditions, precompile
-from pytpc.errors import InputError, TpcError
 from pytpc.link_unit import LinkUnit
 from pytpc.places import Tpc
 from pytpc.python_conditions import PythonSource

@@ -15,8 +15,8 @@ from rich.table import Table
 from rich.text import Text
 
 from pytpc.advice.suggest import suggest
+from pytpc.base.errors import RunError
 from pytpc.demo_examples import Example
-from pytpc.errors import RunError
 from pytpc.ingest import Recording, read_bag, save_recording
 from pytpc.ingest.recording import EVENTS_FILE, MARKS_FILE
 from pytpc.marks import Mark

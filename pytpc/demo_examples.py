@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from pytpc.errors import WorkspaceError
-from pytpc.paths import project_root
+from pytpc.base.errors import WorkspaceError
+from pytpc.base.paths import project_root
 from pytpc.treatment import TREATMENT_FILE, Treatment, TreatmentType, load_treatment
 
 SHARED_PACKAGE = project_root() / "examples" / "simulated_world"

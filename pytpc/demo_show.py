@@ -15,18 +15,18 @@ from pathlib import Path
 import click
 from rich.console import Console
 
+from pytpc.base.errors import TpcError
+from pytpc.base.wording import many
 from pytpc.build import build_workspace, workspace_env
 from pytpc.cli.console import progress
 from pytpc.cli.mission_commands import mission_progress
 from pytpc.colcon import BuildError
 from pytpc.demo import TreatedMission, failures, result_table, run_treatment
 from pytpc.demo_examples import Example, link_package
-from pytpc.errors import TpcError
 from pytpc.python_env import mission_env
 from pytpc.report.html import write_report
 from pytpc.static_info import StaticInfo
 from pytpc.treatment import Treatment
-from pytpc.words import many
 
 TIMEOUT_S = 150.0
 _PIPED_WIDTH = 160

@@ -6,11 +6,11 @@ from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from typing import TypeVar
 
+from pytpc.base.wording import exact
 from pytpc.condition_lookup import Answer
 from pytpc.conditions import Condition
 from pytpc.places import Tpc
 from pytpc.static_info import Comparison, Default, LinkUnit, StaticInfo, Transform
-from pytpc.words import exact
 
 _Item = TypeVar("_Item")
 

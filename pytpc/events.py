@@ -17,8 +17,8 @@ import numpy as np
 import numpy.typing as npt
 import pyarrow as pa
 
-from pytpc import columns as tables
-from pytpc.columns import Bools, Columns, Floats, Int32s, Int64s, frozen, sorted_words
+from pytpc.base import columns as tables
+from pytpc.base.columns import Bools, Columns, Floats, Int32s, Int64s, frozen, sorted_words
 
 __all__ = ["SCHEMA", "Bools", "EventBuilder", "Events", "Floats", "Int32s", "Int64s", "KeyIndex"]
 __all__ += ["Report", "concat", "read_parquet", "write_parquet"]

@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from pytpc.errors import InputError
+from pytpc.base.errors import InputError
 from pytpc.static_info import (
     BlindSpot,
     Comparison,

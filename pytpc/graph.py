@@ -22,8 +22,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from pytpc.errors import MissingToolError, RunError
-from pytpc.signals import signals_end
+from pytpc.base.errors import MissingToolError, RunError
+from pytpc.base.signals import signals_end
 
 GRAPH_WORD = "TPC_GRAPH"
 _CALLER = "/tpc_graph"

@@ -12,11 +12,11 @@ import shutil
 from collections.abc import Sequence
 from pathlib import Path
 
-from pytpc.atomic import write_atomic
+from pytpc.base.atomic import write_atomic
+from pytpc.base.checked_json import dump_json, parse_json
+from pytpc.base.errors import InputError
 from pytpc.build_faults import first_error
 from pytpc.colcon import Bases, BuildError
-from pytpc.errors import InputError
-from pytpc.static_json import dump_json, parse_json
 from pytpc.workspace import Package
 
 # gcc brings its own OpenMP; that of clang is a package which clang does not need.

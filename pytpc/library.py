@@ -5,7 +5,7 @@ Every function takes what another one gave, or the path of it: ``rank("mission.b
 notebook (all texts from the robot escaped), and holds typed objects of the parts it came from.
 docs/tutorial.md shows each at work, and is run by the tests.
 
-Errors are `pytpc.errors.TpcError`: one line that names the file.
+Errors are `pytpc.base.errors.TpcError`: one line that names the file.
 """
 
 from __future__ import annotations
@@ -23,8 +23,9 @@ from pytpc.advice.counterfactual import WhatIf
 from pytpc.advice.counterfactual import what_if as replay
 from pytpc.advice.declared import Declared, declared_in
 from pytpc.advice.joining import with_remedies
+from pytpc.base.errors import InputError
+from pytpc.base.wording import Number
 from pytpc.changes import Change
-from pytpc.errors import InputError
 from pytpc.ingest import Recording
 from pytpc.ingest import read as read_recording
 from pytpc.marks import Mark, MarkType
@@ -41,7 +42,6 @@ from pytpc.stats.study import NUMBERS
 from pytpc.stats.study import study_tables as tables_of_study
 from pytpc.treatment import TREATMENT_FILE, load_treatment
 from pytpc.values.origins import read_origins
-from pytpc.words import Number
 
 __all__ = ["Advices", "Change", "Diagnosed", "Rankings", "StudyTable", "curves", "diagnose"]
 __all__ += ["load_static", "rank", "read", "study_tables", "suggest", "what_if", "write_report"]

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from pytpc.arithmetic import Tree, from_json
-from pytpc.static_json import SCHEMA_VERSION, check_unit
+from pytpc.base.checked_json import SCHEMA_VERSION, check_unit
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance

@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal, get_args
 
-from pytpc.atomic import write_atomic
-from pytpc.errors import InputError
+from pytpc.base.atomic import write_atomic
+from pytpc.base.errors import InputError
 
 MarkType = Literal["I", "II"]
 """``I``: the robot did something that it should not have; ``II``: it should do something and does

@@ -19,8 +19,9 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from pytpc import recorder
-from pytpc.atomic import write_atomic
-from pytpc.errors import RunError
+from pytpc.base.atomic import write_atomic
+from pytpc.base.errors import RunError
+from pytpc.base.paths import project_root
 from pytpc.graph import GraphProcess, RosGraph
 from pytpc.ingest.recording import (
     EVENTS_FILE,
@@ -30,7 +31,6 @@ from pytpc.ingest.recording import (
     SUMMARIES_FILE,
 )
 from pytpc.marks import marks_beside, topic_of_marks
-from pytpc.paths import project_root
 from pytpc.values.origins import ORIGINS_FILE, START_FILE
 from pytpc.values.recording import save_origins, try_trace
 from pytpc.values.trace import Trace, name_on_server

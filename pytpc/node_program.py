@@ -8,7 +8,7 @@ import shutil
 from collections.abc import Sequence
 from pathlib import Path
 
-from pytpc.errors import InputError
+from pytpc.base.errors import InputError
 from pytpc.python_runtime import run
 
 _LONGEST_LINE = 512

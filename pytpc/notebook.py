@@ -8,8 +8,8 @@ from html import escape
 
 from rich.cells import cell_len
 
-from pytpc import tables
-from pytpc.words import plain
+from pytpc.base import tables
+from pytpc.base.wording import plain
 
 _GAP = 2
 
@@ -58,7 +58,7 @@ class Table:
 
 @dataclass(frozen=True, slots=True)
 class StudyTable:
-    """A table of `pytpc.tables` that prints, and shows itself in a notebook."""
+    """A table of `pytpc.base.tables` that prints, and shows itself in a notebook."""
 
     table: tables.Table
 

@@ -10,9 +10,9 @@ from typing import overload
 from pytpc.advice.advise import Advice
 from pytpc.advice.blame import Blame
 from pytpc.advice.blamed import BlamedAdvice
+from pytpc.base.wording import exact, percent, plain, show
 from pytpc.notebook import Table
 from pytpc.scoring.ranking import MarkRanking
-from pytpc.words import exact, percent, plain, show
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,11 +23,11 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from pytpc.atomic import leftovers, stage_beside
+from pytpc.base.atomic import leftovers, stage_beside
+from pytpc.base.errors import InputError, TpcError, WorkspaceError
+from pytpc.base.paths import cmake_file
 from pytpc.cmake_block import MARKER, patch_text, restore_text
 from pytpc.cmake_syntax import command_names
-from pytpc.errors import InputError, TpcError, WorkspaceError
-from pytpc.paths import cmake_file
 from pytpc.workspace import (
     IGNORE_MARKERS,
     MANIFEST,

@@ -10,8 +10,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from pytpc.base.errors import InputError
 from pytpc.cmake_targets import LinkTarget, link_targets
-from pytpc.errors import InputError
 from pytpc.link_unit import LeftOut, LinkUnit
 
 _RECORD = Path("tpc/targets.tsv")

@@ -25,7 +25,7 @@ from typing import BinaryIO
 from rosbags.interfaces import Connection
 from rosbags.rosbag1 import Writer
 
-from pytpc.errors import RunError
+from pytpc.base.errors import RunError
 from pytpc.ingest.rosout_line import Batch, parse_batch
 from pytpc.marks import MarkMessages
 from pytpc.tcpros import RawSubscriber, Source

@@ -13,11 +13,11 @@ import time
 from collections.abc import Callable, Sequence
 from typing import cast
 
-from pytpc.errors import MissingToolError, RunError
+from pytpc.base.errors import MissingToolError, RunError
+from pytpc.base.wording import many
 from pytpc.ingest.ros1 import decode_log
 from pytpc.recorder import LossCounter
 from pytpc.tcpros import RawSubscriber, own_host
-from pytpc.words import many
 
 ROSOUT = "/rosout"
 TOPIC = "/threshold_information"

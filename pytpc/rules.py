@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from pytpc.static_json import RULES_SCHEMA, check_schema, parse_json
+from pytpc.base.checked_json import RULES_SCHEMA, check_schema, parse_json
 
 
 def check_rules(path: Path) -> None:

@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from http.client import HTTPException
 from urllib.parse import urlsplit
 
-from pytpc.errors import RunError
+from pytpc.base.errors import RunError
 from pytpc.python_runtime.config import NAMES
 from pytpc.tcpros import call, decode_header, encode_header, receive
 

@@ -13,9 +13,9 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 from urllib.parse import quote
 
+from pytpc.base.source_bytes import source_bytes
 from pytpc.details import Details
 from pytpc.link_unit import LinkUnit, PathStep
-from pytpc.source_bytes import source_bytes
 from pytpc.static_info import StaticInfo
 
 SCHEMA = (

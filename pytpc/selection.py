@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 
-from pytpc.errors import InputError
+from pytpc.base.errors import InputError
 from pytpc.explain import same_file
 from pytpc.places import Tpc
 from pytpc.static_info import StaticInfo

@@ -16,8 +16,16 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
-from pytpc.atomic import write_atomic
-from pytpc.errors import InputError, WorkspaceError
+from pytpc.base.atomic import write_atomic
+from pytpc.base.checked_json import (
+    MERGED_SCHEMA,
+    SCHEMA_VERSION,
+    check_schema,
+    dump_json,
+    parse_json,
+)
+from pytpc.base.errors import InputError, WorkspaceError
+from pytpc.base.paths import MERGED_FILE, OWN_FOLDER
 from pytpc.link_unit import (
     BlindSpot,
     Comparison,
@@ -33,9 +41,7 @@ from pytpc.link_unit import (
     Tool,
     Transform,
 )
-from pytpc.paths import MERGED_FILE, OWN_FOLDER
 from pytpc.places import Tpc, merge_places
-from pytpc.static_json import MERGED_SCHEMA, SCHEMA_VERSION, check_schema, dump_json, parse_json
 
 __all__ = [
     "BlindSpot",

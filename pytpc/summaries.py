@@ -16,8 +16,8 @@ import numpy as np
 import numpy.typing as npt
 import pyarrow as pa
 
-from pytpc import columns as tables
-from pytpc.columns import Bools, Columns, Floats, Int32s, Int64s, frozen, sorted_words
+from pytpc.base import columns as tables
+from pytpc.base.columns import Bools, Columns, Floats, Int32s, Int64s, frozen, sorted_words
 
 _INTEGERS = ("begin_ns", "end_ns", "count", "flops", "far", "odd")
 _BOOLS = ("result", "res")

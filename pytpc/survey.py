@@ -12,10 +12,10 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from pytpc.errors import InputError
+from pytpc.base.checked_json import SURVEY_SCHEMA, check_schema
+from pytpc.base.errors import InputError
 from pytpc.source_lines import LineCount, SourceLines
 from pytpc.static_info import LinkUnit
-from pytpc.static_json import SURVEY_SCHEMA, check_schema
 
 RESULT_VERSION = 2
 

@@ -18,15 +18,15 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from pytpc.base.errors import InputError, RunError, TpcError, WorkspaceError
+from pytpc.base.paths import BUILD_TOOLS, accepting_flags, cmake_file, require_tools
+from pytpc.base.wording import plain
 from pytpc.build_faults import first_error, missing_names
 from pytpc.cmake_syntax import find_fault
 from pytpc.cmake_targets import ask_for_targets, link_targets
 from pytpc.colcon import Bases, build_environment, colcon_command, ended_jobs, run_lines
-from pytpc.errors import InputError, RunError, TpcError, WorkspaceError
-from pytpc.paths import BUILD_TOOLS, accepting_flags, cmake_file, require_tools
 from pytpc.static_info import LinkUnit, load_link_unit, unit_files
 from pytpc.survey import Build, NotBuilt, Tree, TreePackage
-from pytpc.words import plain
 from pytpc.workspace import MANIFEST, Package, package_folders, read_manifest
 
 BUILD_TYPE = "RelWithDebInfo"

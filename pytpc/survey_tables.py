@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from pytpc.survey import TreeResult
-from pytpc.survey_rows import tables
-from pytpc.tables import (
+from pytpc.base.tables import (
     Table,
     as_csv,
     as_latex,
@@ -17,7 +15,9 @@ from pytpc.tables import (
     markdown_row,
     shown,
 )
-from pytpc.words import many
+from pytpc.base.wording import many
+from pytpc.survey import TreeResult
+from pytpc.survey_rows import tables
 
 __all__ = ["FORMATS", "as_csv", "as_latex", "as_markdown", "documents", "faults", "latex", "shown"]
 

@@ -25,7 +25,7 @@ from typing import cast
 from urllib.parse import urlsplit
 from xmlrpc.server import SimpleXMLRPCRequestHandler, SimpleXMLRPCServer
 
-from pytpc.errors import RunError
+from pytpc.base.errors import RunError
 
 _LENGTH = struct.Struct("<I")
 _LARGEST = 1 << 28

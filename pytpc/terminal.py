@@ -14,12 +14,12 @@ from pytpc.advice.blame import Blame
 from pytpc.advice.blamed import BlamedAdvice
 from pytpc.advice.declared import Declared, declared_for
 from pytpc.advice.suggest import Suggestion, suggest
+from pytpc.base.wording import exact, percent, plain, show
 from pytpc.ingest.recording import Recording
 from pytpc.marks import MarkType
 from pytpc.scoring.ranking import MarkRanking, Suspect
 from pytpc.scoring.scores import WINDOW_S
 from pytpc.static_info import Comparison, StaticInfo
-from pytpc.words import exact, percent, plain, show
 
 _WHAT = {
     "I": "type I, did what it should not",

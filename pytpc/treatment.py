@@ -11,10 +11,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, get_args
 
-from pytpc.atomic import write_atomic
-from pytpc.errors import InputError
+from pytpc.base.atomic import write_atomic
+from pytpc.base.checked_json import parse_json
+from pytpc.base.errors import InputError
 from pytpc.marks import MarkType
-from pytpc.static_json import parse_json
 
 TREATMENT_FILE = "treatment.json"
 OVERLAY_FILE = "params.yaml"

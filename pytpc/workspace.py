@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 from xml.parsers import expat
 
+from pytpc.base.errors import InputError, MissingToolError, WorkspaceError
 from pytpc.cmake_syntax import find_fault
-from pytpc.errors import InputError, MissingToolError, WorkspaceError
 
 MANIFEST = "package.xml"
 IGNORE_MARKERS = frozenset({"COLCON_IGNORE", "CATKIN_IGNORE", "AMENT_IGNORE"})

@@ -14,8 +14,8 @@ from pytpc.advice.intervals import Intervals
 from pytpc.advice.joining import JoinedAdvice, MarkGroup
 from pytpc.advice.remedy import Remedy
 from pytpc.advice.suggest import Suggestion
+from pytpc.base.wording import Number
 from pytpc.marks import Mark
-from pytpc.words import Number
 
 Json = dict[str, object]
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pytpc.advice.diagnosing import Changed, diagnose_beside
+from pytpc.base.wording import many, percent
 from pytpc.events import Events
 from pytpc.ingest.recording import Recording
 from pytpc.marks import Mark, MarkType
@@ -22,7 +23,6 @@ from pytpc.scoring.ranking import Types, outside
 from pytpc.scoring.scores import WINDOW_S
 from pytpc.scoring.tables import Tpcs
 from pytpc.static_info import Comparison, StaticInfo
-from pytpc.words import many, percent
 
 SURE = 0.5
 """From this probability on the first parameter is accused: it is likelier than all else together"""

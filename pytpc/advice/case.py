@@ -21,8 +21,8 @@ from pytpc.advice.units import (
     is_whole,
     unit_of,
 )
+from pytpc.base.wording import Number, show
 from pytpc.link_unit import Comparison, LinkUnit
-from pytpc.words import Number, show
 
 _CLOSE, _TINY = 1e-9, 1e-12
 EQUALITIES = frozenset({"==", "!="})

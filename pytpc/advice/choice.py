@@ -9,7 +9,7 @@ from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 
 from pytpc.advice.declared import Declared
 from pytpc.advice.intervals import Interval, Intervals, holds, intersection, words
-from pytpc.words import Number, show
+from pytpc.base.wording import Number, show
 
 WHOLE = "whole number"
 _FIRST_DIGITS = 3

@@ -10,12 +10,12 @@ import numpy as np
 import numpy.typing as npt
 
 from pytpc.advice.replay import Track, tracks_of
-from pytpc.columns import Bools, Floats, Int64s
+from pytpc.base.columns import Bools, Floats, Int64s
+from pytpc.base.wording import Number, exact, many
 from pytpc.ingest.recording import Recording
 from pytpc.marks import Mark, MarkType
 from pytpc.scoring.scores import WINDOW_S
 from pytpc.static_info import StaticInfo
-from pytpc.words import Number, exact, many
 
 MOST_VALUES = 64
 """How many values ``sweep`` takes."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from pytpc.words import Number
+from pytpc.base.wording import Number
 
 _INT_ENDS = (-(2**31), 2**31 - 1)
 

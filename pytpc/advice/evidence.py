@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pytpc.columns import Floats, Int64s
+from pytpc.base.columns import Floats, Int64s
 from pytpc.events import Events
 from pytpc.marks import MarkType
 from pytpc.summaries import Summaries

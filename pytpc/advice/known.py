@@ -11,10 +11,10 @@ from pytpc.advice.case import Case, case_of, shown_current
 from pytpc.advice.evidence import Evidence, NoneBecauseError
 from pytpc.advice.replay import tracks_of
 from pytpc.advice.units import NoUnitError
-from pytpc.errors import InputError
+from pytpc.base.errors import InputError
+from pytpc.base.wording import Number
 from pytpc.ingest.recording import Recording
 from pytpc.static_info import Default, StaticInfo
-from pytpc.words import Number
 
 Source = Literal["reference", "default", "declared"]
 NAMES: dict[Source, str] = {

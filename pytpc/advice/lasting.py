@@ -32,7 +32,7 @@ import numpy as np
 from pytpc.advice.case import EQUALITIES
 from pytpc.advice.replay import Track
 from pytpc.advice.thresholds import outcomes, thresholds_for
-from pytpc.columns import Bools, Floats, Int64s
+from pytpc.base.columns import Bools, Floats, Int64s
 from pytpc.marks import MarkType
 
 Ground = Literal["steady", "ramps", "peaks", "growth"]

@@ -31,7 +31,7 @@ from pytpc.advice.inverse import kept_as
 from pytpc.advice.thresholds import outcomes
 from pytpc.advice.units import NoUnitError, is_text, read_type, tree_of
 from pytpc.arithmetic import evaluate
-from pytpc.columns import Bools, Floats
+from pytpc.base.columns import Bools, Floats
 from pytpc.events import Events
 from pytpc.ingest.recording import Recording
 from pytpc.parameters import same_parameter

@@ -37,12 +37,12 @@ from pytpc.advice.replay import Track, tracks_of
 from pytpc.advice.suggest import Direction, Suggestion, suggest_for_most
 from pytpc.advice.thresholds import thresholds_for
 from pytpc.advice.units import NoUnitError
-from pytpc.columns import Floats
+from pytpc.base.columns import Floats
+from pytpc.base.wording import Number, exact, many, show
 from pytpc.ingest.recording import Recording
 from pytpc.marks import MARK_TYPES, Mark, MarkType
 from pytpc.scoring.scores import WINDOW_S
 from pytpc.static_info import StaticInfo
-from pytpc.words import Number, exact, many, show
 
 Basis = Literal[
     "reference", "default", "declared", "lasting", "growth", "between", "smallest", "before"

@@ -16,8 +16,8 @@ from pytpc.advice.inverse import kept_as
 from pytpc.advice.thresholds import outcomes
 from pytpc.advice.units import NoUnitError, is_text, read_type, tree_of
 from pytpc.arithmetic import Tree, evaluate
-from pytpc.columns import Bools, Floats, Int64s
-from pytpc.errors import InputError
+from pytpc.base.columns import Bools, Floats, Int64s
+from pytpc.base.errors import InputError
 from pytpc.events import Events
 from pytpc.parameters import parameter_name, same_parameter
 from pytpc.static_info import Comparison, StaticInfo

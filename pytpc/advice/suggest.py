@@ -32,6 +32,7 @@ from pytpc.advice.evidence import NoneBecauseError, evidence_of
 from pytpc.advice.intervals import Interval, Intervals, gaps, holds, intersection, union, words
 from pytpc.advice.thresholds import outcomes, thresholds_for, thresholds_for_one
 from pytpc.advice.units import NoUnitError
+from pytpc.base.wording import Number, exact, show
 from pytpc.events import Bools, Events, Floats
 from pytpc.ingest.recording import Recording
 from pytpc.marks import MarkType
@@ -39,7 +40,6 @@ from pytpc.parameters import parameter_name
 from pytpc.scoring.scores import WINDOW_S
 from pytpc.static_info import Comparison, LinkUnit, StaticInfo
 from pytpc.summaries import Summaries
-from pytpc.words import Number, exact, show
 
 Direction = Literal["raise", "lower", "switch"]
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from pytpc.advice.intervals import EVERYWHERE, Interval, Intervals
-from pytpc.columns import Bools, Floats
+from pytpc.base.columns import Bools, Floats
 
 _RELATIONS: dict[str, np.ufunc] = {
     "<": np.less,

@@ -12,7 +12,7 @@ import numpy as np
 from pytpc.advice.intervals import Interval, Intervals
 from pytpc.advice.inverse import kept_as, preimage
 from pytpc.arithmetic import Tree, evaluate
-from pytpc.columns import Floats
+from pytpc.base.columns import Floats
 from pytpc.link_unit import Comparison, LinkUnit
 
 _WHOLE_TYPES = frozenset(

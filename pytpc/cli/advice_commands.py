@@ -18,6 +18,8 @@ from pytpc.advice.blamed import BlamedAdvice, advise_blamed
 from pytpc.advice.counterfactual import WhatIf, what_if
 from pytpc.advice.declared import Declared, declared_in
 from pytpc.advice.joining import JoinedAdvice, MarkGroup, join_advice
+from pytpc.base.errors import InputError
+from pytpc.base.wording import Number, many, percent, plain, show
 from pytpc.cli.console import console, progress, warn
 from pytpc.cli.options import (
     JSON,
@@ -31,13 +33,11 @@ from pytpc.cli.options import (
     warn_about,
 )
 from pytpc.cli.sources import static_of
-from pytpc.errors import InputError
 from pytpc.ingest import Recording
 from pytpc.marks import MARK_TYPES, MarkType
 from pytpc.parameters import parameter_name, same_parameter
 from pytpc.scoring.ranking import MarkRanking, Types, rank_marks
 from pytpc.static_info import Comparison, StaticInfo
-from pytpc.words import Number, many, percent, plain, show
 
 _WHAT: dict[MarkType | None, str] = {
     "I": "type I, did what it should not",

@@ -10,7 +10,7 @@ from pathlib import Path
 import click
 from click.shell_completion import CompletionItem, get_completion_class, split_arg_string
 
-from pytpc.paths import MERGED_FILE, OWN_FOLDER
+from pytpc.base.paths import MERGED_FILE, OWN_FOLDER
 
 _VARIABLE = "_PYTPC_COMPLETE"
 _SHELLS = ("bash", "zsh", "fish")

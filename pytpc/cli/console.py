@@ -14,9 +14,9 @@ from rich.progress import Progress
 from rich.table import Table
 from rich.text import Text
 
+from pytpc.base.wording import many, plain
 from pytpc.reconcile import remark
 from pytpc.static_info import LinkUnit, StaticInfo
-from pytpc.words import many, plain
 
 Advance = Callable[[int, int], None]
 

@@ -8,13 +8,13 @@ from pathlib import Path
 
 import click
 
+from pytpc.base.errors import InputError, WorkspaceError
+from pytpc.base.paths import MERGED_FILE, OWN_FOLDER
+from pytpc.base.shell_words import SHELLS, Change
 from pytpc.build import installed, workspace_env
 from pytpc.cli.console import warn
 from pytpc.cli.options import PATH
-from pytpc.errors import InputError, WorkspaceError
-from pytpc.paths import MERGED_FILE, OWN_FOLDER
 from pytpc.python_env import has_python, with_python, without_python
-from pytpc.shell_words import SHELLS, Change
 
 
 @click.command("env")

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import click
 
+from pytpc.base.wording import many
 from pytpc.cli.console import progress
 from pytpc.cli.options import PATH, warn_about
 from pytpc.ingest import Recording
@@ -16,7 +17,6 @@ from pytpc.ingest.duplicates import TOLERANCE_NS
 from pytpc.ingest.outcome import Outcome
 from pytpc.ingest.reading import opened
 from pytpc.marks import MARK_TYPES
-from pytpc.words import many
 
 
 @click.command("convert")

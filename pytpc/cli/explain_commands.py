@@ -13,12 +13,12 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
+from pytpc.base.wording import many, plain
 from pytpc.cli.console import console
 from pytpc.cli.sources import SOURCES, static_of
 from pytpc.explain import Explanation, Found, look_up, where, why_no_comparison
 from pytpc.parameters import parameter_name
 from pytpc.static_info import LinkUnit, PathStep, StaticInfo
-from pytpc.words import many, plain
 
 _KINDS = {
     "lost_value": "value lost",

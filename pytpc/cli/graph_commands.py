@@ -11,11 +11,11 @@ from rich.table import Table
 from rich.text import Text
 
 from pytpc import relay
+from pytpc.base.errors import RunError
+from pytpc.base.wording import many, plain
 from pytpc.cli.console import console, progress, warn
-from pytpc.errors import RunError
 from pytpc.python_runtime.config import POLICIES, SINKS
 from pytpc.runtime_control import Graph, NodeStatus, Value, chosen
-from pytpc.words import many, plain
 
 _COUNT = click.IntRange(min=0, max=(1 << 31) - 1)
 _MASTER = "http://localhost:11311"

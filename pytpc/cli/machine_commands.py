@@ -11,15 +11,15 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from pytpc.base.paths import cmake_file, prefix
+from pytpc.base.wording import many, plain
 from pytpc.doctor.finding import Finding, Severity, by_severity
 from pytpc.doctor.look import look_at_machine
 from pytpc.doctor.look_workspace import look_at_known, look_at_workspace
 from pytpc.doctor.machine import check_machine
 from pytpc.doctor.workspace import check_workspace
-from pytpc.paths import cmake_file, prefix
 from pytpc.rules import check_rules
 from pytpc.toolchain import Choices, Step, Way, shown, steps
-from pytpc.words import many, plain
 
 _STYLES = {Severity.ERROR: "bold red", Severity.WARNING: "yellow", Severity.NOTE: "dim"}
 # Piped output has no width of its own.

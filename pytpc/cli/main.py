@@ -7,8 +7,8 @@ from importlib import import_module
 import click
 from click.shell_completion import CompletionItem
 
+from pytpc.base.errors import TpcError
 from pytpc.cli.completion_commands import completing
-from pytpc.errors import TpcError
 
 INTERRUPTED = 130
 # Where each command is and what the list of commands says of it: what draws, builds or reads bags

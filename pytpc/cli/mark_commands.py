@@ -9,16 +9,16 @@ from pathlib import Path
 
 import click
 
+from pytpc.base.errors import InputError, TpcError
+from pytpc.base.wording import many, plain
 from pytpc.cli.console import warn
 from pytpc.cli.options import recording_of
-from pytpc.errors import InputError, TpcError
 from pytpc.ingest import Recording
 from pytpc.marking.file import MarksFile
 from pytpc.marking.graph import GraphMarks
 from pytpc.marking.session import Session
 from pytpc.marking.terminal import Mission, Paint, RecordedMission, paint_marks, run
 from pytpc.marks import marks_beside
-from pytpc.words import many, plain
 
 _PATH = click.Path(path_type=Path)
 _NAMESPACE = re.compile(r"[A-Za-z]\w*(/[A-Za-z]\w*)*", re.ASCII)

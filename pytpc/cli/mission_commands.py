@@ -12,16 +12,16 @@ import click
 from rich.console import Console
 
 from pytpc.attached import master_of, record_graph, stop_on_signals
+from pytpc.base.errors import InputError
+from pytpc.base.wording import many
 from pytpc.build import installed, workspace_env
 from pytpc.colcon import Bases
 from pytpc.complaints import complaints
-from pytpc.errors import InputError
 from pytpc.ingest.reading import opened
 from pytpc.ingest.recording import REPORTS_FOLDER
 from pytpc.mission import DEFAULT_TOPICS, MissionRun, Progress, run_mission
 from pytpc.python_env import mission_env
 from pytpc.python_runtime.config import NAMES
-from pytpc.words import many
 
 _PATH = click.Path(path_type=Path)
 _SILENT_S = 5.0

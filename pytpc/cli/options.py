@@ -10,13 +10,13 @@ from typing import TypeVar
 
 import click
 
+from pytpc.base.errors import InputError
+from pytpc.base.wording import plain
 from pytpc.cli.console import progress, warn
 from pytpc.complaints import complaints
-from pytpc.errors import InputError
 from pytpc.ingest import Recording, read
 from pytpc.scoring.scores import WINDOW_S
 from pytpc.static_info import StaticInfo
-from pytpc.words import plain
 
 PATH = click.Path(path_type=Path)
 Command = TypeVar("Command", bound=Callable[..., object])

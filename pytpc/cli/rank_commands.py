@@ -15,6 +15,8 @@ from pytpc.advice.as_json import blame_json
 from pytpc.advice.blame import Blame
 from pytpc.advice.blamed import BlamedAdvice
 from pytpc.advice.declared import Declared, declared_in, read_declared
+from pytpc.base.errors import InputError, TpcError
+from pytpc.base.wording import many, plain
 from pytpc.cli.console import console, warn
 from pytpc.cli.options import (
     JSON,
@@ -30,7 +32,6 @@ from pytpc.cli.options import (
 )
 from pytpc.cli.rank_together import TOGETHER, Judge, Score
 from pytpc.cli.sources import static_of
-from pytpc.errors import InputError, TpcError
 from pytpc.ingest import Recording
 from pytpc.marking.file import MarksFile
 from pytpc.marking.session import Change
@@ -39,7 +40,6 @@ from pytpc.scoring.clocks import two_clocks
 from pytpc.scoring.ranking import MarkRanking, Types, rank_marks
 from pytpc.static_info import StaticInfo
 from pytpc.terminal import Row, print_blame, print_rankings, rows_of
-from pytpc.words import many, plain
 
 
 @click.command("rank")

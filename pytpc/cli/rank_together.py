@@ -12,17 +12,17 @@ import click
 from pytpc.advice.blame import Blame, blame
 from pytpc.advice.blamed import BlamedAdvice, advise_blamed
 from pytpc.advice.declared import Declared
+from pytpc.base.errors import InputError
+from pytpc.base.wording import plain
 from pytpc.changes import Change, changes_between, read_changes
 from pytpc.cli.console import warn
 from pytpc.cli.options import PATH, check_reports, recording_of
-from pytpc.errors import InputError
 from pytpc.ingest import Recording
 from pytpc.mission import PARAMS_FILE
 from pytpc.parameters import same_parameter
 from pytpc.scoring.ranking import Types
 from pytpc.scoring.tables import Tpcs
 from pytpc.static_info import StaticInfo
-from pytpc.words import plain
 
 Score = Literal["tpc", "thesis"]
 Command = TypeVar("Command", bound=Callable[..., object])

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import click
 
+from pytpc.base.errors import InputError
 from pytpc.cli.options import PATH
-from pytpc.errors import InputError
 from pytpc.node_program import command_of
 
 

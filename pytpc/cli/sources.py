@@ -7,12 +7,12 @@ from pathlib import Path
 
 import click
 
+from pytpc.base.paths import MERGED_FILE, OWN_FOLDER
+from pytpc.base.wording import many
 from pytpc.cli.console import progress, warn
 from pytpc.collecting import collect_sources
-from pytpc.paths import MERGED_FILE, OWN_FOLDER
 from pytpc.stale import Stale
 from pytpc.static_info import StaticInfo, read_static
-from pytpc.words import many
 
 PATH = click.Path(path_type=Path)
 SOURCES = click.argument("sources", type=PATH, nargs=-1, metavar="[SOURCE]...")

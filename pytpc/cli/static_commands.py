@@ -14,7 +14,9 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from pytpc.atomic import write_atomic
+from pytpc.base.atomic import write_atomic
+from pytpc.base.checked_json import dump_json
+from pytpc.base.wording import many, plain
 from pytpc.cli.console import (
     console,
     found_text,
@@ -36,8 +38,6 @@ from pytpc.report.catalogue import write_catalogue
 from pytpc.sarif import sarif_log
 from pytpc.selection import ORDERS, Selection, select
 from pytpc.static_info import StaticInfo
-from pytpc.static_json import dump_json
-from pytpc.words import many, plain
 
 _TYPES = ("parameter", "flag", "derived", "constant")
 

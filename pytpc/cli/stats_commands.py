@@ -12,16 +12,16 @@ import click
 from rich.console import Console
 from rich.text import Text
 
-from pytpc.atomic import write_atomic
+from pytpc.base.atomic import write_atomic
+from pytpc.base.errors import InputError
+from pytpc.base.tables import Table, as_csv, as_json, as_latex, as_markdown, as_rich
+from pytpc.base.wording import many, plain
 from pytpc.cli.console import console, progress, warn
 from pytpc.cli.options import JSON, PATH, STATIC, WINDOW, recording_of
 from pytpc.cli.sources import static_of
-from pytpc.errors import InputError
 from pytpc.static_info import StaticInfo
 from pytpc.stats.missions import StudyMission, load_missions
 from pytpc.stats.study import NUMBERS, study_complaints, study_tables
-from pytpc.tables import Table, as_csv, as_json, as_latex, as_markdown, as_rich
-from pytpc.words import many, plain
 
 _SUFFIXES = {"text": ".txt", "csv": ".csv", "markdown": ".md", "latex": ".tex", "json": ".json"}
 _FIGURE_FORMATS = ("png", "svg", "pdf")

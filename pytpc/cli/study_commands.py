@@ -9,6 +9,9 @@ import click
 from rich.table import Table
 from rich.text import Text
 
+from pytpc.base.checked_json import dump_json
+from pytpc.base.errors import RunError
+from pytpc.base.wording import many, plain
 from pytpc.cli.console import console
 from pytpc.cli.options import JSON, PATH, Command
 from pytpc.cli.study_options import STUDY
@@ -17,8 +20,6 @@ from pytpc.cli.study_report import report_command
 from pytpc.cli.study_sensitivity import sensitivity_command
 from pytpc.cli.study_suggestions import suggestions_command
 from pytpc.demo_examples import EXAMPLES
-from pytpc.errors import RunError
-from pytpc.static_json import dump_json
 from pytpc.study.flying import opened
 from pytpc.study.plan import SEEDS, Flight, Selection, flights_of
 from pytpc.study.run import Result
@@ -30,7 +31,6 @@ from pytpc.study.suggested import (
     save_tried,
     suggested_flight,
 )
-from pytpc.words import many, plain
 
 
 def _flown(command: Command) -> Command:

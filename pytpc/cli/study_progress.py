@@ -18,12 +18,12 @@ from rich.progress import (
 from rich.progress import Progress as Bar
 from rich.text import Text
 
+from pytpc.base.wording import many, plain
 from pytpc.colcon import BuildError
 from pytpc.demo_examples import Example
 from pytpc.mission import Progress
 from pytpc.study.plan import Flight
 from pytpc.study.run import Result
-from pytpc.words import many, plain
 
 _SILENT_S = 5.0
 

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import click
 
+from pytpc.base.wording import many, plain
 from pytpc.cli.console import progress, warn
 from pytpc.cli.options import JSON, PATH
 from pytpc.cli.study_options import RANK_AGAIN, RANK_JOBS, STUDY
-from pytpc.words import many, plain
 
 
 @click.command("report")

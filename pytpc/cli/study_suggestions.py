@@ -10,6 +10,7 @@ import click
 from rich.table import Table
 from rich.text import Text
 
+from pytpc.base.wording import many, plain
 from pytpc.cli.console import console, progress, warn
 from pytpc.cli.options import JSON, PATH
 from pytpc.study.methods import METHODS
@@ -18,7 +19,6 @@ from pytpc.study.resume import alone_with_results
 from pytpc.study.suggested import WANTED_FILE
 from pytpc.study.suggestion_chains import VARIANTS, Chain, shares
 from pytpc.study.suggestions import next_round
-from pytpc.words import many, plain
 
 HALVES: dict[str, tuple[Half, ...]] = {
     "tuning": ("tuning",),

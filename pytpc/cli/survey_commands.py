@@ -14,15 +14,15 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table as ScreenTable
 from rich.text import Text
 
-from pytpc.atomic import write_atomic
-from pytpc.errors import WorkspaceError
-from pytpc.static_json import dump_json
+from pytpc.base.atomic import write_atomic
+from pytpc.base.checked_json import dump_json
+from pytpc.base.errors import WorkspaceError
+from pytpc.base.tables import Table
+from pytpc.base.wording import many, plain
 from pytpc.survey import TreeResult
 from pytpc.survey_rows import tables
 from pytpc.survey_run import Options, Step, survey
 from pytpc.survey_tables import FORMATS, documents, faults, shown
-from pytpc.tables import Table
-from pytpc.words import many, plain
 
 _FOLDER = click.Path(path_type=Path, file_okay=True)
 _JOB_LINE = re.compile(r"^(Starting >>>|Finished <<<|Failed +<<<|Aborted +<<<) (?P<name>\S+)")

@@ -14,9 +14,10 @@ from rich.table import Table
 from rich.text import Text
 
 from pytpc.attached import master_of
+from pytpc.base.errors import InputError
+from pytpc.base.wording import plain
 from pytpc.build import installed, workspace_env
 from pytpc.cli.console import console, progress, warn
-from pytpc.errors import InputError
 from pytpc.values.apply import Change, apply_change, change_as_json, diff_of, shown
 from pytpc.values.journal import Entry, Journal, folder_of
 from pytpc.values.live import LiveChange, Robot
@@ -31,7 +32,6 @@ from pytpc.values.target import (
     read_target,
 )
 from pytpc.values.undo import entry_of, set_live, take_back
-from pytpc.words import plain
 
 _LONGEST = 60
 _PATH = click.Path(path_type=Path)

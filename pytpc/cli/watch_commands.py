@@ -11,6 +11,9 @@ from pathlib import Path
 import click
 from rich.console import Console
 
+from pytpc.base.errors import InputError, RunError
+from pytpc.base.signals import signals_end
+from pytpc.base.wording import plain
 from pytpc.cli.console import warn
 from pytpc.cli.mark_commands import (
     MASTER,
@@ -31,7 +34,6 @@ from pytpc.cli.options import (
     warn_about,
 )
 from pytpc.cli.sources import static_of
-from pytpc.errors import InputError, RunError
 from pytpc.ingest import Recording
 from pytpc.marking.graph import GraphMarks
 from pytpc.marking.live_mission import Feed, GraphFeed, RecordedFeed, WatchedMission
@@ -42,9 +44,7 @@ from pytpc.marking.watching import KINDS, Look, Row, Watching
 from pytpc.scoring.clocks import two_clocks
 from pytpc.scoring.live import LiveRanking
 from pytpc.scoring.ranking import Types
-from pytpc.signals import signals_end
 from pytpc.static_info import StaticInfo
-from pytpc.words import plain
 
 _ONCE_S = 5.0
 _TURN_S = 0.1

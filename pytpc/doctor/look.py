@@ -11,8 +11,8 @@ import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from pytpc.base.paths import BUILD_TOOLS, ROS_PREFIXES, SYSTEM_PATH, prefix, ros_places, search_path
 from pytpc.doctor.machine import COLCON_EXTENSIONS, MODULES, Machine, Program
-from pytpc.paths import BUILD_TOOLS, ROS_PREFIXES, SYSTEM_PATH, prefix, ros_places, search_path
 
 _PARTS = (
     "lib/tpc/TpcPasses.so",

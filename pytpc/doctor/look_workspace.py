@@ -8,9 +8,9 @@ import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
+from pytpc.base.errors import InputError, WorkspaceError
+from pytpc.base.paths import OWN_FOLDER, ROS_PREFIXES, prefix
 from pytpc.doctor.workspace import BuildFolder, Known, SeenPackage, SeenWorkspace
-from pytpc.errors import InputError, WorkspaceError
-from pytpc.paths import OWN_FOLDER, ROS_PREFIXES, prefix
 from pytpc.workspace import MANIFEST, Manifest, package_folders, read_manifest
 
 _CACHE = "CMakeCache.txt"

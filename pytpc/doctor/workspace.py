@@ -8,11 +8,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from pytpc.base.errors import InputError, WorkspaceError
 from pytpc.cmake_block import patch_text, restore_text
 from pytpc.cmake_syntax import UTF8_BOM, Kind, command_names, find_fault, tokens
 from pytpc.doctor.finding import Finding, error, note, warning
 from pytpc.doctor.machine import UNSUITED
-from pytpc.errors import InputError, WorkspaceError
 from pytpc.workspace import MANIFEST, Manifest, find_cycle
 
 _COMMENTS = (Kind.LINE_COMMENT, Kind.BRACKET_COMMENT)

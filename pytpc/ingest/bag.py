@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from pytpc.errors import InputError
+from pytpc.base.errors import InputError
 from pytpc.ingest import ros1
 from pytpc.ingest.bag_chunks import BagConnection, BagIndex, BrokenBagError, messages, read_index
 from pytpc.ingest.bag_damage import describe_damage

@@ -19,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 from lz4.frame import LZ4FrameDecompressor  # type: ignore[import-untyped]
 
-from pytpc.columns import Int64s
+from pytpc.base.columns import Int64s
 from pytpc.ingest.spool import Rows
 
 MAGIC = b"#ROSBAG V2.0\n"

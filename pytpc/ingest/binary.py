@@ -21,8 +21,9 @@ from typing import Any, BinaryIO, cast
 import numpy as np
 import numpy.typing as npt
 
-from pytpc.columns import Bools, Int32s, Int64s
-from pytpc.errors import InputError
+from pytpc.base.columns import Bools, Int32s, Int64s
+from pytpc.base.errors import InputError
+from pytpc.base.wording import many
 from pytpc.ingest import binary_layout as layout
 from pytpc.ingest.binary_clock import Clock
 from pytpc.ingest.binary_system import (
@@ -35,7 +36,6 @@ from pytpc.ingest.binary_system import (
 from pytpc.ingest.gathering import Channel, Gathering, Progress, Reports
 from pytpc.ingest.recording import Dropped
 from pytpc.ingest.spool import Rows
-from pytpc.words import many
 
 Bytes = npt.NDArray[np.uint8]
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pytpc.columns import Int64s
+from pytpc.base.columns import Int64s
 
 _JUMP_NS = 10**6
 _LARGEST = 2**62

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from pytpc.columns import Bools, Int32s
+from pytpc.base.columns import Bools, Int32s
 from pytpc.ingest import binary_layout as layout
 from pytpc.ingest.binary_clock import Clock
 from pytpc.ingest.gathering import SUMMARY_ROW, Gathering

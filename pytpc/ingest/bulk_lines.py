@@ -15,7 +15,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.csv as pacsv
 
-from pytpc.columns import Bools, Floats, Int32s, Int64s
+from pytpc.base.columns import Bools, Floats, Int32s, Int64s
 
 LINES = 1 << 15
 _ALONE = 16

@@ -17,10 +17,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from pytpc.columns import Bools
+from pytpc.base.columns import Bools
+from pytpc.base.wording import many
 from pytpc.ingest.gathering import Channel, Gathering, Way
 from pytpc.ingest.spool import Rows
-from pytpc.words import many
 
 TOLERANCE_NS = 10**6
 APART_NS = 60 * 10**9

@@ -9,10 +9,10 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from pytpc import columns as tables
 from pytpc import events as event_table
 from pytpc import summaries as summary_table
-from pytpc.errors import InputError
+from pytpc.base import columns as tables
+from pytpc.base.errors import InputError
 from pytpc.events import Events
 from pytpc.ingest.gathering import SUMMARY_ROW, Gathering, Progress, Reports
 from pytpc.ingest.recording import EVENTS_FILE, SUMMARIES_FILE, read_marks

@@ -14,7 +14,7 @@ from typing import Literal
 
 import numpy as np
 
-from pytpc.columns import Bools, Floats, Int32s, Int64s
+from pytpc.base.columns import Bools, Floats, Int32s, Int64s
 from pytpc.ingest.recording import Dropped, MalformedRecord
 from pytpc.ingest.spool import RUN_ROWS, Rows, Spool
 from pytpc.marks import Mark, MarkMessages

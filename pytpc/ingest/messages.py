@@ -11,7 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pytpc.columns import Bools, Int64s
+from pytpc.base.columns import Bools, Int64s
+from pytpc.base.wording import many
 from pytpc.ingest.bag_chunks import Messages as Chunk
 from pytpc.ingest.gathering import Channel, Gathering, Way
 from pytpc.ingest.lines import Batches, Lines
@@ -29,7 +30,6 @@ from pytpc.ingest.rosout_line import (
 )
 from pytpc.marks import MarkMessages
 from pytpc.summaries import Summary
-from pytpc.words import many
 
 ROSOUT = "/rosout"
 ROSOUT_AGG = "/rosout_agg"

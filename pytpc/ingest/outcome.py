@@ -17,8 +17,8 @@ import pyarrow.parquet as pq
 
 from pytpc import events as event_table
 from pytpc import summaries as summary_table
-from pytpc.columns import WORDS, recode, sorted_words
-from pytpc.errors import TpcError
+from pytpc.base.columns import WORDS, recode, sorted_words
+from pytpc.base.errors import TpcError
 from pytpc.events import Events
 from pytpc.ingest.duplicates import APART_NS, TOLERANCE_NS, Once, clock_notes
 from pytpc.ingest.gathering import SUMMARY_ROW, Gathering

@@ -10,7 +10,8 @@ from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
-from pytpc.errors import InputError, TpcError
+from pytpc.base.errors import InputError, TpcError
+from pytpc.base.wording import many
 from pytpc.ingest.bag import read_bag_into
 from pytpc.ingest.bag_chunks import MAGIC as BAG_MAGIC
 from pytpc.ingest.binary import read_binary
@@ -30,7 +31,6 @@ from pytpc.ingest.recording import (
 from pytpc.ingest.ros2_bag import MCAP_MAGIC, SQLITE_MAGIC, read_ros2_into
 from pytpc.ingest.text import read_text_into
 from pytpc.marks import Mark, joined, marks_beside, read_marks
-from pytpc.words import many
 
 Reader = Callable[[Path, Gathering, Progress | None], None]
 ROS2_FILE = "metadata.yaml"

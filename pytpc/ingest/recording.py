@@ -10,8 +10,8 @@ import json
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
-from pytpc.atomic import write_atomic
-from pytpc.errors import InputError
+from pytpc.base.atomic import write_atomic
+from pytpc.base.errors import InputError
 from pytpc.events import Events, read_parquet, write_parquet
 from pytpc.marks import MARK_TYPES, Mark
 from pytpc.summaries import Summaries, read_summaries, write_summaries

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from pytpc.columns import Int64s
+from pytpc.base.columns import Int64s
 
 _LENGTH = struct.Struct("<I")
 _HEADER = struct.Struct("<IIII")

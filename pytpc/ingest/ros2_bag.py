@@ -15,7 +15,7 @@ from rosbags.rosbag2 import Reader
 from rosbags.rosbag2.storage_mcap import McapReader
 from rosbags.rosbag2.storage_sqlite3 import Sqlite3Reader
 
-from pytpc.errors import InputError
+from pytpc.base.errors import InputError
 from pytpc.ingest import ros2
 from pytpc.ingest.gathering import Gathering, Progress
 from pytpc.ingest.messages import REPORTS, ROSOUT, Decoders, Messages

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from pytpc.columns import Int64s
+from pytpc.base.columns import Int64s
 
 Rows = npt.NDArray[np.void]
 

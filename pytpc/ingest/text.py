@@ -11,7 +11,8 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-from pytpc.errors import InputError
+from pytpc.base.errors import InputError
+from pytpc.base.wording import many
 from pytpc.ingest.gathering import Gathering, Progress
 from pytpc.ingest.lines import Batches, Lines
 from pytpc.ingest.rosout_line import (
@@ -26,7 +27,6 @@ from pytpc.ingest.rosout_line import (
     parse_stamped_other,
 )
 from pytpc.summaries import Summary
-from pytpc.words import many
 
 _BLOCK = 1 << 20
 _LONGEST = 1 << 16

@@ -8,7 +8,7 @@ import os
 from collections.abc import Iterator
 from pathlib import Path
 
-from pytpc.errors import TpcError
+from pytpc.base.errors import TpcError
 from pytpc.marking.session import Change
 from pytpc.marks import Mark, read_marks, write_marks
 

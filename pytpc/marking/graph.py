@@ -9,7 +9,8 @@ import time
 from collections import deque
 from typing import NamedTuple
 
-from pytpc.errors import RunError
+from pytpc.base.errors import RunError
+from pytpc.base.wording import many
 from pytpc.ingest.ros1 import decode_time
 from pytpc.marking.publisher import (
     STRING,
@@ -30,7 +31,6 @@ from pytpc.marks import (
     topic_of_observer,
 )
 from pytpc.tcpros import RawSubscriber, own_host
-from pytpc.words import many
 
 _CLOCK = "/clock"
 _LOOK_S = 1.0

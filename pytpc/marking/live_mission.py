@@ -16,7 +16,7 @@ from typing import Protocol, cast
 import numpy as np
 from rich.text import Text
 
-from pytpc.errors import RunError
+from pytpc.base.errors import RunError
 from pytpc.ingest.recording import Recording
 from pytpc.marking.reports import Item, Reports
 from pytpc.marking.session import Change, Session, View

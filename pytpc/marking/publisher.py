@@ -20,7 +20,7 @@ from dataclasses import dataclass
 from http.client import HTTPException
 from xmlrpc.server import SimpleXMLRPCServer
 
-from pytpc.errors import RunError
+from pytpc.base.errors import RunError
 from pytpc.tcpros import Handler, call, decode_header, encode_header, own_host, receive
 
 _LENGTH = struct.Struct("<I")

@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 from rich.cells import cell_len, set_cell_size
 
+from pytpc.base.wording import plain
 from pytpc.marks import Mark, MarkType
-from pytpc.words import plain
 
 MEANINGS: dict[MarkType | None, str] = {
     "I": "it did something it should not have",

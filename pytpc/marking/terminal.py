@@ -17,7 +17,8 @@ from rich.console import Console
 from rich.live import Live
 from rich.text import Text
 
-from pytpc.errors import RunError
+from pytpc.base.errors import RunError
+from pytpc.base.signals import signals_end
 from pytpc.marking.file import MarksFile
 from pytpc.marking.session import (
     PLAYER_HELP,
@@ -29,7 +30,6 @@ from pytpc.marking.session import (
     press,
     screen,
 )
-from pytpc.signals import signals_end
 
 _TURN_S = 0.2
 _ESCAPE_S = 0.05

@@ -13,10 +13,10 @@ from typing import NamedTuple
 from rich.cells import cell_len
 from rich.text import Text
 
+from pytpc.base.wording import exact, many, plain
 from pytpc.marking.session import Session, View, clock_text, cut, folded
 from pytpc.marking.watching import KeptRankings, Look, Part, Row
 from pytpc.marks import Mark, MarkType
-from pytpc.words import exact, many, plain
 
 Layout = tuple[MarkType | None, ...]
 LAYOUTS: tuple[Layout, ...] = (("I", "II"), (None,), ("I",), ("II",))

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, fields
 from importlib.metadata import PackageNotFoundError, version
 
-from pytpc.errors import InputError
+from pytpc.base.errors import InputError
 from pytpc.link_unit import (
     BlindSpot,
     Comparison,

@@ -15,8 +15,8 @@ from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import Path
 
+from pytpc.base.errors import InputError
 from pytpc.cmake_syntax import Argument, Command, commands, find_fault
-from pytpc.errors import InputError
 
 _VARIABLE = re.compile(r"\$\{([^${}]*)\}")
 _ENDING = frozenset(

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from pytpc.errors import InputError
+from pytpc.base.errors import InputError
 from pytpc.python_analysis.cmake_programs import Programs, read_programs
 from pytpc.python_analysis.rules_file import Rules, load_rules
 from pytpc.python_analysis.scripts import Scripts, is_python, python_files

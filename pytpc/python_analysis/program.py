@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
-from pytpc.errors import InputError
+from pytpc.base.errors import InputError
 from pytpc.python_analysis.ir import Function, Instr, Module
 from pytpc.python_analysis.lower import lower_module
 from pytpc.python_analysis.packages import Entry

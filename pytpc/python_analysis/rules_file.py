@@ -7,7 +7,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from pytpc.static_json import PYTHON_RULES_SCHEMA, check_schema, parse_json
+from pytpc.base.checked_json import PYTHON_RULES_SCHEMA, check_schema, parse_json
 
 _OWN = Path(__file__).parent / "rules" / "python.json"
 _LISTS = (

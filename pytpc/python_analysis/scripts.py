@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
-from pytpc.errors import InputError
+from pytpc.base.errors import InputError
 from pytpc.python_analysis.rules_file import Rules
 from pytpc.python_analysis.sources import module_files, parse
 from pytpc.workspace import IGNORE_MARKERS, MANIFEST, PRODUCT_MARKERS

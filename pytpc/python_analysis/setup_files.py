@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from pytpc.errors import InputError
+from pytpc.base.errors import InputError
 from pytpc.python_analysis.sources import parse
 
 _SETUP = {"setup", "generate_distutils_setup"}

@@ -10,7 +10,7 @@ import warnings
 from collections.abc import Iterator
 from pathlib import Path
 
-from pytpc.errors import InputError
+from pytpc.base.errors import InputError
 
 # What is no Python 3, line by line, each with what it is called.
 _PYTHON_2 = [

@@ -12,7 +12,7 @@ import os
 from collections.abc import Iterable
 from typing import Any, NamedTuple
 
-from pytpc.errors import InputError
+from pytpc.base.errors import InputError
 from pytpc.python_runtime.entry import program_of, stem_of
 
 # What `pytpc build` leaves in a workspace; it has all in it.

@@ -19,7 +19,7 @@ if __name__ == "__main__" and not __package__:
     room = os.path.dirname(os.path.abspath(__file__))
     sys.path[: 0 if is_safe else 1] = [os.path.dirname(os.path.dirname(room))]
 
-from pytpc.errors import InputError, TpcError
+from pytpc.base.errors import InputError, TpcError
 from pytpc.python_runtime.instrument import Instrument
 from pytpc.python_runtime.listed import BUILT, Table, read_table
 from pytpc.python_runtime.loader import install

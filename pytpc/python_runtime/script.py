@@ -7,7 +7,7 @@ import os
 import sys
 from types import CodeType, ModuleType
 
-from pytpc.errors import InputError
+from pytpc.base.errors import InputError
 from pytpc.python_runtime.instrument import Instrument
 from pytpc.python_runtime.quiet import foreign_frames
 from pytpc.python_runtime.relay import relayed

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
+from pytpc.base.wording import many
 from pytpc.report.cards import CardView
-from pytpc.words import many
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ from pytpc.advice.declared import Declared
 from pytpc.advice.remedy import Remedy
 from pytpc.advice.suggest import Suggestion
 from pytpc.arithmetic import evaluate
+from pytpc.base.wording import exact, show
 from pytpc.marks import Mark
 from pytpc.report.mission import MissionReport
 from pytpc.report.payload import finite, series_of
@@ -24,7 +25,6 @@ from pytpc.report.source import LONGEST_LINE, Line, StepView, source_lines, way_
 from pytpc.scoring.ranking import MarkRanking, Suspect
 from pytpc.static_info import Comparison
 from pytpc.values.origins import origin_for
-from pytpc.words import exact, show
 
 _PARTS = 2
 

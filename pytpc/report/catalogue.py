@@ -13,7 +13,7 @@ from importlib.resources import files
 from itertools import groupby
 from pathlib import Path
 
-from pytpc.atomic import write_atomic
+from pytpc.base.atomic import write_atomic
 from pytpc.details import Details
 from pytpc.report.environment import environment
 from pytpc.report.source import LONGEST_LINE, StepView, read_lines, way_of

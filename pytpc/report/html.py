@@ -17,7 +17,7 @@ from pathlib import Path
 from bokeh.resources import Resources
 from markupsafe import Markup
 
-from pytpc.atomic import write_atomic
+from pytpc.base.atomic import write_atomic
 from pytpc.report.environment import environment
 from pytpc.report.view import CARDS, ROWS, MissionReport, figures, mission_view
 

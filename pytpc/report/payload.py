@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 from markupsafe import Markup
 
-from pytpc.columns import Floats
+from pytpc.base.columns import Floats
 from pytpc.ingest.recording import Recording
 from pytpc.marks import MarkType
 from pytpc.report.environment import seen

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from pytpc.base.wording import many, show
 from pytpc.events import Floats
 from pytpc.marks import Mark
 from pytpc.report.mission import MissionReport
 from pytpc.report.series import rows_of
 from pytpc.scoring.ranking import Suspect
-from pytpc.words import many, show
 
 
 def why(mission: MissionReport, suspect: Suspect, mark: Mark) -> str:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from pytpc.base.source_bytes import source_bytes
 from pytpc.explain import where
-from pytpc.source_bytes import source_bytes
 from pytpc.static_info import Comparison, StaticInfo
 
 LONGEST_LINE = 160

@@ -14,7 +14,7 @@ from markupsafe import Markup
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from pytpc.columns import Floats
+from pytpc.base.columns import Floats
 from pytpc.marks import MarkType
 from pytpc.report.mission import MissionReport
 from pytpc.report.payload import curves_of, lane_of, lanes_of

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from pytpc.advice.blame import blame
 from pytpc.advice.blamed import advise_blamed
+from pytpc.base.wording import percent
 from pytpc.report.mission import MissionReport
-from pytpc.words import percent
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ from markupsafe import Markup
 
 from pytpc.advice.advise import Advice, advise
 from pytpc.advice.joining import with_remedies
+from pytpc.base.wording import many
 from pytpc.complaints import complaints
 from pytpc.marks import MarkType
 from pytpc.report.answer import AnswerView, answers, spoken
@@ -31,7 +32,6 @@ from pytpc.report.timeline import timeline
 from pytpc.report.together import TogetherView, together
 from pytpc.scoring.clocks import two_clocks
 from pytpc.scoring.ranking import MarkRanking, Types
-from pytpc.words import many
 
 __all__ = ["CARDS", "MissionReport", "MissionView", "figures", "mission_view"]
 

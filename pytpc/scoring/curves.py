@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pytpc.columns import Floats, Int64s
-from pytpc.errors import TpcError
+from pytpc.base.columns import Floats, Int64s
+from pytpc.base.errors import TpcError
 from pytpc.ingest.recording import Recording
 from pytpc.scoring.scores import WINDOW_S
 from pytpc.scoring.tables import Tpcs, parameter_tables, tpc_scores

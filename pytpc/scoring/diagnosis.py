@@ -24,7 +24,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pytpc.columns import Floats, Int64s
+from pytpc.base.columns import Floats, Int64s
 from pytpc.ingest.recording import Recording
 from pytpc.marks import Mark
 from pytpc.scoring.diagnosis_evidence import SHARE, Evidence, evidence, marked

@@ -33,7 +33,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pytpc.columns import Bools, Floats, Int64s
+from pytpc.base.columns import Bools, Floats, Int64s
 from pytpc.scoring.diagnosis_streams import CASCADE_S, Stream, Streams
 
 REACTION_LOG = 1.946

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from pytpc.columns import Floats
+from pytpc.base.columns import Floats
 from pytpc.events import Events
 from pytpc.parameters import same_parameter
 from pytpc.scoring.tables import Tpcs

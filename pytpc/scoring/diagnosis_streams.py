@@ -12,7 +12,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from pytpc.columns import Bools, Floats, Int64s
+from pytpc.base.columns import Bools, Floats, Int64s
 from pytpc.events import Events
 from pytpc.scoring.tables import Tpcs
 

@@ -6,10 +6,10 @@ from collections.abc import Collection
 
 from matplotlib.figure import Figure
 
+from pytpc.base.wording import many
 from pytpc.parameters import same_parameter
 from pytpc.stats.drawing import COLOURS, CULPRIT, FAINT, GRID, INK, short
 from pytpc.stats.runtime import RuntimeStatistics
-from pytpc.words import many
 
 _WIDTH = 7.0
 _LINE = 0.165

@@ -17,7 +17,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from pytpc.columns import Bools, Floats
+from pytpc.base.columns import Bools, Floats
+from pytpc.base.wording import many
 from pytpc.ingest.recording import Recording
 from pytpc.marks import MARK_TYPES, Mark
 from pytpc.parameters import same_parameter
@@ -35,7 +36,6 @@ from pytpc.stats.drawing import (
     short,
 )
 from pytpc.stats.states import Phases, RobotState
-from pytpc.words import many
 
 NAMED = 8
 _SIZE = (8.6, 8.0)

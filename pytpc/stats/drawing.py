@@ -20,9 +20,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from PIL import Image
 
-from pytpc.atomic import write_atomic
+from pytpc.base.atomic import write_atomic
+from pytpc.base.wording import plain
 from pytpc.marks import Mark, MarkType
-from pytpc.words import plain
 
 FORMATS = ("png", "svg", "pdf")
 

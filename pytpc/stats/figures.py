@@ -8,7 +8,7 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from pytpc.errors import TpcError
+from pytpc.base.errors import TpcError
 from pytpc.scoring.curves import STEP_S, rank_curves
 from pytpc.scoring.scores import WINDOW_S
 from pytpc.static_info import StaticInfo

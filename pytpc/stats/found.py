@@ -11,12 +11,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from pytpc.base.tables import Cell, Column, Table, statistics
 from pytpc.marks import MARK_TYPES, MarkType
 from pytpc.scoring.ranking import rank_marks
 from pytpc.scoring.scores import NONE, WINDOW_S
 from pytpc.static_info import StaticInfo
 from pytpc.stats.missions import Trial
-from pytpc.tables import Cell, Column, Table, statistics
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,12 +6,12 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from pytpc.base.tables import Cell, Column, Table, statistics
+from pytpc.base.wording import many
 from pytpc.marks import MARK_TYPES, MarkType
 from pytpc.stats.missions import Trial, user_of
 from pytpc.stats.runtime import SUMMARY
-from pytpc.tables import Cell, Column, Table, statistics
 from pytpc.treatment import TreatmentType
-from pytpc.words import many
 
 NO_TYPE = "No type"
 _KINDS: Sequence[MarkType | None] = (*MARK_TYPES, None)

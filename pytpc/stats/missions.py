@@ -12,11 +12,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from pytpc.errors import InputError
+from pytpc.base.checked_json import parse_json
+from pytpc.base.errors import InputError
 from pytpc.ingest.reading import is_ingested, read
 from pytpc.ingest.recording import RUN_FILE, Recording
 from pytpc.marks import Mark
-from pytpc.static_json import parse_json
 from pytpc.treatment import TREATMENT_FILE, Treatment, TreatmentType, load_treatment
 
 UNNAMED = "unnamed"

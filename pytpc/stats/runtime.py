@@ -18,15 +18,15 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from pytpc.columns import Floats, Int64s
+from pytpc.base.columns import Floats, Int64s
+from pytpc.base.tables import Column, Table, statistics
+from pytpc.base.wording import many
 from pytpc.events import Events
 from pytpc.ingest.recording import Recording
 from pytpc.parameters import parameter_name
 from pytpc.scoring.bounds import covered
 from pytpc.static_info import StaticInfo
 from pytpc.summaries import Summaries
-from pytpc.tables import Column, Table, statistics
-from pytpc.words import many
 
 SUMMARY = {
     "mean": "mean",

@@ -21,8 +21,8 @@ import pyarrow as pa
 from rosbags.highlevel import AnyReader
 from rosbags.typesys import Stores, get_typestore
 
-from pytpc.columns import Floats, read_table
-from pytpc.errors import InputError, TpcError
+from pytpc.base.columns import Floats, read_table
+from pytpc.base.errors import InputError, TpcError
 
 _POSES = {
     "geometry_msgs/msg/PoseStamped": "pose",

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import TypeVar
 
+from pytpc.base.tables import Table
 from pytpc.complaints import complaints
 from pytpc.parameters import parameter_name, same_parameter
 from pytpc.scoring.clocks import two_clocks
@@ -16,7 +17,6 @@ from pytpc.stats.found import found_in, found_table
 from pytpc.stats.marked import MarksOfTrial, confusion_table, marks_table
 from pytpc.stats.missions import StudyMission, Trial, in_order, users_of
 from pytpc.stats.runtime import runtime_statistics, runtime_table
-from pytpc.tables import Table
 
 Result = TypeVar("Result")
 

@@ -13,11 +13,11 @@ from dataclasses import asdict
 from hashlib import sha256
 from pathlib import Path
 
-from pytpc.atomic import write_atomic
+from pytpc.base.atomic import write_atomic
+from pytpc.base.checked_json import parse_json
+from pytpc.base.errors import InputError
 from pytpc.changes import Change
 from pytpc.demo_examples import Example
-from pytpc.errors import InputError
-from pytpc.static_json import parse_json
 from pytpc.treatment import Treatment
 from pytpc.values.recording import read_parameters
 

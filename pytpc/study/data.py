@@ -10,13 +10,13 @@ from typing import Any, Literal, get_args
 
 import pyarrow as pa
 
+from pytpc.base.checked_json import parse_json
+from pytpc.base.columns import read_table
+from pytpc.base.errors import InputError, TpcError
 from pytpc.changes import Change, read_changes
-from pytpc.columns import read_table
-from pytpc.errors import InputError, TpcError
 from pytpc.ingest.recording import Recording, load_recording
 from pytpc.marks import MARK_TYPES, Mark, MarkType
 from pytpc.static_info import StaticInfo
-from pytpc.static_json import parse_json
 from pytpc.study.case import Case
 from pytpc.study.changes import CHANGES_FILE
 from pytpc.study.dataset import DONE_FILE, MARKED_FILE, STUDY_FILE

@@ -11,10 +11,10 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from pytpc.atomic import write_atomic
+from pytpc.base.atomic import write_atomic
+from pytpc.base.checked_json import parse_json
+from pytpc.base.errors import InputError
 from pytpc.demo_examples import EXAMPLES, Example
-from pytpc.errors import InputError
-from pytpc.static_json import parse_json
 from pytpc.study.plan import SEEDS, Flight, flights_of
 
 STUDY_FILE = "study.json"

@@ -10,9 +10,9 @@ from collections.abc import Iterable
 from hashlib import sha256
 from pathlib import Path
 
+from pytpc.base.errors import InputError
+from pytpc.base.paths import cmake_file, defer_plugin, log_library, plugin, project_root
 from pytpc.demo_examples import SHARED_PACKAGE, Example
-from pytpc.errors import InputError
-from pytpc.paths import cmake_file, defer_plugin, log_library, plugin, project_root
 from pytpc.static_info import StaticInfo
 from pytpc.study.plan import Flight
 

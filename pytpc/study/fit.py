@@ -17,8 +17,8 @@ from pathlib import Path
 
 import numpy as np
 
-from pytpc.columns import Bools, Floats, Int64s
-from pytpc.errors import TpcError
+from pytpc.base.columns import Bools, Floats, Int64s
+from pytpc.base.errors import TpcError
 from pytpc.parameters import same_parameter
 from pytpc.scoring.diagnosis import REASONED, Said, Weights, mixture, ranked, type_odds
 from pytpc.scoring.diagnosis_evidence import Evidence, evidence, marked

@@ -8,8 +8,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from pytpc.atomic import write_atomic
-from pytpc.errors import InputError, RunError, TpcError
+from pytpc.base.atomic import write_atomic
+from pytpc.base.errors import InputError, RunError, TpcError
 from pytpc.ingest.reading import read
 from pytpc.ingest.recording import (
     EVENTS_FILE,

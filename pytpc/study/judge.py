@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 import pyarrow as pa
 
-from pytpc.columns import write_table
+from pytpc.base.columns import write_table
 from pytpc.parameters import same_parameter
 from pytpc.scoring.tables import Tpcs
 from pytpc.study.case import Method, Verdict

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
 
-from pytpc.errors import InputError
-from pytpc.static_json import parse_json
+from pytpc.base.checked_json import parse_json
+from pytpc.base.errors import InputError
 
 _Record = TypeVar("_Record")
 

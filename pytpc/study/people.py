@@ -15,9 +15,9 @@ from pathlib import Path
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from pytpc.columns import check_schema, read_table, write_table
+from pytpc.base.columns import check_schema, read_table, write_table
+from pytpc.base.errors import RunError
 from pytpc.demo_examples import SHARED_PACKAGE, Example
-from pytpc.errors import RunError
 from pytpc.marks import Mark
 from pytpc.study.data import user_marks
 from pytpc.study.dataset import CAUSES_FILE, MARKED_FILE, SIGHTS_FILE

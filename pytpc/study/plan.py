@@ -13,9 +13,9 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Literal
 
+from pytpc.base.errors import InputError
 from pytpc.changes import Change
 from pytpc.demo_examples import EXAMPLES, Example
-from pytpc.errors import InputError
 from pytpc.study.changes import drawn_changes, harmless_changes
 from pytpc.treatment import Treatment
 from pytpc.values.recording import read_parameters

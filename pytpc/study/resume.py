@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from contextlib import AbstractContextManager
 from pathlib import Path
 
-from pytpc.errors import RunError, TpcError
+from pytpc.base.errors import RunError, TpcError
 
 _LOCK_FILE = ".lock"
 _RESULTS = "results"

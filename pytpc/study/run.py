@@ -9,9 +9,9 @@ from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
 from typing import Protocol
 
-from pytpc.errors import TpcError
+from pytpc.base.errors import TpcError
+from pytpc.base.signals import signals_end
 from pytpc.mission import Progress
-from pytpc.signals import signals_end
 from pytpc.study.dataset import Done
 from pytpc.study.plan import Flight
 

@@ -13,10 +13,10 @@ from typing import Any
 
 import pyarrow as pa
 
-from pytpc.atomic import write_atomic
-from pytpc.columns import write_table
-from pytpc.errors import InputError
-from pytpc.static_json import parse_json
+from pytpc.base.atomic import write_atomic
+from pytpc.base.checked_json import parse_json
+from pytpc.base.columns import write_table
+from pytpc.base.errors import InputError
 from pytpc.study.dataset import CAUSES_FILE, Cause, load_causes, load_done
 from pytpc.study.listed import read_list
 from pytpc.study.plan import Flight, Setting

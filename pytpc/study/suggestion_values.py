@@ -9,16 +9,16 @@ from pathlib import Path
 from pytpc.advice.blame import blame
 from pytpc.advice.blamed import advise_blamed
 from pytpc.advice.remedy import Remedy, remedy
-from pytpc.errors import InputError
+from pytpc.base.checked_json import parse_json
+from pytpc.base.errors import InputError
+from pytpc.base.wording import percent
 from pytpc.ingest.recording import Recording, load_recording
 from pytpc.parameters import DYNAMIC, same_parameter
 from pytpc.static_info import StaticInfo
-from pytpc.static_json import parse_json
 from pytpc.study.data import load_mission
 from pytpc.study.methods.ours import tpc_reference
 from pytpc.study.plan import Half
 from pytpc.study.suggestion_chains import RANKED, RANKED_REFERENCE, SUSPECTS, VARIANTS, Chain, Try
-from pytpc.words import percent
 
 _HALVES: dict[str, Half] = {"tuning": "tuning", "held-back": "held-back"}
 

@@ -29,10 +29,10 @@ from typing import Any
 
 import pyarrow as pa
 
-from pytpc.atomic import write_atomic
-from pytpc.columns import write_table
-from pytpc.errors import InputError
-from pytpc.static_json import parse_json
+from pytpc.base.atomic import write_atomic
+from pytpc.base.checked_json import parse_json
+from pytpc.base.columns import write_table
+from pytpc.base.errors import InputError
 from pytpc.study.case import Method
 from pytpc.study.data import load_mission
 from pytpc.study.dataset import DONE_FILE, STUDY_FILE, load_done

@@ -8,15 +8,15 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from pytpc.atomic import write_atomic
+from pytpc.base.atomic import write_atomic
+from pytpc.base.checked_json import parse_json
+from pytpc.base.errors import InputError
+from pytpc.base.paths import MERGED_FILE
 from pytpc.build import build_workspace, workspace_env
 from pytpc.colcon import Bases
 from pytpc.demo_examples import Example, link_package
-from pytpc.errors import InputError
-from pytpc.paths import MERGED_FILE
 from pytpc.python_env import mission_env
 from pytpc.static_info import StaticInfo
-from pytpc.static_json import parse_json
 from pytpc.study.digest import build_digest, sources_digest, tools_digest
 
 _BUILT_FILE = "built.json"

@@ -15,7 +15,7 @@ from hashlib import sha256
 from pathlib import Path
 
 import pytpc
-from pytpc.errors import InputError
+from pytpc.base.errors import InputError
 from pytpc.ingest.recording import EVENTS_FILE, MARKS_FILE, SUMMARIES_FILE
 from pytpc.study.case import Method
 from pytpc.study.changes import CHANGES_FILE

@@ -11,8 +11,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from pytpc.atomic import stage_beside
-from pytpc.errors import InputError, TpcError
+from pytpc.base.atomic import stage_beside
+from pytpc.base.errors import InputError, TpcError
 from pytpc.values.journal import Entry, Journal, digest
 from pytpc.values.scalars import number_text
 

@@ -18,8 +18,8 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from pytpc.atomic import stage_beside
-from pytpc.errors import InputError, TpcError
+from pytpc.base.atomic import stage_beside
+from pytpc.base.errors import InputError, TpcError
 
 SCHEMA = 1
 _MOST_TRIES = 1000

@@ -19,7 +19,7 @@ from http.client import HTTPException
 from typing import Any
 from urllib.parse import urlsplit
 
-from pytpc.errors import InputError, RunError
+from pytpc.base.errors import InputError, RunError
 from pytpc.tcpros import call, decode_header, encode_header, receive
 from pytpc.values.new_value import Refused, guessed, read_value
 from pytpc.values.scalars import type_of

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, cast, get_args
 
-from pytpc.atomic import write_atomic
-from pytpc.errors import InputError
+from pytpc.base.atomic import write_atomic
+from pytpc.base.checked_json import parse_json
+from pytpc.base.errors import InputError
 from pytpc.parameters import DYNAMIC, same_parameter
-from pytpc.static_json import parse_json
 
 ORIGINS_FILE = "origins.json"
 START_FILE = "params_start.yaml"

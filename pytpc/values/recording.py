@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from pytpc.errors import InputError, TpcError
+from pytpc.base.errors import InputError, TpcError
 from pytpc.values.origin_places import Places
 from pytpc.values.origins import ORIGINS_FILE, START_FILE, Origin, write_origins
 from pytpc.values.trace import Trace, name_on_server, trace_launch

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from pytpc.errors import InputError
+from pytpc.base.errors import InputError
 from pytpc.parameters import same_parameter
 from pytpc.values.apply import Change, decoded, read_file
 from pytpc.values.installed import is_installed, of_the_system, source_of

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from pytpc.errors import InputError, MissingToolError, RunError
+from pytpc.base.errors import InputError, MissingToolError, RunError
 from pytpc.values import launch_tracer_path
 
 _PATIENCE_S = 60.0

@@ -6,7 +6,7 @@ import contextlib
 from collections.abc import Callable
 from pathlib import Path
 
-from pytpc.errors import InputError, RunError, TpcError
+from pytpc.base.errors import InputError, RunError, TpcError
 from pytpc.values.apply import Change, replace_file, shown, undo_change
 from pytpc.values.journal import Entry, Journal
 from pytpc.values.live import LiveChange, Robot

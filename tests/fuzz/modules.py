@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from fuzz.tools import BIN, LIT_INPUTS, ROOT, compile_unit, opt, run
-from pytpc.errors import InputError
+from pytpc.base.errors import InputError
 from pytpc.static_info import LinkUnit
 
 HERE = Path(__file__).parent

@@ -25,7 +25,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from fuzz.reader_samples import EXTENSIONS, WORDS, samples
-from pytpc.errors import TpcError
+from pytpc.base.errors import TpcError
 from pytpc.ingest.gathering import Gathering
 from pytpc.ingest.outcome import Outcome
 from pytpc.ingest.reading import gather

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from pytpc.paths import defer_plugin, plugin
+from pytpc.base.paths import defer_plugin, plugin
 
 ROOT = Path(__file__).parents[2]
 LIT_INPUTS = ROOT / "tests/lit/Inputs"

@@ -13,7 +13,7 @@ import time
 from collections import Counter
 from pathlib import Path
 
-from pytpc.errors import InputError
+from pytpc.base.errors import InputError
 from pytpc.python_analysis.analysis import analyse_entry
 from pytpc.python_analysis.packages import entry_of
 from pytpc.python_analysis.rules_file import load_rules

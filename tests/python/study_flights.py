@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from pytpc import demo_examples
+from pytpc.base.errors import RunError
 from pytpc.demo_examples import Example
-from pytpc.errors import RunError
 from pytpc.mission import Progress
 from pytpc.study.dataset import Done, load_done, save_done
 from pytpc.study.plan import Flight

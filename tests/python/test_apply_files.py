@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from launch_samples import MANIFEST, MISSION_PARAMS, needs_roslaunch
 
-from pytpc.errors import RunError, TpcError
+from pytpc.base.errors import RunError, TpcError
 from pytpc.values import apply
 from pytpc.values.apply import Change, apply_change, replace_file
 from pytpc.values.installed import is_installed, of_the_system, source_of
@@ -123,7 +123,7 @@ def test_a_full_disk_leaves_the_file_as_it_was(params: Path, monkeypatch) -> Non
     def full(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("pytpc.atomic.os.fsync", full)
+    monkeypatch.setattr("pytpc.base.atomic.os.fsync", full)
     with pytest.raises(TpcError, match="No space left"):
         replace_file(params, b"new")
     assert params.read_text() == MISSION_PARAMS

@@ -8,7 +8,7 @@ import pytest
 from static_units import comparison, unit
 
 from pytpc.arithmetic import OPERATORS, evaluate, from_json
-from pytpc.static_json import check_unit
+from pytpc.base.checked_json import check_unit
 
 
 # By hand, at x = 5 unless it says otherwise; remainders and divisions are C++'s, to zero.

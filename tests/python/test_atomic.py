@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from pytpc.atomic import write_atomic
-from pytpc.errors import TpcError
+from pytpc.base.atomic import write_atomic
+from pytpc.base.errors import TpcError
 
 
 def test_a_file_is_made_with_its_folder_and_then_replaced(tmp_path: Path) -> None:

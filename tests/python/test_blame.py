@@ -10,6 +10,7 @@ from mission_samples import comparison, events, key, ns, static_info
 
 from pytpc.advice.blame import Accused, Blame, blame
 from pytpc.advice.blamed import advise_blamed
+from pytpc.base.wording import percent
 from pytpc.changes import Change
 from pytpc.ingest import Recording
 from pytpc.marks import Mark
@@ -17,7 +18,6 @@ from pytpc.scoring.evidence import Evaluation
 from pytpc.study.case import Case
 from pytpc.study.methods import METHODS
 from pytpc.summaries import Summary, SummaryBuilder
-from pytpc.words import percent
 
 STATIC = static_info(comparison(0, "~gate"), comparison(1, "~safe"), comparison(2, "~never"))
 MARKS = (Mark(ns(33), "I", "ana"), Mark(ns(34), "I", "bob"))

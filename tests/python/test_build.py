@@ -20,6 +20,7 @@ from packages import add_package, install_prefix
 from static_units import comparison, failed_unit, unit
 
 from pytpc import build
+from pytpc.base.errors import InputError, MissingToolError, RunError, TpcError, WorkspaceError
 from pytpc.build import build_workspace, workspace_env
 from pytpc.colcon import (
     Bases,
@@ -28,7 +29,6 @@ from pytpc.colcon import (
     colcon_command,
     ended_jobs,
 )
-from pytpc.errors import InputError, MissingToolError, RunError, TpcError, WorkspaceError
 from pytpc.left_alone import LeftAlone
 from pytpc.static_info import LeftOut, StaticInfo
 from pytpc.workspace import Package

@@ -12,11 +12,11 @@ from click.testing import CliRunner, Result
 from packages import add_package, install_prefix
 from static_units import failed_unit, unit
 
+from pytpc.base.errors import InputError
 from pytpc.build import BuildResult
 from pytpc.cli import workspace_commands
 from pytpc.cli.main import main
 from pytpc.colcon import Bases, BuildError
-from pytpc.errors import InputError
 from pytpc.static_info import LeftOut, LinkUnit, StaticInfo
 
 

@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 from file_api import reply, target
 
+from pytpc.base.errors import InputError
 from pytpc.cmake_targets import LinkTarget, ask_for_targets, link_targets
-from pytpc.errors import InputError
 
 
 def test_linked_targets_are_told_from_others(tmp_path: Path) -> None:

@@ -10,8 +10,8 @@ import pytest
 from file_api import reply, target
 from static_units import KEYS, comparison, counts, failed_unit, unit
 
+from pytpc.base.errors import InputError, WorkspaceError
 from pytpc.collecting import collect_sources, find_copies
-from pytpc.errors import InputError, WorkspaceError
 from pytpc.stale import BuiltTarget, UnitFile, drop_repeated, drop_stale
 from pytpc.static_info import LinkUnit
 

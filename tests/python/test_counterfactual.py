@@ -14,7 +14,7 @@ from mission_samples import comparison, events, key, link_unit, ns, static_info
 
 from pytpc.advice.counterfactual import CLOSED_LOOP, sweep, what_if
 from pytpc.advice.suggest import suggest
-from pytpc.errors import InputError
+from pytpc.base.errors import InputError
 from pytpc.ingest.recording import Recording
 from pytpc.marks import Mark
 from pytpc.static_info import ParameterRead, StaticInfo, Transform

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mission_samples import comparison, events, ns, static_info
 
-from pytpc.errors import TpcError
+from pytpc.base.errors import TpcError
 from pytpc.ingest import Recording
 from pytpc.marks import Mark
 from pytpc.scoring.curves import rank_curves

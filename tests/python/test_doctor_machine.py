@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
+from pytpc.base.paths import BUILD_TOOLS, ros_places
 from pytpc.doctor import look
 from pytpc.doctor.finding import Finding, Severity, by_severity, error, note, warning
 from pytpc.doctor.look import ccache_settings, look_at_machine, version_of
 from pytpc.doctor.machine import COLCON_EXTENSIONS, UNSUITED, Machine, Program, check_machine
-from pytpc.paths import BUILD_TOOLS, ros_places
 
 MIB = 1024 * 1024
 SOUND = Machine(

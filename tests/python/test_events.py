@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mission_samples import SECOND, events, key, ns
 
-from pytpc.errors import InputError
+from pytpc.base.errors import InputError
 from pytpc.events import SCHEMA, EventBuilder, Events, Report, concat, read_parquet, write_parquet
 
 ROWS = st.lists(

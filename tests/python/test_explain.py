@@ -8,8 +8,8 @@ import pytest
 from click.testing import CliRunner, Result
 from static_units import KEYS, comparison, counts, not_exposed, spot, step, unit
 
+from pytpc.base.errors import InputError
 from pytpc.cli.main import main
-from pytpc.errors import InputError
 from pytpc.explain import look_up, why_no_comparison
 from pytpc.static_info import LinkUnit, StaticInfo
 

@@ -8,7 +8,7 @@ import pytest
 from mission_samples import BagFile, key, line, ns
 from rosbags.rosbag1 import Writer
 
-from pytpc.errors import InputError
+from pytpc.base.errors import InputError
 from pytpc.ingest import load_recording, read_bag, save_recording
 from pytpc.ingest.rosout_line import PREFIX
 from pytpc.marks import Mark, topic_of_marks

@@ -10,7 +10,7 @@ import tpc_file
 from mission_samples import key
 from tpc_file import FULL, TpcFile, dropped, header, report, simulated, site, slot, summary, sync
 
-from pytpc.errors import InputError
+from pytpc.base.errors import InputError
 from pytpc.ingest import Dropped, read
 from pytpc.ingest.binary_clock import Clock
 

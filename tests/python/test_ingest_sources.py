@@ -14,7 +14,7 @@ from ros2_bags import Ros2Bag
 from test_mission import log
 from tpc_file import TpcFile, report, site, sync
 
-from pytpc.errors import InputError
+from pytpc.base.errors import InputError
 from pytpc.ingest import Dropped, read, save_recording
 from pytpc.ingest.bag import _DECODERS
 from pytpc.ingest.bag_chunks import Messages as Chunk

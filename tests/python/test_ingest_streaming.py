@@ -14,8 +14,8 @@ from click.testing import CliRunner
 from mission_samples import BagFile, key, line, ns
 from tpc_file import FULL, TpcFile, report, site, summary, sync
 
+from pytpc.base.errors import TpcError
 from pytpc.cli.main import main
-from pytpc.errors import TpcError
 from pytpc.events import read_parquet
 from pytpc.ingest import load_recording, read
 from pytpc.ingest import spool as spool_module

@@ -9,7 +9,7 @@ import pytest
 import yaml
 from launch_samples import environment, make_package, needs_roslaunch
 
-from pytpc.errors import InputError, MissingToolError
+from pytpc.base.errors import InputError, MissingToolError
 from pytpc.values.recording import origins_of, try_trace
 from pytpc.values.target import Target, read_target
 from pytpc.values.trace import name_on_server, roslaunch_python, trace_launch

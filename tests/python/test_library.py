@@ -13,7 +13,7 @@ from mission_samples import comparison, events, ns, static_info
 import pytpc
 from pytpc import library
 from pytpc.advice.joining import join_advice
-from pytpc.errors import InputError
+from pytpc.base.errors import InputError
 from pytpc.ingest.recording import Recording
 from pytpc.marks import Mark
 from pytpc.notebook import Table

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from mission_samples import BagFile, line, ns
 
-from pytpc.errors import InputError
+from pytpc.base.errors import InputError
 from pytpc.ingest import load_recording, read, read_bag, save_recording
 from pytpc.marks import (
     MARK_TYPES,

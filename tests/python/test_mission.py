@@ -20,10 +20,10 @@ from rich.console import Console
 from rosbags.highlevel import AnyReader
 
 from pytpc.attached import record_graph
+from pytpc.base.errors import InputError, RunError
 from pytpc.cli.mission_commands import record_command, sink_settings
 from pytpc.demo import TreatedMission, failures, result_table
 from pytpc.demo_examples import IMAGE_CAPTURE, WATER_SAMPLER, Example
-from pytpc.errors import InputError, RunError
 from pytpc.graph import GraphProcess, RosGraph
 from pytpc.ingest import Recording
 from pytpc.marks import Mark

@@ -11,8 +11,8 @@ from click.testing import CliRunner
 from launch_samples import environment, make_package, needs_roslaunch
 
 from pytpc import attached
+from pytpc.base.errors import InputError
 from pytpc.cli.main import main
-from pytpc.errors import InputError
 from pytpc.values import recording
 from pytpc.values.origins import (
     ORIGINS_FILE,

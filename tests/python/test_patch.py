@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from packages import add_package, contents, install_prefix, make_workspace
 
 from pytpc import patch
-from pytpc.errors import InputError, MissingToolError, WorkspaceError
+from pytpc.base.errors import InputError, MissingToolError, WorkspaceError
 from pytpc.patch import Change, apply_changes, diff, patch_text, plan, restore_text
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -14,7 +14,7 @@ import pytest
 from packages import add_package, contents, install_prefix, make_workspace
 
 from pytpc import patch
-from pytpc.errors import InputError, WorkspaceError
+from pytpc.base.errors import InputError, WorkspaceError
 from pytpc.patch import apply_changes, plan, plan_tree
 
 ROOT = Path(__file__).resolve().parents[2]

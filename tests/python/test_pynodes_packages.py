@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
+from pytpc.base.errors import InputError
 from pytpc.cli.main import main
-from pytpc.errors import InputError
 from pytpc.python_analysis.cmake_programs import read_programs
 from pytpc.python_analysis.packages import Entry, NameFault, entries
 from pytpc.python_analysis.setup_files import read_setup

@@ -12,8 +12,8 @@ import pytest
 from click.testing import CliRunner
 from pynode_samples import PRELUDE, analysed, only
 
+from pytpc.base.errors import InputError
 from pytpc.cli.main import main
-from pytpc.errors import InputError
 from pytpc.link_unit import LinkUnit
 from pytpc.python_analysis import analysis
 from pytpc.python_analysis.analysis import analyse_entry

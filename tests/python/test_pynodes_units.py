@@ -9,8 +9,8 @@ import pytest
 from click.testing import CliRunner
 from pynode_samples import PRELUDE, analysed, only
 
+from pytpc.base.errors import InputError
 from pytpc.cli.main import main
-from pytpc.errors import InputError
 from pytpc.python_analysis.packages import entries
 from pytpc.python_analysis.rules_file import load_rules
 from pytpc.static_info import StaticInfo

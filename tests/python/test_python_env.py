@@ -11,12 +11,12 @@ import pytest
 from click.testing import CliRunner
 
 import pytpc
+from pytpc.base.errors import InputError
+from pytpc.base.shell_words import Change
 from pytpc.build import installed
 from pytpc.cli import mission_commands
 from pytpc.cli.main import main
-from pytpc.errors import InputError
 from pytpc.python_env import has_python, mission_env, with_python, without_python
-from pytpc.shell_words import Change
 
 ON_PATH = f"{Path(pytpc.__file__).parent}/python_runtime/on_path"
 

@@ -10,7 +10,7 @@ from suite.expectations import PYTHON_PACKAGE, Verdict, nodes
 from suite.known import PYTHON_KNOWN
 from suite.report import analyse_python, judge_all
 
-from pytpc.errors import RunError
+from pytpc.base.errors import RunError
 from pytpc.static_info import StaticInfo
 
 WITH_ANALYSIS = importlib.util.find_spec("pytpc.python_analysis") is not None

@@ -6,7 +6,7 @@ import pytest
 from file_api import reply, target
 from static_units import failed_unit, unit
 
-from pytpc.errors import InputError
+from pytpc.base.errors import InputError
 from pytpc.reconcile import build_folders, left_out_units, remark, stale_files
 from pytpc.static_info import LinkUnit
 

@@ -6,7 +6,7 @@ import struct
 
 import pytest
 
-from pytpc.errors import RunError
+from pytpc.base.errors import RunError
 from pytpc.relay import MasterWatch, Relay, line_of
 
 KEY = "0d3f2c1e-0000-5000-8000-000000000001"

@@ -18,7 +18,8 @@ from report_samples import NASTY, Page, mission, written
 from pytpc.advice.blame import blame
 from pytpc.advice.declared import Declared
 from pytpc.advice.joining import join_advice
-from pytpc.errors import TpcError
+from pytpc.base.errors import TpcError
+from pytpc.base.wording import percent
 from pytpc.ingest import MalformedRecord, Recording
 from pytpc.marks import Mark
 from pytpc.report.html import MissionReport, write_report
@@ -37,7 +38,6 @@ from pytpc.report.series import (
 from pytpc.scoring.ranking import rank_marks
 from pytpc.summaries import Summary, SummaryBuilder
 from pytpc.values.origins import Origin
-from pytpc.words import percent
 
 NAN = math.nan
 

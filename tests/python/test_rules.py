@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from pytpc.errors import InputError
+from pytpc.base.checked_json import parse_json
+from pytpc.base.errors import InputError
 from pytpc.rules import check_rules
-from pytpc.static_json import parse_json
 
 TABLES = Path(__file__).parents[2] / "passes/rules"
 # What the thesis looks at (SPEC 2): the reads by param() with a variable, and three statements.

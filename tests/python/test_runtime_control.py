@@ -10,7 +10,7 @@ from xmlrpc.server import SimpleXMLRPCRequestHandler, SimpleXMLRPCServer
 
 import pytest
 
-from pytpc.errors import RunError
+from pytpc.base.errors import RunError
 from pytpc.runtime_control import Graph, chosen, values_of
 from pytpc.tcpros import encode_header
 

@@ -7,7 +7,8 @@ from typing import Any
 import pytest
 from static_units import KEYS, comparison, failed_unit, unit
 
-from pytpc.errors import InputError, WorkspaceError
+from pytpc.base.checked_json import MERGED_SCHEMA, check_schema
+from pytpc.base.errors import InputError, WorkspaceError
 from pytpc.static_info import (
     LinkUnit,
     Place,
@@ -18,7 +19,6 @@ from pytpc.static_info import (
     read_static,
     unit_files,
 )
-from pytpc.static_json import MERGED_SCHEMA, check_schema
 
 AFFINE = {"kind": "affine", "scale": 0.0174, "offset": 0.0, "text": "x * 0.0174"}
 EXPRESSION = {"kind": "expression", "text": "x^2 + 1", "tree": ["+", ["pow", "x", 2.0], 1.0]}

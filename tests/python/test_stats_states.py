@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from mission_samples import STORE, BagFile, line, ns
 
-from pytpc.errors import InputError
+from pytpc.base.errors import InputError
 from pytpc.stats.states import robot_state
 
 TYPES = STORE.types

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from mission_samples import comparison, events, key, ns, static_info
 
-from pytpc.errors import InputError
+from pytpc.base.errors import InputError
 from pytpc.events import Events
 from pytpc.ingest import Recording, save_recording
 from pytpc.link_unit import Transform

@@ -13,7 +13,7 @@ from mission_samples import comparison, static_info
 from study_flights import robot
 
 from pytpc import demo_examples
-from pytpc.errors import RunError
+from pytpc.base.errors import RunError
 from pytpc.ingest.recording import Recording, load_recording
 from pytpc.marks import Mark
 from pytpc.mission import MissionRun

@@ -9,8 +9,8 @@ import pyarrow.parquet as pq
 import pytest
 from mission_samples import comparison, events, ns, static_info
 
+from pytpc.base.errors import InputError
 from pytpc.changes import Change
-from pytpc.errors import InputError
 from pytpc.ingest import Recording, save_recording
 from pytpc.marks import Mark
 from pytpc.scoring.diagnosis import REASONED, diagnose

@@ -8,7 +8,7 @@ import pyarrow.parquet as pq
 import pytest
 from study_pages import row_of
 
-from pytpc.errors import InputError
+from pytpc.base.errors import InputError
 from pytpc.stats.states import seen_state
 from pytpc.study.report.making import make_report
 

@@ -10,9 +10,9 @@ from dataclasses import replace
 import pytest
 from study_flights import robot, treatment
 
+from pytpc.base.errors import InputError
 from pytpc.changes import Change
 from pytpc.demo_examples import EXAMPLES, Example
-from pytpc.errors import InputError
 from pytpc.study.changes import DECOYS, drawn_changes, harmless_changes, save_changes
 from pytpc.study.plan import (
     Flight,

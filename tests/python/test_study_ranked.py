@@ -13,8 +13,8 @@ import pytest
 from click.testing import CliRunner
 from study_samples import write_rows, write_said
 
+from pytpc.base.errors import InputError, RunError
 from pytpc.cli.main import main
-from pytpc.errors import InputError, RunError
 from pytpc.study import verdict_digest
 from pytpc.study.case import Verdict
 from pytpc.study.judge import POSITIONS_FILE, judge

@@ -12,8 +12,8 @@ from click.testing import CliRunner
 from study_pages import row_of
 from study_samples import fly, plan, write_rows
 
+from pytpc.base.errors import InputError
 from pytpc.cli.study_commands import study_group
-from pytpc.errors import InputError
 from pytpc.study.report.making import make_report
 
 ROOT = Path(__file__).parents[2]

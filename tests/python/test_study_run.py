@@ -187,7 +187,7 @@ def test_two_runs_do_not_share_a_folder(tmp_path):
     with alone_in(tmp_path):
         code = (
             "import sys; from pathlib import Path; from pytpc.study.resume import alone_in\n"
-            "from pytpc.errors import TpcError\n"
+            "from pytpc.base.errors import TpcError\n"
             "try:\n    with alone_in(Path(sys.argv[1])): print('in')\n"
             "except TpcError as error: print(error)\n"
         )

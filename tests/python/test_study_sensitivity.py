@@ -14,8 +14,8 @@ from observer_scripts import shared_module
 from study_pages import row_of
 from study_samples import Row, write_rows
 
+from pytpc.base.errors import InputError
 from pytpc.cli.study_commands import study_group
-from pytpc.errors import InputError
 from pytpc.study.dataset import Done, save_done
 from pytpc.study.judge import POSITIONS_FILE
 from pytpc.study.people import look_on

@@ -10,9 +10,9 @@ from click.testing import CliRunner
 from mission_samples import comparison, static_info
 from study_flights import FakeFlier, made, robot
 
+from pytpc.base.errors import InputError
 from pytpc.cli import study_commands
 from pytpc.cli.main import main
-from pytpc.errors import InputError
 from pytpc.study import flying
 from pytpc.study.dataset import Cause, StudyFile, save_done
 from pytpc.study.plan import Selection, Setting, flights_of

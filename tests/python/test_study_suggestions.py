@@ -11,8 +11,8 @@ from click.testing import CliRunner
 from mission_samples import comparison, events, ns, static_info
 from study_flights import made
 
+from pytpc.base.errors import InputError
 from pytpc.cli.study_suggestions import suggestions_command
-from pytpc.errors import InputError
 from pytpc.ingest.recording import Recording, save_recording
 from pytpc.marks import Mark
 from pytpc.study.case import Verdict

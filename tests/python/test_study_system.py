@@ -9,9 +9,9 @@ import pytest
 from mission_samples import comparison, static_info
 from study_flights import robot
 
+from pytpc.base.errors import RunError
 from pytpc.build import BuildResult
 from pytpc.colcon import Bases
-from pytpc.errors import RunError
 from pytpc.study import system
 from pytpc.study.system import prepare
 

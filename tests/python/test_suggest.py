@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from mission_samples import comparison, events, key, link_unit, ns
 
 from pytpc.advice.suggest import suggest
+from pytpc.base.wording import exact, show
 from pytpc.static_info import ParameterRead, Transform
 from pytpc.summaries import Summary, SummaryBuilder
-from pytpc.words import exact, show
 
 NAN, INF = math.nan, math.inf
 

@@ -8,7 +8,7 @@ import pyarrow as pa
 import pytest
 from mission_samples import events, key, ns
 
-from pytpc.errors import InputError
+from pytpc.base.errors import InputError
 from pytpc.ingest import Dropped, Recording, load_recording, save_recording
 from pytpc.marks import Mark
 from pytpc.summaries import (

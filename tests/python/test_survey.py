@@ -9,7 +9,8 @@ import pytest
 from static_units import KEYS, comparison, failed_unit, unit
 from survey_samples import AFTER, BAD, build, found, result
 
-from pytpc.errors import InputError
+from pytpc.base.errors import InputError
+from pytpc.base.tables import statistics
 from pytpc.static_info import LinkUnit
 from pytpc.survey import (
     Tree,
@@ -20,7 +21,6 @@ from pytpc.survey import (
     needed_trees,
 )
 from pytpc.survey_rows import tables
-from pytpc.tables import statistics
 
 
 def tree(name: str, **packages: str) -> Tree:

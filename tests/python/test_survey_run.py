@@ -11,8 +11,8 @@ from packages import add_package, install_prefix
 from survey_samples import build
 
 from pytpc import survey_run
+from pytpc.base.errors import RunError, WorkspaceError
 from pytpc.colcon import Bases
-from pytpc.errors import RunError, WorkspaceError
 from pytpc.survey import Tree
 from pytpc.survey_build import Measured, read_tree, underlaid
 from pytpc.survey_run import Options, Step, survey

@@ -9,7 +9,16 @@ import json
 import pytest
 from rich.console import Console
 
-from pytpc.tables import Column, Table, as_csv, as_json, as_latex, as_markdown, as_rich, statistics
+from pytpc.base.tables import (
+    Column,
+    Table,
+    as_csv,
+    as_json,
+    as_latex,
+    as_markdown,
+    as_rich,
+    statistics,
+)
 
 TABLE = Table(
     "marks",

@@ -15,7 +15,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pytpc.errors import RunError
+from pytpc.base.errors import RunError
 from pytpc.tcpros import Frames, RawSubscriber, decode_header, encode_header
 
 HOST = "127.0.0.1"

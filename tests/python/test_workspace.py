@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 from packages import MANIFEST, add_package
 
-from pytpc import paths
-from pytpc.errors import InputError, MissingToolError, WorkspaceError
+from pytpc.base import paths
+from pytpc.base.errors import InputError, MissingToolError, WorkspaceError
 from pytpc.workspace import find_packages, read_cmakelists, select_packages
 
 

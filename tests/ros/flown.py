@@ -9,11 +9,11 @@ from collections.abc import Callable
 
 import pytest
 
+from pytpc.base.errors import MissingToolError
+from pytpc.base.paths import cmake_file, log_library, plugin
 from pytpc.demo import TreatedMission, run_treatment
 from pytpc.demo_examples import Example
 from pytpc.demo_show import Built
-from pytpc.errors import MissingToolError
-from pytpc.paths import cmake_file, log_library, plugin
 from pytpc.static_info import StaticInfo
 
 FIELDS = ("unit", "file", "line", "parameter", "type", "relation")

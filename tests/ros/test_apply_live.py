@@ -16,8 +16,8 @@ import pytest
 from click.testing import CliRunner, Result
 
 from pytpc.attached import record_graph
+from pytpc.base.errors import MissingToolError
 from pytpc.cli.main import main
-from pytpc.errors import MissingToolError
 from pytpc.graph import RosGraph
 from pytpc.values.live import Robot
 from pytpc.values.origins import read_origins

@@ -12,10 +12,10 @@ from pathlib import Path
 import pytest
 
 from pytpc import patch
+from pytpc.base.errors import MissingToolError, WorkspaceError
+from pytpc.base.paths import cmake_file, log_library, plugin
 from pytpc.build import build_workspace, workspace_env
 from pytpc.colcon import BuildError, build_environment
-from pytpc.errors import MissingToolError, WorkspaceError
-from pytpc.paths import cmake_file, log_library, plugin
 from pytpc.static_info import collect
 
 try:

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from pytpc.errors import MissingToolError
-from pytpc.paths import SYSTEM_PATH, cmake_file, log_library, plugin
+from pytpc.base.errors import MissingToolError
+from pytpc.base.paths import SYSTEM_PATH, cmake_file, log_library, plugin
 from pytpc.reconcile import recorded_units
 
 try:

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
+from pytpc.base.errors import MissingToolError
+from pytpc.base.paths import cmake_file, log_library, plugin, require_ros, require_tools
 from pytpc.build import BuildResult, build_workspace
 from pytpc.collecting import collect_sources
 from pytpc.condition_lookup import look_up_conditions
 from pytpc.conditions import libclang
-from pytpc.errors import MissingToolError
-from pytpc.paths import cmake_file, log_library, plugin, require_ros, require_tools
 from pytpc.places import Tpc
 
 try:

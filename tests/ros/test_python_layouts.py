@@ -15,11 +15,11 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
+from pytpc.base.errors import MissingToolError
+from pytpc.base.paths import SYSTEM_PATH, cmake_file, log_library, plugin, require_ros
 from pytpc.cli.main import main
-from pytpc.errors import MissingToolError
 from pytpc.graph import RosGraph
 from pytpc.ingest import read
-from pytpc.paths import SYSTEM_PATH, cmake_file, log_library, plugin, require_ros
 from pytpc.static_info import StaticInfo
 
 ROOT = Path(__file__).parents[2]

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from pytpc.errors import MissingToolError
+from pytpc.base.errors import MissingToolError
 from pytpc.graph import RosGraph
 from pytpc.ingest import Dropped, load_recording
 

@@ -21,12 +21,12 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
+from pytpc.base.errors import MissingToolError
+from pytpc.base.paths import log_library, prefix, project_root
 from pytpc.cli.main import main
-from pytpc.errors import MissingToolError
 from pytpc.graph import GraphProcess, RosGraph
 from pytpc.ingest import read_bag
 from pytpc.ingest.ros1 import decode_log, decode_string
-from pytpc.paths import log_library, prefix, project_root
 from pytpc.runtime_control import Graph
 from pytpc.tcpros import RawSubscriber
 

@@ -10,13 +10,13 @@ import pyarrow.parquet as pq
 import pytest
 from click.testing import CliRunner, Result
 
+from pytpc.base.errors import MissingToolError
+from pytpc.base.paths import cmake_file, log_library, plugin
 from pytpc.changes import Change
 from pytpc.cli.main import main
 from pytpc.demo_examples import WATER_SAMPLER
 from pytpc.demo_show import Built
-from pytpc.errors import MissingToolError
 from pytpc.ingest.reading import read
-from pytpc.paths import cmake_file, log_library, plugin
 from pytpc.scoring.ranking import unknown_keys
 from pytpc.static_info import StaticInfo
 from pytpc.study.changes import DECOYS

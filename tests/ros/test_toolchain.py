@@ -13,10 +13,10 @@ import pytest
 from click.testing import CliRunner
 from test_build_workspace import make_package
 
+from pytpc.base.errors import MissingToolError
+from pytpc.base.paths import cmake_file, log_library, mixin_index, plugin
 from pytpc.cli.main import main
 from pytpc.colcon import build_environment
-from pytpc.errors import MissingToolError
-from pytpc.paths import cmake_file, log_library, mixin_index, plugin
 from pytpc.static_info import collect
 
 try:

@@ -13,12 +13,12 @@ from pathlib import Path
 import pytest
 
 from pytpc import patch
+from pytpc.base.errors import MissingToolError
+from pytpc.base.paths import cmake_file, compiler_wrapper, log_library, plugin
 from pytpc.build import build_workspace, workspace_env
 from pytpc.colcon import Bases, build_environment
 from pytpc.collecting import collect_sources
-from pytpc.errors import MissingToolError
 from pytpc.graph import RosGraph
-from pytpc.paths import cmake_file, compiler_wrapper, log_library, plugin
 from pytpc.static_info import LeftOut, StaticInfo
 
 try:

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
+from pytpc.base.errors import MissingToolError
+from pytpc.base.paths import compiler_wrapper, log_library, plugin, prefix
 from pytpc.colcon import build_environment
-from pytpc.errors import MissingToolError
 from pytpc.graph import RosGraph
-from pytpc.paths import compiler_wrapper, log_library, plugin, prefix
 from pytpc.static_info import LinkUnit, collect
 
 try:

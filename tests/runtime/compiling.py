@@ -5,7 +5,7 @@ from __future__ import annotations
 import subprocess
 from pathlib import Path
 
-from pytpc.paths import prefix
+from pytpc.base.paths import prefix
 
 
 def compile_program(source: Path, output: Path, *flags: str) -> Path:

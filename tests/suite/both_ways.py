@@ -26,7 +26,7 @@ from typing import Any, cast
 import genpy
 from genpy.dynamic import generate_dynamic
 
-from pytpc.errors import RunError
+from pytpc.base.errors import RunError
 from pytpc.graph import GraphProcess, RosGraph
 from pytpc.recorder import LossCounter
 from pytpc.tcpros import RawSubscriber, Source

@@ -11,9 +11,9 @@ import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from pytpc.base.errors import RunError
 from pytpc.build import workspace_env
 from pytpc.colcon import build_environment
-from pytpc.errors import RunError
 from suite.both_ways import Results, Variant, run_all
 from suite.expectations import PYTHON_PACKAGE
 

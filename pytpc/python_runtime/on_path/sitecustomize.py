@@ -84,7 +84,7 @@ def _start(script: str, paths: "list[str]") -> None:
         return
     sys.path.insert(0, root)
     try:
-        from pytpc.errors import TpcError  # noqa: PLC0415
+        from pytpc.base.errors import TpcError  # noqa: PLC0415
         from pytpc.python_runtime.listed import names_script  # noqa: PLC0415
     finally:
         sys.path.remove(root)

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pytpc.columns import Bools, Int64s
+from pytpc.base.columns import Bools, Int64s
 from pytpc.scoring.scores import WINDOW_S
 from pytpc.scoring.tables import Tpcs
 from pytpc.study.case import Case, Verdict

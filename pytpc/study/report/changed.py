@@ -15,13 +15,13 @@ from statistics import fmean, median
 import numpy as np
 
 from pytpc.advice.replay import tracks_of
+from pytpc.base.errors import InputError
+from pytpc.base.tables import Cell, Column, Table
 from pytpc.changes import Change
-from pytpc.errors import InputError
 from pytpc.ingest.recording import Recording
 from pytpc.parameters import same_parameter
 from pytpc.static_info import StaticInfo
 from pytpc.study.report.folder import Flight, Progress, System
-from pytpc.tables import Cell, Column, Table
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,6 +10,8 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import product
 
+from pytpc.base.tables import Cell, Column, Table
+from pytpc.base.wording import many
 from pytpc.study.data import ALL, LABELS
 from pytpc.study.metrics import (
     CONFIDENT,
@@ -22,8 +24,6 @@ from pytpc.study.metrics import (
 )
 from pytpc.study.report.positions import Position, ordered
 from pytpc.study.report.ranked import BESIDE_CLEAN, OURS
-from pytpc.tables import Cell, Column, Table
-from pytpc.words import many
 
 SURE_METHODS = (OURS, BESIDE_CLEAN)
 """Those whose confidence is looked at."""

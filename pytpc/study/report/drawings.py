@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
 
-from pytpc.errors import TpcError
+from pytpc.base.errors import TpcError
 from pytpc.stats.bars import runtime_bars
 from pytpc.stats.drawing import save, style
 from pytpc.stats.figures import state_of, trial_figure

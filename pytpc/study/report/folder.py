@@ -12,20 +12,20 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from pytpc.base.checked_json import parse_json
+from pytpc.base.errors import InputError, TpcError
+from pytpc.base.wording import many
 from pytpc.changes import Change, read_changes
-from pytpc.errors import InputError, TpcError
 from pytpc.marks import Mark
 from pytpc.parameters import parameter_name, same_parameter
 from pytpc.source_lines import count_lines
 from pytpc.static_info import StaticInfo
-from pytpc.static_json import parse_json
 from pytpc.stats.missions import StudyMission, load_missions
 from pytpc.study.changes import CHANGES_FILE
 from pytpc.study.data import MISSIONS, user_marks
 from pytpc.study.dataset import CAUSES_FILE, DONE_FILE, MARKED_FILE, STUDY_FILE, load_causes
 from pytpc.study.plan import Half
 from pytpc.treatment import Treatment
-from pytpc.words import many
 
 HALVES: tuple[Half, ...] = ("held-back", "tuning")
 UNKNOWN = "unknown"

@@ -13,7 +13,7 @@ from datetime import UTC, datetime
 from hashlib import sha256
 from pathlib import Path
 
-from pytpc.atomic import write_atomic
+from pytpc.base.atomic import write_atomic
 from pytpc.study.listed import read_list
 from pytpc.study.plan import Half
 

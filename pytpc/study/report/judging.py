@@ -13,8 +13,8 @@ from multiprocessing import active_children, get_context, parent_process
 from pathlib import Path
 from threading import Thread
 
-from pytpc.errors import RunError, TpcError
-from pytpc.signals import signals_end
+from pytpc.base.errors import RunError, TpcError
+from pytpc.base.signals import signals_end
 from pytpc.study.case import Method
 from pytpc.study.data import ALL, LABELS, Mission, load_mission, places, seed_of
 from pytpc.study.judge import POSITIONS_FILE, Judged, judge, save_positions

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, TypeVar
 
-from pytpc.atomic import write_atomic
-from pytpc.errors import InputError, TpcError
+from pytpc.base.atomic import write_atomic
+from pytpc.base.errors import InputError, TpcError
+from pytpc.base.tables import Table, as_csv, as_json
 from pytpc.study.data import LABELS
 from pytpc.study.judge import POSITIONS_FILE
 from pytpc.study.plan import Half
@@ -53,7 +54,6 @@ from pytpc.study.report.sensitivity import SENSITIVITY_FILE, is_up_to_date
 from pytpc.study.report.systems import rounds_of, systems_table, treatments_table
 from pytpc.study.suggestion_chains import CHAINS_FILE, Chain, load_chains
 from pytpc.study.suggestions import HEADLINE_FILE
-from pytpc.tables import Table, as_csv, as_json
 
 RESULTS_FILE = "results.json"
 _NOT_HELPED_FILE = "tried.md"

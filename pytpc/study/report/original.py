@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from statistics import fmean, median
 
+from pytpc.base.tables import Cell, Column, Table
 from pytpc.marks import MarkType
 from pytpc.scoring.scores import NONE
 from pytpc.stats.delays import DelaysOfTrial, delays_of, delays_table
@@ -19,7 +20,6 @@ from pytpc.stats.missions import Trial, in_order, users_of
 from pytpc.stats.runtime import RuntimeStatistics, runtime_statistics, runtime_table
 from pytpc.study.report import thesis_figures as thesis
 from pytpc.study.report.folder import System
-from pytpc.tables import Cell, Column, Table
 from pytpc.treatment import TreatmentType
 
 TOP_ROWS = 8

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from pytpc.base.tables import Cell, Column, Table
 from pytpc.study.data import LABELS
 from pytpc.study.report.parts import Part
 from pytpc.study.report.positions import Position, ordered
 from pytpc.study.report.ranked import METHODS, TARGET_PLACES, percent, top
 from pytpc.study.report.sensitivity import CROWDS
-from pytpc.tables import Cell, Column, Table
 
 _WORDS: Mapping[str, str] = {
     "thesis": "the study's own",

@@ -9,6 +9,7 @@ from functools import cache
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 
+from pytpc.base.tables import Table, as_markdown, markdown
 from pytpc.study.metrics import CONFIDENT, DRAWS
 from pytpc.study.report.changed import Changed
 from pytpc.study.report.confidence import SURE_METHODS
@@ -18,7 +19,6 @@ from pytpc.study.report.parts import Part
 from pytpc.study.report.repairs import TARGET
 from pytpc.study.report.systems import NEAR
 from pytpc.study.suggestion_chains import HEADLINE
-from pytpc.tables import Table, as_markdown, markdown
 
 IMAGES = "images/study"
 BESIDE = "study"

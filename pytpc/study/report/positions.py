@@ -11,8 +11,8 @@ from typing import Any
 
 import pyarrow as pa
 
-from pytpc.columns import read_table
-from pytpc.errors import InputError
+from pytpc.base.columns import read_table
+from pytpc.base.errors import InputError
 from pytpc.study.data import ALL
 from pytpc.study.judge import Judged
 from pytpc.study.metrics import within

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
+from pytpc.base.tables import Cell, Column, Table
 from pytpc.study.data import ALL, LABELS
 from pytpc.study.metrics import Estimate, estimate, share
 from pytpc.study.report.folder import UNKNOWN, System
 from pytpc.study.report.parts import Part
 from pytpc.study.report.positions import Position, by_treatment, ordered, with_absent
 from pytpc.study.report.systems import language_of, nearness, one_of_each
-from pytpc.tables import Cell, Column, Table
 
 OURS = "tpc"
 BESIDE_CLEAN = "tpc+reference"

@@ -10,16 +10,16 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from pytpc.columns import read_table
-from pytpc.errors import InputError
+from pytpc.base.columns import read_table
+from pytpc.base.errors import InputError
+from pytpc.base.tables import Cell, Column, Table
+from pytpc.base.wording import show
 from pytpc.study.metrics import Estimate, share
 from pytpc.study.report.folder import Flight
 from pytpc.study.report.parts import Part
 from pytpc.study.report.positions import ordered
 from pytpc.study.report.ranked import percent, verdict_of
 from pytpc.study.suggestion_chains import HEADLINE, MOST_TRIES, VARIANTS, Chain, outcomes
-from pytpc.tables import Cell, Column, Table
-from pytpc.words import show
 
 TARGET = 0.80
 """The share of treatments in which the error is to be gone (the issue's target)."""

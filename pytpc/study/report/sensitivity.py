@@ -16,9 +16,9 @@ from tempfile import TemporaryDirectory
 
 import pyarrow as pa
 
-from pytpc.columns import write_table
+from pytpc.base.columns import write_table
+from pytpc.base.errors import InputError
 from pytpc.demo_examples import SHARED_PACKAGE
-from pytpc.errors import InputError
 from pytpc.study.case import Method
 from pytpc.study.data import Labels, Mission, user_marks
 from pytpc.study.dataset import CAUSES_FILE, DONE_FILE, SIGHTS_FILE, load_done

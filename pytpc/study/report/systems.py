@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
+from pytpc.base.tables import Cell, Column, Table
+from pytpc.base.wording import show
 from pytpc.static_info import StaticInfo
 from pytpc.stats.runtime import runtime_statistics
 from pytpc.study.report.folder import Flight, System
-from pytpc.tables import Cell, Column, Table
 from pytpc.treatment import Treatment
-from pytpc.words import show
 
 NEAR = 0.5
 """A treatment is near the tipping point if it goes less than this part of the way again."""

@@ -7,7 +7,7 @@ import shutil
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-from pytpc.errors import MissingToolError
+from pytpc.base.errors import MissingToolError
 
 SYSTEM_PATH = "/usr/bin:/bin"
 

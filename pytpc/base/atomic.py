@@ -8,7 +8,7 @@ import re
 import secrets
 from pathlib import Path
 
-from pytpc.errors import TpcError
+from pytpc.base.errors import TpcError
 
 
 def stage_beside(target: Path, data: bytes, mode: int = 0o644) -> Path:

@@ -21,7 +21,7 @@ from rich.cells import cell_len
 from rich.table import Table as RichTable
 from rich.text import Text
 
-from pytpc.words import plain
+from pytpc.base.wording import plain
 
 STATISTICS = ("mean", "median", "std", "min", "max", "sum")
 

@@ -14,8 +14,8 @@ import numpy.typing as npt
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from pytpc.atomic import write_atomic
-from pytpc.errors import InputError
+from pytpc.base.atomic import write_atomic
+from pytpc.base.errors import InputError
 
 Int64s = npt.NDArray[np.int64]
 Int32s = npt.NDArray[np.int32]

@@ -15,8 +15,8 @@ from jsonschema.exceptions import best_match
 from referencing import Registry, Resource
 from referencing.jsonschema import DRAFT202012
 
-from pytpc.errors import InputError
-from pytpc.words import plain
+from pytpc.base.errors import InputError
+from pytpc.base.wording import plain
 
 SCHEMA_VERSION = 1
 UNIT_SCHEMA = "static_info.schema.json"
