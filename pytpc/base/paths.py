@@ -37,7 +37,7 @@ _ROS_PLACES = {
 
 def project_root() -> Path:
     """The folder of the project: the one that holds the package ``pytpc``."""
-    return Path(__file__).resolve().parent.parent
+    return Path(__file__).resolve().parents[2]
 
 
 def prefix() -> Path:
