@@ -23,7 +23,7 @@ from pytpc.advice.counterfactual import MOST_VALUES, sweep, what_if
 from pytpc.events import Events
 from pytpc.ingest.recording import Recording
 from pytpc.marks import Mark
-from pytpc.static_info import StaticInfo
+from pytpc.static.static_info import StaticInfo
 
 TOPIC = "score-speed"
 SECONDS = 600

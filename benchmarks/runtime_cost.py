@@ -39,7 +39,7 @@ from figures import figure
 
 from pytpc.base.paths import compiler_wrapper
 from pytpc.graph import RosGraph
-from pytpc.static_info import load_link_unit
+from pytpc.static.static_info import load_link_unit
 
 SOURCES = Path(__file__).resolve().parent / "runtime"
 ROUNDS = 7

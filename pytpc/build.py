@@ -34,8 +34,8 @@ from pytpc.python_analysis.rules_file import Rules, load_rules
 from pytpc.python_build import python_of_build
 from pytpc.python_units import names_of
 from pytpc.reconcile import left_out_units, stale_files
-from pytpc.rules import check_rules
-from pytpc.static_info import (
+from pytpc.static.rules import check_rules
+from pytpc.static.static_info import (
     LeftOut,
     LinkUnit,
     StaticInfo,

@@ -12,7 +12,6 @@ from pathlib import Path
 
 from pytpc.base.errors import WorkspaceError
 from pytpc.base.paths import OWN_FOLDER
-from pytpc.link_unit import LeftOut, LinkUnit
 from pytpc.python_units import PythonUnits, named_beside, names_of
 from pytpc.reconcile import build_folders, known_targets, left_out_units, target_names
 from pytpc.stale import (
@@ -24,7 +23,8 @@ from pytpc.stale import (
     drop_without_scripts,
     drop_without_sources,
 )
-from pytpc.static_info import StaticInfo, load_link_unit, unit_files
+from pytpc.static.link_unit import LeftOut, LinkUnit
+from pytpc.static.static_info import StaticInfo, load_link_unit, unit_files
 
 _NOT_SOURCES = frozenset({".git", ".hg", ".svn", OWN_FOLDER})
 

@@ -16,7 +16,7 @@ from typing import Any
 from pytpc.base.checked_json import parse_json
 from pytpc.base.errors import InputError
 from pytpc.base.paths import ROS_PREFIXES
-from pytpc.link_unit import LinkUnit
+from pytpc.static.link_unit import LinkUnit
 
 _REPLY = Path(".cmake/api/v1/reply")
 _WITH_VALUE = frozenset(

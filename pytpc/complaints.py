@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pytpc.base.wording import many
 from pytpc.ingest.recording import Recording
 from pytpc.scoring.ranking import unknown_keys
-from pytpc.static_info import StaticInfo
+from pytpc.static.static_info import StaticInfo
 
 _NAMED = 3
 """Unknown keys that are named, those with the most reports."""

@@ -17,11 +17,11 @@ from pytpc.base.atomic import write_atomic
 from pytpc.base.errors import InputError, TpcError
 from pytpc.compile_flags import Flags, flags_for
 from pytpc.conditions import Condition, Macro, Parsed, libclang, parse_conditions, precompile
-from pytpc.link_unit import LinkUnit
-from pytpc.places import Tpc
 from pytpc.python_conditions import PythonSource
 from pytpc.reconcile import recorded_units
-from pytpc.static_info import StaticInfo, python_unit_file
+from pytpc.static.link_unit import LinkUnit
+from pytpc.static.places import Tpc
+from pytpc.static.static_info import StaticInfo, python_unit_file
 
 _FORMAT = 1
 # How often progress is told while nothing is finished.

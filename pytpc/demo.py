@@ -23,7 +23,7 @@ from pytpc.marks import Mark
 from pytpc.mission import MissionRun, Progress, run_mission
 from pytpc.report.html import MissionReport
 from pytpc.scoring.ranking import MarkRanking, rank_marks
-from pytpc.static_info import StaticInfo
+from pytpc.static.static_info import StaticInfo
 from pytpc.treatment import Treatment, save_treatment
 
 FIRST = 3

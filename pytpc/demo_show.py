@@ -25,7 +25,7 @@ from pytpc.demo import TreatedMission, failures, result_table, run_treatment
 from pytpc.demo_examples import Example, link_package
 from pytpc.python_env import mission_env
 from pytpc.report.html import write_report
-from pytpc.static_info import StaticInfo
+from pytpc.static.static_info import StaticInfo
 from pytpc.treatment import Treatment
 
 TIMEOUT_S = 150.0

@@ -9,8 +9,8 @@ from typing import TypeVar
 from pytpc.base.wording import exact
 from pytpc.condition_lookup import Answer
 from pytpc.conditions import Condition
-from pytpc.places import Tpc
-from pytpc.static_info import Comparison, Default, LinkUnit, StaticInfo, Transform
+from pytpc.static.places import Tpc
+from pytpc.static.static_info import Comparison, Default, LinkUnit, StaticInfo, Transform
 
 _Item = TypeVar("_Item")
 

@@ -36,7 +36,7 @@ from pytpc.report.html import write_report as write_page
 from pytpc.scoring.curves import STEP_S, RankCurves, rank_curves
 from pytpc.scoring.ranking import MarkRanking, Types, rank_marks
 from pytpc.scoring.scores import WINDOW_S
-from pytpc.static_info import StaticInfo, read_static
+from pytpc.static.static_info import StaticInfo, read_static
 from pytpc.stats.missions import load_missions
 from pytpc.stats.study import NUMBERS
 from pytpc.stats.study import study_tables as tables_of_study

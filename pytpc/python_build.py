@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 
-from pytpc.link_unit import LinkUnit
 from pytpc.python_analysis.rules_file import Rules
 from pytpc.python_kept import KEPT_FILE, digest_of, load_kept, save_kept
 from pytpc.python_units import (
@@ -20,7 +19,8 @@ from pytpc.python_units import (
     write_units,
 )
 from pytpc.reconcile import target_names
-from pytpc.static_info import is_python_file, load_link_unit, python_unit_file, unit_files
+from pytpc.static.link_unit import LinkUnit
+from pytpc.static.static_info import is_python_file, load_link_unit, python_unit_file, unit_files
 from pytpc.workspace import Package
 
 

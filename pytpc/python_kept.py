@@ -17,10 +17,10 @@ from pathlib import Path
 from pytpc.base.atomic import write_atomic
 from pytpc.base.checked_json import dump_json, parse_json
 from pytpc.base.errors import InputError
-from pytpc.link_unit import LeftOut, LinkUnit
 from pytpc.python_analysis.rules_file import Rules
 from pytpc.python_units import PythonUnits, analysis_files
-from pytpc.static_info import python_unit_file
+from pytpc.static.link_unit import LeftOut, LinkUnit
+from pytpc.static.static_info import python_unit_file
 
 KEPT_FILE = "python.json"
 _PRODUCTS = frozenset({"__pycache__", "node_modules"})

@@ -15,12 +15,12 @@ from pytpc.base.atomic import write_atomic
 from pytpc.base.checked_json import dump_json
 from pytpc.base.errors import InputError
 from pytpc.base.wording import plain
-from pytpc.link_unit import LeftOut, LinkUnit
 from pytpc.python_analysis.analysis import analyse_entry
 from pytpc.python_analysis.budget import SECONDS
 from pytpc.python_analysis.packages import Entry, entries, entry_of
 from pytpc.python_analysis.rules_file import Rules
-from pytpc.static_info import python_unit_file
+from pytpc.static.link_unit import LeftOut, LinkUnit
+from pytpc.static.static_info import python_unit_file
 from pytpc.workspace import package_folders
 
 Name = tuple[str, str]

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from pytpc.base.errors import InputError
 from pytpc.cmake_targets import LinkTarget, link_targets
-from pytpc.link_unit import LeftOut, LinkUnit
+from pytpc.static.link_unit import LeftOut, LinkUnit
 
 _RECORD = Path("tpc/targets.tsv")
 _FIELDS = 5

@@ -15,8 +15,8 @@ from urllib.parse import quote
 
 from pytpc.base.source_bytes import source_bytes
 from pytpc.details import Details
-from pytpc.link_unit import LinkUnit, PathStep
-from pytpc.static_info import StaticInfo
+from pytpc.static.link_unit import LinkUnit, PathStep
+from pytpc.static.static_info import StaticInfo
 
 SCHEMA = (
     "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"

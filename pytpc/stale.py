@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from mmap import mmap
 from pathlib import Path
 
-from pytpc.link_unit import LinkUnit
+from pytpc.static.link_unit import LinkUnit
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,7 @@ from typing import Any
 from pytpc.base.checked_json import SURVEY_SCHEMA, check_schema
 from pytpc.base.errors import InputError
 from pytpc.source_lines import LineCount, SourceLines
-from pytpc.static_info import LinkUnit
+from pytpc.static.static_info import LinkUnit
 
 RESULT_VERSION = 2
 

@@ -25,7 +25,7 @@ from pytpc.build_faults import first_error, missing_names
 from pytpc.cmake_syntax import find_fault
 from pytpc.cmake_targets import ask_for_targets, link_targets
 from pytpc.colcon import Bases, build_environment, colcon_command, ended_jobs, run_lines
-from pytpc.static_info import LinkUnit, load_link_unit, unit_files
+from pytpc.static.static_info import LinkUnit, load_link_unit, unit_files
 from pytpc.survey import Build, NotBuilt, Tree, TreePackage
 from pytpc.workspace import MANIFEST, Package, package_folders, read_manifest
 

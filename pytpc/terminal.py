@@ -19,7 +19,7 @@ from pytpc.ingest.recording import Recording
 from pytpc.marks import MarkType
 from pytpc.scoring.ranking import MarkRanking, Suspect
 from pytpc.scoring.scores import WINDOW_S
-from pytpc.static_info import Comparison, StaticInfo
+from pytpc.static.static_info import Comparison, StaticInfo
 
 _WHAT = {
     "I": "type I, did what it should not",

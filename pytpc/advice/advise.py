@@ -13,7 +13,7 @@ from pytpc.ingest.recording import Recording
 from pytpc.marks import Mark
 from pytpc.scoring.ranking import MarkRanking, Suspect
 from pytpc.scoring.scores import WINDOW_S
-from pytpc.static_info import StaticInfo
+from pytpc.static.static_info import StaticInfo
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,13 +16,13 @@ from pytpc.base.wording import many, percent
 from pytpc.events import Events
 from pytpc.ingest.recording import Recording
 from pytpc.marks import Mark, MarkType
-from pytpc.parameters import same_parameter
 from pytpc.scoring.diagnosis import Decisive, Diagnosis
 from pytpc.scoring.evidence import Evaluation, Log
 from pytpc.scoring.ranking import Types, outside
 from pytpc.scoring.scores import WINDOW_S
 from pytpc.scoring.tables import Tpcs
-from pytpc.static_info import Comparison, StaticInfo
+from pytpc.static.parameters import same_parameter
+from pytpc.static.static_info import Comparison, StaticInfo
 
 SURE = 0.5
 """From this probability on the first parameter is accused: it is likelier than all else together"""

@@ -13,9 +13,9 @@ from pytpc.advice.diagnosing import Changed
 from pytpc.advice.known import Source
 from pytpc.advice.remedy import EVERY_SOURCE, Remedy, remedy, restored
 from pytpc.ingest.recording import Recording
-from pytpc.parameters import same_parameter
 from pytpc.scoring.scores import WINDOW_S
-from pytpc.static_info import StaticInfo
+from pytpc.static.parameters import same_parameter
+from pytpc.static.static_info import StaticInfo
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,7 +22,7 @@ from pytpc.advice.units import (
     unit_of,
 )
 from pytpc.base.wording import Number, show
-from pytpc.link_unit import Comparison, LinkUnit
+from pytpc.static.link_unit import Comparison, LinkUnit
 
 _CLOSE, _TINY = 1e-9, 1e-12
 EQUALITIES = frozenset({"==", "!="})

@@ -15,7 +15,7 @@ from pytpc.base.wording import Number, exact, many
 from pytpc.ingest.recording import Recording
 from pytpc.marks import Mark, MarkType
 from pytpc.scoring.scores import WINDOW_S
-from pytpc.static_info import StaticInfo
+from pytpc.static.static_info import StaticInfo
 
 MOST_VALUES = 64
 """How many values ``sweep`` takes."""

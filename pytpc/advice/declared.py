@@ -16,9 +16,9 @@ from pytpc.advice.blame import Accused
 from pytpc.advice.declaration import Declared
 from pytpc.advice.declared_bag import is_bag, read_bag
 from pytpc.advice.declared_cfg import read_cfg
-from pytpc.parameters import same_parameter
 from pytpc.scoring.ranking import Suspect
-from pytpc.static_info import StaticInfo
+from pytpc.static.parameters import same_parameter
+from pytpc.static.static_info import StaticInfo
 
 __all__ = ["Declared", "declared_for", "declared_in", "read_declared"]
 

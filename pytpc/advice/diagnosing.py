@@ -11,7 +11,7 @@ from pytpc.ingest.recording import Recording
 from pytpc.scoring.diagnosis import Diagnosis, diagnose
 from pytpc.scoring.diagnosis_priors import of_changes, of_reference
 from pytpc.scoring.tables import Tpcs
-from pytpc.static_info import StaticInfo
+from pytpc.static.static_info import StaticInfo
 
 Changed = tuple[str, float, float]
 """A parameter that was changed, the value before and after."""

@@ -17,7 +17,7 @@ from collections.abc import Callable
 from itertools import pairwise
 
 from pytpc.advice.intervals import Interval, Intervals, union
-from pytpc.arithmetic import SINGLE, Tree, evaluate
+from pytpc.static.arithmetic import SINGLE, Tree, evaluate
 
 _LARGEST = 1.7976931348623157e308
 _SMALLEST = 5e-324

@@ -14,7 +14,7 @@ from pytpc.ingest.recording import Recording
 from pytpc.marks import Mark, MarkType
 from pytpc.scoring.ranking import MarkRanking
 from pytpc.scoring.scores import WINDOW_S
-from pytpc.static_info import StaticInfo
+from pytpc.static.static_info import StaticInfo
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,7 +14,7 @@ from pytpc.advice.units import NoUnitError
 from pytpc.base.errors import InputError
 from pytpc.base.wording import Number
 from pytpc.ingest.recording import Recording
-from pytpc.static_info import Default, StaticInfo
+from pytpc.static.static_info import Default, StaticInfo
 
 Source = Literal["reference", "default", "declared"]
 NAMES: dict[Source, str] = {

@@ -30,17 +30,17 @@ import numpy as np
 from pytpc.advice.inverse import kept_as
 from pytpc.advice.thresholds import outcomes
 from pytpc.advice.units import NoUnitError, is_text, read_type, tree_of
-from pytpc.arithmetic import evaluate
 from pytpc.base.columns import Bools, Floats
 from pytpc.events import Events
 from pytpc.ingest.recording import Recording
-from pytpc.parameters import same_parameter
 from pytpc.scoring.diagnosis import Diagnosis, diagnose, softmax, type_odds
 from pytpc.scoring.diagnosis_evidence import SHARE, Marked, Wait, any_time, caused, marked
 from pytpc.scoring.diagnosis_priors import thresholds_of
 from pytpc.scoring.diagnosis_streams import Stream, Streams
 from pytpc.scoring.tables import Tpcs
-from pytpc.static_info import StaticInfo
+from pytpc.static.arithmetic import evaluate
+from pytpc.static.parameters import same_parameter
+from pytpc.static.static_info import StaticInfo
 
 MOMENT_S = 2.0
 """A turn of this length weighs half of one that lasts."""

@@ -42,7 +42,7 @@ from pytpc.base.wording import Number, exact, many, show
 from pytpc.ingest.recording import Recording
 from pytpc.marks import MARK_TYPES, Mark, MarkType
 from pytpc.scoring.scores import WINDOW_S
-from pytpc.static_info import StaticInfo
+from pytpc.static.static_info import StaticInfo
 
 Basis = Literal[
     "reference", "default", "declared", "lasting", "growth", "between", "smallest", "before"

@@ -36,9 +36,9 @@ from pytpc.base.wording import Number, exact, show
 from pytpc.events import Bools, Events, Floats
 from pytpc.ingest.recording import Recording
 from pytpc.marks import MarkType
-from pytpc.parameters import parameter_name
 from pytpc.scoring.scores import WINDOW_S
-from pytpc.static_info import Comparison, LinkUnit, StaticInfo
+from pytpc.static.parameters import parameter_name
+from pytpc.static.static_info import Comparison, LinkUnit, StaticInfo
 from pytpc.summaries import Summaries
 
 Direction = Literal["raise", "lower", "switch"]

@@ -11,9 +11,9 @@ import numpy as np
 
 from pytpc.advice.intervals import Interval, Intervals
 from pytpc.advice.inverse import kept_as, preimage
-from pytpc.arithmetic import Tree, evaluate
 from pytpc.base.columns import Floats
-from pytpc.link_unit import Comparison, LinkUnit
+from pytpc.static.arithmetic import Tree, evaluate
+from pytpc.static.link_unit import Comparison, LinkUnit
 
 _WHOLE_TYPES = frozenset(
     f"{sign}{name}"

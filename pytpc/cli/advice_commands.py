@@ -35,9 +35,9 @@ from pytpc.cli.options import (
 from pytpc.cli.sources import static_of
 from pytpc.ingest import Recording
 from pytpc.marks import MARK_TYPES, MarkType
-from pytpc.parameters import parameter_name, same_parameter
 from pytpc.scoring.ranking import MarkRanking, Types, rank_marks
-from pytpc.static_info import Comparison, StaticInfo
+from pytpc.static.parameters import parameter_name, same_parameter
+from pytpc.static.static_info import Comparison, StaticInfo
 
 _WHAT: dict[MarkType | None, str] = {
     "I": "type I, did what it should not",

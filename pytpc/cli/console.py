@@ -16,7 +16,7 @@ from rich.text import Text
 
 from pytpc.base.wording import many, plain
 from pytpc.reconcile import remark
-from pytpc.static_info import LinkUnit, StaticInfo
+from pytpc.static.static_info import LinkUnit, StaticInfo
 
 Advance = Callable[[int, int], None]
 

@@ -16,9 +16,9 @@ from rich.text import Text
 from pytpc.base.wording import many, plain
 from pytpc.cli.console import console
 from pytpc.cli.sources import SOURCES, static_of
-from pytpc.explain import Explanation, Found, look_up, where, why_no_comparison
-from pytpc.parameters import parameter_name
-from pytpc.static_info import LinkUnit, PathStep, StaticInfo
+from pytpc.static.explanations import Explanation, Found, look_up, where, why_no_comparison
+from pytpc.static.parameters import parameter_name
+from pytpc.static.static_info import LinkUnit, PathStep, StaticInfo
 
 _KINDS = {
     "lost_value": "value lost",

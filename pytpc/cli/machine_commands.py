@@ -18,7 +18,7 @@ from pytpc.doctor.look import look_at_machine
 from pytpc.doctor.look_workspace import look_at_known, look_at_workspace
 from pytpc.doctor.machine import check_machine
 from pytpc.doctor.workspace import check_workspace
-from pytpc.rules import check_rules
+from pytpc.static.rules import check_rules
 from pytpc.toolchain import Choices, Step, Way, shown, steps
 
 _STYLES = {Severity.ERROR: "bold red", Severity.WARNING: "yellow", Severity.NOTE: "dim"}

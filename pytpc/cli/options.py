@@ -16,7 +16,7 @@ from pytpc.cli.console import progress, warn
 from pytpc.complaints import complaints
 from pytpc.ingest import Recording, read
 from pytpc.scoring.scores import WINDOW_S
-from pytpc.static_info import StaticInfo
+from pytpc.static.static_info import StaticInfo
 
 PATH = click.Path(path_type=Path)
 Command = TypeVar("Command", bound=Callable[..., object])

@@ -15,7 +15,7 @@ from pytpc.cli.options import PATH
 from pytpc.python_analysis.budget import SECONDS
 from pytpc.python_analysis.rules_file import load_rules
 from pytpc.python_units import analyse_scripts, joined, named_beside, scripts_at
-from pytpc.static_info import StaticInfo
+from pytpc.static.static_info import StaticInfo
 
 
 @click.command("analyse")

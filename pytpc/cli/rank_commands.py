@@ -38,7 +38,7 @@ from pytpc.marking.session import Change
 from pytpc.marks import MARK_TYPES, Mark, MarkType, joined, marks_beside, marks_text, read_marks
 from pytpc.scoring.clocks import two_clocks
 from pytpc.scoring.ranking import MarkRanking, Types, rank_marks
-from pytpc.static_info import StaticInfo
+from pytpc.static.static_info import StaticInfo
 from pytpc.terminal import Row, print_blame, print_rankings, rows_of
 
 

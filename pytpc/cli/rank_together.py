@@ -19,10 +19,10 @@ from pytpc.cli.console import warn
 from pytpc.cli.options import PATH, check_reports, recording_of
 from pytpc.ingest import Recording
 from pytpc.mission import PARAMS_FILE
-from pytpc.parameters import same_parameter
 from pytpc.scoring.ranking import Types
 from pytpc.scoring.tables import Tpcs
-from pytpc.static_info import StaticInfo
+from pytpc.static.parameters import same_parameter
+from pytpc.static.static_info import StaticInfo
 
 Score = Literal["tpc", "thesis"]
 Command = TypeVar("Command", bound=Callable[..., object])

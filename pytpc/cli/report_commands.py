@@ -27,7 +27,7 @@ from pytpc.cli.sources import static_of
 from pytpc.report.html import CARDS, MissionReport, write_report
 from pytpc.scoring.clocks import two_clocks
 from pytpc.scoring.ranking import Types, rank_marks
-from pytpc.static_info import StaticInfo
+from pytpc.static.static_info import StaticInfo
 from pytpc.treatment import TREATMENT_FILE, Treatment, load_treatment
 from pytpc.values.origins import read_origins
 

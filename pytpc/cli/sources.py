@@ -12,7 +12,7 @@ from pytpc.base.wording import many
 from pytpc.cli.console import progress, warn
 from pytpc.collecting import collect_sources
 from pytpc.stale import Stale
-from pytpc.static_info import StaticInfo, read_static
+from pytpc.static.static_info import StaticInfo, read_static
 
 PATH = click.Path(path_type=Path)
 SOURCES = click.argument("sources", type=PATH, nargs=-1, metavar="[SOURCE]...")

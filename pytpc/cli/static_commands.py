@@ -30,14 +30,14 @@ from pytpc.collecting import collect_sources
 from pytpc.condition_lookup import look_up_conditions
 from pytpc.conditions import lines_of
 from pytpc.details import Details, details
-from pytpc.explain import Explanation, look_up, why_no_comparison
-from pytpc.places import Tpc
 from pytpc.python_analysis.rules_file import load_rules
 from pytpc.python_units import PythonUnits, analyse_workspaces
 from pytpc.report.catalogue import write_catalogue
 from pytpc.sarif import sarif_log
-from pytpc.selection import ORDERS, Selection, select
-from pytpc.static_info import StaticInfo
+from pytpc.static.explanations import Explanation, look_up, why_no_comparison
+from pytpc.static.places import Tpc
+from pytpc.static.selection import ORDERS, Selection, select
+from pytpc.static.static_info import StaticInfo
 
 _TYPES = ("parameter", "flag", "derived", "constant")
 

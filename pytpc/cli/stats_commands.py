@@ -19,7 +19,7 @@ from pytpc.base.wording import many, plain
 from pytpc.cli.console import console, progress, warn
 from pytpc.cli.options import JSON, PATH, STATIC, WINDOW, recording_of
 from pytpc.cli.sources import static_of
-from pytpc.static_info import StaticInfo
+from pytpc.static.static_info import StaticInfo
 from pytpc.stats.missions import StudyMission, load_missions
 from pytpc.stats.study import NUMBERS, study_complaints, study_tables
 

@@ -44,7 +44,7 @@ from pytpc.marking.watching import KINDS, Look, Row, Watching
 from pytpc.scoring.clocks import two_clocks
 from pytpc.scoring.live import LiveRanking
 from pytpc.scoring.ranking import Types
-from pytpc.static_info import StaticInfo
+from pytpc.static.static_info import StaticInfo
 
 _ONCE_S = 5.0
 _TURN_S = 0.1

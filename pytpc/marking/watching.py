@@ -18,7 +18,7 @@ from pytpc.marks import Mark, MarkType
 from pytpc.scoring.live import LiveRanking
 from pytpc.scoring.ranking import MarkRanking, Suspect
 from pytpc.scoring.scores import WINDOW_S
-from pytpc.static_info import StaticInfo
+from pytpc.static.static_info import StaticInfo
 from pytpc.summaries import Summary
 
 BINS = 8

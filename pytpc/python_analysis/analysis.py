@@ -8,17 +8,6 @@ from dataclasses import dataclass, fields
 from importlib.metadata import PackageNotFoundError, version
 
 from pytpc.base.errors import InputError
-from pytpc.link_unit import (
-    BlindSpot,
-    Comparison,
-    Counts,
-    Exposing,
-    LinkUnit,
-    NotExposed,
-    ParameterRead,
-    Place,
-    Tool,
-)
 from pytpc.python_analysis.budget import SECONDS, Budget, BudgetSpentError, what_failed
 from pytpc.python_analysis.constant_finder import find_constants
 from pytpc.python_analysis.constants import DYNAMIC, Constants
@@ -36,6 +25,17 @@ from pytpc.python_analysis.reads import Exposed, Read, find_exposing, find_reads
 from pytpc.python_analysis.rules_file import Rules
 from pytpc.python_analysis.slicing import Slice, Slicer
 from pytpc.python_analysis.sources import lines_of
+from pytpc.static.link_unit import (
+    BlindSpot,
+    Comparison,
+    Counts,
+    Exposing,
+    LinkUnit,
+    NotExposed,
+    ParameterRead,
+    Place,
+    Tool,
+)
 
 _AT_MOST = 200
 

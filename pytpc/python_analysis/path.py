@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from pytpc.link_unit import PathStep
 from pytpc.python_analysis.follow import Fact
 from pytpc.python_analysis.gather import Found, position
 from pytpc.python_analysis.ir import Function, Instr, Variable
 from pytpc.python_analysis.names import named_variable
 from pytpc.python_analysis.slicing import Slice
+from pytpc.static.link_unit import PathStep
 
 _AT_MOST = 32
 _TELLING = (

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from pytpc.link_unit import Default
 from pytpc.python_analysis.call_table import CallTable, Given
 from pytpc.python_analysis.constants import DYNAMIC, Constants
 from pytpc.python_analysis.contexts import Stack
@@ -14,6 +13,7 @@ from pytpc.python_analysis.ir import Function, Instr
 from pytpc.python_analysis.objects import Obj
 from pytpc.python_analysis.parameter_lists import ParameterLists
 from pytpc.python_analysis.rules_file import Argument, Rules
+from pytpc.static.link_unit import Default
 
 Context = tuple[Stack, dict[Instr, tuple[object, ...]]]
 _MOST_CONTEXTS = 64

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-from pytpc.arithmetic import Tree
-from pytpc.link_unit import Transform
+from pytpc.static.arithmetic import Tree
+from pytpc.static.link_unit import Transform
 
 _SIGNS = {"/": " / ", "rem": " rem ", "shr": " >> ", "and": " & "}
 _DEEPEST = 12

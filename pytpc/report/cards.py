@@ -13,7 +13,6 @@ from pytpc.advice.counterfactual import WhatIf
 from pytpc.advice.declared import Declared
 from pytpc.advice.remedy import Remedy
 from pytpc.advice.suggest import Suggestion
-from pytpc.arithmetic import evaluate
 from pytpc.base.wording import exact, show
 from pytpc.marks import Mark
 from pytpc.report.mission import MissionReport
@@ -23,7 +22,8 @@ from pytpc.report.reasons import why
 from pytpc.report.series import Evidence, evidence
 from pytpc.report.source import LONGEST_LINE, Line, StepView, source_lines, way_of
 from pytpc.scoring.ranking import MarkRanking, Suspect
-from pytpc.static_info import Comparison
+from pytpc.static.arithmetic import evaluate
+from pytpc.static.static_info import Comparison
 from pytpc.values.origins import origin_for
 
 _PARTS = 2

@@ -17,7 +17,7 @@ from pytpc.base.atomic import write_atomic
 from pytpc.details import Details
 from pytpc.report.environment import environment
 from pytpc.report.source import LONGEST_LINE, StepView, read_lines, way_of
-from pytpc.static_info import StaticInfo
+from pytpc.static.static_info import StaticInfo
 
 _CONTEXT = 2
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 
 from pytpc.advice.declared import Declared
 from pytpc.ingest.recording import Recording
-from pytpc.parameters import same_parameter
 from pytpc.scoring.ranking import MarkRanking, Types
 from pytpc.scoring.scores import WINDOW_S
-from pytpc.static_info import StaticInfo
+from pytpc.static.parameters import same_parameter
+from pytpc.static.static_info import StaticInfo
 from pytpc.values.origins import Origin
 
 CARDS = 3

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pytpc.base.source_bytes import source_bytes
-from pytpc.explain import where
-from pytpc.static_info import Comparison, StaticInfo
+from pytpc.static.explanations import where
+from pytpc.static.static_info import Comparison, StaticInfo
 
 LONGEST_LINE = 160
 """Longer lines are cut."""

@@ -11,7 +11,7 @@ from pytpc.base.errors import TpcError
 from pytpc.ingest.recording import Recording
 from pytpc.scoring.scores import WINDOW_S
 from pytpc.scoring.tables import Tpcs, parameter_tables, tpc_scores
-from pytpc.static_info import StaticInfo
+from pytpc.static.static_info import StaticInfo
 
 STEP_S = 0.1
 """10 Hz."""

@@ -30,7 +30,7 @@ from pytpc.marks import Mark
 from pytpc.scoring.diagnosis_evidence import SHARE, Evidence, evidence, marked
 from pytpc.scoring.diagnosis_streams import Streams
 from pytpc.scoring.tables import Tpcs, parameter_tables, tpc_scores
-from pytpc.static_info import StaticInfo
+from pytpc.static.static_info import StaticInfo
 
 
 @dataclass(frozen=True, slots=True)

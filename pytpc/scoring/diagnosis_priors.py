@@ -13,8 +13,8 @@ import numpy as np
 
 from pytpc.base.columns import Floats
 from pytpc.events import Events
-from pytpc.parameters import same_parameter
 from pytpc.scoring.tables import Tpcs
+from pytpc.static.parameters import same_parameter
 
 UNCHANGED = -12.0
 """The log odds of a parameter that is as it was; not less, as what is on record may be wrong, and

@@ -31,7 +31,7 @@ from pytpc.scoring.ranking import MarkRanking, Ranker, Types
 from pytpc.scoring.scores import NEVER, WINDOW_S, Before, not_negative
 from pytpc.scoring.streams import AGAIN, Rows, Stream, SummaryStream, end_of
 from pytpc.scoring.tables import Tpcs, TpcScores, parameter_tables, tpc_scores
-from pytpc.static_info import StaticInfo
+from pytpc.static.static_info import StaticInfo
 from pytpc.summaries import Summaries, Summary, SummaryBuilder
 
 LATE_S = 10.0

@@ -31,11 +31,11 @@ import numpy as np
 from pytpc.events import Events
 from pytpc.ingest.recording import Recording
 from pytpc.marks import Mark, MarkType
-from pytpc.parameters import same_parameter
 from pytpc.scoring.evidence import Evaluation, Evidence, Log
 from pytpc.scoring.scores import NONE, WINDOW_S, combined
 from pytpc.scoring.tables import Tables, Tpcs, parameter_tables, tpc_scores
-from pytpc.static_info import Comparison, StaticInfo
+from pytpc.static.parameters import same_parameter
+from pytpc.static.static_info import Comparison, StaticInfo
 
 Types = Literal["believe", "doubt", "ignore"]
 """How far the types of the marks are believed, see above."""

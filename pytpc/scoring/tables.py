@@ -11,10 +11,10 @@ import numpy.typing as npt
 
 from pytpc.events import Events, Floats, Int64s
 from pytpc.marks import MarkType
-from pytpc.parameters import parameter_name
 from pytpc.scoring.bounds import type2_bounds
 from pytpc.scoring.scores import WINDOW_S, Before, by_parameter, combined, ranks, type1, type2
-from pytpc.static_info import StaticInfo
+from pytpc.static.parameters import parameter_name
+from pytpc.static.static_info import StaticInfo
 from pytpc.summaries import Summaries
 
 

@@ -7,7 +7,7 @@ from collections.abc import Collection
 from matplotlib.figure import Figure
 
 from pytpc.base.wording import many
-from pytpc.parameters import same_parameter
+from pytpc.static.parameters import same_parameter
 from pytpc.stats.drawing import COLOURS, CULPRIT, FAINT, GRID, INK, short
 from pytpc.stats.runtime import RuntimeStatistics
 

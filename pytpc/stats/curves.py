@@ -21,9 +21,9 @@ from pytpc.base.columns import Bools, Floats
 from pytpc.base.wording import many
 from pytpc.ingest.recording import Recording
 from pytpc.marks import MARK_TYPES, Mark
-from pytpc.parameters import same_parameter
 from pytpc.scoring.curves import RankCurves
 from pytpc.scoring.scores import NONE
+from pytpc.static.parameters import same_parameter
 from pytpc.stats.drawing import (
     COLOURS,
     CULPRIT,

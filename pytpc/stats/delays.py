@@ -18,14 +18,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from pytpc.advice.thresholds import outcomes
-from pytpc.arithmetic import evaluate
 from pytpc.base.columns import Int64s
 from pytpc.base.tables import Cell, Column, Table, statistics
 from pytpc.events import Bools, Events, Floats
 from pytpc.ingest.recording import Recording
-from pytpc.parameters import parameter_name, same_parameter
 from pytpc.scoring.ranking import APART_NS
-from pytpc.static_info import Comparison, StaticInfo
+from pytpc.static.arithmetic import evaluate
+from pytpc.static.parameters import parameter_name, same_parameter
+from pytpc.static.static_info import Comparison, StaticInfo
 from pytpc.stats.missions import StudyMission, Trial, user_of
 from pytpc.summaries import Summaries
 from pytpc.treatment import Treatment

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from pytpc.base.errors import TpcError
 from pytpc.scoring.curves import STEP_S, rank_curves
 from pytpc.scoring.scores import WINDOW_S
-from pytpc.static_info import StaticInfo
+from pytpc.static.static_info import StaticInfo
 from pytpc.stats.bars import runtime_bars
 from pytpc.stats.curves import mission_figure
 from pytpc.stats.drawing import save, style

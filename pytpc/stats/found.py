@@ -15,7 +15,7 @@ from pytpc.base.tables import Cell, Column, Table, statistics
 from pytpc.marks import MARK_TYPES, MarkType
 from pytpc.scoring.ranking import rank_marks
 from pytpc.scoring.scores import NONE, WINDOW_S
-from pytpc.static_info import StaticInfo
+from pytpc.static.static_info import StaticInfo
 from pytpc.stats.missions import Trial
 
 

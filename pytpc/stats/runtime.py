@@ -23,9 +23,9 @@ from pytpc.base.tables import Column, Table, statistics
 from pytpc.base.wording import many
 from pytpc.events import Events
 from pytpc.ingest.recording import Recording
-from pytpc.parameters import parameter_name
 from pytpc.scoring.bounds import covered
-from pytpc.static_info import StaticInfo
+from pytpc.static.parameters import parameter_name
+from pytpc.static.static_info import StaticInfo
 from pytpc.summaries import Summaries
 
 SUMMARY = {

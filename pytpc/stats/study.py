@@ -8,10 +8,10 @@ from typing import TypeVar
 
 from pytpc.base.tables import Table
 from pytpc.complaints import complaints
-from pytpc.parameters import parameter_name, same_parameter
 from pytpc.scoring.clocks import two_clocks
 from pytpc.scoring.scores import WINDOW_S
-from pytpc.static_info import StaticInfo
+from pytpc.static.parameters import parameter_name, same_parameter
+from pytpc.static.static_info import StaticInfo
 from pytpc.stats.delays import delays_of, delays_table
 from pytpc.stats.found import found_in, found_table
 from pytpc.stats.marked import MarksOfTrial, confusion_table, marks_table

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from pytpc.changes import Change
 from pytpc.ingest.recording import Recording
-from pytpc.static_info import StaticInfo
+from pytpc.static.static_info import StaticInfo
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from pytpc.base.errors import InputError, TpcError
 from pytpc.changes import Change, read_changes
 from pytpc.ingest.recording import Recording, load_recording
 from pytpc.marks import MARK_TYPES, Mark, MarkType
-from pytpc.static_info import StaticInfo
+from pytpc.static.static_info import StaticInfo
 from pytpc.study.case import Case
 from pytpc.study.changes import CHANGES_FILE
 from pytpc.study.dataset import DONE_FILE, MARKED_FILE, STUDY_FILE

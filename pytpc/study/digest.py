@@ -13,7 +13,7 @@ from pathlib import Path
 from pytpc.base.errors import InputError
 from pytpc.base.paths import cmake_file, defer_plugin, log_library, plugin, project_root
 from pytpc.demo_examples import SHARED_PACKAGE, Example
-from pytpc.static_info import StaticInfo
+from pytpc.static.static_info import StaticInfo
 from pytpc.study.plan import Flight
 
 VERSION = 2

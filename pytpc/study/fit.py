@@ -19,11 +19,11 @@ import numpy as np
 
 from pytpc.base.columns import Bools, Floats, Int64s
 from pytpc.base.errors import TpcError
-from pytpc.parameters import same_parameter
 from pytpc.scoring.diagnosis import REASONED, Said, Weights, mixture, ranked, type_odds
 from pytpc.scoring.diagnosis_evidence import Evidence, evidence, marked
 from pytpc.scoring.diagnosis_streams import Streams
 from pytpc.scoring.tables import Tpcs
+from pytpc.static.parameters import same_parameter
 from pytpc.study.data import ALL, LABELS, Mission, missions
 
 ALONE = 0.3

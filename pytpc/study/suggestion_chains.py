@@ -14,7 +14,7 @@ import numpy as np
 
 from pytpc.advice.known import Source
 from pytpc.advice.remedy import EVERY_SOURCE
-from pytpc.parameters import same_parameter
+from pytpc.static.parameters import same_parameter
 from pytpc.study.listed import read_list
 
 CHAINS_FILE = Path("results") / "suggestion-chains.json"

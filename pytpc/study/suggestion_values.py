@@ -13,8 +13,8 @@ from pytpc.base.checked_json import parse_json
 from pytpc.base.errors import InputError
 from pytpc.base.wording import percent
 from pytpc.ingest.recording import Recording, load_recording
-from pytpc.parameters import DYNAMIC, same_parameter
-from pytpc.static_info import StaticInfo
+from pytpc.static.parameters import DYNAMIC, same_parameter
+from pytpc.static.static_info import StaticInfo
 from pytpc.study.data import load_mission
 from pytpc.study.methods.ours import tpc_reference
 from pytpc.study.plan import Half

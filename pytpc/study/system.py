@@ -16,7 +16,7 @@ from pytpc.build import build_workspace, workspace_env
 from pytpc.colcon import Bases
 from pytpc.demo_examples import Example, link_package
 from pytpc.python_env import mission_env
-from pytpc.static_info import StaticInfo
+from pytpc.static.static_info import StaticInfo
 from pytpc.study.digest import build_digest, sources_digest, tools_digest
 
 _BUILT_FILE = "built.json"

@@ -12,7 +12,7 @@ from typing import Any, Literal, cast, get_args
 from pytpc.base.atomic import write_atomic
 from pytpc.base.checked_json import parse_json
 from pytpc.base.errors import InputError
-from pytpc.parameters import DYNAMIC, same_parameter
+from pytpc.static.parameters import DYNAMIC, same_parameter
 
 ORIGINS_FILE = "origins.json"
 START_FILE = "params_start.yaml"

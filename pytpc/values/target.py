@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from pytpc.base.errors import InputError
-from pytpc.parameters import same_parameter
+from pytpc.static.parameters import same_parameter
 from pytpc.values.apply import Change, decoded, read_file
 from pytpc.values.installed import is_installed, of_the_system, source_of
 from pytpc.values.journal import digest

@@ -12,7 +12,7 @@ from rosbags.rosbag1 import Writer
 from rosbags.typesys import Stores, get_typestore
 
 from pytpc.events import EventBuilder, Events, Report
-from pytpc.static_info import (
+from pytpc.static.static_info import (
     Comparison,
     Counts,
     LinkUnit,

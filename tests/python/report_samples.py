@@ -13,7 +13,7 @@ from pytpc.ingest import Recording
 from pytpc.marks import Mark
 from pytpc.report.html import MissionReport, write_report
 from pytpc.scoring.ranking import rank_marks
-from pytpc.static_info import PathStep
+from pytpc.static.static_info import PathStep
 
 # Two known lines and a gap; the second line is the comparison's own.
 WAY = (

@@ -20,7 +20,7 @@ from mission_samples import comparison, events, link_unit, ns
 
 from pytpc.ingest.recording import Recording, save_recording
 from pytpc.marks import Mark, MarkType
-from pytpc.static_info import StaticInfo, Tool
+from pytpc.static.static_info import StaticInfo, Tool
 
 RECORDED = Path(__file__).parents[2] / "examples" / "recorded_mission"
 STATIC = StaticInfo.of(

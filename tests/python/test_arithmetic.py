@@ -7,8 +7,8 @@ import math
 import pytest
 from static_units import comparison, unit
 
-from pytpc.arithmetic import OPERATORS, evaluate, from_json
 from pytpc.base.checked_json import check_unit
+from pytpc.static.arithmetic import OPERATORS, evaluate, from_json
 
 
 # By hand, at x = 5 unless it says otherwise; remainders and divisions are C++'s, to zero.

@@ -30,7 +30,7 @@ from pytpc.colcon import (
     ended_jobs,
 )
 from pytpc.left_alone import LeftAlone
-from pytpc.static_info import LeftOut, StaticInfo
+from pytpc.static.static_info import LeftOut, StaticInfo
 from pytpc.workspace import Package
 
 TOOLCHAIN = Path("/opt/tpc/share/tpc/cmake/tpc.cmake")

@@ -14,7 +14,7 @@ from pytpc.condition_lookup import Answer
 from pytpc.conditions import Condition, Macro
 from pytpc.details import details
 from pytpc.report.catalogue import render
-from pytpc.static_info import LinkUnit, StaticInfo
+from pytpc.static.static_info import LinkUnit, StaticInfo
 
 NASTY = '</script><img src=x onerror="alert(1)">&amp;'
 

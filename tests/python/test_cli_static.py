@@ -10,7 +10,7 @@ from file_api import reply, target
 from static_units import KEYS, comparison, failed_unit, unit
 
 from pytpc.cli.main import main
-from pytpc.static_info import LinkUnit, StaticInfo
+from pytpc.static.static_info import LinkUnit, StaticInfo
 
 
 def run(*arguments: str | Path) -> Result:

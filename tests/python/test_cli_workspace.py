@@ -17,7 +17,7 @@ from pytpc.build import BuildResult
 from pytpc.cli import workspace_commands
 from pytpc.cli.main import main
 from pytpc.colcon import Bases, BuildError
-from pytpc.static_info import LeftOut, LinkUnit, StaticInfo
+from pytpc.static.static_info import LeftOut, LinkUnit, StaticInfo
 
 
 def run(*arguments: str | Path) -> Result:

@@ -21,7 +21,7 @@ from pytpc.condition_lookup import (
 )
 from pytpc.condition_lookup import look_up_conditions as look_up
 from pytpc.conditions import libclang
-from pytpc.static_info import LinkUnit, StaticInfo
+from pytpc.static.static_info import LinkUnit, StaticInfo
 
 pytestmark = pytest.mark.skipif(not libclang(), reason="libclang 19 is not installed")
 

@@ -17,7 +17,7 @@ from pytpc.advice.suggest import suggest
 from pytpc.base.errors import InputError
 from pytpc.ingest.recording import Recording
 from pytpc.marks import Mark
-from pytpc.static_info import ParameterRead, StaticInfo, Transform
+from pytpc.static.static_info import ParameterRead, StaticInfo, Transform
 from pytpc.summaries import Summaries, Summary, SummaryBuilder
 
 NAN, INF = math.nan, math.inf

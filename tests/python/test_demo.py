@@ -14,7 +14,7 @@ from rich.console import Console
 from pytpc.base.errors import WorkspaceError
 from pytpc.demo_examples import IMAGE_CAPTURE, SHARED_PACKAGE, WATER_SAMPLER, link_package
 from pytpc.demo_show import can_be_named, tell_found
-from pytpc.static_info import Comparison, LinkUnit, StaticInfo
+from pytpc.static.static_info import Comparison, LinkUnit, StaticInfo
 from pytpc.treatment import Treatment
 
 

@@ -8,7 +8,7 @@ from static_units import KEYS, comparison, unit
 
 from pytpc.condition_lookup import Answer
 from pytpc.details import Exposed, details, in_words, shown_default
-from pytpc.static_info import LinkUnit, StaticInfo, Transform
+from pytpc.static.static_info import LinkUnit, StaticInfo, Transform
 
 
 @pytest.mark.parametrize(

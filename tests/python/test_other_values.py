@@ -15,11 +15,11 @@ from pytpc.advice.other_values import (
     turns,
 )
 from pytpc.ingest import Recording
-from pytpc.link_unit import Transform
 from pytpc.marks import Mark
 from pytpc.scoring.diagnosis_priors import UNCHANGED
 from pytpc.scoring.diagnosis_streams import Streams
 from pytpc.scoring.tables import Tpcs
+from pytpc.static.link_unit import Transform
 
 STATIC = static_info(
     comparison(0, "~height"),

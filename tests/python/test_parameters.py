@@ -2,7 +2,7 @@
 
 import pytest
 
-from pytpc.parameters import same_parameter
+from pytpc.static.parameters import same_parameter
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ from pytpc.cli.main import main
 from pytpc.python_analysis.cmake_programs import read_programs
 from pytpc.python_analysis.packages import Entry, NameFault, entries
 from pytpc.python_analysis.setup_files import read_setup
-from pytpc.static_info import StaticInfo
+from pytpc.static.static_info import StaticInfo
 
 MANIFEST = """<package format="2"><name>{}</name><version>0.0.1</version>
 <description>d</description><license>BSD</license>

@@ -14,7 +14,6 @@ from pynode_samples import PRELUDE, analysed, only
 
 from pytpc.base.errors import InputError
 from pytpc.cli.main import main
-from pytpc.link_unit import LinkUnit
 from pytpc.python_analysis import analysis
 from pytpc.python_analysis.analysis import analyse_entry
 from pytpc.python_analysis.budget import Budget, BudgetSpentError
@@ -23,7 +22,8 @@ from pytpc.python_analysis.packages import entry_of
 from pytpc.python_analysis.reads import find_reads
 from pytpc.python_analysis.rules_file import load_rules
 from pytpc.python_analysis.sources import parse
-from pytpc.static_info import StaticInfo
+from pytpc.static.link_unit import LinkUnit
+from pytpc.static.static_info import StaticInfo
 
 NODE = """limit = rospy.get_param('~limit')
 def cb(m):

@@ -13,7 +13,7 @@ from click.testing import CliRunner
 
 from pytpc.cli.main import main
 from pytpc.ingest import read
-from pytpc.static_info import StaticInfo
+from pytpc.static.static_info import StaticInfo
 
 ROOT = Path(__file__).parents[2]
 MANIFEST = """<package format="2"><name>{}</name><version>0.0.1</version>

@@ -10,7 +10,7 @@ from pytpc.condition_lookup import CHANGED, GONE, NOT_IN_PYTHON, look_up_conditi
 from pytpc.python_analysis.rules_file import load_rules
 from pytpc.python_conditions import PythonSource
 from pytpc.python_units import analyse_scripts, scripts_at
-from pytpc.static_info import StaticInfo
+from pytpc.static.static_info import StaticInfo
 
 # The comparison, which stands between the marks, and the kind and text of the condition.
 CASES = {

@@ -13,7 +13,7 @@ from suite.expectations import PYTHON_PACKAGE, Entry, Expectation, judge, load, 
 from suite.places import comparisons, values
 from suite.python_run import missing_modules, script
 
-from pytpc.static_info import Comparison, LinkUnit
+from pytpc.static.static_info import Comparison, LinkUnit
 
 TYPES = {"parameter", "flag", "derived"}
 MIRRORED = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}

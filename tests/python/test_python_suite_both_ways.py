@@ -12,7 +12,7 @@ from suite.expectations import PYTHON_PACKAGE, load, nodes
 from suite.python_run import missing_modules, run_nodes
 from suite.report import analyse_python
 
-from pytpc.static_info import StaticInfo
+from pytpc.static.static_info import StaticInfo
 
 ROOT = Path(__file__).parents[2]
 WITH_BOTH = all(importlib.util.find_spec(f"pytpc.{name}") for name in ("pynodes", "run"))

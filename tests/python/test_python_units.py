@@ -17,13 +17,13 @@ from static_units import unit
 from pytpc import python_units
 from pytpc.cli.main import main
 from pytpc.collecting import collect_sources
-from pytpc.link_unit import LinkUnit
 from pytpc.python_analysis.analysis import analyse_entry
 from pytpc.python_analysis.packages import Entry
 from pytpc.python_analysis.rules_file import load_rules
 from pytpc.python_build import python_of_build
 from pytpc.python_units import PythonUnits, analyse_workspaces, named_beside
-from pytpc.static_info import StaticInfo, load_link_unit, unit_files
+from pytpc.static.link_unit import LinkUnit
+from pytpc.static.static_info import StaticInfo, load_link_unit, unit_files
 from pytpc.workspace import find_packages, packages_up_to
 
 RULES = load_rules()

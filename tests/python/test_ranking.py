@@ -8,9 +8,9 @@ from mission_samples import comparison, events, key, ns, static_info
 from pytpc.events import Events
 from pytpc.ingest import Recording
 from pytpc.marks import Mark
-from pytpc.parameters import parameter_name
 from pytpc.scoring.ranking import rank_marks, unknown_keys
-from pytpc.static_info import Place
+from pytpc.static.parameters import parameter_name
+from pytpc.static.static_info import Place
 from pytpc.summaries import Summaries, Summary, SummaryBuilder
 
 # Comparisons 0 and 1 are of coverage, 2 of faces, 3 of idle, 4 is a constant, 5 of never (which is

@@ -14,7 +14,7 @@ from pytpc.advice.remedy import remedy
 from pytpc.events import Events
 from pytpc.ingest.recording import Recording
 from pytpc.marks import Mark
-from pytpc.static_info import Transform
+from pytpc.static.static_info import Transform
 from pytpc.summaries import Summaries, Summary, SummaryBuilder
 
 HOLDS = {"<": float.__lt__, ">": float.__gt__, ">=": float.__ge__, "flag": lambda _, t: bool(t)}

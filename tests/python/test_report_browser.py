@@ -21,7 +21,7 @@ from pytpc.ingest import Recording
 from pytpc.marks import Mark
 from pytpc.report.html import MissionReport, write_report
 from pytpc.scoring.ranking import rank_marks
-from pytpc.static_info import PathStep
+from pytpc.static.static_info import PathStep
 
 CHROMIUM, DRIVER = shutil.which("chromium"), shutil.which("chromedriver")
 pytestmark = pytest.mark.skipif(

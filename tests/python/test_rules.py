@@ -7,7 +7,7 @@ import pytest
 
 from pytpc.base.checked_json import parse_json
 from pytpc.base.errors import InputError
-from pytpc.rules import check_rules
+from pytpc.static.rules import check_rules
 
 TABLES = Path(__file__).parents[2] / "passes/rules"
 # What the thesis looks at (SPEC 2): the reads by param() with a variable, and three statements.

@@ -12,7 +12,7 @@ from pytpc.condition_lookup import Answer
 from pytpc.conditions import Condition
 from pytpc.details import details
 from pytpc.sarif import sarif_log
-from pytpc.static_info import LinkUnit, StaticInfo
+from pytpc.static.static_info import LinkUnit, StaticInfo
 
 TRANSFORM = {"kind": "affine", "scale": 2.0, "offset": 0.0, "text": "x * 2"}
 

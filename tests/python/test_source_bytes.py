@@ -6,9 +6,9 @@ import pytest
 from static_units import comparison, unit
 
 from pytpc.base.source_bytes import source_bytes
-from pytpc.link_unit import LinkUnit
 from pytpc.report.source import source_lines
-from pytpc.static_info import StaticInfo
+from pytpc.static.link_unit import LinkUnit
+from pytpc.static.static_info import StaticInfo
 
 UMLAUT = "höhe = 1\n"
 

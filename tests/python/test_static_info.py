@@ -9,7 +9,7 @@ from static_units import KEYS, comparison, failed_unit, unit
 
 from pytpc.base.checked_json import MERGED_SCHEMA, check_schema
 from pytpc.base.errors import InputError, WorkspaceError
-from pytpc.static_info import (
+from pytpc.static.static_info import (
     LinkUnit,
     Place,
     StaticInfo,

@@ -9,7 +9,7 @@ from mission_samples import comparison, events, key, ns, static_info
 
 from pytpc.events import Events
 from pytpc.ingest import Recording
-from pytpc.static_info import StaticInfo
+from pytpc.static.static_info import StaticInfo
 from pytpc.stats.runtime import runtime_statistics, runtime_table
 from pytpc.summaries import Summary, SummaryBuilder
 

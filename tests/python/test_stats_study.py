@@ -12,8 +12,8 @@ from mission_samples import comparison, events, key, ns, static_info
 from pytpc.base.errors import InputError
 from pytpc.events import Events
 from pytpc.ingest import Recording, save_recording
-from pytpc.link_unit import Transform
 from pytpc.marks import Mark
+from pytpc.static.link_unit import Transform
 from pytpc.stats.delays import delays_of, error_start
 from pytpc.stats.found import found_in, found_table
 from pytpc.stats.marked import MarksOfTrial, confusion_table, marks_table

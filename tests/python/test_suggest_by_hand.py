@@ -31,7 +31,7 @@ from mission_samples import comparison, events, ns
 
 from pytpc.advice.intervals import words
 from pytpc.advice.suggest import suggest
-from pytpc.static_info import Transform
+from pytpc.static.static_info import Transform
 
 WAYS = {
     "x": (None, 25.0),

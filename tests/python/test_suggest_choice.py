@@ -13,7 +13,7 @@ from pytpc.advice.choice import Choice, Possible, choose, readable
 from pytpc.advice.declared import Declared
 from pytpc.advice.intervals import Interval, words
 from pytpc.advice.suggest import suggest
-from pytpc.static_info import ParameterRead
+from pytpc.static.static_info import ParameterRead
 
 
 def declared(type_="double", low=None, high=None, **changes):

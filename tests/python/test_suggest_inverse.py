@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from pytpc.advice.intervals import Interval, holds, words
 from pytpc.advice.inverse import kept_as, preimage
 from pytpc.advice.units import ParameterUnit, simplest
-from pytpc.arithmetic import evaluate
+from pytpc.static.arithmetic import evaluate
 
 
 # x^2 > 9: beyond 3 on both sides. 1 / x >= 4: above 0 up to 0.25. No square is below 0, min(x, 3)

@@ -9,7 +9,7 @@ from asking import ask
 from mission_samples import comparison, events, ns
 
 from pytpc.advice.suggest import suggest
-from pytpc.static_info import Transform
+from pytpc.static.static_info import Transform
 
 NAN, INF = math.nan, math.inf
 

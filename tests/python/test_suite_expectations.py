@@ -6,7 +6,7 @@ import pytest
 from static_units import comparison, unit
 from suite.expectations import PACKAGE, Entry, Expectation, judge, load, nodes
 
-from pytpc.static_info import Comparison, LinkUnit
+from pytpc.static.static_info import Comparison, LinkUnit
 
 ENTRY = Entry("nodes/a.cpp", 12, "x > limit", "limit", "parameter", ">", 1, None, "")
 

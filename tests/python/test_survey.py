@@ -11,7 +11,7 @@ from survey_samples import AFTER, BAD, build, found, result
 
 from pytpc.base.errors import InputError
 from pytpc.base.tables import statistics
-from pytpc.static_info import LinkUnit
+from pytpc.static.static_info import LinkUnit
 from pytpc.survey import (
     Tree,
     TreePackage,

@@ -14,7 +14,7 @@ from pytpc.base.paths import cmake_file, log_library, plugin
 from pytpc.demo import TreatedMission, run_treatment
 from pytpc.demo_examples import Example
 from pytpc.demo_show import Built
-from pytpc.static_info import StaticInfo
+from pytpc.static.static_info import StaticInfo
 
 FIELDS = ("unit", "file", "line", "parameter", "type", "relation")
 

@@ -15,7 +15,7 @@ from pytpc.build import build_workspace
 from pytpc.cli.main import main
 from pytpc.colcon import BuildError, build_environment
 from pytpc.python_runtime.listed import read_table
-from pytpc.static_info import StaticInfo
+from pytpc.static.static_info import StaticInfo
 
 try:
     for half in (cmake_file, plugin, log_library):

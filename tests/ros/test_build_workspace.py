@@ -16,7 +16,7 @@ from pytpc.base.errors import MissingToolError, WorkspaceError
 from pytpc.base.paths import cmake_file, log_library, plugin
 from pytpc.build import build_workspace, workspace_env
 from pytpc.colcon import BuildError, build_environment
-from pytpc.static_info import collect
+from pytpc.static.static_info import collect
 
 try:
     for half in (cmake_file, plugin, log_library):

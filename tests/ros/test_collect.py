@@ -13,7 +13,7 @@ from pytpc.build import BuildResult, build_workspace
 from pytpc.collecting import collect_sources
 from pytpc.condition_lookup import look_up_conditions
 from pytpc.conditions import libclang
-from pytpc.places import Tpc
+from pytpc.static.places import Tpc
 
 try:
     for half in (cmake_file, plugin, log_library, require_ros, require_tools):

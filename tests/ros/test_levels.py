@@ -8,7 +8,7 @@ from pathlib import Path
 from conftest import build_example
 
 from pytpc.build import BuildResult
-from pytpc.static_info import Comparison, PathStep
+from pytpc.static.static_info import Comparison, PathStep
 
 
 def test_finds_the_same_without_optimisation(built: BuildResult, tmp_path: Path) -> None:

@@ -20,7 +20,7 @@ from pytpc.base.paths import SYSTEM_PATH, cmake_file, log_library, plugin, requi
 from pytpc.cli.main import main
 from pytpc.graph import RosGraph
 from pytpc.ingest import read
-from pytpc.static_info import StaticInfo
+from pytpc.static.static_info import StaticInfo
 
 ROOT = Path(__file__).parents[2]
 LAUNCH = "src/talk/launch/talk.launch"

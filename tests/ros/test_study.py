@@ -18,7 +18,7 @@ from pytpc.demo_examples import WATER_SAMPLER
 from pytpc.demo_show import Built
 from pytpc.ingest.reading import read
 from pytpc.scoring.ranking import unknown_keys
-from pytpc.static_info import StaticInfo
+from pytpc.static.static_info import StaticInfo
 from pytpc.study.changes import DECOYS
 from pytpc.treatment import load_treatment
 from pytpc.values.recording import read_parameters

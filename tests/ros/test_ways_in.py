@@ -19,7 +19,7 @@ from pytpc.build import build_workspace, workspace_env
 from pytpc.colcon import Bases, build_environment
 from pytpc.collecting import collect_sources
 from pytpc.graph import RosGraph
-from pytpc.static_info import LeftOut, StaticInfo
+from pytpc.static.static_info import LeftOut, StaticInfo
 
 try:
     for half in (cmake_file, compiler_wrapper, plugin, log_library):

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from pytpc.base.errors import RunError, TpcError
-from pytpc.static_info import StaticInfo
+from pytpc.static.static_info import StaticInfo
 from suite.build import build_suite
 from suite.expectations import PYTHON_PACKAGE, Verdict, judge, load, nodes
 

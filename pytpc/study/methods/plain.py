@@ -9,8 +9,8 @@ from collections.abc import Sequence
 
 from pytpc.advice.other_values import turned_by_clean_run
 from pytpc.changes import Change
-from pytpc.parameters import same_parameter
 from pytpc.scoring.tables import Tpcs
+from pytpc.static.parameters import same_parameter
 from pytpc.study.case import Case, Verdict
 
 

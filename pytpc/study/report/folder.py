@@ -17,9 +17,9 @@ from pytpc.base.errors import InputError, TpcError
 from pytpc.base.wording import many
 from pytpc.changes import Change, read_changes
 from pytpc.marks import Mark
-from pytpc.parameters import parameter_name, same_parameter
 from pytpc.source_lines import count_lines
-from pytpc.static_info import StaticInfo
+from pytpc.static.parameters import parameter_name, same_parameter
+from pytpc.static.static_info import StaticInfo
 from pytpc.stats.missions import StudyMission, load_missions
 from pytpc.study.changes import CHANGES_FILE
 from pytpc.study.data import MISSIONS, user_marks

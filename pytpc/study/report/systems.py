@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from pytpc.base.tables import Cell, Column, Table
 from pytpc.base.wording import show
-from pytpc.static_info import StaticInfo
+from pytpc.static.static_info import StaticInfo
 from pytpc.stats.runtime import runtime_statistics
 from pytpc.study.report.folder import Flight, System
 from pytpc.treatment import Treatment

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from pytpc.link_unit import Comparison
+from pytpc.static.link_unit import Comparison
 
 DYNAMIC = "<dynamic>"
 """What stands in a name for a part that only the running node knows."""

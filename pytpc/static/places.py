@@ -11,7 +11,7 @@ from dataclasses import asdict, dataclass
 from pathlib import PurePosixPath
 from typing import Any
 
-from pytpc.link_unit import Comparison, LinkUnit
+from pytpc.static.link_unit import Comparison, LinkUnit
 
 
 @dataclass(frozen=True, slots=True)

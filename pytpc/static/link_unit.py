@@ -11,8 +11,8 @@ from dataclasses import dataclass, fields, is_dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from pytpc.arithmetic import Tree, from_json
 from pytpc.base.checked_json import SCHEMA_VERSION, check_unit
+from pytpc.static.arithmetic import Tree, from_json
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -33,7 +33,7 @@ class Transform:
     """How a derived threshold comes from its parameter.
 
     ``affine``: threshold = scale * parameter + offset. ``expression``: ``tree`` says it (see
-    ``pytpc.arithmetic``; None in files of before), and ``scale`` and ``offset`` are None.
+    ``pytpc.static.arithmetic``; None in files of before), and ``scale`` and ``offset`` are None.
     """
 
     kind: Literal["affine", "expression"]

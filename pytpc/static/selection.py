@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from fnmatch import fnmatchcase
 
 from pytpc.base.errors import InputError
-from pytpc.explain import same_file
-from pytpc.places import Tpc
-from pytpc.static_info import StaticInfo
+from pytpc.static.explanations import same_file
+from pytpc.static.places import Tpc
+from pytpc.static.static_info import StaticInfo
 
 _WILD = frozenset("*?[")
 

@@ -26,7 +26,7 @@ from pytpc.base.checked_json import (
 )
 from pytpc.base.errors import InputError, WorkspaceError
 from pytpc.base.paths import MERGED_FILE, OWN_FOLDER
-from pytpc.link_unit import (
+from pytpc.static.link_unit import (
     BlindSpot,
     Comparison,
     Counts,
@@ -41,7 +41,7 @@ from pytpc.link_unit import (
     Tool,
     Transform,
 )
-from pytpc.places import Tpc, merge_places
+from pytpc.static.places import Tpc, merge_places
 
 __all__ = [
     "BlindSpot",

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from pytpc.base.errors import InputError
-from pytpc.static_info import (
+from pytpc.static.static_info import (
     BlindSpot,
     Comparison,
     LinkUnit,

@@ -1,0 +1,1 @@
+"""What the analysis found: link units, places, parameters, arithmetic, explanations."""
