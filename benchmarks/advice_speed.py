@@ -20,9 +20,9 @@ from figures import figure
 from mission_samples import comparison, key, static_info
 
 from pytpc.advice.counterfactual import MOST_VALUES, sweep, what_if
-from pytpc.events import Events
-from pytpc.ingest.recording import Recording
-from pytpc.marks import Mark
+from pytpc.recording.events import Events
+from pytpc.recording.marks import Mark
+from pytpc.recording.mission import Recording
 from pytpc.static.static_info import StaticInfo
 
 TOPIC = "score-speed"

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
-from pytpc.events import Events
+from pytpc.recording.events import Events
 
 WINDOW_NS = 12 * 10**9
 

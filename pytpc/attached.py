@@ -11,7 +11,6 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from pytpc.base.errors import MissingToolError, RunError
-from pytpc.ingest.recording import RUN_FILE
 from pytpc.mission import (
     BAG_FILE,
     DEFAULT_TOPICS,
@@ -30,6 +29,7 @@ from pytpc.recorder import (
     drain,
     graph_has_sim_time,
 )
+from pytpc.recording.mission import RUN_FILE
 from pytpc.tcpros import RawSubscriber, own_host
 from pytpc.values.origins import START_FILE
 from pytpc.values.recording import MISSION_PATIENCE_S, NO_LAUNCH, save_origins, try_trace

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from pytpc.base.wording import many
-from pytpc.ingest.recording import Recording
+from pytpc.recording.mission import Recording
 from pytpc.scoring.ranking import unknown_keys
 from pytpc.static.static_info import StaticInfo
 

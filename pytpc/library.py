@@ -28,9 +28,9 @@ from pytpc.base.wording import Number
 from pytpc.changes import Change
 from pytpc.ingest import Recording
 from pytpc.ingest import read as read_recording
-from pytpc.marks import Mark, MarkType
 from pytpc.notebook import StudyTable, Table
 from pytpc.notebook_answers import Advices, Diagnosed
+from pytpc.recording.marks import Mark, MarkType
 from pytpc.report.html import MissionReport
 from pytpc.report.html import write_report as write_page
 from pytpc.scoring.curves import STEP_S, RankCurves, rank_curves
@@ -153,7 +153,7 @@ def load_static(source: StaticInfo | Source) -> StaticInfo:
 def read(source: Recording | Source) -> Recording:
     """A recorded mission: a bag of ROS 1 or 2, a file or folder of any kind that ``convert`` takes.
 
-    Its ``events`` are columns of numpy (`pytpc.events.Events`); ``events.to_arrow().to_pandas()``
+    Its ``events`` are columns of numpy (`pytpc.recording.events.Events`); ``events.to_arrow().to_pandas()``
     makes a data frame of them.
 
     Raises:

@@ -23,14 +23,14 @@ from pytpc.base.atomic import write_atomic
 from pytpc.base.errors import RunError
 from pytpc.base.paths import project_root
 from pytpc.graph import GraphProcess, RosGraph
-from pytpc.ingest.recording import (
+from pytpc.recording.marks import marks_beside, topic_of_marks
+from pytpc.recording.mission import (
     EVENTS_FILE,
     MARKS_FILE,
     REPORTS_FOLDER,
     RUN_FILE,
     SUMMARIES_FILE,
 )
-from pytpc.marks import marks_beside, topic_of_marks
 from pytpc.values.origins import ORIGINS_FILE, START_FILE
 from pytpc.values.recording import save_origins, try_trace
 from pytpc.values.trace import Trace, name_on_server

@@ -27,7 +27,7 @@ from rosbags.rosbag1 import Writer
 
 from pytpc.base.errors import RunError
 from pytpc.ingest.rosout_line import Batch, parse_batch
-from pytpc.marks import MarkMessages
+from pytpc.recording.marks import MarkMessages
 from pytpc.tcpros import RawSubscriber, Source
 
 REPORT = b"threshold_information:"

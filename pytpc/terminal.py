@@ -15,8 +15,8 @@ from pytpc.advice.blamed import BlamedAdvice
 from pytpc.advice.declared import Declared, declared_for
 from pytpc.advice.suggest import Suggestion, suggest
 from pytpc.base.wording import exact, percent, plain, show
-from pytpc.ingest.recording import Recording
-from pytpc.marks import MarkType
+from pytpc.recording.marks import MarkType
+from pytpc.recording.mission import Recording
 from pytpc.scoring.ranking import MarkRanking, Suspect
 from pytpc.scoring.scores import WINDOW_S
 from pytpc.static.static_info import Comparison, StaticInfo

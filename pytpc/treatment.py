@@ -14,7 +14,7 @@ from typing import Literal, get_args
 from pytpc.base.atomic import write_atomic
 from pytpc.base.checked_json import parse_json
 from pytpc.base.errors import InputError
-from pytpc.marks import MarkType
+from pytpc.recording.marks import MarkType
 
 TREATMENT_FILE = "treatment.json"
 OVERLAY_FILE = "params.yaml"

@@ -9,8 +9,8 @@ from pytpc.advice.counterfactual import WhatIf, what_if
 from pytpc.advice.declared import Declared, declared_for
 from pytpc.advice.remedy import Remedy
 from pytpc.advice.suggest import Suggestion, suggest
-from pytpc.ingest.recording import Recording
-from pytpc.marks import Mark
+from pytpc.recording.marks import Mark
+from pytpc.recording.mission import Recording
 from pytpc.scoring.ranking import MarkRanking, Suspect
 from pytpc.scoring.scores import WINDOW_S
 from pytpc.static.static_info import StaticInfo

@@ -15,7 +15,7 @@ from pytpc.advice.joining import JoinedAdvice, MarkGroup
 from pytpc.advice.remedy import Remedy
 from pytpc.advice.suggest import Suggestion
 from pytpc.base.wording import Number
-from pytpc.marks import Mark
+from pytpc.recording.marks import Mark
 
 Json = dict[str, object]
 

@@ -13,9 +13,9 @@ import numpy as np
 
 from pytpc.advice.diagnosing import Changed, diagnose_beside
 from pytpc.base.wording import many, percent
-from pytpc.events import Events
-from pytpc.ingest.recording import Recording
-from pytpc.marks import Mark, MarkType
+from pytpc.recording.events import Events
+from pytpc.recording.marks import Mark, MarkType
+from pytpc.recording.mission import Recording
 from pytpc.scoring.diagnosis import Decisive, Diagnosis
 from pytpc.scoring.evidence import Evaluation, Log
 from pytpc.scoring.ranking import Types, outside

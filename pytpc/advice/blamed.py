@@ -12,7 +12,7 @@ from pytpc.advice.declared import Declared, declared_for
 from pytpc.advice.diagnosing import Changed
 from pytpc.advice.known import Source
 from pytpc.advice.remedy import EVERY_SOURCE, Remedy, remedy, restored
-from pytpc.ingest.recording import Recording
+from pytpc.recording.mission import Recording
 from pytpc.scoring.scores import WINDOW_S
 from pytpc.static.parameters import same_parameter
 from pytpc.static.static_info import StaticInfo

@@ -12,8 +12,8 @@ import numpy.typing as npt
 from pytpc.advice.replay import Track, tracks_of
 from pytpc.base.columns import Bools, Floats, Int64s
 from pytpc.base.wording import Number, exact, many
-from pytpc.ingest.recording import Recording
-from pytpc.marks import Mark, MarkType
+from pytpc.recording.marks import Mark, MarkType
+from pytpc.recording.mission import Recording
 from pytpc.scoring.scores import WINDOW_S
 from pytpc.static.static_info import StaticInfo
 

@@ -12,8 +12,8 @@ import struct
 from pathlib import Path
 from typing import Any
 
-from pytpc.advice.declaration import Declared, make_declared
 from pytpc.ingest.bag_chunks import MAGIC, BrokenBagError, messages, read_index
+from pytpc.recording.declaration import Declared, make_declared
 
 _TYPE = "dynamic_reconfigure/msg/ConfigDescription"
 _TOPIC = "/parameter_descriptions"

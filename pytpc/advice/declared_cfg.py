@@ -15,7 +15,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from pytpc.advice.declaration import Declared, make_declared
+from pytpc.recording.declaration import Declared, make_declared
 
 _TYPES = {"str_t": "str", "bool_t": "bool", "int_t": "int", "double_t": "double"}
 _ADD = ("name", "paramtype", "level", "description", "default", "min", "max", "edit_method")

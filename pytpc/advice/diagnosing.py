@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from pytpc.advice.other_values import before_changes, diagnose_replayed, of_clean_run
-from pytpc.ingest.recording import Recording
+from pytpc.recording.mission import Recording
 from pytpc.scoring.diagnosis import Diagnosis, diagnose
 from pytpc.scoring.diagnosis_priors import of_changes, of_reference
 from pytpc.scoring.tables import Tpcs

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from pytpc.base.columns import Floats, Int64s
-from pytpc.events import Events
-from pytpc.marks import MarkType
-from pytpc.summaries import Summaries
+from pytpc.recording.events import Events
+from pytpc.recording.marks import MarkType
+from pytpc.recording.summaries import Summaries
 
 
 class NoneBecauseError(Exception):

@@ -10,8 +10,8 @@ from pytpc.advice.counterfactual import WhatIf, what_if
 from pytpc.advice.declared import Declared
 from pytpc.advice.intervals import holds
 from pytpc.advice.remedy import Remedy, remedy
-from pytpc.ingest.recording import Recording
-from pytpc.marks import Mark, MarkType
+from pytpc.recording.marks import Mark, MarkType
+from pytpc.recording.mission import Recording
 from pytpc.scoring.ranking import MarkRanking
 from pytpc.scoring.scores import WINDOW_S
 from pytpc.static.static_info import StaticInfo

@@ -13,7 +13,7 @@ from pytpc.advice.replay import tracks_of
 from pytpc.advice.units import NoUnitError
 from pytpc.base.errors import InputError
 from pytpc.base.wording import Number
-from pytpc.ingest.recording import Recording
+from pytpc.recording.mission import Recording
 from pytpc.static.static_info import Default, StaticInfo
 
 Source = Literal["reference", "default", "declared"]

@@ -33,7 +33,7 @@ from pytpc.advice.case import EQUALITIES
 from pytpc.advice.replay import Track
 from pytpc.advice.thresholds import outcomes, thresholds_for
 from pytpc.base.columns import Bools, Floats, Int64s
-from pytpc.marks import MarkType
+from pytpc.recording.marks import MarkType
 
 Ground = Literal["steady", "ramps", "peaks", "growth"]
 _SIGMAS = 4.0

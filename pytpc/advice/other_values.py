@@ -31,8 +31,8 @@ from pytpc.advice.inverse import kept_as
 from pytpc.advice.thresholds import outcomes
 from pytpc.advice.units import NoUnitError, is_text, read_type, tree_of
 from pytpc.base.columns import Bools, Floats
-from pytpc.events import Events
-from pytpc.ingest.recording import Recording
+from pytpc.recording.events import Events
+from pytpc.recording.mission import Recording
 from pytpc.scoring.diagnosis import Diagnosis, diagnose, softmax, type_odds
 from pytpc.scoring.diagnosis_evidence import SHARE, Marked, Wait, any_time, caused, marked
 from pytpc.scoring.diagnosis_priors import thresholds_of

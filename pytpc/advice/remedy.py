@@ -39,8 +39,8 @@ from pytpc.advice.thresholds import thresholds_for
 from pytpc.advice.units import NoUnitError
 from pytpc.base.columns import Floats
 from pytpc.base.wording import Number, exact, many, show
-from pytpc.ingest.recording import Recording
-from pytpc.marks import MARK_TYPES, Mark, MarkType
+from pytpc.recording.marks import MARK_TYPES, Mark, MarkType
+from pytpc.recording.mission import Recording
 from pytpc.scoring.scores import WINDOW_S
 from pytpc.static.static_info import StaticInfo
 

@@ -17,11 +17,11 @@ from pytpc.advice.thresholds import outcomes
 from pytpc.advice.units import NoUnitError, is_text, read_type, tree_of
 from pytpc.base.columns import Bools, Floats, Int64s
 from pytpc.base.errors import InputError
-from pytpc.events import Events
+from pytpc.recording.events import Events
+from pytpc.recording.summaries import Summaries
 from pytpc.static.arithmetic import Tree, evaluate
 from pytpc.static.parameters import parameter_name, same_parameter
 from pytpc.static.static_info import Comparison, StaticInfo
-from pytpc.summaries import Summaries
 
 _FEW = 3
 _SLACK_NS = 100_000_000

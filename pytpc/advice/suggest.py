@@ -33,13 +33,13 @@ from pytpc.advice.intervals import Interval, Intervals, gaps, holds, intersectio
 from pytpc.advice.thresholds import outcomes, thresholds_for, thresholds_for_one
 from pytpc.advice.units import NoUnitError
 from pytpc.base.wording import Number, exact, show
-from pytpc.events import Bools, Events, Floats
-from pytpc.ingest.recording import Recording
-from pytpc.marks import MarkType
+from pytpc.recording.events import Bools, Events, Floats
+from pytpc.recording.marks import MarkType
+from pytpc.recording.mission import Recording
+from pytpc.recording.summaries import Summaries
 from pytpc.scoring.scores import WINDOW_S
 from pytpc.static.parameters import parameter_name
 from pytpc.static.static_info import Comparison, LinkUnit, StaticInfo
-from pytpc.summaries import Summaries
 
 Direction = Literal["raise", "lower", "switch"]
 

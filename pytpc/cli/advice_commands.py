@@ -34,7 +34,7 @@ from pytpc.cli.options import (
 )
 from pytpc.cli.sources import static_of
 from pytpc.ingest import Recording
-from pytpc.marks import MARK_TYPES, MarkType
+from pytpc.recording.marks import MARK_TYPES, MarkType
 from pytpc.scoring.ranking import MarkRanking, Types, rank_marks
 from pytpc.static.parameters import parameter_name, same_parameter
 from pytpc.static.static_info import Comparison, StaticInfo

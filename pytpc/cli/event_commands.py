@@ -16,7 +16,7 @@ from pytpc.ingest import Recording
 from pytpc.ingest.duplicates import TOLERANCE_NS
 from pytpc.ingest.outcome import Outcome
 from pytpc.ingest.reading import opened
-from pytpc.marks import MARK_TYPES
+from pytpc.recording.marks import MARK_TYPES
 
 
 @click.command("convert")

@@ -18,10 +18,10 @@ from pytpc.build import installed, workspace_env
 from pytpc.colcon import Bases
 from pytpc.complaints import complaints
 from pytpc.ingest.reading import opened
-from pytpc.ingest.recording import REPORTS_FOLDER
 from pytpc.mission import DEFAULT_TOPICS, MissionRun, Progress, run_mission
 from pytpc.python_env import mission_env
 from pytpc.python_runtime.config import NAMES
+from pytpc.recording.mission import REPORTS_FOLDER
 
 _PATH = click.Path(path_type=Path)
 _SILENT_S = 5.0

@@ -33,9 +33,17 @@ from pytpc.cli.options import (
 from pytpc.cli.rank_together import TOGETHER, Judge, Score
 from pytpc.cli.sources import static_of
 from pytpc.ingest import Recording
-from pytpc.marking.file import MarksFile
-from pytpc.marking.session import Change
-from pytpc.marks import MARK_TYPES, Mark, MarkType, joined, marks_beside, marks_text, read_marks
+from pytpc.recording.marking_session import Change
+from pytpc.recording.marks import (
+    MARK_TYPES,
+    Mark,
+    MarkType,
+    joined,
+    marks_beside,
+    marks_text,
+    read_marks,
+)
+from pytpc.recording.marks_file import MarksFile
 from pytpc.scoring.clocks import two_clocks
 from pytpc.scoring.ranking import MarkRanking, Types, rank_marks
 from pytpc.static.static_info import StaticInfo

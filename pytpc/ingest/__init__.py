@@ -1,7 +1,7 @@
 """Recordings of a mission become events, summaries and marks: ``read``, ``load_recording``."""
 
 from pytpc.ingest.reading import read, read_bag
-from pytpc.ingest.recording import (
+from pytpc.recording.mission import (
     Dropped,
     MalformedRecord,
     Recording,

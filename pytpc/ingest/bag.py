@@ -12,7 +12,7 @@ from pytpc.ingest.bag_chunks import BagConnection, BagIndex, BrokenBagError, mes
 from pytpc.ingest.bag_damage import describe_damage
 from pytpc.ingest.gathering import Gathering, Progress
 from pytpc.ingest.messages import REPORTS, ROSOUT, ROSOUT_AGG, Decoders, Messages
-from pytpc.marks import MarkMessages
+from pytpc.recording.marks import MarkMessages
 
 _LOG = "rosgraph_msgs/msg/Log"
 _STRING = "std_msgs/msg/String"

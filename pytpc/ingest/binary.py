@@ -34,8 +34,8 @@ from pytpc.ingest.binary_system import (
     written_summaries,
 )
 from pytpc.ingest.gathering import Channel, Gathering, Progress, Reports
-from pytpc.ingest.recording import Dropped
 from pytpc.ingest.spool import Rows
+from pytpc.recording.mission import Dropped
 
 Bytes = npt.NDArray[np.uint8]
 

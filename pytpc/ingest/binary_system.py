@@ -13,8 +13,8 @@ from pytpc.base.columns import Bools, Int32s
 from pytpc.ingest import binary_layout as layout
 from pytpc.ingest.binary_clock import Clock
 from pytpc.ingest.gathering import SUMMARY_ROW, Gathering
-from pytpc.ingest.recording import Dropped
 from pytpc.ingest.spool import Rows
+from pytpc.recording.mission import Dropped
 
 _MOST_SITES = 1 << 22
 _LONGEST_KEY = 1 << 12

@@ -9,14 +9,14 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from pytpc import events as event_table
-from pytpc import summaries as summary_table
 from pytpc.base import columns as tables
 from pytpc.base.errors import InputError
-from pytpc.events import Events
 from pytpc.ingest.gathering import SUMMARY_ROW, Gathering, Progress, Reports
-from pytpc.ingest.recording import EVENTS_FILE, SUMMARIES_FILE, read_marks
-from pytpc.summaries import Summaries
+from pytpc.recording import events as event_table
+from pytpc.recording import summaries as summary_table
+from pytpc.recording.events import Events
+from pytpc.recording.mission import EVENTS_FILE, SUMMARIES_FILE, read_marks
+from pytpc.recording.summaries import Summaries
 
 _ROWS = 1 << 18
 

@@ -15,10 +15,10 @@ from typing import Literal
 import numpy as np
 
 from pytpc.base.columns import Bools, Floats, Int32s, Int64s
-from pytpc.ingest.recording import Dropped, MalformedRecord
 from pytpc.ingest.spool import RUN_ROWS, Rows, Spool
-from pytpc.marks import Mark, MarkMessages
-from pytpc.summaries import Summary
+from pytpc.recording.marks import Mark, MarkMessages
+from pytpc.recording.mission import Dropped, MalformedRecord
+from pytpc.recording.summaries import Summary
 
 Progress = Callable[[int, int], None]
 Way = Literal["log", "aggregate", "topic", "batch", "file", "text", "events"]

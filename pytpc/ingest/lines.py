@@ -7,11 +7,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from pytpc.events import Report
 from pytpc.ingest.bulk_lines import LINES, read_lines
 from pytpc.ingest.gathering import Channel, Gathering, Reports
-from pytpc.ingest.recording import Dropped
 from pytpc.ingest.rosout_line import PREFIX, Batch, Drop, Malformed, parse_report, parse_stamped
+from pytpc.recording.events import Report
+from pytpc.recording.mission import Dropped
 
 
 class Lines:

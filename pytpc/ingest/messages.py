@@ -16,7 +16,6 @@ from pytpc.base.wording import many
 from pytpc.ingest.bag_chunks import Messages as Chunk
 from pytpc.ingest.gathering import Channel, Gathering, Way
 from pytpc.ingest.lines import Batches, Lines
-from pytpc.ingest.recording import Dropped
 from pytpc.ingest.ros1 import Log, decode_logs
 from pytpc.ingest.rosout_line import (
     DROPPED_PREFIX,
@@ -28,8 +27,9 @@ from pytpc.ingest.rosout_line import (
     parse_other,
     parse_stamped_other,
 )
-from pytpc.marks import MarkMessages
-from pytpc.summaries import Summary
+from pytpc.recording.marks import MarkMessages
+from pytpc.recording.mission import Dropped
+from pytpc.recording.summaries import Summary
 
 ROSOUT = "/rosout"
 ROSOUT_AGG = "/rosout_agg"

@@ -15,17 +15,17 @@ import numpy.typing as npt
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from pytpc import events as event_table
-from pytpc import summaries as summary_table
 from pytpc.base.columns import WORDS, recode, sorted_words
 from pytpc.base.errors import TpcError
-from pytpc.events import Events
 from pytpc.ingest.duplicates import APART_NS, TOLERANCE_NS, Once, clock_notes
 from pytpc.ingest.gathering import SUMMARY_ROW, Gathering
-from pytpc.ingest.recording import EVENTS_FILE, SUMMARIES_FILE, Recording, write_marks
 from pytpc.ingest.spool import Rows
-from pytpc.marks import Mark, joined
-from pytpc.summaries import Summaries
+from pytpc.recording import events as event_table
+from pytpc.recording import summaries as summary_table
+from pytpc.recording.events import Events
+from pytpc.recording.marks import Mark, joined
+from pytpc.recording.mission import EVENTS_FILE, SUMMARIES_FILE, Recording, write_marks
+from pytpc.recording.summaries import Summaries
 
 Told = Callable[[int, int], None]
 

@@ -20,7 +20,10 @@ from pytpc.ingest.duplicates import TOLERANCE_NS
 from pytpc.ingest.folder import read_folder_into
 from pytpc.ingest.gathering import Gathering, Progress
 from pytpc.ingest.outcome import Outcome
-from pytpc.ingest.recording import (
+from pytpc.ingest.ros2_bag import MCAP_MAGIC, SQLITE_MAGIC, read_ros2_into
+from pytpc.ingest.text import read_text_into
+from pytpc.recording.marks import Mark, joined, marks_beside, read_marks
+from pytpc.recording.mission import (
     EVENTS_FILE,
     MARKS_FILE,
     REPORTS_FOLDER,
@@ -28,9 +31,6 @@ from pytpc.ingest.recording import (
     Recording,
     load_recording,
 )
-from pytpc.ingest.ros2_bag import MCAP_MAGIC, SQLITE_MAGIC, read_ros2_into
-from pytpc.ingest.text import read_text_into
-from pytpc.marks import Mark, joined, marks_beside, read_marks
 
 Reader = Callable[[Path, Gathering, Progress | None], None]
 ROS2_FILE = "metadata.yaml"

@@ -19,7 +19,7 @@ from pytpc.base.errors import InputError
 from pytpc.ingest import ros2
 from pytpc.ingest.gathering import Gathering, Progress
 from pytpc.ingest.messages import REPORTS, ROSOUT, Decoders, Messages
-from pytpc.marks import MarkMessages
+from pytpc.recording.marks import MarkMessages
 
 MCAP_MAGIC = b"\x89MCAP0\r\n"
 SQLITE_MAGIC = b"SQLite format 3\0"

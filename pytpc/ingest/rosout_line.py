@@ -14,8 +14,8 @@ import re
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from pytpc.events import Report
-from pytpc.summaries import Summary
+from pytpc.recording.events import Report
+from pytpc.recording.summaries import Summary
 
 PREFIX = "threshold_information:"
 SUMMARY_PREFIX = "threshold_summary:"

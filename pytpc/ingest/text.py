@@ -26,7 +26,7 @@ from pytpc.ingest.rosout_line import (
     parse_other,
     parse_stamped_other,
 )
-from pytpc.summaries import Summary
+from pytpc.recording.summaries import Summary
 
 _BLOCK = 1 << 20
 _LONGEST = 1 << 16

@@ -20,8 +20,8 @@ from pytpc.marking.publisher import (
     encode_string,
     encode_time,
 )
-from pytpc.marking.session import Change, View
-from pytpc.marks import (
+from pytpc.recording.marking_session import Change, View
+from pytpc.recording.marks import (
     MARK_TYPES,
     NOTE_TOPIC,
     UNDO_TOPIC,

@@ -17,14 +17,14 @@ import numpy as np
 from rich.text import Text
 
 from pytpc.base.errors import RunError
-from pytpc.ingest.recording import Recording
 from pytpc.marking.reports import Item, Reports
-from pytpc.marking.session import Change, Session, View
 from pytpc.marking.terminal import Mission
 from pytpc.marking.watch_screen import LAYOUTS, Options, Panel, Status, watch_screen
 from pytpc.marking.watching import KeptRankings, Look, Seen, Watching
+from pytpc.recording.marking_session import Change, Session, View
+from pytpc.recording.mission import Recording
+from pytpc.recording.summaries import Summary
 from pytpc.relay import ROSOUT, TOPIC
-from pytpc.summaries import Summary
 from pytpc.tcpros import RawSubscriber, own_host
 
 _LOOK_S = 1.0

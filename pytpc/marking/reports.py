@@ -20,8 +20,8 @@ from pytpc.ingest.rosout_line import (
 )
 from pytpc.marking.watching import Seen
 from pytpc.recorder import BatchCounter, LossCounter
+from pytpc.recording.summaries import Summary
 from pytpc.relay import ROSOUT, line_of
-from pytpc.summaries import Summary
 from pytpc.tcpros import Source
 
 Item = Seen | Summary

@@ -19,8 +19,7 @@ from rich.text import Text
 
 from pytpc.base.errors import RunError
 from pytpc.base.signals import signals_end
-from pytpc.marking.file import MarksFile
-from pytpc.marking.session import (
+from pytpc.recording.marking_session import (
     PLAYER_HELP,
     Change,
     Player,
@@ -30,6 +29,7 @@ from pytpc.marking.session import (
     press,
     screen,
 )
+from pytpc.recording.marks_file import MarksFile
 
 _TURN_S = 0.2
 _ESCAPE_S = 0.05

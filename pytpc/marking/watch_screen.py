@@ -14,9 +14,9 @@ from rich.cells import cell_len
 from rich.text import Text
 
 from pytpc.base.wording import exact, many, plain
-from pytpc.marking.session import Session, View, clock_text, cut, folded
 from pytpc.marking.watching import KeptRankings, Look, Part, Row
-from pytpc.marks import Mark, MarkType
+from pytpc.recording.marking_session import Session, View, clock_text, cut, folded
+from pytpc.recording.marks import Mark, MarkType
 
 Layout = tuple[MarkType | None, ...]
 LAYOUTS: tuple[Layout, ...] = (("I", "II"), (None,), ("I",), ("II",))
@@ -82,7 +82,7 @@ class Status(NamedTuple):
 
 
 class Panel(NamedTuple):
-    """What is watched, beside the session and the view of `pytpc.marking.session`."""
+    """What is watched, beside the session and the view of `pytpc.recording.marking_session`."""
 
     look: Look
     kept: KeptRankings

@@ -13,13 +13,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from pytpc.marking.session import Change
-from pytpc.marks import Mark, MarkType
+from pytpc.recording.marking_session import Change
+from pytpc.recording.marks import Mark, MarkType
+from pytpc.recording.summaries import Summary
 from pytpc.scoring.live import LiveRanking
 from pytpc.scoring.ranking import MarkRanking, Suspect
 from pytpc.scoring.scores import WINDOW_S
 from pytpc.static.static_info import StaticInfo
-from pytpc.summaries import Summary
 
 BINS = 8
 """So many parts of the window are shown of each comparison, the last of them now."""

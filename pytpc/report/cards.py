@@ -14,7 +14,7 @@ from pytpc.advice.declared import Declared
 from pytpc.advice.remedy import Remedy
 from pytpc.advice.suggest import Suggestion
 from pytpc.base.wording import exact, show
-from pytpc.marks import Mark
+from pytpc.recording.marks import Mark
 from pytpc.report.mission import MissionReport
 from pytpc.report.payload import finite, series_of
 from pytpc.report.plots import EvidenceStyle, evidence_svg, span_of

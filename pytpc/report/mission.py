@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from pytpc.advice.declared import Declared
-from pytpc.ingest.recording import Recording
+from pytpc.recording.mission import Recording
 from pytpc.scoring.ranking import MarkRanking, Types
 from pytpc.scoring.scores import WINDOW_S
 from pytpc.static.parameters import same_parameter

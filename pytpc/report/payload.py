@@ -16,8 +16,8 @@ import numpy.typing as npt
 from markupsafe import Markup
 
 from pytpc.base.columns import Floats
-from pytpc.ingest.recording import Recording
-from pytpc.marks import MarkType
+from pytpc.recording.marks import MarkType
+from pytpc.recording.mission import Recording
 from pytpc.report.environment import seen
 from pytpc.report.series import gap_after, kept_of, lane, rows_of, runs, thin
 from pytpc.scoring.curves import RankCurves

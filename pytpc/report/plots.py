@@ -24,8 +24,8 @@ from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from pytpc.events import Floats
-from pytpc.marks import MarkType
+from pytpc.recording.events import Floats
+from pytpc.recording.marks import MarkType
 from pytpc.report.environment import seen
 from pytpc.report.series import Evidence
 

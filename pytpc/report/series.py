@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from pytpc.events import Bools, Events, Floats, Int64s
-from pytpc.summaries import Summaries
+from pytpc.recording.events import Bools, Events, Floats, Int64s
+from pytpc.recording.summaries import Summaries
 
 POINTS = 1200
 """The most points of a line; a plot is about 600 pixels wide."""

@@ -15,7 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from pytpc.base.columns import Floats
-from pytpc.marks import MarkType
+from pytpc.recording.marks import MarkType
 from pytpc.report.mission import MissionReport
 from pytpc.report.payload import curves_of, lane_of, lanes_of
 from pytpc.report.plots import COLOUR, MARK_LINES, drawing, short, svg_of

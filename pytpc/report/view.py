@@ -17,7 +17,7 @@ from pytpc.advice.advise import Advice, advise
 from pytpc.advice.joining import with_remedies
 from pytpc.base.wording import many
 from pytpc.complaints import complaints
-from pytpc.marks import MarkType
+from pytpc.recording.marks import MarkType
 from pytpc.report.answer import AnswerView, answers, spoken
 from pytpc.report.cards import (
     CardView,

@@ -23,7 +23,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from pytpc.events import Bools, Events, Floats, Int64s
+from pytpc.recording.events import Bools, Events, Floats, Int64s
+from pytpc.recording.summaries import Summaries
 from pytpc.scoring.scores import (
     EQUAL,
     NONE,
@@ -35,7 +36,6 @@ from pytpc.scoring.scores import (
     count_within,
     type2,
 )
-from pytpc.summaries import Summaries
 
 # How far the time of a report may be outside of the summary that has it: a report on /rosout has
 # the time at which it was written, and the two may come by different clocks. Under ``edges`` a

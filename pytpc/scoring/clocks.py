@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from pytpc.ingest.recording import Recording
+from pytpc.recording.mission import Recording
 from pytpc.scoring.ranking import APART_NS
 
 _NAMED = 3

@@ -8,7 +8,7 @@ import numpy as np
 
 from pytpc.base.columns import Floats, Int64s
 from pytpc.base.errors import TpcError
-from pytpc.ingest.recording import Recording
+from pytpc.recording.mission import Recording
 from pytpc.scoring.scores import WINDOW_S
 from pytpc.scoring.tables import Tpcs, parameter_tables, tpc_scores
 from pytpc.static.static_info import StaticInfo

@@ -25,8 +25,8 @@ from typing import NamedTuple
 import numpy as np
 
 from pytpc.base.columns import Floats, Int64s
-from pytpc.ingest.recording import Recording
-from pytpc.marks import Mark
+from pytpc.recording.marks import Mark
+from pytpc.recording.mission import Recording
 from pytpc.scoring.diagnosis_evidence import SHARE, Evidence, evidence, marked
 from pytpc.scoring.diagnosis_streams import Streams
 from pytpc.scoring.tables import Tpcs, parameter_tables, tpc_scores

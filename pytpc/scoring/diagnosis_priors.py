@@ -12,7 +12,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from pytpc.base.columns import Floats
-from pytpc.events import Events
+from pytpc.recording.events import Events
 from pytpc.scoring.tables import Tpcs
 from pytpc.static.parameters import same_parameter
 

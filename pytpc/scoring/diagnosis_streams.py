@@ -13,7 +13,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from pytpc.base.columns import Bools, Floats, Int64s
-from pytpc.events import Events
+from pytpc.recording.events import Events
 from pytpc.scoring.tables import Tpcs
 
 PAUSE_S = 2.0

@@ -8,8 +8,8 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from pytpc.events import Bools, Events, Int64s
-from pytpc.summaries import Summaries
+from pytpc.recording.events import Bools, Events, Int64s
+from pytpc.recording.summaries import Summaries
 
 
 class Evaluation(NamedTuple):

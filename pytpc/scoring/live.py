@@ -24,15 +24,15 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from pytpc.events import Events, Floats
-from pytpc.marks import Mark
+from pytpc.recording.events import Events, Floats
+from pytpc.recording.marks import Mark
+from pytpc.recording.summaries import Summaries, Summary, SummaryBuilder
 from pytpc.scoring.evidence import Evaluation
 from pytpc.scoring.ranking import MarkRanking, Ranker, Types
 from pytpc.scoring.scores import NEVER, WINDOW_S, Before, not_negative
 from pytpc.scoring.streams import AGAIN, Rows, Stream, SummaryStream, end_of
 from pytpc.scoring.tables import Tpcs, TpcScores, parameter_tables, tpc_scores
 from pytpc.static.static_info import StaticInfo
-from pytpc.summaries import Summaries, Summary, SummaryBuilder
 
 LATE_S = 10.0
 """How much later than a newer one of its stream a report may come; how far back a mark may lie."""
@@ -105,7 +105,7 @@ class LiveScores:
         thresh: float,
         res: bool,
     ) -> None:
-        """Take in a report, as `pytpc.events.EventBuilder.add` does."""
+        """Take in a report, as `pytpc.recording.events.EventBuilder.add` does."""
         streams = self._streams.get(key)
         if streams is None:
             self._count_unknown(key)

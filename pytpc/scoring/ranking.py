@@ -28,9 +28,9 @@ from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 
-from pytpc.events import Events
-from pytpc.ingest.recording import Recording
-from pytpc.marks import Mark, MarkType
+from pytpc.recording.events import Events
+from pytpc.recording.marks import Mark, MarkType
+from pytpc.recording.mission import Recording
 from pytpc.scoring.evidence import Evaluation, Evidence, Log
 from pytpc.scoring.scores import NONE, WINDOW_S, combined
 from pytpc.scoring.tables import Tables, Tpcs, parameter_tables, tpc_scores

@@ -27,7 +27,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from pytpc.events import Bools, Events, Floats, Int64s
+from pytpc.recording.events import Bools, Events, Floats, Int64s
 
 NONE = 9999.9
 """The score of a TPC that has none."""

@@ -9,9 +9,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from pytpc.events import Bools, Floats, Int64s
+from pytpc.recording.events import Bools, Floats, Int64s
+from pytpc.recording.summaries import Summary
 from pytpc.scoring.scores import NEVER
-from pytpc.summaries import Summary
 
 AGAIN = 0.25
 """What may be forgotten is looked for when this part of what is kept has come anew."""

@@ -9,13 +9,13 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from pytpc.events import Events, Floats, Int64s
-from pytpc.marks import MarkType
+from pytpc.recording.events import Events, Floats, Int64s
+from pytpc.recording.marks import MarkType
+from pytpc.recording.summaries import Summaries
 from pytpc.scoring.bounds import type2_bounds
 from pytpc.scoring.scores import WINDOW_S, Before, by_parameter, combined, ranks, type1, type2
 from pytpc.static.parameters import parameter_name
 from pytpc.static.static_info import StaticInfo
-from pytpc.summaries import Summaries
 
 
 @dataclass(frozen=True)

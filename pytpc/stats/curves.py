@@ -19,8 +19,8 @@ from matplotlib.ticker import MaxNLocator
 
 from pytpc.base.columns import Bools, Floats
 from pytpc.base.wording import many
-from pytpc.ingest.recording import Recording
-from pytpc.marks import MARK_TYPES, Mark
+from pytpc.recording.marks import MARK_TYPES, Mark
+from pytpc.recording.mission import Recording
 from pytpc.scoring.curves import RankCurves
 from pytpc.scoring.scores import NONE
 from pytpc.static.parameters import same_parameter

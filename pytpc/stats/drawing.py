@@ -22,7 +22,7 @@ from PIL import Image
 
 from pytpc.base.atomic import write_atomic
 from pytpc.base.wording import plain
-from pytpc.marks import Mark, MarkType
+from pytpc.recording.marks import Mark, MarkType
 
 FORMATS = ("png", "svg", "pdf")
 

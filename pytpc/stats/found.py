@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from pytpc.base.tables import Cell, Column, Table, statistics
-from pytpc.marks import MARK_TYPES, MarkType
+from pytpc.recording.marks import MARK_TYPES, MarkType
 from pytpc.scoring.ranking import rank_marks
 from pytpc.scoring.scores import NONE, WINDOW_S
 from pytpc.static.static_info import StaticInfo

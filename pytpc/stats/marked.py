@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from pytpc.base.tables import Cell, Column, Table, statistics
 from pytpc.base.wording import many
-from pytpc.marks import MARK_TYPES, MarkType
+from pytpc.recording.marks import MARK_TYPES, MarkType
 from pytpc.stats.missions import Trial, user_of
 from pytpc.stats.runtime import SUMMARY
 from pytpc.treatment import TreatmentType

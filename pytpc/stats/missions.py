@@ -15,8 +15,8 @@ from typing import Any
 from pytpc.base.checked_json import parse_json
 from pytpc.base.errors import InputError
 from pytpc.ingest.reading import is_ingested, read
-from pytpc.ingest.recording import RUN_FILE, Recording
-from pytpc.marks import Mark
+from pytpc.recording.marks import Mark
+from pytpc.recording.mission import RUN_FILE, Recording
 from pytpc.treatment import TREATMENT_FILE, Treatment, TreatmentType, load_treatment
 
 UNNAMED = "unnamed"

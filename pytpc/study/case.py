@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from pytpc.changes import Change
-from pytpc.ingest.recording import Recording
+from pytpc.recording.mission import Recording
 from pytpc.static.static_info import StaticInfo
 
 

@@ -14,8 +14,8 @@ from pytpc.base.checked_json import parse_json
 from pytpc.base.columns import read_table
 from pytpc.base.errors import InputError, TpcError
 from pytpc.changes import Change, read_changes
-from pytpc.ingest.recording import Recording, load_recording
-from pytpc.marks import MARK_TYPES, Mark, MarkType
+from pytpc.recording.marks import MARK_TYPES, Mark, MarkType
+from pytpc.recording.mission import Recording, load_recording
 from pytpc.static.static_info import StaticInfo
 from pytpc.study.case import Case
 from pytpc.study.changes import CHANGES_FILE

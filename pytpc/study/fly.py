@@ -11,7 +11,9 @@ from pathlib import Path
 from pytpc.base.atomic import write_atomic
 from pytpc.base.errors import InputError, RunError, TpcError
 from pytpc.ingest.reading import read
-from pytpc.ingest.recording import (
+from pytpc.mission import Progress, run_mission
+from pytpc.recording.marks import Mark
+from pytpc.recording.mission import (
     EVENTS_FILE,
     MARKS_FILE,
     REPORTS_FOLDER,
@@ -20,8 +22,6 @@ from pytpc.ingest.recording import (
     save_recording,
     write_marks,
 )
-from pytpc.marks import Mark
-from pytpc.mission import Progress, run_mission
 from pytpc.study.changes import CHANGES_FILE, save_changes
 from pytpc.study.dataset import (
     CAUSES_FILE,

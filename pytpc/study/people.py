@@ -18,7 +18,7 @@ import pyarrow.compute as pc
 from pytpc.base.columns import check_schema, read_table, write_table
 from pytpc.base.errors import RunError
 from pytpc.demo_examples import SHARED_PACKAGE, Example
-from pytpc.marks import Mark
+from pytpc.recording.marks import Mark
 from pytpc.study.data import user_marks
 from pytpc.study.dataset import CAUSES_FILE, MARKED_FILE, SIGHTS_FILE
 

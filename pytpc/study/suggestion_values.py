@@ -12,7 +12,7 @@ from pytpc.advice.remedy import Remedy, remedy
 from pytpc.base.checked_json import parse_json
 from pytpc.base.errors import InputError
 from pytpc.base.wording import percent
-from pytpc.ingest.recording import Recording, load_recording
+from pytpc.recording.mission import Recording, load_recording
 from pytpc.static.parameters import DYNAMIC, same_parameter
 from pytpc.static.static_info import StaticInfo
 from pytpc.study.data import load_mission

@@ -16,7 +16,7 @@ from pathlib import Path
 
 import pytpc
 from pytpc.base.errors import InputError
-from pytpc.ingest.recording import EVENTS_FILE, MARKS_FILE, SUMMARIES_FILE
+from pytpc.recording.mission import EVENTS_FILE, MARKS_FILE, SUMMARIES_FILE
 from pytpc.study.case import Method
 from pytpc.study.changes import CHANGES_FILE
 from pytpc.study.dataset import MARKED_FILE

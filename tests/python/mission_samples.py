@@ -11,7 +11,7 @@ import numpy as np
 from rosbags.rosbag1 import Writer
 from rosbags.typesys import Stores, get_typestore
 
-from pytpc.events import EventBuilder, Events, Report
+from pytpc.recording.events import EventBuilder, Events, Report
 from pytpc.static.static_info import (
     Comparison,
     Counts,

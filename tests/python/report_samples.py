@@ -10,7 +10,7 @@ from html.parser import HTMLParser
 from mission_samples import comparison, events, ns, static_info
 
 from pytpc.ingest import Recording
-from pytpc.marks import Mark
+from pytpc.recording.marks import Mark
 from pytpc.report.html import MissionReport, write_report
 from pytpc.scoring.ranking import rank_marks
 from pytpc.static.static_info import PathStep

@@ -18,8 +18,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from mission_samples import comparison, events, link_unit, ns
 
-from pytpc.ingest.recording import Recording, save_recording
-from pytpc.marks import Mark, MarkType
+from pytpc.recording.marks import Mark, MarkType
+from pytpc.recording.mission import Recording, save_recording
 from pytpc.static.static_info import StaticInfo, Tool
 
 RECORDED = Path(__file__).parents[2] / "examples" / "recorded_mission"

@@ -11,8 +11,8 @@ from pytpc.advice.advise import advise, alternatives
 from pytpc.advice.as_json import advice_json, group_json
 from pytpc.advice.declared import Declared
 from pytpc.advice.joining import join_advice
-from pytpc.ingest.recording import Recording
-from pytpc.marks import Mark
+from pytpc.recording.marks import Mark
+from pytpc.recording.mission import Recording
 from pytpc.scoring.ranking import rank_marks
 
 # `faces >= limit` of 3 flops at 10 s (2, then 4) and at 12 s back (1); `coverage > cover` of 0.6

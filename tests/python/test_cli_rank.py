@@ -9,7 +9,7 @@ from click.testing import CliRunner
 from mission_samples import BagFile, comparison, key, line, ns, static_info
 
 from pytpc.cli.main import main
-from pytpc.marks import Mark, read_marks
+from pytpc.recording.marks import Mark, read_marks
 
 
 @pytest.fixture
@@ -479,7 +479,7 @@ def test_marks_that_cannot_be_written(quiet, monkeypatch):
     def full(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("pytpc.marking.file.write_marks", full)
+    monkeypatch.setattr("pytpc.recording.marks_file.write_marks", full)
     one_line(run("marks", quiet, "--add", "1", "I"), "quiet.bag.marks.csv: NOT SAVED")
 
 

@@ -13,9 +13,9 @@ from mission_samples import BagFile, comparison, events, key, line, ns, static_i
 from report_samples import Page
 
 from pytpc.cli.main import main
-from pytpc.ingest.recording import Recording, save_recording
-from pytpc.marks import Mark
-from pytpc.summaries import Summary, SummaryBuilder
+from pytpc.recording.marks import Mark
+from pytpc.recording.mission import Recording, save_recording
+from pytpc.recording.summaries import Summary, SummaryBuilder
 from pytpc.values.origins import ORIGINS_FILE, Origin, write_origins
 
 ENOUGH = {"enough": True, "reason": ""}

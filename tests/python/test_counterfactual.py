@@ -15,10 +15,10 @@ from mission_samples import comparison, events, key, link_unit, ns, static_info
 from pytpc.advice.counterfactual import CLOSED_LOOP, sweep, what_if
 from pytpc.advice.suggest import suggest
 from pytpc.base.errors import InputError
-from pytpc.ingest.recording import Recording
-from pytpc.marks import Mark
+from pytpc.recording.marks import Mark
+from pytpc.recording.mission import Recording
+from pytpc.recording.summaries import Summaries, Summary, SummaryBuilder
 from pytpc.static.static_info import ParameterRead, StaticInfo, Transform
-from pytpc.summaries import Summaries, Summary, SummaryBuilder
 
 NAN, INF = math.nan, math.inf
 

@@ -9,7 +9,7 @@ from mission_samples import comparison, events, ns, static_info
 
 from pytpc.base.errors import TpcError
 from pytpc.ingest import Recording
-from pytpc.marks import Mark
+from pytpc.recording.marks import Mark
 from pytpc.scoring.curves import rank_curves
 from pytpc.scoring.ranking import rank_marks
 from pytpc.scoring.scores import NONE

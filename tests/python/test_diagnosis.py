@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from mission_samples import comparison, events, ns, static_info
 
-from pytpc.events import Events
 from pytpc.ingest import Recording
-from pytpc.marks import Mark
+from pytpc.recording.events import Events
+from pytpc.recording.marks import Mark
 from pytpc.scoring.diagnosis import (
     MARKS_I,
     MARKS_II,

@@ -11,7 +11,15 @@ from hypothesis import strategies as st
 from mission_samples import SECOND, events, key, ns
 
 from pytpc.base.errors import InputError
-from pytpc.events import SCHEMA, EventBuilder, Events, Report, concat, read_parquet, write_parquet
+from pytpc.recording.events import (
+    SCHEMA,
+    EventBuilder,
+    Events,
+    Report,
+    concat,
+    read_parquet,
+    write_parquet,
+)
 
 ROWS = st.lists(
     st.tuples(

@@ -11,7 +11,7 @@ from rosbags.rosbag1 import Writer
 from pytpc.base.errors import InputError
 from pytpc.ingest import load_recording, read_bag, save_recording
 from pytpc.ingest.rosout_line import PREFIX
-from pytpc.marks import Mark, topic_of_marks
+from pytpc.recording.marks import Mark, topic_of_marks
 
 K = "0a1b2c3d-0000-5000-8000-00000000000F"
 

@@ -21,7 +21,7 @@ from pytpc.ingest.bag_chunks import Messages as Chunk
 from pytpc.ingest.gathering import Gathering
 from pytpc.ingest.messages import Messages
 from pytpc.ingest.rosout_line import PREFIX
-from pytpc.marks import Mark
+from pytpc.recording.marks import Mark
 
 SUMMARY = (
     "threshold_summary:{key},1,cmp:1,thresh:0.5,res:1,count:3,flops:1,diff:-0.25;0.5;0.1,"

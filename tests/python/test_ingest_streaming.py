@@ -16,12 +16,12 @@ from tpc_file import FULL, TpcFile, report, site, summary, sync
 
 from pytpc.base.errors import TpcError
 from pytpc.cli.main import main
-from pytpc.events import read_parquet
 from pytpc.ingest import load_recording, read
 from pytpc.ingest import spool as spool_module
 from pytpc.ingest.gathering import Gathering
 from pytpc.ingest.outcome import Outcome
 from pytpc.ingest.reading import gather, opened
+from pytpc.recording.events import read_parquet
 
 ROOT = Path(__file__).parents[2]
 

@@ -14,9 +14,9 @@ import pytpc
 from pytpc import library
 from pytpc.advice.joining import join_advice
 from pytpc.base.errors import InputError
-from pytpc.ingest.recording import Recording
-from pytpc.marks import Mark
 from pytpc.notebook import Table
+from pytpc.recording.marks import Mark
+from pytpc.recording.mission import Recording
 
 EXAMPLE = Path(__file__).parents[2] / "examples/recorded_mission"
 BAD = '~a<script>alert("1")</script>\x1b[2J'

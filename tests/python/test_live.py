@@ -11,14 +11,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mission_samples import comparison, key, ns, static_info
 
-from pytpc.events import EventBuilder, Report
 from pytpc.ingest import Recording
-from pytpc.marks import Mark
+from pytpc.recording.events import EventBuilder, Report
+from pytpc.recording.marks import Mark
+from pytpc.recording.summaries import Summary, SummaryBuilder
 from pytpc.scoring.bounds import type2_bounds
 from pytpc.scoring.live import LiveRanking, LiveScores, TooOldError
 from pytpc.scoring.ranking import rank_marks
 from pytpc.scoring.scores import NONE, Before, type1, type2
-from pytpc.summaries import Summary, SummaryBuilder
 
 NAN, INF = math.nan, math.inf
 KEYS = [key(0), key(1), key(2)]

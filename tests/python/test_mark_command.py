@@ -12,7 +12,7 @@ import pytest
 from mission_samples import BagFile, line, ns
 from terminals import Terminal, pytpc
 
-from pytpc.marks import Mark, marks_beside, read_marks, write_marks
+from pytpc.recording.marks import Mark, marks_beside, read_marks, write_marks
 
 START = 100.0
 

@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from mission_samples import ns
 from rich.cells import cell_len
 
-from pytpc.marking.session import Change, Player, Session, View, clock_text, press, screen
-from pytpc.marks import Mark
+from pytpc.recording.marking_session import Change, Player, Session, View, clock_text, press, screen
+from pytpc.recording.marks import Mark
 
 
 def pressed(keys: list[tuple[str, float | None]]) -> tuple[Session, list[Change]]:

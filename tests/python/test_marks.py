@@ -11,7 +11,7 @@ from mission_samples import BagFile, line, ns
 
 from pytpc.base.errors import InputError
 from pytpc.ingest import load_recording, read, read_bag, save_recording
-from pytpc.marks import (
+from pytpc.recording.marks import (
     MARK_TYPES,
     Mark,
     MarkMessages,

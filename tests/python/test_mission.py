@@ -26,7 +26,6 @@ from pytpc.demo import TreatedMission, failures, result_table
 from pytpc.demo_examples import IMAGE_CAPTURE, WATER_SAMPLER, Example
 from pytpc.graph import GraphProcess, RosGraph
 from pytpc.ingest import Recording
-from pytpc.marks import Mark
 from pytpc.mission import (
     MissionRun,
     clear_earlier,
@@ -44,6 +43,7 @@ from pytpc.recorder import (
     Status,
     save_status,
 )
+from pytpc.recording.marks import Mark
 from pytpc.scoring.ranking import rank_marks
 from pytpc.tcpros import Source
 from pytpc.treatment import Treatment, load_treatment

@@ -15,7 +15,7 @@ from pytpc.advice.other_values import (
     turns,
 )
 from pytpc.ingest import Recording
-from pytpc.marks import Mark
+from pytpc.recording.marks import Mark
 from pytpc.scoring.diagnosis_priors import UNCHANGED
 from pytpc.scoring.diagnosis_streams import Streams
 from pytpc.scoring.tables import Tpcs

@@ -5,13 +5,13 @@ from dataclasses import replace
 import pytest
 from mission_samples import comparison, events, key, ns, static_info
 
-from pytpc.events import Events
 from pytpc.ingest import Recording
-from pytpc.marks import Mark
+from pytpc.recording.events import Events
+from pytpc.recording.marks import Mark
+from pytpc.recording.summaries import Summaries, Summary, SummaryBuilder
 from pytpc.scoring.ranking import rank_marks, unknown_keys
 from pytpc.static.parameters import parameter_name
 from pytpc.static.static_info import Place
-from pytpc.summaries import Summaries, Summary, SummaryBuilder
 
 # Comparisons 0 and 1 are of coverage, 2 of faces, 3 of idle, 4 is a constant, 5 of never (which is
 # never evaluated), 6 of faces too.

@@ -11,11 +11,11 @@ from mission_samples import comparison, events, key, ns, static_info
 
 from pytpc.advice.declared import Declared
 from pytpc.advice.remedy import remedy
-from pytpc.events import Events
-from pytpc.ingest.recording import Recording
-from pytpc.marks import Mark
+from pytpc.recording.events import Events
+from pytpc.recording.marks import Mark
+from pytpc.recording.mission import Recording
+from pytpc.recording.summaries import Summaries, Summary, SummaryBuilder
 from pytpc.static.static_info import Transform
-from pytpc.summaries import Summaries, Summary, SummaryBuilder
 
 HOLDS = {"<": float.__lt__, ">": float.__gt__, ">=": float.__ge__, "flag": lambda _, t: bool(t)}
 

@@ -21,7 +21,8 @@ from pytpc.advice.joining import join_advice
 from pytpc.base.errors import TpcError
 from pytpc.base.wording import percent
 from pytpc.ingest import MalformedRecord, Recording
-from pytpc.marks import Mark
+from pytpc.recording.marks import Mark
+from pytpc.recording.summaries import Summary, SummaryBuilder
 from pytpc.report.html import MissionReport, write_report
 from pytpc.report.series import (
     BINS,
@@ -36,7 +37,6 @@ from pytpc.report.series import (
     with_gaps,
 )
 from pytpc.scoring.ranking import rank_marks
-from pytpc.summaries import Summary, SummaryBuilder
 from pytpc.values.origins import Origin
 
 NAN = math.nan

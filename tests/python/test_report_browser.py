@@ -18,7 +18,7 @@ from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import WebDriverWait
 
 from pytpc.ingest import Recording
-from pytpc.marks import Mark
+from pytpc.recording.marks import Mark
 from pytpc.report.html import MissionReport, write_report
 from pytpc.scoring.ranking import rank_marks
 from pytpc.static.static_info import PathStep

@@ -14,11 +14,11 @@ from mission_samples import comparison, events, key, ns, static_info
 from report_samples import Page, mission, written
 
 from pytpc.ingest import Recording
-from pytpc.marks import Mark
+from pytpc.recording.marks import Mark
+from pytpc.recording.summaries import Summary, SummaryBuilder
 from pytpc.report.html import MissionReport
 from pytpc.report.series import FALSE, TRUE
 from pytpc.scoring.ranking import rank_marks
-from pytpc.summaries import Summary, SummaryBuilder
 
 NAN = math.nan
 

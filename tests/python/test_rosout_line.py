@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from mission_samples import line
 
-from pytpc.events import Report
 from pytpc.ingest.rosout_line import PREFIX, Malformed, StampedReport, parse_report, parse_stamped
+from pytpc.recording.events import Report
 
 K = "0a1b2c3d-0000-5000-8000-00000000000F"
 LOW = K.lower()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from mission_samples import events, ns
 
 from pytpc.ingest import Recording
-from pytpc.marks import Mark
+from pytpc.recording.marks import Mark
 from pytpc.scoring.clocks import two_clocks
 
 # 2026-09-21, in seconds since 1970.

@@ -20,12 +20,12 @@ import pytest
 from mission_samples import comparison, events, ns, static_info
 
 from pytpc.ingest import Recording
-from pytpc.marks import Mark
+from pytpc.recording.marks import Mark
+from pytpc.recording.summaries import Summaries
 from pytpc.scoring.curves import rank_curves
 from pytpc.scoring.ranking import rank_marks
 from pytpc.scoring.scores import NONE
 from pytpc.scoring.tables import Tpcs, parameter_tables, tpc_scores
-from pytpc.summaries import Summaries
 
 ROBOT = static_info(
     comparison(0, "limit", distance=1),

@@ -11,14 +11,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from mission_samples import SECOND, comparison, events, key, static_info
 
-from pytpc.events import Events
 from pytpc.ingest import Recording
-from pytpc.marks import Mark
+from pytpc.recording.events import Events
+from pytpc.recording.marks import Mark
+from pytpc.recording.summaries import Summaries, Summary, SummaryBuilder
 from pytpc.stats.delays import error_start
 from pytpc.stats.missions import StudyMission
 from pytpc.stats.runtime import runtime_statistics
 from pytpc.stats.study import study_tables
-from pytpc.summaries import Summaries, Summary, SummaryBuilder
 from pytpc.treatment import Treatment
 
 STATIC = static_info(comparison(0, "~limit"), comparison(1, "~other"))

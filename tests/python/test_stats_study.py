@@ -10,16 +10,16 @@ import pytest
 from mission_samples import comparison, events, key, ns, static_info
 
 from pytpc.base.errors import InputError
-from pytpc.events import Events
 from pytpc.ingest import Recording, save_recording
-from pytpc.marks import Mark
+from pytpc.recording.events import Events
+from pytpc.recording.marks import Mark
+from pytpc.recording.summaries import Summary, SummaryBuilder
 from pytpc.static.link_unit import Transform
 from pytpc.stats.delays import delays_of, error_start
 from pytpc.stats.found import found_in, found_table
 from pytpc.stats.marked import MarksOfTrial, confusion_table, marks_table
 from pytpc.stats.missions import StudyMission, Trial, in_order, load_missions, users_of
 from pytpc.stats.study import NUMBERS, study_complaints, study_tables
-from pytpc.summaries import Summary, SummaryBuilder
 from pytpc.treatment import Treatment, TreatmentType
 
 # 0 is the changed one, 1 and 2 are others; 3 is a flag; 4 compares with twice its parameter.

@@ -10,7 +10,7 @@ from study_pages import row_of
 from study_samples import EVENTS, STATIC
 
 from pytpc.changes import Change
-from pytpc.ingest.recording import Recording
+from pytpc.recording.mission import Recording
 from pytpc.study.report.changed import turned
 from pytpc.study.report.making import make_report
 

@@ -12,7 +12,7 @@ from mission_samples import comparison, events, ns, static_info
 from pytpc.base.errors import InputError
 from pytpc.changes import Change
 from pytpc.ingest import Recording, save_recording
-from pytpc.marks import Mark
+from pytpc.recording.marks import Mark
 from pytpc.scoring.diagnosis import REASONED, diagnose
 from pytpc.study.case import Case
 from pytpc.study.data import Mission, UserMark, missions

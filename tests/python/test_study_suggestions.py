@@ -13,8 +13,8 @@ from study_flights import made
 
 from pytpc.base.errors import InputError
 from pytpc.cli.study_suggestions import suggestions_command
-from pytpc.ingest.recording import Recording, save_recording
-from pytpc.marks import Mark
+from pytpc.recording.marks import Mark
+from pytpc.recording.mission import Recording, save_recording
 from pytpc.study.case import Verdict
 from pytpc.study.dataset import save_done
 from pytpc.study.suggested import FAILED_FILE, TRIED_FILE

@@ -12,8 +12,8 @@ from mission_samples import comparison, events, key, link_unit, ns
 
 from pytpc.advice.suggest import suggest
 from pytpc.base.wording import exact, show
+from pytpc.recording.summaries import Summary, SummaryBuilder
 from pytpc.static.static_info import ParameterRead, Transform
-from pytpc.summaries import Summary, SummaryBuilder
 
 NAN, INF = math.nan, math.inf
 

@@ -10,8 +10,8 @@ from mission_samples import events, key, ns
 
 from pytpc.base.errors import InputError
 from pytpc.ingest import Dropped, Recording, load_recording, save_recording
-from pytpc.marks import Mark
-from pytpc.summaries import (
+from pytpc.recording.marks import Mark
+from pytpc.recording.summaries import (
     SCHEMA,
     Summaries,
     Summary,

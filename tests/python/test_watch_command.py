@@ -14,7 +14,7 @@ import pytest
 from screens import Screen
 from terminals import Terminal, pytpc
 
-from pytpc.marks import Mark, read_marks
+from pytpc.recording.marks import Mark, read_marks
 
 EXAMPLE = Path(__file__).parents[2] / "examples/recorded_mission"
 BEGIN_NS = 10_000_000

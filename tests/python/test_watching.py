@@ -9,16 +9,16 @@ from mission_samples import comparison, events, key, static_info
 from rich.cells import cell_len
 from rich.text import Text
 
-from pytpc.ingest.recording import Recording
 from pytpc.marking.live_mission import GraphFeed, RecordedFeed
 from pytpc.marking.publisher import encode_string
 from pytpc.marking.reports import Reports
-from pytpc.marking.session import Change, Session, View
 from pytpc.marking.watch_screen import LAYOUTS, Options, Panel, Status, table, watch_screen
 from pytpc.marking.watching import BINS, KeptRankings, Look, Seen, Watching
-from pytpc.marks import Mark
+from pytpc.recording.marking_session import Change, Session, View
+from pytpc.recording.marks import Mark
+from pytpc.recording.mission import Recording
+from pytpc.recording.summaries import Summary
 from pytpc.scoring.live import LiveRanking
-from pytpc.summaries import Summary
 from pytpc.tcpros import Source
 
 S = 10**9

@@ -17,7 +17,7 @@ from terminals import Terminal, pytpc
 
 from pytpc.graph import RosGraph
 from pytpc.marking.publisher import STRING, MessageType, RawPublisher, encode_string
-from pytpc.marks import read_marks
+from pytpc.recording.marks import read_marks
 from pytpc.tcpros import RawSubscriber
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "python"))

@@ -16,7 +16,7 @@ from pytpc.base.checked_json import parse_json
 from pytpc.base.errors import InputError, TpcError
 from pytpc.base.wording import many
 from pytpc.changes import Change, read_changes
-from pytpc.marks import Mark
+from pytpc.recording.marks import Mark
 from pytpc.source_lines import count_lines
 from pytpc.static.parameters import parameter_name, same_parameter
 from pytpc.static.static_info import StaticInfo

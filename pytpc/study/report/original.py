@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from statistics import fmean, median
 
 from pytpc.base.tables import Cell, Column, Table
-from pytpc.marks import MarkType
+from pytpc.recording.marks import MarkType
 from pytpc.scoring.scores import NONE
 from pytpc.stats.delays import DelaysOfTrial, delays_of, delays_table
 from pytpc.stats.found import FoundAtMark, FoundInTrial, found_in, found_table

@@ -9,8 +9,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from pytpc.base.errors import TpcError
-from pytpc.marking.session import Change
-from pytpc.marks import Mark, read_marks, write_marks
+from pytpc.recording.marking_session import Change
+from pytpc.recording.marks import Mark, read_marks, write_marks
 
 
 class MarksFile:

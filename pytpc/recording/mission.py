@@ -12,9 +12,9 @@ from pathlib import Path
 
 from pytpc.base.atomic import write_atomic
 from pytpc.base.errors import InputError
-from pytpc.events import Events, read_parquet, write_parquet
-from pytpc.marks import MARK_TYPES, Mark
-from pytpc.summaries import Summaries, read_summaries, write_summaries
+from pytpc.recording.events import Events, read_parquet, write_parquet
+from pytpc.recording.marks import MARK_TYPES, Mark
+from pytpc.recording.summaries import Summaries, read_summaries, write_summaries
 
 EVENTS_FILE = "events.parquet"
 SUMMARIES_FILE = "summaries.parquet"

@@ -14,7 +14,7 @@ from typing import NamedTuple
 from rich.cells import cell_len, set_cell_size
 
 from pytpc.base.wording import plain
-from pytpc.marks import Mark, MarkType
+from pytpc.recording.marks import Mark, MarkType
 
 MEANINGS: dict[MarkType | None, str] = {
     "I": "it did something it should not have",

@@ -1,0 +1,1 @@
+"""The data model of a mission: events, summaries, marks, declarations of parameters."""
