@@ -1,6 +1,6 @@
 """Building a workspace with TPC: colcon, with tpc.cmake as the toolchain, in bases of its own.
 
-``build_workspace`` does it all; ``pytpc.colcon`` runs the tool, ``pytpc.reconcile`` says what of
+``build_workspace`` does it all; ``pytpc.workspace.colcon`` runs the tool, ``pytpc.reconcile`` says what of
 the build was analysed.
 """
 
@@ -26,8 +26,6 @@ from pytpc.base.paths import (
     require_ros,
     require_tools,
 )
-from pytpc.cmake_targets import ask_for_targets
-from pytpc.colcon import Bases, BuildError, colcon_command, run_colcon
 from pytpc.collecting import find_copies
 from pytpc.left_alone import LeftAlone
 from pytpc.python_analysis.rules_file import Rules, load_rules
@@ -43,7 +41,9 @@ from pytpc.static.static_info import (
     load_link_unit,
     unit_files,
 )
-from pytpc.workspace import (
+from pytpc.workspace.cmake_targets import ask_for_targets
+from pytpc.workspace.colcon import Bases, BuildError, colcon_command, run_colcon
+from pytpc.workspace.packages import (
     Package,
     find_packages,
     packages_up_to,

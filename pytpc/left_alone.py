@@ -16,8 +16,8 @@ from pytpc.base.atomic import write_atomic
 from pytpc.base.checked_json import dump_json, parse_json
 from pytpc.base.errors import InputError
 from pytpc.build_faults import first_error
-from pytpc.colcon import Bases, BuildError
-from pytpc.workspace import Package
+from pytpc.workspace.colcon import Bases, BuildError
+from pytpc.workspace.packages import Package
 
 # gcc brings its own OpenMP; that of clang is a package which clang does not need.
 OPENMP_MEND = "clang's OpenMP may be what is missing: apt-get install libomp-19-dev"

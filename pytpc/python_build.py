@@ -21,7 +21,7 @@ from pytpc.python_units import (
 from pytpc.reconcile import target_names
 from pytpc.static.link_unit import LinkUnit
 from pytpc.static.static_info import is_python_file, load_link_unit, python_unit_file, unit_files
-from pytpc.workspace import Package
+from pytpc.workspace.packages import Package
 
 
 def python_of_build(

@@ -21,7 +21,7 @@ from pytpc.python_analysis.packages import Entry, entries, entry_of
 from pytpc.python_analysis.rules_file import Rules
 from pytpc.static.link_unit import LeftOut, LinkUnit
 from pytpc.static.static_info import python_unit_file
-from pytpc.workspace import package_folders
+from pytpc.workspace.packages import package_folders
 
 Name = tuple[str, str]
 _USED_BY_ANALYSIS = ("arithmetic.py", "cmake_syntax.py", "link_unit.py", "workspace.py")

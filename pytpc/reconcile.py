@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pytpc.base.errors import InputError
-from pytpc.cmake_targets import LinkTarget, link_targets
 from pytpc.static.link_unit import LeftOut, LinkUnit
+from pytpc.workspace.cmake_targets import LinkTarget, link_targets
 
 _RECORD = Path("tpc/targets.tsv")
 _FIELDS = 5

@@ -15,7 +15,7 @@ from pygments.lexers import get_lexer_for_filename
 from pygments.token import Comment, String
 from pygments.util import ClassNotFound
 
-from pytpc.workspace import MANIFEST, PRODUCTS
+from pytpc.workspace.packages import MANIFEST, PRODUCTS
 
 CPP = "C++"
 HEADER = "header"

@@ -22,12 +22,12 @@ from pytpc.base.errors import InputError, RunError, TpcError, WorkspaceError
 from pytpc.base.paths import BUILD_TOOLS, accepting_flags, cmake_file, require_tools
 from pytpc.base.wording import plain
 from pytpc.build_faults import first_error, missing_names
-from pytpc.cmake_syntax import find_fault
-from pytpc.cmake_targets import ask_for_targets, link_targets
-from pytpc.colcon import Bases, build_environment, colcon_command, ended_jobs, run_lines
 from pytpc.static.static_info import LinkUnit, load_link_unit, unit_files
 from pytpc.survey import Build, NotBuilt, Tree, TreePackage
-from pytpc.workspace import MANIFEST, Package, package_folders, read_manifest
+from pytpc.workspace.cmake_syntax import find_fault
+from pytpc.workspace.cmake_targets import ask_for_targets, link_targets
+from pytpc.workspace.colcon import Bases, build_environment, colcon_command, ended_jobs, run_lines
+from pytpc.workspace.packages import MANIFEST, Package, package_folders, read_manifest
 
 BUILD_TYPE = "RelWithDebInfo"
 _PROJECT = re.compile(r"^[ \t]*project[ \t]*\(\s*\"?(?P<name>[^\s\"()$]+)", re.I | re.M)

@@ -15,7 +15,6 @@ from pytpc.base.atomic import write_atomic
 from pytpc.base.checked_json import dump_json, parse_json
 from pytpc.base.errors import InputError, WorkspaceError
 from pytpc.base.paths import cmake_file, defer_plugin, log_library, plugin, prefix, project_root
-from pytpc.colcon import Bases
 from pytpc.python_analysis.rules_file import load_rules
 from pytpc.python_units import PythonUnits, analyse_scripts, analysis_files, scripts_at
 from pytpc.source_lines import count_lines, source_files
@@ -28,6 +27,7 @@ from pytpc.survey import (
     needed_trees,
 )
 from pytpc.survey_build import Measured, measure, read_tree, underlaid
+from pytpc.workspace.colcon import Bases
 
 PLAIN, TPC = "plain", "tpc"
 

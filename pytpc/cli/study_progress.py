@@ -19,11 +19,11 @@ from rich.progress import Progress as Bar
 from rich.text import Text
 
 from pytpc.base.wording import many, plain
-from pytpc.colcon import BuildError
 from pytpc.demo_examples import Example
 from pytpc.mission import Progress
 from pytpc.study.plan import Flight
 from pytpc.study.run import Result
+from pytpc.workspace.colcon import BuildError
 
 _SILENT_S = 5.0
 

@@ -10,10 +10,10 @@ import click
 from rich.console import Console
 from rich.text import Text
 
-from pytpc import patch
 from pytpc.build import BuildResult, build_workspace
 from pytpc.cli.console import Advance, found_text, progress, show_units, warn
-from pytpc.colcon import Bases, BuildError
+from pytpc.workspace import patch
+from pytpc.workspace.colcon import Bases, BuildError
 
 _FOLDER = click.Path(path_type=Path, file_okay=True)
 _JOB_LINE = re.compile(r"^(Starting >>>|Finished <<<|Failed +<<<|Aborted +<<<) (?P<name>\S+)")

@@ -16,7 +16,7 @@ from itertools import islice
 from pathlib import Path
 
 from pytpc.base.errors import InputError
-from pytpc.cmake_syntax import Argument, Command, commands, find_fault
+from pytpc.workspace.cmake_syntax import Argument, Command, commands, find_fault
 
 _VARIABLE = re.compile(r"\$\{([^${}]*)\}")
 _ENDING = frozenset(

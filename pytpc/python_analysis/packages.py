@@ -13,7 +13,7 @@ from pytpc.python_analysis.rules_file import Rules, load_rules
 from pytpc.python_analysis.scripts import Scripts, is_python, python_files
 from pytpc.python_analysis.setup_files import Installed, read_setup
 from pytpc.python_analysis.sources import module_files
-from pytpc.workspace import MANIFEST, package_folders, read_manifest
+from pytpc.workspace.packages import MANIFEST, package_folders, read_manifest
 
 OnFault = Callable[[InputError], None]
 

@@ -14,7 +14,7 @@ from typing import Protocol
 from pytpc.base.errors import InputError
 from pytpc.python_analysis.rules_file import Rules
 from pytpc.python_analysis.sources import module_files, parse
-from pytpc.workspace import IGNORE_MARKERS, MANIFEST, PRODUCT_MARKERS
+from pytpc.workspace.packages import IGNORE_MARKERS, MANIFEST, PRODUCT_MARKERS
 
 _LEFT_OUT = {"build", "devel", "install", "log", "test", "tests", "node_modules", "__pycache__"}
 _NOT_NODES = {"setup.py", "conftest.py"}

@@ -6,7 +6,7 @@ import functools
 import re
 from pathlib import Path
 
-from pytpc.workspace import MANIFEST, package_folders
+from pytpc.workspace.packages import MANIFEST, package_folders
 
 SYSTEM_FOLDERS = (Path("/usr"), Path("/opt"))
 _NAME = re.compile(rb"<name>\s*([^<\s]+)\s*</name>")

@@ -22,16 +22,16 @@ from static_units import comparison, failed_unit, unit
 from pytpc import build
 from pytpc.base.errors import InputError, MissingToolError, RunError, TpcError, WorkspaceError
 from pytpc.build import build_workspace, workspace_env
-from pytpc.colcon import (
+from pytpc.left_alone import LeftAlone
+from pytpc.static.static_info import LeftOut, StaticInfo
+from pytpc.workspace.colcon import (
     Bases,
     BuildError,
     build_environment,
     colcon_command,
     ended_jobs,
 )
-from pytpc.left_alone import LeftAlone
-from pytpc.static.static_info import LeftOut, StaticInfo
-from pytpc.workspace import Package
+from pytpc.workspace.packages import Package
 
 TOOLCHAIN = Path("/opt/tpc/share/tpc/cmake/tpc.cmake")
 BASES = Bases(Path("/ws/.tpc"))

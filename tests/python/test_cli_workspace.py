@@ -16,8 +16,8 @@ from pytpc.base.errors import InputError
 from pytpc.build import BuildResult
 from pytpc.cli import workspace_commands
 from pytpc.cli.main import main
-from pytpc.colcon import Bases, BuildError
 from pytpc.static.static_info import LeftOut, LinkUnit, StaticInfo
+from pytpc.workspace.colcon import Bases, BuildError
 
 
 def run(*arguments: str | Path) -> Result:

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from pytpc.cmake_syntax import SyntaxFault, find_fault, tokens
+from pytpc.workspace.cmake_syntax import SyntaxFault, find_fault, tokens
 
 CMAKE = shutil.which("cmake", path="/usr/bin:/bin")
 

@@ -9,7 +9,7 @@ import pytest
 from file_api import reply, target
 
 from pytpc.base.errors import InputError
-from pytpc.cmake_targets import LinkTarget, ask_for_targets, link_targets
+from pytpc.workspace.cmake_targets import LinkTarget, ask_for_targets, link_targets
 
 
 def test_linked_targets_are_told_from_others(tmp_path: Path) -> None:

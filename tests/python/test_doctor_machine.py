@@ -7,10 +7,16 @@ from pathlib import Path
 import pytest
 
 from pytpc.base.paths import BUILD_TOOLS, ros_places
-from pytpc.doctor import look
-from pytpc.doctor.finding import Finding, Severity, by_severity, error, note, warning
-from pytpc.doctor.look import ccache_settings, look_at_machine, version_of
-from pytpc.doctor.machine import COLCON_EXTENSIONS, UNSUITED, Machine, Program, check_machine
+from pytpc.workspace.doctor import look
+from pytpc.workspace.doctor.finding import Finding, Severity, by_severity, error, note, warning
+from pytpc.workspace.doctor.look import ccache_settings, look_at_machine, version_of
+from pytpc.workspace.doctor.machine import (
+    COLCON_EXTENSIONS,
+    UNSUITED,
+    Machine,
+    Program,
+    check_machine,
+)
 
 MIB = 1024 * 1024
 SOUND = Machine(

@@ -11,12 +11,12 @@ from packages import add_package, install_prefix
 
 from pytpc.cli import machine_commands
 from pytpc.cli.main import main
-from pytpc.cmake_block import patch_text
-from pytpc.doctor.finding import Finding, Severity
-from pytpc.doctor.look_workspace import look_at_known, look_at_workspace, read_cache
-from pytpc.doctor.machine import Machine
-from pytpc.doctor.workspace import Known, check_workspace, debian_names, unsuited_flags
-from pytpc.workspace import find_cycle
+from pytpc.workspace.cmake_block import patch_text
+from pytpc.workspace.doctor.finding import Finding, Severity
+from pytpc.workspace.doctor.look_workspace import look_at_known, look_at_workspace, read_cache
+from pytpc.workspace.doctor.machine import Machine
+from pytpc.workspace.doctor.workspace import Known, check_workspace, debian_names, unsuited_flags
+from pytpc.workspace.packages import find_cycle
 
 CMAKE_FILE = "/opt/tpc/share/tpc/cmake/tpc.cmake"
 LISTS = b"cmake_minimum_required(VERSION 3.16)\nproject(p)\n"
@@ -185,7 +185,7 @@ def test_blocks(workspace: Path) -> None:
         "warning",
         "TPC's block names another installation",
         str(path),
-        "python -m pytpc.patch WORKSPACE",
+        "python -m pytpc.workspace.patch WORKSPACE",
     )
     path.write_bytes(patch_text(LISTS, CMAKE_FILE).replace(b" OPTIONAL", b""))
     severity, what, where, _ = only(check(workspace))

@@ -11,9 +11,9 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from packages import add_package, contents, install_prefix, make_workspace
 
-from pytpc import patch
 from pytpc.base.errors import InputError, MissingToolError, WorkspaceError
-from pytpc.patch import Change, apply_changes, diff, patch_text, plan, restore_text
+from pytpc.workspace import patch
+from pytpc.workspace.patch import Change, apply_changes, diff, patch_text, plan, restore_text
 
 ROOT = Path(__file__).resolve().parents[2]
 BOM = b"\xef\xbb\xbf"
@@ -366,13 +366,13 @@ def test_an_interrupted_command_ends_with_130(
 
 @pytest.mark.parametrize(
     "command",
-    [[str(ROOT / "modify_cmakelists.py")], ["-m", "pytpc.patch"]],
+    [[str(ROOT / "modify_cmakelists.py")], ["-m", "pytpc.workspace.patch"]],
 )
 def test_the_scripts_run_on_debians_python(
     workspace: Path, prefix: Path, tmp_path: Path, command: list[str]
 ) -> None:
     before = contents(workspace)
-    own = command == ["-m", "pytpc.patch"]
+    own = command == ["-m", "pytpc.workspace.patch"]
     environment = {"TPC_PREFIX": str(tmp_path / "prefix"), "PYTHONDONTWRITEBYTECODE": "1"}
     for option, done in ((), "2 patched"), (("--restore",), "2 restored"):
         ran = subprocess.run(

@@ -13,9 +13,9 @@ from pathlib import Path
 import pytest
 from packages import add_package, contents, install_prefix, make_workspace
 
-from pytpc import patch
 from pytpc.base.errors import InputError, WorkspaceError
-from pytpc.patch import apply_changes, plan, plan_tree
+from pytpc.workspace import patch
+from pytpc.workspace.patch import apply_changes, plan, plan_tree
 
 ROOT = Path(__file__).resolve().parents[2]
 HEAD = b"# >>> tpc >>>"
@@ -204,7 +204,7 @@ def test_two_patches_and_a_restore_at_once(workspace: Path) -> None:
 KILLED = """
 import os, sys, time
 from pathlib import Path
-from pytpc import patch
+from pytpc.workspace import patch
 replace = Path.replace
 def slow(self, target):
     done = replace(self, target)

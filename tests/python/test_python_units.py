@@ -24,7 +24,7 @@ from pytpc.python_build import python_of_build
 from pytpc.python_units import PythonUnits, analyse_workspaces, named_beside
 from pytpc.static.link_unit import LinkUnit
 from pytpc.static.static_info import StaticInfo, load_link_unit, unit_files
-from pytpc.workspace import find_packages, packages_up_to
+from pytpc.workspace.packages import find_packages, packages_up_to
 
 RULES = load_rules()
 TARGET = ("mission", "mission")

@@ -19,7 +19,6 @@ from study_flights import FakeFlier, made, robot
 from pytpc.cli import study_commands
 from pytpc.cli.main import main
 from pytpc.cli.study_progress import StudyProgress, result_line
-from pytpc.colcon import BuildError
 from pytpc.mission import Progress
 from pytpc.study import flying
 from pytpc.study.dataset import StudyFile, load_causes, load_done, save_done
@@ -27,6 +26,7 @@ from pytpc.study.plan import Flight, flights_of
 from pytpc.study.resume import alone_in, end_leftovers
 from pytpc.study.run import Result, Runner
 from pytpc.study.system import System
+from pytpc.workspace.colcon import BuildError
 
 
 @pytest.fixture

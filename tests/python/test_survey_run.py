@@ -12,10 +12,10 @@ from survey_samples import build
 
 from pytpc import survey_run
 from pytpc.base.errors import RunError, WorkspaceError
-from pytpc.colcon import Bases
 from pytpc.survey import Tree
 from pytpc.survey_build import Measured, read_tree, underlaid
 from pytpc.survey_run import Options, Step, survey
+from pytpc.workspace.colcon import Bases
 
 Log = list[tuple[str, str]]
 Below = dict[tuple[str, str], str]

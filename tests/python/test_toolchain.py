@@ -9,7 +9,7 @@ from click.testing import CliRunner, Result
 from packages import install_prefix
 
 from pytpc.cli.main import main
-from pytpc.toolchain import Choices, Way, shell_line, shown, steps
+from pytpc.workspace.toolchain import Choices, Way, shell_line, shown, steps
 
 PREFIX = Path("/opt/it's tpc")
 CMAKE_FILE = "/opt/it's tpc/share/tpc/cmake/tpc.cmake"

@@ -8,7 +8,7 @@ from packages import MANIFEST, add_package
 
 from pytpc.base import paths
 from pytpc.base.errors import InputError, MissingToolError, WorkspaceError
-from pytpc.workspace import find_packages, read_cmakelists, select_packages
+from pytpc.workspace.packages import find_packages, read_cmakelists, select_packages
 
 
 def names(workspace: Path) -> list[str]:

@@ -8,14 +8,14 @@ import pytest
 from click.testing import CliRunner
 from mixed_workspace import BROKEN_TEXT, make_mixed
 
-from pytpc import patch
 from pytpc.base.errors import MissingToolError
 from pytpc.base.paths import cmake_file, log_library, plugin
 from pytpc.build import build_workspace
 from pytpc.cli.main import main
-from pytpc.colcon import BuildError, build_environment
 from pytpc.python_runtime.listed import read_table
 from pytpc.static.static_info import StaticInfo
+from pytpc.workspace import patch
+from pytpc.workspace.colcon import BuildError, build_environment
 
 try:
     for half in (cmake_file, plugin, log_library):

@@ -11,12 +11,12 @@ from pathlib import Path
 
 import pytest
 
-from pytpc import patch
 from pytpc.base.errors import MissingToolError, WorkspaceError
 from pytpc.base.paths import cmake_file, log_library, plugin
 from pytpc.build import build_workspace, workspace_env
-from pytpc.colcon import BuildError, build_environment
 from pytpc.static.static_info import collect
+from pytpc.workspace import patch
+from pytpc.workspace.colcon import BuildError, build_environment
 
 try:
     for half in (cmake_file, plugin, log_library):

@@ -16,8 +16,8 @@ from test_build_workspace import make_package
 from pytpc.base.errors import MissingToolError
 from pytpc.base.paths import cmake_file, log_library, mixin_index, plugin
 from pytpc.cli.main import main
-from pytpc.colcon import build_environment
 from pytpc.static.static_info import collect
+from pytpc.workspace.colcon import build_environment
 
 try:
     for half in (cmake_file, plugin, log_library, mixin_index):

@@ -12,14 +12,14 @@ from pathlib import Path
 
 import pytest
 
-from pytpc import patch
 from pytpc.base.errors import MissingToolError
 from pytpc.base.paths import cmake_file, compiler_wrapper, log_library, plugin
 from pytpc.build import build_workspace, workspace_env
-from pytpc.colcon import Bases, build_environment
 from pytpc.collecting import collect_sources
 from pytpc.graph import RosGraph
 from pytpc.static.static_info import LeftOut, StaticInfo
+from pytpc.workspace import patch
+from pytpc.workspace.colcon import Bases, build_environment
 
 try:
     for half in (cmake_file, compiler_wrapper, plugin, log_library):

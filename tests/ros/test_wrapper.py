@@ -11,9 +11,9 @@ import pytest
 
 from pytpc.base.errors import MissingToolError
 from pytpc.base.paths import compiler_wrapper, log_library, plugin, prefix
-from pytpc.colcon import build_environment
 from pytpc.graph import RosGraph
 from pytpc.static.static_info import LinkUnit, collect
+from pytpc.workspace.colcon import build_environment
 
 try:
     for half in (compiler_wrapper, plugin, log_library):

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pytpc.build import BuildResult, build_workspace
-from pytpc.colcon import build_environment
+from pytpc.workspace.colcon import build_environment
 from suite.expectations import PACKAGE
 
 _XLINKER = "-Xlinker"

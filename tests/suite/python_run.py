@@ -13,7 +13,7 @@ from pathlib import Path
 
 from pytpc.base.errors import RunError
 from pytpc.build import workspace_env
-from pytpc.colcon import build_environment
+from pytpc.workspace.colcon import build_environment
 from suite.both_ways import Results, Variant, run_all
 from suite.expectations import PYTHON_PACKAGE
 

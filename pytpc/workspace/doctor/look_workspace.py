@@ -10,8 +10,8 @@ from pathlib import Path
 
 from pytpc.base.errors import InputError, WorkspaceError
 from pytpc.base.paths import OWN_FOLDER, ROS_PREFIXES, prefix
-from pytpc.doctor.workspace import BuildFolder, Known, SeenPackage, SeenWorkspace
-from pytpc.workspace import MANIFEST, Manifest, package_folders, read_manifest
+from pytpc.workspace.doctor.workspace import BuildFolder, Known, SeenPackage, SeenWorkspace
+from pytpc.workspace.packages import MANIFEST, Manifest, package_folders, read_manifest
 
 _CACHE = "CMakeCache.txt"
 _CACHE_LINE = re.compile(r"^(\w+):\w+=(.*)$", re.MULTILINE)

@@ -1,12 +1,12 @@
 """Patching a workspace: TPC's block into every package's CMakeLists.txt, and out again.
 
 All files are read, checked and written beside the old ones before the first is replaced, so that a
-workspace is never half patched. What a file needs to be is worked out in ``pytpc.cmake_block``.
+workspace is never half patched. What a file needs to be is worked out in ``pytpc.workspace.cmake_block``.
 
 A run that was killed between two files leaves the first ones patched; the next run does the others
 and removes what the killed one had written beside them.
 
-Commands: ``python -m pytpc.patch``, ``pytpc patch`` and ``modify_cmakelists.py``.
+Commands: ``python -m pytpc.workspace.patch``, ``pytpc patch`` and ``modify_cmakelists.py``.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ from pathlib import Path
 from pytpc.base.atomic import leftovers, stage_beside
 from pytpc.base.errors import InputError, TpcError, WorkspaceError
 from pytpc.base.paths import cmake_file
-from pytpc.cmake_block import MARKER, patch_text, restore_text
-from pytpc.cmake_syntax import command_names
-from pytpc.workspace import (
+from pytpc.workspace.cmake_block import MARKER, patch_text, restore_text
+from pytpc.workspace.cmake_syntax import command_names
+from pytpc.workspace.packages import (
     IGNORE_MARKERS,
     MANIFEST,
     PRODUCT_MARKERS,
@@ -262,7 +262,7 @@ def _alone(folder: Path) -> Iterator[None]:
 
 def main(
     arguments: Sequence[str] | None = None,
-    program: str = "python -m pytpc.patch",
+    program: str = "python -m pytpc.workspace.patch",
     *,
     any_tree: bool = False,
 ) -> int:

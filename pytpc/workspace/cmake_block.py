@@ -11,7 +11,7 @@ import re
 from dataclasses import dataclass
 
 from pytpc.base.errors import WorkspaceError
-from pytpc.cmake_syntax import UTF8_BOM
+from pytpc.workspace.cmake_syntax import UTF8_BOM
 
 _OPENING = (
     b"# >>> tpc >>> These three lines are TPC's; `pytpc patch --restore WORKSPACE` removes them."

@@ -11,7 +11,7 @@ from typing import Any
 from xml.parsers import expat
 
 from pytpc.base.errors import InputError, MissingToolError, WorkspaceError
-from pytpc.cmake_syntax import find_fault
+from pytpc.workspace.cmake_syntax import find_fault
 
 MANIFEST = "package.xml"
 IGNORE_MARKERS = frozenset({"COLCON_IGNORE", "CATKIN_IGNORE", "AMENT_IGNORE"})

@@ -19,7 +19,7 @@ from pathlib import Path
 from pytpc.base.errors import RunError, WorkspaceError
 from pytpc.base.paths import MERGED_FILE, OWN_FOLDER, search_path
 from pytpc.base.signals import signals_end
-from pytpc.workspace import Package
+from pytpc.workspace.packages import Package
 
 _TAIL_LINES = 25
 # A disk with fewer free bytes is full: there is no room for one more block of a log.

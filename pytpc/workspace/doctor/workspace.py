@@ -9,11 +9,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pytpc.base.errors import InputError, WorkspaceError
-from pytpc.cmake_block import patch_text, restore_text
-from pytpc.cmake_syntax import UTF8_BOM, Kind, command_names, find_fault, tokens
-from pytpc.doctor.finding import Finding, error, note, warning
-from pytpc.doctor.machine import UNSUITED
-from pytpc.workspace import MANIFEST, Manifest, find_cycle
+from pytpc.workspace.cmake_block import patch_text, restore_text
+from pytpc.workspace.cmake_syntax import UTF8_BOM, Kind, command_names, find_fault, tokens
+from pytpc.workspace.doctor.finding import Finding, error, note, warning
+from pytpc.workspace.doctor.machine import UNSUITED
+from pytpc.workspace.packages import MANIFEST, Manifest, find_cycle
 
 _COMMENTS = (Kind.LINE_COMMENT, Kind.BRACKET_COMMENT)
 _CMAKE_BUILD_TYPES = ("catkin", "cmake", "ament_cmake")
@@ -160,7 +160,7 @@ def _block(lists: bytes, path: Path, cmake_file: str) -> Iterator[Finding]:
             yield warning(
                 "TPC's block names another installation",
                 path,
-                "python -m pytpc.patch WORKSPACE",
+                "python -m pytpc.workspace.patch WORKSPACE",
             )
     except WorkspaceError as fault:
         where = path if fault.line is None else f"{path}:{fault.line}"

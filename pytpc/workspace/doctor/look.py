@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from pytpc.base.paths import BUILD_TOOLS, ROS_PREFIXES, SYSTEM_PATH, prefix, ros_places, search_path
-from pytpc.doctor.machine import COLCON_EXTENSIONS, MODULES, Machine, Program
+from pytpc.workspace.doctor.machine import COLCON_EXTENSIONS, MODULES, Machine, Program
 
 _PARTS = (
     "lib/tpc/TpcPasses.so",

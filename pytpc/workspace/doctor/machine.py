@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from pytpc.base.paths import BUILD_TOOLS, ROS_PACKAGES
-from pytpc.doctor.finding import Finding, error, note, warning
+from pytpc.workspace.doctor.finding import Finding, error, note, warning
 
 # cmake_language(DEFER), by which tpc.cmake sees the finished targets, came with 3.19.
 CMAKE_NEEDED = (3, 19)

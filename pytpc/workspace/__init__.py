@@ -1,0 +1,1 @@
+"""A workspace before it is built: packages, colcon, CMake, the patch, the doctor."""
