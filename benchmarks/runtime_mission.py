@@ -22,7 +22,7 @@ from pathlib import Path
 
 from figures import figure
 
-from pytpc.build import build_workspace, workspace_env
+from pytpc.build.build import build_workspace, workspace_env
 from pytpc.demo_examples import IMAGE_CAPTURE, link_package
 from pytpc.graph import GRAPH_WORD
 from pytpc.mission import MissionRun, Progress, run_mission

@@ -17,7 +17,7 @@ from rich.console import Console
 
 from pytpc.base.errors import TpcError
 from pytpc.base.wording import many
-from pytpc.build import build_workspace, workspace_env
+from pytpc.build.build import build_workspace, workspace_env
 from pytpc.cli.console import progress
 from pytpc.cli.mission_commands import mission_progress
 from pytpc.demo import TreatedMission, failures, result_table, run_treatment

@@ -79,7 +79,7 @@ class RosGraph:
     """A context manager: the graph stands from ``with`` to its end.
 
     Args:
-        env: the environment of an installed workspace (``pytpc.build.workspace_env``).
+        env: the environment of an installed workspace (``pytpc.build.build.workspace_env``).
         folder: for ROS's home, its logs and the output of all processes; made where missing.
         use_sim_time: set ``/use_sim_time`` before any node starts.
 

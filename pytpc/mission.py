@@ -136,7 +136,7 @@ def run_mission(
     """Run a launch file on a graph of its own and record it.
 
     Args:
-        install_env: environment of the installed workspace (``pytpc.build.workspace_env``).
+        install_env: environment of the installed workspace (``pytpc.build.build.workspace_env``).
         launch: the launch file.
         args: its arguments.
         out_dir: where the results are put; results of an earlier run there are replaced.

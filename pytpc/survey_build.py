@@ -21,7 +21,7 @@ from pathlib import Path
 from pytpc.base.errors import InputError, RunError, TpcError, WorkspaceError
 from pytpc.base.paths import BUILD_TOOLS, accepting_flags, cmake_file, require_tools
 from pytpc.base.wording import plain
-from pytpc.build_faults import first_error, missing_names
+from pytpc.build.faults import first_error, missing_names
 from pytpc.static.static_info import LinkUnit, load_link_unit, unit_files
 from pytpc.survey import Build, NotBuilt, Tree, TreePackage
 from pytpc.workspace.cmake_syntax import find_fault

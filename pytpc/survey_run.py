@@ -15,8 +15,8 @@ from pytpc.base.atomic import write_atomic
 from pytpc.base.checked_json import dump_json, parse_json
 from pytpc.base.errors import InputError, WorkspaceError
 from pytpc.base.paths import cmake_file, defer_plugin, log_library, plugin, prefix, project_root
+from pytpc.build.python_units import PythonUnits, analyse_scripts, analysis_files, scripts_at
 from pytpc.python_analysis.rules_file import load_rules
-from pytpc.python_units import PythonUnits, analyse_scripts, analysis_files, scripts_at
 from pytpc.source_lines import count_lines, source_files
 from pytpc.survey import (
     RESULT_VERSION,

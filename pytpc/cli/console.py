@@ -15,7 +15,7 @@ from rich.table import Table
 from rich.text import Text
 
 from pytpc.base.wording import many, plain
-from pytpc.reconcile import remark
+from pytpc.build.reconcile import remark
 from pytpc.static.static_info import LinkUnit, StaticInfo
 
 Advance = Callable[[int, int], None]

@@ -11,7 +11,7 @@ import click
 from pytpc.base.errors import InputError, WorkspaceError
 from pytpc.base.paths import MERGED_FILE, OWN_FOLDER
 from pytpc.base.shell_words import SHELLS, Change
-from pytpc.build import installed, workspace_env
+from pytpc.build.build import installed, workspace_env
 from pytpc.cli.console import warn
 from pytpc.cli.options import PATH
 from pytpc.python_env import has_python, with_python, without_python

@@ -14,7 +14,7 @@ from rich.console import Console
 from pytpc.attached import master_of, record_graph, stop_on_signals
 from pytpc.base.errors import InputError
 from pytpc.base.wording import many
-from pytpc.build import installed, workspace_env
+from pytpc.build.build import installed, workspace_env
 from pytpc.complaints import complaints
 from pytpc.ingest.reading import opened
 from pytpc.mission import DEFAULT_TOPICS, MissionRun, Progress, run_mission

@@ -10,11 +10,11 @@ import click
 
 from pytpc.base.errors import InputError
 from pytpc.base.wording import many
+from pytpc.build.python_units import analyse_scripts, joined, named_beside, scripts_at
 from pytpc.cli.console import found_text, progress, show_units, tell_left_out
 from pytpc.cli.options import PATH
 from pytpc.python_analysis.budget import SECONDS
 from pytpc.python_analysis.rules_file import load_rules
-from pytpc.python_units import analyse_scripts, joined, named_beside, scripts_at
 from pytpc.static.static_info import StaticInfo
 
 

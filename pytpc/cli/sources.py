@@ -9,9 +9,9 @@ import click
 
 from pytpc.base.paths import MERGED_FILE, OWN_FOLDER
 from pytpc.base.wording import many
+from pytpc.build.collect import collect_sources
+from pytpc.build.stale import Stale
 from pytpc.cli.console import progress, warn
-from pytpc.collecting import collect_sources
-from pytpc.stale import Stale
 from pytpc.static.static_info import StaticInfo, read_static
 
 PATH = click.Path(path_type=Path)

@@ -17,6 +17,8 @@ from rich.text import Text
 from pytpc.base.atomic import write_atomic
 from pytpc.base.checked_json import dump_json
 from pytpc.base.wording import many, plain
+from pytpc.build.collect import collect_sources
+from pytpc.build.python_units import PythonUnits, analyse_workspaces
 from pytpc.cli.console import (
     console,
     found_text,
@@ -26,12 +28,10 @@ from pytpc.cli.console import (
 )
 from pytpc.cli.explain_commands import print_why_not
 from pytpc.cli.sources import PATH, SOURCES, static_of, tell_dropped
-from pytpc.collecting import collect_sources
 from pytpc.condition_lookup import look_up_conditions
 from pytpc.conditions import lines_of
 from pytpc.details import Details, details
 from pytpc.python_analysis.rules_file import load_rules
-from pytpc.python_units import PythonUnits, analyse_workspaces
 from pytpc.report.catalogue import write_catalogue
 from pytpc.sarif import sarif_log
 from pytpc.static.explanations import Explanation, look_up, why_no_comparison

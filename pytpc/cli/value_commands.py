@@ -16,7 +16,7 @@ from rich.text import Text
 from pytpc.attached import master_of
 from pytpc.base.errors import InputError
 from pytpc.base.wording import plain
-from pytpc.build import installed, workspace_env
+from pytpc.build.build import installed, workspace_env
 from pytpc.cli.console import console, progress, warn
 from pytpc.values.apply import Change, apply_change, change_as_json, diff_of, shown
 from pytpc.values.journal import Entry, Journal, folder_of

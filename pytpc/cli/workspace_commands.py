@@ -10,7 +10,7 @@ import click
 from rich.console import Console
 from rich.text import Text
 
-from pytpc.build import BuildResult, build_workspace
+from pytpc.build.build import BuildResult, build_workspace
 from pytpc.cli.console import Advance, found_text, progress, show_units, warn
 from pytpc.workspace import patch
 from pytpc.workspace.colcon import Bases, BuildError

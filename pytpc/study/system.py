@@ -12,7 +12,7 @@ from pytpc.base.atomic import write_atomic
 from pytpc.base.checked_json import parse_json
 from pytpc.base.errors import InputError
 from pytpc.base.paths import MERGED_FILE
-from pytpc.build import build_workspace, workspace_env
+from pytpc.build.build import build_workspace, workspace_env
 from pytpc.demo_examples import Example, link_package
 from pytpc.python_env import mission_env
 from pytpc.static.static_info import StaticInfo

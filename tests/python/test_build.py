@@ -19,10 +19,10 @@ from mixed_workspace import make_mixed
 from packages import add_package, install_prefix
 from static_units import comparison, failed_unit, unit
 
-from pytpc import build
 from pytpc.base.errors import InputError, MissingToolError, RunError, TpcError, WorkspaceError
-from pytpc.build import build_workspace, workspace_env
-from pytpc.left_alone import LeftAlone
+from pytpc.build import build
+from pytpc.build.build import build_workspace, workspace_env
+from pytpc.build.fallback import LeftAlone
 from pytpc.static.static_info import LeftOut, StaticInfo
 from pytpc.workspace.colcon import (
     Bases,

@@ -2,7 +2,7 @@
 
 import pytest
 
-from pytpc.build_faults import first_error, missing_names
+from pytpc.build.faults import first_error, missing_names
 
 CMAKE = """-- Found catkin
 -- Could NOT find Doxygen (missing: DOXYGEN_EXECUTABLE)

@@ -13,7 +13,7 @@ from packages import add_package, install_prefix
 from static_units import failed_unit, unit
 
 from pytpc.base.errors import InputError
-from pytpc.build import BuildResult
+from pytpc.build.build import BuildResult
 from pytpc.cli import workspace_commands
 from pytpc.cli.main import main
 from pytpc.static.static_info import LeftOut, LinkUnit, StaticInfo

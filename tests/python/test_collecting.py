@@ -11,8 +11,8 @@ from file_api import reply, target
 from static_units import KEYS, comparison, counts, failed_unit, unit
 
 from pytpc.base.errors import InputError, WorkspaceError
-from pytpc.collecting import collect_sources, find_copies
-from pytpc.stale import BuiltTarget, UnitFile, drop_repeated, drop_stale
+from pytpc.build.collect import collect_sources, find_copies
+from pytpc.build.stale import BuiltTarget, UnitFile, drop_repeated, drop_stale
 from pytpc.static.static_info import LinkUnit
 
 FOLDER = Path("/b/face")

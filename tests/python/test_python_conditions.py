@@ -6,10 +6,10 @@ import pytest
 from mixed_workspace import make_mixed
 
 from pytpc import condition_lookup
+from pytpc.build.python_units import analyse_scripts, scripts_at
 from pytpc.condition_lookup import CHANGED, GONE, NOT_IN_PYTHON, look_up_conditions
 from pytpc.python_analysis.rules_file import load_rules
 from pytpc.python_conditions import PythonSource
-from pytpc.python_units import analyse_scripts, scripts_at
 from pytpc.static.static_info import StaticInfo
 
 # The comparison, which stands between the marks, and the kind and text of the condition.

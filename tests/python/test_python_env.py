@@ -13,7 +13,7 @@ from click.testing import CliRunner
 import pytpc
 from pytpc.base.errors import InputError
 from pytpc.base.shell_words import Change
-from pytpc.build import installed
+from pytpc.build.build import installed
 from pytpc.cli import mission_commands
 from pytpc.cli.main import main
 from pytpc.python_env import has_python, mission_env, with_python, without_python

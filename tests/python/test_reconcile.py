@@ -7,7 +7,7 @@ from file_api import reply, target
 from static_units import failed_unit, unit
 
 from pytpc.base.errors import InputError
-from pytpc.reconcile import build_folders, left_out_units, remark, stale_files
+from pytpc.build.reconcile import build_folders, left_out_units, remark, stale_files
 from pytpc.static.static_info import LinkUnit
 
 NATIVE = b"\x7fELF rest"

@@ -10,7 +10,7 @@ from mission_samples import comparison, static_info
 from study_flights import robot
 
 from pytpc.base.errors import RunError
-from pytpc.build import BuildResult
+from pytpc.build.build import BuildResult
 from pytpc.study import system
 from pytpc.study.system import prepare
 from pytpc.workspace.colcon import Bases

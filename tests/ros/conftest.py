@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from pytpc.build import BuildResult, build_workspace
+from pytpc.build.build import BuildResult, build_workspace
 from pytpc.demo_examples import IMAGE_CAPTURE, WATER_SAMPLER, link_package
 from pytpc.demo_show import Built, build
 from pytpc.study.system import system_folder

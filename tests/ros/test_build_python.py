@@ -10,7 +10,7 @@ from mixed_workspace import BROKEN_TEXT, make_mixed
 
 from pytpc.base.errors import MissingToolError
 from pytpc.base.paths import cmake_file, log_library, plugin
-from pytpc.build import build_workspace
+from pytpc.build.build import build_workspace
 from pytpc.cli.main import main
 from pytpc.python_runtime.listed import read_table
 from pytpc.static.static_info import StaticInfo

@@ -13,7 +13,7 @@ import pytest
 
 from pytpc.base.errors import MissingToolError, WorkspaceError
 from pytpc.base.paths import cmake_file, log_library, plugin
-from pytpc.build import build_workspace, workspace_env
+from pytpc.build.build import build_workspace, workspace_env
 from pytpc.static.static_info import collect
 from pytpc.workspace import patch
 from pytpc.workspace.colcon import BuildError, build_environment

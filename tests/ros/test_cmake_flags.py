@@ -10,7 +10,7 @@ import pytest
 
 from pytpc.base.errors import MissingToolError
 from pytpc.base.paths import SYSTEM_PATH, cmake_file, log_library, plugin
-from pytpc.reconcile import recorded_units
+from pytpc.build.reconcile import recorded_units
 
 try:
     for half in (cmake_file, plugin, log_library):

@@ -9,8 +9,8 @@ import pytest
 
 from pytpc.base.errors import MissingToolError
 from pytpc.base.paths import cmake_file, log_library, plugin, require_ros, require_tools
-from pytpc.build import BuildResult, build_workspace
-from pytpc.collecting import collect_sources
+from pytpc.build.build import BuildResult, build_workspace
+from pytpc.build.collect import collect_sources
 from pytpc.condition_lookup import look_up_conditions
 from pytpc.conditions import libclang
 from pytpc.static.places import Tpc

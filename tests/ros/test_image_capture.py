@@ -17,7 +17,7 @@ import pytest
 
 from pytpc.base.errors import MissingToolError, RunError
 from pytpc.base.paths import cmake_file, log_library, plugin
-from pytpc.build import BuildResult, workspace_env
+from pytpc.build.build import BuildResult, workspace_env
 from pytpc.demo import FIRST, TreatedMission, failures, run_treatment
 from pytpc.demo_examples import IMAGE_CAPTURE
 from pytpc.graph import GRAPH_WORD, RosGraph

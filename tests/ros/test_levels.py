@@ -7,7 +7,7 @@ from pathlib import Path
 
 from conftest import build_example
 
-from pytpc.build import BuildResult
+from pytpc.build.build import BuildResult
 from pytpc.static.static_info import Comparison, PathStep
 
 

@@ -11,7 +11,7 @@ from suite.expectations import Verdict, nodes
 from suite.known import KNOWN
 from suite.report import judge_all
 
-from pytpc.build import workspace_env
+from pytpc.build.build import workspace_env
 
 SEED = 20
 

@@ -13,7 +13,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
-from pytpc.build import BuildResult, build_workspace
+from pytpc.build.build import BuildResult, build_workspace
 from pytpc.workspace.colcon import build_environment
 from suite.expectations import PACKAGE
 

@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from pytpc.base.errors import RunError
-from pytpc.build import workspace_env
+from pytpc.build.build import workspace_env
 from pytpc.workspace.colcon import build_environment
 from suite.both_ways import Results, Variant, run_all
 from suite.expectations import PYTHON_PACKAGE

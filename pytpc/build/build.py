@@ -1,6 +1,6 @@
 """Building a workspace with TPC: colcon, with tpc.cmake as the toolchain, in bases of its own.
 
-``build_workspace`` does it all; ``pytpc.workspace.colcon`` runs the tool, ``pytpc.reconcile`` says what of
+``build_workspace`` does it all; ``pytpc.workspace.colcon`` runs the tool, ``pytpc.build.reconcile`` says what of
 the build was analysed.
 """
 
@@ -26,12 +26,12 @@ from pytpc.base.paths import (
     require_ros,
     require_tools,
 )
-from pytpc.collecting import find_copies
-from pytpc.left_alone import LeftAlone
+from pytpc.build.collect import find_copies
+from pytpc.build.fallback import LeftAlone
+from pytpc.build.python_nodes import python_of_build
+from pytpc.build.python_units import names_of
+from pytpc.build.reconcile import left_out_units, stale_files
 from pytpc.python_analysis.rules_file import Rules, load_rules
-from pytpc.python_build import python_of_build
-from pytpc.python_units import names_of
-from pytpc.reconcile import left_out_units, stale_files
 from pytpc.static.rules import check_rules
 from pytpc.static.static_info import (
     LeftOut,
@@ -339,7 +339,7 @@ def _drop_stale(folders: Iterable[Path]) -> None:
 
 
 def _compiled(folder: Path) -> list[Path]:
-    """The files of what CMake links; those of scripts are `pytpc.python_build`'s."""
+    """The files of what CMake links; those of scripts are `pytpc.build.python_nodes`'s."""
     return [path for path in unit_files(folder) if not is_python_file(path)]
 
 

@@ -12,9 +12,9 @@ from pathlib import Path
 
 from pytpc.base.errors import WorkspaceError
 from pytpc.base.paths import OWN_FOLDER
-from pytpc.python_units import PythonUnits, named_beside, names_of
-from pytpc.reconcile import build_folders, known_targets, left_out_units, target_names
-from pytpc.stale import (
+from pytpc.build.python_units import PythonUnits, named_beside, names_of
+from pytpc.build.reconcile import build_folders, known_targets, left_out_units, target_names
+from pytpc.build.stale import (
     BuiltTarget,
     Stale,
     UnitFile,
@@ -50,7 +50,7 @@ def collect_sources(
             in both, the later one counts.
         on_progress: called with (files read, files in all).
         python: what takes the place of all Python units of its folders; see
-            `pytpc.python_units.analyse_workspaces`.
+            `pytpc.build.python_units.analyse_workspaces`.
 
     Raises:
         InputError: no such folder, a file that is broken, or a key that occurs twice.

@@ -17,8 +17,8 @@ from pathlib import Path
 from pytpc.base.atomic import write_atomic
 from pytpc.base.checked_json import dump_json, parse_json
 from pytpc.base.errors import InputError
+from pytpc.build.python_units import PythonUnits, analysis_files
 from pytpc.python_analysis.rules_file import Rules
-from pytpc.python_units import PythonUnits, analysis_files
 from pytpc.static.link_unit import LeftOut, LinkUnit
 from pytpc.static.static_info import python_unit_file
 

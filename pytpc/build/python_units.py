@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from itertools import count
 from pathlib import Path
 
+import pytpc
 from pytpc.base.atomic import write_atomic
 from pytpc.base.checked_json import dump_json
 from pytpc.base.errors import InputError
@@ -24,7 +25,12 @@ from pytpc.static.static_info import python_unit_file
 from pytpc.workspace.packages import package_folders
 
 Name = tuple[str, str]
-_USED_BY_ANALYSIS = ("arithmetic.py", "cmake_syntax.py", "link_unit.py", "workspace.py")
+_USED_BY_ANALYSIS = (
+    "static/arithmetic.py",
+    "static/link_unit.py",
+    "workspace/cmake_syntax.py",
+    "workspace/packages.py",
+)
 _TEST_FOLDERS = frozenset({"test", "tests"})
 _PRODUCTS = frozenset({"build", "devel", "install", "log", "__pycache__", "node_modules"})
 
@@ -129,8 +135,8 @@ def analyse_scripts(
 
 def analysis_files() -> list[Path]:
     """The files that the analysis consists of, sorted: as they change, its results may."""
-    own = Path(__file__).parent
-    found = (path for end in ("*.py", "*.json") for path in (own / "pynodes").rglob(end))
+    own = Path(pytpc.__file__).parent
+    found = (path for end in ("*.py", "*.json") for path in (own / "python_analysis").rglob(end))
     return sorted([Path(__file__), *(own / name for name in _USED_BY_ANALYSIS), *found])
 
 

@@ -15,7 +15,7 @@ from pathlib import Path
 from pytpc.base.atomic import write_atomic
 from pytpc.base.checked_json import dump_json, parse_json
 from pytpc.base.errors import InputError
-from pytpc.build_faults import first_error
+from pytpc.build.faults import first_error
 from pytpc.workspace.colcon import Bases, BuildError
 from pytpc.workspace.packages import Package
 

@@ -1,6 +1,6 @@
 """The Python nodes of a workspace that is built: analysed, written beside what C++ has, and read.
 
-``pytpc.python_units`` says how; this says which, and what of an earlier build still holds.
+``pytpc.build.python_units`` says how; this says which, and what of an earlier build still holds.
 """
 
 from __future__ import annotations
@@ -8,9 +8,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 
-from pytpc.python_analysis.rules_file import Rules
-from pytpc.python_kept import KEPT_FILE, digest_of, load_kept, save_kept
-from pytpc.python_units import (
+from pytpc.build.python_kept import KEPT_FILE, digest_of, load_kept, save_kept
+from pytpc.build.python_units import (
     Name,
     PythonUnits,
     analyse_scripts,
@@ -18,7 +17,8 @@ from pytpc.python_units import (
     scripts_of,
     write_units,
 )
-from pytpc.reconcile import target_names
+from pytpc.build.reconcile import target_names
+from pytpc.python_analysis.rules_file import Rules
 from pytpc.static.link_unit import LinkUnit
 from pytpc.static.static_info import is_python_file, load_link_unit, python_unit_file, unit_files
 from pytpc.workspace.packages import Package

@@ -1,0 +1,1 @@
+"""Builds a workspace with TPC and gathers what the analysis found."""
