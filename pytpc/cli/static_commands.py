@@ -28,12 +28,12 @@ from pytpc.cli.console import (
 )
 from pytpc.cli.explain_commands import print_why_not
 from pytpc.cli.sources import PATH, SOURCES, static_of, tell_dropped
-from pytpc.condition_lookup import look_up_conditions
-from pytpc.conditions import lines_of
-from pytpc.details import Details, details
+from pytpc.conditions.cpp_conditions import lines_of
+from pytpc.conditions.lookup import look_up_conditions
+from pytpc.conditions.sarif import sarif_log
+from pytpc.conditions.tpc_details import Details, details
 from pytpc.python_analysis.rules_file import load_rules
 from pytpc.report.catalogue import write_catalogue
-from pytpc.sarif import sarif_log
 from pytpc.static.explanations import Explanation, look_up, why_no_comparison
 from pytpc.static.places import Tpc
 from pytpc.static.selection import ORDERS, Selection, select

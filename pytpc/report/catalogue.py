@@ -14,7 +14,7 @@ from itertools import groupby
 from pathlib import Path
 
 from pytpc.base.atomic import write_atomic
-from pytpc.details import Details
+from pytpc.conditions.tpc_details import Details
 from pytpc.report.environment import environment
 from pytpc.report.source import LONGEST_LINE, StepView, read_lines, way_of
 from pytpc.static.static_info import StaticInfo

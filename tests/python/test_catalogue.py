@@ -10,9 +10,9 @@ from typing import Any
 import pytest
 from static_units import KEYS, comparison, failed_unit, step, unit
 
-from pytpc.condition_lookup import Answer
-from pytpc.conditions import Condition, Macro
-from pytpc.details import details
+from pytpc.conditions.cpp_conditions import Condition, Macro
+from pytpc.conditions.lookup import Answer
+from pytpc.conditions.tpc_details import details
 from pytpc.report.catalogue import render
 from pytpc.static.static_info import LinkUnit, StaticInfo
 

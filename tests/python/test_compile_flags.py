@@ -8,7 +8,7 @@ import pytest
 from file_api import reply, target
 from static_units import unit
 
-from pytpc.compile_flags import flags_for, meaningful
+from pytpc.conditions.compile_flags import flags_for, meaningful
 from pytpc.static.static_info import LinkUnit
 
 ROOT = "/ws/src/face"

@@ -9,8 +9,10 @@ from typing import Any
 import pytest
 from static_units import KEYS, comparison, unit
 
-from pytpc import condition_lookup, conditions
-from pytpc.condition_lookup import (
+from pytpc.conditions import cpp_conditions as conditions
+from pytpc.conditions import lookup as condition_lookup
+from pytpc.conditions.cpp_conditions import libclang
+from pytpc.conditions.lookup import (
     CHANGED,
     GONE,
     NEWER,
@@ -19,8 +21,7 @@ from pytpc.condition_lookup import (
     WITHOUT_FLAGS,
     Answer,
 )
-from pytpc.condition_lookup import look_up_conditions as look_up
-from pytpc.conditions import libclang
+from pytpc.conditions.lookup import look_up_conditions as look_up
 from pytpc.static.static_info import LinkUnit, StaticInfo
 
 pytestmark = pytest.mark.skipif(not libclang(), reason="libclang 19 is not installed")

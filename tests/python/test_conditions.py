@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from pytpc.conditions import Condition, libclang, lines_of, parse_conditions
+from pytpc.conditions.cpp_conditions import Condition, libclang, lines_of, parse_conditions
 
 SOURCE = Path(__file__).with_name("conditions.cpp")
 LINES = SOURCE.read_text(encoding="utf-8").split("\n")

@@ -6,8 +6,8 @@ from typing import Any
 import pytest
 from static_units import KEYS, comparison, unit
 
-from pytpc.condition_lookup import Answer
-from pytpc.details import Exposed, details, in_words, shown_default
+from pytpc.conditions.lookup import Answer
+from pytpc.conditions.tpc_details import Exposed, details, in_words, shown_default
 from pytpc.static.static_info import LinkUnit, StaticInfo, Transform
 
 

@@ -5,11 +5,11 @@ from pathlib import Path
 import pytest
 from mixed_workspace import make_mixed
 
-from pytpc import condition_lookup
 from pytpc.build.python_units import analyse_scripts, scripts_at
-from pytpc.condition_lookup import CHANGED, GONE, NOT_IN_PYTHON, look_up_conditions
+from pytpc.conditions import lookup as condition_lookup
+from pytpc.conditions.lookup import CHANGED, GONE, NOT_IN_PYTHON, look_up_conditions
+from pytpc.conditions.python_conditions import PythonSource
 from pytpc.python_analysis.rules_file import load_rules
-from pytpc.python_conditions import PythonSource
 from pytpc.static.static_info import StaticInfo
 
 # The comparison, which stands between the marks, and the kind and text of the condition.

@@ -8,10 +8,10 @@ from typing import Any
 from jsonschema import Draft4Validator
 from static_units import KEYS, comparison, failed_unit, step, unit
 
-from pytpc.condition_lookup import Answer
-from pytpc.conditions import Condition
-from pytpc.details import details
-from pytpc.sarif import sarif_log
+from pytpc.conditions.cpp_conditions import Condition
+from pytpc.conditions.lookup import Answer
+from pytpc.conditions.sarif import sarif_log
+from pytpc.conditions.tpc_details import details
 from pytpc.static.static_info import LinkUnit, StaticInfo
 
 TRANSFORM = {"kind": "affine", "scale": 2.0, "offset": 0.0, "text": "x * 2"}

@@ -11,8 +11,8 @@ from pytpc.base.errors import MissingToolError
 from pytpc.base.paths import cmake_file, log_library, plugin, require_ros, require_tools
 from pytpc.build.build import BuildResult, build_workspace
 from pytpc.build.collect import collect_sources
-from pytpc.condition_lookup import look_up_conditions
-from pytpc.conditions import libclang
+from pytpc.conditions.cpp_conditions import libclang
+from pytpc.conditions.lookup import look_up_conditions
 from pytpc.static.places import Tpc
 
 try:

@@ -16,9 +16,16 @@ from typing import Any
 from pytpc.base.atomic import write_atomic
 from pytpc.base.errors import InputError, TpcError
 from pytpc.build.reconcile import recorded_units
-from pytpc.compile_flags import Flags, flags_for
-from pytpc.conditions import Condition, Macro, Parsed, libclang, parse_conditions, precompile
-from pytpc.python_conditions import PythonSource
+from pytpc.conditions.compile_flags import Flags, flags_for
+from pytpc.conditions.cpp_conditions import (
+    Condition,
+    Macro,
+    Parsed,
+    libclang,
+    parse_conditions,
+    precompile,
+)
+from pytpc.conditions.python_conditions import PythonSource
 from pytpc.static.link_unit import LinkUnit
 from pytpc.static.places import Tpc
 from pytpc.static.static_info import StaticInfo, python_unit_file

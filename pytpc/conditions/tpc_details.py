@@ -7,8 +7,8 @@ from dataclasses import asdict, dataclass
 from typing import TypeVar
 
 from pytpc.base.wording import exact
-from pytpc.condition_lookup import Answer
-from pytpc.conditions import Condition
+from pytpc.conditions.cpp_conditions import Condition
+from pytpc.conditions.lookup import Answer
 from pytpc.static.places import Tpc
 from pytpc.static.static_info import Comparison, Default, LinkUnit, StaticInfo, Transform
 

@@ -14,7 +14,7 @@ from typing import Any
 from urllib.parse import quote
 
 from pytpc.base.source_bytes import source_bytes
-from pytpc.details import Details
+from pytpc.conditions.tpc_details import Details
 from pytpc.static.link_unit import LinkUnit, PathStep
 from pytpc.static.static_info import StaticInfo
 

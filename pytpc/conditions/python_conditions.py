@@ -11,7 +11,7 @@ import re
 import tokenize
 from io import BytesIO
 
-from pytpc.conditions import Condition
+from pytpc.conditions.cpp_conditions import Condition
 
 # Line and column where it begins and behind its last character, from 1; columns count bytes in
 # UTF-8. The end is None where it is not known.
