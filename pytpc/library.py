@@ -25,7 +25,6 @@ from pytpc.advice.declared import Declared, declared_in
 from pytpc.advice.joining import with_remedies
 from pytpc.base.errors import InputError
 from pytpc.base.wording import Number
-from pytpc.changes import Change
 from pytpc.ingest import Recording
 from pytpc.ingest import read as read_recording
 from pytpc.notebook import StudyTable, Table
@@ -41,6 +40,7 @@ from pytpc.stats.missions import load_missions
 from pytpc.stats.study import NUMBERS
 from pytpc.stats.study import study_tables as tables_of_study
 from pytpc.treatment import TREATMENT_FILE, load_treatment
+from pytpc.values.changes import Change
 from pytpc.values.origins import read_origins
 
 __all__ = ["Advices", "Change", "Diagnosed", "Rankings", "StudyTable", "curves", "diagnose"]
@@ -204,7 +204,7 @@ def diagnose(
         types: with ``ignore`` what the marks say of the type does not count.
         reference: a mission of the same build that went right.
         changes: what was changed since it went right, empty where that is not known; see
-            `pytpc.changes.read_changes` and `pytpc.changes.changes_between`.
+            `pytpc.values.changes.read_changes` and `pytpc.values.changes.changes_between`.
         top: for how many suspects there is a value to try.
 
     Raises:

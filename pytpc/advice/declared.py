@@ -13,12 +13,12 @@ from dataclasses import replace
 from pathlib import Path
 
 from pytpc.advice.blame import Accused
-from pytpc.advice.declared_cfg import read_cfg
 from pytpc.ingest.declared_bag import is_bag, read_bag
 from pytpc.recording.declaration import Declared
 from pytpc.scoring.ranking import Suspect
 from pytpc.static.parameters import same_parameter
 from pytpc.static.static_info import StaticInfo
+from pytpc.values.declared_cfg import read_cfg
 
 __all__ = ["Declared", "declared_for", "declared_in", "read_declared"]
 

@@ -14,7 +14,6 @@ from pytpc.advice.blamed import BlamedAdvice, advise_blamed
 from pytpc.advice.declared import Declared
 from pytpc.base.errors import InputError
 from pytpc.base.wording import plain
-from pytpc.changes import Change, changes_between, read_changes
 from pytpc.cli.console import warn
 from pytpc.cli.options import PATH, check_reports, recording_of
 from pytpc.ingest import Recording
@@ -23,6 +22,7 @@ from pytpc.scoring.ranking import Types
 from pytpc.scoring.tables import Tpcs
 from pytpc.static.parameters import same_parameter
 from pytpc.static.static_info import StaticInfo
+from pytpc.values.changes import Change, changes_between, read_changes
 
 Score = Literal["tpc", "thesis"]
 Command = TypeVar("Command", bound=Callable[..., object])

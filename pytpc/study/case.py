@@ -9,9 +9,9 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from pytpc.changes import Change
 from pytpc.recording.mission import Recording
 from pytpc.static.static_info import StaticInfo
+from pytpc.values.changes import Change
 
 
 @dataclass(frozen=True)

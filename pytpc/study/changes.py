@@ -16,9 +16,9 @@ from pathlib import Path
 from pytpc.base.atomic import write_atomic
 from pytpc.base.checked_json import parse_json
 from pytpc.base.errors import InputError
-from pytpc.changes import Change
 from pytpc.demo_examples import Example
 from pytpc.treatment import Treatment
+from pytpc.values.changes import Change
 from pytpc.values.recording import read_parameters
 
 CHANGES_FILE = "changes.json"

@@ -13,7 +13,6 @@ import pyarrow as pa
 from pytpc.base.checked_json import parse_json
 from pytpc.base.columns import read_table
 from pytpc.base.errors import InputError, TpcError
-from pytpc.changes import Change, read_changes
 from pytpc.recording.marks import MARK_TYPES, Mark, MarkType
 from pytpc.recording.mission import Recording, load_recording
 from pytpc.static.static_info import StaticInfo
@@ -22,6 +21,7 @@ from pytpc.study.changes import CHANGES_FILE
 from pytpc.study.dataset import DONE_FILE, MARKED_FILE, STUDY_FILE
 from pytpc.study.plan import Half
 from pytpc.treatment import TREATMENT_FILE
+from pytpc.values.changes import Change, read_changes
 
 Labels = Literal["typed", "untyped", "confused"]
 LABELS: tuple[Labels, ...] = get_args(Labels)

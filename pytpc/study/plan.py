@@ -14,10 +14,10 @@ from pathlib import Path
 from typing import Literal
 
 from pytpc.base.errors import InputError
-from pytpc.changes import Change
 from pytpc.demo_examples import EXAMPLES, Example
 from pytpc.study.changes import drawn_changes, harmless_changes
 from pytpc.treatment import Treatment
+from pytpc.values.changes import Change
 from pytpc.values.recording import read_parameters
 from pytpc.values.scalars import number_text
 

@@ -11,13 +11,13 @@ from mission_samples import comparison, events, key, ns, static_info
 from pytpc.advice.blame import Accused, Blame, blame
 from pytpc.advice.blamed import advise_blamed
 from pytpc.base.wording import percent
-from pytpc.changes import Change
 from pytpc.ingest import Recording
 from pytpc.recording.marks import Mark
 from pytpc.recording.summaries import Summary, SummaryBuilder
 from pytpc.scoring.evidence import Evaluation
 from pytpc.study.case import Case
 from pytpc.study.methods import METHODS
+from pytpc.values.changes import Change
 
 STATIC = static_info(comparison(0, "~gate"), comparison(1, "~safe"), comparison(2, "~never"))
 MARKS = (Mark(ns(33), "I", "ana"), Mark(ns(34), "I", "bob"))

@@ -8,7 +8,7 @@ import math
 import pytest
 
 from pytpc.base.errors import InputError
-from pytpc.changes import Change, changes_between, read_changes
+from pytpc.values.changes import Change, changes_between, read_changes
 
 
 def test_a_history(tmp_path):

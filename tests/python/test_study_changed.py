@@ -9,10 +9,10 @@ from mission_samples import ns
 from study_pages import row_of
 from study_samples import EVENTS, STATIC
 
-from pytpc.changes import Change
 from pytpc.recording.mission import Recording
 from pytpc.study.report.changed import turned
 from pytpc.study.report.making import make_report
+from pytpc.values.changes import Change
 
 RECORDING = Recording("m", EVENTS, (), 0, ns(20))
 NODE = EVENTS.nodes[0]

@@ -10,7 +10,6 @@ import pytest
 from mission_samples import comparison, events, ns, static_info
 
 from pytpc.base.errors import InputError
-from pytpc.changes import Change
 from pytpc.ingest import Recording, save_recording
 from pytpc.recording.marks import Mark
 from pytpc.scoring.diagnosis import REASONED, diagnose
@@ -28,6 +27,7 @@ from pytpc.study.methods.plain import (
     turned_decisions,
 )
 from pytpc.study.methods.thesis import thesis, thesis_doubt
+from pytpc.values.changes import Change
 
 STATIC = static_info(
     comparison(0, "~a"), comparison(1, "~b"), comparison(2, "~c"), comparison(3, "~never")

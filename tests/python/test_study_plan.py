@@ -11,7 +11,6 @@ import pytest
 from study_flights import robot, treatment
 
 from pytpc.base.errors import InputError
-from pytpc.changes import Change
 from pytpc.demo_examples import EXAMPLES, Example
 from pytpc.study.changes import DECOYS, drawn_changes, harmless_changes, save_changes
 from pytpc.study.plan import (
@@ -23,6 +22,7 @@ from pytpc.study.plan import (
     halves,
     overlay_text,
 )
+from pytpc.values.changes import Change
 from pytpc.values.recording import read_parameters
 
 AMONG = {Change(f"~{name}", "/pump", 2.0, 5.0): frozenset[str]() for name in "abcdefghijk"}

@@ -12,7 +12,6 @@ from click.testing import CliRunner, Result
 
 from pytpc.base.errors import MissingToolError
 from pytpc.base.paths import cmake_file, log_library, plugin
-from pytpc.changes import Change
 from pytpc.cli.main import main
 from pytpc.demo_examples import WATER_SAMPLER
 from pytpc.demo_show import Built
@@ -21,6 +20,7 @@ from pytpc.scoring.ranking import unknown_keys
 from pytpc.static.static_info import StaticInfo
 from pytpc.study.changes import DECOYS
 from pytpc.treatment import load_treatment
+from pytpc.values.changes import Change
 from pytpc.values.recording import read_parameters
 
 # Of simulated time; a machine that cannot keep up is slower, and flies the same.

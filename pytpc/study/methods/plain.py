@@ -8,10 +8,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from pytpc.advice.other_values import turned_by_clean_run
-from pytpc.changes import Change
 from pytpc.scoring.tables import Tpcs
 from pytpc.static.parameters import same_parameter
 from pytpc.study.case import Case, Verdict
+from pytpc.values.changes import Change
 
 
 def recent_change(case: Case) -> Verdict:

@@ -17,11 +17,11 @@ import numpy as np
 from pytpc.advice.replay import tracks_of
 from pytpc.base.errors import InputError
 from pytpc.base.tables import Cell, Column, Table
-from pytpc.changes import Change
 from pytpc.recording.mission import Recording
 from pytpc.static.parameters import same_parameter
 from pytpc.static.static_info import StaticInfo
 from pytpc.study.report.folder import Flight, Progress, System
+from pytpc.values.changes import Change
 
 
 @dataclass(frozen=True, slots=True)

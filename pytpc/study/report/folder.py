@@ -15,7 +15,6 @@ from typing import Any
 from pytpc.base.checked_json import parse_json
 from pytpc.base.errors import InputError, TpcError
 from pytpc.base.wording import many
-from pytpc.changes import Change, read_changes
 from pytpc.recording.marks import Mark
 from pytpc.source_lines import count_lines
 from pytpc.static.parameters import parameter_name, same_parameter
@@ -26,6 +25,7 @@ from pytpc.study.data import MISSIONS, user_marks
 from pytpc.study.dataset import CAUSES_FILE, DONE_FILE, MARKED_FILE, STUDY_FILE, load_causes
 from pytpc.study.plan import Half
 from pytpc.treatment import Treatment
+from pytpc.values.changes import Change, read_changes
 
 HALVES: tuple[Half, ...] = ("held-back", "tuning")
 UNKNOWN = "unknown"
