@@ -25,8 +25,8 @@ from figures import figure
 from rosbags.rosbag1 import Reader
 
 from pytpc.base.paths import prefix, project_root
-from pytpc.graph import GraphProcess, RosGraph
 from pytpc.ingest.ros1 import decode_log, decode_string
+from pytpc.ros.graph import GraphProcess, RosGraph
 
 SOURCES = project_root() / "tests" / "ros" / "sinks"
 TOPIC = "runtime-cost"
@@ -82,7 +82,7 @@ def in_bag(path: Path) -> int:
 def started_recorder(graph: RosGraph, folder: Path) -> GraphProcess:
     """The recorder, when it is registered."""
     status = folder / "status.json"
-    command = [sys.executable, "-m", "pytpc.recorder", "--bag", str(folder / "all.bag")]
+    command = [sys.executable, "-m", "pytpc.ros.ros1.recorder", "--bag", str(folder / "all.bag")]
     path = ":".join(part for part in (str(project_root()), os.environ.get("PYTHONPATH")) if part)
     recorder = graph.start(
         "recorder",

@@ -24,8 +24,8 @@ from figures import figure
 
 from pytpc.build.build import build_workspace, workspace_env
 from pytpc.demo_examples import IMAGE_CAPTURE, link_package
-from pytpc.graph import GRAPH_WORD
-from pytpc.mission import MissionRun, Progress, run_mission
+from pytpc.ros.graph import GRAPH_WORD
+from pytpc.ros.run_mission import MissionRun, Progress, run_mission
 
 TOPIC = "runtime-cost"
 ROUNDS = 5

@@ -22,8 +22,8 @@ from pytpc.cli.console import progress
 from pytpc.cli.mission_commands import mission_progress
 from pytpc.demo import TreatedMission, failures, result_table, run_treatment
 from pytpc.demo_examples import Example, link_package
-from pytpc.python_env import mission_env
 from pytpc.report.html import write_report
+from pytpc.ros.python_env import mission_env
 from pytpc.static.static_info import StaticInfo
 from pytpc.treatment import Treatment
 from pytpc.workspace.colcon import BuildError

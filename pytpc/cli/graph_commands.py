@@ -10,12 +10,12 @@ import click
 from rich.table import Table
 from rich.text import Text
 
-from pytpc import relay
 from pytpc.base.errors import RunError
 from pytpc.base.wording import many, plain
 from pytpc.cli.console import console, progress, warn
 from pytpc.python_runtime.config import POLICIES, SINKS
-from pytpc.runtime_control import Graph, NodeStatus, Value, chosen
+from pytpc.ros.ros1 import relay
+from pytpc.ros.ros1.runtime_settings import Graph, NodeStatus, Value, chosen
 
 _COUNT = click.IntRange(min=0, max=(1 << 31) - 1)
 _MASTER = "http://localhost:11311"

@@ -14,11 +14,11 @@ from pytpc.base.wording import many, plain
 from pytpc.cli.console import warn
 from pytpc.cli.options import recording_of
 from pytpc.ingest import Recording
-from pytpc.marking.graph import GraphMarks
 from pytpc.marking.terminal import Mission, Paint, RecordedMission, paint_marks, run
 from pytpc.recording.marking_session import Session
 from pytpc.recording.marks import marks_beside
 from pytpc.recording.marks_file import MarksFile
+from pytpc.ros.marking import GraphMarks
 
 _PATH = click.Path(path_type=Path)
 _NAMESPACE = re.compile(r"[A-Za-z]\w*(/[A-Za-z]\w*)*", re.ASCII)

@@ -11,16 +11,16 @@ from pathlib import Path
 import click
 from rich.console import Console
 
-from pytpc.attached import master_of, record_graph, stop_on_signals
 from pytpc.base.errors import InputError
 from pytpc.base.wording import many
 from pytpc.build.build import installed, workspace_env
 from pytpc.complaints import complaints
 from pytpc.ingest.reading import opened
-from pytpc.mission import DEFAULT_TOPICS, MissionRun, Progress, run_mission
-from pytpc.python_env import mission_env
 from pytpc.python_runtime.config import NAMES
 from pytpc.recording.mission import REPORTS_FOLDER
+from pytpc.ros.attached import master_of, record_graph, stop_on_signals
+from pytpc.ros.python_env import mission_env
+from pytpc.ros.run_mission import DEFAULT_TOPICS, MissionRun, Progress, run_mission
 from pytpc.workspace.colcon import Bases
 
 _PATH = click.Path(path_type=Path)

@@ -17,7 +17,7 @@ from pytpc.base.wording import plain
 from pytpc.cli.console import warn
 from pytpc.cli.options import PATH, check_reports, recording_of
 from pytpc.ingest import Recording
-from pytpc.mission import PARAMS_FILE
+from pytpc.ros.run_mission import PARAMS_FILE
 from pytpc.scoring.ranking import Types
 from pytpc.scoring.tables import Tpcs
 from pytpc.static.parameters import same_parameter

@@ -20,7 +20,7 @@ from rich.text import Text
 
 from pytpc.base.wording import many, plain
 from pytpc.demo_examples import Example
-from pytpc.mission import Progress
+from pytpc.ros.run_mission import Progress
 from pytpc.study.plan import Flight
 from pytpc.study.run import Result
 from pytpc.workspace.colcon import BuildError

@@ -13,14 +13,15 @@ import click
 from rich.table import Table
 from rich.text import Text
 
-from pytpc.attached import master_of
 from pytpc.base.errors import InputError
 from pytpc.base.wording import plain
 from pytpc.build.build import installed, workspace_env
 from pytpc.cli.console import console, progress, warn
+from pytpc.ros.attached import master_of
+from pytpc.ros.ros1.live_values import LiveChange, Robot
+from pytpc.ros.undo import entry_of, set_live, take_back
 from pytpc.values.apply import Change, apply_change, change_as_json, diff_of, shown
 from pytpc.values.journal import Entry, Journal, folder_of
-from pytpc.values.live import LiveChange, Robot
 from pytpc.values.origins import Origin, as_json, to_json
 from pytpc.values.target import (
     Target,
@@ -31,7 +32,6 @@ from pytpc.values.target import (
     plan_yaml,
     read_target,
 )
-from pytpc.values.undo import entry_of, set_live, take_back
 
 _LONGEST = 60
 _PATH = click.Path(path_type=Path)

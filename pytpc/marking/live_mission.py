@@ -24,8 +24,8 @@ from pytpc.marking.watching import KeptRankings, Look, Seen, Watching
 from pytpc.recording.marking_session import Change, Session, View
 from pytpc.recording.mission import Recording
 from pytpc.recording.summaries import Summary
-from pytpc.relay import ROSOUT, TOPIC
-from pytpc.tcpros import RawSubscriber, own_host
+from pytpc.ros.ros1.relay import ROSOUT, TOPIC
+from pytpc.ros.ros1.tcpros import RawSubscriber, own_host
 
 _LOOK_S = 1.0
 _POLL_S = 0.2

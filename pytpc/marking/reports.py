@@ -19,10 +19,10 @@ from pytpc.ingest.rosout_line import (
     parse_stamped_other,
 )
 from pytpc.marking.watching import Seen
-from pytpc.recorder import BatchCounter, LossCounter
 from pytpc.recording.summaries import Summary
-from pytpc.relay import ROSOUT, line_of
-from pytpc.tcpros import Source
+from pytpc.ros.ros1.recorder import BatchCounter, LossCounter
+from pytpc.ros.ros1.relay import ROSOUT, line_of
+from pytpc.ros.ros1.tcpros import Source
 
 Item = Seen | Summary
 

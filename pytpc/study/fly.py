@@ -11,7 +11,6 @@ from pathlib import Path
 from pytpc.base.atomic import write_atomic
 from pytpc.base.errors import InputError, RunError, TpcError
 from pytpc.ingest.reading import read
-from pytpc.mission import Progress, run_mission
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import (
     EVENTS_FILE,
@@ -22,6 +21,7 @@ from pytpc.recording.mission import (
     save_recording,
     write_marks,
 )
+from pytpc.ros.run_mission import Progress, run_mission
 from pytpc.study.changes import CHANGES_FILE, save_changes
 from pytpc.study.dataset import (
     CAUSES_FILE,

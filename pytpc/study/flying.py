@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Protocol
 
 from pytpc.demo_examples import EXAMPLES, Example
-from pytpc.mission import Progress
+from pytpc.ros.run_mission import Progress
 from pytpc.study.dataset import StudyFile
 from pytpc.study.digest import people_digest
 from pytpc.study.fly import Flier

@@ -11,7 +11,7 @@ from typing import Protocol
 
 from pytpc.base.errors import TpcError
 from pytpc.base.signals import signals_end
-from pytpc.mission import Progress
+from pytpc.ros.run_mission import Progress
 from pytpc.study.dataset import Done
 from pytpc.study.plan import Flight
 

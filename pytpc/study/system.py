@@ -14,7 +14,7 @@ from pytpc.base.errors import InputError
 from pytpc.base.paths import MERGED_FILE
 from pytpc.build.build import build_workspace, workspace_env
 from pytpc.demo_examples import Example, link_package
-from pytpc.python_env import mission_env
+from pytpc.ros.python_env import mission_env
 from pytpc.static.static_info import StaticInfo
 from pytpc.study.digest import build_digest, sources_digest, tools_digest
 from pytpc.workspace.colcon import Bases

@@ -11,7 +11,7 @@ import pytest
 from pytpc import demo_examples
 from pytpc.base.errors import RunError
 from pytpc.demo_examples import Example
-from pytpc.mission import Progress
+from pytpc.ros.run_mission import Progress
 from pytpc.study.dataset import Done, load_done, save_done
 from pytpc.study.plan import Flight
 from pytpc.treatment import Treatment, TreatmentType

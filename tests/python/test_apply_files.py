@@ -12,12 +12,12 @@ import pytest
 from launch_samples import MANIFEST, MISSION_PARAMS, needs_roslaunch
 
 from pytpc.base.errors import RunError, TpcError
+from pytpc.ros.ros1.live_values import LiveChange, Robot
+from pytpc.ros.undo import set_live
 from pytpc.values import apply
 from pytpc.values.apply import Change, apply_change, replace_file
 from pytpc.values.installed import is_installed, of_the_system, source_of
 from pytpc.values.journal import Journal, folder_of
-from pytpc.values.live import LiveChange, Robot
-from pytpc.values.undo import set_live
 
 # --- installed copies
 

@@ -19,22 +19,15 @@ from mission_samples import comparison, events, ns, static_info
 from rich.console import Console
 from rosbags.highlevel import AnyReader
 
-from pytpc.attached import record_graph
 from pytpc.base.errors import InputError, RunError
 from pytpc.cli.mission_commands import record_command, sink_settings
 from pytpc.demo import TreatedMission, failures, result_table
 from pytpc.demo_examples import IMAGE_CAPTURE, WATER_SAMPLER, Example
-from pytpc.graph import GraphProcess, RosGraph
 from pytpc.ingest import Recording
-from pytpc.mission import (
-    MissionRun,
-    clear_earlier,
-    launch_command,
-    read_status,
-    run_mission,
-    save_run,
-)
-from pytpc.recorder import (
+from pytpc.recording.marks import Mark
+from pytpc.ros.attached import record_graph
+from pytpc.ros.graph import GraphProcess, RosGraph
+from pytpc.ros.ros1.recorder import (
     BagFile,
     BatchCounter,
     Discovery,
@@ -43,9 +36,16 @@ from pytpc.recorder import (
     Status,
     save_status,
 )
-from pytpc.recording.marks import Mark
+from pytpc.ros.ros1.tcpros import Source
+from pytpc.ros.run_mission import (
+    MissionRun,
+    clear_earlier,
+    launch_command,
+    read_status,
+    run_mission,
+    save_run,
+)
 from pytpc.scoring.ranking import rank_marks
-from pytpc.tcpros import Source
 from pytpc.treatment import Treatment, load_treatment
 
 TREATMENTS = [

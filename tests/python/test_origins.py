@@ -10,9 +10,9 @@ import pytest
 from click.testing import CliRunner
 from launch_samples import environment, make_package, needs_roslaunch
 
-from pytpc import attached
 from pytpc.base.errors import InputError
 from pytpc.cli.main import main
+from pytpc.ros import attached
 from pytpc.values import recording
 from pytpc.values.origins import (
     ORIGINS_FILE,

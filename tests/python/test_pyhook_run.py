@@ -14,8 +14,8 @@ from click.testing import CliRunner
 
 from pytpc.cli.main import main
 from pytpc.ingest import read
-from pytpc.node_program import command_of, interpreter_of
 from pytpc.python_runtime.listed import names_script, read_table
+from pytpc.ros.node_program import command_of, interpreter_of
 
 ROOT = Path(__file__).parents[2]
 RUN = [sys.executable, str(ROOT / "pytpc/python_runtime/run.py")]

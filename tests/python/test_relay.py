@@ -7,7 +7,7 @@ import struct
 import pytest
 
 from pytpc.base.errors import RunError
-from pytpc.relay import MasterWatch, Relay, line_of
+from pytpc.ros.ros1.relay import MasterWatch, Relay, line_of
 
 KEY = "0d3f2c1e-0000-5000-8000-000000000001"
 

@@ -11,8 +11,8 @@ from xmlrpc.server import SimpleXMLRPCRequestHandler, SimpleXMLRPCServer
 import pytest
 
 from pytpc.base.errors import RunError
-from pytpc.runtime_control import Graph, chosen, values_of
-from pytpc.tcpros import encode_header
+from pytpc.ros.ros1.runtime_settings import Graph, chosen, values_of
+from pytpc.ros.ros1.tcpros import encode_header
 
 HOST = "127.0.0.1"
 

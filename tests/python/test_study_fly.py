@@ -14,9 +14,9 @@ from study_flights import robot
 
 from pytpc import demo_examples
 from pytpc.base.errors import RunError
-from pytpc.mission import MissionRun
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording, load_recording
+from pytpc.ros.run_mission import MissionRun
 from pytpc.study import digest, fly, people
 from pytpc.study.dataset import Cause, load_done
 from pytpc.study.fly import Flier, remarks_of

@@ -19,7 +19,7 @@ from study_flights import FakeFlier, made, robot
 from pytpc.cli import study_commands
 from pytpc.cli.main import main
 from pytpc.cli.study_progress import StudyProgress, result_line
-from pytpc.mission import Progress
+from pytpc.ros.run_mission import Progress
 from pytpc.study import flying
 from pytpc.study.dataset import StudyFile, load_causes, load_done, save_done
 from pytpc.study.plan import Flight, flights_of

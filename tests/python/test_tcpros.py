@@ -16,7 +16,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pytpc.base.errors import RunError
-from pytpc.tcpros import Frames, RawSubscriber, decode_header, encode_header
+from pytpc.ros.ros1.tcpros import Frames, RawSubscriber, decode_header, encode_header
 
 HOST = "127.0.0.1"
 

@@ -10,7 +10,6 @@ from rich.cells import cell_len
 from rich.text import Text
 
 from pytpc.marking.live_mission import GraphFeed, RecordedFeed
-from pytpc.marking.publisher import encode_string
 from pytpc.marking.reports import Reports
 from pytpc.marking.watch_screen import LAYOUTS, Options, Panel, Status, table, watch_screen
 from pytpc.marking.watching import BINS, KeptRankings, Look, Seen, Watching
@@ -18,8 +17,9 @@ from pytpc.recording.marking_session import Change, Session, View
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
 from pytpc.recording.summaries import Summary
+from pytpc.ros.ros1.publisher import encode_string
+from pytpc.ros.ros1.tcpros import Source
 from pytpc.scoring.live import LiveRanking
-from pytpc.tcpros import Source
 
 S = 10**9
 STATIC = static_info(comparison(0, "~speed"), comparison(1, "~limit"), comparison(2, "~gain"))

@@ -15,11 +15,11 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
-from pytpc.attached import record_graph
 from pytpc.base.errors import MissingToolError
 from pytpc.cli.main import main
-from pytpc.graph import RosGraph
-from pytpc.values.live import Robot
+from pytpc.ros.attached import record_graph
+from pytpc.ros.graph import RosGraph
+from pytpc.ros.ros1.live_values import Robot
 from pytpc.values.origins import read_origins
 
 # What dynamic_reconfigure's generator makes of four lines gen.add(...).

@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 from terminals import Terminal, pytpc
 
-from pytpc.graph import GraphProcess, RosGraph
 from pytpc.ingest import read
-from pytpc.marking.publisher import MessageType, RawPublisher, encode_time
 from pytpc.recording.marks import Mark, read_marks
+from pytpc.ros.graph import GraphProcess, RosGraph
+from pytpc.ros.ros1.publisher import MessageType, RawPublisher, encode_time
 
 # The layout is that of std_msgs/Time under another name; rosbag needs the definition.
 CLOCK = MessageType("rosgraph_msgs/Clock", "a9c97c1d230cfc112e270351a944ee47", "time clock\n")

@@ -24,11 +24,11 @@ from click.testing import CliRunner
 from pytpc.base.errors import MissingToolError
 from pytpc.base.paths import log_library, prefix, project_root
 from pytpc.cli.main import main
-from pytpc.graph import GraphProcess, RosGraph
 from pytpc.ingest import read_bag
 from pytpc.ingest.ros1 import decode_log, decode_string
-from pytpc.runtime_control import Graph
-from pytpc.tcpros import RawSubscriber
+from pytpc.ros.graph import GraphProcess, RosGraph
+from pytpc.ros.ros1.runtime_settings import Graph
+from pytpc.ros.ros1.tcpros import RawSubscriber
 
 SOURCES = Path(__file__).parent / "sinks"
 TOPIC = "/threshold_information"
@@ -195,7 +195,7 @@ def test_what_nobody_listens_to_is_kept_up_to_a_bound_and_the_rest_is_counted(gr
 
 def test_slow_killed_and_new_subscribers_do_not_hold_a_node_up(graph, nodes):
     script = (
-        "import sys\nfrom pytpc.tcpros import RawSubscriber\n"
+        "import sys\nfrom pytpc.ros.ros1.tcpros import RawSubscriber\n"
         "s = RawSubscriber(*sys.argv[1:], '127.0.0.1', ['/threshold_information'])\n"
         "while True:\n"
         "    for _ in s.poll(1.0): pass\n"
@@ -496,7 +496,7 @@ def relay(graph: RosGraph) -> GraphProcess:
 def test_relay_passes_on_and_a_bag_of_both_topics_has_each_report_once(graph, nodes, tmp_path):
     passer = relay(graph)
     bag, status = tmp_path / "both.bag", tmp_path / "status.json"
-    command = [sys.executable, "-m", "pytpc.recorder", "--bag", str(bag), "--status", str(status)]
+    command = [sys.executable, "-m", "pytpc.ros.ros1.recorder", "--bag", str(bag), "--status", str(status)]
     path = {"PYTHONPATH": str(project_root())}
     recorder = graph.start("recorder", [*command, "/rosout", TOPIC], env=path, patience_s=15.0)
     until(lambda: status.exists() and json.loads(status.read_text())["ready"])

@@ -15,10 +15,10 @@ import pytest
 from screens import Screen
 from terminals import Terminal, pytpc
 
-from pytpc.graph import RosGraph
-from pytpc.marking.publisher import STRING, MessageType, RawPublisher, encode_string
 from pytpc.recording.marks import read_marks
-from pytpc.tcpros import RawSubscriber
+from pytpc.ros.graph import RosGraph
+from pytpc.ros.ros1.publisher import STRING, MessageType, RawPublisher, encode_string
+from pytpc.ros.ros1.tcpros import RawSubscriber
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "python"))
 from mission_samples import comparison, key, static_info

@@ -27,9 +27,9 @@ import genpy
 from genpy.dynamic import generate_dynamic
 
 from pytpc.base.errors import RunError
-from pytpc.graph import GraphProcess, RosGraph
-from pytpc.recorder import LossCounter
-from pytpc.tcpros import RawSubscriber, Source
+from pytpc.ros.graph import GraphProcess, RosGraph
+from pytpc.ros.ros1.recorder import LossCounter
+from pytpc.ros.ros1.tcpros import RawSubscriber, Source
 from suite.expectations import PACKAGE, load
 
 BATCH = 12

@@ -20,7 +20,7 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from pytpc.base.errors import InputError, RunError
-from pytpc.tcpros import call, decode_header, encode_header, receive
+from pytpc.ros.ros1.tcpros import call, decode_header, encode_header, receive
 from pytpc.values.new_value import Refused, guessed, read_value
 from pytpc.values.scalars import type_of
 

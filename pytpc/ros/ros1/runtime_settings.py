@@ -17,7 +17,7 @@ from urllib.parse import urlsplit
 
 from pytpc.base.errors import RunError
 from pytpc.python_runtime.config import NAMES
-from pytpc.tcpros import call, decode_header, encode_header, receive
+from pytpc.ros.ros1.tcpros import call, decode_header, encode_header, receive
 
 _RELOAD = "/tpc/reload"
 _CALLER = "/tpc_sink"

@@ -7,9 +7,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 from pytpc.base.errors import InputError, RunError, TpcError
+from pytpc.ros.ros1.live_values import LiveChange, Robot
 from pytpc.values.apply import Change, replace_file, shown, undo_change
 from pytpc.values.journal import Entry, Journal
-from pytpc.values.live import LiveChange, Robot
 from pytpc.values.origins import from_json, to_json
 
 

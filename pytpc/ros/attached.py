@@ -11,7 +11,17 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from pytpc.base.errors import MissingToolError, RunError
-from pytpc.mission import (
+from pytpc.recording.mission import RUN_FILE
+from pytpc.ros.ros1.recorder import (
+    NODE_NAME,
+    BagFile,
+    Discovery,
+    Recorder,
+    drain,
+    graph_has_sim_time,
+)
+from pytpc.ros.ros1.tcpros import RawSubscriber, own_host
+from pytpc.ros.run_mission import (
     BAG_FILE,
     DEFAULT_TOPICS,
     PARAMS_FILE,
@@ -21,16 +31,6 @@ from pytpc.mission import (
     marks_of,
     save_run,
 )
-from pytpc.recorder import (
-    NODE_NAME,
-    BagFile,
-    Discovery,
-    Recorder,
-    drain,
-    graph_has_sim_time,
-)
-from pytpc.recording.mission import RUN_FILE
-from pytpc.tcpros import RawSubscriber, own_host
 from pytpc.values.origins import START_FILE
 from pytpc.values.recording import MISSION_PATIENCE_S, NO_LAUNCH, save_origins, try_trace
 from pytpc.values.trace import Trace

@@ -16,8 +16,8 @@ from typing import cast
 from pytpc.base.errors import MissingToolError, RunError
 from pytpc.base.wording import many
 from pytpc.ingest.ros1 import decode_log
-from pytpc.recorder import LossCounter
-from pytpc.tcpros import RawSubscriber, own_host
+from pytpc.ros.ros1.recorder import LossCounter
+from pytpc.ros.ros1.tcpros import RawSubscriber, own_host
 
 ROSOUT = "/rosout"
 TOPIC = "/threshold_information"

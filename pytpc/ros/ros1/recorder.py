@@ -4,7 +4,7 @@ All reports of all nodes go through one topic, thousands in a second. Nothing is
 is not yet read waits in the publishers, whose queues for /rosout have no end. Each node numbers
 its messages on /rosout, so a loss would be seen and is counted.
 
-It runs below ``pytpc.mission``, which reads the status file that it keeps.
+It runs below ``pytpc.ros.run_mission``, which reads the status file that it keeps.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from rosbags.rosbag1 import Writer
 from pytpc.base.errors import RunError
 from pytpc.ingest.rosout_line import Batch, parse_batch
 from pytpc.recording.marks import MarkMessages
-from pytpc.tcpros import RawSubscriber, Source
+from pytpc.ros.ros1.tcpros import RawSubscriber, Source
 
 REPORT = b"threshold_information:"
 NODE_NAME = "/tpc_recorder"
@@ -404,7 +404,7 @@ def drain(subscriber: RawSubscriber, recorder: Recorder) -> None:
 
 
 def main() -> None:
-    """Read the arguments that ``pytpc.mission`` gives."""
+    """Read the arguments that ``pytpc.ros.run_mission`` gives."""
     parser = argparse.ArgumentParser(description="records topics into a bag")
     parser.add_argument("--bag", type=Path, required=True)
     parser.add_argument("--status", type=Path, required=True)

@@ -21,7 +21,7 @@ from http.client import HTTPException
 from xmlrpc.server import SimpleXMLRPCServer
 
 from pytpc.base.errors import RunError
-from pytpc.tcpros import Handler, call, decode_header, encode_header, own_host, receive
+from pytpc.ros.ros1.tcpros import Handler, call, decode_header, encode_header, own_host, receive
 
 _LENGTH = struct.Struct("<I")
 _LARGEST_HEADER = 1 << 20

@@ -18,11 +18,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from pytpc import recorder
 from pytpc.base.atomic import write_atomic
 from pytpc.base.errors import RunError
 from pytpc.base.paths import project_root
-from pytpc.graph import GraphProcess, RosGraph
 from pytpc.recording.marks import marks_beside, topic_of_marks
 from pytpc.recording.mission import (
     EVENTS_FILE,
@@ -31,6 +29,8 @@ from pytpc.recording.mission import (
     RUN_FILE,
     SUMMARIES_FILE,
 )
+from pytpc.ros.graph import GraphProcess, RosGraph
+from pytpc.ros.ros1 import recorder
 from pytpc.values.origins import ORIGINS_FILE, START_FILE
 from pytpc.values.recording import save_origins, try_trace
 from pytpc.values.trace import Trace, name_on_server

@@ -12,14 +12,6 @@ from typing import NamedTuple
 from pytpc.base.errors import RunError
 from pytpc.base.wording import many
 from pytpc.ingest.ros1 import decode_time
-from pytpc.marking.publisher import (
-    STRING,
-    TIME,
-    MessageType,
-    RawPublisher,
-    encode_string,
-    encode_time,
-)
 from pytpc.recording.marking_session import Change, View
 from pytpc.recording.marks import (
     MARK_TYPES,
@@ -30,7 +22,15 @@ from pytpc.recording.marks import (
     topic_for,
     topic_of_observer,
 )
-from pytpc.tcpros import RawSubscriber, own_host
+from pytpc.ros.ros1.publisher import (
+    STRING,
+    TIME,
+    MessageType,
+    RawPublisher,
+    encode_string,
+    encode_time,
+)
+from pytpc.ros.ros1.tcpros import RawSubscriber, own_host
 
 _CLOCK = "/clock"
 _LOOK_S = 1.0
