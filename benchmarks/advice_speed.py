@@ -19,7 +19,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "python")
 from figures import figure
 from mission_samples import comparison, key, static_info
 
-from pytpc.advice.counterfactual import MOST_VALUES, sweep, what_if
+from pytpc.diagnosis.suggestion.what_if import MOST_VALUES, sweep, what_if
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording

@@ -14,15 +14,15 @@ from pathlib import Path
 from rich.table import Table
 from rich.text import Text
 
-from pytpc.advice.suggest import suggest
 from pytpc.base.errors import RunError
 from pytpc.demo_examples import Example
+from pytpc.diagnosis.ranking.ranking import MarkRanking, rank_marks
+from pytpc.diagnosis.suggestion.suggest import suggest
 from pytpc.ingest import Recording, read_bag, save_recording
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import EVENTS_FILE, MARKS_FILE
 from pytpc.report.html import MissionReport
 from pytpc.ros.run_mission import MissionRun, Progress, run_mission
-from pytpc.scoring.ranking import MarkRanking, rank_marks
 from pytpc.static.static_info import StaticInfo
 from pytpc.treatment import Treatment, save_treatment
 

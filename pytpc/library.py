@@ -16,15 +16,18 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import overload
 
-from pytpc.advice.advise import advise
-from pytpc.advice.blame import blame
-from pytpc.advice.blamed import advise_blamed
-from pytpc.advice.counterfactual import WhatIf
-from pytpc.advice.counterfactual import what_if as replay
-from pytpc.advice.declared import Declared, declared_in
-from pytpc.advice.joining import with_remedies
 from pytpc.base.errors import InputError
 from pytpc.base.wording import Number
+from pytpc.diagnosis.ranking.blame import blame
+from pytpc.diagnosis.ranking.ranking import MarkRanking, Types, rank_marks
+from pytpc.diagnosis.scores.curves import STEP_S, RankCurves, rank_curves
+from pytpc.diagnosis.scores.scores import WINDOW_S
+from pytpc.diagnosis.suggestion.advise import advise
+from pytpc.diagnosis.suggestion.blamed import advise_blamed
+from pytpc.diagnosis.suggestion.declared import Declared, declared_in
+from pytpc.diagnosis.suggestion.joining import with_remedies
+from pytpc.diagnosis.suggestion.what_if import WhatIf
+from pytpc.diagnosis.suggestion.what_if import what_if as replay
 from pytpc.ingest import Recording
 from pytpc.ingest import read as read_recording
 from pytpc.notebook import StudyTable, Table
@@ -32,9 +35,6 @@ from pytpc.notebook_answers import Advices, Diagnosed
 from pytpc.recording.marks import Mark, MarkType
 from pytpc.report.html import MissionReport
 from pytpc.report.html import write_report as write_page
-from pytpc.scoring.curves import STEP_S, RankCurves, rank_curves
-from pytpc.scoring.ranking import MarkRanking, Types, rank_marks
-from pytpc.scoring.scores import WINDOW_S
 from pytpc.static.static_info import StaticInfo, read_static
 from pytpc.stats.missions import load_missions
 from pytpc.stats.study import NUMBERS
@@ -55,7 +55,7 @@ _SHOWN = 5
 class Rankings(Sequence[MarkRanking]):
     """The rankings of one mission, one for each mark, in the order of the marks.
 
-    A sequence of `pytpc.scoring.ranking.MarkRanking`; ``recording`` and ``static_info`` are what
+    A sequence of `pytpc.diagnosis.ranking.ranking.MarkRanking`; ``recording`` and ``static_info`` are what
     was ranked, ``source`` where the mission was read from, if it was ranked by its path: what else
     is in its folder is in the report then. ``types`` and ``window_s`` are what it was ranked with,
     and what is made of it uses them, too. ``table`` has the first suspects of each mark.

@@ -7,19 +7,19 @@ from dataclasses import dataclass
 from html import escape
 from typing import overload
 
-from pytpc.advice.advise import Advice
-from pytpc.advice.blame import Blame
-from pytpc.advice.blamed import BlamedAdvice
 from pytpc.base.wording import exact, percent, plain, show
+from pytpc.diagnosis.ranking.blame import Blame
+from pytpc.diagnosis.ranking.ranking import MarkRanking
+from pytpc.diagnosis.suggestion.advise import Advice
+from pytpc.diagnosis.suggestion.blamed import BlamedAdvice
 from pytpc.notebook import Table
-from pytpc.scoring.ranking import MarkRanking
 
 
 @dataclass(frozen=True, slots=True)
 class Advices(Sequence[Advice]):
     """What to do with the suspects at one mark, in their order.
 
-    A sequence of `pytpc.advice.advise.Advice`: suspect, value to try, smallest change, and what
+    A sequence of `pytpc.diagnosis.suggestion.advise.Advice`: suspect, value to try, smallest change, and what
     they would have changed.
     """
 
@@ -79,7 +79,7 @@ class Diagnosed:
     """What all marks of a mission say together, and what to do with the first suspects.
 
     ``blame`` has all suspects with their probabilities, and what keeps them from being surer;
-    ``advice`` is the value to try of the first ones (`pytpc.advice.blamed.BlamedAdvice`).
+    ``advice`` is the value to try of the first ones (`pytpc.diagnosis.suggestion.blamed.BlamedAdvice`).
     """
 
     blame: Blame

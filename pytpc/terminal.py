@@ -10,15 +10,15 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from pytpc.advice.blame import Blame
-from pytpc.advice.blamed import BlamedAdvice
-from pytpc.advice.declared import Declared, declared_for
-from pytpc.advice.suggest import Suggestion, suggest
 from pytpc.base.wording import exact, percent, plain, show
+from pytpc.diagnosis.ranking.blame import Blame
+from pytpc.diagnosis.ranking.ranking import MarkRanking, Suspect
+from pytpc.diagnosis.scores.scores import WINDOW_S
+from pytpc.diagnosis.suggestion.blamed import BlamedAdvice
+from pytpc.diagnosis.suggestion.declared import Declared, declared_for
+from pytpc.diagnosis.suggestion.suggest import Suggestion, suggest
 from pytpc.recording.marks import MarkType
 from pytpc.recording.mission import Recording
-from pytpc.scoring.ranking import MarkRanking, Suspect
-from pytpc.scoring.scores import WINDOW_S
 from pytpc.static.static_info import Comparison, StaticInfo
 
 _WHAT = {

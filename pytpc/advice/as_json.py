@@ -5,16 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from pytpc.advice.advise import Advice
-from pytpc.advice.blame import Blame
-from pytpc.advice.blamed import BlamedAdvice
-from pytpc.advice.counterfactual import WhatIf
-from pytpc.advice.declared import Declared
-from pytpc.advice.intervals import Intervals
-from pytpc.advice.joining import JoinedAdvice, MarkGroup
-from pytpc.advice.remedy import Remedy
-from pytpc.advice.suggest import Suggestion
 from pytpc.base.wording import Number
+from pytpc.diagnosis.ranking.blame import Blame
+from pytpc.diagnosis.suggestion.advise import Advice
+from pytpc.diagnosis.suggestion.blamed import BlamedAdvice
+from pytpc.diagnosis.suggestion.declared import Declared
+from pytpc.diagnosis.suggestion.joining import JoinedAdvice, MarkGroup
+from pytpc.diagnosis.suggestion.remedy import Remedy
+from pytpc.diagnosis.suggestion.suggest import Suggestion
+from pytpc.diagnosis.suggestion.what_if import WhatIf
+from pytpc.diagnosis.thresholds.intervals import Intervals
 from pytpc.recording.marks import Mark
 
 Json = dict[str, object]

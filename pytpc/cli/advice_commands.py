@@ -13,11 +13,6 @@ from rich.padding import Padding
 from rich.text import Text
 
 from pytpc.advice.as_json import blame_json, group_json, what_if_json
-from pytpc.advice.blame import Blame, blame
-from pytpc.advice.blamed import BlamedAdvice, advise_blamed
-from pytpc.advice.counterfactual import WhatIf, what_if
-from pytpc.advice.declared import Declared, declared_in
-from pytpc.advice.joining import JoinedAdvice, MarkGroup, join_advice
 from pytpc.base.errors import InputError
 from pytpc.base.wording import Number, many, percent, plain, show
 from pytpc.cli.console import console, progress, warn
@@ -33,9 +28,14 @@ from pytpc.cli.options import (
     warn_about,
 )
 from pytpc.cli.sources import static_of
+from pytpc.diagnosis.ranking.blame import Blame, blame
+from pytpc.diagnosis.ranking.ranking import MarkRanking, Types, rank_marks
+from pytpc.diagnosis.suggestion.blamed import BlamedAdvice, advise_blamed
+from pytpc.diagnosis.suggestion.declared import Declared, declared_in
+from pytpc.diagnosis.suggestion.joining import JoinedAdvice, MarkGroup, join_advice
+from pytpc.diagnosis.suggestion.what_if import WhatIf, what_if
 from pytpc.ingest import Recording
 from pytpc.recording.marks import MARK_TYPES, MarkType
-from pytpc.scoring.ranking import MarkRanking, Types, rank_marks
 from pytpc.static.parameters import parameter_name, same_parameter
 from pytpc.static.static_info import Comparison, StaticInfo
 

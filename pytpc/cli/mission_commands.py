@@ -14,7 +14,7 @@ from rich.console import Console
 from pytpc.base.errors import InputError
 from pytpc.base.wording import many
 from pytpc.build.build import installed, workspace_env
-from pytpc.complaints import complaints
+from pytpc.diagnosis.ranking.complaints import complaints
 from pytpc.ingest.reading import opened
 from pytpc.python_runtime.config import NAMES
 from pytpc.recording.mission import REPORTS_FOLDER

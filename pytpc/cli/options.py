@@ -13,9 +13,9 @@ import click
 from pytpc.base.errors import InputError
 from pytpc.base.wording import plain
 from pytpc.cli.console import progress, warn
-from pytpc.complaints import complaints
+from pytpc.diagnosis.ranking.complaints import complaints
+from pytpc.diagnosis.scores.scores import WINDOW_S
 from pytpc.ingest import Recording, read
-from pytpc.scoring.scores import WINDOW_S
 from pytpc.static.static_info import StaticInfo
 
 PATH = click.Path(path_type=Path)
@@ -95,7 +95,7 @@ _OLDER = click.option(
 
 
 def TYPES(command: Command) -> Command:
-    """The option ``--types``, as the argument ``types`` of `pytpc.scoring.ranking.rank_marks`."""
+    """The option ``--types``, as the argument ``types`` of `pytpc.diagnosis.ranking.ranking.rank_marks`."""
     return _BELIEVED(_OLDER(command))
 
 

@@ -12,9 +12,6 @@ from rich.table import Table
 from rich.text import Text
 
 from pytpc.advice.as_json import blame_json
-from pytpc.advice.blame import Blame
-from pytpc.advice.blamed import BlamedAdvice
-from pytpc.advice.declared import Declared, declared_in, read_declared
 from pytpc.base.errors import InputError, TpcError
 from pytpc.base.wording import many, plain
 from pytpc.cli.console import console, warn
@@ -32,6 +29,11 @@ from pytpc.cli.options import (
 )
 from pytpc.cli.rank_together import TOGETHER, Judge, Score
 from pytpc.cli.sources import static_of
+from pytpc.diagnosis.ranking.blame import Blame
+from pytpc.diagnosis.ranking.clocks import two_clocks
+from pytpc.diagnosis.ranking.ranking import MarkRanking, Types, rank_marks
+from pytpc.diagnosis.suggestion.blamed import BlamedAdvice
+from pytpc.diagnosis.suggestion.declared import Declared, declared_in, read_declared
 from pytpc.ingest import Recording
 from pytpc.recording.marking_session import Change
 from pytpc.recording.marks import (
@@ -44,8 +46,6 @@ from pytpc.recording.marks import (
     read_marks,
 )
 from pytpc.recording.marks_file import MarksFile
-from pytpc.scoring.clocks import two_clocks
-from pytpc.scoring.ranking import MarkRanking, Types, rank_marks
 from pytpc.static.static_info import StaticInfo
 from pytpc.terminal import Row, print_blame, print_rankings, rows_of
 

@@ -9,17 +9,17 @@ from typing import Literal, TypeVar
 
 import click
 
-from pytpc.advice.blame import Blame, blame
-from pytpc.advice.blamed import BlamedAdvice, advise_blamed
-from pytpc.advice.declared import Declared
 from pytpc.base.errors import InputError
 from pytpc.base.wording import plain
 from pytpc.cli.console import warn
 from pytpc.cli.options import PATH, check_reports, recording_of
+from pytpc.diagnosis.ranking.blame import Blame, blame
+from pytpc.diagnosis.ranking.ranking import Types
+from pytpc.diagnosis.scores.score_tables import Tpcs
+from pytpc.diagnosis.suggestion.blamed import BlamedAdvice, advise_blamed
+from pytpc.diagnosis.suggestion.declared import Declared
 from pytpc.ingest import Recording
 from pytpc.ros.run_mission import PARAMS_FILE
-from pytpc.scoring.ranking import Types
-from pytpc.scoring.tables import Tpcs
 from pytpc.static.parameters import same_parameter
 from pytpc.static.static_info import StaticInfo
 from pytpc.values.changes import Change, changes_between, read_changes

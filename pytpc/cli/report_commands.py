@@ -9,7 +9,6 @@ from pathlib import Path
 
 import click
 
-from pytpc.advice.declared import declared_in
 from pytpc.base.errors import TpcError
 from pytpc.base.wording import many, plain
 from pytpc.cli.console import progress, warn
@@ -24,9 +23,10 @@ from pytpc.cli.options import (
     warn_about,
 )
 from pytpc.cli.sources import static_of
+from pytpc.diagnosis.ranking.clocks import two_clocks
+from pytpc.diagnosis.ranking.ranking import Types, rank_marks
+from pytpc.diagnosis.suggestion.declared import declared_in
 from pytpc.report.html import CARDS, MissionReport, write_report
-from pytpc.scoring.clocks import two_clocks
-from pytpc.scoring.ranking import Types, rank_marks
 from pytpc.static.static_info import StaticInfo
 from pytpc.treatment import TREATMENT_FILE, Treatment, load_treatment
 from pytpc.values.origins import read_origins

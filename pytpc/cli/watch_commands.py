@@ -34,16 +34,16 @@ from pytpc.cli.options import (
     warn_about,
 )
 from pytpc.cli.sources import static_of
+from pytpc.diagnosis.ranking.clocks import two_clocks
+from pytpc.diagnosis.ranking.ranking import Types
+from pytpc.diagnosis.ranking.watching import KINDS, Look, Row, Watching
+from pytpc.diagnosis.scores.live_scores import LiveRanking
 from pytpc.ingest import Recording
 from pytpc.marking.live_mission import Feed, GraphFeed, RecordedFeed, WatchedMission
 from pytpc.marking.terminal import Mission
 from pytpc.marking.watch_screen import LAYOUTS, Options, Status, table
-from pytpc.marking.watching import KINDS, Look, Row, Watching
 from pytpc.recording.marking_session import clock_text
 from pytpc.ros.marking import GraphMarks
-from pytpc.scoring.clocks import two_clocks
-from pytpc.scoring.live import LiveRanking
-from pytpc.scoring.ranking import Types
 from pytpc.static.static_info import StaticInfo
 
 _ONCE_S = 5.0

@@ -17,10 +17,10 @@ import numpy as np
 from rich.text import Text
 
 from pytpc.base.errors import RunError
+from pytpc.diagnosis.ranking.watching import KeptRankings, Look, Seen, Watching
 from pytpc.marking.reports import Item, Reports
 from pytpc.marking.terminal import Mission
 from pytpc.marking.watch_screen import LAYOUTS, Options, Panel, Status, watch_screen
-from pytpc.marking.watching import KeptRankings, Look, Seen, Watching
 from pytpc.recording.marking_session import Change, Session, View
 from pytpc.recording.mission import Recording
 from pytpc.recording.summaries import Summary

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections import Counter, deque
 from typing import NamedTuple
 
+from pytpc.diagnosis.ranking.watching import Seen
 from pytpc.ingest.ros1 import decode_log, decode_string
 from pytpc.ingest.rosout_line import (
     Malformed,
@@ -18,7 +19,6 @@ from pytpc.ingest.rosout_line import (
     parse_stamped,
     parse_stamped_other,
 )
-from pytpc.marking.watching import Seen
 from pytpc.recording.summaries import Summary
 from pytpc.ros.ros1.recorder import BatchCounter, LossCounter
 from pytpc.ros.ros1.relay import ROSOUT, line_of

@@ -14,7 +14,7 @@ from rich.cells import cell_len
 from rich.text import Text
 
 from pytpc.base.wording import exact, many, plain
-from pytpc.marking.watching import KeptRankings, Look, Part, Row
+from pytpc.diagnosis.ranking.watching import KeptRankings, Look, Part, Row
 from pytpc.recording.marking_session import Session, View, clock_text, cut, folded
 from pytpc.recording.marks import Mark, MarkType
 

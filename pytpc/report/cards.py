@@ -8,12 +8,13 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
-from pytpc.advice.advise import Advice, alternatives
-from pytpc.advice.counterfactual import WhatIf
-from pytpc.advice.declared import Declared
-from pytpc.advice.remedy import Remedy
-from pytpc.advice.suggest import Suggestion
 from pytpc.base.wording import exact, show
+from pytpc.diagnosis.ranking.ranking import MarkRanking, Suspect
+from pytpc.diagnosis.suggestion.advise import Advice, alternatives
+from pytpc.diagnosis.suggestion.declared import Declared
+from pytpc.diagnosis.suggestion.remedy import Remedy
+from pytpc.diagnosis.suggestion.suggest import Suggestion
+from pytpc.diagnosis.suggestion.what_if import WhatIf
 from pytpc.recording.marks import Mark
 from pytpc.report.mission import MissionReport
 from pytpc.report.payload import finite, series_of
@@ -21,7 +22,6 @@ from pytpc.report.plots import EvidenceStyle, evidence_svg, span_of
 from pytpc.report.reasons import why
 from pytpc.report.series import Evidence, evidence
 from pytpc.report.source import LONGEST_LINE, Line, StepView, source_lines, way_of
-from pytpc.scoring.ranking import MarkRanking, Suspect
 from pytpc.static.arithmetic import evaluate
 from pytpc.static.static_info import Comparison
 from pytpc.values.origins import origin_for

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from pytpc.advice.declared import Declared
+from pytpc.diagnosis.ranking.ranking import MarkRanking, Types
+from pytpc.diagnosis.scores.scores import WINDOW_S
+from pytpc.diagnosis.suggestion.declared import Declared
 from pytpc.recording.mission import Recording
-from pytpc.scoring.ranking import MarkRanking, Types
-from pytpc.scoring.scores import WINDOW_S
 from pytpc.static.parameters import same_parameter
 from pytpc.static.static_info import StaticInfo
 from pytpc.values.origins import Origin

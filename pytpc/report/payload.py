@@ -16,11 +16,11 @@ import numpy.typing as npt
 from markupsafe import Markup
 
 from pytpc.base.columns import Floats
+from pytpc.diagnosis.scores.curves import RankCurves
 from pytpc.recording.marks import MarkType
 from pytpc.recording.mission import Recording
 from pytpc.report.environment import seen
 from pytpc.report.series import gap_after, kept_of, lane, rows_of, runs, thin
-from pytpc.scoring.curves import RankCurves
 
 KEPT = 200_000
 """The most evaluations of one TPC that are kept; of more, the extremes."""

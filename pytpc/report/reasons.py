@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from pytpc.base.wording import many, show
+from pytpc.diagnosis.ranking.ranking import Suspect
 from pytpc.recording.events import Floats
 from pytpc.recording.marks import Mark
 from pytpc.report.mission import MissionReport
 from pytpc.report.series import rows_of
-from pytpc.scoring.ranking import Suspect
 
 
 def why(mission: MissionReport, suspect: Suspect, mark: Mark) -> str:

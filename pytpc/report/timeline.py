@@ -15,12 +15,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from pytpc.base.columns import Floats
+from pytpc.diagnosis.scores.curves import STEP_S, RankCurves, rank_curves
 from pytpc.recording.marks import MarkType
 from pytpc.report.mission import MissionReport
 from pytpc.report.payload import curves_of, lane_of, lanes_of
 from pytpc.report.plots import COLOUR, MARK_LINES, drawing, short, svg_of
 from pytpc.report.series import BINS, BOTH, FALSE, TRUE, runs
-from pytpc.scoring.curves import STEP_S, RankCurves, rank_curves
 
 _LANES = 8
 _HEIGHTS = {TRUE: 0.62, BOTH: 0.34, FALSE: 0.08}

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from pytpc.advice.blame import blame
-from pytpc.advice.blamed import advise_blamed
 from pytpc.base.wording import percent
+from pytpc.diagnosis.ranking.blame import blame
+from pytpc.diagnosis.suggestion.blamed import advise_blamed
 from pytpc.report.mission import MissionReport
 
 

@@ -13,10 +13,12 @@ from dataclasses import dataclass
 import numpy as np
 from markupsafe import Markup
 
-from pytpc.advice.advise import Advice, advise
-from pytpc.advice.joining import with_remedies
 from pytpc.base.wording import many
-from pytpc.complaints import complaints
+from pytpc.diagnosis.ranking.clocks import two_clocks
+from pytpc.diagnosis.ranking.complaints import complaints
+from pytpc.diagnosis.ranking.ranking import MarkRanking, Types
+from pytpc.diagnosis.suggestion.advise import Advice, advise
+from pytpc.diagnosis.suggestion.joining import with_remedies
 from pytpc.recording.marks import MarkType
 from pytpc.report.answer import AnswerView, answers, spoken
 from pytpc.report.cards import (
@@ -30,8 +32,6 @@ from pytpc.report.mission import CARDS, MissionReport
 from pytpc.report.payload import embedded, marks_of
 from pytpc.report.timeline import timeline
 from pytpc.report.together import TogetherView, together
-from pytpc.scoring.clocks import two_clocks
-from pytpc.scoring.ranking import MarkRanking, Types
 
 __all__ = ["CARDS", "MissionReport", "MissionView", "figures", "mission_view"]
 

@@ -19,10 +19,10 @@ from matplotlib.ticker import MaxNLocator
 
 from pytpc.base.columns import Bools, Floats
 from pytpc.base.wording import many
+from pytpc.diagnosis.scores.curves import RankCurves
+from pytpc.diagnosis.scores.scores import NONE
 from pytpc.recording.marks import MARK_TYPES, Mark
 from pytpc.recording.mission import Recording
-from pytpc.scoring.curves import RankCurves
-from pytpc.scoring.scores import NONE
 from pytpc.static.parameters import same_parameter
 from pytpc.stats.drawing import (
     COLOURS,

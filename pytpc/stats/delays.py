@@ -17,13 +17,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pytpc.advice.thresholds import outcomes
 from pytpc.base.columns import Int64s
 from pytpc.base.tables import Cell, Column, Table, statistics
+from pytpc.diagnosis.ranking.ranking import APART_NS
+from pytpc.diagnosis.thresholds.outcomes import outcomes
 from pytpc.recording.events import Bools, Events, Floats
 from pytpc.recording.mission import Recording
 from pytpc.recording.summaries import Summaries
-from pytpc.scoring.ranking import APART_NS
 from pytpc.static.arithmetic import evaluate
 from pytpc.static.parameters import parameter_name, same_parameter
 from pytpc.static.static_info import Comparison, StaticInfo

@@ -9,8 +9,8 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from pytpc.base.errors import TpcError
-from pytpc.scoring.curves import STEP_S, rank_curves
-from pytpc.scoring.scores import WINDOW_S
+from pytpc.diagnosis.scores.curves import STEP_S, rank_curves
+from pytpc.diagnosis.scores.scores import WINDOW_S
 from pytpc.static.static_info import StaticInfo
 from pytpc.stats.bars import runtime_bars
 from pytpc.stats.curves import mission_figure

@@ -21,10 +21,10 @@ import numpy as np
 from pytpc.base.columns import Floats, Int64s
 from pytpc.base.tables import Column, Table, statistics
 from pytpc.base.wording import many
+from pytpc.diagnosis.scores.bounds import covered
 from pytpc.recording.events import Events
 from pytpc.recording.mission import Recording
 from pytpc.recording.summaries import Summaries
-from pytpc.scoring.bounds import covered
 from pytpc.static.parameters import parameter_name
 from pytpc.static.static_info import StaticInfo
 

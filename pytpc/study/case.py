@@ -32,7 +32,7 @@ class Case:
 class Verdict:
     """Whom a method suspects.
 
-    ``order`` are parameters (names as in `pytpc.scoring.tables.Tpcs.names`), the most suspicious
+    ``order`` are parameters (names as in `pytpc.diagnosis.scores.score_tables.Tpcs.names`), the most suspicious
     first; all others are tied behind them. ``confidence`` is the probability that the first one is
     to blame, nan where a method has none. ``scores`` are those by which the order was made: equal
     ones are tied; empty where no two are.

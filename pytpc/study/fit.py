@@ -1,4 +1,4 @@
-"""Fits the weights of `pytpc.scoring.diagnosis` on the tuning half of a study.
+"""Fits the weights of `pytpc.diagnosis.ranking.posterior` on the tuning half of a study.
 
     python -m pytpc.study.fit out/study
 
@@ -19,10 +19,10 @@ import numpy as np
 
 from pytpc.base.columns import Bools, Floats, Int64s
 from pytpc.base.errors import TpcError
-from pytpc.scoring.diagnosis import REASONED, Said, Weights, mixture, ranked, type_odds
-from pytpc.scoring.diagnosis_evidence import Evidence, evidence, marked
-from pytpc.scoring.diagnosis_streams import Streams
-from pytpc.scoring.tables import Tpcs
+from pytpc.diagnosis.ranking.mark_evidence import Evidence, evidence, marked
+from pytpc.diagnosis.ranking.posterior import REASONED, Said, Weights, mixture, ranked, type_odds
+from pytpc.diagnosis.ranking.result_streams import Streams
+from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.static.parameters import same_parameter
 from pytpc.study.data import ALL, LABELS, Mission, missions
 

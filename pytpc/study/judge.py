@@ -17,7 +17,7 @@ import numpy as np
 import pyarrow as pa
 
 from pytpc.base.columns import write_table
-from pytpc.scoring.tables import Tpcs
+from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.static.parameters import same_parameter
 from pytpc.study.case import Method, Verdict
 from pytpc.study.data import ALL, LABELS, Labels, Mission

@@ -12,8 +12,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from pytpc.advice.known import Source
-from pytpc.advice.remedy import EVERY_SOURCE
+from pytpc.diagnosis.suggestion.known import Source
+from pytpc.diagnosis.suggestion.remedy import EVERY_SOURCE
 from pytpc.static.parameters import same_parameter
 from pytpc.study.listed import read_list
 

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from pytpc.advice.blame import blame
-from pytpc.advice.blamed import advise_blamed
-from pytpc.advice.remedy import Remedy, remedy
 from pytpc.base.checked_json import parse_json
 from pytpc.base.errors import InputError
 from pytpc.base.wording import percent
+from pytpc.diagnosis.ranking.blame import blame
+from pytpc.diagnosis.suggestion.blamed import advise_blamed
+from pytpc.diagnosis.suggestion.remedy import Remedy, remedy
 from pytpc.recording.mission import Recording, load_recording
 from pytpc.static.parameters import DYNAMIC, same_parameter
 from pytpc.static.static_info import StaticInfo

@@ -6,7 +6,7 @@ import operator
 
 from mission_samples import comparison, events, ns
 
-from pytpc.advice.suggest import suggest
+from pytpc.diagnosis.suggestion.suggest import suggest
 
 OPERATORS = {
     "<": operator.lt,

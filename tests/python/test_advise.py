@@ -7,13 +7,13 @@ from dataclasses import replace
 
 from mission_samples import comparison, events, ns, static_info
 
-from pytpc.advice.advise import advise, alternatives
 from pytpc.advice.as_json import advice_json, group_json
-from pytpc.advice.declared import Declared
-from pytpc.advice.joining import join_advice
+from pytpc.diagnosis.ranking.ranking import rank_marks
+from pytpc.diagnosis.suggestion.advise import advise, alternatives
+from pytpc.diagnosis.suggestion.declared import Declared
+from pytpc.diagnosis.suggestion.joining import join_advice
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
-from pytpc.scoring.ranking import rank_marks
 
 # `faces >= limit` of 3 flops at 10 s (2, then 4) and at 12 s back (1); `coverage > cover` of 0.6
 # stays False at 0.3 until 16 s and at 0.5 until 20 s. Marks of type I at 11 s, of type II at 16 and

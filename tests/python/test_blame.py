@@ -8,13 +8,13 @@ from dataclasses import replace
 import pytest
 from mission_samples import comparison, events, key, ns, static_info
 
-from pytpc.advice.blame import Accused, Blame, blame
-from pytpc.advice.blamed import advise_blamed
 from pytpc.base.wording import percent
+from pytpc.diagnosis.ranking.blame import Accused, Blame, blame
+from pytpc.diagnosis.scores.log_evidence import Evaluation
+from pytpc.diagnosis.suggestion.blamed import advise_blamed
 from pytpc.ingest import Recording
 from pytpc.recording.marks import Mark
 from pytpc.recording.summaries import Summary, SummaryBuilder
-from pytpc.scoring.evidence import Evaluation
 from pytpc.study.case import Case
 from pytpc.study.methods import METHODS
 from pytpc.values.changes import Change

@@ -12,9 +12,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mission_samples import comparison, events, key, link_unit, ns, static_info
 
-from pytpc.advice.counterfactual import CLOSED_LOOP, sweep, what_if
-from pytpc.advice.suggest import suggest
 from pytpc.base.errors import InputError
+from pytpc.diagnosis.suggestion.suggest import suggest
+from pytpc.diagnosis.suggestion.what_if import CLOSED_LOOP, sweep, what_if
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
 from pytpc.recording.summaries import Summaries, Summary, SummaryBuilder

@@ -8,11 +8,11 @@ from hypothesis import strategies as st
 from mission_samples import comparison, events, ns, static_info
 
 from pytpc.base.errors import TpcError
+from pytpc.diagnosis.ranking.ranking import rank_marks
+from pytpc.diagnosis.scores.curves import rank_curves
+from pytpc.diagnosis.scores.scores import NONE
 from pytpc.ingest import Recording
 from pytpc.recording.marks import Mark
-from pytpc.scoring.curves import rank_curves
-from pytpc.scoring.ranking import rank_marks
-from pytpc.scoring.scores import NONE
 
 STATIC = static_info(
     comparison(0, "coverage", distance=1),

@@ -7,22 +7,7 @@ import numpy as np
 import pytest
 from mission_samples import comparison, events, ns, static_info
 
-from pytpc.ingest import Recording
-from pytpc.recording.events import Events
-from pytpc.recording.marks import Mark
-from pytpc.scoring.diagnosis import (
-    MARKS_I,
-    MARKS_II,
-    REPEAT,
-    Said,
-    Weights,
-    diagnose,
-    mixture,
-    ranked,
-    softmax,
-    type_odds,
-)
-from pytpc.scoring.diagnosis_evidence import (
+from pytpc.diagnosis.ranking.mark_evidence import (
     PATIENCE_LOG,
     PATIENCE_SIGMA,
     REACTION_LOG,
@@ -34,9 +19,24 @@ from pytpc.scoring.diagnosis_evidence import (
     marked,
     reaction,
 )
-from pytpc.scoring.diagnosis_priors import UNCHANGED, of_change, of_changes, of_reference
-from pytpc.scoring.diagnosis_streams import Streams
-from pytpc.scoring.tables import Tpcs
+from pytpc.diagnosis.ranking.posterior import (
+    MARKS_I,
+    MARKS_II,
+    REPEAT,
+    Said,
+    Weights,
+    diagnose,
+    mixture,
+    ranked,
+    softmax,
+    type_odds,
+)
+from pytpc.diagnosis.ranking.priors import UNCHANGED, of_change, of_changes, of_reference
+from pytpc.diagnosis.ranking.result_streams import Streams
+from pytpc.diagnosis.scores.score_tables import Tpcs
+from pytpc.ingest import Recording
+from pytpc.recording.events import Events
+from pytpc.recording.marks import Mark
 
 STATIC = static_info(
     comparison(0, "~gate"),

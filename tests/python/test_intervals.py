@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pytpc.advice.intervals import (
+from pytpc.diagnosis.thresholds.intervals import (
     EVERYWHERE,
     Interval,
     gaps,

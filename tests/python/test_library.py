@@ -12,8 +12,8 @@ from mission_samples import comparison, events, ns, static_info
 
 import pytpc
 from pytpc import library
-from pytpc.advice.joining import join_advice
 from pytpc.base.errors import InputError
+from pytpc.diagnosis.suggestion.joining import join_advice
 from pytpc.notebook import Table
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording

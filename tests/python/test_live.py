@@ -11,14 +11,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mission_samples import comparison, key, ns, static_info
 
+from pytpc.diagnosis.ranking.ranking import rank_marks
+from pytpc.diagnosis.scores.bounds import type2_bounds
+from pytpc.diagnosis.scores.live_scores import LiveRanking, LiveScores, TooOldError
+from pytpc.diagnosis.scores.scores import NONE, Before, type1, type2
 from pytpc.ingest import Recording
 from pytpc.recording.events import EventBuilder, Report
 from pytpc.recording.marks import Mark
 from pytpc.recording.summaries import Summary, SummaryBuilder
-from pytpc.scoring.bounds import type2_bounds
-from pytpc.scoring.live import LiveRanking, LiveScores, TooOldError
-from pytpc.scoring.ranking import rank_marks
-from pytpc.scoring.scores import NONE, Before, type1, type2
 
 NAN, INF = math.nan, math.inf
 KEYS = [key(0), key(1), key(2)]

@@ -23,6 +23,7 @@ from pytpc.base.errors import InputError, RunError
 from pytpc.cli.mission_commands import record_command, sink_settings
 from pytpc.demo import TreatedMission, failures, result_table
 from pytpc.demo_examples import IMAGE_CAPTURE, WATER_SAMPLER, Example
+from pytpc.diagnosis.ranking.ranking import rank_marks
 from pytpc.ingest import Recording
 from pytpc.recording.marks import Mark
 from pytpc.ros.attached import record_graph
@@ -45,7 +46,6 @@ from pytpc.ros.run_mission import (
     run_mission,
     save_run,
 )
-from pytpc.scoring.ranking import rank_marks
 from pytpc.treatment import Treatment, load_treatment
 
 TREATMENTS = [

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from mission_samples import comparison, events, key, ns, static_info
 
-from pytpc.advice.other_values import (
+from pytpc.diagnosis.ranking.other_values import (
     ACQUITTED,
     before_changes,
     diagnose_replayed,
@@ -14,11 +14,11 @@ from pytpc.advice.other_values import (
     replayed,
     turns,
 )
+from pytpc.diagnosis.ranking.priors import UNCHANGED
+from pytpc.diagnosis.ranking.result_streams import Streams
+from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.ingest import Recording
 from pytpc.recording.marks import Mark
-from pytpc.scoring.diagnosis_priors import UNCHANGED
-from pytpc.scoring.diagnosis_streams import Streams
-from pytpc.scoring.tables import Tpcs
 from pytpc.static.link_unit import Transform
 
 STATIC = static_info(

@@ -5,11 +5,11 @@ from dataclasses import replace
 import pytest
 from mission_samples import comparison, events, key, ns, static_info
 
+from pytpc.diagnosis.ranking.ranking import rank_marks, unknown_keys
 from pytpc.ingest import Recording
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark
 from pytpc.recording.summaries import Summaries, Summary, SummaryBuilder
-from pytpc.scoring.ranking import rank_marks, unknown_keys
 from pytpc.static.parameters import parameter_name
 from pytpc.static.static_info import Place
 

@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mission_samples import comparison, events, key, ns, static_info
 
-from pytpc.advice.declared import Declared
-from pytpc.advice.remedy import remedy
+from pytpc.diagnosis.suggestion.declared import Declared
+from pytpc.diagnosis.suggestion.remedy import remedy
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording

@@ -15,11 +15,12 @@ from hypothesis import strategies as st
 from mission_samples import comparison, events, key, ns, static_info
 from report_samples import NASTY, Page, mission, written
 
-from pytpc.advice.blame import blame
-from pytpc.advice.declared import Declared
-from pytpc.advice.joining import join_advice
 from pytpc.base.errors import TpcError
 from pytpc.base.wording import percent
+from pytpc.diagnosis.ranking.blame import blame
+from pytpc.diagnosis.ranking.ranking import rank_marks
+from pytpc.diagnosis.suggestion.declared import Declared
+from pytpc.diagnosis.suggestion.joining import join_advice
 from pytpc.ingest import MalformedRecord, Recording
 from pytpc.recording.marks import Mark
 from pytpc.recording.summaries import Summary, SummaryBuilder
@@ -36,7 +37,6 @@ from pytpc.report.series import (
     thin,
     with_gaps,
 )
-from pytpc.scoring.ranking import rank_marks
 from pytpc.values.origins import Origin
 
 NAN = math.nan

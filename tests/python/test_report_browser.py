@@ -17,10 +17,10 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import WebDriverWait
 
+from pytpc.diagnosis.ranking.ranking import rank_marks
 from pytpc.ingest import Recording
 from pytpc.recording.marks import Mark
 from pytpc.report.html import MissionReport, write_report
-from pytpc.scoring.ranking import rank_marks
 from pytpc.static.static_info import PathStep
 
 CHROMIUM, DRIVER = shutil.which("chromium"), shutil.which("chromedriver")

@@ -13,12 +13,12 @@ import pytest
 from mission_samples import comparison, events, key, ns, static_info
 from report_samples import Page, mission, written
 
+from pytpc.diagnosis.ranking.ranking import rank_marks
 from pytpc.ingest import Recording
 from pytpc.recording.marks import Mark
 from pytpc.recording.summaries import Summary, SummaryBuilder
 from pytpc.report.html import MissionReport
 from pytpc.report.series import FALSE, TRUE
-from pytpc.scoring.ranking import rank_marks
 
 NAN = math.nan
 

@@ -13,10 +13,10 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from mission_samples import events, key, ns
 
+from pytpc.diagnosis.scores.bounds import type2_bounds
+from pytpc.diagnosis.scores.scores import NONE, type1, type2
 from pytpc.recording.events import EventBuilder, Events, Report
 from pytpc.recording.summaries import Summaries, Summary, SummaryBuilder
-from pytpc.scoring.bounds import type2_bounds
-from pytpc.scoring.scores import NONE, type1, type2
 
 NAN, INF = math.nan, math.inf
 

@@ -13,8 +13,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mission_samples import events, key, ns
 
+from pytpc.diagnosis.scores.scores import NONE, by_parameter, combined, ranks, type1, type2
 from pytpc.recording.events import Events
-from pytpc.scoring.scores import NONE, by_parameter, combined, ranks, type1, type2
 
 NAN, INF = math.nan, math.inf
 

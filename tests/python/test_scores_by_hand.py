@@ -19,13 +19,13 @@ import math
 import pytest
 from mission_samples import comparison, events, ns, static_info
 
+from pytpc.diagnosis.ranking.ranking import rank_marks
+from pytpc.diagnosis.scores.curves import rank_curves
+from pytpc.diagnosis.scores.score_tables import Tpcs, parameter_tables, tpc_scores
+from pytpc.diagnosis.scores.scores import NONE
 from pytpc.ingest import Recording
 from pytpc.recording.marks import Mark
 from pytpc.recording.summaries import Summaries
-from pytpc.scoring.curves import rank_curves
-from pytpc.scoring.ranking import rank_marks
-from pytpc.scoring.scores import NONE
-from pytpc.scoring.tables import Tpcs, parameter_tables, tpc_scores
 
 ROBOT = static_info(
     comparison(0, "limit", distance=1),

@@ -12,10 +12,10 @@ import pytest
 from matplotlib.colors import to_hex
 from mission_samples import comparison, events, ns, static_info
 
+from pytpc.diagnosis.scores.curves import rank_curves
 from pytpc.ingest import Recording
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark
-from pytpc.scoring.curves import rank_curves
 from pytpc.stats.bars import runtime_bars
 from pytpc.stats.curves import NAMED, mission_figure
 from pytpc.stats.drawing import COLOURS, CULPRIT, save, style

@@ -9,8 +9,8 @@ from __future__ import annotations
 import pytest
 
 from pytpc.base.tables import Table, shown
+from pytpc.diagnosis.scores.scores import NONE
 from pytpc.recording.marks import MarkType
-from pytpc.scoring.scores import NONE
 from pytpc.stats.delays import DelaysOfTrial, delays_table
 from pytpc.stats.found import FoundAtMark, FoundInTrial, found_table
 from pytpc.stats.marked import MarksOfTrial, confusion_table, marks_table

@@ -10,9 +10,9 @@ import pytest
 from mission_samples import comparison, events, ns, static_info
 
 from pytpc.base.errors import InputError
+from pytpc.diagnosis.ranking.posterior import REASONED, diagnose
 from pytpc.ingest import Recording, save_recording
 from pytpc.recording.marks import Mark
-from pytpc.scoring.diagnosis import REASONED, diagnose
 from pytpc.study.case import Case
 from pytpc.study.data import Mission, UserMark, missions
 from pytpc.study.fit import Batch, fit, samples

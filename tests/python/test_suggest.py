@@ -10,8 +10,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from mission_samples import comparison, events, key, link_unit, ns
 
-from pytpc.advice.suggest import suggest
 from pytpc.base.wording import exact, show
+from pytpc.diagnosis.suggestion.suggest import suggest
 from pytpc.recording.summaries import Summary, SummaryBuilder
 from pytpc.static.static_info import ParameterRead, Transform
 

@@ -29,8 +29,8 @@ from __future__ import annotations
 import pytest
 from mission_samples import comparison, events, ns
 
-from pytpc.advice.intervals import words
-from pytpc.advice.suggest import suggest
+from pytpc.diagnosis.suggestion.suggest import suggest
+from pytpc.diagnosis.thresholds.intervals import words
 from pytpc.static.static_info import Transform
 
 WAYS = {

@@ -9,10 +9,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from mission_samples import comparison, events, link_unit, ns
 
-from pytpc.advice.choice import Choice, Possible, choose, readable
-from pytpc.advice.declared import Declared
-from pytpc.advice.intervals import Interval, words
-from pytpc.advice.suggest import suggest
+from pytpc.diagnosis.suggestion.choice import Choice, Possible, choose, readable
+from pytpc.diagnosis.suggestion.declared import Declared
+from pytpc.diagnosis.suggestion.suggest import suggest
+from pytpc.diagnosis.thresholds.intervals import Interval, words
 from pytpc.static.static_info import ParameterRead
 
 

@@ -8,9 +8,9 @@ import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
-from pytpc.advice.intervals import Interval, holds, words
-from pytpc.advice.inverse import kept_as, preimage
-from pytpc.advice.units import ParameterUnit, simplest
+from pytpc.diagnosis.thresholds.intervals import Interval, holds, words
+from pytpc.diagnosis.thresholds.inverse import kept_as, preimage
+from pytpc.diagnosis.thresholds.units import ParameterUnit, simplest
 from pytpc.static.arithmetic import evaluate
 
 

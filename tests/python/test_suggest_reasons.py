@@ -8,7 +8,7 @@ import pytest
 from asking import ask
 from mission_samples import comparison, events, ns
 
-from pytpc.advice.suggest import suggest
+from pytpc.diagnosis.suggestion.suggest import suggest
 from pytpc.static.static_info import Transform
 
 NAN, INF = math.nan, math.inf

@@ -9,17 +9,17 @@ from mission_samples import comparison, events, key, static_info
 from rich.cells import cell_len
 from rich.text import Text
 
+from pytpc.diagnosis.ranking.watching import BINS, KeptRankings, Look, Seen, Watching
+from pytpc.diagnosis.scores.live_scores import LiveRanking
 from pytpc.marking.live_mission import GraphFeed, RecordedFeed
 from pytpc.marking.reports import Reports
 from pytpc.marking.watch_screen import LAYOUTS, Options, Panel, Status, table, watch_screen
-from pytpc.marking.watching import BINS, KeptRankings, Look, Seen, Watching
 from pytpc.recording.marking_session import Change, Session, View
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
 from pytpc.recording.summaries import Summary
 from pytpc.ros.ros1.publisher import encode_string
 from pytpc.ros.ros1.tcpros import Source
-from pytpc.scoring.live import LiveRanking
 
 S = 10**9
 STATIC = static_info(comparison(0, "~speed"), comparison(1, "~limit"), comparison(2, "~gain"))

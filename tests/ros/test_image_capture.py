@@ -20,10 +20,10 @@ from pytpc.base.paths import cmake_file, log_library, plugin
 from pytpc.build.build import BuildResult, workspace_env
 from pytpc.demo import FIRST, TreatedMission, failures, run_treatment
 from pytpc.demo_examples import IMAGE_CAPTURE
+from pytpc.diagnosis.ranking.ranking import unknown_keys
 from pytpc.ingest import read_bag
 from pytpc.ros.graph import GRAPH_WORD, RosGraph
 from pytpc.ros.run_mission import Progress, run_mission
-from pytpc.scoring.ranking import unknown_keys
 
 PACKAGE = Path(__file__).parents[2] / "examples/image_capture"
 SECOND = 10**9

@@ -16,8 +16,8 @@ from rich.console import Console
 from pytpc.demo import gone_wrong
 from pytpc.demo_examples import NAVIGATION
 from pytpc.demo_show import Built, build
+from pytpc.diagnosis.ranking.ranking import unknown_keys
 from pytpc.ros.graph import RosGraph
-from pytpc.scoring.ranking import unknown_keys
 
 IN_CPP = {
     "controller_host",

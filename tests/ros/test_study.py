@@ -15,8 +15,8 @@ from pytpc.base.paths import cmake_file, log_library, plugin
 from pytpc.cli.main import main
 from pytpc.demo_examples import WATER_SAMPLER
 from pytpc.demo_show import Built
+from pytpc.diagnosis.ranking.ranking import unknown_keys
 from pytpc.ingest.reading import read
-from pytpc.scoring.ranking import unknown_keys
 from pytpc.static.static_info import StaticInfo
 from pytpc.study.changes import DECOYS
 from pytpc.treatment import load_treatment

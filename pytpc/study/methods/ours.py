@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from pytpc.advice.diagnosing import diagnose_beside
-from pytpc.scoring.diagnosis import Diagnosis
+from pytpc.diagnosis.ranking.diagnosing import diagnose_beside
+from pytpc.diagnosis.ranking.posterior import Diagnosis
 from pytpc.study.case import Case, Verdict
 
 

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from pytpc.advice.other_values import turned_by_clean_run
-from pytpc.scoring.tables import Tpcs
+from pytpc.diagnosis.ranking.other_values import turned_by_clean_run
+from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.static.parameters import same_parameter
 from pytpc.study.case import Case, Verdict
 from pytpc.values.changes import Change

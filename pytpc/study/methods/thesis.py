@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from pytpc.scoring.ranking import Types, rank_marks
-from pytpc.scoring.tables import Tpcs
+from pytpc.diagnosis.ranking.ranking import Types, rank_marks
+from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.study.case import Case, Verdict
 
 _DIGITS = 12

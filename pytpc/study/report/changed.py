@@ -14,9 +14,9 @@ from statistics import fmean, median
 
 import numpy as np
 
-from pytpc.advice.replay import tracks_of
 from pytpc.base.errors import InputError
 from pytpc.base.tables import Cell, Column, Table
+from pytpc.diagnosis.thresholds.replay import tracks_of
 from pytpc.recording.mission import Recording
 from pytpc.static.parameters import same_parameter
 from pytpc.static.static_info import StaticInfo

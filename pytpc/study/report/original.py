@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from statistics import fmean, median
 
 from pytpc.base.tables import Cell, Column, Table
+from pytpc.diagnosis.scores.scores import NONE
 from pytpc.recording.marks import MarkType
-from pytpc.scoring.scores import NONE
 from pytpc.stats.delays import DelaysOfTrial, delays_of, delays_table
 from pytpc.stats.found import FoundAtMark, FoundInTrial, found_in, found_table
 from pytpc.stats.marked import MarksOfTrial, confusion_table, marks_table

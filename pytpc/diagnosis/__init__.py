@@ -1,0 +1,1 @@
+"""From a recording to the parameter: scores, ranking, suggestion. No files, no graph."""

@@ -1,0 +1,1 @@
+"""From scores and marks to suspects."""

@@ -1,0 +1,213 @@
+"""Whom all marks of a mission accuse together, in the words and places of a user.
+
+``blame`` is the entrance: `pytpc.diagnosis.ranking.diagnosing`, and what there is to say where the marks or
+the reports are not enough.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pytpc.base.wording import many, percent
+from pytpc.diagnosis.ranking.diagnosing import Changed, diagnose_beside
+from pytpc.diagnosis.ranking.posterior import Decisive, Diagnosis
+from pytpc.diagnosis.ranking.ranking import Types, outside
+from pytpc.diagnosis.scores.log_evidence import Evaluation, Log
+from pytpc.diagnosis.scores.score_tables import Tpcs
+from pytpc.diagnosis.scores.scores import WINDOW_S
+from pytpc.recording.events import Events
+from pytpc.recording.marks import Mark, MarkType
+from pytpc.recording.mission import Recording
+from pytpc.static.parameters import same_parameter
+from pytpc.static.static_info import Comparison, StaticInfo
+
+SURE = 0.5
+"""From this probability on the first parameter is accused: it is likelier than all else together"""
+
+_DIGITS = 9
+"""Scores that differ by rounding only are tied."""
+
+
+@dataclass(frozen=True, slots=True)
+class Accused:
+    """A parameter and the probability that it is to blame.
+
+    ``position`` counts from 1; ``tied`` parameters have the same one. ``type`` is the likelier kind
+    of error if it is this parameter: I, the robot did what it should not, or II, it does not do
+    what it should. ``key`` and ``comparison`` are those that decide, ``last`` its last evaluation
+    up to the last mark.
+    """
+
+    position: int
+    tied: bool
+    parameter: str
+    probability: float
+    type: MarkType
+    key: str
+    comparison: Comparison
+    last: Evaluation
+
+
+@dataclass(frozen=True, slots=True)
+class Blame:
+    """All parameters that were compared, the likeliest first.
+
+    ``none`` is the probability that it is none of the parameters, ``parameters`` how many there
+    are, ``marks`` from which it was worked out. ``notes`` say what keeps it from being surer.
+    """
+
+    suspects: tuple[Accused, ...]
+    none: float
+    parameters: int
+    marks: tuple[Mark, ...]
+    notes: tuple[str, ...]
+
+    @property
+    def confidence(self) -> float:
+        """The probability of the first; 0 where nobody is suspected."""
+        return self.suspects[0].probability if self.suspects else 0.0
+
+    @property
+    def accused(self) -> str | None:
+        """The parameter that is held for likelier than all else together; None: not sure."""
+        return self.suspects[0].parameter if self.confidence >= SURE else None
+
+    @property
+    def text(self) -> str:
+        """The verdict in one line."""
+        if not self.suspects:
+            return "not enough evidence to suspect anybody"
+        first = self.suspects[0]
+        name, sure = first.parameter, percent(first.probability)
+        if self.accused is not None:
+            return f"blame {name}: {sure}; none of the parameters: {percent(self.none)}"
+        if self.none > first.probability:
+            return (
+                f"not sure: none of the parameters is likeliest ({percent(self.none)}; a fault in "
+                f"the code is none of them), then {name} ({sure})"
+            )
+        return (
+            f"not sure: {name} is likeliest ({sure}); none of the parameters: {percent(self.none)}"
+        )
+
+    def only(self, parameter: str) -> Blame:
+        """The same with the one suspect, at its position; with none where it is not suspected."""
+        exact = [one for one in self.suspects if one.parameter == parameter]
+        same = [one for one in self.suspects if same_parameter(parameter, one.parameter)]
+        return replace(self, suspects=tuple(exact or same))
+
+    @property
+    def title(self) -> str:
+        """Which marks they are: ``All 5 marks together: 1 of type I, 4 of type II``."""
+        count = len(self.marks)
+        observers = len({mark.observer for mark in self.marks})
+        by = f" of {observers} observers" if observers > 1 else ""
+        which = f"All {count} marks{by} together" if count > 1 else "The one mark"
+        kinds = [mark.type for mark in self.marks]
+        named: tuple[tuple[MarkType | None, str], ...]
+        named = (("I", "of type I"), ("II", "of type II"), (None, "without a type"))
+        said = [f"{kinds.count(kind)} {words}" for kind, words in named if kind in kinds]
+        return f"{which}: {', '.join(said)}"
+
+
+def blame(
+    recording: Recording,
+    static_info: StaticInfo,
+    *,
+    types: Types = "believe",
+    reference: Recording | None = None,
+    changes: Sequence[Changed] = (),
+    window_s: float = WINDOW_S,
+) -> Blame:
+    """Judge the parameters by all marks of a mission.
+
+    Args:
+        recording: the mission with its marks.
+        static_info: what the analysis found.
+        types: with ``ignore`` what the marks say of the type is not looked at; ``believe`` and
+            ``doubt`` are the same, for they are never taken for certain.
+        reference: a clean run of the same build.
+        changes: what was changed since the robot went right, empty where that is not known.
+        window_s: a mark that has no report in so many seconds before it says nothing.
+    """
+    if types == "ignore":
+        untyped = tuple(replace(mark, type=None) for mark in recording.marks)
+        recording = replace(recording, marks=untyped)
+    tpcs = Tpcs.of(static_info)
+    events = recording.events.with_keys(tpcs.keys)
+    log = Log(events, recording.summaries)
+    beyond = [outside(mark, log, window_s) for mark in recording.marks]
+    notes = _notes(recording, beyond)
+    if not recording.marks or all(beyond) or not len(events):
+        return Blame((), 1.0, len(tpcs.names), recording.marks, notes)
+    found = diagnose_beside(recording, static_info, reference=reference, changes=changes)
+    suspects = _suspects(found, static_info, recording.marks, events)
+    made = Blame(suspects, found.none, len(tpcs.names), recording.marks, notes)
+    if len(recording.marks) > 1 or made.accused is not None:
+        return made
+    return replace(made, notes=(*notes, "one mark says little: mark it each time that it happens"))
+
+
+def _suspects(
+    found: Diagnosis, static_info: StaticInfo, marks: Sequence[Mark], events: Events
+) -> tuple[Accused, ...]:
+    order = found.order
+    scores = [round(float(found.scores[column]), _DIGITS) for column in order]
+    last_ns = max(mark.time_ns for mark in marks)
+    suspects: list[Accused] = []
+    for place, column in enumerate(order):
+        by = found.decisive[column]
+        assert by is not None, "what is in the order was compared"
+        same = place > 0 and scores[place] == scores[place - 1]
+        suspects.append(
+            Accused(
+                position=suspects[-1].position if same else place + 1,
+                tied=scores.count(scores[place]) > 1,
+                parameter=found.names[column],
+                probability=float(found.posterior[column]),
+                type="I" if by.type1 > 1 / 2 else "II",
+                key=by.key,
+                comparison=static_info.comparisons[by.key],
+                last=_last(events, by, last_ns),
+            )
+        )
+    return tuple(suspects)
+
+
+def _last(events: Events, by: Decisive, time_ns: int) -> Evaluation:
+    """The last evaluation of a comparison in a node up to a time, else its first."""
+    rows = events.by_key.rows(events.keys.index(by.key))
+    rows = rows[events.node[rows] == events.nodes.index(by.node)]
+    place = int(np.searchsorted(events.time_ns[rows], time_ns, side="right")) - 1
+    row = int(rows[max(0, place)])
+    return Evaluation(
+        int(events.time_ns[row]),
+        bool(events.result[row]),
+        float(events.cmp[row]),
+        float(events.thresh[row]),
+        bool(events.res[row]),
+        by.node,
+    )
+
+
+def _notes(recording: Recording, beyond: Sequence[str]) -> tuple[str, ...]:
+    """What is wrong with the marks, equal reasons together, and with the reports."""
+    places: dict[str, list[str]] = {}
+    for number, reason in enumerate(beyond, start=1):
+        if reason:
+            places.setdefault(reason, []).append(str(number))
+    notes = [f"{_marks(numbers)}: {reason}" for reason, numbers in places.items()]
+    if len(recording.summaries):
+        count = int(recording.summaries.count.sum())
+        notes.append(
+            f"{many(count, 'evaluation')} came as summaries (policy edges) and are not judged here,"
+            " so that what the robot waits for is not seen: look at each mark, too"
+        )
+    return tuple(notes)
+
+
+def _marks(numbers: Sequence[str]) -> str:
+    return f"mark{'' if len(numbers) == 1 else 's'} {', '.join(numbers)}"

@@ -1,0 +1,286 @@
+"""What the marks say of each stream: the evidence for either type of error.
+
+Type I, something was done that should not have been. If a change of the comparison's result did it,
+the first mark of each observer came a reaction after that change:
+
+    acted = log( sum over its turns t of u(t) fit(t) / (sum of u(t) + c) ) - log( mean of fit )
+    fit(t) = product over the first marks m of (e + (1 - e) T p(m - t))
+
+p is the density of reactions, T the length of the log, so that T p compares with marks at any time;
+e is the share of marks that have nothing to do with it. To divide by the sum of u(t) punishes a
+comparison that changes often: most of its changes were not marked. The mean of fit over all times
+is taken off, as the marks of several observers come together whatever it was. u(t) is how well the
+turn t fits as a cause by itself: the first of a cascade causes the others, and what the robot does
+changes after it.
+
+Type II, something is not done that should be. The comparison is evaluated in the wait before the
+marks and has one result there; elsewhere it is not evaluated, has the other one, or its value is
+farther from the threshold:
+
+    waited = log( (held + s) / (elsewhere + s) )
+    since = sum over the first marks m of log(e + (1 - e) T q(m - b(m)))
+
+held is the share of the wait in which it had that result, elsewhere the share of the rest of the
+log in which it had it with a value as near as in the wait. b(m) is when that began before the mark,
+q the density of an observer's patience: what has been so for long is not what is waited for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from typing import NamedTuple
+
+import numpy as np
+
+from pytpc.base.columns import Bools, Floats, Int64s
+from pytpc.diagnosis.ranking.result_streams import CASCADE_S, Stream, Streams
+
+REACTION_LOG = 1.946
+"""Mean of the logarithms of table 6.14's seven delays of type I: a median of 7 s."""
+
+REACTION_SIGMA = 1.17
+"""Their standard deviation. (The tails of ``reaction`` are heavier: seven numbers do not tell.)"""
+
+PATIENCE_LOG, PATIENCE_SIGMA = 2.01, 0.74
+"""The same of the six delays of type II there: a median of 7.5 s."""
+
+STRAY = 0.1
+"""The share of marks that have nothing to do with the fault that is looked for: the robot does odd
+things after an error, which are marked, too, and on clean missions of the thesis there were marks
+(table 6.15)."""
+
+WAIT_S = 8.0
+"""What is before a mark of type II is taken for wait: table 6.14's delays are 1.7 to 12.4 s with a
+mean of 8.8, so that a window of this length lies in the wait for the most part."""
+
+SHARE = 0.05
+"""Added to shares, so that what never was elsewhere is not infinitely telling."""
+
+NEAR_QUANTILE = 0.75
+"""So much of the wait is within what is called as near as in the wait."""
+
+SLACK = 0.05
+"""What is farther from the threshold by this part of the range is as near: a battery sinks, and is
+never as low before."""
+
+GRID = 1000
+"""Times at which a cause at any time is tried."""
+
+BRIEF_S = 2.0
+"""A wait goes on if it is interrupted for this time: at a threshold values are noisy."""
+
+START = 0.05
+"""A comparison that begins to be evaluated weighs so much of one that changes: much begins after
+any cause."""
+
+ONCE, ONCE_S = 0.4, 0.3
+"""One that is left alone again within this time may have passed at once, and be the cause."""
+
+LATER = 0.4
+"""A change with another one up to ``CASCADE_S`` before it weighs so much of a first one."""
+
+EFFECT_S = 1.2
+"""What the robot begins or leaves off within this time after a change may be its effect."""
+
+IDLE = 0.3
+"""A change after which the robot goes on as before weighs so much; one after which very many
+comparisons begin or are left alone, 1 more."""
+
+HALF = 2.0
+"""After a change with so many effects, it is half of that."""
+
+OTHERS = 0.3
+"""Added to the sum of the turns' weights: of a comparison whose turns have no effect none is likely
+to be the cause."""
+
+
+class Marked(NamedTuple):
+    """The marks in seconds from the begin of the log: all, and the first of each observer.
+
+    An observer's later marks say that the error lasts, and nothing more of when it began.
+    """
+
+    times: Floats
+    firsts: Floats
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """float64[streams] each.
+
+    ``acted``, ``waited`` and ``since`` see above; ``held`` the share of the wait with one result;
+    ``near`` the logarithm of the mean distance from the threshold in the wait as a part of the
+    stream's range; ``flat`` 1 where there is but one value, as of a flag.
+    """
+
+    acted: Floats
+    waited: Floats
+    since: Floats
+    held: Floats
+    near: Floats
+    flat: Floats
+
+
+def marked(times_ns: Int64s, observers: Sequence[str], streams: Streams) -> Marked:
+    """The marks on the clock of the streams."""
+    times = (times_ns - streams.begin_ns) / 1e9
+    firsts: dict[str, float] = {}
+    for time, observer in zip(times.tolist(), observers, strict=True):
+        firsts[observer] = min(time, firsts.get(observer, np.inf))
+    return Marked(times, np.sort(np.array([*firsts.values()], np.float64)))
+
+
+def evidence(streams: Streams, marks: Marked) -> Evidence:
+    """The evidence of all streams; there is at least one mark."""
+    wait = Wait.before(marks, streams.seconds)
+    chance = any_time(streams.seconds, marks)
+    rows = [(_acted(s, streams, marks) - chance, *_waited(s, wait, marks)) for s in streams.streams]
+    return Evidence(*np.array(rows, np.float64).reshape(len(rows), len(fields(Evidence))).T)
+
+
+def reaction(delays: Floats, mean: float = REACTION_LOG, sigma: float = REACTION_SIGMA) -> Floats:
+    """The density of reactions, per second; 0 where the mark came before.
+
+    Of their logarithms it is Student's t with 4 degrees of freedom, 3/8 (1 + z^2/4)^(-5/2).
+    """
+    density = np.zeros(delays.shape)
+    after = delays > 0
+    seconds = np.maximum(delays[after], 1e-3)
+    z = (np.log(seconds) - mean) / sigma
+    density[after] = 0.375 * (1.0 + z * z / 4.0) ** -2.5 / (sigma * seconds)
+    return density
+
+
+def _acted(stream: Stream, streams: Streams, marks: Marked) -> float:
+    last = float(marks.firsts.max(initial=0.0))
+    turns = np.concatenate([stream.changes, stream.starts])
+    once = stream.stops - stream.starts <= ONCE_S
+    prior = np.concatenate([np.ones(stream.changes.size), np.where(once, ONCE, START)])
+    turns, prior = turns[turns <= last], prior[turns <= last]
+    if not turns.size:
+        return float(np.log(STRAY)) * marks.firsts.size
+    first = _between(streams.decisions, turns - CASCADE_S, turns) == 0
+    follows = _between(streams.shifts, turns, turns + EFFECT_S) - _between(
+        streams.shifts, turns - EFFECT_S, turns
+    )
+    follows = np.maximum(0, follows)
+    prior = prior * np.where(first, 1.0, LATER) * (IDLE + follows / (follows + HALF))
+    return caused(turns, prior, streams.seconds, marks)
+
+
+def caused(turns: Floats, weights: Floats, seconds: float, marks: Marked) -> float:
+    """How well the first marks fit to one of these turns as their cause: ``acted`` but for chance.
+
+    Args:
+        turns: float64[turns], at least one; their times.
+        weights: float64[turns], u(t) of the formula.
+        seconds: the length of the log.
+        marks: those to explain.
+    """
+    fits = _fits(turns, seconds, marks)
+    top = fits.max()
+    total = np.sum(weights * np.exp(fits - top)) / (OTHERS + weights.sum())
+    return float(top + np.log(total))
+
+
+def _fits(turns: Floats, seconds: float, marks: Marked) -> Floats:
+    """How well the first marks fit to each turn as their cause, as logarithms."""
+    times = max(seconds, 1.0) * reaction(marks.firsts[None, :] - turns[:, None])
+    return np.asarray(np.log(STRAY + (1 - STRAY) * times).sum(axis=1))
+
+
+def any_time(seconds: float, marks: Marked) -> float:
+    """The same for a cause at any time up to the last mark: the marks of all come together."""
+    last = float(np.clip(marks.firsts.max(initial=0.0), 0.0, seconds))
+    fits = _fits(np.linspace(0.0, last, GRID), seconds, marks)
+    top = fits.max()
+    return float(top + np.log(np.mean(np.exp(fits - top))))
+
+
+class _Waited(NamedTuple):
+    """The evidence for type II; the defaults are those of a stream that is not in the wait."""
+
+    waited: float
+    since: float
+    held: float = 0.0
+    near: float = 0.0
+    flat: float = 0.0
+
+
+class Wait(NamedTuple):
+    """Sorted, disjoint spans that are taken for waits; ``begins`` and ``ends`` float64[spans]."""
+
+    begins: Floats
+    ends: Floats
+    seconds: float
+
+    @classmethod
+    def before(cls, marks: Marked, seconds: float) -> Wait:
+        """The ``WAIT_S`` before each mark."""
+        begins = np.sort(marks.times) - WAIT_S
+        ends = begins + WAIT_S
+        new = np.concatenate([[True], begins[1:] > ends[:-1]])
+        joined = np.flatnonzero(new)
+        return cls(begins[joined], ends[np.append(joined[1:], begins.size) - 1], seconds)
+
+    def holds(self, times: Floats) -> Bools:
+        """Whether each time is in one of them."""
+        place = np.searchsorted(self.begins, times, side="right") - 1
+        return np.asarray((place >= 0) & (times <= self.ends[np.maximum(place, 0)]))
+
+    @property
+    def length(self) -> float:
+        """Of all together, in s; 1 at least."""
+        ends = np.minimum(self.ends, self.seconds)
+        return max(float(np.sum(np.maximum(ends - np.maximum(self.begins, 0.0), 0.0))), 1.0)
+
+
+def _waited(stream: Stream, wait: Wait, marks: Marked) -> _Waited:
+    inside = wait.holds(stream.times)
+    if not inside.any():
+        nothing = float(np.log(STRAY)) * marks.firsts.size
+        return _Waited(float(np.log(SHARE / (SHARE + 1.0))), nothing)
+    weight, margin = stream.weight, stream.margin
+    held = [float(weight[inside & (stream.res == way)].sum()) for way in (False, True)]
+    way = bool(held[1] > held[0]) if sum(held) else bool(stream.res[inside][-1])
+    one = inside & (stream.res == way)
+    known = margin[one][np.isfinite(margin[one])]
+    flat = stream.spread == 0.0 or not known.size
+    if flat:
+        limit, near = np.inf, 0.0
+    else:
+        limit = float(np.quantile(known, NEAR_QUANTILE)) + SLACK * stream.spread
+        near = float(np.log(known.mean() / stream.spread + 0.01))
+    alike = (stream.res == way) & ~(margin > limit)
+    share = min(1.0, held[way] / wait.length)
+    rest = max(wait.seconds - wait.length, 1.0)
+    elsewhere = min(1.0, float(weight[alike & ~inside].sum()) / rest)
+    return _Waited(
+        waited=float(np.log((share + SHARE) / (elsewhere + SHARE))),
+        since=_since(stream.times[alike], wait.seconds, marks),
+        held=share,
+        near=near,
+        flat=float(flat),
+    )
+
+
+def _since(times: Floats, seconds: float, marks: Marked) -> float:
+    """How well the first marks fit to when the wait began before each of them.
+
+    ``times`` are those at which the stream was as in the wait; a pause of up to ``BRIEF_S`` does
+    not end it, nor does a mark after its end of up to that come too late.
+    """
+    firsts = marks.firsts
+    begins = np.flatnonzero(np.diff(times, prepend=-np.inf) > BRIEF_S)
+    last = np.searchsorted(times, firsts, side="right") - 1
+    begun = times[begins[np.maximum(np.searchsorted(begins, last, side="right") - 1, 0)]]
+    fits = max(seconds, 1.0) * reaction(firsts - begun, PATIENCE_LOG, PATIENCE_SIGMA)
+    fits[(last < 0) | (firsts - times[last] > BRIEF_S)] = 0.0
+    return float(np.log(STRAY + (1 - STRAY) * fits).sum())
+
+
+def _between(times: Floats, begins: Floats, ends: Floats) -> Int64s:
+    """int64[spans]: how many of the sorted times lie in [begin, end)."""
+    first = np.searchsorted(times, begins, side="left")
+    return np.searchsorted(times, ends, side="left") - first

@@ -1,0 +1,243 @@
+"""Replay: what would have been decided with the other value, that of before or of a clean run.
+
+That is what an engineer does who knows which parameters are not as they were: with which of them
+would the robot have decided otherwise before the marks, when, and for how long? The logged
+comparisons of a parameter are evaluated again with its other threshold. Turns are spans in which
+the outcome would be another one. A turn ends where the outcome is the same again; where the
+comparison is left alone before, the way of its value is followed on, as it rose or fell last, until
+it would be. So a decision that would have come a moment sooner or later weighs
+little, whatever the number by which the value was changed. Of each comparison it is asked
+
+    acted  = log( sum of u fit / (sum of u + c) ) - log( mean of fit )
+    u      = d^2 / (d^2 + MOMENT_S^2), LEAST at least
+    waited = log( (turned in the wait + s)^2 / (turned elsewhere + s) )
+
+with the duration d of each turn, and shares of the time; ``fit`` and the wait are those of
+`pytpc.diagnosis.ranking.mark_evidence`, of the marks. Type I is charged with ``acted`` of the turns that
+begin before the last of the observers' first marks, type II with ``waited`` or, half of it each,
+``acted``: a change that cannot be undone. Both go by the odds of the types. A parameter whose other
+value turns nothing before the marks is acquitted.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from pytpc.base.columns import Bools, Floats
+from pytpc.diagnosis.ranking.mark_evidence import SHARE, Marked, Wait, any_time, caused, marked
+from pytpc.diagnosis.ranking.posterior import Diagnosis, diagnose, softmax, type_odds
+from pytpc.diagnosis.ranking.priors import thresholds_of
+from pytpc.diagnosis.ranking.result_streams import Stream, Streams
+from pytpc.diagnosis.scores.score_tables import Tpcs
+from pytpc.diagnosis.thresholds.inverse import kept_as
+from pytpc.diagnosis.thresholds.outcomes import outcomes
+from pytpc.diagnosis.thresholds.units import NoUnitError, is_text, read_type, tree_of
+from pytpc.recording.events import Events
+from pytpc.recording.mission import Recording
+from pytpc.static.arithmetic import evaluate
+from pytpc.static.parameters import same_parameter
+from pytpc.static.static_info import StaticInfo
+
+MOMENT_S = 2.0
+"""A turn of this length weighs half of one that lasts."""
+
+LEAST = 0.001
+"""No turn weighs less."""
+
+SLOPE_S = 2.0
+"""Over so long the slope is taken with which a value is followed on."""
+
+ACQUITTED = -4.0
+"""The log odds of a parameter whose other value would have turned nothing before the marks."""
+
+
+ALONE = 0.2
+"""What the log by itself counts beside the replay, which looks at the same marks."""
+
+REPLAYED = 1.0
+"""What the replay counts. Both, and ``NOBODY``, are chosen on the tuning half of the study, whose
+missions have eight large harmless changes each, by the likelihood of what was to blame."""
+
+NOBODY = -0.4
+"""The score of "none of them" where it is known what differs. The likeliest is lower; with -0.4 no
+clean mission and no fault of the tuning half has an accusation."""
+
+
+def diagnose_replayed(
+    recording: Recording, static_info: StaticInfo, prior: Floats, others: Mapping[str, float]
+) -> Diagnosis:
+    """The diagnosis of `pytpc.diagnosis.ranking.posterior` with what the replay says.
+
+    Args:
+        recording: the mission with its marks.
+        static_info: what the analysis found.
+        prior: float64[p], see `pytpc.diagnosis.ranking.priors`.
+        others: the other threshold of each comparison of which one is known, by its key.
+    """
+    alone = diagnose(recording, static_info)
+    if not np.isfinite(alone.scores).any():
+        return alone
+    found = replayed(recording, static_info, others)
+    charges = np.array([found.get(name, 0.0) for name in alone.names])
+    scores = ALONE * alone.scores + REPLAYED * charges + prior
+    posterior, none = softmax(scores, NOBODY)
+    return replace(alone, scores=scores, posterior=posterior, none=none)
+
+
+def before_changes(
+    static_info: StaticInfo, changes: Iterable[tuple[str, float]]
+) -> dict[str, float]:
+    """The threshold of each comparison, by its key, with the old values of (parameter, old).
+
+    Left out is what compares text, or where the way from the parameter to the threshold is not
+    known.
+    """
+    found = {}
+    values = list(changes)
+    for key, comparison in static_info.thresholds.items():
+        unit = static_info.unit_of(key)
+        if comparison.source is None or is_text(comparison, unit):
+            continue
+        for parameter, old in values:
+            if not same_parameter(parameter, comparison.source):
+                continue
+            try:
+                tree = kept_as(tree_of(comparison), read_type(comparison, unit))
+            except NoUnitError:
+                continue
+            threshold = evaluate(tree, old)
+            if not math.isnan(threshold):
+                found[key] = threshold
+    return found
+
+
+def of_clean_run(tpcs: Tpcs, events: Events, reference: Events) -> dict[str, float]:
+    """The threshold of each comparison in a clean run, by its key, where it is another one."""
+    here, there = thresholds_of(events, tpcs), thresholds_of(reference, tpcs)
+    differs = (here != there) & ~np.isnan(here) & ~np.isnan(there)
+    return {tpcs.keys[code]: float(there[code]) for code in np.flatnonzero(differs)}
+
+
+def replayed(
+    recording: Recording, static_info: StaticInfo, others: Mapping[str, float]
+) -> dict[str, float]:
+    """What speaks against the parameters whose comparisons are replayed, in log odds.
+
+    Args:
+        recording: with its marks, at least one.
+        static_info: what the analysis found.
+        others: the other threshold of each comparison to replay.
+
+    Returns:
+        By the parameter's name; the worst of its comparisons counts.
+    """
+    tpcs = Tpcs.of(static_info)
+    streams = Streams.of(recording.events, tpcs)
+    times = np.array([mark.time_ns for mark in recording.marks], np.int64)
+    marks = marked(times, tuple(mark.observer for mark in recording.marks), streams)
+    odds = type_odds(recording.marks)
+    wait = Wait.before(marks, streams.seconds)
+    found: dict[str, float] = {}
+    for stream in streams.streams:
+        key, name = tpcs.keys[stream.code], tpcs.names[stream.column]
+        if key not in others:
+            continue
+        other = others[key]
+        turned = _turned(static_info.thresholds[key].relation, stream, other)
+        charge = ACQUITTED
+        if np.any(turned & (stream.times <= marks.times.max())):
+            charge = max(charge, _charge(stream, turned, other, (marks, wait), odds))
+        found[name] = max(charge, found.get(name, ACQUITTED))
+    return found
+
+
+def turned_by_clean_run(
+    recording: Recording, static_info: StaticInfo, reference: Recording
+) -> dict[str, int]:
+    """How many recorded results would be others with the thresholds of a clean run.
+
+    Returns:
+        By the name of each parameter that has another threshold there; all of its comparisons.
+    """
+    tpcs = Tpcs.of(static_info)
+    others = of_clean_run(tpcs, recording.events, reference.events)
+    found: dict[str, int] = {}
+    for stream in Streams.of(recording.events, tpcs).streams:
+        key, name = tpcs.keys[stream.code], tpcs.names[stream.column]
+        if key in others:
+            turned = _turned(static_info.thresholds[key].relation, stream, others[key])
+            found[name] = found.get(name, 0) + int(np.count_nonzero(turned))
+    return found
+
+
+def _turned(relation: str, stream: Stream, other: float) -> Bools:
+    """bool[n]: whether the outcome would be another one."""
+    if relation == "flag":
+        return np.asarray((stream.thresh != 0) != (other != 0))
+    now = outcomes(relation, stream.cmp, stream.thresh)
+    return np.asarray(now != outcomes(relation, stream.cmp, other))
+
+
+def _charge(
+    stream: Stream, turned: Bools, other: float, evidence: tuple[Marked, Wait], odds: float
+) -> float:
+    marks, wait = evidence
+    begins, lengths = turns(stream, turned, other)
+    early = begins <= marks.firsts.max()
+    acted = ACQUITTED
+    if early.any():
+        weights = np.maximum(1.0 - 1.0 / (1.0 + (lengths[early] / MOMENT_S) ** 2), LEAST)
+        acted = caused(begins[early], weights, wait.seconds, marks) - any_time(wait.seconds, marks)
+    inside = wait.holds(stream.times)
+    share = min(1.0, float(stream.weight[turned & inside].sum()) / wait.length)
+    rest = max(wait.seconds - wait.length, 1.0)
+    elsewhere = min(1.0, float(stream.weight[turned & ~inside].sum()) / rest)
+    waited = math.log((share + SHARE) / (elsewhere + SHARE)) + math.log(share + SHARE)
+    latched = np.logaddexp(acted, waited) - math.log(2.0)
+    return float(np.logaddexp(acted - np.logaddexp(0.0, odds), latched - np.logaddexp(0.0, -odds)))
+
+
+def turns(stream: Stream, turned: Bools, other: float) -> tuple[Floats, Floats]:
+    """The spans in which the outcome would be another one.
+
+    Args:
+        stream: n evaluations.
+        turned: bool[n].
+        other: the other threshold.
+
+    Returns:
+        float64[turns] each: when they begin, and their lengths in s; infinite where nothing says
+        that the value would ever have got to the other threshold.
+    """
+    last = np.zeros(turned.size, np.bool_)
+    last[np.searchsorted(stream.times, stream.stops, side="right") - 1] = True
+    goes_on = np.concatenate([[False], turned[:-1] & ~last[:-1]])
+    begins = np.flatnonzero(turned & ~goes_on)
+    ends = np.flatnonzero(turned & (last | ~np.append(turned[1:], False)))
+    lengths = [
+        stream.times[end] + _until_alike(stream, end, other) if last[end] else stream.times[end + 1]
+        for end in ends.tolist()
+    ]
+    return stream.times[begins], np.array(lengths, np.float64) - stream.times[begins]
+
+
+def _until_alike(stream: Stream, place: int, other: float) -> float:
+    """The seconds after an evaluation until its value is past the other threshold, on a line.
+
+    The line is through what led there: the evaluations of the last ``SLOPE_S`` since the value
+    last went the other way, as a timer does that is set back.
+    """
+    since = int(np.searchsorted(stream.times, stream.times[place] - SLOPE_S))
+    way, last = other - float(stream.cmp[place]), float(stream.cmp[place])
+    steps = np.diff(stream.cmp[since : place + 1]) * (1.0 if way >= 0.0 else -1.0)
+    back = np.flatnonzero(~(steps >= 0.0))
+    first = since + (int(back[-1]) + 1 if back.size else 0)
+    rise = abs(last - float(stream.cmp[first]))
+    if first == place or rise == 0.0:
+        return math.inf
+    span = float(stream.times[place] - stream.times[first])
+    return abs(way) * span / rise + span / (place - first)

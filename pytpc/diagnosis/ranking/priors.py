@@ -1,0 +1,66 @@
+"""What is known of the parameters beside the log: which of them are not as they were.
+
+A parameter that has the value with which the robot went right is hardly to blame. By how much one
+was changed is not asked: what is a lot differs from one parameter to the next (in the study, whose
+harmless changes are as large as the others, ``largest-change`` is no better than chance).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+from pytpc.base.columns import Floats
+from pytpc.diagnosis.scores.score_tables import Tpcs
+from pytpc.recording.events import Events
+from pytpc.static.parameters import same_parameter
+
+UNCHANGED = -12.0
+"""The log odds of a parameter that is as it was; not less, as what is on record may be wrong, and
+the robot may be elsewhere than where that value was right."""
+
+
+def of_changes(names: Sequence[str], changes: Iterable[tuple[str, float, float]]) -> Floats:
+    """float64[p], the log prior of each name, from (parameter, old, new); 0 where there is none."""
+    found = list(changes)
+    if not found:
+        return np.zeros(len(names))
+    prior = np.full(len(names), UNCHANGED)
+    for parameter, old, new in found:
+        for column, name in enumerate(names):
+            if same_parameter(parameter, name):
+                prior[column] = max(prior[column], of_change(old, new))
+    return prior
+
+
+def of_reference(tpcs: Tpcs, events: Events, reference: Events) -> Floats:
+    """float64[p], the log prior of each parameter, from the thresholds of a clean run.
+
+    A parameter none of whose comparisons was evaluated in both, or that changed while the robot
+    ran, is between: nothing is known of it.
+    """
+    here, there = thresholds_of(events, tpcs), thresholds_of(reference, tpcs)
+    prior: dict[str, float] = {}
+    for now, then, name in zip(here, there, tpcs.parameters, strict=True):
+        if np.isnan(now) or np.isnan(then):
+            continue
+        prior[name] = max(prior.get(name, UNCHANGED), of_change(then, now))
+    known = np.array([prior.get(name, np.nan) for name in tpcs.names])
+    return np.where(np.isnan(known), UNCHANGED / 2, known)
+
+
+def of_change(old: float, new: float) -> float:
+    """The log odds of a parameter that was ``old`` and is ``new``."""
+    return UNCHANGED if old == new else 0.0
+
+
+def thresholds_of(events: Events, tpcs: Tpcs) -> Floats:
+    """float64[n]: the threshold of each comparison, nan where it has none or several."""
+    own = events.with_keys(tpcs.keys)
+    found = np.full(len(tpcs.keys), np.nan)
+    for code in range(len(tpcs.keys)):
+        values = own.thresh[own.by_key.rows(code)]
+        if values.size and np.isfinite(values[0]) and bool(np.all(values == values[0])):
+            found[code] = values[0]
+    return found

@@ -1,0 +1,299 @@
+"""The suspects at each mark of a mission: parameters, most suspicious first.
+
+``rank_marks`` is the entrance. TPCs whose threshold is a constant are no parameters and are left
+out. A parameter is named as in the source; where no constant names it, its place does.
+
+How far the observer's type is believed (``Types``):
+
+- ``believe``: the score of the mark's type orders the parameters.
+- ``ignore``: a parameter's rank is the better one of its two ranks.
+- ``doubt``: the better one, too, but the rank by the other type counts only ``DOUBT`` of itself:
+  the probability that the other type is meant, after the mark, by table 6.13 of the thesis and with
+  both types as likely before it. Of 17 marks on the type I treatment 2 were of type I, of 51 on the
+  type II treatment 26. So after a mark of type I, type II has
+  26/51 / (26/51 + 2/17) = 26/32, and after one of type II, type I has
+  15/17 / (15/17 + 25/51) = 45/70. What is first by the given type stays first, and the first by the
+  other comes in below it, the higher the likelier the confusion. With a weight of 0 this is
+  ``believe``, with 1 ``ignore``.
+
+Equal better ranks are ordered by the other rank. A mark without a type is ranked by both. These are
+baselines (SPEC 7).
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+from typing import Literal, NamedTuple, get_args
+
+import numpy as np
+
+from pytpc.diagnosis.scores.log_evidence import Evaluation, Evidence, Log
+from pytpc.diagnosis.scores.score_tables import Tables, Tpcs, parameter_tables, tpc_scores
+from pytpc.diagnosis.scores.scores import NONE, WINDOW_S, combined
+from pytpc.recording.events import Events
+from pytpc.recording.marks import Mark, MarkType
+from pytpc.recording.mission import Recording
+from pytpc.static.parameters import same_parameter
+from pytpc.static.static_info import Comparison, StaticInfo
+
+Types = Literal["believe", "doubt", "ignore"]
+"""How far the types of the marks are believed, see above."""
+
+DOUBT: dict[MarkType, float] = {"I": 26 / 32, "II": 45 / 70}
+"""How probable the other type is after a mark of this one."""
+
+FEWEST = 2
+"""Fewer parameters that were evaluated up to the mark than this are no ranking."""
+
+# A robot on simulated time and one on the wall's are decades apart, two missions hours.
+APART_NS = 24 * 3600 * 10**9
+
+
+@dataclass(frozen=True, slots=True)
+class Suspect:
+    """A parameter at a mark.
+
+    ``position`` counts from 1; parameters between which nothing decides are ``tied`` and have the
+    same one. ``key`` and ``comparison`` are its most suspicious TPC, ``score`` that one's score by
+    the formula of ``type`` (SPEC 7). ``rank`` is what they are ordered by: the parameter's rank
+    among all parameters, or what is made of both where the type is not believed. ``keys`` are all
+    TPCs of the parameter that the log has. ``last`` is the TPC's last evaluation up to the mark.
+    ``rank1`` and ``rank2`` are the parameter's ranks by type I and by type II, 0 where it has no
+    such score.
+    """
+
+    position: int
+    parameter: str
+    key: str
+    comparison: Comparison
+    type: MarkType
+    score: float
+    rank: float
+    keys: tuple[str, ...]
+    last: Evaluation
+    tied: bool = False
+    rank1: float = 0.0
+    rank2: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class MarkRanking:
+    """The suspects at one mark, most suspicious first; parameters without a score are not here.
+
+    ``parameters`` is the number of parameters among which they were ranked. Where there is not
+    ``enough`` evidence to go by the order, or for any at all, ``reason`` says why; else it is
+    empty.
+    """
+
+    mark: Mark
+    suspects: tuple[Suspect, ...]
+    parameters: int
+    enough: bool = True
+    reason: str = ""
+
+    def position_of(self, parameter: str) -> int | None:
+        """The position of a parameter, None where it has no score at this mark."""
+        found = self.suspect_of(parameter)
+        return None if found is None else found.position
+
+    def suspect_of(self, parameter: str) -> Suspect | None:
+        """The most suspicious of what ``parameter`` can mean, see `same_parameter`."""
+        same = (s for s in self.suspects if same_parameter(parameter, s.parameter))
+        return next(same, None)
+
+
+def rank_marks(
+    recording: Recording,
+    static_info: StaticInfo,
+    *,
+    types: Types = "believe",
+    window_s: float = WINDOW_S,
+) -> list[MarkRanking]:
+    """Rank the parameters at every mark.
+
+    Args:
+        recording: the mission. Keys that the static information does not know are left out;
+            ``unknown_keys`` counts them.
+        static_info: what the analysis found. All its TPCs and parameters count in n of the rank,
+            also those that were never evaluated.
+        types: how far the observer's types are believed.
+        window_s: the window of type II in seconds.
+
+    Returns:
+        One ranking for each mark, in the order of ``recording.marks``.
+
+    Raises:
+        ValueError: ``window_s`` is negative, or ``types`` is none of these words.
+    """
+    tpcs = Tpcs.of(static_info)
+    events = recording.events.with_keys(tpcs.keys)
+    marks_ns = np.array([mark.time_ns for mark in recording.marks], dtype=np.int64)
+    scores = tpc_scores(tpcs, events, recording.summaries, marks_ns, window_s)
+    ranker = Ranker(static_info, tpcs, Log(events, recording.summaries), types, window_s)
+    tables = parameter_tables(tpcs, scores)
+    return [ranker.ranking(mark, tables, row) for row, mark in enumerate(recording.marks)]
+
+
+def unknown_keys(events: Events, static_info: StaticInfo) -> dict[str, int]:
+    """Keys in the log that the static information does not know, with their number of reports.
+
+    They come from a program that was built at another time than the static information.
+    """
+    counts = Counter(events.key.tolist())
+    return {
+        key: counts[code]
+        for code, key in enumerate(events.keys)
+        if counts[code] and key not in static_info.comparisons
+    }
+
+
+class _Place(NamedTuple):
+    """A parameter in the order: its column, and what it is ordered by."""
+
+    column: int
+    type: MarkType
+    rank: float
+    order: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Ranker:
+    """Makes rankings out of tables of scores."""
+
+    static_info: StaticInfo
+    tpcs: Tpcs
+    evidence: Evidence
+    types: Types = "believe"
+    window_s: float = WINDOW_S
+
+    def __post_init__(self) -> None:
+        """Check the word.
+
+        Raises:
+            ValueError: ``types`` is none of ``Types``.
+        """
+        if self.types not in get_args(Types):
+            raise ValueError(f"types is {self.types!r}, not one of {', '.join(get_args(Types))}")
+
+    def ranking(self, mark: Mark, tables: Tables, row: int) -> MarkRanking:
+        """The ranking at ``mark``, whose scores are in ``row`` of the tables."""
+        places = self._places(mark, tables, row)
+        alike = Counter(place.order for place in places)
+        suspects: list[Suspect] = []
+        for number, place in enumerate(places, start=1):
+            same = number > 1 and place.order == places[number - 2].order
+            position = suspects[-1].position if same else number
+            tied = alike[place.order] > 1
+            suspects.append(self._suspect(mark, tables, row, place, position=position, tied=tied))
+        reason = self._reason(mark, suspects)
+        return MarkRanking(mark, tuple(suspects), len(self.tpcs.names), not reason, reason)
+
+    def _places(self, mark: Mark, tables: Tables, row: int) -> list[_Place]:
+        """The parameters with a score, in order; ties by distance and name."""
+        given = None if self.types == "ignore" else mark.type
+        kind: MarkType = given or "I"
+        other: MarkType = "II" if kind == "I" else "I"
+        own = tables.of(kind)
+        ranks, others = own.ranks[row], tables.of(other).ranks[row]
+        if given is not None and self.types == "believe":
+            scores = own.scores[row]
+            places = [
+                _Place(n, kind, float(ranks[n]), (float(scores[n]),))
+                for n in np.flatnonzero(scores != NONE).tolist()
+            ]
+            distance = own.distance[row]
+        else:
+            weight = 1.0 if given is None else DOUBT[kind]
+            better = combined(ranks, others, weight)
+            both = ranks + weight * others
+            places = [
+                _Place(
+                    n,
+                    kind if ranks[n] >= weight * others[n] else other,
+                    float(better[n]),
+                    (-float(better[n]), -float(both[n])),
+                )
+                for n in np.flatnonzero(better > 0).tolist()
+            ]
+            distance = np.minimum(tables.first.distance[row], tables.second.distance[row])
+        # The columns are in the order of the names.
+        return sorted(places, key=lambda place: (place.order, distance[place.column], place.column))
+
+    def _suspect(
+        self,
+        mark: Mark,
+        tables: Tables,
+        row: int,
+        place: _Place,
+        *,
+        position: int,
+        tied: bool,
+    ) -> Suspect:
+        table, column = tables.of(place.type), place.column
+        key = self.tpcs.keys[int(table.best[row, column])]
+        parameter = table.names[column]
+        seen = self.evidence.first_ns
+        return Suspect(
+            position=position,
+            parameter=parameter,
+            key=key,
+            comparison=self.static_info.comparisons[key],
+            type=place.type,
+            score=float(table.scores[row, column]),
+            rank=place.rank,
+            keys=tuple(one for one in self.tpcs.keys_of[parameter] if one in seen),
+            last=self.evidence.last(key, mark.time_ns),
+            tied=tied,
+            rank1=float(tables.first.ranks[row, column]),
+            rank2=float(tables.second.ranks[row, column]),
+        )
+
+    def _reason(self, mark: Mark, suspects: list[Suspect]) -> str:
+        """Why the evidence is not enough; empty where it is."""
+        first = self.evidence.first_ns
+        if not self.tpcs.keys:
+            return "the static information has no comparison with a parameter"
+        beyond = outside(mark, self.evidence, self.window_s)
+        if beyond:
+            return beyond
+        evaluated = {
+            name
+            for key, name in zip(self.tpcs.keys, self.tpcs.parameters, strict=True)
+            if key in first and first[key] <= mark.time_ns
+        }
+        if not suspects:
+            return self._why_nobody(mark)
+        if len(evaluated) < FEWEST:
+            return f"only {suspects[0].parameter} had been compared up to the mark"
+        if len(suspects) > 1 and suspects[-1].position == 1:
+            return f"all {len(suspects)} parameters with a score have the same one"
+        return ""
+
+    def _why_nobody(self, mark: Mark) -> str:
+        change = "no result had changed up to the mark"
+        near = f"nothing that ever had two different values was compared in the {self.window_s:g} s"
+        if self.types != "believe" or mark.type is None:
+            return f"{change}, and {near} before it"
+        return change if mark.type == "I" else f"{near} before the mark"
+
+
+def outside(mark: Mark, evidence: Evidence, window_s: float = WINDOW_S) -> str:
+    """What is wrong with the time of a mark; empty where nothing is."""
+    first = evidence.first_ns
+    if not first:
+        return "no comparison was reported"
+    last = evidence.reported_ns(mark.time_ns)
+    away = min(first.values()) - mark.time_ns if last is None else mark.time_ns - last
+    if away > APART_NS:
+        return "the mark is on another clock than the reports"
+    if last is None:
+        return f"the mark is {_seconds(away)} before the first report"
+    if away > window_s * 1e9:
+        return f"the last report up to the mark is {_seconds(away)} before it"
+    return ""
+
+
+def _seconds(time_ns: int) -> str:
+    seconds = time_ns / 1e9
+    return f"{seconds:,.0f} s" if seconds >= 1000 else f"{seconds:.3g} s"

@@ -1,0 +1,276 @@
+"""What is watched while a robot runs: evaluations in, what is to be shown of the suspects out.
+
+Nothing here touches a terminal, a graph, a file or a clock; those are in ``watch_screen``,
+``live_mission`` and ``terminal``. The scores are those of `pytpc.diagnosis.scores.live_scores`; beside them each
+comparison has its last values, its last flop, and how near it came to its threshold lately.
+"""
+
+from __future__ import annotations
+
+import copy
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from pytpc.diagnosis.ranking.ranking import MarkRanking, Suspect
+from pytpc.diagnosis.scores.live_scores import LiveRanking
+from pytpc.diagnosis.scores.scores import WINDOW_S
+from pytpc.recording.marking_session import Change
+from pytpc.recording.marks import Mark, MarkType
+from pytpc.recording.summaries import Summary
+from pytpc.static.static_info import StaticInfo
+
+BINS = 8
+"""So many parts of the window are shown of each comparison, the last of them now."""
+
+_NAMED = 3
+
+KINDS: tuple[MarkType | None, ...] = ("I", "II", None)
+
+
+class Seen(NamedTuple):
+    """One evaluation, as it came."""
+
+    time_ns: int
+    key: str
+    node: str
+    result: bool
+    cmp: float
+    thresh: float
+    res: bool
+
+
+class Part(NamedTuple):
+    """What a comparison did in one part of the window.
+
+    ``distance`` is the mean of |cmp - thresh| over max - min (0 is on the threshold, as in D of
+    SPEC 7), NaN where it was not evaluated; ``flopped`` says whether the result changed.
+    """
+
+    distance: float
+    flopped: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A suspect as it is shown: ``parts`` are the last ``BINS`` of its comparison; ``flop_s`` are
+    the seconds since its last flop, None where it has not flopped; ``last`` is its last evaluation,
+    None where there are summaries alone."""
+
+    suspect: Suspect
+    last: Seen | None
+    flop_s: float | None
+    parts: tuple[Part, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """What is to be shown of one instant: the rows by type (None: both combined), and why there
+    are none where there are none."""
+
+    now_ns: int
+    rows: Mapping[MarkType | None, tuple[Row, ...]]
+    reasons: Mapping[MarkType | None, str]
+    parameters: int
+
+
+@dataclass(slots=True)
+class _Bin:
+    """Sums over one part of time."""
+
+    total: float = 0.0
+    count: int = 0
+    flops: int = 0
+
+
+@dataclass(slots=True)
+class _Track:
+    """What is remembered of one comparison, whatever the length of the mission."""
+
+    last: Seen | None = None
+    flop_ns: int | None = None
+    results: dict[str, tuple[int, bool]] = field(default_factory=dict)
+    low: float = math.inf
+    high: float = -math.inf
+    bins: dict[int, _Bin] = field(default_factory=dict)
+
+
+class Watching:
+    """All that is known at the time of the last evaluation.
+
+    Args:
+        engine: the live scores, without a report yet.
+        static_info: what the analysis found.
+        window_s: the window of type II, in seconds.
+    """
+
+    def __init__(
+        self, engine: LiveRanking, static_info: StaticInfo, window_s: float = WINDOW_S
+    ) -> None:
+        """Nothing was seen yet."""
+        self._engine = engine
+        self.static_info = static_info
+        self._known = static_info.comparisons
+        self._bin_ns = max(1, round(window_s * 1e9) // BINS)
+        self._tracks: dict[str, _Track] = {}
+        self.reports = 0
+        self.last_ns: int | None = None
+        self.nodes: set[str] = set()
+        self.unknown: dict[str, int] = {}
+
+    @property
+    def late(self) -> int:
+        """How many evaluations came too late to be ranked."""
+        return self._engine.scores.late
+
+    def take(self, seen: Seen) -> None:
+        """Take in an evaluation; one of a comparison that is not known is counted."""
+        self._note(seen.time_ns, seen.node)
+        self.reports += 1
+        if seen.key not in self._known:
+            self.unknown[seen.key] = self.unknown.get(seen.key, 0) + 1
+            return
+        self._engine.scores.add(*seen)
+        track = self._tracks.setdefault(seen.key, _Track())
+        part = self._bin(track, seen.time_ns)
+        before = track.results.get(seen.node)
+        if before is None or before[0] <= seen.time_ns:
+            if before is not None and before[1] != seen.result:
+                track.flop_ns = max(seen.time_ns, track.flop_ns or seen.time_ns)
+                part.flops += 1
+            track.results[seen.node] = seen.time_ns, seen.result
+        if track.last is None or track.last.time_ns <= seen.time_ns:
+            track.last = seen
+        difference = abs(seen.cmp - seen.thresh)
+        if math.isfinite(difference):
+            part.total += difference
+            part.count += 1
+            track.low = min(track.low, seen.cmp, seen.thresh)
+            track.high = max(track.high, seen.cmp, seen.thresh)
+
+    def take_summary(self, summary: Summary) -> None:
+        """Take in a summary: many evaluations at once; its flops have come as evaluations."""
+        self._note(summary.end_ns, summary.node)
+        self.reports += summary.count
+        if summary.key not in self._known:
+            self.unknown[summary.key] = self.unknown.get(summary.key, 0) + summary.count
+            return
+        self._engine.scores.add_summary(summary)
+        track = self._tracks.setdefault(summary.key, _Track())
+        if track.last is None or track.last.time_ns <= summary.end_ns:
+            values = summary.result, summary.cmp, summary.thresh, summary.res
+            track.last = Seen(summary.end_ns, summary.key, summary.node, *values)
+        finite = summary.count - summary.odd
+        if finite and math.isfinite(summary.abs_mean):
+            part = self._bin(track, summary.end_ns)
+            part.total += summary.abs_mean * finite
+            part.count += finite
+            track.low = min(track.low, summary.low)
+            track.high = max(track.high, summary.high)
+
+    def ranking_at(self, mark: Mark) -> MarkRanking:
+        """The suspects at an instant, as `LiveRanking.ranking_at` gives them."""
+        return self._engine.ranking_at(mark)
+
+    def look(self, now_ns: int, top: int, kinds: Sequence[MarkType | None] = KINDS) -> Look:
+        """What is to be shown now: the first ``top`` suspects of each of ``kinds``."""
+        found = self._engine.rankings_at(now_ns, [Mark(now_ns, kind) for kind in kinds])
+        return self.look_of(dict(zip(kinds, found, strict=True)), now_ns, top)
+
+    def look_of(
+        self, rankings: Mapping[MarkType | None, MarkRanking], now_ns: int, top: int
+    ) -> Look:
+        """The same of rankings that are there already."""
+        return Look(
+            now_ns,
+            {
+                kind: tuple(self._row(one, now_ns) for one in ranking.suspects[:top])
+                for kind, ranking in rankings.items()
+            },
+            {kind: "" if r.enough else r.reason for kind, r in rankings.items()},
+            max((ranking.parameters for ranking in rankings.values()), default=0),
+        )
+
+    def snapshot(self) -> Watching:
+        """A copy that goes its own way; what was found by the analysis is not copied."""
+        shared: Iterable[object] = (self.static_info, self._known, *self._known.values())
+        return copy.deepcopy(self, {id(one): one for one in shared})
+
+    def _note(self, time_ns: int, node: str) -> None:
+        self.nodes.add(node)
+        self.last_ns = time_ns if self.last_ns is None else max(self.last_ns, time_ns)
+
+    def _bin(self, track: _Track, time_ns: int) -> _Bin:
+        number = time_ns // self._bin_ns
+        part = track.bins.get(number)
+        if part is None:
+            part = track.bins[number] = _Bin()
+            newest = max(track.bins)
+            for old in [one for one in track.bins if one <= newest - 2 * BINS]:
+                del track.bins[old]
+        return part
+
+    def _row(self, suspect: Suspect, now_ns: int) -> Row:
+        track = self._tracks.get(suspect.key, _Track())
+        flop_s = None if track.flop_ns is None else max(0, now_ns - track.flop_ns) / 1e9
+        newest = now_ns // self._bin_ns
+        spread = track.high - track.low
+        parts = []
+        for number in range(newest - BINS + 1, newest + 1):
+            part = track.bins.get(number, _Bin())
+            known = part.count > 0 and spread > 0
+            mean = part.total / part.count / spread if known else math.nan
+            parts.append(Part(min(1.0, mean) if known else math.nan, part.flops > 0))
+        return Row(suspect, track.last, flop_s, tuple(parts))
+
+
+class Kept(NamedTuple):
+    """A mark with what was known when it was made."""
+
+    mark: Mark
+    ranking: MarkRanking
+    look: Look
+
+    def words(self) -> str:
+        """The first suspects, or why there is none."""
+        (rows,), (reason,) = self.look.rows.values(), self.look.reasons.values()
+        firsts = [row.suspect for row in rows[:_NAMED]]
+        named = [f"{one.position}{'=' if one.tied else ''} {one.parameter}" for one in firsts]
+        return ", ".join(named) or reason or "no parameter has a score"
+
+
+class KeptRankings:
+    """The rankings at the marks of a session, in the order in which they were made."""
+
+    def __init__(self, top: int) -> None:
+        """``top`` suspects of each are kept to be shown."""
+        self._top = top
+        self._kept: list[Kept] = []
+
+    def __len__(self) -> int:
+        """How many marks have one."""
+        return len(self._kept)
+
+    def __getitem__(self, index: int) -> Kept:
+        """One of them."""
+        return self._kept[index]
+
+    def of(self, mark: Mark) -> Kept | None:
+        """What was kept at a mark; None for one of an earlier session."""
+        return next((one for one in self._kept if one.mark == mark), None)
+
+    def follow(self, change: Change, watching: Watching, *, believe: bool = True) -> None:
+        """Keep, forget or rename what belongs to a mark that was made, taken back or noted."""
+        before, after = change
+        if before is not None and after is not None:
+            self._kept = [
+                one._replace(mark=after) if one.mark == before else one for one in self._kept
+            ]
+        elif before is not None:
+            self._kept = [one for one in self._kept if one.mark != before]
+        elif after is not None:
+            asked = after if believe else Mark(after.time_ns, None)
+            ranking = watching.ranking_at(asked)
+            look = watching.look_of({after.type: ranking}, after.time_ns, self._top)
+            self._kept.append(Kept(after, ranking, look))

@@ -1,0 +1,1 @@
+"""The scores of each comparison and parameter, at any time."""

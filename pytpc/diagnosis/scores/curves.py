@@ -1,0 +1,78 @@
+"""Scores and ranks of all parameters over a grid of times: the curves of figures 6.15 to 6.18."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pytpc.base.columns import Floats, Int64s
+from pytpc.base.errors import TpcError
+from pytpc.diagnosis.scores.score_tables import Tpcs, parameter_tables, tpc_scores
+from pytpc.diagnosis.scores.scores import WINDOW_S
+from pytpc.recording.mission import Recording
+from pytpc.static.static_info import StaticInfo
+
+STEP_S = 0.1
+"""10 Hz."""
+
+# Some 2 GB in all five tables. A mission that seems to take decades has two clocks in it.
+_MOST_NUMBERS = 50_000_000
+
+
+@dataclass(frozen=True, eq=False)
+class RankCurves:
+    """Scores and ranks of p parameters at t times.
+
+    ``times_ns`` int64[t]; ``parameters`` the p names, sorted; ``score1``, ``score2`` float64[t, p]
+    (`pytpc.diagnosis.scores.scores.NONE` where none), ``rank1``, ``rank2`` and ``combined`` float64[t, p] in
+    [0, 1], 1 the most suspicious.
+    """
+
+    times_ns: Int64s
+    parameters: tuple[str, ...]
+    score1: Floats
+    score2: Floats
+    rank1: Floats
+    rank2: Floats
+    combined: Floats
+
+
+def rank_curves(
+    recording: Recording,
+    static_info: StaticInfo,
+    *,
+    step_s: float = STEP_S,
+    window_s: float = WINDOW_S,
+) -> RankCurves:
+    """The curves of a mission, from its begin to its end every ``step_s`` seconds.
+
+    Each value is what an observer would have got at that time: nothing later counts.
+
+    Raises:
+        ValueError: ``step_s`` is less than a nanosecond, or ``window_s`` is negative.
+        TpcError: there are too many steps.
+    """
+    step_ns = round(step_s * 1e9)
+    if step_ns < 1:
+        raise ValueError("step_s is less than a nanosecond")
+    tpcs = Tpcs.of(static_info)
+    steps = (recording.end_ns - recording.start_ns) // step_ns + 1
+    if steps * max(1, len(tpcs.keys)) > _MOST_NUMBERS:
+        raise TpcError(
+            f"{recording.name}: {recording.seconds:.0f} s in steps of {step_s:g} s are too many for"
+            f" {len(tpcs.keys)} comparisons; take longer steps (or are there two clocks in it?)"
+        )
+    times = recording.start_ns + step_ns * np.arange(steps, dtype=np.int64)
+    events = recording.events.with_keys(tpcs.keys)
+    scores = tpc_scores(tpcs, events, recording.summaries, times, window_s)
+    tables = parameter_tables(tpcs, scores)
+    return RankCurves(
+        times_ns=times,
+        parameters=tables.first.names,
+        score1=tables.first.scores,
+        score2=tables.second.scores,
+        rank1=tables.first.ranks,
+        rank2=tables.second.ranks,
+        combined=tables.combined,
+    )

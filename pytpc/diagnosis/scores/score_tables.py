@@ -1,0 +1,140 @@
+"""Both scores of all TPCs, and of all parameters, at many times: what rankings are read from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from pytpc.diagnosis.scores.bounds import type2_bounds
+from pytpc.diagnosis.scores.scores import (
+    WINDOW_S,
+    Before,
+    by_parameter,
+    combined,
+    ranks,
+    type1,
+    type2,
+)
+from pytpc.recording.events import Events, Floats, Int64s
+from pytpc.recording.marks import MarkType
+from pytpc.recording.summaries import Summaries
+from pytpc.static.parameters import parameter_name
+from pytpc.static.static_info import StaticInfo
+
+
+@dataclass(frozen=True)
+class Tpcs:
+    """The n TPCs on parameters, sorted by key; those with constants are left out.
+
+    ``keys`` are theirs, ``distance`` float64[n], ``parameters`` the name of each one's parameter.
+    """
+
+    keys: tuple[str, ...]
+    distance: Floats
+    parameters: tuple[str, ...]
+
+    @classmethod
+    def of(cls, static_info: StaticInfo) -> Tpcs:
+        """The TPCs that the analysis found."""
+        found = static_info.thresholds
+        keys = tuple(sorted(found))
+        return cls(
+            keys,
+            np.array([found[key].distance for key in keys], dtype=np.float64),
+            tuple(parameter_name(found[key]) for key in keys),
+        )
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """The p parameters, sorted: the columns of a `ParameterTable`."""
+        return tuple(sorted(set(self.parameters)))
+
+    @cached_property
+    def keys_of(self) -> dict[str, tuple[str, ...]]:
+        """The TPCs of each parameter, in the order of their keys."""
+        found: dict[str, list[str]] = {name: [] for name in self.names}
+        for key, name in zip(self.keys, self.parameters, strict=True):
+            found[name].append(key)
+        return {name: tuple(keys) for name, keys in found.items()}
+
+
+class TpcScores(NamedTuple):
+    """Both scores of the TPCs, float64[times, n] each."""
+
+    first: Floats
+    second: Floats
+
+
+class ParameterTable(NamedTuple):
+    """One score of the p parameters at t times.
+
+    ``names`` as `Tpcs.names`; ``scores`` float64[t, p]; ``best`` int64[t, p], the TPC that has that
+    score, and ``distance`` float64[t, p] that one's; ``ranks`` float64[t, p].
+    """
+
+    names: tuple[str, ...]
+    scores: Floats
+    best: Int64s
+    distance: Floats
+    ranks: Floats
+
+
+class Tables(NamedTuple):
+    """Both scores of the parameters."""
+
+    first: ParameterTable
+    second: ParameterTable
+
+    def of(self, kind: MarkType) -> ParameterTable:
+        """The one for marks of that type."""
+        return self.first if kind == "I" else self.second
+
+    @property
+    def combined(self) -> Floats:
+        """float64[t, p]: the better of both ranks, for marks without a type."""
+        return combined(self.first.ranks, self.second.ranks)
+
+
+def tpc_scores(
+    tpcs: Tpcs,
+    events: Events,
+    summaries: Summaries,
+    times_ns: npt.ArrayLike,
+    window_s: float = WINDOW_S,
+    *,
+    before: Before | None = None,
+) -> TpcScores:
+    """Both scores of every TPC at all times.
+
+    Args:
+        tpcs: n of them.
+        events: with ``tpcs.keys`` as its keys (`Events.with_keys`).
+        summaries: where there are any of a TPC, its type II is `type2_bounds`' value.
+        times_ns: int64[t], in any order.
+        window_s: the window of type II in seconds.
+        before: what was before the first of ``events`` and ``summaries``.
+    """
+    first = type1(events, times_ns, tpcs.distance, before=before)
+    if not len(summaries):
+        second = type2(events, times_ns, tpcs.distance, window_s=window_s, before=before)
+        return TpcScores(first, second)
+    bounds = type2_bounds(
+        events, summaries, times_ns, tpcs.distance, window_s=window_s, before=before
+    )
+    return TpcScores(first, bounds.value)
+
+
+def parameter_tables(tpcs: Tpcs, scores: TpcScores) -> Tables:
+    """The scores of the TPCs joined by parameter, with ranks."""
+    return Tables(_joined(tpcs, scores.first), _joined(tpcs, scores.second))
+
+
+def _joined(tpcs: Tpcs, scores: Floats) -> ParameterTable:
+    """The distance of a parameter is that of its best TPC."""
+    found = by_parameter(scores, tpcs.parameters, tpcs.distance, tpcs.keys)
+    distance = np.append(tpcs.distance, np.inf)[found.best]
+    return ParameterTable(found.names, found.scores, found.best, distance, ranks(found.scores))

@@ -1,0 +1,199 @@
+"""One value out of the set of those that would do: near the present one, possible, and readable."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
+
+from pytpc.base.wording import Number, show
+from pytpc.diagnosis.suggestion.declared import Declared
+from pytpc.diagnosis.thresholds.intervals import Interval, Intervals, holds, intersection, words
+
+WHOLE = "whole number"
+_FIRST_DIGITS = 3
+_LAST_DIGITS = 6
+_ALL_DIGITS = 17
+_NOTHING = 1e-300
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """A value, the interval of those that would do that it is in, and what kept it from its end."""
+
+    value: float
+    interval: Interval
+    limited_by: str
+
+
+@dataclass(frozen=True, slots=True)
+class Possible:
+    """Which values a parameter takes: ``declared`` and, of its C++ type, whole and not negative."""
+
+    whole: bool = False
+    unsigned: bool = False
+    declared: Declared | None = None
+
+    @property
+    def interval(self) -> Interval:
+        """The range."""
+        low, high = self._ends()
+        if self.unsigned:
+            low = max(0.0, -math.inf if low is None else low)
+        return Interval.closed(low, high)
+
+    @property
+    def is_limited(self) -> bool:
+        """Whether a range is known."""
+        return self.interval != Interval()
+
+    @property
+    def step(self) -> Decimal | None:
+        """The step of the grid that values lie on, a positive number."""
+        step = self.declared.step if self.declared is not None else None
+        return Decimal(repr(float(step))) if step is not None and step > 0 else None
+
+    def origin(self, current: float) -> Decimal:
+        """A number of the grid: the lower end of the range, else the present value."""
+        low = self._ends()[0]
+        return Decimal(repr(float(current if low is None else low)))
+
+    def words(self) -> str:
+        """``declared range 0..1``."""
+        low, high = self._ends()
+        if low is None and high is None:
+            return "type, which holds no negative number"
+        ends = ["" if end is None else show(end) for end in (low, high)]
+        return f"declared range {ends[0]}..{ends[1]}"
+
+    def _ends(self) -> tuple[float | None, float | None]:
+        found = self.declared
+        if found is None:
+            return None, None
+        # Declared with strings or the wrong way round it says nothing.
+        low, high = (None if end is None else float(end) for end in (found.low, found.high))
+        if low is not None and high is not None and not low <= high:
+            return None, None
+        return low, high
+
+
+def choose(
+    feasible: Intervals, current: float, possible: Possible, *, up_first: bool = True
+) -> Choice | str:
+    """The value nearest to ``current`` that would do and that the parameter can take.
+
+    A change of the sign is avoided where another interval would do and no range is declared that
+    has both signs. Of intervals as near ``up_first`` says which. ``current`` is in none of them.
+
+    Returns:
+        The choice, or why there is none.
+    """
+    allowed = intersection(feasible, [possible.interval])
+    if not allowed:
+        name = "no value in the " if possible.declared is not None else "no value of its "
+        return f"{name}{possible.words()} would do: {words(feasible)}"
+    found = []
+    for interval in allowed:
+        value = _nearest(interval, current, possible)
+        if value is not None:
+            found.append((_order(value, current, possible, up_first), value, interval))
+    if not found:
+        grid = "no whole number" if possible.step is None else f"no step of {possible.step}"
+        return f"{grid} would do: {words(allowed)}"
+    _, first, inside = min(found, key=lambda one: one[0])
+    home = next(one for one in feasible if one.holds(first))
+    value = first
+    if not possible.whole and possible.step is None:
+        value = readable(inside, first, current)
+    return Choice(value, home, _limits(feasible, first, current, possible))
+
+
+def _order(
+    value: float, current: float, possible: Possible, up_first: bool
+) -> tuple[bool, float, bool]:
+    jumps = value * current < 0 and not possible.is_limited
+    return (jumps, abs(value - current), (value > current) != up_first)
+
+
+def _limits(feasible: Intervals, first: float, current: float, possible: Possible) -> str:
+    """Why ``first`` is not the smallest change that would do; empty where it is."""
+    ends = [one.first() if one.first() > current else one.last() for one in feasible]
+    end = min(ends, key=lambda value: abs(value - current))
+    if abs(first - current) <= abs(end - current):
+        return ""
+    if not possible.interval.holds(end):
+        return possible.words()
+    if end * current < 0 < first * current:
+        return "sign"
+    if possible.step is not None and not _is_on(possible, end, current):
+        return f"step {possible.step.normalize():f}"
+    return WHOLE if possible.whole and end != round(end) else ""
+
+
+def _is_on(possible: Possible, value: float, current: float) -> bool:
+    step = possible.step
+    if step is None or not math.isfinite(value):
+        return False
+    count = (Decimal(repr(value)) - possible.origin(current)) / step
+    return count == count.to_integral_value()
+
+
+def _nearest(interval: Interval, current: float, possible: Possible) -> float | None:
+    """The value of an interval nearest to ``current``, on the grid of steps or whole numbers."""
+    up = interval.first() > current
+    end = interval.first() if up else interval.last()
+    if possible.step is None:
+        if not possible.whole:
+            return end
+        value = float(math.ceil(end) if up else math.floor(end))
+        return value if interval.holds(value) else None
+    # The range's own ends are always allowed (rcl_interfaces), and end the grid.
+    origin, step = possible.origin(current), possible.step
+    count = ((Decimal(repr(end)) - origin) / step).to_integral_value(
+        ROUND_CEILING if up else ROUND_FLOOR
+    )
+    values = [float(origin + count * step)]
+    ends = possible.interval
+    values += [edge for edge in (ends.high if up else ends.low,) if math.isfinite(edge)]
+    values = [value for value in values if not possible.whole or value == round(value)]
+    return next((value for value in values if interval.holds(value)), None)
+
+
+def nearest_of(values: Iterator[Number], feasible: Intervals, current: float) -> Number | None:
+    """The one of an enumeration's values nearest to ``current`` that would do."""
+    fitting = [value for value in values if holds(feasible, float(value))]
+    return min(fitting, key=lambda value: (abs(value - current), value), default=None)
+
+
+def readable(interval: Interval, first: float, current: float) -> float:
+    """A value with few digits, inside ``interval`` and not nearer to ``current`` than ``first``.
+
+    Three significant digits, more where those would go past ``first`` by more than half of the way
+    from ``current``.
+    """
+    up = first > current
+    way = abs(first - current)
+    context = Context(rounding=ROUND_CEILING if up else ROUND_FLOOR)
+    if abs(first) < max(way * 1e-9, _NOTHING):
+        # Next to 0 the digits of the end say nothing about what is small here.
+        size = way if way > _NOTHING else 1.0
+        around = Decimal(10) ** (math.floor(math.log10(size)) - _FIRST_DIGITS + 1)
+        return _inside(interval, [0.0, float(around if up else -around)], first)
+    found = []
+    for digits in range(_FIRST_DIGITS, _ALL_DIGITS + 1):
+        context.prec = digits
+        rounded = context.create_decimal(repr(first))
+        beyond = context.next_plus(rounded) if up else context.next_minus(rounded)
+        value = _inside(interval, [float(rounded), float(beyond)], math.nan)
+        if abs(value - first) <= way / 2:
+            return value
+        if not math.isnan(value):
+            found.append(value)
+        if digits >= _LAST_DIGITS and found:
+            return found[0] if way <= abs(first) * 1e-9 else found[-1]
+    return first
+
+
+def _inside(interval: Interval, values: list[float], otherwise: float) -> float:
+    return next((value for value in values if interval.holds(value)), otherwise)

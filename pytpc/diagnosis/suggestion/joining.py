@@ -1,0 +1,223 @@
+"""Advice for several marks at once: marks that say the same need one answer."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+from pytpc.diagnosis.ranking.ranking import MarkRanking
+from pytpc.diagnosis.scores.scores import WINDOW_S
+from pytpc.diagnosis.suggestion.advise import Advice, advise
+from pytpc.diagnosis.suggestion.declared import Declared
+from pytpc.diagnosis.suggestion.remedy import Remedy, remedy
+from pytpc.diagnosis.suggestion.what_if import WhatIf, what_if
+from pytpc.diagnosis.thresholds.intervals import holds
+from pytpc.recording.marks import Mark, MarkType
+from pytpc.recording.mission import Recording
+from pytpc.static.static_info import StaticInfo
+
+
+@dataclass(frozen=True, slots=True)
+class JoinedAdvice:
+    """One parameter at the marks of a group, with the advice that does at the most of them.
+
+    It is a suspect at ``named`` of the marks, and the suggested value would do at ``agreed``.
+    ``remedy`` is the value to try, from all marks of the group together, and ``what_if`` what it
+    would have changed, None where there is none.
+    """
+
+    advice: Advice
+    named: int
+    agreed: int
+    remedy: Remedy
+    what_if: WhatIf | None
+
+
+@dataclass(frozen=True, slots=True)
+class MarkGroup:
+    """Marks of one type whose first suspect and the direction of its suggestion are the same.
+
+    ``suspects`` are ordered by their mean position. ``reasons`` say at which marks there is not
+    enough evidence, and why.
+    """
+
+    marks: tuple[Mark, ...]
+    type: MarkType | None
+    suspects: tuple[JoinedAdvice, ...]
+    reasons: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Agreed:
+    """The advice that does at the most marks, at how many it was named, and at how many it does."""
+
+    advice: Advice
+    named: int
+    count: int
+
+
+@dataclass
+class _Open:
+    marks: list[Mark] = field(default_factory=list)
+    lists: list[list[Advice]] = field(default_factory=list)
+    reasons: list[str] = field(default_factory=list)
+
+
+def join_advice(
+    recording: Recording,
+    static_info: StaticInfo,
+    rankings: Sequence[MarkRanking],
+    *,
+    top: int = 5,
+    declared: Sequence[Declared] = (),
+    reference: Recording | None = None,
+    flown: Sequence[float] = (),
+    window_s: float = WINDOW_S,
+) -> list[MarkGroup]:
+    """The advice for all marks, those that say the same together, in the order of the first ones.
+
+    The arguments are those of `pytpc.diagnosis.suggestion.advise.advise`, with the rankings of several marks,
+    ``reference``, a mission that went right, and ``flown``, values of the one suspect that did not
+    help.
+    """
+    groups: dict[tuple[object, ...], _Open] = {}
+    for ranking in rankings:
+        advice = advise(
+            recording, static_info, ranking, top=top, declared=declared, window_s=window_s
+        )
+        group = groups.setdefault(_says(ranking.mark, advice), _Open())
+        group.marks.append(ranking.mark)
+        group.lists.append(advice)
+        if ranking.reason and ranking.reason not in group.reasons:
+            group.reasons.append(ranking.reason)
+    return [
+        MarkGroup(
+            tuple(group.marks),
+            group.marks[0].type,
+            tuple(
+                JoinedAdvice(
+                    one.advice,
+                    one.named,
+                    one.count,
+                    *_tried(
+                        recording,
+                        static_info,
+                        group.marks,
+                        one.advice,
+                        reference=reference,
+                        flown=flown,
+                        window_s=window_s,
+                    ),
+                )
+                for one in _joined(group.lists, top)
+            ),
+            tuple(group.reasons),
+        )
+        for group in groups.values()
+    ]
+
+
+def with_remedies(
+    recording: Recording,
+    static_info: StaticInfo,
+    rankings: Sequence[MarkRanking],
+    lists: Sequence[Sequence[Advice]],
+    *,
+    window_s: float = WINDOW_S,
+) -> list[list[Advice]]:
+    """The advice for each mark with the values to try, the same as ``join_advice`` has.
+
+    They are from all the marks that say the same.
+
+    Args:
+        recording: the mission.
+        static_info: what the analysis found.
+        rankings: of its marks.
+        lists: for each the advice for its first suspects.
+        window_s: the window of type II in seconds.
+    """
+    marks: dict[tuple[object, ...], list[Mark]] = {}
+    for ranking, advice in zip(rankings, lists, strict=True):
+        marks.setdefault(_says(ranking.mark, advice), []).append(ranking.mark)
+    known: dict[tuple[object, ...], tuple[Remedy, WhatIf | None]] = {}
+    found = []
+    for ranking, advice in zip(rankings, lists, strict=True):
+        says, filled = _says(ranking.mark, advice), []
+        for one in advice:
+            place = (says, one.suspect.parameter, one.suspect.type)
+            if place not in known:
+                known[place] = _tried(
+                    recording, static_info, marks[says], one,
+                    reference=None, flown=(), window_s=window_s,
+                )  # fmt: skip
+            filled.append(replace(one, remedy=known[place][0], tried=known[place][1]))
+        found.append(filled)
+    return found
+
+
+def _says(mark: Mark, advice: Sequence[Advice]) -> tuple[object, ...]:
+    """What marks say that are joined: the type, the first suspect and what to do with it."""
+    if not advice:
+        return (mark.type,)
+    first = advice[0]
+    return (
+        mark.type, first.suspect.parameter, first.suspect.type, first.suggestion.direction,
+    )  # fmt: skip
+
+
+def _tried(
+    recording: Recording,
+    static_info: StaticInfo,
+    marks: Sequence[Mark],
+    advice: Advice,
+    *,
+    reference: Recording | None,
+    flown: Sequence[float],
+    window_s: float,
+) -> tuple[Remedy, WhatIf | None]:
+    """The value to try, by the type that the parameter is suspected for."""
+    kind = advice.suspect.type
+    typed = [replace(mark, type=kind) for mark in marks]
+    name = advice.suspect.parameter
+    found = remedy(
+        recording,
+        static_info,
+        name,
+        typed,
+        reference=reference,
+        declared=advice.declared,
+        flown=flown,
+        window_s=window_s,
+    )
+    then = None
+    if found.value is not None:
+        then = what_if(
+            recording, static_info, name, found.value, kind=kind, marks=typed, window_s=window_s
+        )
+    return found, then
+
+
+def _joined(lists: Sequence[Sequence[Advice]], top: int) -> list[_Agreed]:
+    """The first suspects of all lists; one that a list does not have stands behind its last."""
+    found: dict[tuple[str, MarkType], list[Advice]] = {}
+    places: dict[tuple[str, MarkType], int] = {}
+    for some in lists:
+        for advice in some:
+            name = (advice.suspect.parameter, advice.suspect.type)
+            found.setdefault(name, []).append(advice)
+            places[name] = places.get(name, 0) + advice.suspect.position - top - 1
+    order = sorted(found, key=lambda name: (places[name], name))
+    return [_most_agreed(found[name]) for name in order[:top]]
+
+
+def _most_agreed(same: Sequence[Advice]) -> _Agreed:
+    """That of several suggestions for one parameter which would do at the most marks."""
+    best, most = same[0], 0
+    for advice in same:
+        value = advice.suggestion.value
+        if value is None:
+            continue
+        count = sum(holds(other.suggestion.feasible, float(value)) for other in same)
+        if count > most:
+            best, most = advice, count
+    return _Agreed(best, len(same), most)

@@ -1,0 +1,381 @@
+"""The value to try: one with which the error should stay away, not only its last occurrence.
+
+SPEC 8's suggestion is the smallest change; a counter reaches the next number, too, and noise the
+next bit. Here all marks of a mission are asked at once, and the evidence counts in this order:
+
+1. a value of a clean run, whichever way it is: it was flown, and nothing went wrong, while the way
+   that the log shows hangs on what people said of the type of the error;
+2. the direction of the log (`pytpc.diagnosis.suggestion.lasting`), never one that makes what the robot stood by
+   stronger;
+3. the default in the source, or a declared one, that lies in the lasting set; where the log cannot
+   say how far is enough (values that grow until the program acts), anywhere beyond the smallest
+   change: a guess by its author is better than one by nobody;
+4. the nearest value of the lasting set;
+5. the smallest change, where nothing else is known (flags, equality).
+
+Values that were flown in vain bound the next one: beyond the last one, and before one from which
+the other direction was wanted.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from pytpc.base.columns import Floats
+from pytpc.base.wording import Number, exact, many, show
+from pytpc.diagnosis.scores.scores import WINDOW_S
+from pytpc.diagnosis.suggestion.case import Case, case_of, refuse, shown_current, values_for
+from pytpc.diagnosis.suggestion.choice import choose
+from pytpc.diagnosis.suggestion.declared import Declared
+from pytpc.diagnosis.suggestion.known import NAMES, Known, Source, known_values, value_in
+from pytpc.diagnosis.suggestion.lasting import Lasting, lasting
+from pytpc.diagnosis.suggestion.suggest import Direction, Suggestion, suggest_for_most
+from pytpc.diagnosis.suggestion.suggestion_evidence import Evidence, NoneBecauseError
+from pytpc.diagnosis.thresholds.intervals import Interval, Intervals, holds, intersection, words
+from pytpc.diagnosis.thresholds.outcomes import thresholds_for
+from pytpc.diagnosis.thresholds.replay import Track, tracks_of
+from pytpc.diagnosis.thresholds.units import NoUnitError
+from pytpc.recording.marks import MARK_TYPES, Mark, MarkType
+from pytpc.recording.mission import Recording
+from pytpc.static.static_info import StaticInfo
+
+Basis = Literal[
+    "reference", "default", "declared", "lasting", "growth", "between", "smallest", "before"
+]
+EVERY_SOURCE: frozenset[Source] = frozenset(NAMES)
+
+
+@dataclass(frozen=True, slots=True)
+class Remedy:
+    """What to try.
+
+    ``current`` and ``value`` are in the parameter's unit, as `Suggestion` has them; ``basis`` is
+    the evidence that decided: a known value, the lasting one, one that is stepped to because the
+    values ``growth`` bounds nothing, one ``between`` those that were flown, the ``smallest``
+    change, or the one of ``before`` it was changed (`pytpc.diagnosis.suggestion.blamed`). ``smallest`` is SPEC
+    8's suggestion that does at the most of the marks. ``kind`` is the type of error that is
+    answered and ``key`` the comparison by which. ``known`` are all values that somebody knows to be
+    good. Where nothing can be suggested ``value``, ``direction`` and ``basis`` are None and
+    ``reason`` says why.
+    """
+
+    parameter: str
+    current: Number | None
+    direction: Direction | None
+    value: Number | None
+    basis: Basis | None
+    text: str
+    reason: str | None
+    kind: MarkType | None
+    key: str | None
+    smallest: Suggestion | None
+    known: tuple[Known, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class _Wanted:
+    """A comparison with what is wanted of it: values of the parameter that last, and the least."""
+
+    track: Track
+    case: Case
+    found: Lasting
+    lasting: Intervals
+    least: Intervals
+
+    @property
+    def rises(self) -> bool:
+        """Whether the nearest value that would do is above the present one."""
+        ends = [
+            part.first() if part.first() > self.case.present else part.last() for part in self.least
+        ]
+        return min(ends, key=lambda end: abs(end - self.case.present)) > self.case.present
+
+
+def remedy(
+    recording: Recording,
+    static_info: StaticInfo,
+    parameter: str,
+    marks: Sequence[Mark],
+    *,
+    sources: Collection[Source] = EVERY_SOURCE,
+    reference: Recording | None = None,
+    declared: Declared | None = None,
+    flown: Sequence[float] = (),
+    window_s: float = WINDOW_S,
+) -> Remedy:
+    """The value of one parameter to try, from all marks of a mission.
+
+    Args:
+        recording: the mission.
+        static_info: what the analysis found.
+        parameter: its name in the source, or what `same_parameter` takes for it.
+        marks: at least one, of any type or none.
+        sources: which known values may be taken.
+        reference: a clean run of the same build; its value is taken whatever the log says.
+        declared: what is declared of the parameter.
+        flown: values of it in earlier missions that did not help, without this one's.
+        window_s: the window before a mark in seconds.
+
+    Raises:
+        InputError: there is no such parameter, or several.
+    """
+    right = None if reference is None else value_in(reference, static_info, parameter)
+    found = _by_log(
+        recording,
+        static_info,
+        parameter,
+        marks,
+        sources=sources,
+        reference=reference,
+        declared=declared,
+        flown=flown,
+        window_s=window_s,
+    )
+    if right is None or right in flown or "reference" not in sources:
+        return found
+    if found.current is None:
+        found = replace(found, current=value_in(recording, static_info, parameter))
+    return restored(found, float(right), "reference", NAMES["reference"])
+
+
+def _by_log(
+    recording: Recording,
+    static_info: StaticInfo,
+    parameter: str,
+    marks: Sequence[Mark],
+    *,
+    sources: Collection[Source],
+    reference: Recording | None,
+    declared: Declared | None,
+    flown: Sequence[float],
+    window_s: float,
+) -> Remedy:
+    """The remedy in the direction that the log shows; the arguments are those of ``remedy``."""
+    name, tracks, without = tracks_of(recording.events, recording.summaries, static_info, parameter)
+    reason = "; ".join(without) or "none of its comparisons was evaluated"
+    for kind, times_ns in _kinds(marks, tracks, window_s):
+        smallest = suggest_for_most(
+            recording,
+            static_info,
+            [track.comparison for track in tracks],
+            times_ns,
+            kind,
+            declared=declared,
+            window_s=window_s,
+        )
+        wanted = []
+        for track in tracks:
+            found = lasting(track, kind, times_ns, window_s, len(flown))
+            if found is None:
+                continue
+            try:
+                wanted.append(_wanted(track, found, static_info, declared, max(times_ns)))
+            except (NoneBecauseError, NoUnitError) as why:
+                reason = str(why)
+        if wanted:
+            wanted.sort(key=lambda one: (one.found.near, one.track.comparison.key))
+            known = known_values(wanted[0].case, static_info, name, reference)
+            allowed = [one for one in known if one.source in sources and one.value not in flown]
+            chosen = _chosen(name, wanted, allowed, flown)
+            if chosen is not None:
+                return replace(chosen, smallest=smallest[0], known=tuple(known))
+        # What lasts may be nowhere between the values that were flown; then neither is this.
+        if smallest[0].value is not None and not (wanted and flown):
+            return _as_smallest(name, kind, *smallest)
+        reason = smallest[0].reason or reason
+    return Remedy(name, None, None, None, None, reason, reason, None, None, None)
+
+
+def restored(found: Remedy, value: float, basis: Basis, words: str) -> Remedy:
+    """A remedy with the value that the parameter had when the robot went right, in its place.
+
+    It stays as it is where the present value is not known, or is that one. ``words`` say when that
+    was. Where the log would have the other direction the text says so: it is worked out from the
+    types of error that people named, and they confuse these.
+    """
+    current = found.current
+    if current is None or not math.isfinite(value) or value == current:
+        return found
+    number: Number = value
+    if isinstance(current, bool):
+        number = bool(value)
+    elif isinstance(current, int) and value.is_integer():
+        number = int(value)
+    direction: Direction = "raise" if number > current else "lower"
+    if isinstance(current, bool) or found.direction == "switch":
+        direction = "switch"
+    elif found.basis != "reference" and found.direction not in {None, direction}:
+        words += "; the log alone points the other way"
+    text = f"{direction} {found.parameter} from {show(current)} to {exact(number)} ({words})"
+    return replace(found, direction=direction, value=number, basis=basis, text=text, reason=None)
+
+
+def _kinds(
+    marks: Sequence[Mark], tracks: Sequence[Track], window_s: float
+) -> list[tuple[MarkType, list[int]]]:
+    """The types of error with their times, first the one that the first marks speak of.
+
+    What came first is the cause of what came later. Marks of no type are of one type together: I
+    where a result of the parameter changed in the windows before most of them, else II.
+    """
+    if not tracks or not marks:
+        return []
+    window = round(window_s * 1e9)
+    untyped = np.array([mark.time_ns for mark in marks if mark.type is None], dtype=np.int64)
+    flops = np.sort(np.concatenate([track.flop_ns for track in tracks]))
+    begin, end = np.searchsorted(flops, untyped - window), np.searchsorted(flops, untyped, "right")
+    meant: MarkType = "I" if 2 * np.count_nonzero(begin < end) > untyped.size else "II"
+    times: dict[MarkType, list[int]] = {kind: [] for kind in MARK_TYPES}
+    for mark in sorted(marks, key=Mark.order):
+        times[mark.type or meant].append(mark.time_ns)
+    soon = min(mark.time_ns for mark in marks) + window
+    early = {kind: sum(one <= soon for one in found) for kind, found in times.items()}
+    order = sorted(
+        (kind for kind in MARK_TYPES if times[kind]),
+        key=lambda kind: (-early[kind], times[kind][0]),
+    )
+    return [(kind, times[kind]) for kind in order]
+
+
+def _wanted(
+    track: Track,
+    found: Lasting,
+    static_info: StaticInfo,
+    declared: Declared | None,
+    end_ns: int,
+) -> _Wanted:
+    comparison = track.comparison
+    unit = static_info.unit_of(comparison.key)
+    refuse(comparison, unit)
+    seen = _thresholds(track, end_ns)
+    nothing = np.zeros(0)
+    evidence = Evidence(nothing, nothing, float(seen[-1]), seen, bool(len(track.kept)))
+    case = case_of(comparison, unit, evidence, declared)
+    edges = [
+        values_for(case, thresholds_for(comparison.relation, edge, found.outcome))
+        for edge in (found.edge, found.least)
+    ]
+    return _Wanted(track, case, found, edges[0], edges[1])
+
+
+def _thresholds(track: Track, end_ns: int) -> Floats:
+    """float64[n]: up to a time, in its order; at least one, or there were no marks after any."""
+    time_ns = np.concatenate([track.time_ns, track.kept.end_ns])
+    thresh = np.concatenate([track.thresh, track.kept.thresh])
+    order = np.argsort(time_ns, kind="stable")
+    return thresh[order[time_ns[order] <= end_ns]]
+
+
+def _chosen(
+    name: str, wanted: Sequence[_Wanted], known: Sequence[Known], flown: Sequence[float]
+) -> Remedy | None:
+    """By the nearest comparison, and the others as far as they want the same direction."""
+    first = wanted[0]
+    case, rises = first.case, first.rises
+    lasts, against = first.lasting, False
+    for other in wanted[1:]:
+        if other.rises != rises:
+            against = True
+            continue
+        both = intersection(lasts, other.lasting)
+        lasts = both or lasts
+    side = [Interval.above(case.present) if rises else Interval.below(case.present)]
+    least = intersection(first.least, side) or first.least
+    lasts = intersection(lasts, side) or lasts
+    within = _bounds(case.present, rises, flown)
+    value, basis = _value(case, first.found, lasts, least, known=known, within=within)
+    if value is None:
+        return None
+    direction: Direction = "raise" if value > case.present else "lower"
+    number = case.number(value)
+    why = _why(first.found, basis, lasts, least, len(flown))
+    if against:
+        why += "; another comparison of it would want the other direction"
+    text = f"{direction} {name} from {show(shown_current(case))} to {exact(number)} ({why})"
+    return Remedy(
+        name, shown_current(case), direction, number, basis, text, None, first.found.kind,
+        first.track.comparison.key, None,
+    )  # fmt: skip
+
+
+def _bounds(present: float, rises: bool, flown: Sequence[float]) -> Interval:
+    """Between the present value and the next one beyond that was flown: there it was too much."""
+    beyond = [value for value in flown if (value > present) == rises and value != present]
+    if rises:
+        return Interval(present, min(beyond, default=math.inf))
+    return Interval(max(beyond, default=-math.inf), present)
+
+
+def _value(
+    case: Case,
+    found: Lasting,
+    lasts: Intervals,
+    least: Intervals,
+    *,
+    known: Sequence[Known],
+    within: Interval,
+) -> tuple[float | None, Basis]:
+    """The value inside of ``within`` that evidence is for, and which; None where there is none."""
+    possible = case.possible
+    for one in known:
+        anywhere = found.ground == "growth"
+        if within.holds(one.value) and holds(least if anywhere else lasts, one.value):
+            return one.value, one.source
+    chosen = choose(lasts, case.present, possible, up_first=found.up)
+    if isinstance(chosen, str):
+        # All that lasts is outside of what the parameter takes: its end, if that does anything.
+        ends = (possible.interval.high, possible.interval.low)
+        beyond = [end for end in ends if math.isfinite(end) and holds(least, end)]
+        if not beyond:
+            return None, "lasting"
+        value = min(beyond, key=lambda end: abs(end - case.present))
+    else:
+        value = chosen.value
+    if not within.holds(value):
+        between = _between(within)
+        value = float(round(between)) if possible.whole else between
+        return (value, "between") if within.holds(value) else (None, "between")
+    return value, "growth" if found.ground == "growth" else "lasting"
+
+
+def _between(within: Interval) -> float:
+    """The geometric mean of two values of one sign, else the arithmetic one; three digits."""
+    low, high = within.low, within.high
+    mean = (low + high) / 2
+    if low * high > 0:
+        mean = math.copysign(math.sqrt(low * high), low)
+    short = float(f"{mean:.3g}")
+    return short if within.holds(short) else mean
+
+
+def _why(found: Lasting, basis: Basis, lasts: Intervals, least: Intervals, tries: int) -> str:
+    """The evidence in words."""
+    if basis in NAMES:
+        return f"{NAMES[basis]}; {words(least)} would do at least once"
+    if basis == "between":
+        return "between values that were flown"
+    if found.ground == "steady":
+        said = f"nearly all of {many(found.count, 'evaluation')} before the marks go the other way"
+    elif found.ground == "ramps":
+        said = f"{many(found.count, 'ramp')} before the marks get there"
+    elif found.ground == "peaks":
+        said = f"beyond {many(found.count, 'peak')} before the marks"
+    else:
+        said = f"the value grew until the program acted: {_ordinal(tries)} step beyond it"
+    return f"{words(lasts)}: {said}"
+
+
+def _ordinal(tries: int) -> str:
+    return ["a first", "a second", "a third"][tries] if tries <= 2 else "one more"
+
+
+def _as_smallest(name: str, kind: MarkType, found: Suggestion, key: str | None) -> Remedy:
+    return Remedy(
+        name, found.current, found.direction, found.value, "smallest", found.text, None, kind, key,
+        found,
+    )  # fmt: skip

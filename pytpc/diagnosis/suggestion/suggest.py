@@ -1,0 +1,334 @@
+"""Suggestions of SPEC 8: raise or lower a parameter, and to which value.
+
+Type I: the smallest change of the threshold with which the last flop up to the mark would not have
+happened: the evaluation that flopped and the one before it would both have had the earlier outcome.
+Type II: the smallest change with which at least one evaluation in the window before the mark would
+have gone the other way. Both are sets of thresholds that end at compared values of the log; through
+the arithmetic of the comparison they become sets of values of the parameter, of which one is chosen
+that the parameter can take.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from pytpc.base.wording import Number, exact, show
+from pytpc.diagnosis.scores.scores import WINDOW_S
+from pytpc.diagnosis.suggestion.case import (
+    EQUALITIES,
+    Case,
+    case_of,
+    is_truth,
+    refuse,
+    shown_current,
+    values_for,
+)
+from pytpc.diagnosis.suggestion.choice import WHOLE, Choice, choose, nearest_of
+from pytpc.diagnosis.suggestion.declared import Declared
+from pytpc.diagnosis.suggestion.suggestion_evidence import NoneBecauseError, evidence_of
+from pytpc.diagnosis.thresholds.intervals import (
+    Interval,
+    Intervals,
+    gaps,
+    holds,
+    intersection,
+    union,
+    words,
+)
+from pytpc.diagnosis.thresholds.outcomes import outcomes, thresholds_for, thresholds_for_one
+from pytpc.diagnosis.thresholds.units import NoUnitError
+from pytpc.recording.events import Bools, Events, Floats
+from pytpc.recording.marks import MarkType
+from pytpc.recording.mission import Recording
+from pytpc.recording.summaries import Summaries
+from pytpc.static.parameters import parameter_name
+from pytpc.static.static_info import Comparison, LinkUnit, StaticInfo
+
+Direction = Literal["raise", "lower", "switch"]
+
+
+@dataclass(frozen=True, slots=True)
+class Suggestion:
+    """What to do with one parameter.
+
+    ``current`` and ``value`` are in the parameter's unit: a bool for a switch, an int for a
+    whole-number parameter. ``boundary`` is where the values begin that would do, and is one of them
+    where ``inclusive``. ``text`` is the sentence to show. Where nothing can be suggested
+    ``direction``, ``value`` and ``boundary`` are None and ``reason`` says why.
+
+    ``feasible`` are all values that would do, whatever is declared of the parameter (of equality
+    and of periodic arithmetic those near the present one); it may have some where nothing is
+    suggested: none that the parameter can take, or no way to choose. ``limited_by`` says what kept
+    ``value`` from the smallest change: a declared range, a step, a whole number, the sign.
+    """
+
+    parameter: str
+    current: Number | None
+    direction: Direction | None
+    value: Number | None
+    boundary: float | None
+    inclusive: bool
+    text: str
+    reason: str | None
+    feasible: Intervals = ()
+    limited_by: str = ""
+
+
+def suggest(
+    events: Events,
+    comparison: Comparison,
+    mark_ns: int,
+    kind: MarkType,
+    *,
+    unit: LinkUnit | None = None,
+    window_s: float = WINDOW_S,
+    summaries: Summaries | None = None,
+    declared: Declared | None = None,
+) -> Suggestion:
+    """The suggestion for the parameter of one TPC at a mark.
+
+    Args:
+        events: the evaluations of the mission.
+        comparison: the TPC; its ``key`` is looked up in ``events``.
+        mark_ns: the time of the mark in nanoseconds.
+        kind: the type of error.
+        unit: the TPC's link unit, for the C++ type of the parameter.
+        window_s: the window of type II in seconds.
+        summaries: what the policy ``edges`` kept of the evaluations that are no events.
+        declared: what is declared of the parameter.
+    """
+    current: Number | None = None
+    feasible: Intervals = ()
+    try:
+        refuse(comparison, unit)
+        evidence = evidence_of(events, summaries, comparison.key, mark_ns, kind, window_s=window_s)
+        case = case_of(comparison, unit, evidence, declared)
+        current = shown_current(case)
+        if comparison.relation == "flag":
+            return _switch(case, kind)
+        if is_truth(case) and comparison.relation in EQUALITIES and kind == "II":
+            return _switched(case, not case.threshold)
+        feasible = values_for(case, _first_type(case) if kind == "I" else _second_type(case))
+        return replace(_chosen(case, feasible, kind), feasible=feasible)
+    except (NoneBecauseError, NoUnitError) as why:
+        reason = str(why)
+        name = parameter_name(comparison)
+        return Suggestion(name, current, None, None, None, False, reason, reason, feasible)
+
+
+def suggest_for_most(
+    recording: Recording,
+    static_info: StaticInfo,
+    comparisons: Sequence[Comparison],
+    times_ns: Sequence[int],
+    kind: MarkType,
+    *,
+    declared: Declared | None = None,
+    window_s: float = WINDOW_S,
+) -> tuple[Suggestion, str]:
+    """The suggestion that does at the most marks, and the key of the comparison that it is by.
+
+    Args:
+        recording: the mission.
+        static_info: what the analysis found.
+        comparisons: those of one parameter, at least one.
+        times_ns: of the marks, at least one.
+        kind: their type of error.
+        declared: what is declared of the parameter.
+        window_s: the window of type II in seconds.
+    """
+    found = [
+        (
+            suggest(
+                recording.events,
+                comparison,
+                time_ns,
+                kind,
+                unit=static_info.unit_of(comparison.key),
+                window_s=window_s,
+                summaries=recording.summaries,
+                declared=declared,
+            ),
+            comparison.key,
+        )
+        for comparison in comparisons
+        for time_ns in times_ns
+    ]
+    best, most = found[0], 0
+    for one in found:
+        value = one[0].value
+        if value is None:
+            continue
+        count = sum(holds(other.feasible, float(value)) for other, _ in found)
+        if count > most:
+            best, most = one, count
+    return best
+
+
+def _first_type(case: Case) -> Intervals:
+    """The thresholds with which both evaluations of the flop have the outcome of the earlier."""
+    evidence = case.evidence
+    before, after = outcomes(case.relation, evidence.cmp, evidence.thresh).tolist()
+    if before == after:
+        raise NoneBecauseError("another comparison of the same condition changed, not this one")
+    earlier, later = (thresholds_for(case.relation, cmp, before) for cmp in evidence.cmp.tolist())
+    if not later:
+        if math.isnan(evidence.cmp[1]):
+            raise NoneBecauseError("the compared value was not a number")
+        raise NoneBecauseError("no finite threshold would change the outcome")
+    both = intersection(earlier, later)
+    if holds(both, case.threshold):
+        raise NoneBecauseError("the threshold has changed since, and would do as it is now")
+    if not both and case.relation in EQUALITIES:
+        raise NoneBecauseError("no value is equal to both compared values of the last change")
+    return both
+
+
+def _second_type(case: Case) -> Intervals:
+    """The thresholds with which one evaluation of the window has its other outcome."""
+    went, cmps = _still(case)
+    if case.evidence.summed and case.relation in EQUALITIES:
+        raise NoneBecauseError("summaries do not tell which values came near to the threshold")
+    return union(
+        interval
+        for outcome in (True, False)
+        for interval in thresholds_for_one(
+            case.relation, cmps[went == outcome], not outcome, case.threshold
+        )
+    )
+
+
+def _still(case: Case) -> tuple[Bools, Floats]:
+    """Outcomes and compared values of those that the present threshold would let go as they did."""
+    evidence = case.evidence
+    finite = np.isfinite(evidence.cmp)
+    cmps = evidence.cmp[finite]
+    if not cmps.size:
+        raise NoneBecauseError("the compared value was not a finite number")
+    went = outcomes(case.relation, cmps, evidence.thresh[finite])
+    same = went == outcomes(case.relation, cmps, case.threshold)
+    if not np.any(same):
+        raise NoneBecauseError("the threshold has changed since, and would do as it is now")
+    return went[same], cmps[same]
+
+
+def _chosen(case: Case, feasible: Intervals, kind: MarkType) -> Suggestion:
+    declared = case.possible.declared
+    if declared is not None and declared.choices:
+        return _choice_of(case, feasible, declared)
+    if case.relation in EQUALITIES and _is_everything_else(feasible, case):
+        others = " and ".join(part.words().removeprefix("exactly ") for part in gaps(feasible))
+        raise NoneBecauseError(f"any value but {others} would do")
+    up_first = True
+    if kind == "II" and case.relation not in EQUALITIES:
+        up_first = _turns_upwards(case)
+    found = choose(feasible, case.present, case.possible, up_first=up_first)
+    if isinstance(found, str):
+        raise NoneBecauseError(found)
+    return _sentence(case, found)
+
+
+def _is_everything_else(feasible: Intervals, case: Case) -> bool:
+    """Whether the values on both sides of the present one would do."""
+    gaps = [math.nextafter(case.present, end) for end in (-math.inf, math.inf)]
+    return all(holds(feasible, gap) for gap in gaps)
+
+
+def _turns_upwards(case: Case) -> bool:
+    """Whether higher values of the parameter turn the last outcome of the window."""
+    went, cmps = _still(case)
+    last = thresholds_for(case.relation, float(cmps[-1]), not bool(went[-1]))
+    values = case.how.parameters(last)
+    return any(part.first() > case.present for part in values)
+
+
+def _choice_of(case: Case, feasible: Intervals, declared: Declared) -> Suggestion:
+    """One of the values of an enumeration."""
+    numbers = {
+        value: name
+        for name, value in declared.choices
+        if not isinstance(value, str) and holds(feasible, float(value))
+    }
+    if not numbers:
+        names = _names(declared, tuple(value for _, value in declared.choices))
+        raise NoneBecauseError(f"none of the declared choices would do: {names}")
+    if case.relation in EQUALITIES and len(numbers) > 1:
+        raise NoneBecauseError(f"another choice would do: {_names(declared, tuple(numbers))}")
+    value = nearest_of(iter(numbers), feasible, case.present)
+    assert value is not None, "there is one"
+    inside = next(part for part in feasible if part.holds(float(value)))
+    up = float(value) > case.present
+    boundary = inside.low if up else inside.high
+    inclusive = inside.low_inclusive if up else inside.high_inclusive
+    source = parameter_name(case.comparison)
+    now, then = (_names(declared, (number,)) for number in (case.current, value))
+    text = f"switch {source} from {now} to {then}"
+    return Suggestion(
+        source, case.current, "switch", value, boundary, inclusive, text, None,
+        limited_by="declared choices",
+    )  # fmt: skip
+
+
+def _names(declared: Declared, values: tuple[Number | str, ...]) -> str:
+    """``Drop (0), Hold (1)``."""
+    names = {value: name for name, value in declared.choices}
+    shown = [value if isinstance(value, str) else show(value) for value in values]
+    return ", ".join(
+        f"{names[value]} ({text})" if value in names else text
+        for value, text in zip(values, shown, strict=True)
+    )
+
+
+def _switch(case: Case, kind: MarkType) -> Suggestion:
+    """A flag: the value before it changed (type I), or the other one (type II).
+
+    A number is one in a condition of its own, or in a switch, of which any two values may differ.
+    """
+    now, evidence = case.threshold, case.evidence
+    if kind == "I":
+        other = float(evidence.thresh[0])
+        if other == evidence.thresh[1]:
+            raise NoneBecauseError("another comparison of the same condition changed, not the flag")
+        if other == now:
+            raise NoneBecauseError("the flag has changed back since")
+    elif case.comparison.type == "derived":
+        raise NoneBecauseError(
+            "the parameter chooses between cases, of which nothing more is known"
+        )
+    else:
+        other = 0.0 if now else 1.0
+    if is_truth(case):
+        return _switched(case, bool(other))
+    values = case.how.parameters((Interval.point(other),))
+    if not values:
+        raise NoneBecauseError("no value of the parameter gives the threshold before the change")
+    value = min((part.first() for part in values), key=lambda one: abs(one - case.present))
+    return _switched(case, case.number(value))
+
+
+def _switched(case: Case, value: Number) -> Suggestion:
+    source, current = parameter_name(case.comparison), shown_current(case)
+    text = f"switch {source} from {show(current)} to {show(value)}"
+    feasible = (Interval.point(float(value)),)
+    return Suggestion(source, current, "switch", value, float(value), True, text, None, feasible)
+
+
+def _sentence(case: Case, found: Choice) -> Suggestion:
+    source, inside = parameter_name(case.comparison), found.interval
+    up = found.value > case.present
+    boundary = inside.low if up else inside.high
+    inclusive = inside.low_inclusive if up else inside.high_inclusive
+    direction: Direction = "raise" if up else "lower"
+    value = case.number(found.value)
+    text = f"{direction} {source} from {show(case.current)} to {exact(value)} ({words((inside,))})"
+    if found.limited_by not in {"", WHOLE}:
+        text = f"{text[:-1]}; {found.limited_by})"
+    return Suggestion(
+        source, case.current, direction, value, boundary, inclusive, text, None,
+        limited_by=found.limited_by,
+    )  # fmt: skip

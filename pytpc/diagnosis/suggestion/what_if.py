@@ -1,0 +1,322 @@
+"""What a value of a parameter would have changed in a recorded run, before the robot is touched."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from pytpc.base.columns import Bools, Floats, Int64s
+from pytpc.base.wording import Number, exact, many
+from pytpc.diagnosis.scores.scores import WINDOW_S
+from pytpc.diagnosis.thresholds.replay import Track, tracks_of
+from pytpc.recording.marks import Mark, MarkType
+from pytpc.recording.mission import Recording
+from pytpc.static.static_info import StaticInfo
+
+MOST_VALUES = 64
+"""How many values ``sweep`` takes."""
+
+CLOSED_LOOP = (
+    "the robot would have gone on differently from the first decision that changes; what came after"
+    " it is replayed as it was logged"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class WhatIf:
+    """The recorded comparisons of one parameter, replayed with another value.
+
+    ``marks`` marks were looked at (those of the type that the question is about), ``answered`` of
+    them would have been answered: type I, the last flop before the mark would not have happened;
+    type II, an evaluation in the window would have gone the other way. ``evaluations`` of the
+    parameter's TPCs were replayed. ``flipped_near`` of them have another outcome within a window
+    before a mark, ``flipped_away`` elsewhere: the decisions that were right as far as anybody said.
+    ``text`` is the sentence to show, ``caveats`` what the replay could not know.
+
+    ``unsure`` is how many more may have another outcome: of summaries only the ends are known.
+    """
+
+    parameter: str
+    value: Number
+    marks: int
+    answered: int
+    evaluations: int
+    flipped_near: int
+    flipped_away: int
+    text: str
+    caveats: tuple[str, ...]
+    unsure: int = 0
+
+
+@dataclass(frozen=True, eq=False)
+class Sweep:
+    """``WhatIf`` for v values of one parameter.
+
+    ``values`` float64[v], in the parameter's unit, as they were given; ``answered``,
+    ``flipped_near`` and ``flipped_away`` int64[v] of ``marks`` marks and ``evaluations``.
+    """
+
+    parameter: str
+    values: Floats
+    marks: int
+    evaluations: int
+    answered: Int64s
+    flipped_near: Int64s
+    flipped_away: Int64s
+    unsure: Int64s
+    caveats: tuple[str, ...]
+
+
+def what_if(
+    recording: Recording,
+    static_info: StaticInfo,
+    parameter: str,
+    value: Number,
+    *,
+    kind: MarkType | None = None,
+    marks: Sequence[Mark] | None = None,
+    window_s: float = WINDOW_S,
+) -> WhatIf:
+    """Replay all comparisons of a parameter with another value of it.
+
+    Args:
+        recording: the mission.
+        static_info: what the analysis found.
+        parameter: its name in the source, or what `same_parameter` takes for it.
+        value: in the parameter's unit.
+        kind: the type of error that the question is about; None: of each mark its own.
+        marks: which marks to look at; None: those of the recording that are of ``kind`` or have no
+            type. Without a ``kind`` a mark of no type is answered by either definition.
+        window_s: the window in seconds.
+
+    Raises:
+        InputError: there is no such parameter, or several.
+    """
+    found = sweep(
+        recording, static_info, parameter, [value], kind=kind, marks=marks, window_s=window_s
+    )
+    result = WhatIf(
+        parameter=found.parameter,
+        value=value,
+        marks=found.marks,
+        answered=int(found.answered[0]),
+        evaluations=found.evaluations,
+        flipped_near=int(found.flipped_near[0]),
+        flipped_away=int(found.flipped_away[0]),
+        text="",
+        caveats=found.caveats,
+        unsure=int(found.unsure[0]),
+    )
+    asked = _asked(recording, kind, marks)
+    mixed = any(mark.type != kind for mark in asked)
+    return replace(result, text=_sentence(result, kind, mixed=mixed))
+
+
+def sweep(
+    recording: Recording,
+    static_info: StaticInfo,
+    parameter: str,
+    values: npt.ArrayLike,
+    *,
+    kind: MarkType | None = None,
+    marks: Sequence[Mark] | None = None,
+    window_s: float = WINDOW_S,
+) -> Sweep:
+    """The same for many values at once; the arguments are those of ``what_if``.
+
+    Raises:
+        InputError: there is no such parameter, or several.
+        ValueError: there are more than ``MOST_VALUES`` values, or the window is negative.
+    """
+    several = np.atleast_1d(np.asarray(values, dtype=np.float64))
+    if several.size > MOST_VALUES:
+        raise ValueError(f"at most {MOST_VALUES} values are replayed at once")
+    if not window_s >= 0:
+        raise ValueError("window_s is negative")
+    name, tracks, without = tracks_of(recording.events, recording.summaries, static_info, parameter)
+    asked = _asked(recording, kind, marks)
+    near = _spans([*recording.marks, *asked], window_s)
+    answered = np.zeros(several.size, dtype=np.int64)
+    for mark in asked:
+        answered += _answered(tracks, several, mark, kind or mark.type, window_s)
+    flipped_near = np.zeros(several.size, dtype=np.int64)
+    flipped = np.zeros_like(flipped_near)
+    unsure = np.zeros_like(flipped_near)
+    for track in tracks:
+        thresholds = track.thresholds(several)
+        inside = _within(track.time_ns, track.time_ns, near)
+        turned_near, turned = track.turned_near(inside, thresholds)
+        flipped_near += turned_near
+        flipped += turned
+        beside = _within(track.kept.begin_ns, track.kept.end_ns, near)
+        for place, threshold in enumerate(thresholds.tolist()):
+            least, most = track.turned_kept(np.ones_like(beside), threshold)
+            flipped_near[place] += track.turned_kept(beside, threshold)[0]
+            flipped[place] += least
+            unsure[place] += most - least
+    evaluations = sum(int(track.own.sum() + track.kept.count.sum()) for track in tracks)
+    return Sweep(
+        name,
+        several,
+        len(asked),
+        evaluations,
+        answered,
+        flipped_near,
+        flipped - flipped_near,
+        unsure,
+        (*_caveats(tracks, without, recording), *_long_before(tracks, asked, kind, window_s)),
+    )
+
+
+def _asked(
+    recording: Recording, kind: MarkType | None, marks: Sequence[Mark] | None
+) -> tuple[Mark, ...]:
+    if marks is not None:
+        return tuple(marks)
+    return tuple(m for m in recording.marks if kind is None or m.type in {kind, None})
+
+
+def _answered(
+    tracks: Sequence[Track], values: Floats, mark: Mark, kind: MarkType | None, window_s: float
+) -> Bools:
+    """bool[v]: whether each value answers a mark; one without a type by either definition."""
+    if kind is None:
+        first = _stays(tracks, values, mark.time_ns)
+        return first | _turns(tracks, values, mark.time_ns, window_s)
+    if kind == "I":
+        return _stays(tracks, values, mark.time_ns)
+    return _turns(tracks, values, mark.time_ns, window_s)
+
+
+def _stays(tracks: Sequence[Track], values: Floats, mark_ns: int) -> Bools:
+    """bool[v]: whether the parameter's last flop up to the mark would not have happened.
+
+    Both of its evaluations have to have the earlier outcome; one that flopped because of another
+    comparison of its predicate is not answered.
+    """
+    last = _last_flop(tracks, mark_ns)
+    if last is None:
+        return np.zeros(values.size, dtype=np.bool_)
+    track, pair = last
+    logged = np.array([not track.other(pair, t)[0] for t in track.thresholds(values).tolist()])
+    turned = np.array([track.other(pair, t)[1] for t in track.thresholds(values).tolist()])
+    changed = bool(track.res[pair[0]] != track.res[pair[1]])
+    return np.asarray(logged & turned & changed, dtype=np.bool_)
+
+
+def _last_flop(tracks: Sequence[Track], mark_ns: int) -> tuple[Track, Int64s] | None:
+    """The parameter's last flop up to a mark: which track's, and its two places; None for none."""
+    last: tuple[int, Track, Int64s] | None = None
+    for track in tracks:
+        pair = track.flop_before(mark_ns)
+        if pair is None:
+            continue
+        time_ns = int(track.time_ns[pair[1]])
+        if last is None or time_ns > last[0]:
+            last = (time_ns, track, pair)
+    return None if last is None else last[1:]
+
+
+def _turns(tracks: Sequence[Track], values: Floats, mark_ns: int, window_s: float) -> Bools:
+    """bool[v]: whether an evaluation of the window would have gone the other way."""
+    begin_ns = mark_ns - round(window_s * 1e9)
+    result = np.zeros(values.size, dtype=np.bool_)
+    for track in tracks:
+        thresholds = track.thresholds(values)
+        result |= track.turned(track.rows_between(begin_ns, mark_ns), thresholds) > 0
+        kept = (track.kept.begin_ns >= begin_ns) & (track.kept.end_ns <= mark_ns)
+        if kept.any():
+            result |= np.array([track.turned_kept(kept, t)[0] > 0 for t in thresholds.tolist()])
+    return result
+
+
+def _spans(marks: Sequence[Mark], window_s: float) -> Int64s:
+    """int64[s, 2]: the windows before the marks, joined, in ascending order."""
+    spans: list[list[int]] = []
+    for mark in sorted(marks, key=lambda one: one.time_ns):
+        begin = mark.time_ns - round(window_s * 1e9)
+        if spans and begin <= spans[-1][1]:
+            spans[-1][1] = mark.time_ns
+        else:
+            spans.append([begin, mark.time_ns])
+    return np.array(spans, dtype=np.int64).reshape(-1, 2)
+
+
+def _within(begins: Int64s, ends: Int64s, spans: Int64s) -> Bools:
+    """bool[n]: what touches one of the spans."""
+    if not spans.size:
+        return np.zeros(begins.size, dtype=np.bool_)
+    place = np.searchsorted(spans[:, 0], ends, side="right") - 1
+    return np.asarray((place >= 0) & (spans[place, 1] >= begins), dtype=np.bool_)
+
+
+def _caveats(
+    tracks: Sequence[Track], without: Sequence[str], recording: Recording
+) -> tuple[str, ...]:
+    if not tracks:
+        return ("none of its comparisons was evaluated", *without)
+    said = [CLOSED_LOOP]
+    joined = [track for track in tracks if track.comparison.other_thresholds]
+    if joined:
+        said.append(
+            f"{many(len(joined), 'comparison')} of it stand in a condition with others, which may"
+            " decide it whatever this one says"
+        )
+    nodes = {int(node) for track in tracks for node in np.flatnonzero(np.bincount(track.node))}
+    if len(nodes) > 1:
+        names = ", ".join(sorted(recording.events.nodes[node] for node in nodes))
+        said.append(f"several nodes read it, and all are replayed with the value: {names}")
+    if any(np.ptp(track.thresh[np.isfinite(track.thresh)]) > 0 for track in tracks if _some(track)):
+        said.append("it was changed during the mission; the value is replayed from begin to end")
+    if any(len(track.kept) for track in tracks):
+        said.append("of evaluations in summaries only the outermost are known")
+    if any(track.comparison.relation == "flag" and _is_switch(track) for track in tracks):
+        said.append("a switch chooses by it; what is not in the log of other values is not known")
+    return (*said, *without)
+
+
+def _long_before(
+    tracks: Sequence[Track], asked: Sequence[Mark], kind: MarkType | None, window_s: float
+) -> Iterator[str]:
+    """A sentence where a mark of type I asks about a flop before its window."""
+    ages = []
+    for mark in asked:
+        last = None if (kind or mark.type) == "II" else _last_flop(tracks, mark.time_ns)
+        if last is not None:
+            ages.append((mark.time_ns - int(last[0].time_ns[last[1][1]])) / 1e9)
+    if max(ages, default=0.0) > window_s:
+        yield (
+            f"the last change was up to {max(ages):.3g} s before the mark; what turns more than"
+            f" {window_s:g} s before it counts as away from marks"
+        )
+
+
+def _some(track: Track) -> bool:
+    return track.comparison.relation != "flag" and bool(np.isfinite(track.thresh).any())
+
+
+def _is_switch(track: Track) -> bool:
+    kept = track.kept
+    return bool(np.any(track.res != (track.thresh != 0)) or np.any(kept.res != (kept.thresh != 0)))
+
+
+def _sentence(found: WhatIf, kind: MarkType | None, *, mixed: bool) -> str:
+    """What to show: ``0.0527 answers 4 of 4 marks of type II; away from marks it turns ...``.
+
+    ``mixed`` says that not all of the marks are of ``kind``: they are not called so then.
+    """
+    if not found.evaluations:
+        return "it was not evaluated, so nothing is known of other values"
+    of = "" if kind is None or mixed else f" of type {kind}"
+    away = f"{found.flipped_away:,} of {many(found.evaluations, 'decision')}"
+    share = found.flipped_away / found.evaluations
+    percent = f" ({100 * share:.2g} %)" if found.flipped_away and math.isfinite(share) else ""
+    marks = f"answers {found.answered} of {many(found.marks, 'mark')}{of}"
+    if not found.marks:
+        marks = f"is replayed without a mark{of}"
+    more = f", perhaps {found.unsure:,} more" if found.unsure else ""
+    return f"{exact(found.value)} {marks}; away from marks it turns {away}{percent}{more}"

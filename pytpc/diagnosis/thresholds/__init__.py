@@ -1,0 +1,1 @@
+"""From values of a parameter to outcomes of its comparisons, and back."""

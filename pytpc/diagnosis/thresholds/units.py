@@ -1,0 +1,162 @@
+"""How a parameter gives the threshold of a comparison, and back: its arithmetic and its type."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from decimal import ROUND_CEILING, Context
+from functools import cached_property
+
+import numpy as np
+
+from pytpc.base.columns import Floats
+from pytpc.diagnosis.thresholds.intervals import Interval, Intervals
+from pytpc.diagnosis.thresholds.inverse import kept_as, preimage
+from pytpc.static.arithmetic import Tree, evaluate
+from pytpc.static.link_unit import Comparison, LinkUnit
+
+_WHOLE_TYPES = frozenset(
+    f"{sign}{name}"
+    for sign in ("", "unsigned ", "signed ")
+    for name in ("char", "short", "int", "long", "long long")
+)
+_FLOAT_TYPES = frozenset({"float", "double", "long double"})
+_CLOSE = 1e-9
+_TINY = 1e-12
+
+
+class NoUnitError(Exception):
+    """Why a threshold cannot be worked out from its parameter."""
+
+
+@dataclass(frozen=True)
+class ParameterUnit:
+    """A tree, at the threshold that it gives now.
+
+    ``anchor`` is where to look first for the parameter's value: its default, if there is one.
+    """
+
+    tree: Tree
+    threshold: float
+    anchor: float | None = None
+
+    def forward(self, parameter: float) -> float:
+        """The threshold that a value of the parameter gives; NaN where there is none."""
+        return evaluate(self.tree, parameter)
+
+    @cached_property
+    def current(self) -> float | None:
+        """The value of the parameter; None where none gives ``threshold``.
+
+        Of several the anchor, else that next to it, else the smallest one, a positive one first;
+        of those that round to the same threshold the one with the fewest digits.
+        """
+        anchor, t = self.anchor, self.threshold
+        if self.tree == "x" or not math.isfinite(t):
+            return t
+        if anchor is not None and _is_close(self.forward(anchor), t):
+            return anchor
+        near = 1.0 if anchor is None else anchor
+        slack = max(abs(t) * _CLOSE, _TINY)
+        for wanted in (Interval.point(t), Interval.closed(t - slack, t + slack)):
+            values = [simplest(part) for part in preimage(self.tree, (wanted,), near)]
+            if values and anchor is not None:
+                return min(values, key=lambda value: abs(value - near))
+            if values:
+                return min(values, key=lambda value: (value < 0, abs(value)))
+        return None
+
+    def parameters(self, thresholds: Intervals) -> Intervals:
+        """All parameters that give one of ``thresholds``, see `pytpc.diagnosis.thresholds.inverse.preimage`."""
+        near = self.current
+        return preimage(self.tree, thresholds, 1.0 if near is None else near)
+
+
+def unit_of(comparison: Comparison, unit: LinkUnit | None, threshold: float) -> ParameterUnit:
+    """How the parameter of ``comparison`` gives ``threshold`` now.
+
+    Raises:
+        NoUnitError: the file does not say how.
+    """
+    tree = tree_of(comparison)
+    default = comparison.default
+    anchor = None if default is None or isinstance(default, str) else float(default)
+    kept = ParameterUnit(kept_as(tree, read_type(comparison, unit)), threshold, anchor)
+    # A float may be read and the sum be done in doubles, or the other way round.
+    return kept if kept.current is not None else ParameterUnit(tree, threshold, anchor)
+
+
+def tree_of(comparison: Comparison) -> Tree:
+    """The arithmetic from the parameter to the threshold.
+
+    Raises:
+        NoUnitError: the file does not say what it is.
+    """
+    transform = comparison.transform
+    if transform is None:
+        return "x"
+    if transform.tree is not None:
+        return transform.tree
+    if transform.kind != "affine" or transform.scale is None or transform.offset is None:
+        raise NoUnitError(f"the threshold is computed from the parameter: {transform.text}")
+    if transform.scale == 0:
+        raise NoUnitError("the parameter is multiplied by 0")
+    scaled: Tree = "x" if transform.scale == 1 else ("*", float(transform.scale), "x")
+    return scaled if transform.offset == 0 else ("+", scaled, float(transform.offset))
+
+
+def read_type(comparison: Comparison, unit: LinkUnit | None) -> str | None:
+    """The C++ type of the read, where the link unit is known."""
+    place = comparison.read_at
+    for read in unit.parameters if unit is not None else ():
+        if read.name == comparison.source and (
+            place is not None and (read.file, read.lineno) == (place.file, place.lineno)
+        ):
+            return read.type
+    return None
+
+
+def is_text(comparison: Comparison, unit: LinkUnit | None) -> bool:
+    """Whether the parameter is text, which is logged by its result alone."""
+    type_ = read_type(comparison, unit) or ""
+    return isinstance(comparison.default, str) or type_.startswith("std::")
+
+
+def is_whole(comparison: Comparison, unit: LinkUnit | None, values: Floats) -> bool:
+    """Whether a parameter takes whole numbers only.
+
+    The C++ type of the read decides; where that is not known, a default that is an int together
+    with ``values`` (float64[n], seen of the parameter) that are all whole but for rounding.
+    """
+    type_ = read_type(comparison, unit)
+    if type_ in _WHOLE_TYPES:
+        return True
+    if type_ in _FLOAT_TYPES:
+        return False
+    finite = values[np.isfinite(values)]
+    return type(comparison.default) is int and bool(
+        np.allclose(finite, np.round(finite), rtol=1e-9, atol=1e-9)
+    )
+
+
+def is_unsigned(comparison: Comparison, unit: LinkUnit | None) -> bool:
+    """Whether the variable that is read into holds no negative number."""
+    return (read_type(comparison, unit) or "").startswith("unsigned")
+
+
+def simplest(interval: Interval) -> float:
+    """The number in an interval that is written with the fewest digits; of several the smallest."""
+    low, high = interval.first(), interval.last()
+    if interval.holds(0.0):
+        return 0.0
+    if high < 0:
+        low, high = -high, -low
+    for digits in range(1, 18):
+        value = float(Context(prec=digits, rounding=ROUND_CEILING).create_decimal(repr(low)))
+        if value <= high:
+            return value if interval.low >= 0 else -value
+    return interval.first()
+
+
+def _is_close(a: float, b: float) -> bool:
+    return math.isclose(a, b, rel_tol=_CLOSE, abs_tol=_TINY)
