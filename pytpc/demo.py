@@ -19,9 +19,9 @@ from pytpc.demo_examples import Example
 from pytpc.diagnosis.ranking.ranking import MarkRanking, rank_marks
 from pytpc.diagnosis.suggestion.suggest import suggest
 from pytpc.ingest import Recording, read_bag, save_recording
+from pytpc.present.page.html import MissionReport
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import EVENTS_FILE, MARKS_FILE
-from pytpc.report.html import MissionReport
 from pytpc.ros.run_mission import MissionRun, Progress, run_mission
 from pytpc.static.static_info import StaticInfo
 from pytpc.treatment import Treatment, save_treatment

@@ -22,7 +22,7 @@ from pytpc.cli.console import progress
 from pytpc.cli.mission_commands import mission_progress
 from pytpc.demo import TreatedMission, failures, result_table, run_treatment
 from pytpc.demo_examples import Example, link_package
-from pytpc.report.html import write_report
+from pytpc.present.page.html import write_report
 from pytpc.ros.python_env import mission_env
 from pytpc.static.static_info import StaticInfo
 from pytpc.treatment import Treatment

@@ -30,11 +30,11 @@ from pytpc.diagnosis.suggestion.what_if import WhatIf
 from pytpc.diagnosis.suggestion.what_if import what_if as replay
 from pytpc.ingest import Recording
 from pytpc.ingest import read as read_recording
-from pytpc.notebook import StudyTable, Table
-from pytpc.notebook_answers import Advices, Diagnosed
+from pytpc.present.answers import Advices, Diagnosed
+from pytpc.present.notebook import StudyTable, Table
+from pytpc.present.page.html import MissionReport
+from pytpc.present.page.html import write_report as write_page
 from pytpc.recording.marks import Mark, MarkType
-from pytpc.report.html import MissionReport
-from pytpc.report.html import write_report as write_page
 from pytpc.static.static_info import StaticInfo, read_static
 from pytpc.stats.missions import load_missions
 from pytpc.stats.study import NUMBERS

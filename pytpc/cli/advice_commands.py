@@ -12,7 +12,6 @@ from rich.console import Group, RenderableType
 from rich.padding import Padding
 from rich.text import Text
 
-from pytpc.advice.as_json import blame_json, group_json, what_if_json
 from pytpc.base.errors import InputError
 from pytpc.base.wording import Number, many, percent, plain, show
 from pytpc.cli.console import console, progress, warn
@@ -35,6 +34,7 @@ from pytpc.diagnosis.suggestion.declared import Declared, declared_in
 from pytpc.diagnosis.suggestion.joining import JoinedAdvice, MarkGroup, join_advice
 from pytpc.diagnosis.suggestion.what_if import WhatIf, what_if
 from pytpc.ingest import Recording
+from pytpc.present.as_json import blame_json, group_json, what_if_json
 from pytpc.recording.marks import MARK_TYPES, MarkType
 from pytpc.static.parameters import parameter_name, same_parameter
 from pytpc.static.static_info import Comparison, StaticInfo

@@ -14,7 +14,7 @@ from pytpc.base.wording import many, plain
 from pytpc.cli.console import warn
 from pytpc.cli.options import recording_of
 from pytpc.ingest import Recording
-from pytpc.marking.terminal import Mission, Paint, RecordedMission, paint_marks, run
+from pytpc.present.marking_terminal import Mission, Paint, RecordedMission, paint_marks, run
 from pytpc.recording.marking_session import Session
 from pytpc.recording.marks import marks_beside
 from pytpc.recording.marks_file import MarksFile

@@ -11,7 +11,6 @@ import click
 from rich.table import Table
 from rich.text import Text
 
-from pytpc.advice.as_json import blame_json
 from pytpc.base.errors import InputError, TpcError
 from pytpc.base.wording import many, plain
 from pytpc.cli.console import console, warn
@@ -35,6 +34,8 @@ from pytpc.diagnosis.ranking.ranking import MarkRanking, Types, rank_marks
 from pytpc.diagnosis.suggestion.blamed import BlamedAdvice
 from pytpc.diagnosis.suggestion.declared import Declared, declared_in, read_declared
 from pytpc.ingest import Recording
+from pytpc.present.as_json import blame_json
+from pytpc.present.rankings import Row, print_blame, print_rankings, rows_of
 from pytpc.recording.marking_session import Change
 from pytpc.recording.marks import (
     MARK_TYPES,
@@ -47,7 +48,6 @@ from pytpc.recording.marks import (
 )
 from pytpc.recording.marks_file import MarksFile
 from pytpc.static.static_info import StaticInfo
-from pytpc.terminal import Row, print_blame, print_rankings, rows_of
 
 
 @click.command("rank")

@@ -32,8 +32,8 @@ from pytpc.conditions.cpp_conditions import lines_of
 from pytpc.conditions.lookup import look_up_conditions
 from pytpc.conditions.sarif import sarif_log
 from pytpc.conditions.tpc_details import Details, details
+from pytpc.present.page.catalogue import write_catalogue
 from pytpc.python_analysis.rules_file import load_rules
-from pytpc.report.catalogue import write_catalogue
 from pytpc.static.explanations import Explanation, look_up, why_no_comparison
 from pytpc.static.places import Tpc
 from pytpc.static.selection import ORDERS, Selection, select

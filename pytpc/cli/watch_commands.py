@@ -40,8 +40,8 @@ from pytpc.diagnosis.ranking.watching import KINDS, Look, Row, Watching
 from pytpc.diagnosis.scores.live_scores import LiveRanking
 from pytpc.ingest import Recording
 from pytpc.marking.live_mission import Feed, GraphFeed, RecordedFeed, WatchedMission
-from pytpc.marking.terminal import Mission
-from pytpc.marking.watch_screen import LAYOUTS, Options, Status, table
+from pytpc.present.marking_terminal import Mission
+from pytpc.present.watch_screen import LAYOUTS, Options, Status, table
 from pytpc.recording.marking_session import clock_text
 from pytpc.ros.marking import GraphMarks
 from pytpc.static.static_info import StaticInfo

@@ -19,8 +19,8 @@ from rich.text import Text
 from pytpc.base.errors import RunError
 from pytpc.diagnosis.ranking.watching import KeptRankings, Look, Seen, Watching
 from pytpc.marking.reports import Item, Reports
-from pytpc.marking.terminal import Mission
-from pytpc.marking.watch_screen import LAYOUTS, Options, Panel, Status, watch_screen
+from pytpc.present.marking_terminal import Mission
+from pytpc.present.watch_screen import LAYOUTS, Options, Panel, Status, watch_screen
 from pytpc.recording.marking_session import Change, Session, View
 from pytpc.recording.mission import Recording
 from pytpc.recording.summaries import Summary
@@ -211,7 +211,7 @@ class RecordedFeed:
 
 
 class WatchedMission:
-    """A mission of ``pytpc.marking.terminal`` with its live ranking.
+    """A mission of ``pytpc.present.marking_terminal`` with its live ranking.
 
     Args:
         mission: the graph or the recording that is marked.
@@ -323,7 +323,7 @@ class WatchedMission:
     def paint(
         self, session: Session, view: View, width: int, height: int, *, utf8: bool
     ) -> Sequence[Text]:
-        """The screen, for ``pytpc.marking.terminal.run``."""
+        """The screen, for ``pytpc.present.marking_terminal.run``."""
         now_ns = view.now_ns if view.now_ns is not None else (self.watching.last_ns or 0)
         return watch_screen(session, view, self.panel(now_ns, utf8=utf8), width, height)
 

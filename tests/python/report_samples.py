@@ -11,8 +11,8 @@ from mission_samples import comparison, events, ns, static_info
 
 from pytpc.diagnosis.ranking.ranking import rank_marks
 from pytpc.ingest import Recording
+from pytpc.present.page.html import MissionReport, write_report
 from pytpc.recording.marks import Mark
-from pytpc.report.html import MissionReport, write_report
 from pytpc.static.static_info import PathStep
 
 # Two known lines and a gap; the second line is the comparison's own.

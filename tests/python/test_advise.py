@@ -7,11 +7,11 @@ from dataclasses import replace
 
 from mission_samples import comparison, events, ns, static_info
 
-from pytpc.advice.as_json import advice_json, group_json
 from pytpc.diagnosis.ranking.ranking import rank_marks
 from pytpc.diagnosis.suggestion.advise import advise, alternatives
 from pytpc.diagnosis.suggestion.declared import Declared
 from pytpc.diagnosis.suggestion.joining import join_advice
+from pytpc.present.as_json import advice_json, group_json
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
 

@@ -13,7 +13,7 @@ from static_units import KEYS, comparison, failed_unit, step, unit
 from pytpc.conditions.cpp_conditions import Condition, Macro
 from pytpc.conditions.lookup import Answer
 from pytpc.conditions.tpc_details import details
-from pytpc.report.catalogue import render
+from pytpc.present.page.catalogue import render
 from pytpc.static.static_info import LinkUnit, StaticInfo
 
 NASTY = '</script><img src=x onerror="alert(1)">&amp;'

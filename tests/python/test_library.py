@@ -14,7 +14,7 @@ import pytpc
 from pytpc import library
 from pytpc.base.errors import InputError
 from pytpc.diagnosis.suggestion.joining import join_advice
-from pytpc.notebook import Table
+from pytpc.present.notebook import Table
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
 

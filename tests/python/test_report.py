@@ -22,10 +22,8 @@ from pytpc.diagnosis.ranking.ranking import rank_marks
 from pytpc.diagnosis.suggestion.declared import Declared
 from pytpc.diagnosis.suggestion.joining import join_advice
 from pytpc.ingest import MalformedRecord, Recording
-from pytpc.recording.marks import Mark
-from pytpc.recording.summaries import Summary, SummaryBuilder
-from pytpc.report.html import MissionReport, write_report
-from pytpc.report.series import (
+from pytpc.present.page.html import MissionReport, write_report
+from pytpc.present.page.series import (
     BINS,
     BOTH,
     FALSE,
@@ -37,6 +35,8 @@ from pytpc.report.series import (
     thin,
     with_gaps,
 )
+from pytpc.recording.marks import Mark
+from pytpc.recording.summaries import Summary, SummaryBuilder
 from pytpc.values.origins import Origin
 
 NAN = math.nan

@@ -19,8 +19,8 @@ from selenium.webdriver.support.ui import WebDriverWait
 
 from pytpc.diagnosis.ranking.ranking import rank_marks
 from pytpc.ingest import Recording
+from pytpc.present.page.html import MissionReport, write_report
 from pytpc.recording.marks import Mark
-from pytpc.report.html import MissionReport, write_report
 from pytpc.static.static_info import PathStep
 
 CHROMIUM, DRIVER = shutil.which("chromium"), shutil.which("chromedriver")

@@ -15,10 +15,10 @@ from report_samples import Page, mission, written
 
 from pytpc.diagnosis.ranking.ranking import rank_marks
 from pytpc.ingest import Recording
+from pytpc.present.page.html import MissionReport
+from pytpc.present.page.series import FALSE, TRUE
 from pytpc.recording.marks import Mark
 from pytpc.recording.summaries import Summary, SummaryBuilder
-from pytpc.report.html import MissionReport
-from pytpc.report.series import FALSE, TRUE
 
 NAN = math.nan
 

@@ -6,7 +6,7 @@ import pytest
 from static_units import comparison, unit
 
 from pytpc.base.source_bytes import source_bytes
-from pytpc.report.source import source_lines
+from pytpc.present.page.source import source_lines
 from pytpc.static.link_unit import LinkUnit
 from pytpc.static.static_info import StaticInfo
 

@@ -13,7 +13,7 @@ from pytpc.diagnosis.ranking.watching import BINS, KeptRankings, Look, Seen, Wat
 from pytpc.diagnosis.scores.live_scores import LiveRanking
 from pytpc.marking.live_mission import GraphFeed, RecordedFeed
 from pytpc.marking.reports import Reports
-from pytpc.marking.watch_screen import LAYOUTS, Options, Panel, Status, table, watch_screen
+from pytpc.present.watch_screen import LAYOUTS, Options, Panel, Status, table, watch_screen
 from pytpc.recording.marking_session import Change, Session, View
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording

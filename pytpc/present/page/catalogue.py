@@ -15,8 +15,8 @@ from pathlib import Path
 
 from pytpc.base.atomic import write_atomic
 from pytpc.conditions.tpc_details import Details
-from pytpc.report.environment import environment
-from pytpc.report.source import LONGEST_LINE, StepView, read_lines, way_of
+from pytpc.present.page.environment import environment
+from pytpc.present.page.source import LONGEST_LINE, StepView, read_lines, way_of
 from pytpc.static.static_info import StaticInfo
 
 _CONTEXT = 2
@@ -82,7 +82,7 @@ def write_catalogue(path: Path, static: StaticInfo, found: Sequence[Details], ti
 
 def render(static: StaticInfo, found: Sequence[Details], title: str) -> str:
     """The page as text. Whatever comes from the sources is escaped."""
-    script = files("pytpc.report").joinpath("templates", "tpcs.js").read_text("utf-8")
+    script = files("pytpc.present.page").joinpath("templates", "tpcs.js").read_text("utf-8")
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     packages = _packages(found)
     return (

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pytpc.base.wording import percent
 from pytpc.diagnosis.ranking.blame import blame
 from pytpc.diagnosis.suggestion.blamed import advise_blamed
-from pytpc.report.mission import MissionReport
+from pytpc.present.page.mission import MissionReport
 
 
 @dataclass(frozen=True)

@@ -19,19 +19,19 @@ from pytpc.diagnosis.ranking.complaints import complaints
 from pytpc.diagnosis.ranking.ranking import MarkRanking, Types
 from pytpc.diagnosis.suggestion.advise import Advice, advise
 from pytpc.diagnosis.suggestion.joining import with_remedies
-from pytpc.recording.marks import MarkType
-from pytpc.report.answer import AnswerView, answers, spoken
-from pytpc.report.cards import (
+from pytpc.present.page.answer import AnswerView, answers, spoken
+from pytpc.present.page.cards import (
     CardView,
     Figures,
     SuspectView,
     card_view,
     row_view,
 )
-from pytpc.report.mission import CARDS, MissionReport
-from pytpc.report.payload import embedded, marks_of
-from pytpc.report.timeline import timeline
-from pytpc.report.together import TogetherView, together
+from pytpc.present.page.mission import CARDS, MissionReport
+from pytpc.present.page.payload import embedded, marks_of
+from pytpc.present.page.timeline import timeline
+from pytpc.present.page.together import TogetherView, together
+from pytpc.recording.marks import MarkType
 
 __all__ = ["CARDS", "MissionReport", "MissionView", "figures", "mission_view"]
 

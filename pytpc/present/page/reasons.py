@@ -6,10 +6,10 @@ import numpy as np
 
 from pytpc.base.wording import many, show
 from pytpc.diagnosis.ranking.ranking import Suspect
+from pytpc.present.page.mission import MissionReport
+from pytpc.present.page.series import rows_of
 from pytpc.recording.events import Floats
 from pytpc.recording.marks import Mark
-from pytpc.report.mission import MissionReport
-from pytpc.report.series import rows_of
 
 
 def why(mission: MissionReport, suspect: Suspect, mark: Mark) -> str:

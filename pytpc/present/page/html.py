@@ -18,8 +18,8 @@ from bokeh.resources import Resources
 from markupsafe import Markup
 
 from pytpc.base.atomic import write_atomic
-from pytpc.report.environment import environment
-from pytpc.report.view import CARDS, ROWS, MissionReport, figures, mission_view
+from pytpc.present.page.environment import environment
+from pytpc.present.page.view import CARDS, ROWS, MissionReport, figures, mission_view
 
 __all__ = ["CARDS", "MissionReport", "render", "write_report"]
 
@@ -78,7 +78,7 @@ def render(
 @cache
 def _scripts() -> tuple[Markup, ...]:
     """Bokeh's scripts and ours, in the order in which they run."""
-    templates = files("pytpc.report").joinpath("templates")
+    templates = files("pytpc.present.page").joinpath("templates")
     # Behind the two stands one that only sets how much is said to the console, and says so there.
     bokeh = Resources(mode="inline", components=["bokeh", "bokeh-api"]).js_raw[:2]
     own = [templates.joinpath(name).read_text("utf-8") for name in _OWN]

@@ -12,7 +12,7 @@ from pytpc.diagnosis.ranking.blame import Blame
 from pytpc.diagnosis.ranking.ranking import MarkRanking
 from pytpc.diagnosis.suggestion.advise import Advice
 from pytpc.diagnosis.suggestion.blamed import BlamedAdvice
-from pytpc.notebook import Table
+from pytpc.present.notebook import Table
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,7 +18,7 @@ def environment() -> Environment:
     """An environment in which every text is escaped and seen, and a misspelt name is an error."""
     return Environment(
         finalize=_seen,
-        loader=PackageLoader("pytpc.report"),
+        loader=PackageLoader("pytpc.present.page"),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,

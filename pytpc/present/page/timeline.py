@@ -16,11 +16,11 @@ from matplotlib.figure import Figure
 
 from pytpc.base.columns import Floats
 from pytpc.diagnosis.scores.curves import STEP_S, RankCurves, rank_curves
+from pytpc.present.page.mission import MissionReport
+from pytpc.present.page.payload import curves_of, lane_of, lanes_of
+from pytpc.present.page.plots import COLOUR, MARK_LINES, drawing, short, svg_of
+from pytpc.present.page.series import BINS, BOTH, FALSE, TRUE, runs
 from pytpc.recording.marks import MarkType
-from pytpc.report.mission import MissionReport
-from pytpc.report.payload import curves_of, lane_of, lanes_of
-from pytpc.report.plots import COLOUR, MARK_LINES, drawing, short, svg_of
-from pytpc.report.series import BINS, BOTH, FALSE, TRUE, runs
 
 _LANES = 8
 _HEIGHTS = {TRUE: 0.62, BOTH: 0.34, FALSE: 0.08}
@@ -34,7 +34,7 @@ _STILL_STEPS = 600
 
 @dataclass(frozen=True, slots=True)
 class Lane:
-    """One parameter: int8[BINS] states of ``pytpc.report.series``, and whether it stands out."""
+    """One parameter: int8[BINS] states of ``pytpc.present.page.series``, and whether it stands out."""
 
     label: str
     states: npt.NDArray[np.int8]

@@ -24,10 +24,10 @@ from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from pytpc.present.page.environment import seen
+from pytpc.present.page.series import Evidence
 from pytpc.recording.events import Floats
 from pytpc.recording.marks import MarkType
-from pytpc.report.environment import seen
-from pytpc.report.series import Evidence
 
 # Stand-ins, none of which matplotlib would write of itself.
 _COLOURS = {

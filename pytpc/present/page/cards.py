@@ -15,13 +15,13 @@ from pytpc.diagnosis.suggestion.declared import Declared
 from pytpc.diagnosis.suggestion.remedy import Remedy
 from pytpc.diagnosis.suggestion.suggest import Suggestion
 from pytpc.diagnosis.suggestion.what_if import WhatIf
+from pytpc.present.page.mission import MissionReport
+from pytpc.present.page.payload import finite, series_of
+from pytpc.present.page.plots import EvidenceStyle, evidence_svg, span_of
+from pytpc.present.page.reasons import why
+from pytpc.present.page.series import Evidence, evidence
+from pytpc.present.page.source import LONGEST_LINE, Line, StepView, source_lines, way_of
 from pytpc.recording.marks import Mark
-from pytpc.report.mission import MissionReport
-from pytpc.report.payload import finite, series_of
-from pytpc.report.plots import EvidenceStyle, evidence_svg, span_of
-from pytpc.report.reasons import why
-from pytpc.report.series import Evidence, evidence
-from pytpc.report.source import LONGEST_LINE, Line, StepView, source_lines, way_of
 from pytpc.static.arithmetic import evaluate
 from pytpc.static.static_info import Comparison
 from pytpc.values.origins import origin_for

@@ -17,10 +17,10 @@ from markupsafe import Markup
 
 from pytpc.base.columns import Floats
 from pytpc.diagnosis.scores.curves import RankCurves
+from pytpc.present.page.environment import seen
+from pytpc.present.page.series import gap_after, kept_of, lane, rows_of, runs, thin
 from pytpc.recording.marks import MarkType
 from pytpc.recording.mission import Recording
-from pytpc.report.environment import seen
-from pytpc.report.series import gap_after, kept_of, lane, rows_of, runs, thin
 
 KEPT = 200_000
 """The most evaluations of one TPC that are kept; of more, the extremes."""
@@ -87,7 +87,7 @@ def lanes_of(recording: Recording, lanes: Sequence[tuple[str, str]]) -> dict[str
 
 
 def lane_of(recording: Recording, key: str, bins: int) -> npt.NDArray[np.int8]:
-    """int8[bins]: the states of one lane, see `pytpc.report.series.lane`."""
+    """int8[bins]: the states of one lane, see `pytpc.present.page.series.lane`."""
     return lane(
         recording.events,
         key,

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from markupsafe import Markup
 
 from pytpc.base.wording import many
-from pytpc.report.cards import CardView
+from pytpc.present.page.cards import CardView
 
 
 @dataclass(frozen=True)

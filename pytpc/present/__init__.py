@@ -1,0 +1,1 @@
+"""Answers as text, JSON, screens and pages. Computes nothing."""
