@@ -1,6 +1,6 @@
 """TPC: finds the parameter that makes a robot misbehave.
 
-What a notebook needs is here, and documented in `pytpc.library` and docs/tutorial.md::
+What a notebook needs is here, and documented in `pytpc.api.library` and docs/tutorial.md::
 
     import pytpc
 
@@ -17,7 +17,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from pytpc.library import (
+    from pytpc.api.library import (
         Advices,
         Change,
         Diagnosed,
@@ -53,10 +53,10 @@ __all__ = [
 
 
 def __getattr__(name: str) -> object:
-    """What ``__all__`` names, from `pytpc.library`."""
+    """What ``__all__`` names, from `pytpc.api.library`."""
     if name not in __all__:
         raise AttributeError(f"module 'pytpc' has no attribute {name!r}")
-    found: object = getattr(import_module("pytpc.library"), name)
+    found: object = getattr(import_module("pytpc.api.library"), name)
     globals()[name] = found
     return found
 

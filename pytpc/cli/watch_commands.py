@@ -11,6 +11,7 @@ from pathlib import Path
 import click
 from rich.console import Console
 
+from pytpc.api.live_mission import Feed, GraphFeed, RecordedFeed, WatchedMission
 from pytpc.base.errors import InputError, RunError
 from pytpc.base.signals import signals_end
 from pytpc.base.wording import plain
@@ -39,7 +40,6 @@ from pytpc.diagnosis.ranking.ranking import Types
 from pytpc.diagnosis.ranking.watching import KINDS, Look, Row, Watching
 from pytpc.diagnosis.scores.live_scores import LiveRanking
 from pytpc.ingest import Recording
-from pytpc.marking.live_mission import Feed, GraphFeed, RecordedFeed, WatchedMission
 from pytpc.present.marking_terminal import Mission
 from pytpc.present.watch_screen import LAYOUTS, Options, Status, table
 from pytpc.recording.marking_session import clock_text

@@ -11,7 +11,7 @@ import pytest
 from mission_samples import comparison, events, ns, static_info
 
 import pytpc
-from pytpc import library
+from pytpc.api import library
 from pytpc.base.errors import InputError
 from pytpc.diagnosis.suggestion.joining import join_advice
 from pytpc.present.notebook import Table
@@ -39,7 +39,7 @@ def test_advice_looks_at_the_window_that_ranked():
 
 
 def test_import_is_lazy():
-    code = "import sys, pytpc; print('numpy' in sys.modules, 'pytpc.library' in sys.modules)"
+    code = "import sys, pytpc; print('numpy' in sys.modules, 'pytpc.api.library' in sys.modules)"
     said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert said.stdout.split() == ["False", "False"]
 

@@ -9,10 +9,10 @@ from mission_samples import comparison, events, key, static_info
 from rich.cells import cell_len
 from rich.text import Text
 
+from pytpc.api.live_mission import GraphFeed, RecordedFeed
+from pytpc.api.live_reports import Reports
 from pytpc.diagnosis.ranking.watching import BINS, KeptRankings, Look, Seen, Watching
 from pytpc.diagnosis.scores.live_scores import LiveRanking
-from pytpc.marking.live_mission import GraphFeed, RecordedFeed
-from pytpc.marking.reports import Reports
 from pytpc.present.watch_screen import LAYOUTS, Options, Panel, Status, table, watch_screen
 from pytpc.recording.marking_session import Change, Session, View
 from pytpc.recording.marks import Mark

@@ -16,9 +16,9 @@ from typing import Protocol, cast
 import numpy as np
 from rich.text import Text
 
+from pytpc.api.live_reports import Item, Reports
 from pytpc.base.errors import RunError
 from pytpc.diagnosis.ranking.watching import KeptRankings, Look, Seen, Watching
-from pytpc.marking.reports import Item, Reports
 from pytpc.present.marking_terminal import Mission
 from pytpc.present.watch_screen import LAYOUTS, Options, Panel, Status, watch_screen
 from pytpc.recording.marking_session import Change, Session, View
