@@ -10,7 +10,7 @@ project(), with a package.xml or without; ``--restore`` takes them out again.
 
 import sys
 
-from pytpc.patch import main
+from pytpc.workspace.patch import main
 
 if __name__ == "__main__":
     sys.exit(main(program="modify_cmakelists.py", any_tree=True))

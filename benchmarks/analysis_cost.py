@@ -21,7 +21,7 @@ from pathlib import Path
 from figures import figure
 
 from pytpc.base.paths import cmake_file
-from pytpc.demo_examples import IMAGE_CAPTURE, SHARED_PACKAGE
+from pytpc_evaluation.demo.demo_examples import IMAGE_CAPTURE, SHARED_PACKAGE
 
 ROUNDS = 3
 PLAIN = (

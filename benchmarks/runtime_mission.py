@@ -23,9 +23,9 @@ from pathlib import Path
 from figures import figure
 
 from pytpc.build.build import build_workspace, workspace_env
-from pytpc.demo_examples import IMAGE_CAPTURE, link_package
 from pytpc.ros.graph import GRAPH_WORD
 from pytpc.ros.run_mission import MissionRun, Progress, run_mission
+from pytpc_evaluation.demo.demo_examples import IMAGE_CAPTURE, link_package
 
 TOPIC = "runtime-cost"
 ROUNDS = 5

@@ -16,9 +16,9 @@ from typing import Any
 
 from figures import figure
 
-from pytpc.study.judge import POSITIONS_FILE
-from pytpc.study.report.making import RESULTS_FILE, make_report
-from pytpc.study.report.parts import SECOND_ROUND
+from pytpc_evaluation.study.judge import POSITIONS_FILE
+from pytpc_evaluation.study.report.making import RESULTS_FILE, make_report
+from pytpc_evaluation.study.report.parts import SECOND_ROUND
 
 TOPIC = "study"
 HALF = "held-back"

@@ -10,6 +10,7 @@ import time
 from types import TracebackType
 
 import pyte
+
 from terminals import Terminal
 
 

@@ -8,8 +8,8 @@ wrong. Status 1 if a mission does not go as its treatment demands, or if the cha
 not among the first three suspects at a mark of the right type.
 """
 
-from pytpc.demo_examples import IMAGE_CAPTURE
-from pytpc.demo_show import demonstration
+from pytpc_evaluation.demo.demo_examples import IMAGE_CAPTURE
+from pytpc_evaluation.demo.demo_show import demonstration
 
 if __name__ == "__main__":
     demonstration(IMAGE_CAPTURE, "Build, fly, rank and report the image capture mission.")()

@@ -8,8 +8,8 @@ says when it does wrong. Status 1 if a mission does not go as its treatment dema
 changed parameter is not among the first three suspects at a mark of the right type.
 """
 
-from pytpc.demo_examples import NAVIGATION
-from pytpc.demo_show import demonstration
+from pytpc_evaluation.demo.demo_examples import NAVIGATION
+from pytpc_evaluation.demo.demo_show import demonstration
 
 if __name__ == "__main__":
     demonstration(NAVIGATION, "Build, drive, rank and report the navigation mission.")()

@@ -13,9 +13,9 @@ from pathlib import Path
 
 import numpy as np
 
-from pytpc.atomic import write_atomic
-from pytpc.ingest.recording import load_recording, save_recording
-from pytpc.static_info import StaticInfo, read_static
+from pytpc.base.atomic import write_atomic
+from pytpc.recording.mission import load_recording, save_recording
+from pytpc.static.static_info import StaticInfo, read_static
 
 NODES = ("face_detector", "mission", "radio_link")
 SOURCES = "../image_capture"

@@ -8,8 +8,8 @@ it does wrong. Status 1 if a mission does not go as its treatment demands, or if
 parameter is not among the first three suspects at a mark of the right type.
 """
 
-from pytpc.demo_examples import WATER_SAMPLER
-from pytpc.demo_show import demonstration
+from pytpc_evaluation.demo.demo_examples import WATER_SAMPLER
+from pytpc_evaluation.demo.demo_show import demonstration
 
 if __name__ == "__main__":
     demonstration(WATER_SAMPLER, "Build, fly, rank and report the water sampling mission.")()

@@ -35,13 +35,13 @@ from pytpc.present.notebook import StudyTable, Table
 from pytpc.present.page.html import MissionReport
 from pytpc.present.page.html import write_report as write_page
 from pytpc.recording.marks import Mark, MarkType
+from pytpc.recording.treatment import TREATMENT_FILE, load_treatment
 from pytpc.static.static_info import StaticInfo, read_static
-from pytpc.stats.missions import load_missions
-from pytpc.stats.study import NUMBERS
-from pytpc.stats.study import study_tables as tables_of_study
-from pytpc.treatment import TREATMENT_FILE, load_treatment
 from pytpc.values.changes import Change
 from pytpc.values.origins import read_origins
+from pytpc_evaluation.stats.missions import load_missions
+from pytpc_evaluation.stats.study import NUMBERS
+from pytpc_evaluation.stats.study import study_tables as tables_of_study
 
 __all__ = ["Advices", "Change", "Diagnosed", "Rankings", "StudyTable", "curves", "diagnose"]
 __all__ += ["load_static", "rank", "read", "study_tables", "suggest", "what_if", "write_report"]
@@ -55,10 +55,11 @@ _SHOWN = 5
 class Rankings(Sequence[MarkRanking]):
     """The rankings of one mission, one for each mark, in the order of the marks.
 
-    A sequence of `pytpc.diagnosis.ranking.ranking.MarkRanking`; ``recording`` and ``static_info`` are what
-    was ranked, ``source`` where the mission was read from, if it was ranked by its path: what else
-    is in its folder is in the report then. ``types`` and ``window_s`` are what it was ranked with,
-    and what is made of it uses them, too. ``table`` has the first suspects of each mark.
+    A sequence of `pytpc.diagnosis.ranking.ranking.MarkRanking`; ``recording`` and ``static_info``
+    are what was ranked, ``source`` where the mission was read from, if it was ranked by its path:
+    what else is in its folder is in the report then. ``types`` and ``window_s`` are what it was
+    ranked with, and what is made of it uses them, too. ``table`` has the first suspects of each
+    mark.
     """
 
     rankings: tuple[MarkRanking, ...]
@@ -153,8 +154,8 @@ def load_static(source: StaticInfo | Source) -> StaticInfo:
 def read(source: Recording | Source) -> Recording:
     """A recorded mission: a bag of ROS 1 or 2, a file or folder of any kind that ``convert`` takes.
 
-    Its ``events`` are columns of numpy (`pytpc.recording.events.Events`); ``events.to_arrow().to_pandas()``
-    makes a data frame of them.
+    Its ``events`` are columns of numpy (`pytpc.recording.events.Events`);
+    ``events.to_arrow().to_pandas()`` makes a data frame of them.
 
     Raises:
         InputError: it cannot be read.

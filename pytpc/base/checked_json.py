@@ -131,7 +131,8 @@ def _validator(name: str) -> Draft202012Validator:
 
 
 def _schema(name: str) -> dict[str, Any]:
-    schema: dict[str, Any] = json.loads(files("pytpc.base").joinpath("schema", name).read_text("utf-8"))
+    text = files("pytpc.base").joinpath("schema", name).read_text("utf-8")
+    schema: dict[str, Any] = json.loads(text)
     return schema
 
 

@@ -1,7 +1,7 @@
 """Building a workspace with TPC: colcon, with tpc.cmake as the toolchain, in bases of its own.
 
-``build_workspace`` does it all; ``pytpc.workspace.colcon`` runs the tool, ``pytpc.build.reconcile`` says what of
-the build was analysed.
+``build_workspace`` does it all; ``pytpc.workspace.colcon`` runs the tool, ``pytpc.build.reconcile``
+says what of the build was analysed.
 """
 
 from __future__ import annotations

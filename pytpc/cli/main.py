@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from functools import cache
 from importlib import import_module
+from importlib.metadata import entry_points
 
 import click
 from click.shell_completion import CompletionItem
@@ -38,13 +40,23 @@ SUMMARIES = {
     "run": ("run_commands", "Run a Python node whose comparisons report."),
     "show": ("static_commands", "Show all that is known about a comparison."),
     "sink": ("graph_commands", "Show and change where running nodes report to."),
-    "stats": ("stats_commands", "Tables and figures of a study from recorded missions."),
-    "study": ("study_commands", "Fly the study of the example robots; its halves; its tables."),
     "suggest": ("advice_commands", "Say what to do with the suspects, and what it would change."),
-    "survey": ("survey_commands", "Build source trees with and without TPC; tables."),
     "toolchain": ("machine_commands", "Print what to type to build with TPC by another tool."),
     "watch": ("watch_commands", "Show the suspected parameters while the robot runs; mark."),
 }
+
+
+@cache
+def summaries() -> dict[str, tuple[str, str]]:
+    """Module and summary of each command, ours and those of other packages, by name.
+
+    A package adds commands by an entry point of the group ``pytpc.commands``: a dictionary as this
+    one.
+    """
+    found = {name: (f"pytpc.cli.{module}", text) for name, (module, text) in SUMMARIES.items()}
+    for point in entry_points(group="pytpc.commands"):
+        found.update({name: said for name, said in point.load().items() if name not in found})
+    return dict(sorted(found.items()))
 
 
 class _Commands(click.Group):
@@ -54,28 +66,31 @@ class _Commands(click.Group):
     """
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        return list(SUMMARIES)
+        return list(summaries())
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        if cmd_name not in SUMMARIES:
+        if cmd_name in SUMMARIES:
+            # Asking what is installed takes longer than many a command.
+            module = f"pytpc.cli.{SUMMARIES[cmd_name][0]}"
+        elif cmd_name in summaries():
+            module = summaries()[cmd_name][0]
+        else:
             return super().get_command(ctx, cmd_name)
-        commands: list[click.Command] = import_module(
-            f"pytpc.cli.{SUMMARIES[cmd_name][0]}"
-        ).COMMANDS
+        commands: list[click.Command] = import_module(module).COMMANDS
         return completing(next(command for command in commands if command.name == cmd_name))
 
     def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
         """The commands that begin so; none is imported for it."""
         found = [
             CompletionItem(name, help=summary)
-            for name, (_, summary) in SUMMARIES.items()
+            for name, (_, summary) in summaries().items()
             if name.startswith(incomplete)
         ]
         return [*found, *click.Command.shell_complete(self, ctx, incomplete)]
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         with formatter.section("Commands"):
-            formatter.write_dl([(name, summary) for name, (_, summary) in SUMMARIES.items()])
+            formatter.write_dl([(name, summary) for name, (_, summary) in summaries().items()])
 
     def invoke(self, ctx: click.Context) -> object:
         try:

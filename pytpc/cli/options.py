@@ -95,7 +95,7 @@ _OLDER = click.option(
 
 
 def TYPES(command: Command) -> Command:
-    """The option ``--types``, as the argument ``types`` of `pytpc.diagnosis.ranking.ranking.rank_marks`."""
+    """The option ``--types``, as the argument ``types`` of `rank_marks`."""
     return _BELIEVED(_OLDER(command))
 
 

@@ -27,8 +27,8 @@ from pytpc.diagnosis.ranking.clocks import two_clocks
 from pytpc.diagnosis.ranking.ranking import Types, rank_marks
 from pytpc.diagnosis.suggestion.declared import declared_in
 from pytpc.present.page.html import CARDS, MissionReport, write_report
+from pytpc.recording.treatment import TREATMENT_FILE, Treatment, load_treatment
 from pytpc.static.static_info import StaticInfo
-from pytpc.treatment import TREATMENT_FILE, Treatment, load_treatment
 from pytpc.values.origins import read_origins
 
 

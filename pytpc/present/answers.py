@@ -19,8 +19,8 @@ from pytpc.present.notebook import Table
 class Advices(Sequence[Advice]):
     """What to do with the suspects at one mark, in their order.
 
-    A sequence of `pytpc.diagnosis.suggestion.advise.Advice`: suspect, value to try, smallest change, and what
-    they would have changed.
+    A sequence of `pytpc.diagnosis.suggestion.advise.Advice`: suspect, value to try, smallest
+    change, and what they would have changed.
     """
 
     advices: tuple[Advice, ...]
@@ -79,7 +79,8 @@ class Diagnosed:
     """What all marks of a mission say together, and what to do with the first suspects.
 
     ``blame`` has all suspects with their probabilities, and what keeps them from being surer;
-    ``advice`` is the value to try of the first ones (`pytpc.diagnosis.suggestion.blamed.BlamedAdvice`).
+    ``advice`` is the value to try of the first ones
+    (`pytpc.diagnosis.suggestion.blamed.BlamedAdvice`).
     """
 
     blame: Blame

@@ -5,9 +5,9 @@ was, is evaluated exactly once and in the original order, by the program's own f
 ``await`` and ``:=`` in an operand are as before. What was rewritten has the position that the
 comparison had, so that tracebacks, debuggers and coverage see the lines and columns of the source.
 
-The calls go to an object (`pytpc.python_runtime.sites`) that is a constant of the code: nothing is added to
-any namespace. `ast` knows no such constants, so a text stands in the tree for each, and is replaced
-in the compiled code.
+The calls go to an object (`pytpc.python_runtime.sites`) that is a constant of the code: nothing is
+added to any namespace. `ast` knows no such constants, so a text stands in the tree for each, and is
+replaced in the compiled code.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
-"""Runs a Python node with reports: ``python -m pytpc.python_runtime [--static FILE]... node.py ARGS``.
+"""Runs a Python node with reports: ``python -m pytpc.python_runtime [OPTION]... node.py ARGS``.
 
 It runs under the node's own interpreter, Python 3.8 or newer, which need not have TPC installed:
-``python /path/to/pytpc/python_runtime/run.py`` does the same. ``pytpc run`` finds the interpreter of
-a node and starts this.
+``python /path/to/pytpc/python_runtime/run.py`` does the same. ``pytpc run`` finds the interpreter
+of a node and starts this.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """Patching a workspace: TPC's block into every package's CMakeLists.txt, and out again.
 
 All files are read, checked and written beside the old ones before the first is replaced, so that a
-workspace is never half patched. What a file needs to be is worked out in ``pytpc.workspace.cmake_block``.
+workspace is never half patched. What a file needs to be is worked out in
+``pytpc.workspace.cmake_block``.
 
 A run that was killed between two files leaves the first ones patched; the next run does the others
 and removes what the killed one had written beside them.

@@ -11,7 +11,7 @@ from launch_samples import MISSION_PARAMS
 from study_samples import make_study
 
 from pytpc.cli.main import main
-from pytpc.study.report.making import Made, make_report
+from pytpc_evaluation.study.report.making import Made, make_report
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ import importlib.util
 import sys
 from types import ModuleType
 
-from pytpc.demo_examples import SHARED_PACKAGE, Example
+from pytpc_evaluation.demo.demo_examples import SHARED_PACKAGE, Example
 
 
 def shared_module(name: str) -> ModuleType:

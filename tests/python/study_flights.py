@@ -8,13 +8,13 @@ from pathlib import Path
 
 import pytest
 
-from pytpc import demo_examples
 from pytpc.base.errors import RunError
-from pytpc.demo_examples import Example
+from pytpc.recording.treatment import Treatment, TreatmentType
 from pytpc.ros.run_mission import Progress
-from pytpc.study.dataset import Done, load_done, save_done
-from pytpc.study.plan import Flight
-from pytpc.treatment import Treatment, TreatmentType
+from pytpc_evaluation.demo import demo_examples
+from pytpc_evaluation.demo.demo_examples import Example
+from pytpc_evaluation.study.dataset import Done, load_done, save_done
+from pytpc_evaluation.study.plan import Flight
 
 PARAMETERS = """\
 world: {wind: 0.1}

@@ -15,9 +15,9 @@ from pytpc.diagnosis.suggestion.blamed import advise_blamed
 from pytpc.ingest import Recording
 from pytpc.recording.marks import Mark
 from pytpc.recording.summaries import Summary, SummaryBuilder
-from pytpc.study.case import Case
-from pytpc.study.methods import METHODS
 from pytpc.values.changes import Change
+from pytpc_evaluation.study.case import Case
+from pytpc_evaluation.study.methods import METHODS
 
 STATIC = static_info(comparison(0, "~gate"), comparison(1, "~safe"), comparison(2, "~never"))
 MARKS = (Mark(ns(33), "I", "ana"), Mark(ns(34), "I", "bob"))

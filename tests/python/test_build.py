@@ -15,10 +15,10 @@ from types import SimpleNamespace
 
 import pytest
 from file_api import reply, target
-from mixed_workspace import make_mixed
 from packages import add_package, install_prefix
 from static_units import comparison, failed_unit, unit
 
+from mixed_workspace import make_mixed
 from pytpc.base.errors import InputError, MissingToolError, RunError, TpcError, WorkspaceError
 from pytpc.build import build
 from pytpc.build.build import build_workspace, workspace_env

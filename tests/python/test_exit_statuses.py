@@ -19,9 +19,9 @@ import click
 import pytest
 from click.testing import CliRunner, Result
 from mission_samples import comparison, static_info
-from terminals import pytpc
 
 from pytpc.cli.main import SUMMARIES, main
+from terminals import pytpc
 
 ROOT = Path(__file__).parents[2]
 EXAMPLE = ROOT / "examples/recorded_mission"

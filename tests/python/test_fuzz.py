@@ -4,6 +4,7 @@ import random
 from pathlib import Path
 
 import pytest
+
 from fuzz import modules, programs
 from fuzz.tools import LIT_INPUTS, Ran, compile_unit, opt
 

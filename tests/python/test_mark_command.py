@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 from mission_samples import BagFile, line, ns
-from terminals import Terminal, pytpc
 
 from pytpc.recording.marks import Mark, marks_beside, read_marks, write_marks
+from terminals import Terminal, pytpc
 
 START = 100.0
 

@@ -21,11 +21,10 @@ from rosbags.highlevel import AnyReader
 
 from pytpc.base.errors import InputError, RunError
 from pytpc.cli.mission_commands import record_command, sink_settings
-from pytpc.demo import TreatedMission, failures, result_table
-from pytpc.demo_examples import IMAGE_CAPTURE, WATER_SAMPLER, Example
 from pytpc.diagnosis.ranking.ranking import rank_marks
 from pytpc.ingest import Recording
 from pytpc.recording.marks import Mark
+from pytpc.recording.treatment import Treatment, load_treatment
 from pytpc.ros.attached import record_graph
 from pytpc.ros.graph import GraphProcess, RosGraph
 from pytpc.ros.ros1.recorder import (
@@ -46,7 +45,8 @@ from pytpc.ros.run_mission import (
     run_mission,
     save_run,
 )
-from pytpc.treatment import Treatment, load_treatment
+from pytpc_evaluation.demo.demo import TreatedMission, failures, result_table
+from pytpc_evaluation.demo.demo_examples import IMAGE_CAPTURE, WATER_SAMPLER, Example
 
 TREATMENTS = [
     (example, path.name)

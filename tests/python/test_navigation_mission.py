@@ -8,7 +8,7 @@ from types import ModuleType, SimpleNamespace
 
 import pytest
 
-from pytpc.demo_examples import NAVIGATION
+from pytpc_evaluation.demo.demo_examples import NAVIGATION
 
 if find_spec("rospy") is None:
     pytest.skip("ROS is not installed", allow_module_level=True)

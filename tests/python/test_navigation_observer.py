@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import pytest
 from observer_scripts import load_observer, shared_module
 
-from pytpc.demo_examples import NAVIGATION
+from pytpc_evaluation.demo.demo_examples import NAVIGATION
 
 observer = load_observer(NAVIGATION)
 causes_of = shared_module("rules").causes_of

@@ -9,7 +9,7 @@ from collections.abc import Iterable
 import pytest
 from observer_scripts import load_observer, shared_module
 
-from pytpc.demo_examples import IMAGE_CAPTURE, WATER_SAMPLER
+from pytpc_evaluation.demo.demo_examples import IMAGE_CAPTURE, WATER_SAMPLER
 
 observer = load_observer(IMAGE_CAPTURE)
 Person = shared_module("person").Person

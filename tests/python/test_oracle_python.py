@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+
 from oracle_python.generator import program
 from oracle_python.judge import judge
 from oracle_python.runner import Compiled, Run

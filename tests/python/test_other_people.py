@@ -13,9 +13,9 @@ from dataclasses import asdict
 import pytest
 from observer_scripts import shared_module
 
-from pytpc.demo_examples import SHARED_PACKAGE
-from pytpc.study.data import user_marks
-from pytpc.study.report.sensitivity import CROWDS, PROGRAM
+from pytpc_evaluation.demo.demo_examples import SHARED_PACKAGE
+from pytpc_evaluation.study.data import user_marks
+from pytpc_evaluation.study.report.sensitivity import CROWDS, PROGRAM
 
 crowd = shared_module("crowd")
 Cause = shared_module("rules").Cause

@@ -3,8 +3,8 @@
 from pathlib import Path
 
 import pytest
-from mixed_workspace import make_mixed
 
+from mixed_workspace import make_mixed
 from pytpc.build.python_units import analyse_scripts, scripts_at
 from pytpc.conditions import lookup as condition_lookup
 from pytpc.conditions.lookup import CHANGED, GONE, NOT_IN_PYTHON, look_up_conditions

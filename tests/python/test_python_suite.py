@@ -9,11 +9,11 @@ from pathlib import Path
 
 import pytest
 from static_units import comparison, unit
+
+from pytpc.static.static_info import Comparison, LinkUnit
 from suite.expectations import PYTHON_PACKAGE, Entry, Expectation, judge, load, nodes
 from suite.places import comparisons, values
 from suite.python_run import missing_modules, script
-
-from pytpc.static.static_info import Comparison, LinkUnit
 
 TYPES = {"parameter", "flag", "derived"}
 MIRRORED = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}

@@ -7,12 +7,12 @@ import sys
 from pathlib import Path
 
 import pytest
+
+from pytpc.static.static_info import StaticInfo
 from suite.both_ways import Results, differences
 from suite.expectations import PYTHON_PACKAGE, load, nodes
 from suite.python_run import missing_modules, run_nodes
 from suite.report import analyse_python
-
-from pytpc.static.static_info import StaticInfo
 
 ROOT = Path(__file__).parents[2]
 WITH_BOTH = all(importlib.util.find_spec(f"pytpc.{name}") for name in ("pynodes", "run"))
@@ -37,7 +37,8 @@ def static(folder: Path) -> StaticInfo:
 
 @pytest.fixture(scope="module")
 def results(static: StaticInfo, folder: Path) -> Results:
-    run = [sys.executable, str(ROOT / "pytpc/python_runtime/run.py"), "--static", str(folder / "static.json")]
+    runner = str(ROOT / "pytpc/python_runtime/run.py")
+    run = [sys.executable, runner, "--static", str(folder / "static.json")]
     able = [node for node in NODES if not missing_modules(node)]
     variants = {"plain": [], "reporting": run}
     return run_nodes(folder, able, variants, env={"TPC_SINK": "rosout"}, least_s=0.0)

@@ -14,6 +14,7 @@ import sys
 from pathlib import Path
 
 import pytest
+
 from suite.expectations import PYTHON_PACKAGE, load, nodes
 from suite.python_run import missing_modules
 

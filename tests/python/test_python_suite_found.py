@@ -6,12 +6,12 @@ import importlib.util
 from pathlib import Path
 
 import pytest
-from suite.expectations import PYTHON_PACKAGE, Verdict, nodes
-from suite.known import PYTHON_KNOWN
-from suite.report import analyse_python, judge_all
 
 from pytpc.base.errors import RunError
 from pytpc.static.static_info import StaticInfo
+from suite.expectations import PYTHON_PACKAGE, Verdict, nodes
+from suite.known import PYTHON_KNOWN
+from suite.report import analyse_python, judge_all
 
 WITH_ANALYSIS = importlib.util.find_spec("pytpc.python_analysis") is not None
 needs_analysis = pytest.mark.skipif(not WITH_ANALYSIS, reason="there is no pytpc analyse yet")

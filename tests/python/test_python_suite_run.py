@@ -6,6 +6,7 @@ import signal
 from pathlib import Path
 
 import pytest
+
 from suite.both_ways import Results
 from suite.expectations import PYTHON_PACKAGE, nodes
 from suite.python_run import missing_modules, run_nodes

@@ -11,9 +11,9 @@ from typing import Any
 
 import pytest
 from click.testing import CliRunner
-from mixed_workspace import BROKEN_TEXT, CAMERA, PUMP_PY, make_mixed
 from static_units import unit
 
+from mixed_workspace import BROKEN_TEXT, CAMERA, PUMP_PY, make_mixed
 from pytpc.build import python_units
 from pytpc.build.collect import collect_sources
 from pytpc.build.python_nodes import python_of_build

@@ -6,11 +6,11 @@ import time
 from pathlib import Path
 
 import pytest
-from fuzz import readers
-from fuzz.reader_samples import EXTENSIONS, samples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from fuzz import readers
+from fuzz.reader_samples import EXTENSIONS, samples
 from pytpc.ingest.bulk_lines import read_lines
 from pytpc.ingest.rosout_line import Malformed, parse_stamped
 

@@ -3,8 +3,9 @@
 from pathlib import Path
 
 import pytest
-import round_trip
 from packages import install_prefix
+
+import round_trip
 
 ROOT = Path(__file__).resolve().parents[2]
 AWKWARD = {

@@ -23,7 +23,7 @@ from observer_scripts import shared_module
 from rosbags.rosbag1 import Writer
 from rosbags.typesys import get_types_from_msg
 
-from pytpc.demo_examples import IMAGE_CAPTURE, SHARED_PACKAGE, WATER_SAMPLER
+from pytpc_evaluation.demo.demo_examples import IMAGE_CAPTURE, SHARED_PACKAGE, WATER_SAMPLER
 
 crowd = shared_module("crowd")
 ObserverError = shared_module("errors").ObserverError

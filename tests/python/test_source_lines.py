@@ -3,7 +3,7 @@
 import os
 from pathlib import Path
 
-from pytpc.source_lines import LineCount, count_lines, source_files
+from pytpc_evaluation.survey.source_lines import LineCount, count_lines, source_files
 
 CPP = """// a comment
 #include <a.h>

@@ -15,11 +15,11 @@ from pytpc.ingest import Recording
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark
 from pytpc.recording.summaries import Summaries, Summary, SummaryBuilder
-from pytpc.stats.delays import error_start
-from pytpc.stats.missions import StudyMission
-from pytpc.stats.runtime import runtime_statistics
-from pytpc.stats.study import study_tables
-from pytpc.treatment import Treatment
+from pytpc.recording.treatment import Treatment
+from pytpc_evaluation.stats.delays import error_start
+from pytpc_evaluation.stats.missions import StudyMission
+from pytpc_evaluation.stats.runtime import runtime_statistics
+from pytpc_evaluation.stats.study import study_tables
 
 STATIC = static_info(comparison(0, "~limit"), comparison(1, "~other"))
 RAISED = Treatment("t", "type2", "~limit", "/node", 3.0, 9.0, {}, "", Path("p.yaml"))

@@ -16,14 +16,14 @@ from pytpc.diagnosis.scores.curves import rank_curves
 from pytpc.ingest import Recording
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark
-from pytpc.stats.bars import runtime_bars
-from pytpc.stats.curves import NAMED, mission_figure
-from pytpc.stats.drawing import COLOURS, CULPRIT, save, style
-from pytpc.stats.figures import draw_study
-from pytpc.stats.missions import StudyMission
-from pytpc.stats.runtime import RuntimeRow, RuntimeStatistics
-from pytpc.stats.states import Phases, RobotState, Series
-from pytpc.treatment import Treatment
+from pytpc.recording.treatment import Treatment
+from pytpc_evaluation.stats.bars import runtime_bars
+from pytpc_evaluation.stats.curves import NAMED, mission_figure
+from pytpc_evaluation.stats.drawing import COLOURS, CULPRIT, save, style
+from pytpc_evaluation.stats.figures import draw_study
+from pytpc_evaluation.stats.missions import StudyMission
+from pytpc_evaluation.stats.runtime import RuntimeRow, RuntimeStatistics
+from pytpc_evaluation.stats.states import Phases, RobotState, Series
 
 STATIC = static_info(*(comparison(n, f"~p{n}") for n in range(12)))
 

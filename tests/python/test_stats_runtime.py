@@ -11,7 +11,7 @@ from pytpc.ingest import Recording
 from pytpc.recording.events import Events
 from pytpc.recording.summaries import Summary, SummaryBuilder
 from pytpc.static.static_info import StaticInfo
-from pytpc.stats.runtime import runtime_statistics, runtime_table
+from pytpc_evaluation.stats.runtime import runtime_statistics, runtime_table
 
 # Comparisons 0 and 1 are of coverage, on two lines; 2 of faces; 3 of idle is never evaluated; 4 is
 # with a constant.

@@ -9,7 +9,7 @@ import pytest
 from mission_samples import STORE, BagFile, line, ns
 
 from pytpc.base.errors import InputError
-from pytpc.stats.states import robot_state
+from pytpc_evaluation.stats.states import robot_state
 
 TYPES = STORE.types
 

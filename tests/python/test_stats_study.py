@@ -14,13 +14,13 @@ from pytpc.ingest import Recording, save_recording
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark
 from pytpc.recording.summaries import Summary, SummaryBuilder
+from pytpc.recording.treatment import Treatment, TreatmentType
 from pytpc.static.link_unit import Transform
-from pytpc.stats.delays import delays_of, error_start
-from pytpc.stats.found import found_in, found_table
-from pytpc.stats.marked import MarksOfTrial, confusion_table, marks_table
-from pytpc.stats.missions import StudyMission, Trial, in_order, load_missions, users_of
-from pytpc.stats.study import NUMBERS, study_complaints, study_tables
-from pytpc.treatment import Treatment, TreatmentType
+from pytpc_evaluation.stats.delays import delays_of, error_start
+from pytpc_evaluation.stats.found import found_in, found_table
+from pytpc_evaluation.stats.marked import MarksOfTrial, confusion_table, marks_table
+from pytpc_evaluation.stats.missions import StudyMission, Trial, in_order, load_missions, users_of
+from pytpc_evaluation.stats.study import NUMBERS, study_complaints, study_tables
 
 # 0 is the changed one, 1 and 2 are others; 3 is a flag; 4 compares with twice its parameter.
 STATIC = static_info(

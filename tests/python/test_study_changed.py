@@ -10,9 +10,9 @@ from study_pages import row_of
 from study_samples import EVENTS, STATIC
 
 from pytpc.recording.mission import Recording
-from pytpc.study.report.changed import turned
-from pytpc.study.report.making import make_report
 from pytpc.values.changes import Change
+from pytpc_evaluation.study.report.changed import turned
+from pytpc_evaluation.study.report.making import make_report
 
 RECORDING = Recording("m", EVENTS, (), 0, ns(20))
 NODE = EVENTS.nodes[0]

@@ -12,16 +12,16 @@ import pytest
 from mission_samples import comparison, static_info
 from study_flights import robot
 
-from pytpc import demo_examples
 from pytpc.base.errors import RunError
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording, load_recording
 from pytpc.ros.run_mission import MissionRun
-from pytpc.study import digest, fly, people
-from pytpc.study.dataset import Cause, load_done
-from pytpc.study.fly import Flier, remarks_of
-from pytpc.study.plan import Flight, flights_of
-from pytpc.study.system import System
+from pytpc_evaluation.demo import demo_examples
+from pytpc_evaluation.study import digest, fly, people
+from pytpc_evaluation.study.dataset import Cause, load_done
+from pytpc_evaluation.study.fly import Flier, remarks_of
+from pytpc_evaluation.study.plan import Flight, flights_of
+from pytpc_evaluation.study.system import System
 
 
 @pytest.fixture

@@ -13,21 +13,21 @@ from pytpc.base.errors import InputError
 from pytpc.diagnosis.ranking.posterior import REASONED, diagnose
 from pytpc.ingest import Recording, save_recording
 from pytpc.recording.marks import Mark
-from pytpc.study.case import Case
-from pytpc.study.data import Mission, UserMark, missions
-from pytpc.study.fit import Batch, fit, samples
-from pytpc.study.judge import judge, position, save_positions
-from pytpc.study.methods import METHODS
-from pytpc.study.methods.importance import importance, importance_of, windows
-from pytpc.study.methods.plain import (
+from pytpc.values.changes import Change
+from pytpc_evaluation.study.case import Case
+from pytpc_evaluation.study.data import Mission, UserMark, missions
+from pytpc_evaluation.study.fit import Batch, fit, samples
+from pytpc_evaluation.study.judge import judge, position, save_positions
+from pytpc_evaluation.study.methods import METHODS
+from pytpc_evaluation.study.methods.importance import importance, importance_of, windows
+from pytpc_evaluation.study.methods.plain import (
     by_chance,
     differs_at_random,
     largest_change,
     recent_change,
     turned_decisions,
 )
-from pytpc.study.methods.thesis import thesis, thesis_doubt
-from pytpc.values.changes import Change
+from pytpc_evaluation.study.methods.thesis import thesis, thesis_doubt
 
 STATIC = static_info(
     comparison(0, "~a"), comparison(1, "~b"), comparison(2, "~c"), comparison(3, "~never")

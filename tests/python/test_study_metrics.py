@@ -4,9 +4,9 @@ import math
 
 import pytest
 
-from pytpc.study.case import Verdict
-from pytpc.study.judge import place, position
-from pytpc.study.metrics import (
+from pytpc_evaluation.study.case import Verdict
+from pytpc_evaluation.study.judge import place, position
+from pytpc_evaluation.study.metrics import (
     calibration_error,
     estimate,
     reliability,

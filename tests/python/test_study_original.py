@@ -9,8 +9,8 @@ import pytest
 from study_pages import row_of
 
 from pytpc.base.errors import InputError
-from pytpc.stats.states import seen_state
-from pytpc.study.report.making import make_report
+from pytpc_evaluation.stats.states import seen_state
+from pytpc_evaluation.study.report.making import make_report
 
 
 # Seven missions of 20 s. ~low and ~high: 20 a mission, 1 a second, in 19 of 20 seconds (at 20 s one

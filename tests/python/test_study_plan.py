@@ -11,9 +11,11 @@ import pytest
 from study_flights import robot, treatment
 
 from pytpc.base.errors import InputError
-from pytpc.demo_examples import EXAMPLES, Example
-from pytpc.study.changes import DECOYS, drawn_changes, harmless_changes, save_changes
-from pytpc.study.plan import (
+from pytpc.values.changes import Change
+from pytpc.values.recording import read_parameters
+from pytpc_evaluation.demo.demo_examples import EXAMPLES, Example
+from pytpc_evaluation.study.changes import DECOYS, drawn_changes, harmless_changes, save_changes
+from pytpc_evaluation.study.plan import (
     Flight,
     Selection,
     Setting,
@@ -22,8 +24,6 @@ from pytpc.study.plan import (
     halves,
     overlay_text,
 )
-from pytpc.values.changes import Change
-from pytpc.values.recording import read_parameters
 
 AMONG = {Change(f"~{name}", "/pump", 2.0, 5.0): frozenset[str]() for name in "abcdefghijk"}
 

@@ -15,17 +15,17 @@ from study_samples import write_rows, write_said
 
 from pytpc.base.errors import InputError, RunError
 from pytpc.cli.main import main
-from pytpc.study import verdict_digest
-from pytpc.study.case import Verdict
-from pytpc.study.judge import POSITIONS_FILE, judge
-from pytpc.study.methods import METHODS
-from pytpc.study.report import judging
-from pytpc.study.report.judged import JUDGED_FILE, load_judgings, told_judgings
-from pytpc.study.report.judging import rank_missions
-from pytpc.study.report.making import make_report
-from pytpc.study.report.positions import Position, read_positions
-from pytpc.study.resume import alone_with_results
-from pytpc.study.verdict_digest import method_digest, modules_used
+from pytpc_evaluation.study import verdict_digest
+from pytpc_evaluation.study.case import Verdict
+from pytpc_evaluation.study.judge import POSITIONS_FILE, judge
+from pytpc_evaluation.study.methods import METHODS
+from pytpc_evaluation.study.report import judging
+from pytpc_evaluation.study.report.judged import JUDGED_FILE, load_judgings, told_judgings
+from pytpc_evaluation.study.report.judging import rank_missions
+from pytpc_evaluation.study.report.making import make_report
+from pytpc_evaluation.study.report.positions import Position, read_positions
+from pytpc_evaluation.study.resume import alone_with_results
+from pytpc_evaluation.study.verdict_digest import method_digest, modules_used
 
 TUNING = {("type1_low", 1), ("type1_low", 2), ("fault_wires", 1), ("clean", 1)}
 
@@ -317,7 +317,8 @@ def test_what_is_said_about_code_is_no_code(package):
 def test_the_rankings_of_users_are_the_code_of_the_methods():
     assert "pytpc.diagnosis.ranking.other_values" in modules_used(METHODS["tpc"].__module__)
     assert "pytpc.diagnosis.ranking.ranking" in modules_used(METHODS["thesis"].__module__)
-    assert not any(name.startswith("pytpc.cli") for name in modules_used("pytpc.study.case"))
+    assert not any(name.startswith("pytpc.cli") for name in
+    modules_used("pytpc_evaluation.study.case"))
 
 
 def test_what_cannot_be_ranked_is_said(own_study, tmp_path):

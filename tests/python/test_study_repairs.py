@@ -8,10 +8,10 @@ import pytest
 from study_pages import row_of, rows_of
 from study_samples import suggestions, write_rows
 
-from pytpc.study.report.folder import load_study
-from pytpc.study.report.making import make_report
-from pytpc.study.report.parts import Part
-from pytpc.study.report.repairs import gone, read_repairs
+from pytpc_evaluation.study.report.folder import load_study
+from pytpc_evaluation.study.report.making import make_report
+from pytpc_evaluation.study.report.parts import Part
+from pytpc_evaluation.study.report.repairs import gone, read_repairs
 
 OPEN = "interval holds the target"
 HELD_BACK = Part("held-back", "held-back half", "held-back")

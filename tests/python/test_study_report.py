@@ -13,8 +13,8 @@ from study_pages import row_of
 from study_samples import fly, plan, write_rows
 
 from pytpc.base.errors import InputError
-from pytpc.cli.study_commands import study_group
-from pytpc.study.report.making import make_report
+from pytpc_evaluation.commands.study_commands import study_group
+from pytpc_evaluation.study.report.making import make_report
 
 ROOT = Path(__file__).parents[2]
 

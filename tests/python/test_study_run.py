@@ -16,17 +16,17 @@ from click.testing import CliRunner
 from mission_samples import comparison, static_info
 from study_flights import FakeFlier, made, robot
 
-from pytpc.cli import study_commands
 from pytpc.cli.main import main
-from pytpc.cli.study_progress import StudyProgress, result_line
 from pytpc.ros.run_mission import Progress
-from pytpc.study import flying
-from pytpc.study.dataset import StudyFile, load_causes, load_done, save_done
-from pytpc.study.plan import Flight, flights_of
-from pytpc.study.resume import alone_in, end_leftovers
-from pytpc.study.run import Result, Runner
-from pytpc.study.system import System
 from pytpc.workspace.colcon import BuildError
+from pytpc_evaluation.commands import study_commands
+from pytpc_evaluation.commands.study_progress import StudyProgress, result_line
+from pytpc_evaluation.study import flying
+from pytpc_evaluation.study.dataset import StudyFile, load_causes, load_done, save_done
+from pytpc_evaluation.study.plan import Flight, flights_of
+from pytpc_evaluation.study.resume import alone_in, end_leftovers
+from pytpc_evaluation.study.run import Result, Runner
+from pytpc_evaluation.study.system import System
 
 
 @pytest.fixture
@@ -186,7 +186,8 @@ def test_wrong_causes_are_an_error(tmp_path, document, what):
 def test_two_runs_do_not_share_a_folder(tmp_path):
     with alone_in(tmp_path):
         code = (
-            "import sys; from pathlib import Path; from pytpc.study.resume import alone_in\n"
+            "import sys; from pathlib import Path\n"
+            "from pytpc_evaluation.study.resume import alone_in\n"
             "from pytpc.base.errors import TpcError\n"
             "try:\n    with alone_in(Path(sys.argv[1])): print('in')\n"
             "except TpcError as error: print(error)\n"
@@ -316,7 +317,7 @@ def test_halves_are_listed(fleet):
 
 
 def test_progress_without_a_terminal_is_a_line_now_and_then(example, capsys, monkeypatch):
-    monkeypatch.setattr("pytpc.cli.study_progress._SILENT_S", 0.0)
+    monkeypatch.setattr("pytpc_evaluation.commands.study_progress._SILENT_S", 0.0)
     with StudyProgress("study") as progress:
         progress.building(example, " [ 50%] Building\n")
         progress.starts(1)

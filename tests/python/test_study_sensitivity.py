@@ -15,15 +15,20 @@ from study_pages import row_of
 from study_samples import Row, write_rows
 
 from pytpc.base.errors import InputError
-from pytpc.cli.study_commands import study_group
-from pytpc.study.dataset import Done, save_done
-from pytpc.study.judge import POSITIONS_FILE
-from pytpc.study.people import look_on
-from pytpc.study.report import sensitivity
-from pytpc.study.report.judging import rank_missions
-from pytpc.study.report.making import make_report
-from pytpc.study.report.positions import Position, read_positions
-from pytpc.study.report.sensitivity import CROWDS, PROGRAM, SENSITIVITY_FILE, rank_by_others
+from pytpc_evaluation.commands.study_commands import study_group
+from pytpc_evaluation.study.dataset import Done, save_done
+from pytpc_evaluation.study.judge import POSITIONS_FILE
+from pytpc_evaluation.study.people import look_on
+from pytpc_evaluation.study.report import sensitivity
+from pytpc_evaluation.study.report.judging import rank_missions
+from pytpc_evaluation.study.report.making import make_report
+from pytpc_evaluation.study.report.positions import Position, read_positions
+from pytpc_evaluation.study.report.sensitivity import (
+    CROWDS,
+    PROGRAM,
+    SENSITIVITY_FILE,
+    rank_by_others,
+)
 
 TUNING = {("type1_low", 1), ("type1_low", 2), ("fault_wires", 1), ("clean", 1)}
 METHODS = {"tpc", "tpc+reference", "thesis"}

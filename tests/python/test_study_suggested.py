@@ -11,12 +11,12 @@ from mission_samples import comparison, static_info
 from study_flights import FakeFlier, made, robot
 
 from pytpc.base.errors import InputError
-from pytpc.cli import study_commands
 from pytpc.cli.main import main
-from pytpc.study import flying
-from pytpc.study.dataset import Cause, StudyFile, save_done
-from pytpc.study.plan import Selection, Setting, flights_of
-from pytpc.study.suggested import (
+from pytpc_evaluation.commands import study_commands
+from pytpc_evaluation.study import flying
+from pytpc_evaluation.study.dataset import Cause, StudyFile, save_done
+from pytpc_evaluation.study.plan import Selection, Setting, flights_of
+from pytpc_evaluation.study.suggested import (
     FAILED_FILE,
     Tried,
     Wanted,
@@ -25,7 +25,7 @@ from pytpc.study.suggested import (
     load_wanted,
     suggested_flight,
 )
-from pytpc.study.system import System
+from pytpc_evaluation.study.system import System
 
 LEAKS, STANDS = Cause("I", 20.0, 20.0, "it leaks"), Cause("II", 12.5, 40.0, "it stands there")
 ROW = {

@@ -12,14 +12,14 @@ from mission_samples import comparison, events, ns, static_info
 from study_flights import made
 
 from pytpc.base.errors import InputError
-from pytpc.cli.study_suggestions import suggestions_command
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording, save_recording
-from pytpc.study.case import Verdict
-from pytpc.study.dataset import save_done
-from pytpc.study.suggested import FAILED_FILE, TRIED_FILE
-from pytpc.study.suggestion_chains import Chain, Try, shares
-from pytpc.study.suggestions import HEADLINE_FILE, next_round
+from pytpc_evaluation.commands.study_suggestions import suggestions_command
+from pytpc_evaluation.study.case import Verdict
+from pytpc_evaluation.study.dataset import save_done
+from pytpc_evaluation.study.suggested import FAILED_FILE, TRIED_FILE
+from pytpc_evaluation.study.suggestion_chains import Chain, Try, shares
+from pytpc_evaluation.study.suggestions import HEADLINE_FILE, next_round
 
 MISSION = "robot/type1_limit/seed-1"
 OTHER = "~other"

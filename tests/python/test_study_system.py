@@ -11,9 +11,9 @@ from study_flights import robot
 
 from pytpc.base.errors import RunError
 from pytpc.build.build import BuildResult
-from pytpc.study import system
-from pytpc.study.system import prepare
 from pytpc.workspace.colcon import Bases
+from pytpc_evaluation.study import system
+from pytpc_evaluation.study.system import prepare
 
 
 class Builder:

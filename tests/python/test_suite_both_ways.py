@@ -6,6 +6,7 @@ from pathlib import Path
 
 import genpy
 from std_msgs.msg import Header
+
 from suite.both_ways import Published, differences, input_of, timeless
 
 

@@ -12,7 +12,7 @@ from survey_samples import AFTER, BAD, build, found, result
 from pytpc.base.errors import InputError
 from pytpc.base.tables import statistics
 from pytpc.static.static_info import LinkUnit
-from pytpc.survey import (
+from pytpc_evaluation.survey.survey import (
     Tree,
     TreePackage,
     TreeResult,
@@ -20,7 +20,7 @@ from pytpc.survey import (
     found_in,
     needed_trees,
 )
-from pytpc.survey_rows import tables
+from pytpc_evaluation.survey.survey_rows import tables
 
 
 def tree(name: str, **packages: str) -> Tree:

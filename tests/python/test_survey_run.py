@@ -6,16 +6,16 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from mixed_workspace import BROKEN_TEXT, make_mixed
 from packages import add_package, install_prefix
 from survey_samples import build
 
-from pytpc import survey_run
+from mixed_workspace import BROKEN_TEXT, make_mixed
 from pytpc.base.errors import RunError, WorkspaceError
-from pytpc.survey import Tree
-from pytpc.survey_build import Measured, read_tree, underlaid
-from pytpc.survey_run import Options, Step, survey
 from pytpc.workspace.colcon import Bases
+from pytpc_evaluation.survey import survey_run
+from pytpc_evaluation.survey.survey import Tree
+from pytpc_evaluation.survey.survey_build import Measured, read_tree, underlaid
+from pytpc_evaluation.survey.survey_run import Options, Step, survey
 
 Log = list[tuple[str, str]]
 Below = dict[tuple[str, str], str]

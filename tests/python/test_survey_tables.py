@@ -5,8 +5,15 @@ import io
 
 from survey_samples import AFTER, BAD, build, found, result
 
-from pytpc.survey_rows import tables
-from pytpc.survey_tables import as_csv, as_latex, as_markdown, documents, faults, latex
+from pytpc_evaluation.survey.survey_rows import tables
+from pytpc_evaluation.survey.survey_tables import (
+    as_csv,
+    as_latex,
+    as_markdown,
+    documents,
+    faults,
+    latex,
+)
 
 
 def test_csv_has_numbers_in_full() -> None:

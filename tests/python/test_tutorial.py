@@ -10,6 +10,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+
 from terminals import pytpc
 
 ROOT = Path(__file__).parents[2]

@@ -11,10 +11,10 @@ import termios
 from pathlib import Path
 
 import pytest
-from screens import Screen
-from terminals import Terminal, pytpc
 
 from pytpc.recording.marks import Mark, read_marks
+from screens import Screen
+from terminals import Terminal, pytpc
 
 EXAMPLE = Path(__file__).parents[2] / "examples/recorded_mission"
 BEGIN_NS = 10_000_000

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import pytest
 from observer_scripts import load_observer, shared_module
 
-from pytpc.demo_examples import WATER_SAMPLER
+from pytpc_evaluation.demo.demo_examples import WATER_SAMPLER
 
 observer = load_observer(WATER_SAMPLER)
 Person = shared_module("person").Person

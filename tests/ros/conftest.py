@@ -10,9 +10,9 @@ import pytest
 from rich.console import Console
 
 from pytpc.build.build import BuildResult, build_workspace
-from pytpc.demo_examples import IMAGE_CAPTURE, WATER_SAMPLER, link_package
-from pytpc.demo_show import Built, build
-from pytpc.study.system import system_folder
+from pytpc_evaluation.demo.demo_examples import IMAGE_CAPTURE, WATER_SAMPLER, link_package
+from pytpc_evaluation.demo.demo_show import Built, build
+from pytpc_evaluation.study.system import system_folder
 
 
 def build_example(folder: Path, build_type: str = "RelWithDebInfo") -> BuildResult:

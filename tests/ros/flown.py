@@ -11,10 +11,10 @@ import pytest
 
 from pytpc.base.errors import MissingToolError
 from pytpc.base.paths import cmake_file, log_library, plugin
-from pytpc.demo import TreatedMission, run_treatment
-from pytpc.demo_examples import Example
-from pytpc.demo_show import Built
 from pytpc.static.static_info import StaticInfo
+from pytpc_evaluation.demo.demo import TreatedMission, run_treatment
+from pytpc_evaluation.demo.demo_examples import Example
+from pytpc_evaluation.demo.demo_show import Built
 
 FIELDS = ("unit", "file", "line", "parameter", "type", "relation")
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
-from mixed_workspace import BROKEN_TEXT, make_mixed
 
+from mixed_workspace import BROKEN_TEXT, make_mixed
 from pytpc.base.errors import MissingToolError
 from pytpc.base.paths import cmake_file, log_library, plugin
 from pytpc.build.build import build_workspace

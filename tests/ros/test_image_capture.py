@@ -18,12 +18,12 @@ import pytest
 from pytpc.base.errors import MissingToolError, RunError
 from pytpc.base.paths import cmake_file, log_library, plugin
 from pytpc.build.build import BuildResult, workspace_env
-from pytpc.demo import FIRST, TreatedMission, failures, run_treatment
-from pytpc.demo_examples import IMAGE_CAPTURE
 from pytpc.diagnosis.ranking.ranking import unknown_keys
 from pytpc.ingest import read_bag
 from pytpc.ros.graph import GRAPH_WORD, RosGraph
 from pytpc.ros.run_mission import Progress, run_mission
+from pytpc_evaluation.demo.demo import FIRST, TreatedMission, failures, run_treatment
+from pytpc_evaluation.demo.demo_examples import IMAGE_CAPTURE
 
 PACKAGE = Path(__file__).parents[2] / "examples/image_capture"
 SECOND = 10**9

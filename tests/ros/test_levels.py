@@ -6,7 +6,6 @@ from dataclasses import replace
 from pathlib import Path
 
 from conftest import build_example
-
 from pytpc.build.build import BuildResult
 from pytpc.static.static_info import Comparison, PathStep
 

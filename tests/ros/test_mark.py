@@ -7,12 +7,12 @@ import time
 from pathlib import Path
 
 import pytest
-from terminals import Terminal, pytpc
 
 from pytpc.ingest import read
 from pytpc.recording.marks import Mark, read_marks
 from pytpc.ros.graph import GraphProcess, RosGraph
 from pytpc.ros.ros1.publisher import MessageType, RawPublisher, encode_time
+from terminals import Terminal, pytpc
 
 # The layout is that of std_msgs/Time under another name; rosbag needs the definition.
 CLOCK = MessageType("rosgraph_msgs/Clock", "a9c97c1d230cfc112e270351a944ee47", "time clock\n")

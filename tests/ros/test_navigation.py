@@ -13,11 +13,11 @@ import pytest
 from flown import Fly, expected, flights, found, need_cpp_half
 from rich.console import Console
 
-from pytpc.demo import gone_wrong
-from pytpc.demo_examples import NAVIGATION
-from pytpc.demo_show import Built, build
 from pytpc.diagnosis.ranking.ranking import unknown_keys
 from pytpc.ros.graph import RosGraph
+from pytpc_evaluation.demo.demo import gone_wrong
+from pytpc_evaluation.demo.demo_examples import NAVIGATION
+from pytpc_evaluation.demo.demo_show import Built, build
 
 IN_CPP = {
     "controller_host",

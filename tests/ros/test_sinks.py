@@ -496,7 +496,8 @@ def relay(graph: RosGraph) -> GraphProcess:
 def test_relay_passes_on_and_a_bag_of_both_topics_has_each_report_once(graph, nodes, tmp_path):
     passer = relay(graph)
     bag, status = tmp_path / "both.bag", tmp_path / "status.json"
-    command = [sys.executable, "-m", "pytpc.ros.ros1.recorder", "--bag", str(bag), "--status", str(status)]
+    command = [sys.executable, "-m", "pytpc.ros.ros1.recorder"]
+    command += ["--bag", str(bag), "--status", str(status)]
     path = {"PYTHONPATH": str(project_root())}
     recorder = graph.start("recorder", [*command, "/rosout", TOPIC], env=path, patience_s=15.0)
     until(lambda: status.exists() and json.loads(status.read_text())["ready"])

@@ -5,13 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+
+from pytpc.build.build import workspace_env
 from suite.both_ways import Results, Variant, differences, run_all, totals
 from suite.build import Suite, build_suite, instrumented, link_plain
 from suite.expectations import Verdict, nodes
 from suite.known import KNOWN
 from suite.report import judge_all
-
-from pytpc.build.build import workspace_env
 
 SEED = 20
 

@@ -12,13 +12,13 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from screens import Screen
-from terminals import Terminal, pytpc
 
 from pytpc.recording.marks import read_marks
 from pytpc.ros.graph import RosGraph
 from pytpc.ros.ros1.publisher import STRING, MessageType, RawPublisher, encode_string
 from pytpc.ros.ros1.tcpros import RawSubscriber
+from screens import Screen
+from terminals import Terminal, pytpc
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "python"))
 from mission_samples import comparison, key, static_info

@@ -7,10 +7,10 @@ from collections import Counter
 import pytest
 from flown import Fly, expected, flights, found, need_cpp_half
 
-from pytpc.demo import FIRST, gone_wrong
-from pytpc.demo_examples import WATER_SAMPLER
-from pytpc.demo_show import Built
 from pytpc.diagnosis.ranking.ranking import unknown_keys
+from pytpc_evaluation.demo.demo import FIRST, gone_wrong
+from pytpc_evaluation.demo.demo_examples import WATER_SAMPLER
+from pytpc_evaluation.demo.demo_show import Built
 
 IN_CPP = {"uav_simulator", "flight_controller", "pump_control"}
 # The link unit with a fault -> that in whose place it runs.

@@ -1,7 +1,7 @@
 """Whom all marks of a mission accuse together, in the words and places of a user.
 
-``blame`` is the entrance: `pytpc.diagnosis.ranking.diagnosing`, and what there is to say where the marks or
-the reports are not enough.
+``blame`` is the entrance: `pytpc.diagnosis.ranking.diagnosing`, and what there is to say where the
+marks or the reports are not enough.
 """
 
 from __future__ import annotations

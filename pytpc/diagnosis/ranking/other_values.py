@@ -13,10 +13,10 @@ little, whatever the number by which the value was changed. Of each comparison i
     waited = log( (turned in the wait + s)^2 / (turned elsewhere + s) )
 
 with the duration d of each turn, and shares of the time; ``fit`` and the wait are those of
-`pytpc.diagnosis.ranking.mark_evidence`, of the marks. Type I is charged with ``acted`` of the turns that
-begin before the last of the observers' first marks, type II with ``waited`` or, half of it each,
-``acted``: a change that cannot be undone. Both go by the odds of the types. A parameter whose other
-value turns nothing before the marks is acquitted.
+`pytpc.diagnosis.ranking.mark_evidence`, of the marks. Type I is charged with ``acted`` of the turns
+that begin before the last of the observers' first marks, type II with ``waited`` or, half of it
+each, ``acted``: a change that cannot be undone. Both go by the odds of the types. A parameter whose
+other value turns nothing before the marks is acquitted.
 """
 
 from __future__ import annotations

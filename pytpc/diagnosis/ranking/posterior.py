@@ -12,7 +12,7 @@ of latches in type II: a change that cannot be undone. *acted* and *waited* are 
 comparison. The *baseline* is the order by the thesis's ranks (SPEC 7), joined over the marks: at
 place k a probability of 1/k to a power; of "none of them" it says nothing. So who is first for one
 witness is high for all; a product would ask that all of them agree. A few weights are fitted on the
-tuning half of the study (`pytpc.study.fit`).
+tuning half of the study (`pytpc_evaluation.study.fit`).
 """
 
 from __future__ import annotations
@@ -62,9 +62,9 @@ WEIGHTS = Weights(
     latch=-1.34,
     none=1.39,
 )
-"""Fitted by `python -m pytpc.study.fit` on the whole tuning half of the study: 24 treatments of
-types I and II, three faults and the clean missions of three robots, 702 sets of marks. Their loss
-is 2.515 (2.662 with ``REASONED``). With one robot left out it is on that robot 2.978
+"""Fitted by `python -m pytpc_evaluation.study.fit` on the tuning half of the study: 24 treatments
+of types I and II, three faults and the clean missions of three robots, 702 sets of marks. Their
+loss is 2.515 (2.662 with ``REASONED``). With one robot left out it is on that robot 2.978
 (image_capture; reasoned 2.923), 2.737 (navigation; 2.878), 2.128 (water_sampler; 2.185)."""
 
 LIED = 0.5

@@ -1,8 +1,9 @@
 """What is watched while a robot runs: evaluations in, what is to be shown of the suspects out.
 
 Nothing here touches a terminal, a graph, a file or a clock; those are in ``watch_screen``,
-``live_mission`` and ``terminal``. The scores are those of `pytpc.diagnosis.scores.live_scores`; beside them each
-comparison has its last values, its last flop, and how near it came to its threshold lately.
+``live_mission`` and ``terminal``. The scores are those of `pytpc.diagnosis.scores.live_scores`;
+beside them each comparison has its last values, its last flop, and how near it came to its
+threshold lately.
 """
 
 from __future__ import annotations

@@ -25,8 +25,8 @@ class RankCurves:
     """Scores and ranks of p parameters at t times.
 
     ``times_ns`` int64[t]; ``parameters`` the p names, sorted; ``score1``, ``score2`` float64[t, p]
-    (`pytpc.diagnosis.scores.scores.NONE` where none), ``rank1``, ``rank2`` and ``combined`` float64[t, p] in
-    [0, 1], 1 the most suspicious.
+    (`pytpc.diagnosis.scores.scores.NONE` where none), ``rank1``, ``rank2`` and ``combined``
+    float64[t, p] in [0, 1], 1 the most suspicious.
     """
 
     times_ns: Int64s

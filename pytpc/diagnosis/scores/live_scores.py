@@ -3,8 +3,8 @@
 What is kept are the evaluations of the window and of some seconds more, of each comparison in each
 node (a stream); what is older is counted: flops, the last of them, and the extremes of the values.
 So memory is bounded by the window, whatever the length of the mission. The scores are worked out by
-the functions of `pytpc.diagnosis.scores.scores` and `pytpc.diagnosis.scores.bounds` themselves, from what is kept and
-what was counted (`pytpc.diagnosis.scores.scores.Before`).
+the functions of `pytpc.diagnosis.scores.scores` and `pytpc.diagnosis.scores.bounds` themselves,
+from what is kept and what was counted (`pytpc.diagnosis.scores.scores.Before`).
 
 Reports may come in any order between nodes: every stream has its own newest time. Within a stream
 one may come up to ``LATE_S`` after a newer one, and is put where it belongs. What is older still

@@ -1,4 +1,4 @@
-"""What `pytpc.diagnosis.scores.live_scores` keeps of each comparison in each node, and how it forgets."""
+"""What `live_scores` keeps of each comparison in each node, and how it forgets."""
 
 from __future__ import annotations
 

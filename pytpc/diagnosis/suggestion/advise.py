@@ -22,7 +22,8 @@ class Advice:
 
     ``suggestion`` is SPEC 8's smallest change, and ``what_if`` what it would have changed, None
     where nothing is suggested. ``remedy`` is the value to try, and ``tried`` what that would have
-    changed; `pytpc.diagnosis.suggestion.joining.with_remedies` fills them, for they need the other marks.
+    changed; `pytpc.diagnosis.suggestion.joining.with_remedies` fills them, for they need the other
+    marks.
     """
 
     suspect: Suspect

@@ -40,7 +40,7 @@ def advise_blamed(
     flown: Sequence[float] = (),
     window_s: float = WINDOW_S,
 ) -> list[BlamedAdvice]:
-    """The first ``top`` of them with the value to try, as `pytpc.diagnosis.suggestion.remedy.remedy` has it.
+    """The first ``top`` of them with the value to try, as `remedy.remedy` has it.
 
     All marks count, without the types that were said: most people confuse them (thesis, table
     6.13), and the value depends on the type more than on all else. The type is what the log says

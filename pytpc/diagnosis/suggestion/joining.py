@@ -76,9 +76,9 @@ def join_advice(
 ) -> list[MarkGroup]:
     """The advice for all marks, those that say the same together, in the order of the first ones.
 
-    The arguments are those of `pytpc.diagnosis.suggestion.advise.advise`, with the rankings of several marks,
-    ``reference``, a mission that went right, and ``flown``, values of the one suspect that did not
-    help.
+    The arguments are those of `pytpc.diagnosis.suggestion.advise.advise`, with the rankings of
+    several marks, ``reference``, a mission that went right, and ``flown``, values of the one
+    suspect that did not help.
     """
     groups: dict[tuple[object, ...], _Open] = {}
     for ranking in rankings:

@@ -5,7 +5,8 @@ next bit. Here all marks of a mission are asked at once, and the evidence counts
 
 1. a value of a clean run, whichever way it is: it was flown, and nothing went wrong, while the way
    that the log shows hangs on what people said of the type of the error;
-2. the direction of the log (`pytpc.diagnosis.suggestion.lasting`), never one that makes what the robot stood by
+2. the direction of the log (`pytpc.diagnosis.suggestion.lasting`), never one that makes what the
+robot stood by
    stronger;
 3. the default in the source, or a declared one, that lies in the lasting set; where the log cannot
    say how far is enough (values that grow until the program acts), anywhere beyond the smallest
@@ -57,11 +58,11 @@ class Remedy:
     ``current`` and ``value`` are in the parameter's unit, as `Suggestion` has them; ``basis`` is
     the evidence that decided: a known value, the lasting one, one that is stepped to because the
     values ``growth`` bounds nothing, one ``between`` those that were flown, the ``smallest``
-    change, or the one of ``before`` it was changed (`pytpc.diagnosis.suggestion.blamed`). ``smallest`` is SPEC
-    8's suggestion that does at the most of the marks. ``kind`` is the type of error that is
-    answered and ``key`` the comparison by which. ``known`` are all values that somebody knows to be
-    good. Where nothing can be suggested ``value``, ``direction`` and ``basis`` are None and
-    ``reason`` says why.
+    change, or the one of ``before`` it was changed (`pytpc.diagnosis.suggestion.blamed`).
+    ``smallest`` is SPEC 8's suggestion that does at the most of the marks. ``kind`` is the type of
+    error that is answered and ``key`` the comparison by which. ``known`` are all values that
+    somebody knows to be good. Where nothing can be suggested ``value``, ``direction`` and ``basis``
+    are None and ``reason`` says why.
     """
 
     parameter: str

@@ -67,7 +67,7 @@ class ParameterUnit:
         return None
 
     def parameters(self, thresholds: Intervals) -> Intervals:
-        """All parameters that give one of ``thresholds``, see `pytpc.diagnosis.thresholds.inverse.preimage`."""
+        """All parameters that give one of ``thresholds``, see `preimage`."""
         near = self.current
         return preimage(self.tree, thresholds, 1.0 if near is None else near)
 

@@ -34,7 +34,7 @@ _STILL_STEPS = 600
 
 @dataclass(frozen=True, slots=True)
 class Lane:
-    """One parameter: int8[BINS] states of ``pytpc.present.page.series``, and whether it stands out."""
+    """One parameter: int8[BINS] states of ``series``, and whether it stands out."""
 
     label: str
     states: npt.NDArray[np.int8]

@@ -1,8 +1,8 @@
 """Lets Python nodes report: this folder on PYTHONPATH, TPC_PYTHON=1, and TPC_STATIC.
 
 A script of the static information is started again by pytpc/python_runtime/run.py, in the same
-process and with the same options of the interpreter; every other program goes on as it was. Another sitecustomize,
-which this one hides, is run as well.
+process and with the same options of the interpreter; every other program goes on as it was. Another
+sitecustomize, which this one hides, is run as well.
 
 Every Python program that is started in such an environment comes by here, roslaunch and rosparam
 among them: what is none of ours is told without importing anything, or parsing.

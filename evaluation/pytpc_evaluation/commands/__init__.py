@@ -1,0 +1,12 @@
+"""The commands that the evaluation adds to ``pytpc``, by the entry point ``pytpc.commands``."""
+
+_HERE = __name__
+
+SUMMARIES = {
+    "stats": (f"{_HERE}.stats_commands", "Tables and figures of a study from recorded missions."),
+    "study": (
+        f"{_HERE}.study_commands",
+        "Fly the study of the example robots; its halves; its tables.",
+    ),
+    "survey": (f"{_HERE}.survey_commands", "Build source trees with and without TPC; tables."),
+}

@@ -1,0 +1,217 @@
+"""The command ``stats``: the tables and figures of the thesis's study from recorded missions."""
+
+from __future__ import annotations
+
+import io
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import click
+from rich.console import Console
+from rich.text import Text
+
+from pytpc.base.atomic import write_atomic
+from pytpc.base.errors import InputError
+from pytpc.base.tables import Table, as_csv, as_json, as_latex, as_markdown, as_rich
+from pytpc.base.wording import many, plain
+from pytpc.cli.console import console, progress, warn
+from pytpc.cli.options import JSON, PATH, STATIC, WINDOW, recording_of
+from pytpc.cli.sources import static_of
+from pytpc.static.static_info import StaticInfo
+from pytpc_evaluation.stats.missions import StudyMission, load_missions
+from pytpc_evaluation.stats.study import NUMBERS, study_complaints, study_tables
+
+_SUFFIXES = {"text": ".txt", "csv": ".csv", "markdown": ".md", "latex": ".tex", "json": ".json"}
+_FIGURE_FORMATS = ("png", "svg", "pdf")
+_WIDTH = 200
+_BY_NUMBER = {number: name for name, number in NUMBERS.items()}
+
+
+@click.command("stats")
+@click.argument("paths", type=PATH, nargs=-1, required=True, metavar="MISSION...")
+@STATIC
+@click.option(
+    "--treatments",
+    type=PATH,
+    metavar="DIR",
+    help="Folders with a treatment.json each, for missions that have none in theirs.",
+)
+@click.option(
+    "--table",
+    "names",
+    type=click.Choice(["all", *NUMBERS, *NUMBERS.values()]),
+    multiple=True,
+    default=("all",),
+    show_default=True,
+    help="May be given several times.",
+)
+@click.option(
+    "--format",
+    "form",
+    type=click.Choice(list(_SUFFIXES)),
+    default="text",
+    show_default=True,
+    help="csv and json have the numbers in full.",
+)
+@JSON
+@click.option(
+    "-o",
+    "--output",
+    type=PATH,
+    metavar="OUT",
+    help="A file; a folder that is there, or several tables as CSV: a file in it for each table.",
+)
+@click.option("--figures", type=PATH, metavar="DIR", help="Draw the figures into this folder.")
+@click.option(
+    "--figure-format",
+    "figure_formats",
+    type=click.Choice(_FIGURE_FORMATS),
+    multiple=True,
+    default=("png",),
+    show_default=True,
+    help="May be given several times.",
+)
+@click.option(
+    "--state",
+    "states",
+    multiple=True,
+    metavar="TOPIC.FIELD",
+    help="What of the robot is drawn above the ranks, as /odom.pose.pose.position.x; several times."
+    " Otherwise a pose and a state are looked for.",
+)
+@WINDOW
+def stats_command(  # noqa: PLR0917
+    paths: tuple[Path, ...],
+    static_source: Path,
+    treatments: Path | None,
+    names: tuple[str, ...],
+    form: str,
+    as_json: bool,
+    output: Path | None,
+    figures: Path | None,
+    figure_formats: tuple[str, ...],
+    states: tuple[str, ...],
+    window_s: float,
+) -> None:
+    """Write the tables of the study (6.12 to 6.16) from recorded missions, and its figures.
+
+    A MISSION is a folder of `pytpc record`, or any INPUT of `pytpc convert`; a folder of missions
+    stands for all of them. What was changed in each, its treatment.json tells.
+    """
+    form = "json" if as_json else form
+    chosen = _chosen(names)
+    several = form == "csv" and len(chosen) > 1
+    if several and output is None:
+        raise click.UsageError("several tables as CSV: choose one by --table, or give -o FOLDER")
+    folder = several or (output is not None and output.is_dir())
+    static = static_of([static_source])
+    missions = load_missions(paths, treatments, recording_of)
+    _check(missions, static)
+    with progress("working out tables") as advance:
+        tables = study_tables(missions, static, chosen, advance, window_s=window_s)
+    if output is None:
+        _print(tables, form)
+    else:
+        _write(tables, form, output, folder=folder)
+    if figures is not None:
+        _draw(missions, static, _Figures(figures, figure_formats, states, window_s))
+
+
+COMMANDS: list[click.Command] = [stats_command]
+
+
+def _chosen(names: Sequence[str]) -> list[str]:
+    if "all" in names:
+        return list(NUMBERS)
+    return list(dict.fromkeys(_BY_NUMBER.get(name, name) for name in names))
+
+
+def _check(missions: Sequence[StudyMission], static: StaticInfo) -> None:
+    for mission in missions:
+        for complaint in study_complaints(mission, static):
+            warn(f"{plain(mission.name)}: {plain(complaint)}")
+    known = set(static.comparisons)
+    seen = {
+        key for m in missions for key in (*m.recording.events.keys, *m.recording.summaries.keys)
+    }
+    if seen and not seen & known:
+        raise InputError("none of the reports is known to the static information: other build")
+
+
+def _print(tables: Sequence[Table], form: str) -> None:
+    if form == "text":
+        out = console()
+        for table in tables:
+            _show(out, table)
+    else:
+        click.echo(_text_of(tables, form), nl=False)
+
+
+def _write(tables: Sequence[Table], form: str, output: Path, *, folder: bool) -> None:
+    if not folder:
+        write_atomic(output, _text_of(tables, form).encode("utf-8", "backslashreplace"))
+        click.echo(f"{many(len(tables), 'table')}: {output}", err=True)
+        return
+    for table in tables:
+        target = output / f"{table.label}{_SUFFIXES[form]}"
+        write_atomic(target, _text_of([table], form).encode("utf-8", "backslashreplace"))
+    click.echo(f"{many(len(tables), 'table')}: {output}", err=True)
+
+
+def _text_of(tables: Sequence[Table], form: str) -> str:
+    if form == "json":
+        items = [{**as_json(table), "thesis": NUMBERS[table.label]} for table in tables]
+        return json.dumps(items, indent=1, ensure_ascii=False) + "\n"
+    if form == "csv":
+        return "\n".join(as_csv(table) for table in tables)
+    if form == "latex":
+        return "\n".join(as_latex(table) for table in tables)
+    if form == "markdown":
+        return "\n".join(f"## {table.title}\n\n{as_markdown(table)}" for table in tables)
+    stream = io.StringIO()
+    out = Console(file=stream, width=_WIDTH, color_system=None)
+    for table in tables:
+        _show(out, table)
+    return stream.getvalue()
+
+
+def _show(out: Console, table: Table) -> None:
+    out.print(Text(f"{table.title} (as table {NUMBERS[table.label]})", style="bold"))
+    if table.rows:
+        for part in as_rich(table, out.width):
+            out.print(part, highlight=False)
+    else:
+        out.print(Text("No mission has anything for it."))
+    for note in table.notes:
+        out.print(Text(plain(note)), highlight=False)
+    out.print()
+
+
+@dataclass(frozen=True, slots=True)
+class _Figures:
+    """What is to be drawn, where and how."""
+
+    folder: Path
+    formats: Sequence[str]
+    states: Sequence[str]
+    window_s: float
+
+
+def _draw(missions: Sequence[StudyMission], static: StaticInfo, wanted: _Figures) -> None:
+    # matplotlib takes half a second to import, which tables alone need not wait for.
+    from pytpc_evaluation.stats.figures import draw_study  # noqa: PLC0415
+
+    with progress("drawing") as advance:
+        drawn = draw_study(
+            missions,
+            static,
+            wanted.folder,
+            wanted.formats,
+            states=wanted.states,
+            window_s=wanted.window_s,
+            on_progress=advance,
+            on_trouble=lambda text: warn(plain(text)),
+        )
+    click.echo(f"{many(len(drawn), 'figure')}: {wanted.folder}", err=True)

@@ -1,0 +1,35 @@
+"""The command ``study sensitivity``: the study's missions, looked at by other people."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from pytpc.cli.console import progress
+from pytpc_evaluation.commands.study_options import RANK_AGAIN, RANK_JOBS, STUDY
+from pytpc_evaluation.commands.study_suggestions import HALVES
+
+
+@click.command("sensitivity")
+@STUDY
+@click.option(
+    "--half",
+    type=click.Choice(list(HALVES)),
+    default="tuning",
+    show_default=True,
+    help="Whose missions are ranked.",
+)
+@RANK_AGAIN
+@RANK_JOBS
+def sensitivity_command(*, out: Path, half: str, again: bool, jobs: int) -> None:
+    """Rank the missions by the marks of other people than the study's.
+
+    They are faster or slower, vary more, mark both kinds of errors equally often, are one person
+    alone, or toss a coin for the type. Nothing is flown; ``study report`` shows what comes of it.
+    """
+    from pytpc_evaluation.study.report.sensitivity import SENSITIVITY_FILE, rank_by_others  # noqa: PLC0415
+
+    with progress("ranking by other people's marks") as advance:
+        rank_by_others(out, HALVES[half], advance, again=again, jobs=jobs)
+    click.echo(f"{out / SENSITIVITY_FILE}", err=True)

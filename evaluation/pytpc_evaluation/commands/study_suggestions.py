@@ -1,0 +1,90 @@
+"""The command ``study suggestions``: what is to be flown next, and what came of it so far."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+
+import click
+from rich.table import Table
+from rich.text import Text
+
+from pytpc.base.wording import many, plain
+from pytpc.cli.console import console, progress, warn
+from pytpc.cli.options import JSON, PATH
+from pytpc_evaluation.study.methods import METHODS
+from pytpc_evaluation.study.plan import Half
+from pytpc_evaluation.study.resume import alone_with_results
+from pytpc_evaluation.study.suggested import WANTED_FILE
+from pytpc_evaluation.study.suggestion_chains import VARIANTS, Chain, shares
+from pytpc_evaluation.study.suggestions import next_round
+
+HALVES: dict[str, tuple[Half, ...]] = {
+    "tuning": ("tuning",),
+    "held-back": ("held-back",),
+    "both": ("tuning", "held-back"),
+}
+
+
+@click.command("suggestions")
+@click.option("--out", type=PATH, default=Path("out") / "study", show_default=True)
+@click.option("--half", type=click.Choice(list(HALVES)), default="both", show_default=True)
+@click.option(
+    "--variant",
+    "variants",
+    type=click.Choice(list(VARIANTS)),
+    multiple=True,
+    help="Only this one; may be repeated.",
+)
+@click.option(
+    "--method",
+    type=click.Choice(list(METHODS)),
+    help="Also try the first suspects of this ranking.",
+)
+@click.option(
+    "--again", is_flag=True, help="Ask anew: the ranking or the advice changed; flights are kept."
+)
+@JSON
+def suggestions_command(
+    *,
+    out: Path,
+    half: str,
+    variants: tuple[str, ...],
+    method: str | None,
+    again: bool,
+    as_json: bool,
+) -> None:
+    """Take in the suggestions that were flown, and say which are to be flown next.
+
+    By turns with ``study suggested``, until nothing is left.
+    """
+    ranking = None if method is None else METHODS[method]
+    with alone_with_results(out), progress("working out suggestions") as advance:
+        chains = next_round(
+            out, HALVES[half], ranking, variants or tuple(VARIANTS), advance, again=again
+        )
+    mine = [chain for chain in chains if chain.half in HALVES[half]]
+    for chain in mine:
+        for one in chain.tries:
+            if one.failed:
+                warn(plain(f"{chain.mission}, {chain.variant}: {one.reason}"))
+    if as_json:
+        document = [asdict(share) for share in shares(mine)]
+        click.echo(json.dumps(document, indent=1))
+        return
+    _show(mine)
+    left = {chain.mission for chain in mine if not chain.is_over}
+    what = f"{many(len(left), 'mission')} to fly: {out / WANTED_FILE}"
+    click.echo(plain(what if left else "nothing is left to fly"))
+
+
+def _show(chains: list[Chain]) -> None:
+    table = Table()
+    for heading in ("Variant", "Tries", "Treatments", "Gone %", "New error %", "Waiting"):
+        table.add_column(heading, justify="left" if heading == "Variant" else "right")
+    for share in shares(chains):
+        rates = ["-" if r is None else f"{100 * r:.0f}" for r in (share.gone, share.new_error)]
+        numbers = (str(share.tries), str(share.treatments), *rates, str(share.open))
+        table.add_row(Text(share.variant), *numbers)
+    console().print(table, highlight=False)

@@ -1,0 +1,203 @@
+"""The command ``survey``: the tables of any number of source trees."""
+
+from __future__ import annotations
+
+import os
+import re
+import sys
+import time
+from pathlib import Path
+
+import click
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table as ScreenTable
+from rich.text import Text
+
+from pytpc.base.atomic import write_atomic
+from pytpc.base.checked_json import dump_json
+from pytpc.base.errors import WorkspaceError
+from pytpc.base.tables import Table
+from pytpc.base.wording import many, plain
+from pytpc_evaluation.survey.survey import TreeResult
+from pytpc_evaluation.survey.survey_rows import tables
+from pytpc_evaluation.survey.survey_run import Options, Step, survey
+from pytpc_evaluation.survey.survey_tables import FORMATS, documents, faults, shown
+
+_FOLDER = click.Path(path_type=Path, file_okay=True)
+_JOB_LINE = re.compile(r"^(Starting >>>|Finished <<<|Failed +<<<|Aborted +<<<) (?P<name>\S+)")
+_PIPED_WIDTH = 200
+_SILENT_S = 2.0
+
+
+def _formats(_context: click.Context, _option: click.Parameter, value: str) -> tuple[str, ...]:
+    chosen = tuple(dict.fromkeys(part.strip() for part in value.split(",")))
+    for name in chosen:
+        if name not in FORMATS:
+            raise click.BadParameter(f"{name!r} is none of {', '.join(FORMATS)}")
+    return chosen
+
+
+@click.command("survey")
+@click.argument("trees", nargs=-1, required=True, type=_FOLDER, metavar="DIR...")
+@click.option(
+    "-o",
+    "--output",
+    type=_FOLDER,
+    default=Path("tpc-survey"),
+    show_default=True,
+    help="Folder for tables, results and builds.",
+)
+@click.option(
+    "--format",
+    "formats",
+    default=",".join(FORMATS),
+    show_default=True,
+    callback=_formats,
+    metavar="LIST",
+    help="Which tables to write.",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print the results as a JSON list.")
+@click.option(
+    "--jobs",
+    type=click.IntRange(min=1),
+    default=os.cpu_count() or 1,
+    show_default="processors",
+    help="Packages, and compilers in each, at a time.",
+)
+@click.option(
+    "--underlay",
+    type=click.Path(path_type=Path),
+    multiple=True,
+    metavar="SETUP",
+    help="A set-up script to source before each build; again for more.",
+)
+@click.option(
+    "--cmake-arg",
+    "cmake_args",
+    multiple=True,
+    metavar="ARG",
+    help="An argument for each package's CMake, as -DNAME=VALUE; again for more.",
+)
+@click.option("--no-plain", is_flag=True, help="No builds without TPC, so no time factors.")
+@click.option("--rerun", is_flag=True, help="Measure again what is known from an earlier run.")
+def survey_command(
+    *,
+    trees: tuple[Path, ...],
+    output: Path,
+    formats: tuple[str, ...],
+    as_json: bool,
+    jobs: int,
+    underlay: tuple[Path, ...],
+    cmake_args: tuple[str, ...],
+    no_plain: bool,
+    rerun: bool,
+) -> None:
+    """Build source trees with and without TPC, and tell times, comparisons and lines of code.
+
+    A DIR is a folder with ROS packages, or a CMake project; each is a row. A DIR that needs
+    packages of another one is built upon it. An interrupted survey goes on where it was.
+    """
+    for folder in trees:
+        if not folder.is_dir():
+            raise WorkspaceError("no such folder", folder)
+    options = Options(output, jobs, underlay, cmake_args, plain=not no_plain, rerun=rerun)
+    with _Progress() as progress:
+        results = survey(trees, options, progress.show)
+    written = documents(results, formats)
+    for name, text in written.items():
+        write_atomic(output / name, text.encode())
+    if as_json:
+        click.echo(dump_json([result.to_json() for result in results]).decode(), nl=False)
+    else:
+        _print(results)
+    _warn(results)
+    if not as_json:
+        click.echo(
+            f"{many(len(results), 'tree')}: {', '.join(str(output / one) for one in written)}"
+        )
+
+
+COMMANDS: list[click.Command] = [survey_command]
+
+
+class _Progress:
+    """A bar over the trees with the packages in work; without a terminal a line for each step."""
+
+    def __init__(self) -> None:
+        self._console = Console(stderr=True)
+        self._bar = Progress(
+            TextColumn("{task.description}"),
+            BarColumn(),
+            MofNCompleteColumn(),
+            TimeElapsedColumn(),
+            console=self._console,
+            transient=True,
+            disable=not self._console.is_terminal,
+        )
+        self._task = self._bar.add_task("", total=None)
+        self._running: list[str] = []
+        self._said: tuple[int, str] | None = None
+        self._began = self._told = time.monotonic()
+
+    def __enter__(self) -> _Progress:
+        self._bar.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._bar.stop()
+
+    def show(self, step: Step) -> None:
+        """Take one step of the survey."""
+        at = (step.number, step.what)
+        if at != self._said:
+            self._said, self._running = at, []
+            self._told = time.monotonic()
+            if not self._console.is_terminal:
+                seconds = time.monotonic() - self._began
+                where = f"{step.number}/{step.total} {plain(step.tree)}"
+                click.echo(f"[{seconds:.0f} s] {where}: {step.what}", err=True)
+        self._say_how_far(step)
+        job = _JOB_LINE.match(step.line)
+        if job is not None and step.line.startswith("Starting"):
+            self._running.append(job["name"])
+        elif job is not None and job["name"] in self._running:
+            self._running.remove(job["name"])
+        running = f": {step.far or ', '.join(self._running)}" if self._running or step.far else ""
+        self._bar.update(
+            self._task,
+            total=step.total,
+            completed=step.number - 1,
+            description=Text(plain(f"{step.tree}: {step.what}{running}")).markup,
+        )
+
+    def _say_how_far(self, step: Step) -> None:
+        """A line every two seconds, where there is no bar."""
+        if step.far and not self._console.is_terminal and time.monotonic() - self._told > _SILENT_S:
+            self._told = time.monotonic()
+            click.echo(f"{plain(step.tree)}: {step.what}: {step.far}", err=True)
+
+
+def _print(results: list[TreeResult]) -> None:
+    console = Console(width=None if sys.stdout.isatty() else _PIPED_WIDTH)
+    for table in tables(results):
+        console.print(_on_screen(table), highlight=False)
+
+
+def _on_screen(table: Table) -> ScreenTable:
+    screen = ScreenTable(title=Text(table.title), title_justify="left")
+    screen.add_column("Name", overflow="fold")
+    for column in table.columns:
+        screen.add_column(column.heading, justify="right")
+    for name, cells in table.rows:
+        screen.add_row(*(Text(plain(text)) for text in (name, *shown(table, cells))))
+    screen.add_section()
+    for name, cells in table.summary:
+        screen.add_row(*(Text(text) for text in (name, *shown(table, cells, statistic=True))))
+    return screen
+
+
+def _warn(results: list[TreeResult]) -> None:
+    for tree, what, name, reason in faults(results):
+        about = f"{tree}: {name} {what}" if name else f"{tree}: {what}"
+        click.echo(f"pytpc: warning: {plain(f'{about}: {reason}')}", err=True)

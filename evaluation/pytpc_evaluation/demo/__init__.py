@@ -1,0 +1,1 @@
+"""Missions with a wrong parameter: flown, recorded, ranked, judged."""

@@ -1,0 +1,215 @@
+"""The study in small: treated missions are run, recorded and ranked, and the result is judged.
+
+The observer in these missions sees only what the robot does. Whether the parameter that the
+treatment changed is named among the first suspects is the question; a mission that did not go as
+its treatment demands answers nothing, and is a failure of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from rich.table import Table
+from rich.text import Text
+
+from pytpc.base.errors import RunError
+from pytpc.diagnosis.ranking.ranking import MarkRanking, rank_marks
+from pytpc.diagnosis.suggestion.suggest import suggest
+from pytpc.ingest import Recording, read_bag, save_recording
+from pytpc.present.page.html import MissionReport
+from pytpc.recording.marks import Mark
+from pytpc.recording.mission import EVENTS_FILE, MARKS_FILE
+from pytpc.recording.treatment import Treatment, save_treatment
+from pytpc.ros.run_mission import MissionRun, Progress, run_mission
+from pytpc.static.static_info import StaticInfo
+from pytpc_evaluation.demo.demo_examples import Example
+
+FIRST = 3
+"""The changed parameter has to be among so many first suspects."""
+
+
+@dataclass(frozen=True)
+class TreatedMission:
+    """A mission that was run under a treatment, with the suspects at its marks."""
+
+    example: Example
+    treatment: Treatment
+    seed: int
+    run: MissionRun
+    recording: Recording
+    rankings: list[MarkRanking]
+
+    @property
+    def judged(self) -> list[MarkRanking]:
+        """The rankings at the rightly typed marks; empty where no parameter was changed."""
+        wanted = self.treatment.mark_type
+        return [r for r in self.rankings if wanted is not None and r.mark.type == wanted]
+
+    def report(self, static_info: StaticInfo) -> MissionReport:
+        """What the report page needs of it."""
+        return MissionReport(
+            self.treatment.name,
+            self.recording,
+            static_info,
+            self.rankings,
+            treatment=self.treatment.effect,
+            changed_parameter=self.treatment.parameter,
+        )
+
+
+def run_treatment(
+    example: Example,
+    treatment: Treatment,
+    *,
+    seed: int,
+    install_env: Mapping[str, str],
+    static_info: StaticInfo,
+    out_dir: Path,
+    timeout_s: float,
+    launch_args: Mapping[str, str] | None = None,
+    on_progress: Callable[[Progress], None] | None = None,
+) -> TreatedMission:
+    """Run one mission under a treatment, record it, and rank the parameters at its marks.
+
+    Args:
+        example: the robot.
+        treatment: its overlay and launch arguments are handed to the launch file.
+        seed: for all noise of the simulation and for the observer.
+        install_env: see ``run_mission``.
+        static_info: of the build that runs, and of its nodes in Python.
+        out_dir: for the recording and what was read from it.
+        timeout_s: wall time after which the mission is ended.
+        launch_args: more arguments for the launch file.
+        on_progress: see ``run_mission``.
+
+    Raises:
+        RunError: the mission could not be run.
+        InputError: the recording cannot be read.
+    """
+    for stale in (EVENTS_FILE, MARKS_FILE):
+        (out_dir / stale).unlink(missing_ok=True)
+    args = {
+        "seed": str(seed),
+        "treatment": str(treatment.overlay.absolute()),
+        **treatment.launch,
+        **(launch_args or {}),
+    }
+    run = run_mission(
+        install_env,
+        example.launch,
+        args,
+        out_dir,
+        timeout_s,
+        topics=example.watched,
+        on_progress=on_progress,
+    )
+    save_treatment(treatment, out_dir)
+    recording = read_bag(run.bag)
+    if not len(recording.events):
+        raise RunError("no node reported a comparison: was the workspace built with TPC?", run.bag)
+    save_recording(recording, out_dir)
+    rankings = rank_marks(recording, static_info)
+    return TreatedMission(example, treatment, seed, run, recording, rankings)
+
+
+def failures(mission: TreatedMission) -> list[str]:
+    """What is wrong with a mission or its ranking, in sentences; empty where nothing is."""
+    return [*gone_wrong(mission), *_not_named(mission)]
+
+
+def gone_wrong(mission: TreatedMission) -> list[str]:
+    """Where a mission did not go as its treatment demands, in sentences."""
+    example, treatment, run = mission.example, mission.treatment, mission.run
+    reached = run.messages.get(example.goal_topic, 0) > 0
+    found = []
+    if run.ended != "done":
+        found.append(f"{treatment.name}: the mission did not end in {run.wall_s:.0f} s")
+    if treatment.type == "clean":
+        if mission.rankings:
+            found.append(f"{treatment.name}: the observer set {len(mission.rankings)} marks")
+    elif treatment.mark_type is not None and not mission.judged:
+        kind = treatment.mark_type
+        found.append(f"{treatment.name}: the observer set no mark of type {kind}")
+    for remark in example.goal_remarks(treatment, reached=reached):
+        found.append(f"{treatment.name}: {remark}")
+    lost = sum(run.lost.values())
+    if lost:
+        found.append(f"{treatment.name}: {lost} log messages were lost by the recorder")
+    return found
+
+
+def _not_named(mission: TreatedMission) -> list[str]:
+    parameter = mission.treatment.parameter
+    if parameter is None:
+        return []
+    found = []
+    for ranking in mission.judged:
+        position = ranking.position_of(parameter)
+        if position is None or position > FIRST:
+            where = "nowhere" if position is None else f"at position {position}"
+            found.append(
+                f"{mission.treatment.name}: {parameter} is {where} at the mark"
+                f" {_seconds(mission, ranking.mark):.1f} s"
+            )
+    return found
+
+
+def result_table(missions: Sequence[TreatedMission], static_info: StaticInfo) -> Table:
+    """One row for each mark: the changed parameter's position and rank, what is suggested."""
+    table = Table(title="The changed parameter at each mark")
+    for name in ("Treatment", "Changed"):
+        table.add_column(name, overflow="fold")
+    table.add_column("Mark", justify="right")
+    for name in ("Type", "Position", "Rank"):
+        table.add_column(name, justify="right")
+    table.add_column("Suggestion for it", overflow="fold")
+    table.add_column("Named first")
+    for mission in missions:
+        treatment = mission.treatment
+        head = [treatment.name, treatment.change]
+        if not mission.rankings:
+            table.add_row(*head, "none", "", "", "", "", "")
+        for ranking in mission.rankings:
+            table.add_row(*head, *_cells(mission, ranking, static_info))
+            head = ["", ""]
+        table.add_section()
+    return table
+
+
+def _cells(
+    mission: TreatedMission, ranking: MarkRanking, static_info: StaticInfo
+) -> list[str | Text]:
+    treatment, mark = mission.treatment, ranking.mark
+    kind: str = mark.type or "none"
+    time = f"{_seconds(mission, mark):.1f} s"
+    if treatment.parameter is None:
+        return [time, kind, "", "", "", ""]
+    rightly = mark.type == treatment.mark_type
+    found = ranking.suspect_of(treatment.parameter)
+    if not rightly:
+        kind += " (wrong type)"
+    if found is None:
+        return [time, kind, f"- of {ranking.parameters}", "0", "", "no" if rightly else ""]
+    advice = suggest(
+        mission.recording.events,
+        found.comparison,
+        mark.time_ns,
+        found.type,
+        unit=static_info.unit_of(found.key),
+        summaries=mission.recording.summaries,
+    )
+    first = Text("yes", style="bold green") if found.position == 1 else Text("no")
+    return [
+        time,
+        kind,
+        f"{found.position} of {ranking.parameters}",
+        f"{found.rank:.2f}",
+        advice.text if rightly else "",
+        first if rightly else "",
+    ]
+
+
+def _seconds(mission: TreatedMission, mark: Mark) -> float:
+    return (mark.time_ns - mission.recording.start_ns) / 1e9

@@ -1,0 +1,169 @@
+"""Shows an example on the terminal: builds it, flies its missions, ranks, writes the report.
+
+The demonstrations in ``examples/*/demo.py`` are this with an ``Example``.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import click
+from rich.console import Console
+
+from pytpc.base.errors import TpcError
+from pytpc.base.wording import many
+from pytpc.build.build import build_workspace, workspace_env
+from pytpc.cli.console import progress
+from pytpc.cli.mission_commands import mission_progress
+from pytpc.present.page.html import write_report
+from pytpc.recording.treatment import Treatment
+from pytpc.ros.python_env import mission_env
+from pytpc.static.static_info import StaticInfo
+from pytpc.workspace.colcon import BuildError
+from pytpc_evaluation.demo.demo import TreatedMission, failures, result_table, run_treatment
+from pytpc_evaluation.demo.demo_examples import Example, link_package
+
+TIMEOUT_S = 150.0
+_PIPED_WIDTH = 160
+
+
+@dataclass(frozen=True)
+class Built:
+    """What flies: the robot, the static information of all nodes, the environment they run in."""
+
+    example: Example
+    static: StaticInfo
+    env: Mapping[str, str]
+
+
+def demonstration(example: Example, about: str) -> click.Command:
+    """The command line of a demonstration; ``about`` is its help."""
+
+    @click.command(help=about)
+    @click.option(
+        "--out",
+        type=click.Path(path_type=Path),
+        default=Path("out") / example.name,
+        show_default=True,
+    )
+    @click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True)
+    @click.option("--treatment", "names", multiple=True, help="Fly this one; may be repeated.")
+    def main(out: Path, seed: int, names: tuple[str, ...]) -> None:
+        console = Console(width=None if sys.stdout.isatty() else _PIPED_WIDTH)
+        try:
+            wrong = run_demo(example, console, out, seed, names)
+        except BuildError as error:
+            for line in error.tail:
+                click.echo(line, err=True)
+            raise SystemExit(f"demo: error: {error}") from None
+        except TpcError as error:
+            raise SystemExit(f"demo: error: {error}") from None
+        except KeyboardInterrupt:
+            click.echo("demo: interrupted", err=True)
+            raise SystemExit(130) from None
+        for sentence in wrong:
+            console.print(f"FAILED  {sentence}", style="bold red", highlight=False)
+        raise SystemExit(1 if wrong else 0)
+
+    return main
+
+
+def run_demo(
+    example: Example, console: Console, out: Path, seed: int, names: tuple[str, ...] = ()
+) -> list[str]:
+    """All of it; returns what went wrong, in sentences.
+
+    Args:
+        example: the robot.
+        console: where it is told.
+        out: for the workspace, the recordings and the report.
+        seed: see ``run_treatment``.
+        names: the treatments; those of the demonstration where empty.
+
+    Raises:
+        TpcError: it does not build, or a mission cannot be run.
+    """
+    treatments = example.treatments(names)
+    built = build(example, console, out)
+    if not names:
+        for treatment in treatments:
+            if not can_be_named(treatment, built.static):
+                console.print(f"=> {treatment.name} is left out: nothing compares its parameter")
+        treatments = [one for one in treatments if can_be_named(one, built.static)]
+    missions = [fly(console, treatment, seed, built, out) for treatment in treatments]
+    page = out / "report.html"
+    with step(console, "Write the report"), progress("drawing") as advance:
+        reports = [mission.report(built.static) for mission in missions]
+        title = f"{example.title}: suspected parameters"
+        write_report(page, reports, title=title, on_progress=advance)
+    console.print()
+    console.print(result_table(missions, built.static), highlight=False)
+    console.print(f"Report: {page}", highlight=False, soft_wrap=True)
+    return [sentence for mission in missions for sentence in failures(mission)]
+
+
+def can_be_named(treatment: Treatment, static: StaticInfo) -> bool:
+    """Whether a comparison of the changed parameter, if one was changed, was found."""
+    compared = {found.source for found in static.thresholds.values()}
+    return treatment.parameter is None or treatment.parameter in compared
+
+
+def build(example: Example, console: Console, out: Path) -> Built:
+    """Build a workspace that holds a link to the example; its nodes in Python are analysed, too."""
+    workspace = out / "ws"
+    link_package(example, workspace)
+    with step(console, "Build the mission's nodes with TPC"):
+        with Console(stderr=True).status("colcon build"):
+            result = build_workspace(workspace)
+        tell_found(console, result.static)
+    env = mission_env(workspace_env(result.bases.install), result.bases.static_info)
+    return Built(example, result.static, env)
+
+
+def tell_found(console: Console, static: StaticInfo) -> None:
+    """Say in a line what the analysis found, and in which language; one place is one comparison."""
+    places = [tpc for tpc in static.tpcs if tpc.type != "constant"]
+    in_python = sum(static.unit_of(tpc.key).is_python for tpc in places)
+    some = f": {len(places) - in_python:,} in C++, {in_python:,} in Python" if in_python else ""
+    console.print(
+        f"   {many(len(places), 'comparison')} of parameters found{some}", highlight=False
+    )
+
+
+def fly(
+    console: Console, treatment: Treatment, seed: int, built: Built, out: Path
+) -> TreatedMission:
+    """Run one mission and say in a line what happened."""
+    with step(console, f"Mission {treatment.name}: {treatment.effect}"):
+        with mission_progress(treatment.name) as advance:
+            mission = run_treatment(
+                built.example,
+                treatment,
+                seed=seed,
+                install_env=built.env,
+                static_info=built.static,
+                out_dir=out / treatment.name,
+                timeout_s=TIMEOUT_S,
+                on_progress=advance,
+            )
+        run = mission.run
+        console.print(
+            f"   {run.sim_s:.0f} s of flight, {many(run.reports, 'report')},"
+            f" {many(run.marks, 'mark')}",
+            highlight=False,
+        )
+    return mission
+
+
+@contextmanager
+def step(console: Console, what: str) -> Iterator[None]:
+    """Print what is done, and at the end how long it took."""
+    console.print(f"=> {what}", style="bold", highlight=False)
+    began = time.monotonic()
+    yield
+    console.print(f"   {time.monotonic() - began:.1f} s", style="dim", highlight=False)

@@ -1,0 +1,32 @@
+"""The methods that the study compares, by the names that its tables have."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from pytpc_evaluation.study.case import Method
+from pytpc_evaluation.study.methods.importance import importance
+from pytpc_evaluation.study.methods.ours import tpc, tpc_changes, tpc_reference
+from pytpc_evaluation.study.methods.plain import (
+    by_chance,
+    differs_at_random,
+    largest_change,
+    recent_change,
+    turned_decisions,
+)
+from pytpc_evaluation.study.methods.thesis import thesis, thesis_doubt
+
+METHODS: Mapping[str, Method] = {
+    "thesis": thesis,
+    "thesis-doubt": thesis_doubt,
+    "importance": importance,
+    "recent-change": recent_change,
+    "largest-change": largest_change,
+    "turned-decisions": turned_decisions,
+    "differs-at-random": differs_at_random,
+    "random": by_chance,
+    "tpc": tpc,
+    "tpc+reference": tpc_reference,
+    "tpc+changes": tpc_changes,
+}
+"""In the order of the tables: baselines first."""

@@ -1,0 +1,120 @@
+"""The study's missions, looked at by other people than those whom constants of the ranking know.
+
+Delays and numbers of marks are drawn from tables 6.14 and 6.15 of the thesis, and constants of
+``pytpc.scoring`` come from there, too. Here the same missions are marked by people who are faster,
+slower, alone and so on, and ranked by their marks: ``results/sensitivity.parquet``. Its rows are
+as in ``results/positions.parquet``, with the crowd as ``who``.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import pyarrow as pa
+
+from pytpc.base.columns import write_table
+from pytpc.base.errors import InputError
+from pytpc_evaluation.demo.demo_examples import SHARED_PACKAGE
+from pytpc_evaluation.study.case import Method
+from pytpc_evaluation.study.data import Labels, Mission, user_marks
+from pytpc_evaluation.study.dataset import CAUSES_FILE, DONE_FILE, SIGHTS_FILE, load_done
+from pytpc_evaluation.study.digest import people_digest
+from pytpc_evaluation.study.judge import SCHEMA, Judged, judge
+from pytpc_evaluation.study.methods import METHODS
+from pytpc_evaluation.study.people import look_on
+from pytpc_evaluation.study.plan import Half
+from pytpc_evaluation.study.report.folder import Progress
+from pytpc_evaluation.study.report.judging import Ranking, complete, is_complete
+from pytpc_evaluation.study.verdict_digest import contents, digest_of, mission_digest
+
+SENSITIVITY_FILE = Path("results") / "sensitivity.parquet"
+PROGRAM = SHARED_PACKAGE.parent / "other_people" / "crowds.py"
+CROWDS = ("thesis", "fast", "slow", "spread", "two-marks", "alone", "coin")
+"""The files that the program writes; the first is of the mission's own people."""
+_METHODS = ("tpc", "tpc+reference", "thesis")
+_LABELS: tuple[Labels, ...] = ("typed", "confused")
+
+
+def rank_by_others(
+    folder: Path,
+    halves: Sequence[Half],
+    on_progress: Progress | None = None,
+    *,
+    again: bool = False,
+    jobs: int = 1,
+) -> None:
+    """Complete ``results/sensitivity.parquet``; arguments and errors as of ``complete``."""
+    complete(_others(), folder, halves, on_progress, again=again, jobs=jobs)
+
+
+def is_up_to_date(folder: Path, halves: Sequence[Half]) -> bool:
+    """Whether the table has what there is to know of ``halves``, as missions and code are now.
+
+    Raises:
+        InputError: a mission or the table cannot be read.
+    """
+    return is_complete(_others(), folder, halves)
+
+
+def _others() -> Ranking:
+    methods = {name: METHODS[name] for name in _METHODS}
+    return Ranking(SENSITIVITY_FILE, methods, inputs_digest, judge_by_others, save_sensitivity)
+
+
+def inputs_digest(out: Path, mission: Path, half: str) -> str:
+    """Of what the methods read of a mission, and of what the crowds' marks are made from.
+
+    Raises:
+        InputError: a file cannot be read.
+    """
+    done = load_done(mission)
+    looked = [people_digest(), contents(PROGRAM), None if done is None else done.people]
+    seen = [contents(mission / CAUSES_FILE), contents(mission / SIGHTS_FILE)]
+    return digest_of([mission_digest(out, mission, half), *seen, *looked])
+
+
+def judge_by_others(
+    mission: Mission, folder: Path, methods: Mapping[str, Method]
+) -> Iterator[Judged]:
+    """The verdicts of the methods by the marks of each crowd.
+
+    Args:
+        mission: as it was read.
+        folder: the mission's; nothing is written there.
+        methods: by their names.
+
+    Raises:
+        InputError: the mission is not whole.
+        RunError: the program fails.
+    """
+    with TemporaryDirectory(prefix="tpc-people-") as marks:
+        words = ["--causes", str(folder / CAUSES_FILE), "--sights", str(folder / SIGHTS_FILE)]
+        words += ["--seed", str(_seed(folder)), "--folder", marks]
+        look_on(PROGRAM, os.environ, words)
+        for crowd in CROWDS:
+            marked = replace(mission, marks=user_marks(Path(marks) / f"{crowd}.parquet"))
+            for row in judge(marked, methods, _LABELS, users=()):
+                yield replace(row, who=crowd)
+
+
+def save_sensitivity(rows: Iterable[Judged], out: Path) -> None:
+    """Write the table into the study's folder, atomically.
+
+    Raises:
+        TpcError: the file cannot be written.
+    """
+    path = out / SENSITIVITY_FILE
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_table(pa.Table.from_pylist([asdict(row) for row in rows], schema=SCHEMA), path)
+
+
+def _seed(mission: Path) -> int:
+    """Of those who looked on in the mission."""
+    done = load_done(mission)
+    if done is None:
+        raise InputError("does not say who looked on", mission / DONE_FILE)
+    return done.people

@@ -1,0 +1,183 @@
+"""Chains of suggestions for the missions of the study, and the shares that come of them.
+
+They are kept in ``results/suggestion-chains.json``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from pytpc.diagnosis.suggestion.known import Source
+from pytpc.diagnosis.suggestion.remedy import EVERY_SOURCE
+from pytpc.static.parameters import same_parameter
+from pytpc_evaluation.study.listed import read_list
+
+CHAINS_FILE = Path("results") / "suggestion-chains.json"
+HEADLINE = "lasting"
+"""What is shown of the tool: nothing in it knows the value before the treatment."""
+SUSPECTS = "suspects"
+RANKED = "ranked"
+RANKED_REFERENCE = "ranked-reference"
+VARIANTS: Mapping[str, frozenset[Source] | None] = {
+    "smallest": None,
+    "lasting": frozenset(),
+    "with-default": frozenset({"default", "declared"}),
+    "with-reference": EVERY_SOURCE,
+    RANKED: frozenset(),
+    RANKED_REFERENCE: EVERY_SOURCE,
+    SUSPECTS: frozenset(),
+}
+"""The known values that each may take; None for the smallest change."""
+MOST_TRIES = {"lasting": 3, SUSPECTS: 3}
+
+
+@dataclass(frozen=True)
+class Try:
+    """A value that was asked for, and what came of it.
+
+    ``gone`` and ``new_error`` are None until it is flown, ``reason`` are the errors that were seen
+    then. Where nothing was suggested ``value`` is None, and ``reason`` says why. Where the flight
+    ``failed`` too often nothing is known of a new error, and the one of before counts as not gone.
+    """
+
+    parameter: str
+    node: str | None
+    value: float | None
+    basis: str | None
+    gone: bool | None = None
+    new_error: bool | None = None
+    reason: str = ""
+    failed: bool = False
+
+    @property
+    def is_open(self) -> bool:
+        """Whether it is to be flown."""
+        return self.value is not None and self.new_error is None and not self.failed
+
+    def is_same(self, parameter: str, node: str | None, value: float | None) -> bool:
+        """Whether it sets the same parameter, however it is called, to the same value."""
+        mine = self.parameter
+        same = same_parameter(mine, parameter) or same_parameter(parameter, mine)
+        return same and self.value == value and (self.node or node) == (node or self.node)
+
+
+@dataclass
+class Chain:
+    """The tries of one variant for one mission.
+
+    ``old`` and ``new`` are values of the changed parameter; ``order`` are the first suspects, empty
+    of variants that are told the changed one. ``digest`` is that of the mission from which the
+    values are (`Done.digest`).
+    """
+
+    system: str
+    treatment: str
+    type: str
+    half: str
+    seed: int
+    variant: str
+    old: float
+    new: float
+    order: tuple[str, ...] = ()
+    tries: list[Try] = field(default_factory=list)
+    digest: str = ""
+
+    @property
+    def mission(self) -> str:
+        """Its folder below ``missions`` and ``suggested``."""
+        return f"{self.system}/{self.treatment}/seed-{self.seed}"
+
+    @property
+    def is_over(self) -> bool:
+        """Whether it has what it wants, or has tried often enough."""
+        if not self.tries:
+            return False
+        last = self.tries[-1]
+        if last.is_open:
+            return False
+        if len(self.tries) >= MOST_TRIES.get(self.variant, 1):
+            return True
+        if last.failed:
+            # There is no log from which to go on; the next suspect does not need it.
+            return self.variant != SUSPECTS
+        if last.value is None:
+            # The next suspect may have a value.
+            return self.variant != SUSPECTS or not last.parameter
+        return last.gone is not False
+
+    @classmethod
+    def from_json(cls, document: Mapping[str, Any]) -> Chain:
+        """The chain of an object in ``CHAINS_FILE``."""
+        tries = [Try(**one) for one in document["tries"]]
+        return cls(**{**document, "order": tuple(document["order"]), "tries": tries})
+
+
+def load_chains(path: Path) -> list[Chain]:
+    """All chains; none where there is no such file.
+
+    Raises:
+        InputError: the file cannot be read, or is not of chains.
+    """
+    return read_list(path, Chain.from_json, "not chains of suggestions")
+
+
+class Outcome(NamedTuple):
+    """What came of a chain within so many tries; a new error counts if it is of the last one."""
+
+    unit: tuple[str, str]
+    gone: bool
+    new_error: bool
+
+
+def outcomes(chains: Iterable[Chain], variant: str, most: int) -> tuple[list[Outcome], int]:
+    """What came of a variant within ``most`` tries, and how many of its chains wait for flights.
+
+    Where no error was seen in the treated mission, nothing could come of it.
+    """
+    found, waiting = [], 0
+    for chain in (one for one in chains if one.variant == variant):
+        tries = chain.tries[:most]
+        if any(one.is_open for one in tries) or not (chain.is_over or len(tries) == most):
+            waiting += 1
+        elif any(one.gone is not None or one.value is None for one in tries):
+            unit = (chain.system, chain.treatment)
+            found.append(Outcome(unit, tries[-1].gone is True, tries[-1].new_error is True))
+    return found, waiting
+
+
+@dataclass(frozen=True, slots=True)
+class Share:
+    """Of how many treatments of a variant the error was gone within so many tries, and a new one.
+
+    ``gone`` and ``new_error`` are shares of ``treatments``: means over them of the means over their
+    seeds, None of no treatment. A new error counts where the last of these tries has one. ``open``
+    chains are left out.
+    """
+
+    variant: str
+    tries: int
+    treatments: int
+    gone: float | None
+    new_error: float | None
+    open: int
+
+
+def shares(chains: Sequence[Chain]) -> list[Share]:
+    """What came of each variant, by the number of tries; where no error was seen there is none."""
+    found = []
+    for variant in VARIANTS:
+        for most in range(1, MOST_TRIES.get(variant, 1) + 1):
+            rows: dict[tuple[str, str], list[tuple[bool, bool]]] = {}
+            came, waiting = outcomes(chains, variant, most)
+            for one in came:
+                rows.setdefault(one.unit, []).append((one.gone, one.new_error))
+            if rows or waiting:
+                means = [np.mean(one, axis=0) for one in rows.values()]
+                gone, new = np.mean(means, axis=0).tolist() if rows else (None, None)
+                found.append(Share(variant, most, len(rows), gone, new, waiting))
+    return found

@@ -1,0 +1,307 @@
+"""Which suggestions are to be flown, and what came of them: by rounds, one flight a mission.
+
+``next_round`` takes in what ``pytpc study suggested`` has flown, works out what each chain of tries
+asks for next, and writes
+
+- ``results/suggestions-wanted.json``: the next flights, at most one for each mission;
+- ``results/suggestion-tries.parquet``: every try of every variant;
+- ``results/suggestions.parquet``: the first tries of ``HEADLINE``, one for each mission, flown or
+  to be flown;
+- ``results/suggestion-chains.json``: how far each chain is.
+
+A chain is one mission and one variant. ``smallest`` is SPEC 8's value; ``lasting`` has what the log
+alone says, again from the log of each flight that did not help; ``with-default`` may take the
+source's default, too (in these robots it is the value before the treatment, so that this flatters),
+and ``with-reference`` a clean run's. They are told the changed parameter and the right types of the
+marks, of all users. ``suspects`` is told the types: it tries the first of a ranking in turn, each
+with what the log alone says. ``ranked`` is told nothing: the first of the ranking beside a clean
+run, by the marks as they were said, with what the log alone says; ``ranked-reference`` is that with
+the clean run's value. What was flown for one chain counts for all that want the same.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+
+from pytpc.base.atomic import write_atomic
+from pytpc.base.checked_json import parse_json
+from pytpc.base.columns import write_table
+from pytpc.base.errors import InputError
+from pytpc_evaluation.study.case import Method
+from pytpc_evaluation.study.data import load_mission
+from pytpc_evaluation.study.dataset import DONE_FILE, STUDY_FILE, load_done
+from pytpc_evaluation.study.plan import Half
+from pytpc_evaluation.study.suggested import (
+    MOST_FAILURES,
+    SUGGESTION_FILE,
+    WANTED_FILE,
+    Failed,
+    load_failed,
+)
+from pytpc_evaluation.study.suggestion_chains import (
+    CHAINS_FILE,
+    HEADLINE,
+    MOST_TRIES,
+    SUSPECTS,
+    VARIANTS,
+    Chain,
+    Try,
+    load_chains,
+)
+from pytpc_evaluation.study.suggestion_values import next_try
+
+TRIES_FILE = Path("results") / "suggestion-tries.parquet"
+HEADLINE_FILE = Path("results") / "suggestions.parquet"
+
+_TRIES = pa.schema(
+    [
+        ("system", pa.string()),
+        ("treatment", pa.string()),
+        ("type", pa.string()),
+        ("half", pa.string()),
+        ("seed", pa.int64()),
+        ("variant", pa.string()),
+        ("tries", pa.int64()),
+        ("parameter", pa.string()),
+        ("node", pa.string()),
+        ("value", pa.float64()),
+        ("old", pa.float64()),
+        ("basis", pa.string()),
+        ("gone", pa.bool_()),
+        ("new_error", pa.bool_()),
+        ("reason", pa.string()),
+        ("failed", pa.bool_()),
+    ]
+)
+
+
+def next_round(
+    out: Path,
+    halves: Sequence[Half] = ("tuning",),
+    method: Method | None = None,
+    variants: Sequence[str] = tuple(VARIANTS),
+    on_progress: Callable[[int, int], None] | None = None,
+    *,
+    again: bool = False,
+) -> list[Chain]:
+    """Take in what was flown, and write what is to be flown next.
+
+    Args:
+        out: the study's folder.
+        halves: the halves whose missions are asked about; chains of others stay as they are.
+        method: for the chains ``suspects``, of which there are none without it.
+        variants: for which there are new chains.
+        on_progress: called with (chains done, chains in all).
+        again: whether the chains of ``variants`` in ``halves`` begin anew, for the ranking or the
+            advice has changed. What was flown for them is not forgotten.
+
+    Returns:
+        All chains, in the order of the missions and variants.
+
+    Raises:
+        InputError: a file of the study is missing or broken.
+        TpcError: a file cannot be written.
+    """
+    before = load_chains(out / CHAINS_FILE)
+    failed = load_failed(out)
+    for chain in before:
+        _take_in(chain, out, failed)
+    kept = [one for one in before if not (again and one.variant in variants and one.half in halves)]
+    chains = _chains(kept, out, halves, method, variants)
+    for number, chain in enumerate(chains, start=1):
+        while not chain.is_over:
+            if not (chain.tries and chain.tries[-1].is_open):
+                chain.tries.append(next_try(chain, out))
+            elif not _is_known(chain, [*chains, *before]):
+                break
+        if on_progress is not None:
+            on_progress(number, len(chains))
+    _save(chains, out)
+    return chains
+
+
+def _is_known(chain: Chain, chains: Sequence[Chain]) -> bool:
+    """Whether the open try of a chain was flown for another one; what came of it is taken then.
+
+    Not so where the next value comes from the log of that flight, which may not be there any more.
+    """
+    last = chain.tries[-1]
+    goes_on = chain.variant != SUSPECTS and len(chain.tries) < MOST_TRIES.get(chain.variant, 1)
+    for other in chains:
+        if (other.mission, other.digest) != (chain.mission, chain.digest):
+            continue
+        for one in other.tries:
+            if one.is_open or one.value is None or not one.is_same(*_setting(last)):
+                continue
+            if not (goes_on and one.gone is False and not one.failed):
+                chain.tries[-1] = _came(last, one)
+                return True
+    return False
+
+
+def _setting(one: Try) -> tuple[str, str | None, float | None]:
+    return (one.parameter, one.node, one.value)
+
+
+def _came(one: Try, flown: Try) -> Try:
+    """A try with what came of another one of the same value."""
+    return replace(
+        one,
+        gone=flown.gone,
+        new_error=flown.new_error,
+        reason=flown.reason,
+        failed=flown.failed,
+    )
+
+
+def _chains(
+    before: Sequence[Chain],
+    out: Path,
+    halves: Sequence[Half],
+    method: Method | None,
+    variants: Sequence[str],
+) -> list[Chain]:
+    """Those of before, and new ones of ``variants`` for what was flown or marked since."""
+    known = {(one.mission, one.variant): one for one in before}
+    for row in _missions(out):
+        if row["half"] not in halves:
+            continue
+        done = load_done(out / "missions" / _name(row))
+        digest = "" if done is None else done.digest
+        known = {
+            place: one
+            for place, one in known.items()
+            if one.digest == digest or one.mission != _name(row)
+        }
+        for variant in variants:
+            chain = Chain(
+                row["system"], row["treatment"], row["type"], row["half"],
+                int(row["seed"]), variant, float(row["old"]), float(row["new"]), digest=digest,
+            )  # fmt: skip
+            place = (chain.mission, variant)
+            if place in known or (variant == SUSPECTS and method is None):
+                continue
+            if method is not None and variant == SUSPECTS:
+                mission = load_mission(out, out / "missions" / chain.mission, row["half"])
+                chain.order = method(mission.case("typed")).order[: MOST_TRIES[SUSPECTS]]
+            known[place] = chain
+    order = list(VARIANTS)
+    return sorted(known.values(), key=lambda one: (one.mission, order.index(one.variant)))
+
+
+def _missions(out: Path) -> Iterator[Mapping[str, Any]]:
+    """The treated missions in study.json that were flown."""
+    document = parse_json(out / STUDY_FILE)
+    try:
+        rows = document["missions"] if isinstance(document, dict) else None
+        if not isinstance(rows, list):
+            raise TypeError("it does not say which missions there are")
+        for row in rows:
+            flown = out / "missions" / _name(row) / DONE_FILE
+            if row["type"] in {"type1", "type2"} and flown.is_file():
+                yield row
+    except (KeyError, TypeError) as error:
+        raise InputError(f"not about a study: {error}", out / STUDY_FILE) from error
+
+
+def _name(row: Mapping[str, Any]) -> str:
+    """As `Chain.mission`."""
+    return f"{row['system']}/{row['treatment']}/seed-{row['seed']}"
+
+
+def _take_in(chain: Chain, out: Path, failed: Sequence[Failed]) -> None:
+    """What came of the last try, where its flight stands in the folder, or failed too often."""
+    if not chain.tries or not chain.tries[-1].is_open:
+        return
+    last = chain.tries[-1]
+    flown = _flown(out / "suggested" / chain.mission, chain.digest)
+    if flown is not None and last.is_same(*_setting(flown)):
+        chain.tries[-1] = _came(last, flown)
+        return
+    for one in failed:
+        place = (one.mission, one.digest)
+        if place == (chain.mission, chain.digest) and last.is_same(
+            one.parameter, one.node, one.value
+        ):
+            if one.times >= MOST_FAILURES:
+                reason = f"the flight failed {one.times} times: {one.failure}"
+                chain.tries[-1] = replace(last, gone=False, reason=reason, failed=True)
+            return
+
+
+def _flown(folder: Path, digest: str) -> Try | None:
+    """The suggestion that was flown last for a mission; None where there is none of this digest.
+
+    Raises:
+        InputError: what came of it cannot be read.
+    """
+    path = folder / SUGGESTION_FILE
+    if not (folder / DONE_FILE).is_file() or not path.is_file():
+        return None
+    flown = parse_json(path)
+    try:
+        if not isinstance(flown, dict):
+            raise TypeError("an object is expected")
+        if flown.get("mission", digest) != digest:
+            return None
+        return Try(
+            flown["parameter"], flown.get("node"), flown["value"], None,
+            flown["gone"], bool(flown["new"]), "; ".join(flown["errors"]),
+        )  # fmt: skip
+    except (KeyError, TypeError) as error:
+        raise InputError(f"not what came of a suggestion: {error}", path) from error
+
+
+def _save(chains: Sequence[Chain], out: Path) -> None:
+    rows = [
+        row for chain in chains for row in _rows(chain, [t for t in chain.tries if not t.is_open])
+    ]
+    write_table(pa.Table.from_pylist(rows, schema=_TRIES), out / TRIES_FILE)
+    first = [
+        {**row, "new": row["new_error"], "failure": row["reason"] if row["failed"] else ""}
+        for chain in chains
+        for row in _rows(chain, chain.tries[:1])
+        if chain.variant == HEADLINE and row["value"] is not None
+    ]
+    schema = _TRIES.append(pa.field("new", pa.bool_())).append(pa.field("failure", pa.string()))
+    write_table(pa.Table.from_pylist(first, schema=schema), out / HEADLINE_FILE)
+    _write_json([asdict(chain) for chain in chains], out / CHAINS_FILE)
+    # Last: with it the next flights can begin.
+    _write_json(list(_wanted(chains)), out / WANTED_FILE)
+
+
+def _rows(chain: Chain, tries: Sequence[Try]) -> Iterator[dict[str, object]]:
+    head = asdict(chain)
+    del head["tries"], head["new"], head["order"], head["digest"]
+    for number, one in enumerate(tries, start=1):
+        # Where nothing is suggested the error stays.
+        gone = False if one.value is None else one.gone
+        yield {**head, **asdict(one), "gone": gone, "tries": number}
+
+
+def _wanted(chains: Sequence[Chain]) -> Iterator[dict[str, object]]:
+    """The first open try of each mission."""
+    seen: set[str] = set()
+    for chain in chains:
+        if not chain.tries or not chain.tries[-1].is_open or chain.mission in seen:
+            continue
+        seen.add(chain.mission)
+        last = chain.tries[-1]
+        yield {
+            "system": chain.system,
+            "treatment": chain.treatment,
+            "seed": chain.seed,
+            "parameter": last.parameter,
+            "node": last.node,
+            "value": last.value,
+        }
+
+
+def _write_json(document: object, path: Path) -> None:
+    write_atomic(path, json.dumps(document, indent=1).encode() + b"\n")

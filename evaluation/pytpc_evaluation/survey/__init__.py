@@ -1,0 +1,1 @@
+"""Builds source trees with and without TPC, and tables of that."""

@@ -1,1 +1,0 @@
-"""An observer's keys become marks: on a live graph, beside a replay, on a recording."""
