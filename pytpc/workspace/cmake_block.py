@@ -53,7 +53,7 @@ def patch_text(data: bytes, cmake_file: str) -> bytes:
     parts = _split(data)
     if parts.before:
         raise WorkspaceError(
-            "TPC's block has to come first in the file; move it there, or delete its three lines",
+            "TPC's block must come first in the file; move it there or delete its three lines",
             line=parts.before.count(b"\n") + 1,
         )
     ending = _line_ending(parts.block or parts.after)

@@ -185,7 +185,7 @@ def run_colcon(
     status = run_lines(command, workspace, build_environment(), hear)
     if status != 0 and shutil.disk_usage(bases.root).free < _FULL:
         # No fault of a package, and colcon stumbles over it in many ways.
-        raise RunError("the disk is full; make room and build again", bases.root)
+        raise RunError("the disk is full; free some space and build again", bases.root)
     latest = _latest_log(bases)
     if latest is not None and latest != before:
         _raise_for_failed_package(latest)

@@ -125,7 +125,7 @@ def refuse_cycles(packages: Sequence[Package], workspace: Path) -> None:
     """
     cycle = find_cycle({package.name: package.needs for package in packages})
     if cycle:
-        raise WorkspaceError(f"packages need one another: {' -> '.join(cycle)}", workspace)
+        raise WorkspaceError(f"circular dependency: {' -> '.join(cycle)}", workspace)
 
 
 def find_cycle(needs: Mapping[str, Sequence[str]]) -> list[str]:
@@ -221,7 +221,7 @@ def read_manifest(folder: Path) -> Manifest:
         from catkin_pkg.package import InvalidPackage, parse_package_string  # noqa: PLC0415
     except ImportError as error:
         raise MissingToolError(
-            "catkin_pkg not found; mend it with: apt-get install python3-catkin-pkg"
+            "catkin_pkg is not installed; run: apt-get install python3-catkin-pkg"
         ) from error
     path = folder / MANIFEST
     try:

@@ -158,7 +158,7 @@ def apply_changes(changes: Sequence[Change]) -> None:
             replaced.append(change)
             if change.real.read_bytes() != change.before:
                 replaced.pop()
-                raise WorkspaceError("was changed meanwhile; no file was changed", change.path)
+                raise WorkspaceError("changed meanwhile; no file was written", change.path)
             new.replace(change.real)
     except BaseException as error:
         stuck = [change for change in replaced if not _put_back(change)]
@@ -285,7 +285,7 @@ def main(
     help_text = "any folder" if any_tree else "folder with ROS packages"
     parser.add_argument("workspace", type=Path, metavar="folder", help=help_text)
     parser.add_argument("--restore", action="store_true", help="take the lines out again")
-    parser.add_argument("--dry-run", action="store_true", help="only show the difference")
+    parser.add_argument("--dry-run", action="store_true", help="Show the difference only.")
     if not any_tree:
         parser.add_argument(
             "--package", action="append", metavar="NAME", help="only this one (repeatable)"

@@ -626,5 +626,5 @@ def test_packages_that_need_one_another_are_named_before_anything_is_written(
         add_package(workspace / "src" / name, more=f"<{kind}>{other}</{kind}>")
     with pytest.raises(WorkspaceError) as caught:
         build_workspace(workspace)
-    assert str(caught.value) == f"{workspace}: packages need one another: arm -> face -> arm"
+    assert str(caught.value) == f"{workspace}: circular dependency: arm -> face -> arm"
     assert sorted(path.name for path in workspace.iterdir()) == ["src"]

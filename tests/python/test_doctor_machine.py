@@ -52,7 +52,7 @@ def test_nothing_is_wrong_with_a_sound_machine() -> None:
 
 E, W, N = Severity.ERROR, Severity.WARNING, Severity.NOTE
 CASES = [
-    (replace(SOUND, programs=without("ld.lld-19")), E, "ld.lld-19 is not here", "lld-19"),
+    (replace(SOUND, programs=without("ld.lld-19")), E, "ld.lld-19 is not installed", "lld-19"),
     (
         replace(SOUND, programs=with_version("ld.lld-19", 19, 1, 2)),
         W,

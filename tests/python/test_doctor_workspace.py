@@ -95,7 +95,7 @@ def test_a_circle_is_named(workspace: Path) -> None:
     add_package(workspace / "src/c", cmakelists=LISTS, more="<depend>a</depend>")
     assert only(check(workspace))[:2] == (
         "error",
-        "packages need one another: a -> b -> c -> a",
+        "circular dependency: a -> b -> c -> a",
     )
 
 
@@ -138,10 +138,10 @@ def test_dependencies_that_are_not_here(workspace: Path) -> None:
     assert [(one.severity.value, one.what, one.mend) for one in found] == [
         (
             "error",
-            "geometry_msgs is not here, needed to build user",
+            "geometry_msgs is not installed, needed to build user",
             "apt-get install libgeometry-msgs-dev",
         ),
-        ("warning", "rospy is not here, needed to run user", "apt-get install python3-rospy"),
+        ("warning", "rospy is not installed, needed to run user", "apt-get install python3-rospy"),
         (
             "warning",
             "eigen is neither in the workspace nor installed as a package of that name,"
@@ -183,7 +183,7 @@ def test_blocks(workspace: Path) -> None:
     path.write_bytes(patch_text(LISTS, "/old/tpc.cmake"))
     assert only(check(workspace)) == (
         "warning",
-        "TPC's block names another installation",
+        "TPC's block points to another installation",
         str(path),
         "python -m pytpc.workspace.patch WORKSPACE",
     )
@@ -221,14 +221,14 @@ def test_build_folders_keep_their_compiler(workspace: Path) -> None:
     cache(plain, arm, "/usr/bin/g++")
     assert only(check(workspace))[:3] == (
         "note",
-        "built with /usr/bin/g++, which somebody named: a patched package needs another build"
-        " folder",
+        "was configured with the compiler /usr/bin/g++: a patched package needs another"
+        " build folder",
         str(plain),
     )
     (arm / "CMakeLists.txt").write_bytes(patch_text(LISTS, CMAKE_FILE))
     severity, what, where, mend = only(check(workspace))
     assert (severity, where, mend) == ("warning", str(plain), f"rm -r {plain}")
-    assert "here /usr/bin/g++" in what
+    assert "the compiler /usr/bin/g++" in what
 
 
 def test_the_one_build_folder_of_catkin_make(workspace: Path) -> None:

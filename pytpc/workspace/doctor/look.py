@@ -114,7 +114,7 @@ def _try_build() -> str | None:
         command = [str(prefix() / "bin/tpc-clang++"), source.name, "-o", "trial"]
         ran = _run(command, cwd=name)
         if ran is None:
-            return "the compiler cannot be started, or comes to no end"
+            return "the compiler cannot be started or does not finish"
         if ran.returncode != 0:
             return next((line for line in ran.stderr.splitlines() if line), "it says nothing")
         if not (Path(name) / "tpc/trial.json").is_file():

@@ -83,7 +83,7 @@ def check_machine(machine: Machine) -> list[Finding]:
 def _programs(machine: Machine) -> Iterator[Finding]:
     for name, packages in BUILD_TOOLS.items():
         if name not in machine.programs:
-            yield error(f"{name} is not here", mend=f"apt-get install {packages}")
+            yield error(f"{name} is not installed", mend=f"apt-get install {packages}")
     versions = {
         name: machine.programs[name].version
         for name in RELEASE_TOOLS
@@ -92,7 +92,7 @@ def _programs(machine: Machine) -> Iterator[Finding]:
     if len(set(versions.values())) > 1:
         told = ", ".join(f"{name} {_dotted(version)}" for name, version in versions.items())
         yield warning(
-            f"compiler, linker and archiver are of different releases: {told}",
+            f"compiler, linker and archiver come from different releases: {told}",
             mend="apt-get install --only-upgrade clang-19 lld-19 llvm-19",
         )
     cmake = machine.programs.get("cmake")
@@ -119,12 +119,12 @@ def _python(machine: Machine) -> Iterator[Finding]:
             )
     if machine.modules.get("em", "3").startswith(("4", "5")):
         yield error(
-            f"empy {machine.modules['em']} is not what catkin's generators are written for",
+            f"empy {machine.modules['em']} is too new for catkin's generators",
             mend="/usr/bin/python3 -m pip uninstall empy && apt-get install python3-empy",
         )
     if machine.python is not None and machine.python != Path("/usr/bin/python3"):
         yield note(
-            "another python3 than the system's comes first on PATH; `pytpc build` does not use it,"
+            "the first python3 on PATH is not the system's; `pytpc build` does not use it,"
             " but CMake does",
             machine.python,
             "cmake -DPYTHON_EXECUTABLE=/usr/bin/python3 ...",
@@ -134,7 +134,7 @@ def _python(machine: Machine) -> Iterator[Finding]:
 def _installed(machine: Machine) -> Iterator[Finding]:
     if machine.missing_parts:
         yield error(
-            f"TPC's installed half is not whole: {', '.join(machine.missing_parts)} missing",
+            f"the installed part of TPC is incomplete: {', '.join(machine.missing_parts)} missing",
             machine.prefix,
             "unset TPC_PREFIX" if "TPC_PREFIX" in machine.environment else "make setup",
         )
@@ -180,9 +180,9 @@ def _ros(machine: Machine) -> Iterator[Finding]:
     for folder in dict.fromkeys(told):
         if Path(folder) not in machine.folders:
             yield warning(
-                "a folder that is not there was sourced",
+                "a set-up file of a folder that does not exist was sourced",
                 folder,
-                "start a new shell and source the set-up file of what is there",
+                "start a new shell and source an existing set-up file",
             )
 
 
@@ -191,7 +191,7 @@ def _environment(machine: Machine) -> Iterator[Finding]:
         value = machine.environment.get(name, "")
         if value and not re.search(r"clang(\+\+)?(-19)?$", value):
             yield note(
-                f"{name}={value} is not heeded: TPC's CMake file chooses clang 19",
+                f"{name}={value} is ignored: TPC's CMake file chooses clang 19",
                 name,
                 f"unset {name}",
             )
@@ -199,13 +199,13 @@ def _environment(machine: Machine) -> Iterator[Finding]:
         found = UNSUITED.search(machine.environment.get(name, ""))
         if found is not None:
             yield warning(
-                f"{found[0]} does not go together with TPC: nothing is instrumented",
+                f"{found[0]} cannot be combined with TPC: nothing will be instrumented",
                 name,
                 f"unset {name}",
             )
     if machine.environment.get("TPC_DISABLE", "").upper() not in ("", "0", "OFF", "NO", "FALSE"):
         yield warning(
-            "the compiler wrappers are told to do nothing", "TPC_DISABLE", "unset TPC_DISABLE"
+            "the compiler wrappers are switched off", "TPC_DISABLE", "unset TPC_DISABLE"
         )
 
 
@@ -230,13 +230,13 @@ def _space(machine: Machine) -> Iterator[Finding]:
 def _ccache(machine: Machine) -> Iterator[Finding]:
     if machine.ccache.get("compiler_check") == "none":
         yield warning(
-            "ccache does not look at the compiler, and gives objects of another one",
+            "ccache ignores which compiler runs and may return objects of another one",
             "ccache",
             "ccache --set-config compiler_check=mtime",
         )
     if machine.ccache.get("run_second_cpp") == "false":
         yield warning(
-            "ccache has the preprocessed source compiled, in which clang sees other columns",
+            "ccache compiles preprocessed source, so that columns are reported wrongly",
             "ccache",
             "ccache --set-config run_second_cpp=true",
         )

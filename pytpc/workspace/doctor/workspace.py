@@ -85,10 +85,10 @@ def check_workspace(seen: SeenWorkspace, known: Known) -> list[Finding]:
     ]
     if not seen.is_writable:
         findings.append(
-            error("cannot be written, and a build puts .tpc here", seen.folder, "chmod u+w")
+            error("cannot be written, but a build creates .tpc here", seen.folder, "chmod u+w")
         )
     findings += [
-        warning("a name that is not UTF-8, which some tools cannot show", name, "mv it")
+        warning("a file name that is not UTF-8; some tools cannot show it", name, "mv it")
         for name in seen.odd_names
     ]
     return findings
@@ -141,14 +141,14 @@ def _package(package: SeenPackage, known: Known) -> Iterator[Finding]:
         yield error(
             "does not call project() itself",
             path,
-            "add project(NAME) behind cmake_minimum_required()",
+            "add project(NAME) after cmake_minimum_required()",
         )
     yield from _block(package.lists, path, known.cmake_file)
     if not package.is_writable:
-        yield note("cannot be written: it can be built, but not patched", package.folder)
+        yield note("cannot be written: TPC can build it but not patch it", package.folder)
     for line, flag in unsuited_flags(package.lists):
         yield warning(
-            f"{flag} does not go together with TPC: what it is for is not instrumented",
+            f"{flag} cannot be combined with TPC: targets that use it are not instrumented",
             f"{path}:{line}",
         )
 
@@ -158,7 +158,7 @@ def _block(lists: bytes, path: Path, cmake_file: str) -> Iterator[Finding]:
         plain = restore_text(lists)
         if plain != lists and patch_text(lists, cmake_file) != lists:
             yield warning(
-                "TPC's block names another installation",
+                "TPC's block points to another installation",
                 path,
                 "python -m pytpc.workspace.patch WORKSPACE",
             )
@@ -185,7 +185,7 @@ def _cycles(seen: SeenWorkspace) -> Iterator[Finding]:
     cycle = find_cycle({manifest.name: manifest.needs for manifest in _manifests(seen)})
     if cycle:
         yield error(
-            f"packages need one another: {' -> '.join(cycle)}",
+            f"circular dependency: {' -> '.join(cycle)}",
             seen.folder,
             f"take {cycle[1]} out of the package.xml of {cycle[0]}",
         )
@@ -209,7 +209,7 @@ def _dependencies(seen: SeenWorkspace, known: Known) -> Iterator[Finding]:
         by = f"needed to {'build' if is_built_with else 'run'} {', '.join(packages)}"
         if offered:
             say = error if is_built_with else warning
-            yield say(f"{name} is not here, {by}", mend=f"apt-get install {offered[0]}")
+            yield say(f"{name} is not installed, {by}", mend=f"apt-get install {offered[0]}")
         else:
             yield warning(
                 f"{name} is neither in the workspace nor installed as a package of that name, {by}",
@@ -228,8 +228,8 @@ def _builds(seen: SeenWorkspace, known: Known) -> Iterator[Finding]:
         if build.folder.is_relative_to(known.own_builds):
             if build.toolchain != known.cmake_file:
                 yield error(
-                    "was configured without TPC, or with one that was elsewhere, and CMake keeps"
-                    " the compiler of a build folder",
+                    "was configured without TPC or with another installation of it, and CMake keeps"
+                    " a build folder's compiler",
                     build.folder,
                     f"rm -r {build.folder}",
                 )
@@ -237,8 +237,8 @@ def _builds(seen: SeenWorkspace, known: Known) -> Iterator[Finding]:
             source = build.source.resolve()
             if any(folder == source or folder.is_relative_to(source) for folder in patched):
                 yield warning(
-                    f"CMake keeps the compiler of a build folder, here {build.compiler}, which"
-                    " somebody named, so that the patched package is not instrumented",
+                    f"was configured with the compiler {build.compiler}, which CMake keeps: the"
+                    " patched package is not instrumented",
                     build.folder,
                     f"rm -r {build.folder}",
                 )
@@ -246,7 +246,7 @@ def _builds(seen: SeenWorkspace, known: Known) -> Iterator[Finding]:
                 plain[build.folder.parent].append(build)
     for base, builds in plain.items():
         yield note(
-            f"built with {builds[0].compiler}, which somebody named: a patched package needs"
+            f"was configured with the compiler {builds[0].compiler}: a patched package needs"
             " another build folder",
             builds[0].folder if len(builds) == 1 else base,
         )
