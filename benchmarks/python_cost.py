@@ -25,7 +25,7 @@ from pathlib import Path
 
 from figures import figure
 
-from pytpc.ros.graph import RosGraph
+from pytpc.ros.ros1.graph import RosGraph
 
 TOPIC = "python-cost"
 ROOT = Path(__file__).resolve().parents[1]

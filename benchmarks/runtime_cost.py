@@ -38,7 +38,7 @@ import numpy.typing as npt
 from figures import figure
 
 from pytpc.base.paths import compiler_wrapper
-from pytpc.ros.graph import RosGraph
+from pytpc.ros.ros1.graph import RosGraph
 from pytpc.static.static_info import load_link_unit
 
 SOURCES = Path(__file__).resolve().parent / "runtime"

@@ -26,7 +26,7 @@ from rosbags.rosbag1 import Reader
 
 from pytpc.base.paths import prefix, project_root
 from pytpc.ingest.ros1 import decode_log, decode_string
-from pytpc.ros.graph import GraphProcess, RosGraph
+from pytpc.ros.ros1.graph import GraphProcess, RosGraph
 
 SOURCES = project_root() / "tests" / "ros" / "sinks"
 TOPIC = "runtime-cost"

@@ -23,8 +23,9 @@ from pathlib import Path
 from figures import figure
 
 from pytpc.build.build import build_workspace, workspace_env
-from pytpc.ros.graph import GRAPH_WORD
-from pytpc.ros.run_mission import MissionRun, Progress, run_mission
+from pytpc.ros.mission_run import MissionRun, Progress
+from pytpc.ros.ros1.graph import GRAPH_WORD
+from pytpc.ros.ros1.launch_mission import run_mission
 from pytpc_evaluation.demo.demo_examples import IMAGE_CAPTURE, link_package
 
 TOPIC = "runtime-cost"

@@ -11,7 +11,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Iterator, Sequence
-from typing import Protocol, cast
+from typing import Protocol
 
 import numpy as np
 from rich.text import Text
@@ -24,8 +24,9 @@ from pytpc.present.watch_screen import LAYOUTS, Options, Panel, Status, watch_sc
 from pytpc.recording.marking_session import Change, Session, View
 from pytpc.recording.mission import Recording
 from pytpc.recording.summaries import Summary
+from pytpc.ros.ros1.master import Master, own_host
 from pytpc.ros.ros1.relay import ROSOUT, TOPIC
-from pytpc.ros.ros1.tcpros import RawSubscriber, own_host
+from pytpc.ros.ros1.subscriber import RawSubscriber
 
 _LOOK_S = 1.0
 _POLL_S = 0.2
@@ -123,8 +124,8 @@ class GraphFeed:
         self._thread.join(3.0)
 
     def _listen(self) -> None:
-        name = f"/tpc_watch_{os.getpid()}_{secrets.token_hex(3)}"
-        subscriber = RawSubscriber(self._master, name, own_host(os.environ, self._master), [])
+        master = Master(self._master, f"/tpc_watch_{os.getpid()}_{secrets.token_hex(3)}")
+        subscriber = RawSubscriber(master, own_host(os.environ, self._master), [])
         looks = threading.Thread(target=self._keep_registered, args=(subscriber,), daemon=True)
         looks.start()
         try:
@@ -141,12 +142,9 @@ class GraphFeed:
         """A master that was started anew knows nobody; one that is dead answers late."""
         while True:
             try:
-                state = cast(
-                    list[list[tuple[str, list[str]]]], subscriber.call_master("getSystemState")
-                )
-                known = {topic for topic, nodes in state[1] if subscriber.name in nodes}
+                subscribers = subscriber.master.state().subscribers
                 for topic in (ROSOUT, TOPIC):
-                    if topic not in known:
+                    if subscriber.master.caller not in subscribers.get(topic, ()):
                         subscriber.subscribe(topic)
                 self._connected = True
             except RunError:

@@ -20,9 +20,9 @@ from pytpc.ingest.rosout_line import (
     parse_stamped_other,
 )
 from pytpc.recording.summaries import Summary
-from pytpc.ros.ros1.recorder import BatchCounter, LossCounter
+from pytpc.ros.ros1.losses import BatchCounter, LossCounter
 from pytpc.ros.ros1.relay import ROSOUT, line_of
-from pytpc.ros.ros1.tcpros import Source
+from pytpc.ros.ros1.subscriber import Source
 
 Item = Seen | Summary
 

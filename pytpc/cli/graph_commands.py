@@ -14,11 +14,12 @@ from pytpc.base.errors import RunError
 from pytpc.base.wording import many, plain
 from pytpc.cli.console import console, progress, warn
 from pytpc.python_runtime.config import POLICIES, SINKS
+from pytpc.ros.node_settings import NodeStatus, chosen
 from pytpc.ros.ros1 import relay
-from pytpc.ros.ros1.runtime_settings import Graph, NodeStatus, Value, chosen
+from pytpc.ros.ros1.instrumented_nodes import InstrumentedNodes, Value
+from pytpc.ros.ros1.master import uri_of
 
 _COUNT = click.IntRange(min=0, max=(1 << 31) - 1)
-_MASTER = "http://localhost:11311"
 
 
 @click.command("sink")
@@ -53,8 +54,8 @@ def sink_command(
     settings = {name: value for name, value in options.items() if value is not None}
     if folder is not None:
         settings["folder"] = str(folder)
-    graph = Graph(os.environ.get("ROS_MASTER_URI", _MASTER))
-    named = chosen(graph.nodes(), nodes)
+    graph = InstrumentedNodes(uri_of(os.environ))
+    named = chosen(graph.names(), nodes)
     for node in named if nodes else [None]:
         if clear:
             graph.clear(node)

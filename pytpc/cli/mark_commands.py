@@ -19,10 +19,10 @@ from pytpc.recording.marking_session import Session
 from pytpc.recording.marks import marks_beside
 from pytpc.recording.marks_file import MarksFile
 from pytpc.ros.marking import GraphMarks
+from pytpc.ros.ros1.master import uri_of
 
 _PATH = click.Path(path_type=Path)
 _NAMESPACE = re.compile(r"[A-Za-z]\w*(/[A-Za-z]\w*)*", re.ASCII)
-MASTER = "http://localhost:11311"
 """What ROS takes where ROS_MASTER_URI is not set."""
 
 OBSERVER = click.option(
@@ -43,7 +43,7 @@ def mark_command(*, bag: Path | None, observer: str, output: Path | None) -> Non
     check_observer(observer)
     path = marks_path(bag, observer, output)
     if bag is None:
-        mission: Mission = GraphMarks(os.environ.get("ROS_MASTER_URI") or MASTER, observer)
+        mission: Mission = GraphMarks(uri_of(os.environ), observer)
     else:
         recording = recording_of(bag)
         mission = recorded(recording, bag)

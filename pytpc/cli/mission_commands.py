@@ -18,9 +18,11 @@ from pytpc.diagnosis.ranking.complaints import complaints
 from pytpc.ingest.reading import opened
 from pytpc.python_runtime.config import NAMES
 from pytpc.recording.mission import REPORTS_FOLDER
-from pytpc.ros.attached import master_of, record_graph, stop_on_signals
+from pytpc.ros.mission_run import DEFAULT_TOPICS, MissionRun, Progress
 from pytpc.ros.python_env import mission_env
-from pytpc.ros.run_mission import DEFAULT_TOPICS, MissionRun, Progress, run_mission
+from pytpc.ros.ros1.launch_mission import run_mission
+from pytpc.ros.ros1.master import uri_of
+from pytpc.ros.ros1.record_graph import record_graph, stop_on_signals
 from pytpc.workspace.colcon import Bases
 
 _PATH = click.Path(path_type=Path)
@@ -131,7 +133,7 @@ def _record_graph(
     if launched is not None and not launched.is_file():
         raise InputError("no such launch file", launched)
     stop = stop_on_signals()
-    click.echo(f"recording {master_of(os.environ)}; Ctrl-C ends it", err=True)
+    click.echo(f"recording {uri_of(os.environ)}; Ctrl-C ends it", err=True)
     with mission_progress("recording", "s of it") as advance:
         return record_graph(
             output,

@@ -19,7 +19,7 @@ from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.diagnosis.suggestion.blamed import BlamedAdvice, advise_blamed
 from pytpc.diagnosis.suggestion.declared import Declared
 from pytpc.ingest import Recording
-from pytpc.ros.run_mission import PARAMS_FILE
+from pytpc.ros.mission_run import PARAMS_FILE
 from pytpc.static.parameters import same_parameter
 from pytpc.static.static_info import StaticInfo
 from pytpc.values.changes import Change, changes_between, read_changes

@@ -17,9 +17,9 @@ from pytpc.base.errors import InputError
 from pytpc.base.wording import plain
 from pytpc.build.build import installed, workspace_env
 from pytpc.cli.console import console, progress, warn
-from pytpc.ros.attached import master_of
+from pytpc.ros.live_change import set_live, take_back_live
 from pytpc.ros.ros1.live_values import LiveChange, Robot
-from pytpc.ros.undo import entry_of, set_live, take_back
+from pytpc.ros.ros1.master import uri_of
 from pytpc.values.apply import Change, apply_change, change_as_json, diff_of, shown
 from pytpc.values.journal import Entry, Journal, folder_of
 from pytpc.values.origins import Origin, as_json, to_json
@@ -32,6 +32,7 @@ from pytpc.values.target import (
     plan_yaml,
     read_target,
 )
+from pytpc.values.undo import entry_of, take_back_file
 
 _LONGEST = 60
 _PATH = click.Path(path_type=Path)
@@ -212,7 +213,7 @@ def _write(change: Change, journal: Journal, options: _Options) -> dict[str, obj
 
 
 def _set_live(journal: Journal, parameter: str, value: str, options: _Options) -> dict[str, object]:
-    robot = Robot(master_of(os.environ))
+    robot = Robot(uri_of(os.environ))
     name = _full_name(robot, parameter)
     change = robot.plan(name, value, force=options.force)
     if options.dry_run:
@@ -274,7 +275,11 @@ def _undo(journal: Journal, words: Sequence[str], options: _Options) -> None:
     if len(words) > 1:
         raise click.UsageError("give one FILE or number, or nothing")
     entry = entry_of(journal, words[0] if words else "")
-    change = take_back(entry, journal, dry_run=options.dry_run, force=options.force)
+    change = None
+    if entry.path is not None:
+        change = take_back_file(entry, journal, dry_run=options.dry_run)
+    else:
+        take_back_live(entry, journal, dry_run=options.dry_run, force=options.force)
     if options.as_json:
         answer = {"undone": entry.number, "written": not options.dry_run, **_entry_json(entry)}
         click.echo(json.dumps(answer, indent=1))

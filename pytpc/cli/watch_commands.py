@@ -17,7 +17,6 @@ from pytpc.base.signals import signals_end
 from pytpc.base.wording import plain
 from pytpc.cli.console import warn
 from pytpc.cli.mark_commands import (
-    MASTER,
     OBSERVER,
     check_observer,
     mark_in_terminal,
@@ -44,6 +43,7 @@ from pytpc.present.marking_terminal import Mission
 from pytpc.present.watch_screen import LAYOUTS, Options, Status, table
 from pytpc.recording.marking_session import clock_text
 from pytpc.ros.marking import GraphMarks
+from pytpc.ros.ros1.master import uri_of
 from pytpc.static.static_info import StaticInfo
 
 _ONCE_S = 5.0
@@ -116,7 +116,7 @@ def watch_command(
 def _opened(recording: Path | None, observer: str, fresh: Watching) -> tuple[Mission, Feed]:
     """What is marked and what is watched."""
     if recording is None:
-        master = os.environ.get("ROS_MASTER_URI") or MASTER
+        master = uri_of(os.environ)
         return GraphMarks(master, observer, what="watching"), GraphFeed(master, fresh)
     found = _read(recording, fresh.static_info)
     return recorded(found, recording), RecordedFeed(found, fresh)

@@ -12,8 +12,8 @@ import os
 from collections.abc import Iterable
 from typing import Any, NamedTuple
 
-from pytpc.base.errors import InputError
 from pytpc.python_runtime.entry import program_of, stem_of
+from pytpc.python_runtime.errors import HookError
 
 # What `pytpc build` leaves in a workspace; it has all in it.
 BUILT = os.path.join(".tpc", "static.json")
@@ -132,7 +132,7 @@ def read_table(paths: Iterable[str], script: str | None = None) -> Table:
             those of ``script`` count, where there are any, because they tell who reports.
 
     Raises:
-        InputError: a file cannot be read, or is no static information; a folder has none.
+        HookError: a file cannot be read, or is no static information; a folder has none.
     """
     units = _all_units(paths)
     if script is not None:
@@ -146,7 +146,7 @@ def names_script(paths: Iterable[str], script: str) -> bool:
     Of the script of an entry point those count that are in the module that it runs.
 
     Raises:
-        InputError: as `read_table`.
+        HookError: as `read_table`.
     """
     program, real = program_of(script), os.path.realpath(script)
     units = [unit for unit in _all_units(paths) if unit.files]
@@ -208,7 +208,7 @@ def _of_folder(folder: str) -> list[_Unit]:
             is_any = True
             units.extend(_units(document, path))
     if not is_any:
-        raise InputError("no static information below this folder; run pytpc analyse", folder)
+        raise HookError("no static information below this folder; run pytpc analyse", folder)
     return units
 
 
@@ -217,11 +217,11 @@ def _document(path: str) -> Any:  # noqa: ANN401
         with open(path, "rb") as stream:
             return json.loads(stream.read().decode("utf-8"))
     except OSError as error:
-        raise InputError(f"cannot be read: {error.strerror or error}", path) from error
+        raise HookError(f"cannot be read: {error.strerror or error}", path) from error
     except json.JSONDecodeError as error:
-        raise InputError(f"no JSON: {error.msg}", path, error.lineno) from error
+        raise HookError(f"no JSON: {error.msg}", path, error.lineno) from error
     except ValueError as error:
-        raise InputError(f"no JSON: {error}", path) from error
+        raise HookError(f"no JSON: {error}", path) from error
 
 
 def _of_document(path: str) -> list[_Unit]:
@@ -245,7 +245,7 @@ def _units(document: Any, path: str) -> list[_Unit]:  # noqa: ANN401
             if not _is_compiled(unit):
                 units.append(_Unit(unit["link_unit"], unit.get("package"), script, root, listed))
     except (KeyError, TypeError, AttributeError) as error:
-        raise InputError(f"no static information ({type(error).__name__}: {error})", path) from None
+        raise HookError(f"no static information ({type(error).__name__}: {error})", path) from None
     return units
 
 

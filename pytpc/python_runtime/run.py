@@ -19,7 +19,7 @@ if __name__ == "__main__" and not __package__:
     room = os.path.dirname(os.path.abspath(__file__))
     sys.path[: 0 if is_safe else 1] = [os.path.dirname(os.path.dirname(room))]
 
-from pytpc.base.errors import InputError, TpcError
+from pytpc.python_runtime.errors import HookError
 from pytpc.python_runtime.instrument import Instrument
 from pytpc.python_runtime.listed import BUILT, Table, read_table
 from pytpc.python_runtime.loader import install
@@ -52,7 +52,7 @@ def parsed(words: list[str]) -> Words | None:
     """What the command line says; None where help is asked for.
 
     Raises:
-        InputError: it says nothing that can be done.
+        HookError: it says nothing that can be done.
     """
     static: list[str] = []
     verbose = False
@@ -70,9 +70,9 @@ def parsed(words: list[str]) -> Words | None:
         elif word.startswith("--static="):
             static.append(word.partition("=")[2])
         else:
-            raise InputError(f"{word}: no such option, or its value is missing; see --help")
+            raise HookError(f"{word}: no such option, or its value is missing; see --help")
     if not rest:
-        raise InputError("which script is to be run? see --help")
+        raise HookError("which script is to be run? see --help")
     return Words(static, verbose, rest[0], rest[1:])
 
 
@@ -102,7 +102,7 @@ def prepared(given: Words) -> Instrument:
     """Read the static information of a script and install the hook.
 
     Raises:
-        InputError: a file that was named cannot be read. One that was only found is left, and said.
+        HookError: a file that was named cannot be read. One that was only found is left, and said.
     """
     static = given.static or static_of_environment()
     if static:
@@ -129,7 +129,7 @@ def _found(given: Words) -> tuple[list[str], Table]:
         warn(f"the static information is {path}")
     try:
         return [path], read_table([path], given.script)
-    except InputError as error:
+    except HookError as error:
         warn(f"{error}; nothing is reported")
         return [path], Table([])
 
@@ -148,7 +148,7 @@ def main(words: list[str] | None = None) -> None:
         if given.verbose:
             _tell_at_end(instrument)
         run_script(given.script, given.arguments, instrument)
-    except TpcError as error:
+    except HookError as error:
         sys.stderr.write(f"pytpc: error: {error}\n")
         sys.exit(1)
 

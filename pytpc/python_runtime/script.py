@@ -7,7 +7,7 @@ import os
 import sys
 from types import CodeType, ModuleType
 
-from pytpc.base.errors import InputError
+from pytpc.python_runtime.errors import HookError
 from pytpc.python_runtime.instrument import Instrument
 from pytpc.python_runtime.quiet import foreign_frames
 from pytpc.python_runtime.relay import relayed
@@ -20,13 +20,13 @@ def run_script(path: str, arguments: list[str], instrument: Instrument) -> None:
     raises goes on with a traceback that begins in the script.
 
     Raises:
-        InputError: there is no such file.
+        HookError: there is no such file.
     """
     try:
         with open(path, "rb") as stream:
             data = stream.read()
     except OSError as error:
-        raise InputError(f"cannot be run: {error.strerror or error}", path) from error
+        raise HookError(f"cannot be run: {error.strerror or error}", path) from error
     sys.argv[:] = [path, *arguments]
     if sys.version_info >= (3, 9):
         path = os.path.abspath(path)

@@ -1,17 +1,12 @@
-"""Marking on a live graph, or on a bag that is replayed into one: its time, and the messages."""
+"""Marking on a live graph, or on a bag that is replayed into one."""
 
 from __future__ import annotations
 
-import os
-import secrets
-import threading
 import time
 from collections import deque
 from typing import NamedTuple
 
-from pytpc.base.errors import RunError
 from pytpc.base.wording import many
-from pytpc.ingest.ros1 import decode_time
 from pytpc.recording.marking_session import Change, View
 from pytpc.recording.marks import (
     MARK_TYPES,
@@ -22,18 +17,8 @@ from pytpc.recording.marks import (
     topic_for,
     topic_of_observer,
 )
-from pytpc.ros.ros1.publisher import (
-    STRING,
-    TIME,
-    MessageType,
-    RawPublisher,
-    encode_string,
-    encode_time,
-)
-from pytpc.ros.ros1.tcpros import RawSubscriber, own_host
+from pytpc.ros.ros1.mark_publisher import MarkPublisher
 
-_CLOCK = "/clock"
-_LOOK_S = 1.0
 # A mark that nobody heard is sent to who connects within this time: a recorder that is just
 # starting, a master that is being restarted. Later ones may be recording another mission.
 _HELD_S = 60.0
@@ -43,7 +28,7 @@ class _Held(NamedTuple):
     """A message that nobody has heard, and until when (steady seconds) it is kept."""
 
     topic: str
-    message: bytes
+    content: int | str
     until: float
 
 
@@ -61,33 +46,18 @@ class GraphMarks:
         self._what = what
         self._master = master
         self._observer = observer
-        self._name = f"/tpc_mark_{os.getpid()}_{secrets.token_hex(3)}"
-        topics: dict[str, MessageType] = {
-            topic_for(Mark(0, kind, observer)): TIME for kind in (*MARK_TYPES, None)
-        }
-        topics[topic_of_observer(observer, UNDO_TOPIC)] = TIME
-        topics[topic_of_observer(observer, NOTE_TOPIC)] = STRING
-        self._publisher = RawPublisher(master, self._name, topics)
+        times = [topic_for(Mark(0, kind, observer)) for kind in (*MARK_TYPES, None)]
+        times.append(topic_of_observer(observer, UNDO_TOPIC))
+        self._publisher = MarkPublisher(master, times, [topic_of_observer(observer, NOTE_TOPIC)])
         self._held: deque[_Held] = deque()
-        self._fault = f"waiting for the ROS master at {master}"
-        self._simulated = False
-        self._clock_ns: int | None = None
-        self._clock: _Clock | None = None
         self._start_ns: int | None = None
-        self._ended = threading.Event()
-        self._looked = threading.Event()
-        self._thread = threading.Thread(target=self._watch, daemon=True)
-        self._thread.start()
-        self._looked.wait(3.0)
 
     def now_ns(self) -> int | None:
         """The graph's time: that of /clock where anybody publishes it, else the wall's.
 
         None where the graph is on simulated time and nothing was heard of it.
         """
-        if self._clock_ns is None and not self._simulated:
-            return time.time_ns()
-        return self._clock_ns
+        return self._publisher.now_ns()
 
     def press(self, key: str) -> bool:
         """No key is for the graph."""
@@ -104,92 +74,35 @@ class GraphMarks:
         heard = f"{many(len(listeners), 'node')} listening" if listeners else "nobody listens"
         if self._held:
             heard += f", {many(len(self._held), 'message')} kept for who comes"
-        clock = "simulated time" if self._clock_ns is not None else "wall time"
+        clock = "simulated time" if self._publisher.has_clock else "wall time"
         clock = "no /clock yet" if now_ns is None else clock
-        status = f"{self._fault or 'connected'}; {heard}; {clock}"
+        status = f"{self._publisher.fault or 'connected'}; {heard}; {clock}"
         return View(f"{self._what}{who} on {self._master}", (status,), start_ns, now_ns)
 
     def send(self, change: Change) -> str:
         """Tell the graph what happened to the marks."""
         before, after = change
         if after is None and before is not None:
-            self._say(UNDO_TOPIC, encode_time(before.time_ns))
+            self._publish(topic_of_observer(self._observer, UNDO_TOPIC), before.time_ns)
         elif after is not None and before is not None:
-            self._say(NOTE_TOPIC, encode_string(note_text(after.time_ns, after.note)))
+            topic = topic_of_observer(self._observer, NOTE_TOPIC)
+            self._publish(topic, note_text(after.time_ns, after.note))
         elif after is not None:
-            self._publish(topic_for(after), encode_time(after.time_ns))
+            self._publish(topic_for(after), after.time_ns)
         return ""
 
     def tick(self) -> None:
         """Send what nobody heard to who has come since, in its order."""
         waiting, self._held = self._held, deque()
         for held in waiting:
-            sent = self._publisher.publish(held.topic, held.message)
+            sent = self._publisher.publish(held.topic, held.content)
             if sent == 0 and time.monotonic() < held.until:
                 self._held.append(held)
 
     def close(self) -> None:
         """Leave the graph."""
-        self._ended.set()
-        self._thread.join(3.0)
-        if self._clock is not None:
-            self._clock.close()
         self._publisher.close()
 
-    def _say(self, last: str, message: bytes) -> None:
-        self._publish(topic_of_observer(self._observer, last), message)
-
-    def _publish(self, topic: str, message: bytes) -> None:
-        if self._publisher.publish(topic, message) == 0:
-            self._held.append(_Held(topic, message, time.monotonic() + _HELD_S))
-
-    def _watch(self) -> None:
-        """See every second that the master knows us; where it is a new one, register again."""
-        while not self._ended.is_set():
-            try:
-                if not self._publisher.is_registered():
-                    self._join()
-                self._fault = ""
-            except RunError:
-                if not self._fault:
-                    self._fault = "the ROS master is gone: marks are kept, and sent to who is left"
-            self._looked.set()
-            self._ended.wait(_LOOK_S)
-
-    def _join(self) -> None:
-        self._publisher.register()
-        asked = self._publisher.call_master("hasParam", "/use_sim_time")
-        self._simulated = bool(
-            asked and self._publisher.call_master("getParam", "/use_sim_time") is True
-        )
-        if self._clock is not None:
-            self._clock.close()
-        self._clock = _Clock(self, self._master, f"{self._name}_clock")
-
-    def on_clock(self, message: bytes) -> None:
-        """A message of /clock has come."""
-        try:
-            self._clock_ns = decode_time(message)
-        except ValueError as error:
-            self._fault = f"{_CLOCK}: {error}"
-
-
-class _Clock:
-    """Listens to /clock in a thread of its own."""
-
-    def __init__(self, graph: GraphMarks, master: str, name: str) -> None:
-        self._graph = graph
-        self._ended = threading.Event()
-        self._subscriber = RawSubscriber(master, name, own_host(os.environ, master), [_CLOCK])
-        self._thread = threading.Thread(target=self._listen, daemon=True)
-        self._thread.start()
-
-    def close(self) -> None:
-        self._ended.set()
-        self._thread.join()
-        self._subscriber.close()
-
-    def _listen(self) -> None:
-        while not self._ended.is_set():
-            for _, message in self._subscriber.poll(0.2):
-                self._graph.on_clock(message)
+    def _publish(self, topic: str, content: int | str) -> None:
+        if self._publisher.publish(topic, content) == 0:
+            self._held.append(_Held(topic, content, time.monotonic() + _HELD_S))

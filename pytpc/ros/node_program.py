@@ -8,9 +8,10 @@ import shutil
 from collections.abc import Sequence
 from pathlib import Path
 
+from pytpc import python_runtime
 from pytpc.base.errors import InputError
-from pytpc.python_runtime import run
 
+_RUN = Path(python_runtime.__file__).resolve().parent / "run.py"
 _LONGEST_LINE = 512
 
 
@@ -33,7 +34,7 @@ def command_of(
     options = [word for path in static for word in ("--static", str(path))]
     if verbose:
         options.append("--verbose")
-    return [*words, str(Path(run.__file__)), *options, "--", str(node), *arguments]
+    return [*words, str(_RUN), *options, "--", str(node), *arguments]
 
 
 def interpreter_of(node: Path) -> list[str] | None:

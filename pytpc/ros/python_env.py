@@ -11,6 +11,8 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from pytpc import python_runtime
+from pytpc.base.errors import InputError
+from pytpc.python_runtime.errors import HookError
 from pytpc.python_runtime.listed import read_table
 
 ON_PATH = Path(python_runtime.__file__).resolve().parent / "on_path"
@@ -25,7 +27,10 @@ def has_python(static: Path) -> bool:
     Raises:
         InputError: it cannot be read, or is none.
     """
-    return len(read_table([str(static)])) > 0
+    try:
+        return len(read_table([str(static)])) > 0
+    except HookError as error:
+        raise InputError(error.message, error.path, error.line) from error
 
 
 def with_python(env: Mapping[str, str], static: Path) -> dict[str, str]:

@@ -10,7 +10,7 @@ import pytest
 
 from pytpc.base.errors import RunError
 from pytpc.recording.treatment import Treatment, TreatmentType
-from pytpc.ros.run_mission import Progress
+from pytpc.ros.mission_run import Progress
 from pytpc_evaluation.demo import demo_examples
 from pytpc_evaluation.demo.demo_examples import Example
 from pytpc_evaluation.study.dataset import Done, load_done, save_done

@@ -12,8 +12,8 @@ import pytest
 from launch_samples import MANIFEST, MISSION_PARAMS, needs_roslaunch
 
 from pytpc.base.errors import RunError, TpcError
+from pytpc.ros.live_change import set_live
 from pytpc.ros.ros1.live_values import LiveChange, Robot
-from pytpc.ros.undo import set_live
 from pytpc.values import apply
 from pytpc.values.apply import Change, apply_change, replace_file
 from pytpc.values.installed import is_installed, of_the_system, source_of

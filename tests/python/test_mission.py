@@ -25,26 +25,22 @@ from pytpc.diagnosis.ranking.ranking import rank_marks
 from pytpc.ingest import Recording
 from pytpc.recording.marks import Mark
 from pytpc.recording.treatment import Treatment, load_treatment
-from pytpc.ros.attached import record_graph
-from pytpc.ros.graph import GraphProcess, RosGraph
-from pytpc.ros.ros1.recorder import (
-    BagFile,
-    BatchCounter,
-    Discovery,
-    LossCounter,
-    Recorder,
-    Status,
+from pytpc.ros.mission_run import (
+    MissionRun,
+    RecorderStatus,
+    clear_earlier,
+    read_status,
+    save_run,
     save_status,
 )
-from pytpc.ros.ros1.tcpros import Source
-from pytpc.ros.run_mission import (
-    MissionRun,
-    clear_earlier,
-    launch_command,
-    read_status,
-    run_mission,
-    save_run,
-)
+from pytpc.ros.ros1.bag_file import BagFile
+from pytpc.ros.ros1.graph import GraphProcess, RosGraph
+from pytpc.ros.ros1.launch_mission import launch_command, run_mission
+from pytpc.ros.ros1.losses import BatchCounter, LossCounter
+from pytpc.ros.ros1.master import Master
+from pytpc.ros.ros1.record_graph import record_graph
+from pytpc.ros.ros1.recorder import Discovery, Recorder
+from pytpc.ros.ros1.subscriber import Source
 from pytpc_evaluation.demo.demo import TreatedMission, failures, result_table
 from pytpc_evaluation.demo.demo_examples import IMAGE_CAPTURE, WATER_SAMPLER, Example
 
@@ -165,16 +161,16 @@ def test_batches_that_are_missing_are_counted():
         counter.see("/b", struct.pack("<I", 7) + b"x")
 
 
-class Master:
-    """A subscriber that only answers for the master; ``state`` is what getSystemState says."""
-
-    name = "/tpc"
+class Subscriber:
+    """Only notes; ``state`` is what its master answers to getSystemState."""
 
     def __init__(self, state: object) -> None:
         self.state = state
         self.subscribed: list[str] = []
+        self.master = Master("http://127.0.0.1:9", "/tpc")
+        self.master.call = self._call
 
-    def call_master(self, method: str) -> object:
+    def _call(self, method: str) -> object:
         assert method == "getSystemState"
         if self.state is None:
             raise RunError("no master")
@@ -186,13 +182,13 @@ class Master:
 
 def test_topics_of_observers_are_found(tmp_path):
     publishers = [["/m1/mark_action", ["/x"]], ["/m1/mark_note", ["/x"]], ["/chat", ["/x"]]]
-    master = Master([publishers, [["/rosout", ["/other", "/tpc"]]], []])
+    subscriber = Subscriber([publishers, [["/rosout", ["/other", "/tpc"]]], []])
     bag = BagFile(tmp_path / "a.bag")
     recorder = Recorder(bag, ["/rosout"], None, sim_time=False)
-    discovery = Discovery(master, recorder, ["/rosout"])
+    discovery = Discovery(subscriber, recorder, ["/rosout"])
     discovery.look()
     # Found, and, as this master does not list them yet, once more.
-    assert set(master.subscribed) == {"/m1/mark_action", "/m1/mark_note"}
+    assert set(subscriber.subscribed) == {"/m1/mark_action", "/m1/mark_note"}
     recorder.take(replace(CHAT, topic="/m1/mark_note"), b"\0\0\0\0")
     recorder.take(CHAT, b"\0\0\0\0")
     assert recorder.status().messages == {"/m1/mark_note": 1}
@@ -201,11 +197,11 @@ def test_topics_of_observers_are_found(tmp_path):
 
 @pytest.mark.parametrize("state", [None, [], "nonsense", [[], [["/rosout", ["/other"]]], []]])
 def test_a_master_that_is_gone_or_new(tmp_path, state):
-    master = Master(state)
+    subscriber = Subscriber(state)
     bag = BagFile(tmp_path / "a.bag")
-    Discovery(master, Recorder(bag, [], None, sim_time=False), ["/rosout"]).look()
+    Discovery(subscriber, Recorder(bag, [], None, sim_time=False), ["/rosout"]).look()
     # One that does not know this node any more is told again; one that is silent is waited for.
-    assert master.subscribed == ([] if state is None else ["/rosout"])
+    assert subscriber.subscribed == ([] if state is None else ["/rosout"])
     bag.close()
 
 
@@ -255,7 +251,7 @@ def test_recorder_stamps_with_the_clock_and_keeps_the_account(tmp_path):
     bag.close()
     # /clock was not asked for, so it is not in the bag. Of two log messages one is a report, and
     # 2 and 3 are missing between them.
-    assert recorder.status(closed=True) == Status(
+    assert recorder.status(closed=True) == RecorderStatus(
         ready=True,
         done_ns=4_000_000_000,
         closed=True,
@@ -337,7 +333,9 @@ def test_a_recording_that_was_cut_off_can_be_reindexed(tmp_path):
 def test_status_survives_the_way_through_its_file(tmp_path):
     path = tmp_path / "status.json"
     assert read_status(path) is None
-    status = Status(ready=True, done_ns=4, now_ns=5, messages={"/rosout": 3}, lost={"/a": 1})
+    status = RecorderStatus(
+        ready=True, done_ns=4, now_ns=5, messages={"/rosout": 3}, lost={"/a": 1}
+    )
     save_status(status, path)
     assert read_status(path) == status
 

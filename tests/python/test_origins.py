@@ -12,7 +12,8 @@ from launch_samples import environment, make_package, needs_roslaunch
 
 from pytpc.base.errors import InputError
 from pytpc.cli.main import main
-from pytpc.ros import attached
+from pytpc.ros.ros1 import record_graph, recorder
+from pytpc.ros.ros1.master import Master
 from pytpc.values import recording
 from pytpc.values.origins import (
     ORIGINS_FILE,
@@ -299,14 +300,13 @@ def test_recording_goes_on_while_the_launch_file_is_read(tmp_path, monkeypatch):
     def dump(_env: object, path: Path) -> None:
         path.write_text("a: 1\n")
 
-    monkeypatch.setattr(attached, "RawSubscriber", Subscriber)
-    monkeypatch.setattr(attached, "Discovery", Nothing)
-    monkeypatch.setattr(attached, "graph_has_sim_time", lambda _: False)
-    monkeypatch.setattr(attached, "drain", lambda *_: None)
-    monkeypatch.setattr(attached, "try_trace", slow)
-    monkeypatch.setattr(attached, "dump_params", dump)
+    monkeypatch.setattr(recorder, "RawSubscriber", Subscriber)
+    monkeypatch.setattr(recorder, "Discovery", Nothing)
+    monkeypatch.setattr(Master, "has_sim_time", lambda _: False)
+    monkeypatch.setattr(record_graph, "try_trace", slow)
+    monkeypatch.setattr(record_graph, "dump_params", dump)
     env = {"ROS_MASTER_URI": "http://localhost:1"}
     launch = tmp_path / "a.launch"
-    attached.record_graph(tmp_path / "out", stop=stop, env=env, launch=launch, timeout_s=8.0)
+    record_graph.record_graph(tmp_path / "out", stop=stop, env=env, launch=launch, timeout_s=8.0)
     document = json.loads((tmp_path / "out" / ORIGINS_FILE).read_text())
     assert document["reason"] == "read meanwhile"

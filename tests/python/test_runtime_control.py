@@ -11,8 +11,9 @@ from xmlrpc.server import SimpleXMLRPCRequestHandler, SimpleXMLRPCServer
 import pytest
 
 from pytpc.base.errors import RunError
-from pytpc.ros.ros1.runtime_settings import Graph, chosen, values_of
-from pytpc.ros.ros1.tcpros import encode_header
+from pytpc.ros.node_settings import chosen, values_of
+from pytpc.ros.ros1.connection import encode_header
+from pytpc.ros.ros1.instrumented_nodes import InstrumentedNodes
 
 HOST = "127.0.0.1"
 
@@ -94,11 +95,11 @@ def trigger(success: bool, message: str) -> bytes:
 def test_nodes_are_those_with_the_service(master):
     for name in ("/b/tpc/reload", "/a/tpc/reload", "/a/get_loggers", "/ns/c/tpc/reload"):
         master.services[name] = "rosrpc://h:1"
-    assert Graph(master.uri).nodes() == ["/a", "/b", "/ns/c"]
+    assert InstrumentedNodes(master.uri).names() == ["/a", "/b", "/ns/c"]
 
 
 def test_parameters_are_set_and_cleared_of_one_node_or_of_all(master):
-    graph = Graph(master.uri)
+    graph = InstrumentedNodes(master.uri)
     graph.set("/a", {"sink": "file", "site_cap": 5})
     graph.set(None, {"period": 0.5})
     assert master.params == {"/a/tpc/sink": "file", "/a/tpc/site_cap": 5, "/tpc/period": 0.5}
@@ -108,7 +109,7 @@ def test_parameters_are_set_and_cleared_of_one_node_or_of_all(master):
 
 def test_answer_of_a_node_is_taken_apart(master, serve):
     master.services["/a/tpc/reload"] = serve(trigger(True, "sink=file file=/a b/c.tpc dropped=0"))
-    status = Graph(master.uri).reload("/a")
+    status = InstrumentedNodes(master.uri).reload("/a")
     assert status.success and status.message == "sink=file file=/a b/c.tpc dropped=0"
     assert status.values == {"sink": "file", "file": "/a b/c.tpc", "dropped": "0"}
 
@@ -116,7 +117,7 @@ def test_answer_of_a_node_is_taken_apart(master, serve):
 def test_complaint_of_a_node_is_kept(master, serve):
     said = "the parameter /a/tpc/sink is left out: is none of rosout; sink=off"
     master.services["/a/tpc/reload"] = serve(trigger(False, said))
-    status = Graph(master.uri).reload("/a")
+    status = InstrumentedNodes(master.uri).reload("/a")
     assert (status.success, status.message) == (False, said)
     assert values_of(said)["sink"] == "off"
 
@@ -135,7 +136,7 @@ def test_complaint_of_a_node_is_kept(master, serve):
 )
 def test_node_that_answers_nonsense_is_one_that_does_not_answer(master, serve, answer):
     master.services["/a/tpc/reload"] = serve(answer)
-    status = Graph(master.uri).reload("/a")
+    status = InstrumentedNodes(master.uri).reload("/a")
     assert not status.success and status.message.startswith("does not answer: ")
 
 
@@ -143,15 +144,17 @@ def test_node_that_is_gone_does_not_answer(master):
     with socket.create_server((HOST, 0)) as gone:
         port = gone.getsockname()[1]
     master.services["/a/tpc/reload"] = f"rosrpc://{HOST}:{port}"
-    assert Graph(master.uri).reload("/a").message == "does not answer: Connection refused"
-    assert Graph(master.uri).reload("/b").message.startswith("does not answer: ")
+    assert (
+        InstrumentedNodes(master.uri).reload("/a").message == "does not answer: Connection refused"
+    )
+    assert InstrumentedNodes(master.uri).reload("/b").message.startswith("does not answer: ")
 
 
 def test_master_that_is_gone_is_one_line():
     with socket.create_server((HOST, 0)) as gone:
         port = gone.getsockname()[1]
     with pytest.raises(RunError, match=r"does not answer \(getSystemState: Connection refused\)"):
-        Graph(f"http://{HOST}:{port}").nodes()
+        InstrumentedNodes(f"http://{HOST}:{port}").names()
 
 
 def test_named_nodes_have_to_run():

@@ -15,7 +15,7 @@ from study_flights import robot
 from pytpc.base.errors import RunError
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording, load_recording
-from pytpc.ros.run_mission import MissionRun
+from pytpc.ros.mission_run import MissionRun
 from pytpc_evaluation.demo import demo_examples
 from pytpc_evaluation.study import digest, fly, people
 from pytpc_evaluation.study.dataset import Cause, load_done

@@ -17,7 +17,7 @@ from mission_samples import comparison, static_info
 from study_flights import FakeFlier, made, robot
 
 from pytpc.cli.main import main
-from pytpc.ros.run_mission import Progress
+from pytpc.ros.mission_run import Progress
 from pytpc.workspace.colcon import BuildError
 from pytpc_evaluation.commands import study_commands
 from pytpc_evaluation.commands.study_progress import StudyProgress, result_line

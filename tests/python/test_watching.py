@@ -19,7 +19,7 @@ from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
 from pytpc.recording.summaries import Summary
 from pytpc.ros.ros1.publisher import encode_string
-from pytpc.ros.ros1.tcpros import Source
+from pytpc.ros.ros1.subscriber import Source
 
 S = 10**9
 STATIC = static_info(comparison(0, "~speed"), comparison(1, "~limit"), comparison(2, "~gain"))

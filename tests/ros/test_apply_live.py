@@ -17,9 +17,9 @@ from click.testing import CliRunner, Result
 
 from pytpc.base.errors import MissingToolError
 from pytpc.cli.main import main
-from pytpc.ros.attached import record_graph
-from pytpc.ros.graph import RosGraph
+from pytpc.ros.ros1.graph import RosGraph
 from pytpc.ros.ros1.live_values import Robot
+from pytpc.ros.ros1.record_graph import record_graph
 from pytpc.values.origins import read_origins
 
 # What dynamic_reconfigure's generator makes of four lines gen.add(...).

@@ -20,8 +20,9 @@ from pytpc.base.paths import cmake_file, log_library, plugin
 from pytpc.build.build import BuildResult, workspace_env
 from pytpc.diagnosis.ranking.ranking import unknown_keys
 from pytpc.ingest import read_bag
-from pytpc.ros.graph import GRAPH_WORD, RosGraph
-from pytpc.ros.run_mission import Progress, run_mission
+from pytpc.ros.mission_run import Progress
+from pytpc.ros.ros1.graph import GRAPH_WORD, RosGraph
+from pytpc.ros.ros1.launch_mission import run_mission
 from pytpc_evaluation.demo.demo import FIRST, TreatedMission, failures, run_treatment
 from pytpc_evaluation.demo.demo_examples import IMAGE_CAPTURE
 

@@ -10,7 +10,8 @@ import pytest
 
 from pytpc.ingest import read
 from pytpc.recording.marks import Mark, read_marks
-from pytpc.ros.graph import GraphProcess, RosGraph
+from pytpc.ros.ros1.graph import GraphProcess, RosGraph
+from pytpc.ros.ros1.master import Master
 from pytpc.ros.ros1.publisher import MessageType, RawPublisher, encode_time
 from terminals import Terminal, pytpc
 
@@ -90,7 +91,7 @@ def test_keys_of_two_observers_are_marks_in_the_bag(graph: RosGraph, tmp_path: P
 def test_the_time_is_that_of_clock(graph: RosGraph, tmp_path: Path, said_so: bool):
     if said_so:
         graph.call("setParam", "/use_sim_time", True)
-    clock = RawPublisher(graph.uri, "/player", {"/clock": CLOCK})
+    clock = RawPublisher(Master(graph.uri, "/player"), {"/clock": CLOCK})
     try:
         with mark(graph, tmp_path, "ana") as terminal:
             terminal.wait_for("no /clock yet" if said_so else "wall time")

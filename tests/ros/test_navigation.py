@@ -14,7 +14,7 @@ from flown import Fly, expected, flights, found, need_cpp_half
 from rich.console import Console
 
 from pytpc.diagnosis.ranking.ranking import unknown_keys
-from pytpc.ros.graph import RosGraph
+from pytpc.ros.ros1.graph import RosGraph
 from pytpc_evaluation.demo.demo import gone_wrong
 from pytpc_evaluation.demo.demo_examples import NAVIGATION
 from pytpc_evaluation.demo.demo_show import Built, build

@@ -16,7 +16,7 @@ from click.testing import CliRunner
 
 from pytpc.cli.main import main
 from pytpc.ingest import read
-from pytpc.ros.graph import RosGraph
+from pytpc.ros.ros1.graph import RosGraph
 
 PYTHON = "/usr/bin/python3"
 RUN = str(Path(__file__).parents[2] / "pytpc/python_runtime/run.py")

@@ -13,7 +13,7 @@ import pytest
 
 from pytpc.base.errors import MissingToolError
 from pytpc.ingest import Dropped, load_recording
-from pytpc.ros.graph import RosGraph
+from pytpc.ros.ros1.graph import RosGraph
 
 ROOT = Path(__file__).parents[2]
 KEY = "0a1b2c3d-0000-5000-8000-00000000000f"

@@ -26,9 +26,10 @@ from pytpc.base.paths import log_library, prefix, project_root
 from pytpc.cli.main import main
 from pytpc.ingest import read_bag
 from pytpc.ingest.ros1 import decode_log, decode_string
-from pytpc.ros.graph import GraphProcess, RosGraph
-from pytpc.ros.ros1.runtime_settings import Graph
-from pytpc.ros.ros1.tcpros import RawSubscriber
+from pytpc.ros.ros1.graph import GraphProcess, RosGraph
+from pytpc.ros.ros1.instrumented_nodes import InstrumentedNodes
+from pytpc.ros.ros1.master import Master
+from pytpc.ros.ros1.subscriber import RawSubscriber
 
 SOURCES = Path(__file__).parent / "sinks"
 TOPIC = "/threshold_information"
@@ -103,7 +104,7 @@ class Reader:
 
 @contextlib.contextmanager
 def subscribed(graph: RosGraph, topic: str = TOPIC) -> Iterator[RawSubscriber]:
-    subscriber = RawSubscriber(graph.uri, "/reader", "127.0.0.1", [topic])
+    subscriber = RawSubscriber(Master(graph.uri, "/reader"), "127.0.0.1", [topic])
     try:
         yield subscriber
     finally:
@@ -195,8 +196,9 @@ def test_what_nobody_listens_to_is_kept_up_to_a_bound_and_the_rest_is_counted(gr
 
 def test_slow_killed_and_new_subscribers_do_not_hold_a_node_up(graph, nodes):
     script = (
-        "import sys\nfrom pytpc.ros.ros1.tcpros import RawSubscriber\n"
-        "s = RawSubscriber(*sys.argv[1:], '127.0.0.1', ['/threshold_information'])\n"
+        "import sys\nfrom pytpc.ros.ros1.master import Master\n"
+        "from pytpc.ros.ros1.subscriber import RawSubscriber\n"
+        "s = RawSubscriber(Master(*sys.argv[1:]), '127.0.0.1', ['/threshold_information'])\n"
         "while True:\n"
         "    for _ in s.poll(1.0): pass\n"
     )
@@ -366,7 +368,7 @@ def test_sinks_are_changed_while_the_node_runs(graph, nodes, pytpc, tmp_path):
 
 
 def test_many_changes_under_load_lose_nothing_of_the_topic(graph, nodes, tmp_path):
-    control = Graph(graph.uri)
+    control = InstrumentedNodes(graph.uri)
     reader = Reader()
     sinks = ("file", "topic", "off", "topic", "rosout", "topic")
     with subscribed(graph) as subscriber:

@@ -14,9 +14,10 @@ from pathlib import Path
 import pytest
 
 from pytpc.recording.marks import read_marks
-from pytpc.ros.graph import RosGraph
+from pytpc.ros.ros1.graph import RosGraph
+from pytpc.ros.ros1.master import Master
 from pytpc.ros.ros1.publisher import STRING, MessageType, RawPublisher, encode_string
-from pytpc.ros.ros1.tcpros import RawSubscriber
+from pytpc.ros.ros1.subscriber import RawSubscriber
 from screens import Screen
 from terminals import Terminal, pytpc
 
@@ -35,7 +36,7 @@ class Node:
         self.name = name
         self.number = 0
         topics = {"/rosout": LOG, "/threshold_information": STRING}
-        self.publisher = RawPublisher(master, name, topics)
+        self.publisher = RawPublisher(Master(master, name), topics)
         self.publisher.register()
 
     def log(self, text: str) -> None:
@@ -92,7 +93,7 @@ def watch(graph: RosGraph, static: Path, *options: str) -> Screen:
 def test_reports_of_all_ways_are_ranked_and_marked(graph: RosGraph, static: Path):
     relay = graph.start("relay", pytpc("relay"), env={"PYTHONPATH": str(ROOT)})
     logs, python = Node(graph.uri, "/logs"), Node(graph.uri, "/python")
-    heard = RawSubscriber(graph.uri, "/listener", "127.0.0.1", ["/mark_no_action"])
+    heard = RawSubscriber(Master(graph.uri, "/listener"), "127.0.0.1", ["/mark_no_action"])
     try:
         with watch(graph, static) as screen:
             screen.wait_for("watching on", "0 reports of 0 nodes")

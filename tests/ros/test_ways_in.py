@@ -16,7 +16,7 @@ from pytpc.base.errors import MissingToolError
 from pytpc.base.paths import cmake_file, compiler_wrapper, log_library, plugin
 from pytpc.build.build import build_workspace, workspace_env
 from pytpc.build.collect import collect_sources
-from pytpc.ros.graph import RosGraph
+from pytpc.ros.ros1.graph import RosGraph
 from pytpc.static.static_info import LeftOut, StaticInfo
 from pytpc.workspace import patch
 from pytpc.workspace.colcon import Bases, build_environment

@@ -11,7 +11,7 @@ import pytest
 
 from pytpc.base.errors import MissingToolError
 from pytpc.base.paths import compiler_wrapper, log_library, plugin, prefix
-from pytpc.ros.graph import RosGraph
+from pytpc.ros.ros1.graph import RosGraph
 from pytpc.static.static_info import LinkUnit, collect
 from pytpc.workspace.colcon import build_environment
 

@@ -27,9 +27,10 @@ import genpy
 from genpy.dynamic import generate_dynamic
 
 from pytpc.base.errors import RunError
-from pytpc.ros.graph import GraphProcess, RosGraph
-from pytpc.ros.ros1.recorder import LossCounter
-from pytpc.ros.ros1.tcpros import RawSubscriber, Source
+from pytpc.ros.ros1.graph import GraphProcess, RosGraph
+from pytpc.ros.ros1.losses import LossCounter
+from pytpc.ros.ros1.master import Master
+from pytpc.ros.ros1.subscriber import RawSubscriber, Source
 from suite.expectations import PACKAGE, load
 
 BATCH = 12
@@ -160,7 +161,9 @@ class _Batch:
                     self._start(variant, node)
             published, subscribed = self._wait_until_up()
             subscriber = RawSubscriber(
-                self._graph.uri, "/recorder", "127.0.0.1", [*sorted(published), "/rosout"]
+                Master(self._graph.uri, "/recorder"),
+                "127.0.0.1",
+                [*sorted(published), "/rosout"],
             )
             try:
                 self._wait_for_connections(subscriber, published)

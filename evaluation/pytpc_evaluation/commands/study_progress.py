@@ -19,7 +19,7 @@ from rich.progress import Progress as Bar
 from rich.text import Text
 
 from pytpc.base.wording import many, plain
-from pytpc.ros.run_mission import Progress
+from pytpc.ros.mission_run import Progress
 from pytpc.workspace.colcon import BuildError
 from pytpc_evaluation.demo.demo_examples import Example
 from pytpc_evaluation.study.plan import Flight

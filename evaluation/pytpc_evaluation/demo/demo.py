@@ -22,7 +22,8 @@ from pytpc.present.page.html import MissionReport
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import EVENTS_FILE, MARKS_FILE
 from pytpc.recording.treatment import Treatment, save_treatment
-from pytpc.ros.run_mission import MissionRun, Progress, run_mission
+from pytpc.ros.mission_run import MissionRun, Progress
+from pytpc.ros.ros1.launch_mission import run_mission
 from pytpc.static.static_info import StaticInfo
 from pytpc_evaluation.demo.demo_examples import Example
 

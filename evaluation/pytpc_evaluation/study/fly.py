@@ -22,7 +22,8 @@ from pytpc.recording.mission import (
     write_marks,
 )
 from pytpc.recording.treatment import Treatment, save_treatment
-from pytpc.ros.run_mission import Progress, run_mission
+from pytpc.ros.mission_run import Progress
+from pytpc.ros.ros1.launch_mission import run_mission
 from pytpc_evaluation.study.changes import CHANGES_FILE, save_changes
 from pytpc_evaluation.study.dataset import (
     CAUSES_FILE,

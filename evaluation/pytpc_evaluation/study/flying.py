@@ -10,7 +10,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Protocol
 
-from pytpc.ros.run_mission import Progress
+from pytpc.ros.mission_run import Progress
 from pytpc_evaluation.demo.demo_examples import EXAMPLES, Example
 from pytpc_evaluation.study.dataset import StudyFile
 from pytpc_evaluation.study.digest import people_digest

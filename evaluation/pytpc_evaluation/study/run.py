@@ -11,7 +11,7 @@ from typing import Protocol
 
 from pytpc.base.errors import TpcError
 from pytpc.base.signals import signals_end
-from pytpc.ros.run_mission import Progress
+from pytpc.ros.mission_run import Progress
 from pytpc_evaluation.study.dataset import Done
 from pytpc_evaluation.study.plan import Flight
 

@@ -84,14 +84,14 @@ def _start(script: str, paths: "list[str]") -> None:
         return
     sys.path.insert(0, root)
     try:
-        from pytpc.base.errors import TpcError  # noqa: PLC0415
+        from pytpc.python_runtime.errors import HookError  # noqa: PLC0415
         from pytpc.python_runtime.listed import names_script  # noqa: PLC0415
     finally:
         sys.path.remove(root)
     try:
         if not names_script(paths, script):
             return
-    except TpcError as error:
+    except HookError as error:
         sys.stderr.write(f"tpc: {error}; nothing is reported\n")
         return
     from subprocess import _args_from_interpreter_flags  # type: ignore[attr-defined]  # noqa: PLC0415

@@ -14,16 +14,13 @@ import select
 import socket
 import struct
 import threading
-import xmlrpc.client
 from collections.abc import Mapping
 from dataclasses import dataclass
-from http.client import HTTPException
-from xmlrpc.server import SimpleXMLRPCServer
 
 from pytpc.base.errors import RunError
-from pytpc.ros.ros1.tcpros import Handler, call, decode_header, encode_header, own_host, receive
+from pytpc.ros.ros1.connection import encode_header, receive_header, sized
+from pytpc.ros.ros1.master import Master, SlaveServer, own_host
 
-_LENGTH = struct.Struct("<I")
 _LARGEST_HEADER = 1 << 20
 _PATIENCE_S = 2.0
 
@@ -49,33 +46,27 @@ def encode_time(time_ns: int) -> bytes:
 
 def encode_string(text: str) -> bytes:
     """A std_msgs/String."""
-    data = text.encode("utf-8", "backslashreplace")
-    return _LENGTH.pack(len(data)) + data
+    return sized(text.encode("utf-8", "backslashreplace"))
 
 
 class RawPublisher:
     """Publishes messages that are bytes already. Registers only when told to (``register``).
 
     Args:
-        master: URI of the ROS master.
-        name: of the node that this is.
+        master: the ROS master; its caller is the node that this is.
         topics: with the type of their messages.
     """
 
-    def __init__(self, master: str, name: str, topics: Mapping[str, MessageType]) -> None:
+    def __init__(self, master: Master, topics: Mapping[str, MessageType]) -> None:
         """See the class; on return subscribers are served, though none knows of it yet."""
         self._master = master
-        self._name = name
         self._topics = dict(topics)
         self._lock = threading.Lock()
         self._links: dict[str, list[tuple[str, socket.socket]]] = {topic: [] for topic in topics}
-        self._host = own_host(os.environ, master)
+        self._host = own_host(os.environ, master.uri)
         self._listener = socket.create_server(("", 0))
-        self._server = SimpleXMLRPCServer(("", 0), Handler, logRequests=False, allow_none=True)
-        self._server.register_instance(self)
-        self._uri = f"http://{self._host}:{self._server.server_address[1]}/"
-        for work in (self._accept, self._serve):
-            threading.Thread(target=work, daemon=True).start()
+        self._server = SlaveServer(self._host, self, "")
+        threading.Thread(target=self._accept, daemon=True).start()
 
     def register(self) -> None:
         """Tell the master of all topics; it does no harm to tell it again.
@@ -84,7 +75,7 @@ class RawPublisher:
             RunError: the master does not answer or refuses.
         """
         for topic, kind in self._topics.items():
-            self.call_master("registerPublisher", topic, kind.name, self._uri)
+            self._master.call("registerPublisher", topic, kind.name, self._server.uri)
 
     def is_registered(self) -> bool:
         """Whether the master still knows this node.
@@ -92,28 +83,12 @@ class RawPublisher:
         Raises:
             RunError: the master does not answer.
         """
-        try:
-            return call(self._master, "lookupNode", self._name, self._name) == self._uri
-        except xmlrpc.client.Fault:
-            return False
-        except (OSError, HTTPException, xmlrpc.client.Error) as error:
-            raise RunError(f"the ROS master at {self._master}: {error}") from error
-
-    def call_master(self, method: str, *arguments: object) -> object:
-        """Call a method of the master API.
-
-        Raises:
-            RunError: the master does not answer or refuses.
-        """
-        try:
-            return call(self._master, method, self._name, *arguments)
-        except (OSError, HTTPException, xmlrpc.client.Error) as error:
-            raise RunError(f"the ROS master at {self._master}: {method}: {error}") from error
+        return self._master.node_uri(self._master.caller) == self._server.uri
 
     def publish(self, topic: str, message: bytes) -> int:
         """Send to all who listen now; their number. One who does not take it is left out."""
         sent = 0
-        data = _LENGTH.pack(len(message)) + message
+        data = sized(message)
         with self._lock:
             for link in list(self._links[topic]):
                 try:
@@ -136,11 +111,10 @@ class RawPublisher:
         """Leave the graph. A master that is gone already is no error."""
         for topic in self._topics:
             try:
-                self.call_master("unregisterPublisher", topic, self._uri)
+                self._master.call("unregisterPublisher", topic, self._server.uri)
             except RunError:
                 break
-        self._server.shutdown()
-        self._server.server_close()
+        self._server.close()
         self._listener.close()
         with self._lock:
             for topic, links in self._links.items():
@@ -166,9 +140,6 @@ class RawPublisher:
             return [0, f"{method} is not for this node", 0]
         return [1, "", answers[method]]
 
-    def _serve(self) -> None:
-        self._server.serve_forever(0.05)
-
     def _accept(self) -> None:
         while True:
             try:
@@ -182,16 +153,13 @@ class RawPublisher:
         try:
             connection.settimeout(_PATIENCE_S)
             connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-            (length,) = _LENGTH.unpack(receive(connection, _LENGTH.size))
-            if length > _LARGEST_HEADER:
-                raise ValueError(f"a header of {length:,} bytes")
-            fields = decode_header(receive(connection, length))
+            fields = receive_header(connection, _LARGEST_HEADER)
             topic = fields.get("topic", "")
             kind = self._topics.get(topic)
             if kind is None or fields.get("md5sum") not in ("*", kind.md5sum):
                 connection.sendall(encode_header({"error": f"{topic} is not of that type here"}))
                 raise ValueError("not a subscriber")
-            answer = {"callerid": self._name, "topic": topic, "type": kind.name}
+            answer = {"callerid": self._master.caller, "topic": topic, "type": kind.name}
             answer |= {"md5sum": kind.md5sum, "message_definition": kind.definition}
             connection.sendall(encode_header(answer | {"latching": "0"}))
         except (OSError, ValueError):

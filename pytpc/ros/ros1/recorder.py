@@ -4,218 +4,39 @@ All reports of all nodes go through one topic, thousands in a second. Nothing is
 is not yet read waits in the publishers, whose queues for /rosout have no end. Each node numbers
 its messages on /rosout, so a loss would be seen and is counted.
 
-It runs below ``pytpc.ros.run_mission``, which reads the status file that it keeps.
+It runs below ``pytpc.ros.ros1.launch_mission``, which reads the status file that it keeps.
 """
 
 from __future__ import annotations
 
 import argparse
-import json
+import contextlib
 import os
 import signal
 import struct
 import threading
 import time
-from collections import Counter
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import BinaryIO
-
-from rosbags.interfaces import Connection
-from rosbags.rosbag1 import Writer
 
 from pytpc.base.errors import RunError
-from pytpc.ingest.rosout_line import Batch, parse_batch
 from pytpc.recording.marks import MarkMessages
-from pytpc.ros.ros1.tcpros import RawSubscriber, Source
+from pytpc.ros.mission_run import RecorderStatus, save_status
+from pytpc.ros.ros1.bag_file import BagFile
+from pytpc.ros.ros1.losses import BatchCounter, LossCounter
+from pytpc.ros.ros1.master import Master
+from pytpc.ros.ros1.subscriber import RawSubscriber, Source
 
 REPORT = b"threshold_information:"
 NODE_NAME = "/tpc_recorder"
 STATUS_PERIOD_S = 0.2
 DRAIN_S = 2.0
-KEEP_S = 1.0
-"""At most so much of a mission is lost when the recorder is killed."""
+LOOK_PERIOD_S = 1.0
 _CLOCK = "/clock"
 _MOST_EARLY = 10_000
-# rosbag pads the first record's parts to 4096 bytes, rosbags both with their two lengths.
-_FIRST_PADDING = 4096 - 69
-_FIRST_PADDING_AT = 13 + 4 + 69
-_MORE_PADDING = 8
-_CHUNK = 1 << 20
 _ROSOUT = "/rosout"
 _REPORTS = "/threshold_information"
-LOOK_PERIOD_S = 1.0
-_LOG_HEAD = struct.Struct("<IIII")
-_LENGTH = struct.Struct("<I")
 _TIME = struct.Struct("<II")
-
-
-@dataclass(frozen=True)
-class Status:
-    """What the recorder says of itself; times in ns on the graph's clock, at the start and now.
-
-    ``done_ns`` is when the topic that says so said that the mission is done, None before.
-    ``missed_before`` has the messages on /rosout that a node sent before the recorder was
-    connected, ``lost`` those that went missing afterwards.
-    """
-
-    ready: bool = False
-    done_ns: int | None = None
-    closed: bool = False
-    began_ns: int = 0
-    now_ns: int = 0
-    reports: int = 0
-    messages: dict[str, int] = field(default_factory=dict)
-    lost: dict[str, int] = field(default_factory=dict)
-    missed_before: dict[str, int] = field(default_factory=dict)
-
-    @property
-    def done(self) -> bool:
-        """Whether the mission is."""
-        return self.done_ns is not None
-
-
-class LossCounter:
-    """Finds gaps in the numbers that each node gives to its messages on /rosout."""
-
-    def __init__(self) -> None:
-        """Nothing was seen yet."""
-        self._last: dict[str, int] = {}
-        self._spared: set[str] = set()
-        self.lost: Counter[str] = Counter()
-        self.missed_before: Counter[str] = Counter()
-
-    def see(self, data: bytes, sender: str = "", *, latched: bool = False) -> bytes:
-        """Take in one serialized rosgraph_msgs/Log; return its text.
-
-        Who sends numbers: ``rosbag play`` does so anew, in one row for all nodes. Where no
-        ``sender`` is known it is the node. One that is ``latched``, as rospy's, sends its last text
-        anew to each new subscriber, as rosout is one, by a number of its own: no loss, once.
-
-        Raises:
-            ValueError: the bytes are shorter than such a message.
-        """
-        try:
-            sequence, _seconds, _nanoseconds, frame = _LOG_HEAD.unpack_from(data)
-            at = _LOG_HEAD.size + frame + 1
-            name, at = _text(data, at)
-            text, _ = _text(data, at)
-        except struct.error as error:
-            raise ValueError(f"no rosgraph_msgs/Log: {error}") from error
-        node = sender or name.decode("utf-8", "replace")
-        last = self._last.get(node)
-        if last is None:
-            # roscpp counts from 0 and rospy from 1, so that 1 may be the first one.
-            if sequence > 1:
-                self.missed_before[node] = sequence - 1
-        elif sequence == last + 2 and latched and node not in self._spared:
-            self._spared.add(node)
-        elif sequence > last + 1:
-            self.lost[node] += sequence - last - 1
-        self._last[node] = sequence
-        return text
-
-
-def _text(data: bytes, at: int) -> tuple[bytes, int]:
-    (length,) = _LENGTH.unpack_from(data, at)
-    start = at + _LENGTH.size
-    if start + length > len(data):
-        raise struct.error("the text goes past the end")
-    return data[start : start + length], start + length
-
-
-class BatchCounter:
-    """The same for numbered messages on /threshold_information (docs/formats.md)."""
-
-    def __init__(self, counter: LossCounter) -> None:
-        """Losses are added to those of ``counter``."""
-        self._counter = counter
-        self._next: dict[tuple[str, int], int] = {}
-
-    def see(self, node: str, data: bytes) -> int:
-        """Take in one serialized std_msgs/String; return how many reports it has.
-
-        Raises:
-            ValueError: the bytes are shorter than such a message.
-        """
-        try:
-            text, _ = _text(data, 0)
-        except struct.error as error:
-            raise ValueError(f"no std_msgs/String: {error}") from error
-        if not text.startswith(b"#"):
-            return 1
-        batch = parse_batch(text.partition(b"\n")[0].decode("utf-8", "replace"))
-        if not isinstance(batch, Batch):
-            return 0
-        process = (node, batch.pid)
-        expected = self._next.get(process)
-        if expected is None and batch.seq:
-            self._counter.missed_before[node] += batch.seq
-        elif expected is not None and batch.seq > expected:
-            self._counter.lost[node] += batch.seq - expected
-        self._next[process] = max(expected or 0, batch.seq + batch.count)
-        return batch.count
-
-
-class BagFile:
-    """A bag that gets its name only when it is complete."""
-
-    def __init__(self, path: Path) -> None:
-        """Open ``<path>.active``; what an earlier run left there is deleted."""
-        self._path = path
-        self._active = path.with_name(path.name + ".active")
-        self._active.unlink(missing_ok=True)
-        self._writer = Writer(self._active)
-        self._writer.open()
-        assert self._writer.bio is not None, "it was opened"
-        self._writer.bio.write(b" " * _MORE_PADDING)
-        self._pad(self._writer.bio)
-        self._writer.bio.seek(0, os.SEEK_END)
-        self._kept = time.monotonic()
-        self._connections: dict[tuple[str, str, str], Connection] = {}
-        self.messages: Counter[str] = Counter()
-
-    def write(self, source: Source, time_ns: int, data: bytes) -> None:
-        """Add one message."""
-        key = (source.topic, source.md5sum, source.node)
-        connection = self._connections.get(key)
-        if connection is None:
-            # rosbags names types in the way of ROS 2 and writes them in that of ROS 1.
-            package, _, name = source.type.partition("/")
-            connection = self._writer.add_connection(
-                source.topic,
-                f"{package}/msg/{name}",
-                msgdef=source.definition,
-                md5sum=source.md5sum,
-                # On /threshold_information nothing else says whose reports these are.
-                callerid=source.node,
-                latching=1 if source.latched else None,
-            )
-            self._connections[key] = connection
-        # A chunk stands in memory until it is full: with marks alone, for the whole mission.
-        due = time.monotonic() - self._kept > KEEP_S or MarkMessages.message_type(source.topic)
-        self._writer.chunk_threshold = -1 if due else _CHUNK
-        # Before the first /clock it is 0, which rosbag play and info take for a broken entry.
-        self._writer.write(connection, max(time_ns, 1), data)
-        if due and self._writer.bio is not None:
-            self._writer.bio.flush()
-            self._kept = time.monotonic()
-        self.messages[source.topic] += 1
-
-    def close(self) -> None:
-        """Write the index and give the file its name."""
-        self._writer.close()
-        with self._active.open("r+b") as stream:
-            self._pad(stream)
-        self._active.replace(self._path)
-
-    @staticmethod
-    def _pad(stream: BinaryIO) -> None:
-        """Make the first record as long as rosbag's own: `rosbag reindex` writes it anew, and what
-        is longer then stands in the first chunk."""
-        stream.seek(_FIRST_PADDING_AT)
-        stream.write(_LENGTH.pack(_FIRST_PADDING))
 
 
 class Recorder:
@@ -280,9 +101,9 @@ class Recorder:
             self._bag.write(source, self.now_ns(), data)
         self._early.clear()
 
-    def status(self, *, closed: bool = False) -> Status:
+    def status(self, *, closed: bool = False) -> RecorderStatus:
         """The account until now."""
-        return Status(
+        return RecorderStatus(
             ready=True,
             done_ns=self._done_ns,
             closed=closed,
@@ -317,47 +138,100 @@ class Discovery:
             return
         self._looked = time.monotonic()
         try:
-            state = self._subscriber.call_master("getSystemState")
-        except RunError:
-            return
-        publishers, subscribers = _topics_of(state, 0), _topics_of(state, 1)
-        try:
-            for topic in publishers:
+            state = self._subscriber.master.state()
+            for topic in state.publishers:
                 if MarkMessages.message_type(topic) is not None and topic not in self._topics:
                     self._recorder.add_topic(topic)
                     self._subscriber.subscribe(topic)
                     self._topics[topic] = None
             for topic in self._topics:
                 # A master that was started anew knows nobody.
-                if self._subscriber.name not in subscribers.get(topic, ()):
+                if self._subscriber.master.caller not in state.subscribers.get(topic, ()):
                     self._subscriber.subscribe(topic)
         except RunError:
             return
 
 
-def _topics_of(state: object, part: int) -> dict[str, list[str]]:
-    """Topic -> nodes of a part of the master's answer; nothing where it is of another form."""
-    try:
-        return {str(topic): [str(node) for node in nodes] for topic, nodes in state[part]}  # type: ignore[index]
-    except (TypeError, ValueError, IndexError, KeyError):
-        return {}
+class GraphRecorder:
+    """Records topics of a running graph into a bag.
+
+    Args:
+        master: the ROS master; its caller is the node that this is.
+        host: the address at which the graph reaches this machine.
+        topics: what is recorded; topics of observers are added as they appear.
+        bag: the file.
+        until: a topic of type std_msgs/Bool that says when the mission is done.
+        strict: a message that is not of the type of its topic is an error; otherwise it is in the
+            bag, and whoever reads that says so.
+
+    Raises:
+        RunError: the master does not answer.
+        OSError: the bag cannot be written.
+    """
+
+    def __init__(
+        self,
+        master: Master,
+        host: str,
+        topics: Sequence[str],
+        bag: Path,
+        until: str | None,
+        *,
+        strict: bool = True,
+    ) -> None:
+        """See the class; on return all topics are registered."""
+        recorded = list(dict.fromkeys([*topics, *([until] if until is not None else [])]))
+        subscribed = list(dict.fromkeys([*recorded, _CLOCK]))
+        self._tolerated = () if strict else (ValueError,)
+        self._subscriber = RawSubscriber(master, host, subscribed)
+        try:
+            self._bag = BagFile(bag)
+            self._recorder = Recorder(self._bag, recorded, until, master.has_sim_time())
+        except BaseException:
+            self._subscriber.close()
+            raise
+        self._discovery = Discovery(self._subscriber, self._recorder, subscribed)
+
+    def step(self) -> RecorderStatus:
+        """Take what has come, wait a moment for more; the account.
+
+        Raises:
+            ValueError: see ``strict``.
+        """
+        self._discovery.look()
+        self._take(0.05)
+        return self._recorder.status()
+
+    def finish(self) -> RecorderStatus:
+        """Take what is still on the way, leave the graph and close the bag.
+
+        Raises:
+            ValueError: see ``strict``.
+        """
+        limit = time.monotonic() + DRAIN_S
+        try:
+            while time.monotonic() < limit and self._take(0.1):
+                pass
+        finally:
+            self.leave()
+        self._recorder.put_early()
+        self._bag.close()
+        return self._recorder.status(closed=True)
+
+    def leave(self) -> None:
+        """Leave the graph."""
+        self._subscriber.close()
+
+    def _take(self, timeout_s: float) -> int:
+        count = 0
+        for source, data in self._subscriber.poll(timeout_s):
+            with contextlib.suppress(*self._tolerated):
+                self._recorder.take(source, data)
+            count += 1
+        return count
 
 
-def graph_has_sim_time(subscriber: RawSubscriber) -> bool:
-    """Whether /clock is the graph's clock."""
-    return subscriber.call_master("hasParam", "/use_sim_time") is True and (
-        subscriber.call_master("getParam", "/use_sim_time") is True
-    )
-
-
-def save_status(status: Status, path: Path) -> None:
-    """Replace the status file; no reader ever sees a half of it."""
-    beside = path.with_name(path.name + ".new")
-    beside.write_text(json.dumps(asdict(status)), encoding="utf-8")
-    beside.replace(path)
-
-
-def record(bag_path: Path, status_path: Path, topics: Sequence[str], until: str | None) -> None:
+def record(bag: Path, status: Path, topics: Sequence[str], until: str | None) -> None:
     """Record until SIGINT or SIGTERM; needs a master at ROS_MASTER_URI.
 
     Raises:
@@ -367,44 +241,19 @@ def record(bag_path: Path, status_path: Path, topics: Sequence[str], until: str 
     stop = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: stop.set())
-    recorded = list(dict.fromkeys([*topics, *([until] if until is not None else [])]))
-    subscriber = RawSubscriber(
-        os.environ["ROS_MASTER_URI"],
-        NODE_NAME,
-        os.environ.get("ROS_IP", "127.0.0.1"),
-        list(dict.fromkeys([*recorded, _CLOCK])),
-    )
-    bag = BagFile(bag_path)
-    recorder = Recorder(bag, recorded, until, graph_has_sim_time(subscriber))
-    discovery = Discovery(subscriber, recorder, [*recorded, _CLOCK])
+    master = Master(os.environ["ROS_MASTER_URI"], NODE_NAME)
+    graph = GraphRecorder(master, os.environ.get("ROS_IP", "127.0.0.1"), topics, bag, until)
     told = 0.0
     while not stop.is_set():
+        account = graph.step()
         if time.monotonic() - told > STATUS_PERIOD_S:
             told = time.monotonic()
-            save_status(recorder.status(), status_path)
-        discovery.look()
-        for source, data in subscriber.poll(0.05):
-            recorder.take(source, data)
-    drain(subscriber, recorder)
-    subscriber.close()
-    recorder.put_early()
-    bag.close()
-    save_status(recorder.status(closed=True), status_path)
-
-
-def drain(subscriber: RawSubscriber, recorder: Recorder) -> None:
-    """Take what is still on the way."""
-    limit = time.monotonic() + DRAIN_S
-    while time.monotonic() < limit:
-        waiting = list(subscriber.poll(0.1))
-        if not waiting:
-            return
-        for source, data in waiting:
-            recorder.take(source, data)
+            save_status(account, status)
+    save_status(graph.finish(), status)
 
 
 def main() -> None:
-    """Read the arguments that ``pytpc.ros.run_mission`` gives."""
+    """Read the arguments that ``pytpc.ros.ros1.launch_mission`` gives."""
     parser = argparse.ArgumentParser(description="records topics into a bag")
     parser.add_argument("--bag", type=Path, required=True)
     parser.add_argument("--status", type=Path, required=True)

@@ -1,4 +1,4 @@
-"""The node that passes reports on from /rosout to /threshold_information (SPEC 5).
+"""The node that passes reports on from /rosout to /threshold_information.
 
 For readers that know the topic only, and nodes that report by log messages. What comes is read by
 the raw subscriber, which loses nothing while nodes start; rospy publishes.
@@ -11,13 +11,13 @@ import signal
 import threading
 import time
 from collections.abc import Callable, Sequence
-from typing import cast
 
 from pytpc.base.errors import MissingToolError, RunError
 from pytpc.base.wording import many
 from pytpc.ingest.ros1 import decode_log
-from pytpc.ros.ros1.recorder import LossCounter
-from pytpc.ros.ros1.tcpros import RawSubscriber, own_host
+from pytpc.ros.ros1.losses import LossCounter
+from pytpc.ros.ros1.master import Master, own_host, uri_of
+from pytpc.ros.ros1.subscriber import RawSubscriber
 
 ROSOUT = "/rosout"
 TOPIC = "/threshold_information"
@@ -144,10 +144,10 @@ def run(arguments: Sequence[str], say: Say) -> None:
     stop = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: stop.set())
-    master = os.environ.get("ROS_MASTER_URI", "http://localhost:11311")
+    uri = uri_of(os.environ)
     name = _name(arguments)
     # First, because rospy waits for ever for a master.
-    subscriber = RawSubscriber(master, f"{name}_reader", own_host(os.environ, master), [ROSOUT])
+    subscriber = RawSubscriber(Master(uri, f"{name}_reader"), own_host(os.environ, uri), [ROSOUT])
     try:
         rospy.init_node(
             name.strip("/"),
@@ -157,9 +157,9 @@ def run(arguments: Sequence[str], say: Say) -> None:
         )
         publisher = rospy.Publisher(TOPIC, String, queue_size=_QUEUE)
         relay = Relay(lambda line: publisher.publish(String(line)))
-        node, uri = rospy.get_name(), rospy.get_node_uri()
+        node = Master(uri, rospy.get_name())
         watch = MasterWatch(
-            lambda: _knows(subscriber, node), lambda: _register(subscriber, node, uri), say
+            lambda: _knows(node), lambda: _register(subscriber, node, rospy.get_node_uri()), say
         )
         say(f"passing on reports from {ROSOUT} to {TOPIC}")
         _serve(subscriber, relay, watch, lambda: stop.is_set() or rospy.is_shutdown())
@@ -195,15 +195,14 @@ def _serve(
             relay.take(data, source.node)
 
 
-def _knows(subscriber: RawSubscriber, node: str) -> bool:
+def _knows(node: Master) -> bool:
     """Whether the master lists this node among the publishers of the topic."""
-    state = cast(list[list[tuple[str, list[str]]]], subscriber.call_master("getSystemState"))
-    return any(topic == TOPIC and node in nodes for topic, nodes in state[0])
+    return node.caller in node.state().publishers.get(TOPIC, ())
 
 
-def _register(subscriber: RawSubscriber, node: str, uri: str) -> None:
+def _register(subscriber: RawSubscriber, node: Master, uri: str) -> None:
     # rospy does not register again by itself; subscribers are told by the master.
-    subscriber.call_master_as(node, "registerPublisher", TOPIC, "std_msgs/String", uri)
+    node.call("registerPublisher", TOPIC, "std_msgs/String", uri)
     subscriber.register()
 
 

@@ -9,36 +9,32 @@ sink ``file``) and ``ros/`` (the output of all processes).
 from __future__ import annotations
 
 import contextlib
-import json
-import shutil
 import subprocess
 import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from pytpc.base.atomic import write_atomic
 from pytpc.base.errors import RunError
 from pytpc.base.paths import project_root
-from pytpc.recording.marks import marks_beside, topic_of_marks
-from pytpc.recording.mission import (
-    EVENTS_FILE,
-    MARKS_FILE,
-    REPORTS_FOLDER,
-    RUN_FILE,
-    SUMMARIES_FILE,
+from pytpc.recording.mission import REPORTS_FOLDER, RUN_FILE
+from pytpc.ros.mission_run import (
+    BAG_FILE,
+    DEFAULT_TOPICS,
+    PARAMS_FILE,
+    MissionRun,
+    Progress,
+    RecorderStatus,
+    clear_earlier,
+    marks_of,
+    read_status,
+    save_run,
 )
-from pytpc.ros.graph import GraphProcess, RosGraph
 from pytpc.ros.ros1 import recorder
-from pytpc.values.origins import ORIGINS_FILE, START_FILE
+from pytpc.ros.ros1.graph import GraphProcess, RosGraph
+from pytpc.values.origins import START_FILE
 from pytpc.values.recording import save_origins, try_trace
 from pytpc.values.trace import Trace, name_on_server
-
-BAG_FILE = "mission.bag"
-PARAMS_FILE = "params.yaml"
-MARK_TOPICS = ("/mark_action", "/mark_no_action")
-DEFAULT_TOPICS = ("/rosout", "/threshold_information", *MARK_TOPICS)
 
 _POLL_S = 0.1
 _RECORDER_PATIENCE_S = 20.0
@@ -46,65 +42,6 @@ _CLOCK_PATIENCE_S = 30.0
 _LAUNCH_PATIENCE_S = 20.0
 _DUMP_PATIENCE_S = 20.0
 _SET_PATIENCE_S = 10.0
-
-
-@dataclass(frozen=True, slots=True)
-class Progress:
-    """How far a mission is: seconds of the graph's clock and of the wall, reports and marks."""
-
-    sim_s: float
-    wall_s: float
-    reports: int
-    marks: int
-
-
-@dataclass(frozen=True, slots=True)
-class MissionRun:
-    """A mission that was recorded.
-
-    ``ended`` is ``done``, ``ended`` (roslaunch did, as it does when a required node ends),
-    ``timeout`` or ``interrupted``. ``sim_s`` is how long it took on the
-    graph's clock, ``wall_s`` on the wall's; ``done_ns`` is when on the former it was done, None
-    where nobody said so. ``lost`` has for each node the messages on /rosout that
-    did not reach the bag, ``missed_before`` those from before the recorder was connected to it.
-    """
-
-    bag: Path
-    params: Path
-    ended: str
-    sim_s: float
-    wall_s: float
-    reports: int
-    messages: dict[str, int]
-    lost: dict[str, int]
-    missed_before: dict[str, int]
-    done_ns: int | None = None
-
-    @classmethod
-    def of(cls, status: recorder.Status, out_dir: Path, ended: str, wall_s: float) -> MissionRun:
-        """The run whose recorder ended with ``status``."""
-        return cls(
-            bag=out_dir / BAG_FILE,
-            params=out_dir / PARAMS_FILE,
-            ended=ended,
-            sim_s=(status.now_ns - status.began_ns) / 1e9,
-            wall_s=wall_s,
-            reports=status.reports,
-            messages=status.messages,
-            lost=status.lost,
-            missed_before=status.missed_before,
-            done_ns=status.done_ns,
-        )
-
-    @property
-    def marks(self) -> int:
-        """Marks of all observers."""
-        return marks_of(self.messages)
-
-
-def marks_of(messages: Mapping[str, int]) -> int:
-    """How many of the messages by topic are marks."""
-    return sum(count for topic, count in messages.items() if topic_of_marks(topic) is not None)
 
 
 def launch_command(launch: Path, args: Mapping[str, str]) -> list[str]:
@@ -186,53 +123,6 @@ def run_mission(
     return run
 
 
-def clear_earlier(out_dir: Path) -> None:
-    """Take away an earlier mission's results: they would be read as if they were of the next one.
-
-    Marks that a person made on its bag are not lost: their file gets the ending ``.old``.
-    """
-    for name in (
-        BAG_FILE,
-        PARAMS_FILE,
-        START_FILE,
-        ORIGINS_FILE,
-        RUN_FILE,
-        EVENTS_FILE,
-        SUMMARIES_FILE,
-        MARKS_FILE,
-    ):
-        (out_dir / name).unlink(missing_ok=True)
-    shutil.rmtree(out_dir / REPORTS_FOLDER, ignore_errors=True)
-    marks = marks_beside(out_dir / BAG_FILE)
-    with contextlib.suppress(FileNotFoundError):
-        marks.replace(marks.with_name(f"{marks.name}.old"))
-
-
-def save_run(run: MissionRun, launch: Path | None, args: Mapping[str, str], path: Path) -> None:
-    """Write run.json: the fields of ``run``, the launch file, if any, and its arguments.
-
-    Raises:
-        TpcError: the file cannot be written.
-    """
-    document = {
-        "schema": 1,
-        "launch": None if launch is None else str(launch.absolute()),
-        "args": dict(sorted(args.items())),
-        **asdict(run),
-        "bag": run.bag.name,
-        "params": run.params.name,
-    }
-    write_atomic(path, json.dumps(document, indent=1).encode() + b"\n")
-
-
-def read_status(path: Path) -> recorder.Status | None:
-    """What the recorder last said of itself; None where it has not said anything."""
-    try:
-        return recorder.Status(**json.loads(path.read_text(encoding="utf-8")))
-    except FileNotFoundError:
-        return None
-
-
 def _status_file(out_dir: Path) -> Path:
     return out_dir / "ros" / "recorder.json"
 
@@ -281,9 +171,9 @@ class _Watch:
         self._began = began
         self._on_progress = on_progress
 
-    def look(self) -> recorder.Status:
+    def look(self) -> RecorderStatus:
         self._graph.check()
-        status = read_status(self._status_path) or recorder.Status()
+        status = read_status(self._status_path) or RecorderStatus()
         if self._on_progress is not None:
             marks = marks_of(status.messages)
             wall_s = time.monotonic() - self._began

@@ -14,16 +14,15 @@ import signal
 import socket
 import subprocess
 import time
-import xmlrpc.client
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from http.client import HTTPException
 from pathlib import Path
 from types import TracebackType
 from typing import Self
 
 from pytpc.base.errors import MissingToolError, RunError
 from pytpc.base.signals import signals_end
+from pytpc.ros.ros1.master import Master
 
 GRAPH_WORD = "TPC_GRAPH"
 _CALLER = "/tpc_graph"
@@ -213,16 +212,7 @@ class RosGraph:
         Raises:
             RunError: the master does not answer, or says no.
         """
-        proxy = xmlrpc.client.ServerProxy(self.uri)
-        try:
-            answer = getattr(proxy, method)(_CALLER, *arguments)
-        except (OSError, HTTPException, xmlrpc.client.Error) as error:
-            raise RunError(f"the ROS master at {self.uri} does not answer: {error}") from error
-        finally:
-            proxy("close")()
-        if not isinstance(answer, list) or len(answer) != 3 or answer[0] != 1:
-            raise RunError(f"the ROS master refuses {method}: {answer}")
-        return answer[2]
+        return Master(self.uri, _CALLER).call(method, *arguments)
 
     def _start_master(self) -> None:
         for attempt in range(_START_TRIES):

@@ -14,20 +14,16 @@ import contextlib
 import os
 import selectors
 import socket
-import struct
 import threading
 import time
-import xmlrpc.client
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
-from http.client import HTTPException
 from typing import cast
-from urllib.parse import urlsplit
-from xmlrpc.server import SimpleXMLRPCRequestHandler, SimpleXMLRPCServer
 
 from pytpc.base.errors import RunError
+from pytpc.ros.ros1.connection import LENGTH, encode_header, receive_header
+from pytpc.ros.ros1.master import CALL_ERRORS, Master, SlaveServer, call
 
-_LENGTH = struct.Struct("<I")
 _LARGEST = 1 << 28
 _RECEIVE_BYTES = 1 << 18
 _PATIENCE_S = 5.0
@@ -50,36 +46,6 @@ class Source:
     latched: bool = False
 
 
-def encode_header(fields: Mapping[str, str]) -> bytes:
-    """A TCPROS connection header: its length, then each ``name=value`` after its length."""
-    parts = [f"{name}={value}".encode() for name, value in fields.items()]
-    body = b"".join(_LENGTH.pack(len(part)) + part for part in parts)
-    return _LENGTH.pack(len(body)) + body
-
-
-def decode_header(body: bytes) -> dict[str, str]:
-    """The fields of a connection header, without the length in front.
-
-    Raises:
-        ValueError: the lengths do not fit, or a field has no ``=``.
-    """
-    fields = {}
-    at = 0
-    while at < len(body):
-        if at + _LENGTH.size > len(body):
-            raise ValueError(f"a length is cut off at byte {at}")
-        (length,) = _LENGTH.unpack_from(body, at)
-        at += _LENGTH.size
-        if at + length > len(body):
-            raise ValueError(f"the field at byte {at} goes past the end")
-        name, separator, value = body[at : at + length].decode("utf-8", "replace").partition("=")
-        if not separator:
-            raise ValueError(f"the field at byte {at} has no =")
-        fields[name] = value
-        at += length
-    return fields
-
-
 class Frames:
     """Cuts a stream of bytes into messages, each of which stands after its length."""
 
@@ -96,14 +62,14 @@ class Frames:
         self._buffer += data
         found = []
         at = 0
-        while at + _LENGTH.size <= len(self._buffer):
-            (length,) = _LENGTH.unpack_from(self._buffer, at)
+        while at + LENGTH.size <= len(self._buffer):
+            (length,) = LENGTH.unpack_from(self._buffer, at)
             if length > _LARGEST:
                 raise ValueError(f"a message of {length:,} bytes")
-            end = at + _LENGTH.size + length
+            end = at + LENGTH.size + length
             if end > len(self._buffer):
                 break
-            found.append(bytes(self._buffer[at + _LENGTH.size : end]))
+            found.append(bytes(self._buffer[at + LENGTH.size : end]))
             at = end
         del self._buffer[:at]
         return found
@@ -122,8 +88,7 @@ class RawSubscriber:
     """Subscribes to topics of all types; ``poll`` gives their messages, in one thread.
 
     Args:
-        master: URI of the ROS master.
-        name: of the node that this is.
+        master: the ROS master; its caller is the node that this is.
         host: the address at which the graph reaches it.
         topics: what to subscribe to.
 
@@ -131,10 +96,9 @@ class RawSubscriber:
         RunError: the master does not answer or refuses.
     """
 
-    def __init__(self, master: str, name: str, host: str, topics: Sequence[str]) -> None:
+    def __init__(self, master: Master, host: str, topics: Sequence[str]) -> None:
         """See the class; on return all topics are registered."""
-        self.name = name
-        self._master = master
+        self.master = master
         self._lock = threading.Lock()
         self._wanted: dict[str, set[str]] = {topic: set() for topic in topics}
         self._known: set[tuple[str, str]] = set()
@@ -143,9 +107,7 @@ class RawSubscriber:
         self._selector = selectors.DefaultSelector()
         self._wake_receive, self._wake_send = socket.socketpair()
         self._selector.register(self._wake_receive, selectors.EVENT_READ)
-        self._server = _slave_server(host, self._on_publishers)
-        self._uri = f"http://{host}:{self._server.server_address[1]}/"
-        threading.Thread(target=self._server.serve_forever, args=(0.05,), daemon=True).start()
+        self._server = SlaveServer(host, _SlaveApi(self._on_publishers), host)
         try:
             for topic in topics:
                 self.subscribe(topic)
@@ -161,7 +123,7 @@ class RawSubscriber:
         """
         with self._lock:
             self._wanted.setdefault(topic, set())
-        publishers = self.call_master("registerSubscriber", topic, "*", self._uri)
+        publishers = self.master.call("registerSubscriber", topic, "*", self._server.uri)
         self._on_publishers(topic, cast(list[str], publishers))
 
     def register(self) -> None:
@@ -172,25 +134,6 @@ class RawSubscriber:
         """
         for topic in list(self._wanted):
             self.subscribe(topic)
-
-    def call_master(self, method: str, *arguments: object) -> object:
-        """Call a method of the master API.
-
-        Raises:
-            RunError: the master does not answer or refuses.
-        """
-        return self.call_master_as(self.name, method, *arguments)
-
-    def call_master_as(self, name: str, method: str, *arguments: object) -> object:
-        """The same in the name of another node of this process.
-
-        Raises:
-            RunError: the master does not answer or refuses.
-        """
-        try:
-            return call(self._master, method, name, *arguments)
-        except (OSError, HTTPException, xmlrpc.client.Error) as error:
-            raise RunError(f"the ROS master at {self._master}: {method}: {error}") from error
 
     def poll(self, timeout_s: float) -> Iterator[tuple[Source, bytes]]:
         """Wait for messages and give those that came; none after ``timeout_s`` without any."""
@@ -226,9 +169,8 @@ class RawSubscriber:
         self._closed.set()
         for topic in list(self._wanted):
             with contextlib.suppress(RunError):
-                self.call_master("unregisterSubscriber", topic, self._uri)
-        self._server.shutdown()
-        self._server.server_close()
+                self.master.call("unregisterSubscriber", topic, self._server.uri)
+        self._server.close()
         self._adopt()
         for key in list(self._selector.get_map().values()):
             cast(socket.socket, key.fileobj).close()
@@ -251,8 +193,8 @@ class RawSubscriber:
             if self._closed.is_set() or not self._is_wanted(key):
                 break
             try:
-                connection, source = _open(key[0], key[1], self.name)
-            except (OSError, HTTPException, xmlrpc.client.Error, ValueError):
+                connection, source = _open(key[0], key[1], self.master.caller)
+            except CALL_ERRORS:
                 # A node that is just starting or just ending; it is tried again while it is listed.
                 time.sleep(_RETRY_S)
                 continue
@@ -280,12 +222,6 @@ class RawSubscriber:
         threading.Thread(target=self._connect, args=(link.key,), daemon=True).start()
 
 
-class Handler(SimpleXMLRPCRequestHandler):
-    """ROS posts to any path."""
-
-    rpc_paths = ()
-
-
 class _SlaveApi:
     """What the master and other nodes ask of a node, as far as one that only listens is asked."""
 
@@ -305,59 +241,6 @@ class _SlaveApi:
         return [0, f"{method} is not for this node", 0]
 
 
-def _slave_server(host: str, on_publishers: Callable[[str, list[str]], None]) -> SimpleXMLRPCServer:
-    server = SimpleXMLRPCServer((host, 0), Handler, logRequests=False, allow_none=True)
-    server.register_instance(_SlaveApi(on_publishers))
-    return server
-
-
-def own_host(env: Mapping[str, str], master: str) -> str:
-    """The address at which the graph of ``master`` reaches this machine, as ROS finds it.
-
-    It is what ROS_HOSTNAME or ROS_IP say, else the address from which the master is reached.
-    """
-    for name in ("ROS_HOSTNAME", "ROS_IP"):
-        if env.get(name):
-            return env[name]
-    parts = urlsplit(master)
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        try:
-            # No packet is sent: this only asks which way one would go.
-            probe.connect((parts.hostname or "localhost", parts.port or 11311))
-            address: str = probe.getsockname()[0]
-        except OSError:
-            return "127.0.0.1"
-    return address
-
-
-def call(uri: str, method: str, *arguments: object) -> object:
-    """Call a method of ROS's master or slave API, which answers code, message and value.
-
-    Returns:
-        The value.
-
-    Raises:
-        OSError, HTTPException, xmlrpc.client.Error: nobody answers, or with another code than 1.
-    """
-    proxy = xmlrpc.client.ServerProxy(uri, transport=_PatientTransport())
-    try:
-        answer = getattr(proxy, method)(*arguments)
-    finally:
-        proxy("close")()
-    if not isinstance(answer, list) or len(answer) != 3 or answer[0] != 1:
-        raise xmlrpc.client.Fault(0, str(answer))
-    return answer[2]
-
-
-class _PatientTransport(xmlrpc.client.Transport):
-    """Gives up on a node that does not answer."""
-
-    def make_connection(self, host: object) -> object:  # type: ignore[override]
-        connection = super().make_connection(host)  # type: ignore[arg-type]
-        connection.timeout = _PATIENCE_S
-        return connection
-
-
 def _open(topic: str, publisher: str, name: str) -> tuple[socket.socket, Source]:
     """Connect to a publisher of a topic and shake hands."""
     protocol = call(publisher, "requestTopic", name, topic, [["TCPROS"]])
@@ -367,12 +250,9 @@ def _open(topic: str, publisher: str, name: str) -> tuple[socket.socket, Source]
     try:
         wanted = {"callerid": name, "topic": topic, "type": "*", "md5sum": "*", "tcp_nodelay": "1"}
         connection.sendall(encode_header(wanted))
-        (length,) = _LENGTH.unpack(receive(connection, _LENGTH.size))
-        if length > _LARGEST:
-            raise ValueError(f"a header of {length:,} bytes")
-        fields = decode_header(receive(connection, length))
-        if "error" in fields or not {"type", "md5sum"} <= fields.keys():
-            raise ValueError(fields.get("error", "no type in the header"))
+        fields = receive_header(connection)
+        if not {"type", "md5sum"} <= fields.keys():
+            raise ValueError("no type in the header")
         connection.setblocking(False)
     except BaseException:
         connection.close()
@@ -382,18 +262,3 @@ def _open(topic: str, publisher: str, name: str) -> tuple[socket.socket, Source]
     latched = fields.get("latching") == "1"
     source = Source(topic, node, fields["type"], fields["md5sum"], definition, latched)
     return connection, source
-
-
-def receive(connection: socket.socket, count: int) -> bytes:
-    """Exactly so many bytes.
-
-    Raises:
-        OSError: the other side closes the connection before, or is too slow.
-    """
-    data = b""
-    while len(data) < count:
-        part = connection.recv(count - len(data))
-        if not part:
-            raise ConnectionResetError("closed before the end")
-        data += part
-    return data

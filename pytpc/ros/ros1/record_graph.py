@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 import signal
 import threading
@@ -12,37 +11,23 @@ from pathlib import Path
 
 from pytpc.base.errors import MissingToolError, RunError
 from pytpc.recording.mission import RUN_FILE
-from pytpc.ros.ros1.recorder import (
-    NODE_NAME,
-    BagFile,
-    Discovery,
-    Recorder,
-    drain,
-    graph_has_sim_time,
-)
-from pytpc.ros.ros1.tcpros import RawSubscriber, own_host
-from pytpc.ros.run_mission import (
+from pytpc.ros.mission_run import (
     BAG_FILE,
     DEFAULT_TOPICS,
     PARAMS_FILE,
     MissionRun,
     Progress,
-    dump_params,
     marks_of,
     save_run,
 )
+from pytpc.ros.ros1.launch_mission import dump_params
+from pytpc.ros.ros1.master import Master, own_host, uri_of
+from pytpc.ros.ros1.recorder import NODE_NAME, GraphRecorder
 from pytpc.values.origins import START_FILE
 from pytpc.values.recording import MISSION_PATIENCE_S, NO_LAUNCH, save_origins, try_trace
 from pytpc.values.trace import Trace
 
-MASTER = "http://localhost:11311"
-_CLOCK = "/clock"
 _TOLD_S = 0.2
-
-
-def master_of(env: Mapping[str, str]) -> str:
-    """URI of the ROS master."""
-    return env.get("ROS_MASTER_URI", MASTER)
 
 
 def record_graph(
@@ -81,25 +66,21 @@ def record_graph(
     _refuse_earlier(out_dir)
     out_dir.mkdir(parents=True, exist_ok=True)
     began = time.monotonic()
-    recorded = list(dict.fromkeys([*DEFAULT_TOPICS, *topics, *([until] if until else [])]))
-    master = master_of(env)
-    name = f"{NODE_NAME}_{os.getpid()}"
-    subscribed = list(dict.fromkeys([*recorded, _CLOCK]))
-    subscriber = RawSubscriber(master, name, own_host(env, master), subscribed)
+    uri = uri_of(env)
+    recorder = GraphRecorder(
+        Master(uri, f"{NODE_NAME}_{os.getpid()}"),
+        own_host(env, uri),
+        [*DEFAULT_TOPICS, *topics],
+        out_dir / BAG_FILE,
+        until or None,
+        strict=False,
+    )
     beginning = _Beginning(env, out_dir, launch, args or {})
     try:
-        bag = BagFile(out_dir / BAG_FILE)
-        recorder = Recorder(bag, recorded, until, graph_has_sim_time(subscriber))
-        discovery = Discovery(subscriber, recorder, subscribed)
         beginning.start()
         ended, told = "", 0.0
         while not ended:
-            discovery.look()
-            for source, data in subscriber.poll(0.05):
-                # What is of another type is in the bag, and said when that is read.
-                with contextlib.suppress(ValueError):
-                    recorder.take(source, data)
-            status = recorder.status()
+            status = recorder.step()
             wall_s = time.monotonic() - began
             if on_progress is not None and time.monotonic() - told > _TOLD_S:
                 told = time.monotonic()
@@ -111,13 +92,10 @@ def record_graph(
                 ended = "done"
             elif timeout_s is not None and wall_s > timeout_s:
                 ended = "timeout"
-        with contextlib.suppress(ValueError):
-            drain(subscriber, recorder)
-    finally:
-        subscriber.close()
-    recorder.put_early()
-    bag.close()
-    status = recorder.status(closed=True)
+    except BaseException:
+        recorder.leave()
+        raise
+    status = recorder.finish()
     trace, reason = beginning.ended()
     _try_dump(env, out_dir / PARAMS_FILE)
     run = MissionRun.of(status, out_dir, ended, time.monotonic() - began)

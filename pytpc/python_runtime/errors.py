@@ -1,0 +1,28 @@
+"""The error of this room, which imports nothing of the others."""
+
+from __future__ import annotations
+
+
+class HookError(Exception):
+    """A command line, a script or static information that the hook cannot use.
+
+    ``str(error)`` is ``path:line: message``, on one line whatever the message holds.
+
+    Args:
+        message: what is wrong, without a final full stop.
+        path: the file or folder that it is about.
+        line: the line in it, counted from 1.
+    """
+
+    def __init__(self, message: str, path: str | None = None, line: int | None = None) -> None:
+        """Keep the parts, for a caller that has errors of its own."""
+        super().__init__(message)
+        self.message = message
+        self.path = path
+        self.line = line
+
+    def __str__(self) -> str:
+        """The line that a user sees."""
+        place = [str(part) for part in (self.path, self.line if self.path else None) if part]
+        text = " ".join(self.message.split())
+        return f"{':'.join(place)}: {text}" if place else text

@@ -1,0 +1,169 @@
+"""What is left of a mission that was recorded: its files, how it went, how far it is.
+
+A recorded mission's folder has ``mission.bag``, ``params.yaml`` (the parameters at the end;
+``params_start.yaml`` right after the launch), ``origins.json`` (where these values came from),
+``run.json`` (how it went) and ``tpc/`` (the files of nodes with the sink ``file``).
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import shutil
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+
+from pytpc.base.atomic import write_atomic
+from pytpc.recording.marks import marks_beside, topic_of_marks
+from pytpc.recording.mission import (
+    EVENTS_FILE,
+    MARKS_FILE,
+    REPORTS_FOLDER,
+    RUN_FILE,
+    SUMMARIES_FILE,
+)
+from pytpc.values.origins import ORIGINS_FILE, START_FILE
+
+BAG_FILE = "mission.bag"
+PARAMS_FILE = "params.yaml"
+MARK_TOPICS = ("/mark_action", "/mark_no_action")
+DEFAULT_TOPICS = ("/rosout", "/threshold_information", *MARK_TOPICS)
+
+
+@dataclass(frozen=True)
+class RecorderStatus:
+    """What the recorder says of itself; times in ns on the graph's clock, at the start and now.
+
+    ``done_ns`` is when the topic that says so said that the mission is done, None before.
+    ``missed_before`` has the messages on /rosout that a node sent before the recorder was
+    connected, ``lost`` those that went missing afterwards.
+    """
+
+    ready: bool = False
+    done_ns: int | None = None
+    closed: bool = False
+    began_ns: int = 0
+    now_ns: int = 0
+    reports: int = 0
+    messages: dict[str, int] = field(default_factory=dict)
+    lost: dict[str, int] = field(default_factory=dict)
+    missed_before: dict[str, int] = field(default_factory=dict)
+
+    @property
+    def done(self) -> bool:
+        """Whether the mission is."""
+        return self.done_ns is not None
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """How far a mission is: seconds of the graph's clock and of the wall, reports and marks."""
+
+    sim_s: float
+    wall_s: float
+    reports: int
+    marks: int
+
+
+@dataclass(frozen=True, slots=True)
+class MissionRun:
+    """A mission that was recorded.
+
+    ``ended`` is ``done``, ``ended`` (roslaunch did, as it does when a required node ends),
+    ``timeout`` or ``interrupted``. ``sim_s`` is how long it took on the
+    graph's clock, ``wall_s`` on the wall's; ``done_ns`` is when on the former it was done, None
+    where nobody said so. ``lost`` has for each node the messages on /rosout that
+    did not reach the bag, ``missed_before`` those from before the recorder was connected to it.
+    """
+
+    bag: Path
+    params: Path
+    ended: str
+    sim_s: float
+    wall_s: float
+    reports: int
+    messages: dict[str, int]
+    lost: dict[str, int]
+    missed_before: dict[str, int]
+    done_ns: int | None = None
+
+    @classmethod
+    def of(cls, status: RecorderStatus, out_dir: Path, ended: str, wall_s: float) -> MissionRun:
+        """The run whose recorder ended with ``status``."""
+        return cls(
+            bag=out_dir / BAG_FILE,
+            params=out_dir / PARAMS_FILE,
+            ended=ended,
+            sim_s=(status.now_ns - status.began_ns) / 1e9,
+            wall_s=wall_s,
+            reports=status.reports,
+            messages=status.messages,
+            lost=status.lost,
+            missed_before=status.missed_before,
+            done_ns=status.done_ns,
+        )
+
+    @property
+    def marks(self) -> int:
+        """Marks of all observers."""
+        return marks_of(self.messages)
+
+
+def marks_of(messages: Mapping[str, int]) -> int:
+    """How many of the messages by topic are marks."""
+    return sum(count for topic, count in messages.items() if topic_of_marks(topic) is not None)
+
+
+def clear_earlier(out_dir: Path) -> None:
+    """Take away an earlier mission's results: they would be read as if they were of the next one.
+
+    Marks that a person made on its bag are not lost: their file gets the ending ``.old``.
+    """
+    for name in (
+        BAG_FILE,
+        PARAMS_FILE,
+        START_FILE,
+        ORIGINS_FILE,
+        RUN_FILE,
+        EVENTS_FILE,
+        SUMMARIES_FILE,
+        MARKS_FILE,
+    ):
+        (out_dir / name).unlink(missing_ok=True)
+    shutil.rmtree(out_dir / REPORTS_FOLDER, ignore_errors=True)
+    marks = marks_beside(out_dir / BAG_FILE)
+    with contextlib.suppress(FileNotFoundError):
+        marks.replace(marks.with_name(f"{marks.name}.old"))
+
+
+def save_run(run: MissionRun, launch: Path | None, args: Mapping[str, str], path: Path) -> None:
+    """Write run.json: the fields of ``run``, the launch file, if any, and its arguments.
+
+    Raises:
+        TpcError: the file cannot be written.
+    """
+    document = {
+        "schema": 1,
+        "launch": None if launch is None else str(launch.absolute()),
+        "args": dict(sorted(args.items())),
+        **asdict(run),
+        "bag": run.bag.name,
+        "params": run.params.name,
+    }
+    write_atomic(path, json.dumps(document, indent=1).encode() + b"\n")
+
+
+def read_status(path: Path) -> RecorderStatus | None:
+    """What the recorder last said of itself; None where it has not said anything."""
+    try:
+        return RecorderStatus(**json.loads(path.read_text(encoding="utf-8")))
+    except FileNotFoundError:
+        return None
+
+
+def save_status(status: RecorderStatus, path: Path) -> None:
+    """Replace the status file; no reader ever sees a half of it."""
+    beside = path.with_name(path.name + ".new")
+    beside.write_text(json.dumps(asdict(status)), encoding="utf-8")
+    beside.replace(path)

@@ -1,0 +1,218 @@
+"""XML-RPC in ROS 1: calls of the master and of other nodes, and the server for their calls.
+
+Protocols: http://wiki.ros.org/ROS/Master_API, http://wiki.ros.org/ROS/Slave_API.
+"""
+
+from __future__ import annotations
+
+import socket
+import threading
+import xmlrpc.client
+from collections.abc import Mapping
+from http.client import HTTPException
+from typing import NamedTuple
+from urllib.parse import urlsplit
+from xmlrpc.server import SimpleXMLRPCRequestHandler, SimpleXMLRPCServer
+
+from pytpc.base.errors import RunError
+
+DEFAULT_URI = "http://localhost:11311"
+# A number over 32 bits is an OverflowError, a URI of another scheme a plain OSError.
+CALL_ERRORS = (OSError, HTTPException, xmlrpc.client.Error, ValueError, OverflowError)
+_PATIENCE_S = 5.0
+
+Names = dict[str, list[str]]
+
+
+def uri_of(env: Mapping[str, str]) -> str:
+    """URI of the ROS master."""
+    return env.get("ROS_MASTER_URI") or DEFAULT_URI
+
+
+def own_host(env: Mapping[str, str], master: str) -> str:
+    """The address at which the graph of ``master`` reaches this machine, as ROS finds it.
+
+    It is ROS_HOSTNAME or ROS_IP, else the address from which the master is reached.
+    """
+    for name in ("ROS_HOSTNAME", "ROS_IP"):
+        if env.get(name):
+            return env[name]
+    parts = urlsplit(master)
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            # No packet is sent: this only asks for the route.
+            probe.connect((parts.hostname or "localhost", parts.port or 11311))
+            address: str = probe.getsockname()[0]
+        except OSError:
+            return "127.0.0.1"
+    return address
+
+
+def call(uri: str, method: str, *arguments: object) -> object:
+    """Call a method of the master or slave API, which answers code, message and value.
+
+    Returns:
+        The value.
+
+    Raises:
+        CALL_ERRORS: nobody answers, or the code is not 1.
+    """
+    proxy = xmlrpc.client.ServerProxy(uri, transport=_PatientTransport())
+    try:
+        answer = getattr(proxy, method)(*arguments)
+    finally:
+        proxy("close")()
+    if not isinstance(answer, list) or len(answer) != 3 or answer[0] != 1:
+        raise xmlrpc.client.Fault(0, str(answer))
+    return answer[2]
+
+
+def reason_of(error: Exception) -> str:
+    """What one of ``CALL_ERRORS`` says, in a few words."""
+    if isinstance(error, xmlrpc.client.Fault):
+        return error.faultString
+    if isinstance(error, OSError) and error.strerror:
+        return error.strerror
+    return str(error) or type(error).__name__
+
+
+class SystemState(NamedTuple):
+    """Topic or service -> the nodes that publish, subscribe to, or offer it."""
+
+    publishers: Names
+    subscribers: Names
+    services: Names
+
+    @property
+    def nodes(self) -> set[str]:
+        """The names of all nodes."""
+        return {node for part in self for names in part.values() for node in names}
+
+
+class Master:
+    """The ROS master, as one node calls it.
+
+    Args:
+        uri: of the master.
+        caller: name of the node that calls.
+    """
+
+    def __init__(self, uri: str, caller: str) -> None:
+        """See the class; nothing is asked yet."""
+        self.uri = uri
+        self.caller = caller
+
+    def call(self, method: str, *arguments: object) -> object:
+        """Call a method of the master API.
+
+        Raises:
+            RunError: the master does not answer or refuses.
+        """
+        try:
+            return call(self.uri, method, self.caller, *arguments)
+        except OverflowError as error:
+            raise RunError(
+                f"the parameter server takes whole numbers of 32 bits: {error}"
+            ) from error
+        except xmlrpc.client.Fault as error:
+            raise RunError(
+                f"the ROS master at {self.uri} refuses {method}: {error.faultString}"
+            ) from error
+        except CALL_ERRORS as error:
+            raise RunError(
+                f"the ROS master at {self.uri} does not answer ({method}: {reason_of(error)}); is"
+                " roscore running, and is ROS_MASTER_URI right?"
+            ) from error
+
+    def parameter(self, name: str) -> object:
+        """The value of a parameter, None where it is not set.
+
+        Raises:
+            RunError: the master does not answer.
+        """
+        return self.call("getParam", name) if self.call("hasParam", name) is True else None
+
+    def has_sim_time(self) -> bool:
+        """Whether /clock is the graph's clock.
+
+        Raises:
+            RunError: the master does not answer.
+        """
+        return self.parameter("/use_sim_time") is True
+
+    def state(self) -> SystemState:
+        """Who publishes, subscribes to and offers what; a part in another form is empty.
+
+        Raises:
+            RunError: the master does not answer.
+        """
+        answer = self.call("getSystemState")
+        return SystemState(*(_names(answer, part) for part in range(3)))
+
+    def node_uri(self, node: str) -> str | None:
+        """Where a node's slave API is; None where the master does not know the node.
+
+        Raises:
+            RunError: the master does not answer.
+        """
+        return self._lookup("lookupNode", node)
+
+    def service_uri(self, service: str) -> str | None:
+        """``rosrpc://HOST:PORT`` of a service; None where nobody offers it.
+
+        Raises:
+            RunError: the master does not answer.
+        """
+        return self._lookup("lookupService", service)
+
+    def _lookup(self, method: str, name: str) -> str | None:
+        try:
+            return str(self.call(method, name))
+        except RunError as error:
+            if isinstance(error.__cause__, xmlrpc.client.Fault):
+                return None
+            raise
+
+
+class SlaveServer:
+    """Answers the calls of a node's slave API in a thread of its own.
+
+    Args:
+        host: the address at which the graph reaches this machine.
+        api: its ``_dispatch(method, arguments)`` answers.
+        bind: the address to listen at.
+    """
+
+    def __init__(self, host: str, api: object, bind: str) -> None:
+        """See the class; on return it answers."""
+        self._server = SimpleXMLRPCServer((bind, 0), _Handler, logRequests=False, allow_none=True)
+        self._server.register_instance(api)
+        self.uri = f"http://{host}:{self._server.server_address[1]}/"
+        threading.Thread(target=self._server.serve_forever, args=(0.05,), daemon=True).start()
+
+    def close(self) -> None:
+        """Answer no more calls."""
+        self._server.shutdown()
+        self._server.server_close()
+
+
+class _Handler(SimpleXMLRPCRequestHandler):
+    """ROS posts to any path."""
+
+    rpc_paths = ()
+
+
+class _PatientTransport(xmlrpc.client.Transport):
+    """Gives up on a node that does not answer."""
+
+    def make_connection(self, host: object) -> object:  # type: ignore[override]
+        connection = super().make_connection(host)  # type: ignore[arg-type]
+        connection.timeout = _PATIENCE_S
+        return connection
+
+
+def _names(answer: object, part: int) -> Names:
+    try:
+        return {str(name): [str(node) for node in nodes] for name, nodes in answer[part]}  # type: ignore[index]
+    except (TypeError, ValueError, IndexError, KeyError):
+        return {}

@@ -1,0 +1,48 @@
+"""Taking back what ``pytpc apply`` did to a file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from pytpc.base.errors import InputError
+from pytpc.values.apply import Change, replace_file, undo_change
+from pytpc.values.journal import Entry, Journal
+
+
+def entry_of(journal: Journal, what: str) -> Entry:
+    """The change that is to be taken back.
+
+    Args:
+        journal: of the changes.
+        what: its number, a file of which the last change is meant, or empty for the last of all.
+
+    Raises:
+        InputError: there is none.
+    """
+    entries = journal.entries()
+    if what.isdigit() and not Path(what).exists():
+        meant = [entry for entry in entries if entry.number == int(what)]
+    elif what:
+        real = Path(what).resolve()
+        meant = [entry for entry in entries if entry.path == real]
+    else:
+        meant = entries
+    if not meant:
+        raise InputError(
+            f"no change of {what} is noted" if what else "no change is noted: nothing to take back"
+        )
+    return meant[-1]
+
+
+def take_back_file(entry: Entry, journal: Journal, *, dry_run: bool = False) -> Change:
+    """Take a change of a file back and forget it; what that does to the file.
+
+    Raises:
+        TpcError: the file was changed since.
+    """
+    with journal.held():
+        change = undo_change(entry, journal)
+        if not dry_run:
+            replace_file(change.path, change.after)
+            journal.remove(entry)
+    return change
