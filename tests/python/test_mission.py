@@ -24,7 +24,6 @@ from pytpc.cli.mission_commands import record_command, sink_settings
 from pytpc.diagnosis.ranking.ranking import rank_marks
 from pytpc.ingest import Recording
 from pytpc.recording.marks import Mark
-from pytpc.recording.treatment import Treatment, load_treatment
 from pytpc.ros.attached import record_graph
 from pytpc.ros.graph import GraphProcess, RosGraph
 from pytpc.ros.ros1.recorder import (
@@ -47,6 +46,7 @@ from pytpc.ros.run_mission import (
 )
 from pytpc_evaluation.demo.demo import TreatedMission, failures, result_table
 from pytpc_evaluation.demo.demo_examples import IMAGE_CAPTURE, WATER_SAMPLER, Example
+from pytpc_evaluation.treatment import Treatment, load_treatment
 
 TREATMENTS = [
     (example, path.name)
