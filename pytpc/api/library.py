@@ -31,20 +31,17 @@ from pytpc.diagnosis.suggestion.what_if import what_if as replay
 from pytpc.ingest import Recording
 from pytpc.ingest import read as read_recording
 from pytpc.present.answers import Advices, Diagnosed
-from pytpc.present.notebook import StudyTable, Table
+from pytpc.present.notebook import Table
 from pytpc.present.page.html import MissionReport
 from pytpc.present.page.html import write_report as write_page
+from pytpc.recording.known_change import read_known_change
 from pytpc.recording.marks import Mark, MarkType
-from pytpc.recording.treatment import TREATMENT_FILE, load_treatment
 from pytpc.static.static_info import StaticInfo, read_static
 from pytpc.values.changes import Change
 from pytpc.values.origins import read_origins
-from pytpc_evaluation.stats.missions import load_missions
-from pytpc_evaluation.stats.study import NUMBERS
-from pytpc_evaluation.stats.study import study_tables as tables_of_study
 
-__all__ = ["Advices", "Change", "Diagnosed", "Rankings", "StudyTable", "curves", "diagnose"]
-__all__ += ["load_static", "rank", "read", "study_tables", "suggest", "what_if", "write_report"]
+__all__ = ["Advices", "Change", "Diagnosed", "Rankings", "curves", "diagnose", "load_static"]
+__all__ += ["rank", "read", "suggest", "what_if", "write_report"]
 
 Source = str | os.PathLike[str]
 
@@ -302,28 +299,6 @@ def what_if(
     return replay(recording, static, parameter, value, kind=kind, marks=marks, window_s=window_s)
 
 
-def study_tables(
-    missions: Source | Sequence[Source],
-    static_info: StaticInfo | Source,
-    names: Sequence[str] = tuple(NUMBERS),
-) -> dict[str, StudyTable]:
-    """The tables of a study (6.12 to 6.16 of the thesis), by name.
-
-    Args:
-        missions: folders or files of recorded missions; a folder of them stands for all.
-        static_info: of the build that was recorded.
-        names: which, of ``runtime``, ``confusion``, ``delays``, ``marks`` and ``found``.
-
-    Raises:
-        InputError: a mission cannot be read.
-        KeyError: there is no table of such a name.
-    """
-    given = [missions] if isinstance(missions, str | os.PathLike) else missions
-    found = load_missions([Path(one) for one in given])
-    made = tables_of_study(found, load_static(static_info), names)
-    return {name: StudyTable(table) for name, table in zip(names, made, strict=True)}
-
-
 def write_report(path: Source, *rankings: Rankings, title: str = "Suspected parameters") -> Path:
     """Write the report page of one or several missions: one HTML file that opens offline.
 
@@ -367,11 +342,13 @@ def _for_report(rankings: Rankings) -> MissionReport:
     )
     if source is None:
         return given
-    folder = source if source.is_dir() else source.parent
     # As on the command line: bags of all missions may have one name, their folders have not.
     name = source.absolute().name if source.is_dir() else recording.name
-    known = replace(given, origins=read_origins(source), name=name)
-    if not (folder / TREATMENT_FILE).is_file():
-        return known
-    treatment = load_treatment(folder)
-    return replace(known, treatment=treatment.effect, changed_parameter=treatment.parameter)
+    done = read_known_change(source)
+    return replace(
+        given,
+        origins=read_origins(source),
+        name=name,
+        treatment=done.effect,
+        changed_parameter=done.parameter,
+    )

@@ -21,9 +21,9 @@ from pytpc.base.wording import plain
 SCHEMA_VERSION = 1
 UNIT_SCHEMA = "static_info.schema.json"
 MERGED_SCHEMA = "merged.schema.json"
-SURVEY_SCHEMA = "survey_result.schema.json"
 RULES_SCHEMA = "rules.schema.json"
 PYTHON_RULES_SCHEMA = "python_rules.schema.json"
+_PACKAGE = "pytpc.base"
 _LONGEST_MESSAGE = 160
 # The standard takes 5.0 for an integer; a line or a column must be one that can be counted with.
 _Validator = validators.extend(  # type: ignore[no-untyped-call]
@@ -107,31 +107,35 @@ def check_unit(data: object, path: Path, pointer: str = "") -> dict[str, Any]:
     return data
 
 
-def check_schema(data: object, path: Path, name: str, pointer: str = "") -> None:
+def check_schema(
+    data: object, path: Path, name: str, pointer: str = "", *, package: str = _PACKAGE
+) -> None:
     """See that ``data``, at ``pointer`` in ``path``, is as the schema ``name`` says.
+
+    The schema is the file ``name`` in the folder ``schema`` of ``package``.
 
     Raises:
         InputError: with the JSON pointer of what breaks the schema.
     """
-    fault = best_match(_validator(name).iter_errors(data))
+    fault = best_match(_validator(name, package).iter_errors(data))
     if fault is not None:
         raise InputError(f"{pointer + _pointer(fault) or '/'}: {_shortened(fault.message)}", path)
 
 
 @cache
-def _validator(name: str) -> Draft202012Validator:
-    schema = _schema(name)
+def _validator(name: str, package: str) -> Draft202012Validator:
+    schema = _schema(name, package)
     Draft202012Validator.check_schema(schema)
     # The one schema that another one names.
-    units: Resource[dict[str, Any]] = DRAFT202012.create_resource(_schema(UNIT_SCHEMA))
+    units: Resource[dict[str, Any]] = DRAFT202012.create_resource(_schema(UNIT_SCHEMA, _PACKAGE))
     validator: Draft202012Validator = _Validator(
         schema, registry=Registry().with_resource(UNIT_SCHEMA, units)
     )
     return validator
 
 
-def _schema(name: str) -> dict[str, Any]:
-    text = files("pytpc.base").joinpath("schema", name).read_text("utf-8")
+def _schema(name: str, package: str) -> dict[str, Any]:
+    text = files(package).joinpath("schema", name).read_text("utf-8")
     schema: dict[str, Any] = json.loads(text)
     return schema
 

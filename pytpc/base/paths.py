@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
+import sys
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
@@ -40,13 +41,27 @@ def project_root() -> Path:
     return Path(__file__).resolve().parents[2]
 
 
-def prefix() -> Path:
-    """Where the C++ half is installed: ``$TPC_PREFIX``, else ``build/install`` of the project.
+def is_checkout() -> bool:
+    """True where pytpc runs from the project's own folder, false where it was installed."""
+    return (project_root() / "passes" / "CMakeLists.txt").is_file()
 
-    The folder need not exist.
+
+def prefix() -> Path:
+    """Where the C++ half is installed; the folder need not exist.
+
+    ``$TPC_PREFIX``; else ``build/install`` of a checkout; else Python's own prefix.
     """
     chosen = os.environ.get("TPC_PREFIX")
-    return Path(chosen).absolute() if chosen else project_root() / "build" / "install"
+    if chosen:
+        return Path(chosen).absolute()
+    return project_root() / "build" / "install" if is_checkout() else Path(sys.prefix)
+
+
+def how_to_install() -> str:
+    """What to type where the C++ half is not installed."""
+    if is_checkout():
+        return f"run `make setup` in {project_root()}"
+    return "run `make setup` in a checkout of TPC, then export TPC_PREFIX=CHECKOUT/build/install"
 
 
 def cmake_file() -> Path:
@@ -192,12 +207,11 @@ def _installed(place: str) -> Path:
     path = prefix() / place
     if path.is_file():
         return path
-    command = f"run `make setup` in {project_root()}"
+    command = how_to_install()
     if os.environ.get("TPC_PREFIX"):
-        raise MissingToolError(
-            f"missing, and TPC_PREFIX points here; unset TPC_PREFIX, or {command}", path
-        )
-    raise MissingToolError(f"not built yet; {command}", path)
+        other = f"unset TPC_PREFIX, or {command}" if is_checkout() else command
+        raise MissingToolError(f"missing, and TPC_PREFIX points here; {other}", path)
+    raise MissingToolError(f"TPC's compiler plugins are not installed; {command}", path)
 
 
 def _listed(names: list[str]) -> str:

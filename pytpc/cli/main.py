@@ -45,6 +45,8 @@ SUMMARIES = {
     "watch": ("watch_commands", "Show the suspected parameters while the robot runs; mark."),
 }
 
+_EVALUATION = frozenset({"stats", "study", "survey"})
+
 
 @cache
 def summaries() -> dict[str, tuple[str, str]]:
@@ -74,6 +76,11 @@ class _Commands(click.Group):
             module = f"pytpc.cli.{SUMMARIES[cmd_name][0]}"
         elif cmd_name in summaries():
             module = summaries()[cmd_name][0]
+        elif cmd_name in _EVALUATION:
+            raise TpcError(
+                f"`{cmd_name}` is in the package pytpc-evaluation; in a checkout of TPC:"
+                " pip install ./evaluation"
+            )
         else:
             return super().get_command(ctx, cmd_name)
         commands: list[click.Command] = import_module(module).COMMANDS

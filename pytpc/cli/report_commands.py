@@ -27,7 +27,7 @@ from pytpc.diagnosis.ranking.clocks import two_clocks
 from pytpc.diagnosis.ranking.ranking import Types, rank_marks
 from pytpc.diagnosis.suggestion.declared import declared_in
 from pytpc.present.page.html import CARDS, MissionReport, write_report
-from pytpc.recording.treatment import TREATMENT_FILE, Treatment, load_treatment
+from pytpc.recording.known_change import read_known_change
 from pytpc.static.static_info import StaticInfo
 from pytpc.values.origins import read_origins
 
@@ -96,26 +96,20 @@ def _mission(source: Path, static: StaticInfo, types: Types, window_s: float) ->
     warn_about(recording, static)
     for clock in two_clocks(recording):
         warn(f"{plain(recording.name)}: {plain(clock)}")
-    treatment = _treatment(source)
+    done = read_known_change(source)
     return MissionReport(
         # The bags of all missions have the same name, their folders have not.
         source.absolute().name if source.is_dir() else recording.name,
         recording,
         static,
         rank_marks(recording, static, types=types, window_s=window_s),
-        treatment=treatment.effect if treatment is not None else "",
-        changed_parameter=treatment.parameter if treatment is not None else None,
+        treatment=done.effect,
+        changed_parameter=done.parameter,
         origins=read_origins(source),
         declared=declared_in(static, [source], lambda line: warn(plain(line))),
         window_s=window_s,
         types=types,
     )
-
-
-def _treatment(source: Path) -> Treatment | None:
-    """What was done to the robot, where the mission's folder says so."""
-    here = source if source.is_dir() else source.parent
-    return load_treatment(here) if (here / TREATMENT_FILE).is_file() else None
 
 
 def _json_of(output: Path, missions: list[MissionReport]) -> dict[str, object]:

@@ -8,7 +8,6 @@ from html import escape
 
 from rich.cells import cell_len
 
-from pytpc.base import tables
 from pytpc.base.wording import plain
 
 _GAP = 2
@@ -54,36 +53,6 @@ class Table:
     def _cell(self, tag: str, column: int, text: str) -> str:
         align = "right" if column in self.right else "left"
         return f'<{tag} style="text-align:{align}">{_html(text)}</{tag}>'
-
-
-@dataclass(frozen=True, slots=True)
-class StudyTable:
-    """A table of `pytpc.base.tables` that prints, and shows itself in a notebook."""
-
-    table: tables.Table
-
-    def rows(self) -> list[dict[str, object]]:
-        """The rows with their numbers in full; ``pandas.DataFrame(table.rows())``."""
-        return [dict(row) for row in tables.as_json(self.table)["rows"]]
-
-    def shown(self) -> Table:
-        """The same as a person reads it, with the statistics below."""
-        headings = [f"{column.group} {column.heading}".strip() for column in self.table.columns]
-        rows = [(name, *tables.shown(self.table, cells)) for name, cells in self.table.rows]
-        rows += [
-            (name, *tables.shown(self.table, cells, statistic=True))
-            for name, cells in self.table.summary
-        ]
-        right = frozenset(range(1, len(headings) + 1))
-        return Table((self.table.first, *headings), tuple(rows), right, self.table.title)
-
-    def __str__(self) -> str:
-        """The table as text."""
-        return str(self.shown())
-
-    def _repr_html_(self) -> str:
-        """The table for a notebook, escaped."""
-        return self.shown()._repr_html_()
 
 
 def _html(text: str) -> str:

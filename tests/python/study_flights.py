@@ -9,12 +9,12 @@ from pathlib import Path
 import pytest
 
 from pytpc.base.errors import RunError
-from pytpc.recording.treatment import Treatment, TreatmentType
 from pytpc.ros.mission_run import Progress
 from pytpc_evaluation.demo import demo_examples
 from pytpc_evaluation.demo.demo_examples import Example
 from pytpc_evaluation.study.dataset import Done, load_done, save_done
 from pytpc_evaluation.study.plan import Flight
+from pytpc_evaluation.treatment import Treatment, TreatmentType
 
 PARAMETERS = """\
 world: {wind: 0.1}

@@ -111,6 +111,18 @@ def test_what_was_done_to_the_robot_and_where_values_came_from(files, tmp_path):
     assert "Value set indefault in the code" in text
 
 
+@pytest.mark.parametrize(
+    "document", [[], {"effect": "It lands."}, {"effect": 3, "parameter": None}]
+)
+def test_a_broken_treatment_is_named(files, tmp_path, document):
+    folder, static = files
+    path = folder / "treatment.json"
+    path.write_text(json.dumps(document))
+    result = run("report", folder, "--static", static, "-o", tmp_path / "r.html")
+    assert result.exit_code == 1
+    assert f"{path}: effect has to be a text" in result.stderr
+
+
 def test_types_and_window_are_those_of_rank(files, tmp_path):
     folder, static = files
     page = tmp_path / "r.html"

@@ -12,7 +12,6 @@ from mission_samples import comparison, key, link_unit, static_info
 from rich.console import Console
 
 from pytpc.base.errors import WorkspaceError
-from pytpc.recording.treatment import Treatment
 from pytpc.static.static_info import Comparison, LinkUnit, StaticInfo
 from pytpc_evaluation.demo.demo_examples import (
     IMAGE_CAPTURE,
@@ -21,6 +20,7 @@ from pytpc_evaluation.demo.demo_examples import (
     link_package,
 )
 from pytpc_evaluation.demo.demo_show import can_be_named, tell_found
+from pytpc_evaluation.treatment import Treatment
 
 
 def test_treatment_is_left_out_where_nothing_compares_its_parameter():

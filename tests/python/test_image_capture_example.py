@@ -12,10 +12,10 @@ from pathlib import Path
 import pytest
 import yaml
 
-from pytpc.recording.treatment import Treatment
 from pytpc.values.changes import Change
 from pytpc_evaluation.demo.demo_examples import IMAGE_CAPTURE
 from pytpc_evaluation.study.changes import harmless_changes
+from pytpc_evaluation.treatment import Treatment
 
 PACKAGE = Path(__file__).parents[2] / "examples/image_capture"
 # Which handle a parameter is read by is not looked at here.

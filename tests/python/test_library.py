@@ -11,12 +11,14 @@ import pytest
 from mission_samples import comparison, events, ns, static_info
 
 import pytpc
+import pytpc_evaluation
 from pytpc.api import library
 from pytpc.base.errors import InputError
 from pytpc.diagnosis.suggestion.joining import join_advice
 from pytpc.present.notebook import Table
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
+from pytpc_evaluation.stats import notebook_tables
 
 EXAMPLE = Path(__file__).parents[2] / "examples/recorded_mission"
 BAD = '~a<script>alert("1")</script>\x1b[2J'
@@ -50,6 +52,9 @@ def test_all_names_are_there_and_documented():
         assert getattr(pytpc, name) is getattr(library, name)
         assert getattr(pytpc, name).__doc__
         assert name in dir(pytpc)
+    for name in pytpc_evaluation.__all__:
+        assert getattr(pytpc_evaluation, name) is getattr(notebook_tables, name)
+        assert name in dir(pytpc_evaluation)
     with pytest.raises(AttributeError, match="no_such_name"):
         pytpc.no_such_name  # noqa: B018
 
@@ -127,7 +132,9 @@ def test_paths_do_as_well_as_objects(tmp_path: Path):
     rankings = pytpc.rank(EXAMPLE, str(EXAMPLE / "static.json"), types="doubt")
     assert len(rankings) == 5
     # What was changed in this mission, and at how many marks of which type: treatment.json.
-    table = pytpc.study_tables([EXAMPLE], EXAMPLE / "static.json", ["confusion"])["confusion"]
+    table = pytpc_evaluation.study_tables([EXAMPLE], EXAMPLE / "static.json", ["confusion"])[
+        "confusion"
+    ]
     assert list(table.rows()[0].values()) == ["Treatment Type II", 1, 4]
     assert "Treatment Type II" in table._repr_html_()
     assert "Treatment Type II" in str(table)

@@ -24,7 +24,6 @@ from pytpc.cli.mission_commands import record_command, sink_settings
 from pytpc.diagnosis.ranking.ranking import rank_marks
 from pytpc.ingest import Recording
 from pytpc.recording.marks import Mark
-from pytpc.recording.treatment import Treatment, load_treatment
 from pytpc.ros.mission_run import (
     MissionRun,
     RecorderStatus,
@@ -43,6 +42,7 @@ from pytpc.ros.ros1.recorder import Discovery, Recorder
 from pytpc.ros.ros1.subscriber import Source
 from pytpc_evaluation.demo.demo import TreatedMission, failures, result_table
 from pytpc_evaluation.demo.demo_examples import IMAGE_CAPTURE, WATER_SAMPLER, Example
+from pytpc_evaluation.treatment import Treatment, load_treatment
 
 TREATMENTS = [
     (example, path.name)

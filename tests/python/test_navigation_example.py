@@ -9,8 +9,8 @@ import pytest
 import yaml
 from robot_sources import CPP, CPP_READ, PYTHON, PYTHON_READ, RobotSources, ident, relations
 
-from pytpc.recording.treatment import Treatment
 from pytpc_evaluation.demo.demo_examples import NAVIGATION
+from pytpc_evaluation.treatment import Treatment
 
 PACKAGE = NAVIGATION.folder
 # Angles and lengths are compared in rad and m, and named so.

@@ -15,11 +15,11 @@ from pytpc.ingest import Recording
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark
 from pytpc.recording.summaries import Summaries, Summary, SummaryBuilder
-from pytpc.recording.treatment import Treatment
 from pytpc_evaluation.stats.delays import error_start
 from pytpc_evaluation.stats.missions import StudyMission
 from pytpc_evaluation.stats.runtime import runtime_statistics
-from pytpc_evaluation.stats.study import study_tables
+from pytpc_evaluation.stats.thesis_tables import thesis_tables
+from pytpc_evaluation.treatment import Treatment
 
 STATIC = static_info(comparison(0, "~limit"), comparison(1, "~other"))
 RAISED = Treatment("t", "type2", "~limit", "/node", 3.0, 9.0, {}, "", Path("p.yaml"))
@@ -110,7 +110,7 @@ def test_all_tables_of_a_mission_with_summaries():
     rows = [(at, 0, 5 if at > 3000 else 1) for at in range(100, 10_000, 100)]
     whole = replace(mission(rows, 9.0), marks=(Mark(5 * SECOND, "II", "a"),))
     tables = {
-        t.label: t for t in study_tables([StudyMission("m", with_edges(whole), RAISED)], STATIC)
+        t.label: t for t in thesis_tables([StudyMission("m", with_edges(whole), RAISED)], STATIC)
     }
     # 99 evaluations; the first above 3 is at 3.1 s, in the second that begins with 3.0 s.
     assert tables["runtime"].rows[0][1][1] == 99

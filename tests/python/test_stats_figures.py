@@ -16,7 +16,6 @@ from pytpc.diagnosis.scores.curves import rank_curves
 from pytpc.ingest import Recording
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark
-from pytpc.recording.treatment import Treatment
 from pytpc_evaluation.stats.bars import runtime_bars
 from pytpc_evaluation.stats.curves import NAMED, mission_figure
 from pytpc_evaluation.stats.drawing import COLOURS, CULPRIT, save, style
@@ -24,6 +23,7 @@ from pytpc_evaluation.stats.figures import draw_study
 from pytpc_evaluation.stats.missions import StudyMission
 from pytpc_evaluation.stats.runtime import RuntimeRow, RuntimeStatistics
 from pytpc_evaluation.stats.states import Phases, RobotState, Series
+from pytpc_evaluation.treatment import Treatment
 
 STATIC = static_info(*(comparison(n, f"~p{n}") for n in range(12)))
 

@@ -14,13 +14,13 @@ from pytpc.ingest import Recording, save_recording
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark
 from pytpc.recording.summaries import Summary, SummaryBuilder
-from pytpc.recording.treatment import Treatment, TreatmentType
 from pytpc.static.link_unit import Transform
 from pytpc_evaluation.stats.delays import delays_of, error_start
 from pytpc_evaluation.stats.found import found_in, found_table
 from pytpc_evaluation.stats.marked import MarksOfTrial, confusion_table, marks_table
 from pytpc_evaluation.stats.missions import StudyMission, Trial, in_order, load_missions, users_of
-from pytpc_evaluation.stats.study import NUMBERS, study_complaints, study_tables
+from pytpc_evaluation.stats.thesis_tables import NUMBERS, study_complaints, thesis_tables
+from pytpc_evaluation.treatment import Treatment, TreatmentType
 
 # 0 is the changed one, 1 and 2 are others; 3 is a flag; 4 compares with twice its parameter.
 STATIC = static_info(
@@ -286,10 +286,10 @@ def test_all_tables_of_odd_missions():
         [mission((), MARKS, treatment("type2"))],
         [replace(mission((), MARKS), recording=Recording("e", Events.empty(), (), 5, 5))],
     ):
-        tables = study_tables(odd, STATIC)
+        tables = thesis_tables(odd, STATIC)
         assert [table.label for table in tables] == list(NUMBERS)
     # Marks and no reports: the changed parameter has no score at any of them.
-    (table,) = study_tables([mission((), MARKS, treatment("type2"))], STATIC, ["found"])
+    (table,) = thesis_tables([mission((), MARKS, treatment("type2"))], STATIC, ["found"])
     assert table.rows[0][1] == (2, 0.0, pytest.approx(9999.9), 3, 0.0, pytest.approx(9999.9))
 
 

@@ -12,13 +12,13 @@ import pyarrow.parquet as pq
 import pytest
 from study_pages import row_of, rows_of
 
-from pytpc.recording.treatment import load_treatment
 from pytpc_evaluation.study.report.confidence import Accusations, calibration, false_accusations
 from pytpc_evaluation.study.report.drawings import draw_results
 from pytpc_evaluation.study.report.making import make_report
 from pytpc_evaluation.study.report.parts import Part
 from pytpc_evaluation.study.report.positions import Position, read_positions
 from pytpc_evaluation.study.report.systems import nearness
+from pytpc_evaluation.treatment import load_treatment
 
 ROOT = Path(__file__).parents[2]
 OPEN = "interval holds the target"

@@ -317,8 +317,9 @@ def test_what_is_said_about_code_is_no_code(package):
 def test_the_rankings_of_users_are_the_code_of_the_methods():
     assert "pytpc.diagnosis.ranking.other_values" in modules_used(METHODS["tpc"].__module__)
     assert "pytpc.diagnosis.ranking.ranking" in modules_used(METHODS["thesis"].__module__)
-    assert not any(name.startswith("pytpc.cli") for name in
-    modules_used("pytpc_evaluation.study.case"))
+    assert not any(
+        name.startswith("pytpc.cli") for name in modules_used("pytpc_evaluation.study.case")
+    )
 
 
 def test_what_cannot_be_ranked_is_said(own_study, tmp_path):

@@ -12,9 +12,9 @@ from statistics import median
 import pytest
 import yaml
 
-from pytpc.recording.treatment import Treatment
 from pytpc_evaluation.demo.demo_examples import WATER_SAMPLER
 from pytpc_evaluation.study.changes import harmless_changes
+from pytpc_evaluation.treatment import Treatment
 
 PACKAGE = WATER_SAMPLER.folder
 CPP = json.loads((PACKAGE / "expected_tpcs.json").read_text())

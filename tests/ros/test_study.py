@@ -15,13 +15,13 @@ from pytpc.base.paths import cmake_file, log_library, plugin
 from pytpc.cli.main import main
 from pytpc.diagnosis.ranking.ranking import unknown_keys
 from pytpc.ingest.reading import read
-from pytpc.recording.treatment import load_treatment
 from pytpc.static.static_info import StaticInfo
 from pytpc.values.changes import Change
 from pytpc.values.recording import read_parameters
 from pytpc_evaluation.demo.demo_examples import WATER_SAMPLER
 from pytpc_evaluation.demo.demo_show import Built
 from pytpc_evaluation.study.changes import DECOYS
+from pytpc_evaluation.treatment import load_treatment
 
 # Of simulated time; a machine that cannot keep up is slower, and flies the same.
 RATE = "24"

@@ -21,7 +21,7 @@ from pytpc.cli.options import JSON, PATH, STATIC, WINDOW, recording_of
 from pytpc.cli.sources import static_of
 from pytpc.static.static_info import StaticInfo
 from pytpc_evaluation.stats.missions import StudyMission, load_missions
-from pytpc_evaluation.stats.study import NUMBERS, study_complaints, study_tables
+from pytpc_evaluation.stats.thesis_tables import NUMBERS, study_complaints, thesis_tables
 
 _SUFFIXES = {"text": ".txt", "csv": ".csv", "markdown": ".md", "latex": ".tex", "json": ".json"}
 _FIGURE_FORMATS = ("png", "svg", "pdf")
@@ -110,7 +110,7 @@ def stats_command(  # noqa: PLR0917
     missions = load_missions(paths, treatments, recording_of)
     _check(missions, static)
     with progress("working out tables") as advance:
-        tables = study_tables(missions, static, chosen, advance, window_s=window_s)
+        tables = thesis_tables(missions, static, chosen, advance, window_s=window_s)
     if output is None:
         _print(tables, form)
     else:

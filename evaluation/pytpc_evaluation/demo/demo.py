@@ -21,11 +21,11 @@ from pytpc.ingest import Recording, read_bag, save_recording
 from pytpc.present.page.html import MissionReport
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import EVENTS_FILE, MARKS_FILE
-from pytpc.recording.treatment import Treatment, save_treatment
 from pytpc.ros.mission_run import MissionRun, Progress
 from pytpc.ros.ros1.launch_mission import run_mission
 from pytpc.static.static_info import StaticInfo
 from pytpc_evaluation.demo.demo_examples import Example
+from pytpc_evaluation.treatment import Treatment, save_treatment
 
 FIRST = 3
 """The changed parameter has to be among so many first suspects."""

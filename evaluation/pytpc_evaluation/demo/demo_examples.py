@@ -8,7 +8,7 @@ from pathlib import Path
 
 from pytpc.base.errors import WorkspaceError
 from pytpc.base.paths import project_root
-from pytpc.recording.treatment import TREATMENT_FILE, Treatment, TreatmentType, load_treatment
+from pytpc_evaluation.treatment import TREATMENT_FILE, Treatment, TreatmentType, load_treatment
 
 SHARED_PACKAGE = project_root() / "examples" / "simulated_world"
 """The catkin package that the robots' simulators and observers share."""

@@ -21,12 +21,12 @@ from pytpc.build.build import build_workspace, workspace_env
 from pytpc.cli.console import progress
 from pytpc.cli.mission_commands import mission_progress
 from pytpc.present.page.html import write_report
-from pytpc.recording.treatment import Treatment
 from pytpc.ros.python_env import mission_env
 from pytpc.static.static_info import StaticInfo
 from pytpc.workspace.colcon import BuildError
 from pytpc_evaluation.demo.demo import TreatedMission, failures, result_table, run_treatment
 from pytpc_evaluation.demo.demo_examples import Example, link_package
+from pytpc_evaluation.treatment import Treatment
 
 TIMEOUT_S = 150.0
 _PIPED_WIDTH = 160

@@ -24,11 +24,11 @@ from pytpc.diagnosis.thresholds.outcomes import outcomes
 from pytpc.recording.events import Bools, Events, Floats
 from pytpc.recording.mission import Recording
 from pytpc.recording.summaries import Summaries
-from pytpc.recording.treatment import Treatment
 from pytpc.static.arithmetic import evaluate
 from pytpc.static.parameters import parameter_name, same_parameter
 from pytpc.static.static_info import Comparison, StaticInfo
 from pytpc_evaluation.stats.missions import StudyMission, Trial, user_of
+from pytpc_evaluation.treatment import Treatment
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from pytpc.base.tables import Cell, Column, Table, statistics
 from pytpc.base.wording import many
 from pytpc.recording.marks import MARK_TYPES, MarkType
-from pytpc.recording.treatment import TreatmentType
 from pytpc_evaluation.stats.missions import Trial, user_of
 from pytpc_evaluation.stats.runtime import SUMMARY
+from pytpc_evaluation.treatment import TreatmentType
 
 NO_TYPE = "No type"
 _KINDS: Sequence[MarkType | None] = (*MARK_TYPES, None)

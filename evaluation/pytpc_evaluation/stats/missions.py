@@ -17,7 +17,7 @@ from pytpc.base.errors import InputError
 from pytpc.ingest.reading import is_ingested, read
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import RUN_FILE, Recording
-from pytpc.recording.treatment import TREATMENT_FILE, Treatment, TreatmentType, load_treatment
+from pytpc_evaluation.treatment import TREATMENT_FILE, Treatment, TreatmentType, load_treatment
 
 UNNAMED = "unnamed"
 """The user whose marks have no namespace."""

@@ -16,10 +16,10 @@ from pathlib import Path
 from pytpc.base.atomic import write_atomic
 from pytpc.base.checked_json import parse_json
 from pytpc.base.errors import InputError
-from pytpc.recording.treatment import Treatment
 from pytpc.values.changes import Change
 from pytpc.values.recording import read_parameters
 from pytpc_evaluation.demo.demo_examples import Example
+from pytpc_evaluation.treatment import Treatment
 
 CHANGES_FILE = "changes.json"
 DECOYS = 8

@@ -21,7 +21,6 @@ from pytpc.recording.mission import (
     save_recording,
     write_marks,
 )
-from pytpc.recording.treatment import Treatment, save_treatment
 from pytpc.ros.mission_run import Progress
 from pytpc.ros.ros1.launch_mission import run_mission
 from pytpc_evaluation.study.changes import CHANGES_FILE, save_changes
@@ -40,6 +39,7 @@ from pytpc_evaluation.study.digest import flight_digest, marks_digest
 from pytpc_evaluation.study.people import cut_sights, mark, read_marked, see
 from pytpc_evaluation.study.plan import Flight, overlay_text
 from pytpc_evaluation.study.system import System
+from pytpc_evaluation.treatment import Treatment, save_treatment
 
 SETTLE_S = 15.0
 TIMEOUT_S = 300.0

@@ -14,12 +14,12 @@ from pathlib import Path
 from typing import Literal
 
 from pytpc.base.errors import InputError
-from pytpc.recording.treatment import Treatment
 from pytpc.values.changes import Change
 from pytpc.values.recording import read_parameters
 from pytpc.values.scalars import number_text
 from pytpc_evaluation.demo.demo_examples import EXAMPLES, Example
 from pytpc_evaluation.study.changes import drawn_changes, harmless_changes
+from pytpc_evaluation.treatment import Treatment
 
 Half = Literal["tuning", "held-back"]
 Kind = Literal["mission", "reference", "suggested"]

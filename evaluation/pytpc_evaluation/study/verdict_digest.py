@@ -18,10 +18,10 @@ import pytpc
 import pytpc_evaluation
 from pytpc.base.errors import InputError
 from pytpc.recording.mission import EVENTS_FILE, MARKS_FILE, SUMMARIES_FILE
-from pytpc.recording.treatment import TREATMENT_FILE
 from pytpc_evaluation.study.case import Method
 from pytpc_evaluation.study.changes import CHANGES_FILE
 from pytpc_evaluation.study.dataset import MARKED_FILE
+from pytpc_evaluation.treatment import TREATMENT_FILE
 
 _PACKAGES = {package.__name__: Path(package.__path__[0]) for package in (pytpc, pytpc_evaluation)}
 _JUDGES = ("pytpc_evaluation.study.data", "pytpc_evaluation.study.judge")

@@ -13,7 +13,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from pytpc.base.checked_json import SURVEY_SCHEMA, check_schema
+from pytpc.base.checked_json import check_schema
 from pytpc.base.errors import InputError
 from pytpc.static.static_info import LinkUnit
 from pytpc_evaluation.survey.source_lines import LineCount, SourceLines
@@ -152,7 +152,7 @@ class TreeResult:
         """
         if not isinstance(data, dict) or data.get("version") != RESULT_VERSION:
             raise InputError("not a survey's result of this version", path)
-        check_schema(data, path, SURVEY_SCHEMA)
+        check_schema(data, path, "survey_result.schema.json", package="pytpc_evaluation.survey")
         found, lines = data["found"], data["lines"]
         return cls(
             name=data["name"],

@@ -11,7 +11,16 @@ import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from pytpc.base.paths import BUILD_TOOLS, ROS_PREFIXES, SYSTEM_PATH, prefix, ros_places, search_path
+from pytpc.base.paths import (
+    BUILD_TOOLS,
+    ROS_PREFIXES,
+    SYSTEM_PATH,
+    how_to_install,
+    is_checkout,
+    prefix,
+    ros_places,
+    search_path,
+)
 from pytpc.workspace.doctor.machine import COLCON_EXTENSIONS, MODULES, Machine, Program
 
 _PARTS = (
@@ -80,6 +89,7 @@ def look_at_machine(folder: Path) -> Machine:
         disk_folder=disk,
         disk_free=shutil.disk_usage(disk).free,
         memory_free=_free_memory(Path("/proc/meminfo")),
+        setup="make setup" if is_checkout() else how_to_install(),
         ccache=ccache_settings(_said(["ccache", "--show-config"])),
     )
 

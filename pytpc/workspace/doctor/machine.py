@@ -48,7 +48,7 @@ class Machine:
     versions of what /usr/bin/python3 can import, ``extensions`` those of colcon that it has;
     ``missing_parts`` files of TPC's installed half that are not there; ``trial`` what went wrong
     when a small program was built with it; ``ros`` names and prefixes of the ROS packages that a
-    build needs; spaces are in bytes.
+    build needs; spaces are in bytes; ``setup`` is what installs TPC's own half.
     """
 
     programs: Mapping[str, Program] = field(default_factory=dict)
@@ -64,6 +64,7 @@ class Machine:
     disk_folder: Path = Path("/")
     disk_free: int = 1 << 40
     memory_free: int = 1 << 40
+    setup: str = "make setup"
     ccache: Mapping[str, str] = field(default_factory=dict)
 
 
@@ -136,13 +137,13 @@ def _installed(machine: Machine) -> Iterator[Finding]:
         yield error(
             f"the installed part of TPC is incomplete: {', '.join(machine.missing_parts)} missing",
             machine.prefix,
-            "unset TPC_PREFIX" if "TPC_PREFIX" in machine.environment else "make setup",
+            "unset TPC_PREFIX" if "TPC_PREFIX" in machine.environment else machine.setup,
         )
     elif machine.trial is not None:
         yield error(
             f"a small program cannot be built with TPC: {machine.trial}",
             machine.prefix,
-            "make setup",
+            machine.setup,
         )
 
 

@@ -16,7 +16,6 @@ from pytpc.base.checked_json import parse_json
 from pytpc.base.errors import InputError, TpcError
 from pytpc.base.wording import many
 from pytpc.recording.marks import Mark
-from pytpc.recording.treatment import Treatment
 from pytpc.static.parameters import parameter_name, same_parameter
 from pytpc.static.static_info import StaticInfo
 from pytpc.values.changes import Change, read_changes
@@ -32,6 +31,7 @@ from pytpc_evaluation.study.dataset import (
 )
 from pytpc_evaluation.study.plan import Half
 from pytpc_evaluation.survey.source_lines import count_lines
+from pytpc_evaluation.treatment import Treatment
 
 HALVES: tuple[Half, ...] = ("held-back", "tuning")
 UNKNOWN = "unknown"

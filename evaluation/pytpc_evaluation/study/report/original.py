@@ -13,7 +13,6 @@ from statistics import fmean, median
 from pytpc.base.tables import Cell, Column, Table
 from pytpc.diagnosis.scores.scores import NONE
 from pytpc.recording.marks import MarkType
-from pytpc.recording.treatment import TreatmentType
 from pytpc_evaluation.stats.delays import DelaysOfTrial, delays_of, delays_table
 from pytpc_evaluation.stats.found import FoundAtMark, FoundInTrial, found_in, found_table
 from pytpc_evaluation.stats.marked import MarksOfTrial, confusion_table, marks_table
@@ -21,6 +20,7 @@ from pytpc_evaluation.stats.missions import Trial, in_order, users_of
 from pytpc_evaluation.stats.runtime import RuntimeStatistics, runtime_statistics, runtime_table
 from pytpc_evaluation.study.report import thesis_figures as thesis
 from pytpc_evaluation.study.report.folder import System
+from pytpc_evaluation.treatment import TreatmentType
 
 TOP_ROWS = 8
 _RIGHT: dict[str, MarkType] = {"type1": "I", "type2": "II"}

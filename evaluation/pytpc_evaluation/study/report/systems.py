@@ -7,10 +7,10 @@ from collections.abc import Sequence
 
 from pytpc.base.tables import Cell, Column, Table
 from pytpc.base.wording import show
-from pytpc.recording.treatment import Treatment
 from pytpc.static.static_info import StaticInfo
 from pytpc_evaluation.stats.runtime import runtime_statistics
 from pytpc_evaluation.study.report.folder import Flight, System
+from pytpc_evaluation.treatment import Treatment
 
 NEAR = 0.5
 """A treatment is near the tipping point if it goes less than this part of the way again."""

@@ -30,7 +30,7 @@ NUMBERS: Mapping[str, str] = {
 """The tables, by name, and which of the thesis each is."""
 
 
-def study_tables(
+def thesis_tables(
     missions: Sequence[StudyMission],
     static_info: StaticInfo,
     names: Sequence[str] = tuple(NUMBERS),
