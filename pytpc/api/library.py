@@ -18,8 +18,9 @@ from typing import overload
 
 from pytpc.base.errors import InputError
 from pytpc.base.wording import Number
+from pytpc.diagnosis.question import PLAIN, Question, Types
 from pytpc.diagnosis.ranking.blame import blame
-from pytpc.diagnosis.ranking.ranking import MarkRanking, Types, rank_marks
+from pytpc.diagnosis.ranking.ranking import MarkRanking, rank_marks
 from pytpc.diagnosis.scores.curves import STEP_S, RankCurves, rank_curves
 from pytpc.diagnosis.scores.scores import WINDOW_S
 from pytpc.diagnosis.suggestion.advise import advise
@@ -32,7 +33,7 @@ from pytpc.ingest import Recording
 from pytpc.ingest import read as read_recording
 from pytpc.present.answers import Advices, Diagnosed
 from pytpc.present.notebook import Table
-from pytpc.present.page.html import MissionReport
+from pytpc.present.page.html import CARDS, MissionReport
 from pytpc.present.page.html import write_report as write_page
 from pytpc.recording.known_change import read_known_change
 from pytpc.recording.marks import Mark, MarkType
@@ -54,8 +55,8 @@ class Rankings(Sequence[MarkRanking]):
 
     A sequence of `pytpc.diagnosis.ranking.ranking.MarkRanking`; ``recording`` and ``static_info``
     are what was ranked, ``source`` where the mission was read from, if it was ranked by its path:
-    what else is in its folder is in the report then. ``types`` and ``window_s`` are what it was
-    ranked with, and what is made of it uses them, too. ``table`` has the first suspects of each
+    what else is in its folder is in the report then. ``question`` is what it was ranked with, and
+    what is made of it uses it, too. ``table`` has the first suspects of each
     mark.
     """
 
@@ -63,8 +64,7 @@ class Rankings(Sequence[MarkRanking]):
     recording: Recording
     static_info: StaticInfo
     source: Path | None = None
-    types: Types = "believe"
-    window_s: float = WINDOW_S
+    question: Question = PLAIN
 
     def __len__(self) -> int:
         """The number of marks."""
@@ -180,9 +180,10 @@ def rank(
         InputError: the mission has no marks, or something cannot be read.
     """
     recording, static = _marked(mission), load_static(static_info)
-    found = rank_marks(recording, static, types=types, window_s=window_s)
+    question = Question(types=types, window_s=window_s)
+    found = rank_marks(recording, static, question)
     source = None if isinstance(mission, Recording) else Path(mission)
-    return Rankings(tuple(found), recording, static, source, types, window_s)
+    return Rankings(tuple(found), recording, static, source, question)
 
 
 def diagnose(
@@ -211,12 +212,16 @@ def diagnose(
     recording, static = _marked(mission), load_static(static_info)
     clean = None if reference is None else read(reference)
     known = [(one.parameter, one.old, one.new) for one in changes]
-    found = blame(recording, static, types=types, reference=clean, changes=known)
     places = [] if isinstance(mission, Recording) else [Path(mission)]
-    declared = declared_in(static, places)
-    advice = advise_blamed(
-        found, recording, static, top=top, declared=declared, reference=clean, changes=known
+    question = Question(
+        types=types,
+        top=top,
+        reference=clean,
+        changes=known,
+        declared=declared_in(static, places),
     )
+    found = blame(recording, static, question)
+    advice = advise_blamed(found, recording, static, question)
     return Diagnosed(found, tuple(advice))
 
 
@@ -233,7 +238,7 @@ def curves(
         InputError: something cannot be read.
     """
     static = load_static(static_info)
-    return rank_curves(read(mission), static, step_s=step_s, window_s=window_s)
+    return rank_curves(read(mission), static, Question(window_s=window_s), step_s=step_s)
 
 
 def suggest(
@@ -260,14 +265,12 @@ def suggest(
     """
     if not 1 <= mark <= len(rankings):
         raise IndexError(f"mark {mark} of {len(rankings)}")
-    recording, static, window_s = rankings.recording, rankings.static_info, rankings.window_s
+    recording, static = rankings.recording, rankings.static_info
     if declared is None:
         declared = _declared(rankings)
-    lists = [
-        advise(recording, static, ranking, top=top, declared=declared, window_s=window_s)
-        for ranking in rankings
-    ]
-    found = with_remedies(recording, static, list(rankings), lists, window_s=window_s)
+    question = replace(rankings.question, top=top, declared=declared)
+    lists = [advise(recording, static, ranking, question) for ranking in rankings]
+    found = with_remedies(recording, static, list(rankings), lists, question)
     return Advices(tuple(found[mark - 1]), rankings[mark - 1])
 
 
@@ -296,7 +299,8 @@ def what_if(
         InputError: no comparison is with that parameter, or something cannot be read.
     """
     recording, static = read(mission), load_static(static_info)
-    return replay(recording, static, parameter, value, kind=kind, marks=marks, window_s=window_s)
+    question = Question(kind=kind, marks=marks, window_s=window_s)
+    return replay(recording, static, parameter, value, question)
 
 
 def write_report(path: Source, *rankings: Rankings, title: str = "Suspected parameters") -> Path:
@@ -336,9 +340,7 @@ def _for_report(rankings: Rankings) -> MissionReport:
         recording,
         rankings.static_info,
         list(rankings.rankings),
-        declared=_declared(rankings),
-        window_s=rankings.window_s,
-        types=rankings.types,
+        question=replace(rankings.question, top=CARDS, declared=_declared(rankings)),
     )
     if source is None:
         return given

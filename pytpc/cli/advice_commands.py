@@ -27,8 +27,9 @@ from pytpc.cli.options import (
     warn_about,
 )
 from pytpc.cli.sources import static_of
+from pytpc.diagnosis.question import Question, Types
 from pytpc.diagnosis.ranking.blame import Blame, blame
-from pytpc.diagnosis.ranking.ranking import MarkRanking, Types, rank_marks
+from pytpc.diagnosis.ranking.ranking import MarkRanking, rank_marks
 from pytpc.diagnosis.suggestion.blamed import BlamedAdvice, advise_blamed
 from pytpc.diagnosis.suggestion.declared import Declared, declared_in
 from pytpc.diagnosis.suggestion.joining import JoinedAdvice, MarkGroup, join_advice
@@ -110,23 +111,19 @@ def suggest_command(
     if value is not None and parameter is not None:
         _show_value(found, static, parameter, value, window_s=window_s, as_json=as_json)
         return
-    rankings = rank_marks(found, static, types=types, window_s=window_s)
+    question = Question(types, window_s, top)
+    rankings = rank_marks(found, static, question)
     if parameter is not None:
         rankings = _only(rankings, static, parameter)
     clean = None if reference is None else _clean(reference, static)
     declared = _declared(static, recording)
     with progress("replaying the mission") as advance:
         advance(0, len(rankings))
-        together = blame(found, static, types=types, reference=clean, window_s=window_s)
+        question = replace(question, declared=declared, reference=clean, flown=flown)
+        together = blame(found, static, question)
         asked = together if parameter is None else together.only(parameter)
-        first = advise_blamed(
-            asked, found, static, top=1, declared=declared, reference=clean, flown=flown,
-            window_s=window_s,
-        )  # fmt: skip
-        groups = join_advice(
-            found, static, rankings, top=top, declared=declared,
-            reference=clean, flown=flown, window_s=window_s,
-        )  # fmt: skip
+        first = advise_blamed(asked, found, static, replace(question, top=1))
+        groups = join_advice(found, static, rankings, question)
     if as_json:
         document = {
             "mission": found.name,
@@ -217,7 +214,8 @@ def _show_value(
         marks = [mark for mark in recording.marks if mark.type == kind]
         answers.append(
             (kind, what_if(
-                recording, static, parameter, value, kind=kind, marks=marks, window_s=window_s
+                recording, static, parameter, value,
+                Question(kind=kind, marks=marks, window_s=window_s),
             ))
         )  # fmt: skip
     if as_json:

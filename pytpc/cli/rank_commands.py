@@ -28,9 +28,10 @@ from pytpc.cli.options import (
 )
 from pytpc.cli.rank_together import TOGETHER, Judge, Score
 from pytpc.cli.sources import static_of
+from pytpc.diagnosis.question import Question, Types
 from pytpc.diagnosis.ranking.blame import Blame
 from pytpc.diagnosis.ranking.clocks import two_clocks
-from pytpc.diagnosis.ranking.ranking import MarkRanking, Types, rank_marks
+from pytpc.diagnosis.ranking.ranking import MarkRanking, rank_marks
 from pytpc.diagnosis.suggestion.blamed import BlamedAdvice
 from pytpc.diagnosis.suggestion.declared import Declared, declared_in, read_declared
 from pytpc.ingest import Recording
@@ -94,7 +95,7 @@ def rank_command(
     static = static_of([static_source])
     judge = None if score == "thesis" else Judge.of(static, *beside)
     in_sources = declared_in(static, (), _warn_plainly)
-    asked = _Asked(static, judge, each or as_json, types, window_s, top)
+    asked = _Asked(static, judge, each or as_json, Question(types, window_s, top))
     items: list[dict[str, object]] = []
     unmarked: list[Path] = []
     for source in recordings:
@@ -124,9 +125,7 @@ class _Asked:
     static: StaticInfo
     judge: Judge | None
     each: bool
-    types: Types
-    window_s: float
-    top: int
+    question: Question
 
     def ranked(self, recording: Recording, source: Path, declared: Sequence[Declared]) -> _Ranked:
         """The answer for a mission with marks; what is wrong with it is warned of.
@@ -138,20 +137,15 @@ class _Asked:
         warn_about(recording, self.static)
         for clock in two_clocks(recording):
             warn(f"{plain(recording.name)}: {plain(clock)}")
-        types, window_s, top = self.types, self.window_s, self.top
+        question = replace(self.question, declared=declared)
         together = None
         if self.judge is not None:
-            together = self.judge.judge(
-                recording, source, types=types, top=top, declared=declared, window_s=window_s
-            )
+            together = self.judge.judge(recording, source, question)
         # Of summaries all marks together say little.
         if together is not None and not self.each and not len(recording.summaries):
             return _Ranked(recording, together, [])
-        rankings = rank_marks(recording, self.static, types=types, window_s=window_s)
-        marks = [
-            (one, rows_of(one, recording, self.static, top, declared=declared, window_s=window_s))
-            for one in rankings
-        ]
+        rankings = rank_marks(recording, self.static, question)
+        marks = [(one, rows_of(one, recording, self.static, question)) for one in rankings]
         return _Ranked(recording, together, marks)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal, TypeVar
 
@@ -13,11 +13,10 @@ from pytpc.base.errors import InputError
 from pytpc.base.wording import plain
 from pytpc.cli.console import warn
 from pytpc.cli.options import PATH, check_reports, recording_of
+from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.blame import Blame, blame
-from pytpc.diagnosis.ranking.ranking import Types
 from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.diagnosis.suggestion.blamed import BlamedAdvice, advise_blamed
-from pytpc.diagnosis.suggestion.declared import Declared
 from pytpc.ingest import Recording
 from pytpc.ros.mission_run import PARAMS_FILE
 from pytpc.static.parameters import same_parameter
@@ -101,14 +100,7 @@ class Judge:
         return cls(static, clean, changes, before)
 
     def judge(
-        self,
-        recording: Recording,
-        source: Path,
-        *,
-        types: Types,
-        top: int,
-        declared: Sequence[Declared],
-        window_s: float,
+        self, recording: Recording, source: Path, question: Question
     ) -> tuple[Blame, list[BlamedAdvice]]:
         """The verdict on a mission, and what to do with the first suspects.
 
@@ -120,25 +112,9 @@ class Judge:
             changes = _changes_since(self.before, source)
             _warn_of(changes, self.before, self.static)
         known = [(one.parameter, one.old, one.new) for one in changes]
-        found = blame(
-            recording,
-            self.static,
-            types=types,
-            reference=self.reference,
-            changes=known,
-            window_s=window_s,
-        )
-        advice = advise_blamed(
-            found,
-            recording,
-            self.static,
-            top=top,
-            declared=declared,
-            reference=self.reference,
-            changes=known,
-            window_s=window_s,
-        )
-        return found, advice
+        asked = replace(question, reference=self.reference, changes=known)
+        found = blame(recording, self.static, asked)
+        return found, advise_blamed(found, recording, self.static, asked)
 
 
 def _changes_since(before: Path, source: Path) -> tuple[Change, ...]:

@@ -23,8 +23,9 @@ from pytpc.cli.options import (
     warn_about,
 )
 from pytpc.cli.sources import static_of
+from pytpc.diagnosis.question import Question, Types
 from pytpc.diagnosis.ranking.clocks import two_clocks
-from pytpc.diagnosis.ranking.ranking import Types, rank_marks
+from pytpc.diagnosis.ranking.ranking import rank_marks
 from pytpc.diagnosis.suggestion.declared import declared_in
 from pytpc.present.page.html import CARDS, MissionReport, write_report
 from pytpc.recording.known_change import read_known_change
@@ -73,9 +74,8 @@ def report_command(
     treatment.json, the page says where values came from, and what was done to the robot.
     """
     static = static_of([static_source])
-    missions = [
-        replace(_mission(source, static, types, window_s), top=top) for source in recordings
-    ]
+    question = Question(types, window_s, top)
+    missions = [_mission(source, static, question) for source in recordings]
     with progress("drawing") as advance:
         write_report(output, missions, on_progress=advance)
     if as_json:
@@ -90,7 +90,7 @@ def report_command(
 COMMANDS: list[click.Command] = [report_command]
 
 
-def _mission(source: Path, static: StaticInfo, types: Types, window_s: float) -> MissionReport:
+def _mission(source: Path, static: StaticInfo, question: Question) -> MissionReport:
     recording = recording_of(source)
     check_reports(recording, static, source)
     warn_about(recording, static)
@@ -102,13 +102,13 @@ def _mission(source: Path, static: StaticInfo, types: Types, window_s: float) ->
         source.absolute().name if source.is_dir() else recording.name,
         recording,
         static,
-        rank_marks(recording, static, types=types, window_s=window_s),
+        rank_marks(recording, static, question),
         treatment=done.effect,
         changed_parameter=done.parameter,
         origins=read_origins(source),
-        declared=declared_in(static, [source], lambda line: warn(plain(line))),
-        window_s=window_s,
-        types=types,
+        question=replace(
+            question, declared=declared_in(static, [source], lambda line: warn(plain(line)))
+        ),
     )
 
 

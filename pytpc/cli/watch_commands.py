@@ -34,8 +34,8 @@ from pytpc.cli.options import (
     warn_about,
 )
 from pytpc.cli.sources import static_of
+from pytpc.diagnosis.question import Question, Types
 from pytpc.diagnosis.ranking.clocks import two_clocks
-from pytpc.diagnosis.ranking.ranking import Types
 from pytpc.diagnosis.ranking.watching import KINDS, Look, Row, Watching
 from pytpc.diagnosis.scores.live_scores import LiveRanking
 from pytpc.ingest import Recording
@@ -98,7 +98,9 @@ def watch_command(
     if not static.thresholds:
         raise InputError("no comparison with a parameter was found there", static_source)
     # Where types are ignored, the tables of both are there to be chosen all the same.
-    engine = LiveRanking(static, window_s, types="doubt" if types == "doubt" else "believe")
+    engine = LiveRanking(
+        static, Question(types="doubt" if types == "doubt" else "believe", window_s=window_s)
+    )
     fresh = Watching(engine, static, window_s)
     layout = (None,) if types == "ignore" else LAYOUTS[0]
     options = Options(layout=layout, top=top)

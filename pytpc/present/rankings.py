@@ -11,12 +11,12 @@ from rich.table import Table
 from rich.text import Text
 
 from pytpc.base.wording import exact, percent, plain, show
+from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.blame import Blame
 from pytpc.diagnosis.ranking.ranking import MarkRanking, Suspect
-from pytpc.diagnosis.scores.scores import WINDOW_S
 from pytpc.diagnosis.suggestion.blamed import BlamedAdvice
-from pytpc.diagnosis.suggestion.declared import Declared, declared_for
-from pytpc.diagnosis.suggestion.suggest import Suggestion, suggest
+from pytpc.diagnosis.suggestion.declared import declared_for
+from pytpc.diagnosis.suggestion.suggest import At, Suggestion, suggest
 from pytpc.recording.marks import MarkType
 from pytpc.recording.mission import Recording
 from pytpc.static.static_info import Comparison, StaticInfo
@@ -39,35 +39,16 @@ class Row:
 
 
 def rows_of(
-    ranking: MarkRanking,
-    recording: Recording,
-    static_info: StaticInfo,
-    top: int,
-    *,
-    declared: Sequence[Declared] = (),
-    window_s: float = WINDOW_S,
+    ranking: MarkRanking, recording: Recording, static_info: StaticInfo, question: Question
 ) -> list[Row]:
-    """The first ``top`` suspects at a mark, each with its suggestion.
-
-    ``declared`` is what is declared of parameters, ``window_s`` the window of type II in seconds:
-    the one that ranked them.
-    """
-    return [
-        Row(
-            suspect,
-            suggest(
-                recording.events,
-                suspect.comparison,
-                ranking.mark.time_ns,
-                suspect.type,
-                unit=static_info.unit_of(suspect.key),
-                window_s=window_s,
-                summaries=recording.summaries,
-                declared=declared_for(declared, suspect, static_info.source_path(suspect.key)),
-            ),
-        )
-        for suspect in ranking.suspects[:top]
-    ]
+    """The first suspects at a mark, each with its suggestion."""
+    rows = []
+    for suspect in ranking.suspects[: question.top]:
+        source = static_info.source_path(suspect.key)
+        asked = question.about(declared_for(question.declared, suspect, source))
+        at = At(ranking.mark.time_ns, suspect.type)
+        rows.append(Row(suspect, suggest(recording, static_info, suspect.comparison, at, asked)))
+    return rows
 
 
 def print_rankings(

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from mission_samples import comparison, events, ns, static_info
 
+from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.ranking import rank_marks
 from pytpc.diagnosis.suggestion.advise import advise, alternatives
 from pytpc.diagnosis.suggestion.declared import Declared
@@ -70,18 +71,22 @@ def test_suggestion_and_what_it_would_have_changed():
 
 def test_the_declared_range_counts():
     recording, rankings = mission()
-    (found,) = advise(recording, STATIC, one(rankings, 1, "~cover"), declared=[declared(0.4, 1)])
+    (found,) = advise(
+        recording, STATIC, one(rankings, 1, "~cover"), Question(declared=[declared(0.4, 1)])
+    )
     assert found.declared == declared(0.4, 1)
     assert found.what_if is None
     assert found.suggestion.reason == "no value in the declared range 0.4..1 would do: below 0.3"
-    (inside,) = advise(recording, STATIC, one(rankings, 1, "~cover"), declared=[declared(0, 1)])
+    (inside,) = advise(
+        recording, STATIC, one(rankings, 1, "~cover"), Question(declared=[declared(0, 1)])
+    )
     assert inside.suggestion.value == 0.299
 
 
 def test_so_many_and_no_more():
     recording, rankings = mission()
-    assert advise(recording, STATIC, rankings[1], top=0) == []
-    assert len(advise(recording, STATIC, rankings[1], top=1)) == 1
+    assert advise(recording, STATIC, rankings[1], Question(top=0)) == []
+    assert len(advise(recording, STATIC, rankings[1], Question(top=1))) == 1
     names = [a.suspect.parameter for a in advise(recording, STATIC, rankings[1])]
     assert names == [s.parameter for s in rankings[1].suspects]
 
@@ -139,7 +144,9 @@ def test_marks_that_say_the_same_are_joined():
 # At 20 s the first suspect is another one: the marks do not say the same.
 def test_marks_that_say_something_else_stay_apart():
     recording, rankings = mission()
-    apart = join_advice(recording, STATIC, [rankings[1], one(rankings, 2, "~cover")], top=1)
+    apart = join_advice(
+        recording, STATIC, [rankings[1], one(rankings, 2, "~cover")], Question(top=1)
+    )
     first = rankings[1].suspects[0].parameter
     assert len(apart) == (1 if first == "~cover" else 2)
     empty = replace(rankings[2], suspects=(), reason="nothing")
@@ -155,10 +162,10 @@ def test_the_order_of_joined_suspects():
     cover, faces = one(rankings, 1, "~cover").suspects[0], one(rankings, 1, "~limit").suspects[0]
     both = (replace(cover, position=1), replace(faces, position=2))
     first = replace(rankings[1], suspects=both)
-    (group,) = join_advice(recording, STATIC, [first, one(rankings, 2, "~cover")], top=2)
+    (group,) = join_advice(recording, STATIC, [first, one(rankings, 2, "~cover")], Question(top=2))
     names = [(one.advice.suspect.parameter, one.named) for one in group.suspects]
     assert names == [("~cover", 2), ("~limit", 1)]
-    (group,) = join_advice(recording, STATIC, [first], top=2)
+    (group,) = join_advice(recording, STATIC, [first], Question(top=2))
     assert [one.advice.suspect.parameter for one in group.suspects] == ["~cover", "~limit"]
 
 
@@ -174,7 +181,9 @@ def test_of_advice_as_good_the_first():
 # Where the range leaves a value at neither mark there is still one that says why.
 def test_joined_without_a_value():
     recording, rankings = mission()
-    (group,) = join_advice(recording, STATIC, only_cover(rankings), declared=[declared(0.55, 1)])
+    (group,) = join_advice(
+        recording, STATIC, only_cover(rankings), Question(declared=[declared(0.55, 1)])
+    )
     (cover,) = group.suspects
     assert (cover.named, cover.agreed) == (2, 0)
     assert cover.advice.suggestion.reason is not None
@@ -182,7 +191,9 @@ def test_joined_without_a_value():
 
 def test_json_has_no_number_that_json_lacks():
     recording, rankings = mission()
-    (group,) = join_advice(recording, STATIC, only_cover(rankings), declared=[declared(0, 1)])
+    (group,) = join_advice(
+        recording, STATIC, only_cover(rankings), Question(declared=[declared(0, 1)])
+    )
     text = json.dumps(group_json(group, 0), allow_nan=False)
     found = json.loads(text)
     assert [mark["seconds"] for mark in found["marks"]] == [16, 20]
@@ -193,5 +204,7 @@ def test_json_has_no_number_that_json_lacks():
     assert (cover["named"], cover["agreed"]) == (2, 2)
     assert cover["what_if"]["answered"] == 2
     assert cover["declared"]["high"] == 1
-    (none,) = advise(recording, STATIC, one(rankings, 1, "~cover"), declared=[declared(0.4, 1)])
+    (none,) = advise(
+        recording, STATIC, one(rankings, 1, "~cover"), Question(declared=[declared(0.4, 1)])
+    )
     assert advice_json(none)["what_if"] is None

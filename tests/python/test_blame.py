@@ -9,6 +9,7 @@ import pytest
 from mission_samples import comparison, events, key, ns, static_info
 
 from pytpc.base.wording import percent
+from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.blame import Accused, Blame, blame
 from pytpc.diagnosis.scores.log_evidence import Evaluation
 from pytpc.diagnosis.suggestion.blamed import advise_blamed
@@ -122,7 +123,7 @@ def test_nothing_marked_and_nothing_reported():
 
 # Without the types the marks say the same of both.
 def test_types_that_are_ignored():
-    ignored = blame(mission(), STATIC, types="ignore")
+    ignored = blame(mission(), STATIC, Question(types="ignore"))
     untyped = blame(mission([Mark(m.time_ns, None, m.observer) for m in MARKS]), STATIC)
     assert ignored.suspects == untyped.suspects != blame(mission(), STATIC).suspects
     assert {mark.type for mark in ignored.marks} == {None}
@@ -143,7 +144,7 @@ def test_users_get_what_the_study_judges():
     assert same(alone, METHODS["tpc"](case))
     known = {"reference": clean}, {"changes": [("~gate", 0.9, 0.375)]}
     for method, beside in zip(("tpc+reference", "tpc+changes"), known, strict=True):
-        found = blame(mission(), STATIC, **beside)
+        found = blame(mission(), STATIC, Question(**beside))
         assert same(found, METHODS[method](case))
         assert found.suspects[0].parameter == "~gate"
         assert found.confidence > alone.confidence
@@ -152,8 +153,8 @@ def test_users_get_what_the_study_judges():
 # The clean run says that ~safe is what it was, the history that ~gate is. By both it is neither.
 def test_a_clean_run_and_the_changes_together():
     clean = Recording("clean", events([(1, 0, 0, 0.1, 0.9), (2, 1, 0, 1, 9)]), (), 0, ns(80))
-    found = blame(mission(), STATIC, reference=clean, changes=[("safe", 5.0, 9.0)])
-    assert blame(mission(), STATIC, reference=clean).accused == "~gate"
+    found = blame(mission(), STATIC, Question(reference=clean, changes=[("safe", 5.0, 9.0)]))
+    assert blame(mission(), STATIC, Question(reference=clean)).accused == "~gate"
     assert found.accused is None
     assert found.none > 0.5
 
@@ -222,8 +223,8 @@ def test_the_value_of_before_comes_first():
     clean = Recording("clean", events([(1, 0, 0, 0.1, 0.9), (2, 1, 0, 1, 9)]), (), 0, ns(80))
 
     def tried(**known):
-        found = blame(recording, STATIC, **known)
-        (advice,) = advise_blamed(found, recording, STATIC, top=1, **known)
+        found = blame(recording, STATIC, Question(**known))
+        (advice,) = advise_blamed(found, recording, STATIC, Question(top=1, **known))
         assert advice.accused.parameter == "~gate"
         return advice.remedy
 
@@ -236,7 +237,7 @@ def test_the_value_of_before_comes_first():
     assert tried(reference=clean).value == 0.9
     found = blame(recording, STATIC)
     for nothing in (("gate", math.nan, 0.375), ("gate", 0.375, 0.375), ("safe", 1, 9)):
-        (advice,) = advise_blamed(found, recording, STATIC, top=1, changes=[nothing])
+        (advice,) = advise_blamed(found, recording, STATIC, Question(top=1, changes=[nothing]))
         assert advice.remedy.basis != "before"
 
 
@@ -244,10 +245,10 @@ def test_the_value_of_before_comes_first():
 # 30 s, with 0.2 it turns earlier: so the order tells which of both is replayed.
 def test_of_several_changes_the_oldest_has_the_value_of_before():
     both = [("gate", 0.9, 0.2), ("gate", 0.2, 0.375)]
-    found = blame(mission(), STATIC, changes=both)
-    assert found == blame(mission(), STATIC, changes=both[:1])
-    assert found != blame(mission(), STATIC, changes=both[1:])
-    (advice,) = advise_blamed(found.only("gate"), mission(), STATIC, changes=both)
+    found = blame(mission(), STATIC, Question(changes=both))
+    assert found == blame(mission(), STATIC, Question(changes=both[:1]))
+    assert found != blame(mission(), STATIC, Question(changes=both[1:]))
+    (advice,) = advise_blamed(found.only("gate"), mission(), STATIC, Question(changes=both))
     assert (advice.remedy.value, advice.remedy.basis) == (0.9, "before")
 
 

@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 from mission_samples import comparison, events, key, link_unit, ns, static_info
 
 from pytpc.base.errors import InputError
-from pytpc.diagnosis.suggestion.suggest import suggest
+from pytpc.diagnosis.question import Question
+from pytpc.diagnosis.suggestion.suggest import At, suggest
 from pytpc.diagnosis.suggestion.what_if import CLOSED_LOOP, sweep, what_if
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
@@ -63,14 +64,14 @@ def test_by_hand(value, answered, near, away):
 
 
 def test_which_marks_are_asked():
-    assert what_if(RECORDED, LIMIT, "limit", 7, kind="I").answered == 1
-    assert what_if(RECORDED, LIMIT, "limit", 7, kind="I").marks == 1
-    assert what_if(RECORDED, LIMIT, "limit", 7, kind="II").answered == 0
-    assert what_if(RECORDED, LIMIT, "limit", 4, kind="II").answered == 1
+    assert what_if(RECORDED, LIMIT, "limit", 7, Question(kind="I")).answered == 1
+    assert what_if(RECORDED, LIMIT, "limit", 7, Question(kind="I")).marks == 1
+    assert what_if(RECORDED, LIMIT, "limit", 7, Question(kind="II")).answered == 0
+    assert what_if(RECORDED, LIMIT, "limit", 4, Question(kind="II")).answered == 1
     # Which windows are near does not depend on the question.
-    assert what_if(RECORDED, LIMIT, "limit", 7, kind="II").flipped_near == 1
+    assert what_if(RECORDED, LIMIT, "limit", 7, Question(kind="II")).flipped_near == 1
     # Other marks than the recording's have windows, too: [18.5, 30.5].
-    other = what_if(RECORDED, LIMIT, "limit", 7.5, kind="II", marks=[Mark(ns(31), "I")])
+    other = what_if(RECORDED, LIMIT, "limit", 7.5, Question(kind="II", marks=[Mark(ns(31), "I")]))
     assert (other.marks, other.answered) == (1, 1)
     # 6 at 3 s and now 7 at 31 s are near.
     assert (other.flipped_near, other.flipped_away) == (2, 0)
@@ -78,12 +79,12 @@ def test_which_marks_are_asked():
     untyped = mission(greater(ROWS), [Mark(ns(3.5), None)])
     assert what_if(untyped, LIMIT, "limit", 7).answered == 1
     assert what_if(untyped, LIMIT, "limit", 1).answered == 1
-    assert what_if(untyped, LIMIT, "limit", 1, kind="I").answered == 0
+    assert what_if(untyped, LIMIT, "limit", 1, Question(kind="I")).answered == 0
     assert what_if(untyped, LIMIT, "limit", 5).answered == 0
 
 
 def test_the_sentence():
-    found = what_if(RECORDED, LIMIT, "limit", 7, kind="I")
+    found = what_if(RECORDED, LIMIT, "limit", 7, Question(kind="I"))
     # 1 of 7 is 14.3 %.
     assert found.text == (
         "7 answers 1 of 1 mark of type I; away from marks it turns 1 of 7 decisions (14 %)"
@@ -91,7 +92,11 @@ def test_the_sentence():
     # A mark without a type, or of the other one, is not called one of type I.
     for other in (None, "II"):
         asked = what_if(
-            RECORDED, LIMIT, "limit", 7, kind="I", marks=[*RECORDED.marks[:1], Mark(ns(31), other)]
+            RECORDED,
+            LIMIT,
+            "limit",
+            7,
+            Question(kind="I", marks=[*RECORDED.marks[:1], Mark(ns(31), other)]),
         )
         assert re.match("7 answers [0-2] of 2 marks; away", asked.text)
     none = what_if(mission(greater(ROWS), []), LIMIT, "limit", 5)
@@ -111,7 +116,7 @@ def test_several_values_at_once():
     with pytest.raises(ValueError, match="at most 64 values"):
         sweep(RECORDED, LIMIT, "limit", np.zeros(65))
     with pytest.raises(ValueError, match="window_s is negative"):
-        sweep(RECORDED, LIMIT, "limit", [1], window_s=-1)
+        sweep(RECORDED, LIMIT, "limit", [1], Question(window_s=-1))
 
 
 # faces >= limit of 3 at 0 s (2), 5 s (4): the flop before the mark at 6 s. A second comparison,
@@ -356,12 +361,12 @@ def test_against_the_definition(pairs, relation, values, at):
     rows = [(t, 0, compare(cmp, thresh), cmp, thresh) for t, (cmp, thresh) in enumerate(pairs)]
     recorded = mission(rows, [Mark(ns(at), "II")])
     static = static_info(comparison(0, "~limit", relation))
-    many = sweep(recorded, static, "limit", values, window_s=3)
+    many = sweep(recorded, static, "limit", values, Question(window_s=3))
     for place, value in enumerate(values):
         turned = [t for t, _, held, cmp, _ in rows if compare(cmp, value) != held]
         near = [t for t in turned if at - 3 <= t <= at]
         expected = (int(bool(near)), len(near), len(turned) - len(near))
-        assert counts(what_if(recorded, static, "limit", value, window_s=3)) == expected
+        assert counts(what_if(recorded, static, "limit", value, Question(window_s=3))) == expected
         got = (many.answered[place], many.flipped_near[place], many.flipped_away[place])
         assert got == expected
 
@@ -378,8 +383,11 @@ def test_a_suggestion_answers_its_mark(cmps, relation, kind):
     rows = [(t, 0, compare(cmp, 0.5), cmp, 0.5) for t, cmp in enumerate(cmps)]
     recorded = mission(rows, [Mark(ns(len(cmps)), kind)])
     found = comparison(0, "~limit", relation)
-    said = suggest(recorded.events, found, recorded.marks[0].time_ns, kind)
+    said = suggest(recorded, static_info(found), found, At(recorded.marks[0].time_ns, kind))
     if said.value is None:
         assert kind == "I"
         return
-    assert what_if(recorded, static_info(found), "limit", said.value, kind=kind).answered == 1
+    assert (
+        what_if(recorded, static_info(found), "limit", said.value, Question(kind=kind)).answered
+        == 1
+    )

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from mission_samples import comparison, events, ns, static_info
 
 from pytpc.base.errors import TpcError
+from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.ranking import rank_marks
 from pytpc.diagnosis.scores.curves import rank_curves
 from pytpc.diagnosis.scores.scores import NONE
@@ -36,10 +37,12 @@ ROWS = st.lists(
 @given(ROWS)
 def test_curves_are_the_rankings_at_their_times(rows):
     table = events(rows)
-    curves = rank_curves(Recording("m", table, (), 0, ns(20)), STATIC, step_s=2.5, window_s=5)
+    curves = rank_curves(
+        Recording("m", table, (), 0, ns(20)), STATIC, Question(window_s=5), step_s=2.5
+    )
     marks = [Mark(int(time), kind) for time in curves.times_ns for kind in ("I", "II", None)]
     mission = Recording("m", table, tuple(marks), 0, ns(20))
-    rankings = iter(rank_marks(mission, STATIC, window_s=5))
+    rankings = iter(rank_marks(mission, STATIC, Question(window_s=5)))
     assert curves.parameters == ("coverage", "faces")
     assert curves.times_ns.tolist() == [ns(2.5 * step) for step in range(9)]
     for row in range(9):

@@ -14,6 +14,7 @@ import pytpc
 import pytpc_evaluation
 from pytpc.api import library
 from pytpc.base.errors import InputError
+from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.suggestion.joining import join_advice
 from pytpc.present.notebook import Table
 from pytpc.recording.marks import Mark
@@ -100,7 +101,7 @@ def test_suggestions():
     # The value to try is that of the command line, for all marks that say the same.
     assert one.remedy is not None
     assert one.tried is not None
-    (group,) = join_advice(MISSION, STATIC, list(rankings), top=1)
+    (group,) = join_advice(MISSION, STATIC, list(rankings), Question(top=1))
     assert one.remedy == group.suspects[0].remedy
     assert one.tried.value == one.remedy.value
     said = str(pytpc.suggest(rankings, 1, top=1))

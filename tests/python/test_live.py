@@ -11,10 +11,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mission_samples import comparison, key, ns, static_info
 
+from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.ranking import rank_marks
-from pytpc.diagnosis.scores.bounds import type2_bounds
+from pytpc.diagnosis.scores.bounds import Reports, type2_bounds
 from pytpc.diagnosis.scores.live_scores import LiveRanking, LiveScores, TooOldError
-from pytpc.diagnosis.scores.scores import NONE, Before, type1, type2
+from pytpc.diagnosis.scores.scores import NONE, Before, Formula, type1, type2
 from pytpc.ingest import Recording
 from pytpc.recording.events import EventBuilder, Report
 from pytpc.recording.marks import Mark
@@ -64,7 +65,7 @@ def same(live, rows, mark_ns, window):
     first, second = live.scores_at(mark_ns)
     events = table(rows)
     assert first.tolist() == type1(events, mark_ns, DISTANCE)[0].tolist()
-    assert second.tolist() == type2(events, mark_ns, DISTANCE, window_s=window)[0].tolist()
+    assert second.tolist() == type2(events, mark_ns, DISTANCE, Formula(window_s=window))[0].tolist()
 
 
 @settings(max_examples=300, deadline=None)
@@ -234,7 +235,9 @@ def test_live_is_offline_with_summaries(periods, window):
         for mark in (begin + 0.1, begin + 0.05):
             first, second = live.scores_at(ns(mark))
             events = table(rows)
-            bounds = type2_bounds(events, builder.build(), ns(mark), DISTANCE, window_s=window)
+            bounds = type2_bounds(
+                Reports(events, builder.build()), ns(mark), DISTANCE, Formula(window)
+            )
             assert first.tolist() == type1(events, ns(mark), DISTANCE)[0].tolist()
             assert second == pytest.approx(bounds.value[0], rel=1e-9)
         begin += step
@@ -252,13 +255,13 @@ STATIC = static_info(
 @given(REPORTS, st.sampled_from(["I", "II", None]), st.sampled_from(["believe", "doubt", "ignore"]))
 def test_the_live_ranking_is_the_recorded_one(reports, kind, types):
     rows = stamped(reports)
-    live = LiveRanking(STATIC, 3.0, types=types)
+    live = LiveRanking(STATIC, Question(types=types, window_s=3.0))
     add(live.scores, rows)
     end = max([row[0] for row in rows], default=0)
     for mark_ns in (end, end + ns(1), end + ns(20)):
         mark = Mark(mark_ns, kind)
         mission = Recording("m", table(rows), (mark,), 0, end)
-        (offline,) = rank_marks(mission, STATIC, types=types, window_s=3.0)
+        (offline,) = rank_marks(mission, STATIC, Question(types=types, window_s=3.0))
         found = live.ranking_at(mark)
         assert str(found) == str(offline)  # NaN is not equal to itself
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 from mission_samples import comparison, events, key, ns, static_info
 
+from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.ranking import rank_marks, unknown_keys
 from pytpc.ingest import Recording
 from pytpc.recording.events import Events
@@ -90,7 +91,7 @@ def test_a_mark_without_a_type():
     ]
     assert not any(suspect.tied for suspect in found.suspects)
     # The same where the types are not to be believed.
-    (again,) = rank_marks(recording(ROWS, [Mark(ns(50), "I")]), STATIC, types="ignore")
+    (again,) = rank_marks(recording(ROWS, [Mark(ns(50), "I")]), STATIC, Question(types="ignore"))
     assert again.suspects == found.suspects
 
 
@@ -173,9 +174,9 @@ def test_summaries_that_only_name_a_key():
 def test_wrong_arguments():
     mission = recording(ROWS, [Mark(ns(50), "I")])
     with pytest.raises(ValueError, match="types is 'maybe', not one of believe, doubt, ignore"):
-        rank_marks(mission, STATIC, types="maybe")
+        rank_marks(mission, STATIC, Question(types="maybe"))
     with pytest.raises(ValueError, match="window_s is negative"):
-        rank_marks(mission, STATIC, window_s=-1)
+        rank_marks(mission, STATIC, Question(window_s=-1))
 
 
 # The last report is at 10 s, but a summary goes on to 30 s, which at 40 s was 10 s ago, at 43 s 13.

@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mission_samples import comparison, events, key, ns, static_info
 
+from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.suggestion.declared import Declared
 from pytpc.diagnosis.suggestion.remedy import remedy
 from pytpc.recording.events import Events
@@ -41,7 +42,7 @@ def marks(*times, kind="I"):
 def ask(relation, cmps, threshold, marked, *, default=None, step=1.0, begin=90.0, **more):
     found = comparison(0, "limit", relation, default=default, **more.pop("kept", {}))
     log = recording(rows(relation, cmps, threshold, step=step, begin=begin))
-    return remedy(log, static_info(found), "limit", marked, **more)
+    return remedy(log, static_info(found), "limit", marked, Question(**more))
 
 
 # The program acts at 3, so the log ends there: 3 is the only peak, three times the way from 0 is
@@ -229,20 +230,20 @@ def test_the_value_of_a_clean_run_is_taken_whatever_the_log_says(flown, directio
     log = recording(rows("<", [0.1] * 5, 0.04))
     typed = marks(95, kind="II")
     clean = recording(rows("<", [0.1] * 5, flown))
-    found = remedy(log, static, "limit", typed, reference=clean)
+    found = remedy(log, static, "limit", typed, Question(reference=clean))
     assert (found.value, found.basis, found.direction) == (flown, "reference", direction)
     assert found.text == f"{direction} limit from 0.04 to {flown} {words}"
     assert [(one.source, one.value) for one in found.known] == [("reference", flown)]
     # Where it may not be taken, or was tried in vain, the log has the word.
-    assert remedy(log, static, "limit", typed, reference=clean, sources=()).value == 0.101
-    again = remedy(log, static, "limit", typed, reference=clean, flown=[flown])
+    assert remedy(log, static, "limit", typed, Question(reference=clean, sources=())).value == 0.101
+    again = remedy(log, static, "limit", typed, Question(reference=clean, flown=[flown]))
     assert (again.direction, again.basis) == ("raise", "lasting")
 
 
 def test_a_clean_run_with_the_same_value_says_nothing():
     log = recording(rows("<", [0.1] * 5, 0.04))
     static = static_info(comparison(0, "limit", "<"))
-    found = remedy(log, static, "limit", marks(95, kind="II"), reference=log)
+    found = remedy(log, static, "limit", marks(95, kind="II"), Question(reference=log))
     assert (found.value, found.basis) == (0.101, "lasting")
 
 
@@ -250,17 +251,15 @@ def test_a_clean_run_with_the_same_value_says_nothing():
 # count of 3 is a whole number, and so is what is tried.
 def test_a_clean_run_answers_where_the_log_does_not():
     flag = static_info(comparison(0, "on", "flag", default=True))
-    found = remedy(
-        recording(rows("flag", [0] * 5, 0)), flag, "on", marks(95), reference=recording(
-            rows("flag", [1] * 5, 1)
-        )
-    )  # fmt: skip
+    clean = recording(rows("flag", [1] * 5, 1))
+    log = recording(rows("flag", [0] * 5, 0))
+    found = remedy(log, flag, "on", marks(95), Question(reference=clean))
     assert (found.value, found.direction, found.basis) == (True, "switch", "reference")
     assert found.text == "switch on from false to true (the value of the clean run)"
     whole = static_info(comparison(0, "limit", ">=", default=3))
     clean = recording(rows(">=", [0] * 5, 8))
     log = recording(rows(">=", [0] * 5, 3))
-    found = remedy(log, whole, "limit", marks(95), reference=clean)
+    found = remedy(log, whole, "limit", marks(95), Question(reference=clean))
     assert (found.value, type(found.value)) == (8, int)
 
 
@@ -282,7 +281,7 @@ def test_between_values_that_were_flown():
 def test_the_end_of_a_declared_range():
     declared = Declared("limit", "double", 0.0, 0.12, None, None, (), "", "x.cfg:1")
     found = ask(
-        "<", [0.08, 0.09, 0.10, 0.03, 0.11, 0.12], 0.04, marks(96, kind="II"), declared=declared
+        "<", [0.08, 0.09, 0.10, 0.03, 0.11, 0.12], 0.04, marks(96, kind="II"), declared=[declared]
     )
     assert found.value == 0.12
 

@@ -17,6 +17,7 @@ from report_samples import NASTY, Page, mission, written
 
 from pytpc.base.errors import TpcError
 from pytpc.base.wording import percent
+from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.blame import blame
 from pytpc.diagnosis.ranking.ranking import rank_marks
 from pytpc.diagnosis.suggestion.declared import Declared
@@ -338,7 +339,9 @@ def test_where_the_value_came_from_is_on_the_card(tmp_path):
 def test_what_is_declared_is_on_the_card(tmp_path):
     place = f"{tmp_path}/src/cfg/A.cfg:4"
     declared = Declared("coverage", "double", 0.0, 0.55, 0.05, 0.5, (), "how much", place)
-    text = "".join(Page(written(tmp_path, mission(tmp_path, declared=[declared]))).text)
+    text = "".join(
+        Page(written(tmp_path, mission(tmp_path, question=Question(declared=[declared])))).text
+    )
     assert f"double from 0 to 0.55, in steps of 0.05 {place}" in text
     assert "Lower coverage changed from 0.6 to 0.45" in " ".join(text.split())
 
@@ -453,4 +456,6 @@ def test_scores_of_both_types_say_which(tmp_path):
     own = [set(re.findall('</span>|<span class="muted">(I+)</span></td>', one)) for one in tables]
     assert [{kind for kind in kinds if kind} for kinds in own] == [set(), set(), {"I", "II"}]
     assert "Types of the marks" not in page
-    assert "doubted: the suspects of the other" in written(tmp_path, replace(report, types="doubt"))
+    assert "doubted: the suspects of the other" in written(
+        tmp_path, replace(report, question=Question(types="doubt"))
+    )

@@ -13,8 +13,8 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from mission_samples import events, key, ns
 
-from pytpc.diagnosis.scores.bounds import type2_bounds
-from pytpc.diagnosis.scores.scores import NONE, type1, type2
+from pytpc.diagnosis.scores.bounds import Reports, type2_bounds
+from pytpc.diagnosis.scores.scores import NONE, Formula, type1, type2
 from pytpc.recording.events import EventBuilder, Events, Report
 from pytpc.recording.summaries import Summaries, Summary, SummaryBuilder
 
@@ -153,8 +153,9 @@ def test_edges_gives_the_scores_of_every_evaluation(run, period_ms, marks_ms, wi
     marks = [ms * 10**6 for ms in marks_ms]
     distance = [2, 4]
     assert np.array_equal(type1(whole, marks, distance), type1(some, marks, distance))
-    exact = type2(whole, marks, distance, window_s=window_s, **powers)
-    low, value, high = type2_bounds(some, summaries, marks, distance, window_s=window_s, **powers)
+    exact = type2(whole, marks, distance, Formula(window_s=window_s, **powers))
+    formula = Formula(window_s=window_s, **powers)
+    low, value, high = type2_bounds(Reports(some, summaries), marks, distance, formula)
     assert (low <= value).all() and (value <= high).all()
     assert (low <= exact * (1 + 1e-9)).all()
     assert (exact <= high * (1 + 1e-9)).all()
@@ -213,18 +214,20 @@ def table(*summaries: Summary) -> Summaries:
 def test_a_summary_that_the_window_cuts():
     first = events([(0.5, 0, 1, 2, 1)])
     both = table(by_hand(), LATER)
-    low, value, high = type2_bounds(first, both, [ns(3)], [1], window_s=2)
+    low, value, high = type2_bounds(Reports(first, both), [ns(3)], [1], Formula(2))
     assert low[0, 0] == pytest.approx(0.25, rel=1e-12)
     assert value[0, 0] == pytest.approx(5 / 14, rel=1e-12)
     assert high[0, 0] == pytest.approx(6.5 / 14, rel=1e-12)
-    low, value, high = type2_bounds(first, both, [ns(3)], [1], window_s=2, alpha=0, gamma=1)
+    low, value, high = type2_bounds(
+        Reports(first, both), [ns(3)], [1], Formula(2, alpha=0, gamma=1)
+    )
     assert [low[0, 0], value[0, 0], high[0, 0]] == pytest.approx([2, 3.5, 5])
 
 
 # w = 2.5: both are within [0.5, 3]: (6 + 2) / 5 / 4 = 0.4.
 def test_a_summary_within_the_window_is_exact():
     scores = type2_bounds(
-        events([(0.5, 0, 1, 2, 1)]), table(by_hand(), LATER), [ns(3)], [1], window_s=2.5
+        Reports(events([(0.5, 0, 1, 2, 1)]), table(by_hand(), LATER)), [ns(3)], [1], Formula(2.5)
     )
     assert [column[0, 0] for column in scores] == pytest.approx([0.4] * 3, rel=1e-12)
     assert scores.low[0, 0] == scores.high[0, 0]
@@ -233,16 +236,18 @@ def test_a_summary_within_the_window_is_exact():
 # At 1 s the summary has begun; what is known is its first evaluation (2 - 1, spread 1), so there is
 # a score: the difference is between 1 and 3, the spread between 1 and 4.
 def test_a_mark_within_a_period():
-    low, _, high = type2_bounds(events([(0.5, 0, 1, 2, 1)]), table(by_hand()), [ns(1)], [1])
+    low, _, high = type2_bounds(
+        Reports(events([(0.5, 0, 1, 2, 1)]), table(by_hand())), [ns(1)], [1]
+    )
     assert (low[0, 0], high[0, 0]) == (0.25, 1.0)
     # Without that event it may be that none of its evaluations was before the mark.
-    low, _, high = type2_bounds(Events.empty([key(0)]), table(by_hand()), [ns(1)], [1])
+    low, _, high = type2_bounds(Reports(Events.empty([key(0)]), table(by_hand())), [ns(1)], [1])
     assert (low[0, 0], high[0, 0]) == (0.25, NONE)
 
 
 def test_without_summaries_it_is_type2():
     some = events([(0, 0, 1, 10, 4), (5, 0, 1, 6, 4), (8, 0, 1, 5, 4), (20, 0, 1, 4.5, 4)])
-    scores = type2_bounds(some, Summaries.empty(), [ns(20), ns(8)], [1])
+    scores = type2_bounds(Reports(some, Summaries.empty()), [ns(20), ns(8)], [1])
     assert [column[:, 0].tolist() for column in scores] == [[0.125, 0.5]] * 3
 
 
@@ -251,13 +256,13 @@ def test_without_summaries_it_is_type2():
 # summary is in it, as on /rosout where a report has the time of its writing.
 def test_both_policies_in_one_recording():
     mixed = events([(0.1, 0, 1, 4, 1), (0.3, 0, 1, 4, 1), (0.48, 0, 0, 0, 1)])
-    low, _, high = type2_bounds(mixed, table(by_hand(), LATER), [ns(3)], [1])
+    low, _, high = type2_bounds(Reports(mixed, table(by_hand(), LATER)), [ns(3)], [1])
     assert low[0, 0] == high[0, 0] == pytest.approx(14 / 7 / 4)
 
 
 def test_a_node_without_summaries_beside_one_that_has_them():
     mixed = events([(0.5, 0, 1, 2, 1), (1, 0, 1, 4, 1, "/other"), (1.2, 0, 1, 4, 1, "/other")])
-    low, _, high = type2_bounds(mixed, table(by_hand(), LATER), [ns(3)], [1])
+    low, _, high = type2_bounds(Reports(mixed, table(by_hand(), LATER)), [ns(3)], [1])
     assert low[0, 0] == high[0, 0] == pytest.approx((6 + 2 + 3 + 3) / 7 / 4)
 
 
@@ -268,7 +273,7 @@ def test_one_long_summary_among_many_short_ones():
     ]
     long = by_hand(begin_ns=ns(0.2), end_ns=ns(400), count=2, diff_min=3, diff_max=3, abs_mean=3)
     low, _, high = type2_bounds(
-        events([(0, 0, 1, 2, 1)]), table(long, *short), [ns(100.8)], [1], window_s=1.0
+        Reports(events([(0, 0, 1, 2, 1)]), table(long, *short)), [ns(100.8)], [1], Formula(1.0)
     )
     # [99.8, 100.8] holds one short summary: 3 of 1; of the long one 0 to 2 of 3.
     assert (low[0, 0], high[0, 0]) == pytest.approx((1 / 4, (3 + 6) / 5 / 4))

@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mission_samples import events, key, ns
 
-from pytpc.diagnosis.scores.scores import NONE, by_parameter, combined, ranks, type1, type2
+from pytpc.diagnosis.scores.scores import NONE, Formula, by_parameter, combined, ranks, type1, type2
 from pytpc.recording.events import Events
 
 NAN, INF = math.nan, math.inf
@@ -37,7 +37,7 @@ def test_type1_exponents_by_hand():
     table = events(
         [(1, 0, 0, 0, 1), (2, 0, 1, 2, 1), (3, 0, 1, 2, 1), (4, 0, 0, 0, 1), (6, 0, 1, 2, 1)]
     )
-    scores = type1(table, [ns(10)], [4], alpha=2, beta=0.5, gamma=1)
+    scores = type1(table, [ns(10)], [4], Formula(alpha=2, beta=0.5, gamma=1))
     assert scores.tolist() == [[128.0]]
 
 
@@ -57,7 +57,9 @@ def test_nodes_do_not_flop_each_other():
 def test_type2_by_hand():
     table = events([(0, 0, 1, 10, 4), (5, 0, 1, 6, 4), (8, 0, 1, 5, 4), (20, 0, 1, 4.5, 4)])
     assert type2(table, [ns(20)], [1])[0, 0] == pytest.approx(0.125, rel=1e-12)
-    assert type2(table, [ns(20)], [1], window_s=11.9)[0, 0] == pytest.approx(1 / 12, rel=1e-12)
+    assert type2(table, [ns(20)], [1], Formula(window_s=11.9))[0, 0] == pytest.approx(
+        1 / 12, rel=1e-12
+    )
     assert type2(table, [ns(8), ns(33)], [1])[:, 0].tolist() == [0.5, NONE]
 
 
@@ -65,7 +67,7 @@ def test_type2_by_hand():
 # at 5 s lies after the mark and must not widen the span.
 def test_type2_knows_nothing_of_the_future():
     table = events([(0, 0, 0, 1, 2), (1, 0, 1, 3, 2), (2, 0, 0, 1, 2), (5, 0, 1, 9, 2)])
-    assert type2(table, [ns(1)], [1], beta=0).tolist() == [[0.5]]
+    assert type2(table, [ns(1)], [1], Formula(beta=0)).tolist() == [[0.5]]
 
 
 # Results F T F T at 1, 2, 3, 4 s; threshold 0; cmp 1, 1, 0.00005, 2.
@@ -83,7 +85,7 @@ def test_type2_exponents_by_hand():
             (4, 1, 1, 2, 0),
         ]
     )
-    scores = type2(table, [ns(4)], [3, 6], window_s=2, beta=1, gamma=2, delta=1)
+    scores = type2(table, [ns(4)], [3, 6], Formula(window_s=2, beta=1, gamma=2, delta=1))
     assert scores[0, 0] == pytest.approx(3.00005, rel=1e-12)
 
 
@@ -102,7 +104,7 @@ def test_values_that_are_no_numbers():
     assert type2(table, [ns(4)], [1]).tolist() == [[3.0]]
     assert type1(table, [ns(5)], [1]).tolist() == [[5.0]]
     # Only such values in the window [1, 3]: no D, whatever was there before.
-    assert type2(table, [ns(3)], [1], window_s=2).tolist() == [[NONE]]
+    assert type2(table, [ns(3)], [1], Formula(window_s=2)).tolist() == [[NONE]]
 
 
 # After 1e16 a window of differences 1 and 3 has mean 2; 2 / (1e16 - 0). A difference of prefix sums
@@ -170,9 +172,9 @@ def test_wrong_arguments():
     with pytest.raises(ValueError, match="one distance for each key"):
         type1(table, [0], [1, 2])
     with pytest.raises(ValueError, match="alpha is negative"):
-        type1(table, [0], [1], alpha=-1)
+        type1(table, [0], [1], Formula(alpha=-1))
     with pytest.raises(ValueError, match="window_s is negative"):
-        type2(table, [0], [1], window_s=-1)
+        type2(table, [0], [1], Formula(window_s=-1))
 
 
 def test_nothing_to_score():
@@ -242,8 +244,10 @@ def test_against_the_slow_way(rows, marks, window):
     rows = sorted(rows, key=lambda row: row[0])
     table = events(rows).with_keys([key(0), key(1), key(2)])
     distance = [1, 2, 5]
-    first = type1(table, [ns(m) for m in marks], distance, gamma=0.5)
-    second = type2(table, [ns(m) for m in marks], distance, window_s=window, gamma=1, delta=2)
+    first = type1(table, [ns(m) for m in marks], distance, Formula(gamma=0.5))
+    second = type2(
+        table, [ns(m) for m in marks], distance, Formula(window_s=window, gamma=1, delta=2)
+    )
     for row, m in enumerate(marks):
         for code in range(3):
             slow1 = slow_type1(rows, code, m, distance[code])

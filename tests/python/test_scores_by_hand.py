@@ -19,7 +19,9 @@ import math
 import pytest
 from mission_samples import comparison, events, ns, static_info
 
+from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.ranking import rank_marks
+from pytpc.diagnosis.scores.bounds import Reports
 from pytpc.diagnosis.scores.curves import rank_curves
 from pytpc.diagnosis.scores.score_tables import Tpcs, parameter_tables, tpc_scores
 from pytpc.diagnosis.scores.scores import NONE
@@ -42,7 +44,7 @@ def scores(rows, *seconds, window_s=12.0):
     """S1 and S2 of all five comparisons at each time."""
     table = events(rows).with_keys(TPCS.keys)
     marks = [ns(second) for second in seconds]
-    return tpc_scores(TPCS, table, Summaries.empty(), marks, window_s)
+    return tpc_scores(TPCS, Reports(table, Summaries.empty()), marks, window_s)
 
 
 def of(found, number):
@@ -53,7 +55,7 @@ def of(found, number):
 def ranking(rows, seconds, kind=None, **options):
     mark = Mark(ns(seconds), kind)
     mission = Recording("m", events(rows), (mark,), 0, ns(100))
-    (found,) = rank_marks(mission, ROBOT, **options)
+    (found,) = rank_marks(mission, ROBOT, Question(**options))
     return found
 
 

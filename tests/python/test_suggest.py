@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 
 import pytest
-from asking import OPERATORS, ask
+from asking import OPERATORS, ask, suggested
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from mission_samples import comparison, events, key, link_unit, ns
 
 from pytpc.base.wording import exact, show
-from pytpc.diagnosis.suggestion.suggest import suggest
 from pytpc.recording.summaries import Summary, SummaryBuilder
 from pytpc.static.static_info import ParameterRead, Transform
 
@@ -32,25 +31,25 @@ def test_type2_from_summaries():
     kept = builder.build()
     table = events([(0.5, 0, 0, 0.25, 0.75)])
     limit = comparison(0, "limit", ">")
-    found = suggest(table, limit, ns(3), "II", window_s=2, summaries=kept)
+    found = suggested(table, limit, 3, "II", window_s=2, summaries=kept)
     assert (found.direction, found.boundary, found.inclusive) == ("lower", 0.5, False)
     # Where the mark cuts the only summary it may be that its evaluations were before.
-    cut = suggest(table, limit, ns(2.05), "II", window_s=1, summaries=kept)
+    cut = suggested(table, limit, 2.05, "II", window_s=1, summaries=kept)
     assert cut.boundary == 0.5
     # Of the window before it nothing is known.
-    none = suggest(table, limit, ns(9), "II", window_s=2, summaries=kept)
+    none = suggested(table, limit, 9, "II", window_s=2, summaries=kept)
     assert none.reason == "it was not evaluated in the window before the mark"
     # No value between the ends is known.
-    equal = suggest(table, comparison(0, "limit", "=="), ns(3), "II", window_s=2, summaries=kept)
+    equal = suggested(table, comparison(0, "limit", "=="), 3, "II", window_s=2, summaries=kept)
     assert equal.reason == "summaries do not tell which values came near to the threshold"
     # A recorder that came late has no event of what never changes: the summary is enough.
-    late = suggest(events([]), limit, ns(3), "II", window_s=2, summaries=kept)
+    late = suggested(events([]), limit, 3, "II", window_s=2, summaries=kept)
     assert (late.direction, late.boundary, late.current) == ("lower", 0.5, 0.75)
-    first = suggest(events([]), limit, ns(3), "I", summaries=kept)
+    first = suggested(events([]), limit, 3, "I", summaries=kept)
     assert first.reason == "its result did not change before the mark"
     # The threshold was changed after the last event: the present one is in the summary.
     early = events([(0.5, 0, 0, 0.25, 0.9)])
-    assert suggest(early, limit, ns(3), "II", window_s=2, summaries=kept).current == 0.75
+    assert suggested(early, limit, 3, "II", window_s=2, summaries=kept).current == 0.75
 
 
 # coverage > limit was False at 0.2 and 0.5, and flopped to True at 0.731 with limit 0.6: it stays
@@ -191,13 +190,13 @@ def test_an_expression():
 # known.
 def test_a_switch():
     table = events([(1, 0, False, 1, 1), (2, 0, True, 3, 3)])
-    found = suggest(table, comparison(0, "limit", "flag", default=3), ns(9), "I")
+    found = suggested(table, comparison(0, "limit", "flag", default=3), 9, "I")
     assert (found.current, found.direction, found.value) == (3, "switch", 1)
     how = Transform("affine", 1.0, 1.0, "x + 1")
     derived = comparison(0, "limit", "flag", type="derived", transform=how, default=2)
-    found = suggest(table, derived, ns(9), "I")
+    found = suggested(table, derived, 9, "I")
     assert (found.current, found.direction, found.value) == (2, "switch", 0)
-    assert "chooses between cases" in str(suggest(table, derived, ns(9), "II").reason)
+    assert "chooses between cases" in str(suggested(table, derived, 9, "II").reason)
 
 
 # is_on == wanted: the other value of a truth value is the only one.

@@ -27,9 +27,9 @@ The parameter x that gives T, and what the sets are in its unit:
 from __future__ import annotations
 
 import pytest
-from mission_samples import comparison, events, ns
+from asking import suggested
+from mission_samples import comparison, events
 
-from pytpc.diagnosis.suggestion.suggest import suggest
 from pytpc.diagnosis.thresholds.intervals import words
 from pytpc.static.static_info import Transform
 
@@ -90,7 +90,7 @@ def ask(relation, cmps, kind, way, *, whole=False):
     found = comparison(0, "limit", relation, default=int(now) if whole else now, **kept)
     held = {"<": float.__lt__, "<=": float.__le__, ">": float.__gt__, ">=": float.__ge__}[relation]
     rows = [(90 + t, 0, held(float(cmp), 25.0), cmp, 25.0) for t, cmp in enumerate(cmps)]
-    return suggest(events(rows), found, ns(100), kind)
+    return suggested(events(rows), found, 100, kind)
 
 
 @pytest.mark.parametrize("way", WAYS)

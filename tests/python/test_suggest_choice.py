@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 
 import pytest
+from asking import suggested
 from hypothesis import given
 from hypothesis import strategies as st
-from mission_samples import comparison, events, link_unit, ns
+from mission_samples import comparison, events, link_unit
 
 from pytpc.diagnosis.suggestion.choice import Choice, Possible, choose, readable
 from pytpc.diagnosis.suggestion.declared import Declared
-from pytpc.diagnosis.suggestion.suggest import suggest
 from pytpc.diagnosis.thresholds.intervals import Interval, words
 from pytpc.static.static_info import ParameterRead
 
@@ -30,7 +30,7 @@ def ask(rows, kind="II", relation=">", about=None, **changes):
         "flag": lambda cmp, _: cmp != 0,
     }[relation]  # fmt: skip
     table = events([(t, 0, compare(float(c), float(thresh)), c, thresh) for t, c, thresh in rows])
-    return suggest(table, found, ns(100), kind, unit=unit, declared=about)
+    return suggested(table, found, 100, kind, unit=unit, declared=about)
 
 
 # value > limit was False at 0.31274 with limit 0.6: below that it is True. 0..1 holds 0.312.

@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 
 import pytest
-from asking import ask
-from mission_samples import comparison, events, ns
+from asking import ask, suggested
+from mission_samples import comparison, events
 
-from pytpc.diagnosis.suggestion.suggest import suggest
 from pytpc.static.static_info import Transform
 
 NAN, INF = math.nan, math.inf
@@ -73,7 +72,7 @@ def test_a_threshold_that_would_do_by_now():
 def test_a_flop_of_another_comparison_in_the_condition():
     found = comparison(0, "limit", other_thresholds=1)
     table = events([(1, 0, 0, 5, 3), (2, 0, 1, 5, 3)])
-    answer = suggest(table, found, ns(9), "I")
+    answer = suggested(table, found, 9, "I")
     assert answer.reason == "another comparison of the same condition changed, not this one"
 
 
@@ -103,14 +102,14 @@ def test_a_threshold_out_of_reach():
 def test_flags_that_are_not_to_blame():
     flag = comparison(0, "limit", "flag")
     alone = events([(1, 0, False, 1, 1), (2, 0, True, 1, 1)])
-    found = suggest(alone, flag, ns(9), "I")
+    found = suggested(alone, flag, 9, "I")
     assert found.reason == "another comparison of the same condition changed, not the flag"
     back = events([(1, 0, False, 0, 0), (2, 0, True, 1, 1), (3, 0, True, 0, 0)])
-    assert suggest(back, flag, ns(9), "I").reason == "the flag has changed back since"
+    assert suggested(back, flag, 9, "I").reason == "the flag has changed back since"
     how = Transform("expression", text="floor(x)", tree=("floor", "x"))
     odd = comparison(0, "limit", "flag", type="derived", transform=how, default=3)
     table = events([(1, 0, False, 2.5, 2.5), (2, 0, True, 3, 3)])
-    found = suggest(table, odd, ns(9), "I")
+    found = suggested(table, odd, 9, "I")
     assert found.reason == "no value of the parameter gives the threshold before the change"
 
 

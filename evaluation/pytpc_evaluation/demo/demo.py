@@ -16,7 +16,7 @@ from rich.text import Text
 
 from pytpc.base.errors import RunError
 from pytpc.diagnosis.ranking.ranking import MarkRanking, rank_marks
-from pytpc.diagnosis.suggestion.suggest import suggest
+from pytpc.diagnosis.suggestion.suggest import At, suggest
 from pytpc.ingest import Recording, read_bag, save_recording
 from pytpc.present.page.html import MissionReport
 from pytpc.recording.marks import Mark
@@ -193,14 +193,8 @@ def _cells(
         kind += " (wrong type)"
     if found is None:
         return [time, kind, f"- of {ranking.parameters}", "0", "", "no" if rightly else ""]
-    advice = suggest(
-        mission.recording.events,
-        found.comparison,
-        mark.time_ns,
-        found.type,
-        unit=static_info.unit_of(found.key),
-        summaries=mission.recording.summaries,
-    )
+    at = At(mark.time_ns, found.type)
+    advice = suggest(mission.recording, static_info, found.comparison, at)
     first = Text("yes", style="bold green") if found.position == 1 else Text("no")
     return [
         time,

@@ -9,6 +9,7 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from pytpc.base.errors import TpcError
+from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.scores.curves import STEP_S, rank_curves
 from pytpc.diagnosis.scores.scores import WINDOW_S
 from pytpc.static.static_info import StaticInfo
@@ -82,7 +83,7 @@ def trial_figure(
     """
     recording, treatment = trial.mission.recording, trial.mission.treatment
     step_s = max(STEP_S, recording.seconds / _POINTS)
-    curves = rank_curves(recording, static_info, step_s=step_s, window_s=window_s)
+    curves = rank_curves(recording, static_info, Question(window_s=window_s), step_s=step_s)
     changed = None if treatment is None else treatment.parameter
     return mission_figure(_title(trial), recording, curves, state, changed)
 

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from pytpc.base.tables import Cell, Column, Table, statistics
+from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.ranking import rank_marks
 from pytpc.diagnosis.scores.scores import NONE, WINDOW_S
 from pytpc.recording.marks import MARK_TYPES, MarkType
@@ -55,7 +56,7 @@ def found_in(
     if treatment is None or treatment.parameter is None:
         return None
     marks = []
-    for ranking in rank_marks(trial.mission.recording, static_info, window_s=window_s):
+    for ranking in rank_marks(trial.mission.recording, static_info, Question(window_s=window_s)):
         suspect = ranking.suspect_of(treatment.parameter)
         rank, score = (0.0, NONE) if suspect is None else (suspect.rank, suspect.score)
         marks.append(FoundAtMark(ranking.mark.type, rank, score))

@@ -12,8 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from pytpc.diagnosis.suggestion.known import Source
-from pytpc.diagnosis.suggestion.remedy import EVERY_SOURCE
+from pytpc.diagnosis.question import EVERY_SOURCE, Source
 from pytpc.static.parameters import same_parameter
 from pytpc_evaluation.study.listed import read_list
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from pytpc.base.checked_json import parse_json
 from pytpc.base.errors import InputError
 from pytpc.base.wording import percent
+from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.blame import blame
 from pytpc.diagnosis.suggestion.blamed import advise_blamed
 from pytpc.diagnosis.suggestion.remedy import Remedy, remedy
@@ -77,21 +78,16 @@ def _ranked(chain: Chain, out: Path) -> Try:
     if not case.recording.marks:
         return Try("", None, None, None, reason="nobody set a mark")
     order = tpc_reference(case).order
-    found = blame(case.recording, case.static_info, reference=case.reference)
+    found = blame(case.recording, case.static_info, Question(reference=case.reference))
     if not order or not found.suspects:
         return Try("", None, None, None, reason="nobody is suspected")
     if found.none > found.confidence:
         words = f"none of the parameters comes first: {percent(found.none)}"
         return Try("", None, None, None, reason=f"{words}, {order[0]} {percent(found.confidence)}")
     sources = VARIANTS[chain.variant] or frozenset()
-    (advice,) = advise_blamed(
-        found.only(order[0]),
-        case.recording,
-        case.static_info,
-        top=1,
-        sources=sources,
-        reference=case.reference if "reference" in sources else None,
-    )
+    reference = case.reference if "reference" in sources else None
+    question = Question(top=1, sources=sources, reference=reference)
+    (advice,) = advise_blamed(found.only(order[0]), case.recording, case.static_info, question)
     return _try(order[0], _node(case.recording, advice.accused.key), advice.remedy)
 
 
@@ -107,15 +103,8 @@ def _asked(
     static = StaticInfo.load(out / "systems" / chain.system / "static.json")
     sources = VARIANTS[chain.variant] or frozenset()
     reference = load_recording(out / "reference" / chain.system) if "reference" in sources else None
-    return remedy(
-        recording,
-        static,
-        parameter,
-        recording.marks,
-        sources=sources,
-        reference=reference,
-        flown=flown,
-    )
+    question = Question(sources=sources, reference=reference, flown=flown)
+    return remedy(recording, static, parameter, recording.marks, question)
 
 
 def _node(recording: Recording, key: str | None) -> str | None:

@@ -12,12 +12,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pytpc.base.wording import many, percent
-from pytpc.diagnosis.ranking.diagnosing import Changed, diagnose_beside
+from pytpc.diagnosis.question import PLAIN, Question
+from pytpc.diagnosis.ranking.diagnosing import diagnose_beside
 from pytpc.diagnosis.ranking.posterior import Decisive, Diagnosis
-from pytpc.diagnosis.ranking.ranking import Types, outside
+from pytpc.diagnosis.ranking.ranking import outside
 from pytpc.diagnosis.scores.log_evidence import Evaluation, Log
 from pytpc.diagnosis.scores.score_tables import Tpcs
-from pytpc.diagnosis.scores.scores import WINDOW_S
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark, MarkType
 from pytpc.recording.mission import Recording
@@ -113,37 +113,29 @@ class Blame:
         return f"{which}: {', '.join(said)}"
 
 
-def blame(
-    recording: Recording,
-    static_info: StaticInfo,
-    *,
-    types: Types = "believe",
-    reference: Recording | None = None,
-    changes: Sequence[Changed] = (),
-    window_s: float = WINDOW_S,
-) -> Blame:
+def blame(recording: Recording, static_info: StaticInfo, question: Question = PLAIN) -> Blame:
     """Judge the parameters by all marks of a mission.
 
     Args:
         recording: the mission with its marks.
         static_info: what the analysis found.
-        types: with ``ignore`` what the marks say of the type is not looked at; ``believe`` and
-            ``doubt`` are the same, for they are never taken for certain.
-        reference: a clean run of the same build.
-        changes: what was changed since the robot went right, empty where that is not known.
-        window_s: a mark that has no report in so many seconds before it says nothing.
+        question: its ``reference`` and ``changes``; of its ``types`` ``believe`` and ``doubt`` are
+            the same, for types are never taken for certain; a mark that has no report in
+            ``window_s`` before it says nothing.
     """
-    if types == "ignore":
+    if question.types == "ignore":
         untyped = tuple(replace(mark, type=None) for mark in recording.marks)
         recording = replace(recording, marks=untyped)
     tpcs = Tpcs.of(static_info)
     events = recording.events.with_keys(tpcs.keys)
     log = Log(events, recording.summaries)
-    beyond = [outside(mark, log, window_s) for mark in recording.marks]
+    beyond = [outside(mark, log, question.window_s) for mark in recording.marks]
     notes = _notes(recording, beyond)
     if not recording.marks or all(beyond) or not len(events):
         return Blame((), 1.0, len(tpcs.names), recording.marks, notes)
-    found = diagnose_beside(recording, static_info, reference=reference, changes=changes)
+    found = diagnose_beside(
+        recording, static_info, reference=question.reference, changes=question.changes
+    )
     suspects = _suspects(found, static_info, recording.marks, events)
     made = Blame(suspects, found.none, len(tpcs.names), recording.marks, notes)
     if len(recording.marks) > 1 or made.accused is not None:

@@ -6,15 +6,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from pytpc.diagnosis.question import Changed
 from pytpc.diagnosis.ranking.other_values import before_changes, diagnose_replayed, of_clean_run
 from pytpc.diagnosis.ranking.posterior import Diagnosis, diagnose
 from pytpc.diagnosis.ranking.priors import of_changes, of_reference
 from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.recording.mission import Recording
 from pytpc.static.static_info import StaticInfo
-
-Changed = tuple[str, float, float]
-"""A parameter that was changed, the value before and after."""
 
 
 def diagnose_beside(

@@ -27,6 +27,7 @@ import numpy as np
 from pytpc.base.columns import Floats, Int64s
 from pytpc.diagnosis.ranking.mark_evidence import SHARE, Evidence, evidence, marked
 from pytpc.diagnosis.ranking.result_streams import Streams
+from pytpc.diagnosis.scores.bounds import Reports
 from pytpc.diagnosis.scores.score_tables import Tpcs, parameter_tables, tpc_scores
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
@@ -180,7 +181,9 @@ def ranked(recording: Recording, tpcs: Tpcs, times_ns: Int64s) -> Floats:
     mean. Those that are tied have the mean of their places. -inf for what was never compared.
     """
     events = recording.events.with_keys(tpcs.keys)
-    tables = parameter_tables(tpcs, tpc_scores(tpcs, events, recording.summaries, times_ns))
+    tables = parameter_tables(
+        tpcs, tpc_scores(tpcs, Reports(events, recording.summaries), times_ns)
+    )
     compared = {tpcs.parameters[code] for code in np.unique(events.key).tolist()}
     known = np.array([name in compared for name in tpcs.names], np.bool_)
     found = np.full((2, 1, known.size), -np.inf)

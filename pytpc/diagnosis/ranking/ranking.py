@@ -23,11 +23,13 @@ baselines (SPEC 7).
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
-from typing import Literal, NamedTuple, get_args
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
+from pytpc.diagnosis.question import PLAIN, Question
+from pytpc.diagnosis.scores.bounds import Reports
 from pytpc.diagnosis.scores.log_evidence import Evaluation, Evidence, Log
 from pytpc.diagnosis.scores.score_tables import Tables, Tpcs, parameter_tables, tpc_scores
 from pytpc.diagnosis.scores.scores import NONE, WINDOW_S, combined
@@ -36,9 +38,6 @@ from pytpc.recording.marks import Mark, MarkType
 from pytpc.recording.mission import Recording
 from pytpc.static.parameters import same_parameter
 from pytpc.static.static_info import Comparison, StaticInfo
-
-Types = Literal["believe", "doubt", "ignore"]
-"""How far the types of the marks are believed, see above."""
 
 DOUBT: dict[MarkType, float] = {"I": 26 / 32, "II": 45 / 70}
 """How probable the other type is after a mark of this one."""
@@ -104,11 +103,7 @@ class MarkRanking:
 
 
 def rank_marks(
-    recording: Recording,
-    static_info: StaticInfo,
-    *,
-    types: Types = "believe",
-    window_s: float = WINDOW_S,
+    recording: Recording, static_info: StaticInfo, question: Question = PLAIN
 ) -> list[MarkRanking]:
     """Rank the parameters at every mark.
 
@@ -117,20 +112,17 @@ def rank_marks(
             ``unknown_keys`` counts them.
         static_info: what the analysis found. All its TPCs and parameters count in n of the rank,
             also those that were never evaluated.
-        types: how far the observer's types are believed.
-        window_s: the window of type II in seconds.
+        question: its ``types`` and ``window_s``.
 
     Returns:
         One ranking for each mark, in the order of ``recording.marks``.
-
-    Raises:
-        ValueError: ``window_s`` is negative, or ``types`` is none of these words.
     """
     tpcs = Tpcs.of(static_info)
     events = recording.events.with_keys(tpcs.keys)
     marks_ns = np.array([mark.time_ns for mark in recording.marks], dtype=np.int64)
-    scores = tpc_scores(tpcs, events, recording.summaries, marks_ns, window_s)
-    ranker = Ranker(static_info, tpcs, Log(events, recording.summaries), types, window_s)
+    reports = Reports(events, recording.summaries)
+    scores = tpc_scores(tpcs, reports, marks_ns, question.window_s)
+    ranker = Ranker(static_info, tpcs, Log(events, recording.summaries), question)
     tables = parameter_tables(tpcs, scores)
     return [ranker.ranking(mark, tables, row) for row, mark in enumerate(recording.marks)]
 
@@ -164,17 +156,7 @@ class Ranker:
     static_info: StaticInfo
     tpcs: Tpcs
     evidence: Evidence
-    types: Types = "believe"
-    window_s: float = WINDOW_S
-
-    def __post_init__(self) -> None:
-        """Check the word.
-
-        Raises:
-            ValueError: ``types`` is none of ``Types``.
-        """
-        if self.types not in get_args(Types):
-            raise ValueError(f"types is {self.types!r}, not one of {', '.join(get_args(Types))}")
+    question: Question = PLAIN
 
     def ranking(self, mark: Mark, tables: Tables, row: int) -> MarkRanking:
         """The ranking at ``mark``, whose scores are in ``row`` of the tables."""
@@ -185,18 +167,19 @@ class Ranker:
             same = number > 1 and place.order == places[number - 2].order
             position = suspects[-1].position if same else number
             tied = alike[place.order] > 1
-            suspects.append(self._suspect(mark, tables, row, place, position=position, tied=tied))
+            suspect = self._suspect(mark, tables, row, place)
+            suspects.append(replace(suspect, position=position, tied=tied))
         reason = self._reason(mark, suspects)
         return MarkRanking(mark, tuple(suspects), len(self.tpcs.names), not reason, reason)
 
     def _places(self, mark: Mark, tables: Tables, row: int) -> list[_Place]:
         """The parameters with a score, in order; ties by distance and name."""
-        given = None if self.types == "ignore" else mark.type
+        given = None if self.question.types == "ignore" else mark.type
         kind: MarkType = given or "I"
         other: MarkType = "II" if kind == "I" else "I"
         own = tables.of(kind)
         ranks, others = own.ranks[row], tables.of(other).ranks[row]
-        if given is not None and self.types == "believe":
+        if given is not None and self.question.types == "believe":
             scores = own.scores[row]
             places = [
                 _Place(n, kind, float(ranks[n]), (float(scores[n]),))
@@ -220,22 +203,14 @@ class Ranker:
         # The columns are in the order of the names.
         return sorted(places, key=lambda place: (place.order, distance[place.column], place.column))
 
-    def _suspect(
-        self,
-        mark: Mark,
-        tables: Tables,
-        row: int,
-        place: _Place,
-        *,
-        position: int,
-        tied: bool,
-    ) -> Suspect:
+    def _suspect(self, mark: Mark, tables: Tables, row: int, place: _Place) -> Suspect:
+        """The suspect at a place of the order, as if it were the first."""
         table, column = tables.of(place.type), place.column
         key = self.tpcs.keys[int(table.best[row, column])]
         parameter = table.names[column]
         seen = self.evidence.first_ns
         return Suspect(
-            position=position,
+            position=1,
             parameter=parameter,
             key=key,
             comparison=self.static_info.comparisons[key],
@@ -244,7 +219,6 @@ class Ranker:
             rank=place.rank,
             keys=tuple(one for one in self.tpcs.keys_of[parameter] if one in seen),
             last=self.evidence.last(key, mark.time_ns),
-            tied=tied,
             rank1=float(tables.first.ranks[row, column]),
             rank2=float(tables.second.ranks[row, column]),
         )
@@ -254,7 +228,7 @@ class Ranker:
         first = self.evidence.first_ns
         if not self.tpcs.keys:
             return "the static information has no comparison with a parameter"
-        beyond = outside(mark, self.evidence, self.window_s)
+        beyond = outside(mark, self.evidence, self.question.window_s)
         if beyond:
             return beyond
         evaluated = {
@@ -272,8 +246,9 @@ class Ranker:
 
     def _why_nobody(self, mark: Mark) -> str:
         change = "no result had changed up to the mark"
-        near = f"nothing that ever had two different values was compared in the {self.window_s:g} s"
-        if self.types != "believe" or mark.type is None:
+        window = f"{self.question.window_s:g} s"
+        near = f"nothing that ever had two different values was compared in the {window}"
+        if self.question.types != "believe" or mark.type is None:
             return f"{change}, and {near} before it"
         return change if mark.type == "I" else f"{near} before the mark"
 

@@ -24,10 +24,11 @@ import numpy as np
 import numpy.typing as npt
 
 from pytpc.diagnosis.scores.scores import (
+    DEFAULT,
     EQUAL,
     NONE,
-    WINDOW_S,
     Before,
+    Formula,
     RangeSums,
     beside_none,
     checked,
@@ -57,33 +58,37 @@ class Bounds(NamedTuple):
     high: Floats
 
 
+class Reports(NamedTuple):
+    """What scores are worked out from.
+
+    ``before`` is what was before the first of ``events`` and ``summaries``, the extremes of earlier
+    summaries among it; None: nothing.
+    """
+
+    events: Events
+    summaries: Summaries
+    before: Before | None = None
+
+
 def type2_bounds(
-    events: Events,
-    summaries: Summaries,
+    reports: Reports,
     marks_ns: npt.ArrayLike,
     distance: npt.ArrayLike,
-    *,
-    window_s: float = WINDOW_S,
-    alpha: float = 1.0,
-    beta: float = 1.0,
-    gamma: float = 0.0,
-    delta: float = 0.0,
-    before: Before | None = None,
+    formula: Formula = DEFAULT,
 ) -> Bounds:
     """Type II from first evaluations, flops and summaries; the arguments are those of ``type2``.
 
     Keys of ``summaries`` that are not among ``events.keys`` are left out. A key may have both
-    summaries and evaluations that are in none (another node, or another policy before). ``before``
-    has the extremes of summaries, too, that ended before the first of ``summaries``.
+    summaries and evaluations that are in none (another node, or another policy before).
 
     Raises:
         ValueError: ``distance`` is not one number for each key, or an argument is negative.
     """
-    powers = _Powers(alpha, beta, gamma, delta)
+    events, summaries, before = reports
     earlier = before or Before.nothing(len(events.keys))
-    plain = type2(events, marks_ns, distance, window_s=window_s, before=earlier, **powers._asdict())
+    plain = type2(events, marks_ns, distance, formula, earlier)
     marks, distances = checked(events, marks_ns, distance)
-    begins = marks - round(window_s * 1e9)
+    begins = marks - round(formula.window_s * 1e9)
     bounds = Bounds(plain, plain.copy(), plain.copy())
     nearness = distances / distances.max(initial=1.0)
     for code, key in enumerate(events.keys):
@@ -94,17 +99,10 @@ def type2_bounds(
             # What is beyond a double is looked for where it matters, in ``scores``.
             with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
                 own = _Key(events, code, summaries, rows, earlier)
-                columns = own.scores(begins, marks, powers, float(nearness[code]))
+                columns = own.scores(begins, marks, formula, float(nearness[code]))
             for table, column in zip(bounds, columns, strict=True):
                 table[:, code] = column
     return bounds
-
-
-class _Powers(NamedTuple):
-    alpha: float
-    beta: float
-    gamma: float
-    delta: float
 
 
 class _Spread(NamedTuple):
@@ -158,7 +156,7 @@ class _Key:
         self.sum = self.mean * self.count
 
     def scores(
-        self, begins: Int64s, marks: Int64s, powers: _Powers, nearness: float
+        self, begins: Int64s, marks: Int64s, formula: Formula, nearness: float
     ) -> tuple[Floats, Floats, Floats]:
         """The least, likely and greatest score at each mark."""
         window = self._window(begins, marks)
@@ -175,12 +173,12 @@ class _Key:
         low = np.where(wild, 0.0, low)
         high = np.where(wild | ~(high <= 1.0), 1.0, high)
         value = np.clip(np.where(np.isfinite(value), value, 1.0), low, high)
-        factor = np.maximum(1.0, count_within(self.flops, begins, marks)) ** powers.beta
-        factor = factor * nearness**powers.delta
-        far = [window.far**powers.gamma, window.far_likely() ** powers.gamma]
-        far.append(window.far_most() ** powers.gamma)
+        factor = np.maximum(1.0, count_within(self.flops, begins, marks)) ** formula.beta
+        factor = factor * nearness**formula.delta
+        far = [window.far**formula.gamma, window.far_likely() ** formula.gamma]
+        far.append(window.far_most() ** formula.gamma)
         scores = [
-            beside_none(ratio**powers.alpha * factor * n)
+            beside_none(ratio**formula.alpha * factor * n)
             for ratio, n in zip((low, value, high), far, strict=True)
         ]
         doubtful = ~sure | (spread.least <= 0)

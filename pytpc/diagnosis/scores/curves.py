@@ -8,8 +8,9 @@ import numpy as np
 
 from pytpc.base.columns import Floats, Int64s
 from pytpc.base.errors import TpcError
+from pytpc.diagnosis.question import PLAIN, Question
+from pytpc.diagnosis.scores.bounds import Reports
 from pytpc.diagnosis.scores.score_tables import Tpcs, parameter_tables, tpc_scores
-from pytpc.diagnosis.scores.scores import WINDOW_S
 from pytpc.recording.mission import Recording
 from pytpc.static.static_info import StaticInfo
 
@@ -41,16 +42,16 @@ class RankCurves:
 def rank_curves(
     recording: Recording,
     static_info: StaticInfo,
+    question: Question = PLAIN,
     *,
     step_s: float = STEP_S,
-    window_s: float = WINDOW_S,
 ) -> RankCurves:
     """The curves of a mission, from its begin to its end every ``step_s`` seconds.
 
     Each value is what an observer would have got at that time: nothing later counts.
 
     Raises:
-        ValueError: ``step_s`` is less than a nanosecond, or ``window_s`` is negative.
+        ValueError: ``step_s`` is less than a nanosecond.
         TpcError: there are too many steps.
     """
     step_ns = round(step_s * 1e9)
@@ -65,7 +66,7 @@ def rank_curves(
         )
     times = recording.start_ns + step_ns * np.arange(steps, dtype=np.int64)
     events = recording.events.with_keys(tpcs.keys)
-    scores = tpc_scores(tpcs, events, recording.summaries, times, window_s)
+    scores = tpc_scores(tpcs, Reports(events, recording.summaries), times, question.window_s)
     tables = parameter_tables(tpcs, scores)
     return RankCurves(
         times_ns=times,

@@ -24,7 +24,9 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from pytpc.diagnosis.ranking.ranking import MarkRanking, Ranker, Types
+from pytpc.diagnosis.question import PLAIN, Question
+from pytpc.diagnosis.ranking.ranking import MarkRanking, Ranker
+from pytpc.diagnosis.scores.bounds import Reports
 from pytpc.diagnosis.scores.live_streams import AGAIN, Rows, Stream, SummaryStream, end_of
 from pytpc.diagnosis.scores.log_evidence import Evaluation
 from pytpc.diagnosis.scores.score_tables import Tpcs, TpcScores, parameter_tables, tpc_scores
@@ -155,7 +157,8 @@ class LiveScores:
         before = Before.nothing(len(self.tpcs.keys))
         events = self._events(mark_ns, before)
         summaries = self._kept_summaries(mark_ns, before)
-        scores = tpc_scores(self.tpcs, events, summaries, mark_ns, self.window_s, before=before)
+        reports = Reports(events, summaries, before)
+        scores = tpc_scores(self.tpcs, reports, mark_ns, self.window_s)
         return scores.first[0], scores.second[0]
 
     def last(self, key: str, mark_ns: int) -> Evaluation:
@@ -285,22 +288,16 @@ class LiveRanking:
     that are not comparisons with parameters are counted in its ``unknown``.
     """
 
-    def __init__(
-        self, static_info: StaticInfo, window_s: float = WINDOW_S, *, types: Types = "believe"
-    ) -> None:
+    def __init__(self, static_info: StaticInfo, question: Question = PLAIN) -> None:
         """Start without a report.
 
         Args:
             static_info: what the analysis found.
-            window_s: the window of type II in seconds.
-            types: how far the types of marks are believed, as for `rank_marks`.
-
-        Raises:
-            ValueError: ``window_s`` is negative.
+            question: its ``types`` and ``window_s``, as for `rank_marks`.
         """
         self._tpcs = Tpcs.of(static_info)
-        self.scores = LiveScores(self._tpcs.keys, self._tpcs.distance, window_s)
-        self._ranker = Ranker(static_info, self._tpcs, self.scores, types, window_s)
+        self.scores = LiveScores(self._tpcs.keys, self._tpcs.distance, question.window_s)
+        self._ranker = Ranker(static_info, self._tpcs, self.scores, question)
 
     def ranking_at(self, mark: Mark) -> MarkRanking:
         """What `rank_marks` gives for a mark in a recording of all that was added so far.

@@ -9,19 +9,18 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from pytpc.diagnosis.scores.bounds import type2_bounds
+from pytpc.diagnosis.scores.bounds import Reports, type2_bounds
 from pytpc.diagnosis.scores.scores import (
     WINDOW_S,
-    Before,
+    Formula,
     by_parameter,
     combined,
     ranks,
     type1,
     type2,
 )
-from pytpc.recording.events import Events, Floats, Int64s
+from pytpc.recording.events import Floats, Int64s
 from pytpc.recording.marks import MarkType
-from pytpc.recording.summaries import Summaries
 from pytpc.static.parameters import parameter_name
 from pytpc.static.static_info import StaticInfo
 
@@ -100,32 +99,23 @@ class Tables(NamedTuple):
 
 
 def tpc_scores(
-    tpcs: Tpcs,
-    events: Events,
-    summaries: Summaries,
-    times_ns: npt.ArrayLike,
-    window_s: float = WINDOW_S,
-    *,
-    before: Before | None = None,
+    tpcs: Tpcs, reports: Reports, times_ns: npt.ArrayLike, window_s: float = WINDOW_S
 ) -> TpcScores:
     """Both scores of every TPC at all times.
 
     Args:
         tpcs: n of them.
-        events: with ``tpcs.keys`` as its keys (`Events.with_keys`).
-        summaries: where there are any of a TPC, its type II is `type2_bounds`' value.
+        reports: the events with ``tpcs.keys`` as their keys (`Events.with_keys`); where there are
+            summaries of a TPC, its type II is `type2_bounds`' value.
         times_ns: int64[t], in any order.
         window_s: the window of type II in seconds.
-        before: what was before the first of ``events`` and ``summaries``.
     """
-    first = type1(events, times_ns, tpcs.distance, before=before)
+    events, summaries, before = reports
+    formula = Formula(window_s)
+    first = type1(events, times_ns, tpcs.distance, formula, before)
     if not len(summaries):
-        second = type2(events, times_ns, tpcs.distance, window_s=window_s, before=before)
-        return TpcScores(first, second)
-    bounds = type2_bounds(
-        events, summaries, times_ns, tpcs.distance, window_s=window_s, before=before
-    )
-    return TpcScores(first, bounds.value)
+        return TpcScores(first, type2(events, times_ns, tpcs.distance, formula, before))
+    return TpcScores(first, type2_bounds(reports, times_ns, tpcs.distance, formula).value)
 
 
 def parameter_tables(tpcs: Tpcs, scores: TpcScores) -> Tables:

@@ -71,14 +71,28 @@ class Before(NamedTuple):
         )
 
 
+class Formula(NamedTuple):
+    """The window in seconds and the exponents of a score.
+
+    The window, ``alpha`` and type II's ``gamma`` are at least 0.
+    """
+
+    window_s: float = WINDOW_S
+    alpha: float = 1.0
+    beta: float = 1.0
+    gamma: float = 0.0
+    delta: float = 0.0
+
+
+DEFAULT = Formula()
+"""The thesis's exponents and window."""
+
+
 def type1(
     events: Events,
     marks_ns: npt.ArrayLike,
     distance: npt.ArrayLike,
-    *,
-    alpha: float = 1.0,
-    beta: float = 1.0,
-    gamma: float = 0.0,
+    formula: Formula = DEFAULT,
     before: Before | None = None,
 ) -> Floats:
     """Type I, recent flop: (m - t_last_flop)^alpha * (1 + flops up to m)^beta * d_i^gamma.
@@ -87,9 +101,8 @@ def type1(
         events: the evaluations.
         marks_ns: int64[marks], the times m in nanoseconds, in any order.
         distance: float64[keys], d_i of ``events.keys``.
-        alpha: exponent of the seconds since the last flop, at least 0.
-        beta: exponent of the number of flops.
-        gamma: exponent of the distance.
+        formula: its ``alpha`` is the exponent of the seconds since the last flop, ``beta`` of the
+            number of flops, ``gamma`` of the distance.
         before: what was before the first of ``events``; no mark may be earlier.
 
     Returns:
@@ -99,6 +112,7 @@ def type1(
         ValueError: ``distance`` is not one number for each key, or ``alpha`` is negative.
     """
     marks, distances = checked(events, marks_ns, distance)
+    alpha, beta, gamma = formula.alpha, formula.beta, formula.gamma
     not_negative(alpha=alpha)
     earlier = before or Before.nothing(len(events.keys))
     scores = np.full((marks.size, len(events.keys)), NONE)
@@ -119,12 +133,7 @@ def type2(
     events: Events,
     marks_ns: npt.ArrayLike,
     distance: npt.ArrayLike,
-    *,
-    window_s: float = WINDOW_S,
-    alpha: float = 1.0,
-    beta: float = 1.0,
-    gamma: float = 0.0,
-    delta: float = 0.0,
+    formula: Formula = DEFAULT,
     before: Before | None = None,
 ) -> Floats:
     """Type II, about to flop: D^alpha * max(1, flops)^beta * n_i^gamma * (d_i/d_max)^delta.
@@ -136,11 +145,8 @@ def type2(
         events: the evaluations.
         marks_ns: int64[marks], the times m in nanoseconds, in any order.
         distance: float64[keys], d_i of ``events.keys``; d_max is the largest of them.
-        window_s: the length w of the window in seconds, at least 0.
-        alpha: exponent of D, at least 0.
-        beta: exponent of the number of flops in the window.
-        gamma: exponent of n_i, at least 0.
-        delta: exponent of the distance.
+        formula: its ``window_s`` is w, ``alpha`` the exponent of D, ``beta`` of the number of flops
+            in the window, ``gamma`` of n_i, ``delta`` of the distance.
         before: what was before the first of ``events``; no window may begin earlier.
 
     Returns:
@@ -151,6 +157,7 @@ def type2(
         ValueError: ``distance`` is not one number for each key, or an argument is negative.
     """
     marks, distances = checked(events, marks_ns, distance)
+    window_s, alpha, beta, gamma, delta = formula
     not_negative(window_s=window_s, alpha=alpha, gamma=gamma)
     begins = marks - round(window_s * 1e9)
     earlier = before or Before.nothing(len(events.keys))

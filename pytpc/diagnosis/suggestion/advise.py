@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from pytpc.diagnosis.question import PLAIN, Question
 from pytpc.diagnosis.ranking.ranking import MarkRanking, Suspect
-from pytpc.diagnosis.scores.scores import WINDOW_S
 from pytpc.diagnosis.suggestion.declared import Declared, declared_for
 from pytpc.diagnosis.suggestion.remedy import Remedy
-from pytpc.diagnosis.suggestion.suggest import Suggestion, suggest
+from pytpc.diagnosis.suggestion.suggest import At, Suggestion, suggest
 from pytpc.diagnosis.suggestion.what_if import WhatIf, what_if
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
@@ -38,12 +37,9 @@ def advise(
     recording: Recording,
     static_info: StaticInfo,
     ranking: MarkRanking,
-    *,
-    top: int = 5,
-    declared: Sequence[Declared] = (),
-    window_s: float = WINDOW_S,
+    question: Question = PLAIN,
 ) -> list[Advice]:
-    """Advice for the first ``top`` suspects at a mark, in their order.
+    """Advice for the first suspects at a mark, in their order.
 
     The counterfactual looks at the marks of the type that the suspect's score is of, those of no
     type, and this mark.
@@ -52,13 +48,11 @@ def advise(
         recording: the mission.
         static_info: what the analysis found.
         ranking: the suspects at a mark of the recording.
-        top: how many of them, at least 0.
-        declared: what is declared, see `pytpc.diagnosis.suggestion.declared.read_declared`.
-        window_s: the window of type II in seconds.
+        question: its ``top``, ``declared`` and ``window_s``.
     """
     return [
-        _advice(recording, static_info, ranking.mark, suspect, declared=declared, window_s=window_s)
-        for suspect in ranking.suspects[:top]
+        _advice(recording, static_info, ranking.mark, suspect, question)
+        for suspect in ranking.suspects[: question.top]
     ]
 
 
@@ -67,27 +61,21 @@ def alternatives(
     static_info: StaticInfo,
     ranking: MarkRanking,
     suspect: Suspect,
-    *,
-    declared: Sequence[Declared] = (),
-    window_s: float = WINDOW_S,
+    question: Question = PLAIN,
 ) -> list[Advice]:
     """What else may be done about a suspect: by the other comparisons of its parameter.
 
     Each has ``suspect`` as it is with another ``key`` and ``comparison``; those that suggest the
     same value, or none, are left out.
     """
-    said = _advice(
-        recording, static_info, ranking.mark, suspect, declared=declared, window_s=window_s
-    )
+    said = _advice(recording, static_info, ranking.mark, suspect, question)
     known = {(said.suggestion.direction, said.suggestion.value)}
     found = []
     for key in suspect.keys:
         if key == suspect.key:
             continue
         other = replace(suspect, key=key, comparison=static_info.comparisons[key])
-        advice = _advice(
-            recording, static_info, ranking.mark, other, declared=declared, window_s=window_s
-        )
+        advice = _advice(recording, static_info, ranking.mark, other, question)
         what = (advice.suggestion.direction, advice.suggestion.value)
         if what[0] is not None and what not in known:
             known.add(what)
@@ -100,33 +88,16 @@ def _advice(
     static_info: StaticInfo,
     mark: Mark,
     suspect: Suspect,
-    *,
-    declared: Sequence[Declared],
-    window_s: float,
+    question: Question,
 ) -> Advice:
-    about = declared_for(declared, suspect, static_info.source_path(suspect.key))
-    suggestion = suggest(
-        recording.events,
-        suspect.comparison,
-        mark.time_ns,
-        suspect.type,
-        unit=static_info.unit_of(suspect.key),
-        window_s=window_s,
-        summaries=recording.summaries,
-        declared=about,
-    )
+    about = declared_for(question.declared, suspect, static_info.source_path(suspect.key))
+    at = At(mark.time_ns, suspect.type)
+    suggestion = suggest(recording, static_info, suspect.comparison, at, question.about(about))
     if suggestion.value is None:
         return Advice(suspect, suggestion, None, about)
     marks = [one for one in recording.marks if one.type in {suspect.type, None} or one == mark]
     if mark not in marks:
         marks.append(mark)
-    then = what_if(
-        recording,
-        static_info,
-        suspect.parameter,
-        suggestion.value,
-        kind=suspect.type,
-        marks=marks,
-        window_s=window_s,
-    )
+    replay = question.replayed(suspect.type, marks)
+    then = what_if(recording, static_info, suspect.parameter, suggestion.value, replay)
     return Advice(suspect, suggestion, then, about)

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from pytpc.diagnosis.question import PLAIN, Changed, Question
 from pytpc.diagnosis.ranking.blame import Accused, Blame
-from pytpc.diagnosis.ranking.diagnosing import Changed
-from pytpc.diagnosis.scores.scores import WINDOW_S
-from pytpc.diagnosis.suggestion.declared import Declared, declared_for
-from pytpc.diagnosis.suggestion.known import Source
-from pytpc.diagnosis.suggestion.remedy import EVERY_SOURCE, Remedy, remedy, restored
+from pytpc.diagnosis.suggestion.declared import declared_for
+from pytpc.diagnosis.suggestion.remedy import Remedy, remedy, restored
 from pytpc.diagnosis.suggestion.what_if import WhatIf, what_if
 from pytpc.recording.mission import Recording
 from pytpc.static.parameters import same_parameter
@@ -28,51 +26,28 @@ class BlamedAdvice:
 
 
 def advise_blamed(
-    blame: Blame,
-    recording: Recording,
-    static_info: StaticInfo,
-    *,
-    top: int = 5,
-    declared: Sequence[Declared] = (),
-    reference: Recording | None = None,
-    changes: Sequence[Changed] = (),
-    sources: Collection[Source] = EVERY_SOURCE,
-    flown: Sequence[float] = (),
-    window_s: float = WINDOW_S,
+    blame: Blame, recording: Recording, static_info: StaticInfo, question: Question = PLAIN
 ) -> list[BlamedAdvice]:
-    """The first ``top`` of them with the value to try, as `remedy.remedy` has it.
+    """The first of them with the value to try, as `remedy.remedy` has it.
 
     All marks count, without the types that were said: most people confuse them (thesis, table
     6.13), and the value depends on the type more than on all else. The type is what the log says
-    for this parameter (`Remedy.kind`). ``declared`` is what is declared of
-    parameters, ``reference`` a mission that went right, ``changes`` what was changed since, newest
-    last. The value of before a change, or of the reference, comes before what the log says: with it
-    the robot went right; of several changes of one parameter that is the oldest. ``sources`` are
-    the known values that may be taken, ``flown`` values of the one suspect that did not help.
+    for this parameter (`Remedy.kind`). The value of before a change, or of the reference, comes
+    before what the log says: with it the robot went right.
     """
     found = []
-    for accused in blame.suspects[:top]:
+    for accused in blame.suspects[: question.top]:
         name = accused.parameter
-        about = declared_for(declared, accused, static_info.source_path(accused.key))
-        value = remedy(
-            recording,
-            static_info,
-            name,
-            [replace(mark, type=None) for mark in blame.marks],
-            sources=sources,
-            reference=reference,
-            declared=about,
-            flown=flown,
-            window_s=window_s,
-        )
-        value = _as_before(value, changes)
+        about = declared_for(question.declared, accused, static_info.source_path(accused.key))
+        untyped = [replace(mark, type=None) for mark in blame.marks]
+        value = remedy(recording, static_info, name, untyped, question.about(about))
+        value = _as_before(value, question.changes)
         then = None
         if value.value is not None:
             kind = value.kind or accused.type
             marks = [replace(mark, type=kind) for mark in blame.marks]
-            then = what_if(
-                recording, static_info, name, value.value, kind=kind, marks=marks, window_s=window_s
-            )
+            replay = question.replayed(kind, marks)
+            then = what_if(recording, static_info, name, value.value, replay)
         found.append(BlamedAdvice(accused, value, then))
     return found
 

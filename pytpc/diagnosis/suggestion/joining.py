@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
+from pytpc.diagnosis.question import PLAIN, Question
 from pytpc.diagnosis.ranking.ranking import MarkRanking
-from pytpc.diagnosis.scores.scores import WINDOW_S
 from pytpc.diagnosis.suggestion.advise import Advice, advise
-from pytpc.diagnosis.suggestion.declared import Declared
 from pytpc.diagnosis.suggestion.remedy import Remedy, remedy
 from pytpc.diagnosis.suggestion.what_if import WhatIf, what_if
 from pytpc.diagnosis.thresholds.intervals import holds
@@ -67,24 +66,16 @@ def join_advice(
     recording: Recording,
     static_info: StaticInfo,
     rankings: Sequence[MarkRanking],
-    *,
-    top: int = 5,
-    declared: Sequence[Declared] = (),
-    reference: Recording | None = None,
-    flown: Sequence[float] = (),
-    window_s: float = WINDOW_S,
+    question: Question = PLAIN,
 ) -> list[MarkGroup]:
     """The advice for all marks, those that say the same together, in the order of the first ones.
 
     The arguments are those of `pytpc.diagnosis.suggestion.advise.advise`, with the rankings of
-    several marks, ``reference``, a mission that went right, and ``flown``, values of the one
-    suspect that did not help.
+    several marks.
     """
     groups: dict[tuple[object, ...], _Open] = {}
     for ranking in rankings:
-        advice = advise(
-            recording, static_info, ranking, top=top, declared=declared, window_s=window_s
-        )
+        advice = advise(recording, static_info, ranking, question)
         group = groups.setdefault(_says(ranking.mark, advice), _Open())
         group.marks.append(ranking.mark)
         group.lists.append(advice)
@@ -99,17 +90,9 @@ def join_advice(
                     one.advice,
                     one.named,
                     one.count,
-                    *_tried(
-                        recording,
-                        static_info,
-                        group.marks,
-                        one.advice,
-                        reference=reference,
-                        flown=flown,
-                        window_s=window_s,
-                    ),
+                    *_tried(recording, static_info, group.marks, one.advice, question),
                 )
-                for one in _joined(group.lists, top)
+                for one in _joined(group.lists, question.top)
             ),
             tuple(group.reasons),
         )
@@ -122,8 +105,7 @@ def with_remedies(
     static_info: StaticInfo,
     rankings: Sequence[MarkRanking],
     lists: Sequence[Sequence[Advice]],
-    *,
-    window_s: float = WINDOW_S,
+    question: Question = PLAIN,
 ) -> list[list[Advice]]:
     """The advice for each mark with the values to try, the same as ``join_advice`` has.
 
@@ -134,8 +116,9 @@ def with_remedies(
         static_info: what the analysis found.
         rankings: of its marks.
         lists: for each the advice for its first suspects.
-        window_s: the window of type II in seconds.
+        question: its ``window_s``; a mission that went right is not looked at.
     """
+    alone = replace(question, reference=None, flown=())
     marks: dict[tuple[object, ...], list[Mark]] = {}
     for ranking, advice in zip(rankings, lists, strict=True):
         marks.setdefault(_says(ranking.mark, advice), []).append(ranking.mark)
@@ -146,10 +129,7 @@ def with_remedies(
         for one in advice:
             place = (says, one.suspect.parameter, one.suspect.type)
             if place not in known:
-                known[place] = _tried(
-                    recording, static_info, marks[says], one,
-                    reference=None, flown=(), window_s=window_s,
-                )  # fmt: skip
+                known[place] = _tried(recording, static_info, marks[says], one, alone)
             filled.append(replace(one, remedy=known[place][0], tried=known[place][1]))
         found.append(filled)
     return found
@@ -170,30 +150,17 @@ def _tried(
     static_info: StaticInfo,
     marks: Sequence[Mark],
     advice: Advice,
-    *,
-    reference: Recording | None,
-    flown: Sequence[float],
-    window_s: float,
+    question: Question,
 ) -> tuple[Remedy, WhatIf | None]:
     """The value to try, by the type that the parameter is suspected for."""
     kind = advice.suspect.type
     typed = [replace(mark, type=kind) for mark in marks]
     name = advice.suspect.parameter
-    found = remedy(
-        recording,
-        static_info,
-        name,
-        typed,
-        reference=reference,
-        declared=advice.declared,
-        flown=flown,
-        window_s=window_s,
-    )
+    found = remedy(recording, static_info, name, typed, question.about(advice.declared))
     then = None
     if found.value is not None:
-        then = what_if(
-            recording, static_info, name, found.value, kind=kind, marks=typed, window_s=window_s
-        )
+        replay = question.replayed(kind, typed)
+        then = what_if(recording, static_info, name, found.value, replay)
     return found, then
 
 

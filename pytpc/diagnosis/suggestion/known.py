@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 
 from pytpc.base.errors import InputError
 from pytpc.base.wording import Number
+from pytpc.diagnosis.question import Source
 from pytpc.diagnosis.suggestion.case import Case, case_of, shown_current
 from pytpc.diagnosis.suggestion.suggestion_evidence import Evidence, NoneBecauseError
 from pytpc.diagnosis.thresholds.replay import tracks_of
@@ -16,7 +16,6 @@ from pytpc.diagnosis.thresholds.units import NoUnitError
 from pytpc.recording.mission import Recording
 from pytpc.static.static_info import Default, StaticInfo
 
-Source = Literal["reference", "default", "declared"]
 NAMES: dict[Source, str] = {
     "reference": "the value of the clean run",
     "default": "the default in the source",

@@ -21,7 +21,7 @@ the other direction was wanted.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -29,13 +29,13 @@ import numpy as np
 
 from pytpc.base.columns import Floats
 from pytpc.base.wording import Number, exact, many, show
-from pytpc.diagnosis.scores.scores import WINDOW_S
+from pytpc.diagnosis.question import PLAIN, Question
 from pytpc.diagnosis.suggestion.case import Case, case_of, refuse, shown_current, values_for
 from pytpc.diagnosis.suggestion.choice import choose
 from pytpc.diagnosis.suggestion.declared import Declared
-from pytpc.diagnosis.suggestion.known import NAMES, Known, Source, known_values, value_in
+from pytpc.diagnosis.suggestion.known import NAMES, Known, known_values, value_in
 from pytpc.diagnosis.suggestion.lasting import Lasting, lasting
-from pytpc.diagnosis.suggestion.suggest import Direction, Suggestion, suggest_for_most
+from pytpc.diagnosis.suggestion.suggest import At, Direction, Suggestion, suggest_for_most
 from pytpc.diagnosis.suggestion.suggestion_evidence import Evidence, NoneBecauseError
 from pytpc.diagnosis.thresholds.intervals import Interval, Intervals, holds, intersection, words
 from pytpc.diagnosis.thresholds.outcomes import thresholds_for
@@ -48,7 +48,6 @@ from pytpc.static.static_info import StaticInfo
 Basis = Literal[
     "reference", "default", "declared", "lasting", "growth", "between", "smallest", "before"
 ]
-EVERY_SOURCE: frozenset[Source] = frozenset(NAMES)
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,12 +101,7 @@ def remedy(
     static_info: StaticInfo,
     parameter: str,
     marks: Sequence[Mark],
-    *,
-    sources: Collection[Source] = EVERY_SOURCE,
-    reference: Recording | None = None,
-    declared: Declared | None = None,
-    flown: Sequence[float] = (),
-    window_s: float = WINDOW_S,
+    question: Question = PLAIN,
 ) -> Remedy:
     """The value of one parameter to try, from all marks of a mission.
 
@@ -116,28 +110,17 @@ def remedy(
         static_info: what the analysis found.
         parameter: its name in the source, or what `same_parameter` takes for it.
         marks: at least one, of any type or none.
-        sources: which known values may be taken.
-        reference: a clean run of the same build; its value is taken whatever the log says.
-        declared: what is declared of the parameter.
-        flown: values of it in earlier missions that did not help, without this one's.
-        window_s: the window before a mark in seconds.
+        question: its ``sources``, ``window_s`` and ``reference``, whose value is taken whatever the
+            log says; ``flown`` is without this mission's value, and ``declared`` has at most the
+            one of this parameter.
 
     Raises:
         InputError: there is no such parameter, or several.
     """
+    reference = question.reference
     right = None if reference is None else value_in(reference, static_info, parameter)
-    found = _by_log(
-        recording,
-        static_info,
-        parameter,
-        marks,
-        sources=sources,
-        reference=reference,
-        declared=declared,
-        flown=flown,
-        window_s=window_s,
-    )
-    if right is None or right in flown or "reference" not in sources:
+    found = _by_log(recording, static_info, parameter, marks, question)
+    if right is None or right in question.flown or "reference" not in question.sources:
         return found
     if found.current is None:
         found = replace(found, current=value_in(recording, static_info, parameter))
@@ -149,29 +132,23 @@ def _by_log(
     static_info: StaticInfo,
     parameter: str,
     marks: Sequence[Mark],
-    *,
-    sources: Collection[Source],
-    reference: Recording | None,
-    declared: Declared | None,
-    flown: Sequence[float],
-    window_s: float,
+    question: Question,
 ) -> Remedy:
     """The remedy in the direction that the log shows; the arguments are those of ``remedy``."""
+    flown, declared = question.flown, question.declaration
     name, tracks, without = tracks_of(recording.events, recording.summaries, static_info, parameter)
     reason = "; ".join(without) or "none of its comparisons was evaluated"
-    for kind, times_ns in _kinds(marks, tracks, window_s):
+    for kind, times_ns in _kinds(marks, tracks, question.window_s):
         smallest = suggest_for_most(
             recording,
             static_info,
             [track.comparison for track in tracks],
-            times_ns,
-            kind,
-            declared=declared,
-            window_s=window_s,
+            [At(time_ns, kind) for time_ns in times_ns],
+            question,
         )
         wanted = []
         for track in tracks:
-            found = lasting(track, kind, times_ns, window_s, len(flown))
+            found = lasting(track, kind, times_ns, question.window_s, len(flown))
             if found is None:
                 continue
             try:
@@ -180,8 +157,10 @@ def _by_log(
                 reason = str(why)
         if wanted:
             wanted.sort(key=lambda one: (one.found.near, one.track.comparison.key))
-            known = known_values(wanted[0].case, static_info, name, reference)
-            allowed = [one for one in known if one.source in sources and one.value not in flown]
+            known = known_values(wanted[0].case, static_info, name, question.reference)
+            allowed = [
+                one for one in known if one.source in question.sources and one.value not in flown
+            ]
             chosen = _chosen(name, wanted, allowed, flown)
             if chosen is not None:
                 return replace(chosen, smallest=smallest[0], known=tuple(known))
@@ -289,7 +268,7 @@ def _chosen(
     least = intersection(first.least, side) or first.least
     lasts = intersection(lasts, side) or lasts
     within = _bounds(case.present, rises, flown)
-    value, basis = _value(case, first.found, lasts, least, known=known, within=within)
+    value, basis = _value(replace(first, lasting=lasts, least=least), known, within)
     if value is None:
         return None
     direction: Direction = "raise" if value > case.present else "lower"
@@ -312,16 +291,9 @@ def _bounds(present: float, rises: bool, flown: Sequence[float]) -> Interval:
     return Interval(max(beyond, default=-math.inf), present)
 
 
-def _value(
-    case: Case,
-    found: Lasting,
-    lasts: Intervals,
-    least: Intervals,
-    *,
-    known: Sequence[Known],
-    within: Interval,
-) -> tuple[float | None, Basis]:
+def _value(wanted: _Wanted, known: Sequence[Known], within: Interval) -> tuple[float | None, Basis]:
     """The value inside of ``within`` that evidence is for, and which; None where there is none."""
+    case, found, lasts, least = wanted.case, wanted.found, wanted.lasting, wanted.least
     possible = case.possible
     for one in known:
         anywhere = found.ground == "growth"

@@ -13,12 +13,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 
 from pytpc.base.wording import Number, exact, show
-from pytpc.diagnosis.scores.scores import WINDOW_S
+from pytpc.diagnosis.question import PLAIN, Question
 from pytpc.diagnosis.suggestion.case import (
     EQUALITIES,
     Case,
@@ -42,12 +42,11 @@ from pytpc.diagnosis.thresholds.intervals import (
 )
 from pytpc.diagnosis.thresholds.outcomes import outcomes, thresholds_for, thresholds_for_one
 from pytpc.diagnosis.thresholds.units import NoUnitError
-from pytpc.recording.events import Bools, Events, Floats
+from pytpc.recording.events import Bools, Floats
 from pytpc.recording.marks import MarkType
 from pytpc.recording.mission import Recording
-from pytpc.recording.summaries import Summaries
 from pytpc.static.parameters import parameter_name
-from pytpc.static.static_info import Comparison, LinkUnit, StaticInfo
+from pytpc.static.static_info import Comparison, StaticInfo
 
 Direction = Literal["raise", "lower", "switch"]
 
@@ -79,34 +78,36 @@ class Suggestion:
     limited_by: str = ""
 
 
+class At(NamedTuple):
+    """The time of a mark, and the type of error that it is taken for."""
+
+    time_ns: int
+    kind: MarkType
+
+
 def suggest(
-    events: Events,
+    recording: Recording,
+    static_info: StaticInfo,
     comparison: Comparison,
-    mark_ns: int,
-    kind: MarkType,
-    *,
-    unit: LinkUnit | None = None,
-    window_s: float = WINDOW_S,
-    summaries: Summaries | None = None,
-    declared: Declared | None = None,
+    at: At,
+    question: Question = PLAIN,
 ) -> Suggestion:
     """The suggestion for the parameter of one TPC at a mark.
 
     Args:
-        events: the evaluations of the mission.
-        comparison: the TPC; its ``key`` is looked up in ``events``.
-        mark_ns: the time of the mark in nanoseconds.
-        kind: the type of error.
-        unit: the TPC's link unit, for the C++ type of the parameter.
-        window_s: the window of type II in seconds.
-        summaries: what the policy ``edges`` kept of the evaluations that are no events.
-        declared: what is declared of the parameter.
+        recording: the mission.
+        static_info: what the analysis found.
+        comparison: the TPC, one of ``static_info``.
+        at: the mark.
+        question: its ``window_s``; ``declared`` has at most the one of this parameter.
     """
+    unit, kind = static_info.unit_of(comparison.key), at.kind
+    declared = question.declaration
     current: Number | None = None
     feasible: Intervals = ()
     try:
         refuse(comparison, unit)
-        evidence = evidence_of(events, summaries, comparison.key, mark_ns, kind, window_s=window_s)
+        evidence = evidence_of(recording, comparison.key, at.time_ns, kind, question.window_s)
         case = case_of(comparison, unit, evidence, declared)
         current = shown_current(case)
         if comparison.relation == "flag":
@@ -125,11 +126,8 @@ def suggest_for_most(
     recording: Recording,
     static_info: StaticInfo,
     comparisons: Sequence[Comparison],
-    times_ns: Sequence[int],
-    kind: MarkType,
-    *,
-    declared: Declared | None = None,
-    window_s: float = WINDOW_S,
+    marks: Sequence[At],
+    question: Question = PLAIN,
 ) -> tuple[Suggestion, str]:
     """The suggestion that does at the most marks, and the key of the comparison that it is by.
 
@@ -137,27 +135,13 @@ def suggest_for_most(
         recording: the mission.
         static_info: what the analysis found.
         comparisons: those of one parameter, at least one.
-        times_ns: of the marks, at least one.
-        kind: their type of error.
-        declared: what is declared of the parameter.
-        window_s: the window of type II in seconds.
+        marks: at least one.
+        question: as for ``suggest``.
     """
     found = [
-        (
-            suggest(
-                recording.events,
-                comparison,
-                time_ns,
-                kind,
-                unit=static_info.unit_of(comparison.key),
-                window_s=window_s,
-                summaries=recording.summaries,
-                declared=declared,
-            ),
-            comparison.key,
-        )
+        (suggest(recording, static_info, comparison, at, question), comparison.key)
         for comparison in comparisons
-        for time_ns in times_ns
+        for at in marks
     ]
     best, most = found[0], 0
     for one in found:

@@ -9,6 +9,7 @@ import numpy as np
 from pytpc.base.columns import Floats, Int64s
 from pytpc.recording.events import Events
 from pytpc.recording.marks import MarkType
+from pytpc.recording.mission import Recording
 from pytpc.recording.summaries import Summaries
 
 
@@ -70,20 +71,15 @@ class _Kept:
 
 
 def evidence_of(
-    events: Events,
-    summaries: Summaries | None,
-    key: str,
-    mark_ns: int,
-    kind: MarkType,
-    *,
-    window_s: float,
+    recording: Recording, key: str, mark_ns: int, kind: MarkType, window_s: float
 ) -> Evidence:
     """What the log has of ``key`` up to a mark.
 
     Raises:
         NoneBecauseError: there is nothing.
     """
-    kept = _Kept.of(summaries, key, mark_ns, window_s)
+    events = recording.events
+    kept = _Kept.of(recording.summaries, key, mark_ns, window_s)
     rows = _rows_up_to(events, key, mark_ns)
     if kept is None and not rows.size:
         raise NoneBecauseError("it was not evaluated before the mark")

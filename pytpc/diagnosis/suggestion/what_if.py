@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from pytpc.base.columns import Bools, Floats, Int64s
 from pytpc.base.wording import Number, exact, many
-from pytpc.diagnosis.scores.scores import WINDOW_S
+from pytpc.diagnosis.question import PLAIN, Question
 from pytpc.diagnosis.thresholds.replay import Track, tracks_of
 from pytpc.recording.marks import Mark, MarkType
 from pytpc.recording.mission import Recording
@@ -76,10 +76,7 @@ def what_if(
     static_info: StaticInfo,
     parameter: str,
     value: Number,
-    *,
-    kind: MarkType | None = None,
-    marks: Sequence[Mark] | None = None,
-    window_s: float = WINDOW_S,
+    question: Question = PLAIN,
 ) -> WhatIf:
     """Replay all comparisons of a parameter with another value of it.
 
@@ -88,17 +85,13 @@ def what_if(
         static_info: what the analysis found.
         parameter: its name in the source, or what `same_parameter` takes for it.
         value: in the parameter's unit.
-        kind: the type of error that the question is about; None: of each mark its own.
-        marks: which marks to look at; None: those of the recording that are of ``kind`` or have no
-            type. Without a ``kind`` a mark of no type is answered by either definition.
-        window_s: the window in seconds.
+        question: its ``kind``, ``marks`` and ``window_s``. Without a ``kind`` a mark of no type is
+            answered by either definition.
 
     Raises:
         InputError: there is no such parameter, or several.
     """
-    found = sweep(
-        recording, static_info, parameter, [value], kind=kind, marks=marks, window_s=window_s
-    )
+    found = sweep(recording, static_info, parameter, [value], question)
     result = WhatIf(
         parameter=found.parameter,
         value=value,
@@ -111,9 +104,8 @@ def what_if(
         caveats=found.caveats,
         unsure=int(found.unsure[0]),
     )
-    asked = _asked(recording, kind, marks)
-    mixed = any(mark.type != kind for mark in asked)
-    return replace(result, text=_sentence(result, kind, mixed=mixed))
+    mixed = any(mark.type != question.kind for mark in _asked(recording, question))
+    return replace(result, text=_sentence(result, question.kind, mixed=mixed))
 
 
 def sweep(
@@ -121,24 +113,20 @@ def sweep(
     static_info: StaticInfo,
     parameter: str,
     values: npt.ArrayLike,
-    *,
-    kind: MarkType | None = None,
-    marks: Sequence[Mark] | None = None,
-    window_s: float = WINDOW_S,
+    question: Question = PLAIN,
 ) -> Sweep:
     """The same for many values at once; the arguments are those of ``what_if``.
 
     Raises:
         InputError: there is no such parameter, or several.
-        ValueError: there are more than ``MOST_VALUES`` values, or the window is negative.
+        ValueError: there are more than ``MOST_VALUES`` values.
     """
     several = np.atleast_1d(np.asarray(values, dtype=np.float64))
     if several.size > MOST_VALUES:
         raise ValueError(f"at most {MOST_VALUES} values are replayed at once")
-    if not window_s >= 0:
-        raise ValueError("window_s is negative")
+    kind, window_s = question.kind, question.window_s
     name, tracks, without = tracks_of(recording.events, recording.summaries, static_info, parameter)
-    asked = _asked(recording, kind, marks)
+    asked = _asked(recording, question)
     near = _spans([*recording.marks, *asked], window_s)
     answered = np.zeros(several.size, dtype=np.int64)
     for mark in asked:
@@ -172,11 +160,10 @@ def sweep(
     )
 
 
-def _asked(
-    recording: Recording, kind: MarkType | None, marks: Sequence[Mark] | None
-) -> tuple[Mark, ...]:
-    if marks is not None:
-        return tuple(marks)
+def _asked(recording: Recording, question: Question) -> tuple[Mark, ...]:
+    kind = question.kind
+    if question.marks is not None:
+        return tuple(question.marks)
     return tuple(m for m in recording.marks if kind is None or m.type in {kind, None})
 
 

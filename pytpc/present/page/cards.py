@@ -234,7 +234,7 @@ def _evidence(mission: MissionReport, advice: Advice, mark: Mark) -> tuple[Evide
     style = EvidenceStyle(
         mark=at,
         mark_type=mark.type,
-        window=at - mission.window_s if suspect.type == "II" else None,
+        window=at - mission.question.window_s if suspect.type == "II" else None,
         suggested=_suggested_threshold(found, _told(advice)),
         culprit=mission.is_changed(suspect.parameter),
         feasible=_feasible_thresholds(found, advice.suggestion),
@@ -340,14 +340,7 @@ def _alternatives(
     mission: MissionReport, ranking: MarkRanking, suspect: Suspect
 ) -> list[tuple[str, str]]:
     """What the parameter's other comparisons suggest: sentence and place."""
-    found = alternatives(
-        mission.recording,
-        mission.static_info,
-        ranking,
-        suspect,
-        declared=mission.declared,
-        window_s=mission.window_s,
-    )
+    found = alternatives(mission.recording, mission.static_info, ranking, suspect, mission.question)
     return [
         (
             f"{advice.suggestion.text}{f': {advice.what_if.text}' if advice.what_if else ''}",

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from pytpc.diagnosis.ranking.ranking import MarkRanking, Types
-from pytpc.diagnosis.scores.scores import WINDOW_S
-from pytpc.diagnosis.suggestion.declared import Declared
+from pytpc.diagnosis.question import Question
+from pytpc.diagnosis.ranking.ranking import MarkRanking
 from pytpc.recording.mission import Recording
 from pytpc.static.parameters import same_parameter
 from pytpc.static.static_info import StaticInfo
@@ -16,6 +15,9 @@ from pytpc.values.origins import Origin
 CARDS = 3
 """Suspects of a mark that are shown with their evidence."""
 
+CARDS_ALONE = Question(top=CARDS)
+"""What a page answers where nothing else is asked."""
+
 
 @dataclass(frozen=True)
 class MissionReport:
@@ -23,10 +25,8 @@ class MissionReport:
 
     ``rankings`` are ``rank_marks``' answer for ``recording`` and ``static_info``. ``treatment``
     says what was done to the robot, and ``changed_parameter`` which parameter was changed, where
-    that is known (in a study); it is shown in red. ``origins`` are where the values came from,
-    ``declared`` the ranges that are declared of parameters; both may be empty. ``window_s`` is the
-    window with which the marks were ranked and ``types`` how far their types were believed, ``top``
-    how many suspects have a card.
+    that is known (in a study); it is shown in red. ``origins`` are where the values came from.
+    ``question`` is what the marks were ranked with; its ``top`` is how many suspects have a card.
     """
 
     name: str
@@ -36,10 +36,7 @@ class MissionReport:
     treatment: str = ""
     changed_parameter: str | None = None
     origins: Mapping[str, Origin] = field(default_factory=dict)
-    declared: Sequence[Declared] = ()
-    window_s: float = WINDOW_S
-    top: int = CARDS
-    types: Types = "believe"
+    question: Question = CARDS_ALONE
 
     def is_changed(self, parameter: str) -> bool:
         """True where ``parameter``, as in the source, is the one that was changed."""

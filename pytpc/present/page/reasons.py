@@ -42,7 +42,7 @@ def _last_flop(mission: MissionReport, suspect: Suspect, mark: Mark) -> str:
 
 
 def _window(mission: MissionReport, suspect: Suspect, mark: Mark) -> str:
-    begin_ns = mark.time_ns - round(mission.window_s * 1e9)
+    begin_ns = mark.time_ns - round(mission.question.window_s * 1e9)
     events = mission.recording.events
     rows = rows_of(events, suspect.key)
     rows = rows[(events.time_ns[rows] >= begin_ns) & (events.time_ns[rows] <= mark.time_ns)]
@@ -72,7 +72,7 @@ def _window(mission: MissionReport, suspect: Suspect, mark: Mark) -> str:
 
 
 def _begin(mission: MissionReport) -> str:
-    return f"In the {mission.window_s:g} s before the mark it was"
+    return f"In the {mission.question.window_s:g} s before the mark it was"
 
 
 def _near(cmp: Floats, thresh: Floats) -> str:

@@ -163,7 +163,7 @@ def _curves(mission: MissionReport) -> RankCurves:
     static = mission.static_info
     steps = min(_STEPS, _NUMBERS // max(1, len(static.thresholds)))
     step_s = max(STEP_S, mission.recording.seconds / max(1, steps))
-    return rank_curves(mission.recording, static, step_s=step_s, window_s=mission.window_s)
+    return rank_curves(mission.recording, static, mission.question, step_s=step_s)
 
 
 def _lanes(axes: Axes, lanes: Sequence[Lane], seconds: float) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from pytpc.base.wording import percent
 from pytpc.diagnosis.ranking.blame import blame
@@ -30,17 +30,9 @@ def together(mission: MissionReport) -> TogetherView | None:
     """The verdict on a mission, None where it has no mark."""
     if not mission.rankings:
         return None
-    found = blame(
-        mission.recording, mission.static_info, types=mission.types, window_s=mission.window_s
-    )
-    advice = advise_blamed(
-        found,
-        mission.recording,
-        mission.static_info,
-        top=1,
-        declared=mission.declared,
-        window_s=mission.window_s,
-    )
+    recording, static, question = mission.recording, mission.static_info, mission.question
+    found = blame(recording, static, question)
+    advice = advise_blamed(found, recording, static, replace(question, top=1))
     return TogetherView(
         title=found.title,
         text=found.text,
@@ -48,7 +40,7 @@ def together(mission: MissionReport) -> TogetherView | None:
         remedy=next((one.remedy.text for one in advice if one.remedy.value is not None), ""),
         others=[
             f"{one.parameter} ({percent(one.probability)})"
-            for one in found.suspects[1 : mission.top]
+            for one in found.suspects[1 : question.top]
         ],
         notes=list(found.notes),
     )

@@ -8,15 +8,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from markupsafe import Markup
 
 from pytpc.base.wording import many
+from pytpc.diagnosis.question import Types
 from pytpc.diagnosis.ranking.clocks import two_clocks
 from pytpc.diagnosis.ranking.complaints import complaints
-from pytpc.diagnosis.ranking.ranking import MarkRanking, Types
+from pytpc.diagnosis.ranking.ranking import MarkRanking
 from pytpc.diagnosis.suggestion.advise import Advice, advise
 from pytpc.diagnosis.suggestion.joining import with_remedies
 from pytpc.present.page.answer import AnswerView, answers, spoken
@@ -91,7 +92,7 @@ class MissionView:
 
 def figures(mission: MissionReport) -> int:
     """How many figures ``mission_view`` makes."""
-    cards = sum(min(mission.top, len(ranking.suspects)) for ranking in mission.rankings)
+    cards = sum(min(mission.question.top, len(ranking.suspects)) for ranking in mission.rankings)
     return 1 + cards
 
 
@@ -112,7 +113,7 @@ def mission_view(mission: MissionReport, number: int, on_figure: Callable[[], No
         name=mission.name,
         treatment=mission.treatment,
         seconds=f"{recording.seconds:.1f}",
-        window=f"{mission.window_s:g}",
+        window=f"{mission.question.window_s:g}",
         reports=f"{len(recording.events):,}",
         marks_i=kinds.count("I"),
         marks_ii=kinds.count("II"),
@@ -141,22 +142,15 @@ def mission_view(mission: MissionReport, number: int, on_figure: Callable[[], No
 
 def _advised(mission: MissionReport) -> Iterator[tuple[MarkRanking, list[Advice]]]:
     """The advice at each mark; for the suspects that have cards with the value to try."""
-    recording, static = mission.recording, mission.static_info
+    recording, static, question = mission.recording, mission.static_info, mission.question
     lists = [
-        advise(
-            recording,
-            static,
-            ranking,
-            top=len(ranking.suspects),
-            declared=mission.declared,
-            window_s=mission.window_s,
-        )
+        advise(recording, static, ranking, replace(question, top=len(ranking.suspects)))
         for ranking in mission.rankings
     ]
-    first = [advice[: mission.top] for advice in lists]
-    tried = with_remedies(recording, static, mission.rankings, first, window_s=mission.window_s)
+    first = [advice[: question.top] for advice in lists]
+    tried = with_remedies(recording, static, mission.rankings, first, question)
     for ranking, own, rest in zip(mission.rankings, tried, lists, strict=True):
-        yield ranking, [*own, *rest[mission.top :]]
+        yield ranking, [*own, *rest[question.top :]]
 
 
 def _mark_view(
@@ -169,7 +163,7 @@ def _mark_view(
     ranking, advice = advised
     mark, ident = ranking.mark, f"{at[0]}-{at[1]}"
     cards = []
-    for place, one in enumerate(advice[: mission.top], start=1):
+    for place, one in enumerate(advice[: mission.question.top], start=1):
         cards.append(card_view(mission, one, ranking, drawn, f"{ident}-{place}"))
         on_figure()
     changed = mission.changed_parameter
@@ -230,5 +224,5 @@ def _facts(mission: MissionReport) -> list[tuple[str, str]]:
         ("Changes of a result", f"{int(events.flop.sum()):,}"),
         ("Nodes that report", str(len(nodes))),
     ]
-    believed = _BELIEVED[mission.types]
+    believed = _BELIEVED[mission.question.types]
     return [*facts, ("Types of the marks", believed)] if believed else facts

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from pytpc.diagnosis.ranking.ranking import Types, rank_marks
+from pytpc.diagnosis.question import Question, Types
+from pytpc.diagnosis.ranking.ranking import rank_marks
 from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc_evaluation.study.case import Case, Verdict
 
@@ -28,7 +29,7 @@ def thesis_doubt(case: Case) -> Verdict:
 def mean_rank(case: Case, types: Types) -> Verdict:
     """The parameters by their mean rank over all marks; those that have 0 at each are left out."""
     names = Tpcs.of(case.static_info).names
-    rankings = rank_marks(case.recording, case.static_info, types=types)
+    rankings = rank_marks(case.recording, case.static_info, Question(types=types))
     sums = dict.fromkeys(names, 0.0)
     for ranking in rankings:
         for suspect in ranking.suspects:
