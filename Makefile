@@ -1,32 +1,51 @@
-.PHONY: demo demo-water demo-navigation test test-llvm22 fuzz setup bench lint help
+.PHONY: setup demo demo-water demo-navigation check test test-llvm22 format lint fuzz bench coverage help
 PYTHON = .venv/bin/python
 
-demo: setup   ## a robot with a wrong parameter, and its name
+help:         ## this list
+	@sed -n 's/^\([a-z0-9-]*\):.*## */\1\t/p' Makefile | expand -t 18
+
+setup:        ## what a user needs: packages, .venv, passes; quick when done before
+	@tools/setup
+
+demo:         ## a robot with a wrong parameter, and its name
+	@tools/setup demo
 	$(PYTHON) examples/image_capture/demo.py --out out/demo
 
-demo-water: setup  ## the same with a robot in Python and C++
+demo-water:   ## the same with a robot in Python and C++
+	@tools/setup demo
 	$(PYTHON) examples/water_sampler/demo.py --out out/demo-water
 
-demo-navigation: setup  ## the same with a ground robot in Python and C++, its controller a plugin
+demo-navigation: ## the same with a ground robot in Python and C++, its controller a plugin
+	@tools/setup demo
 	$(PYTHON) examples/navigation/demo.py --out out/demo-navigation
 
-test: setup   ## all tests: passes, Python, a real ROS graph
-	tools/test
+check:        ## in two minutes: lint, the passes' tests, the Python tests that your change touches
+	@tools/setup test
+	@tools/check
 
-fuzz: setup   ## a thousand random modules and programs; more: tools/fuzz --help
-	tools/fuzz
+test:         ## all tests: passes, Python, a real ROS graph
+	@tools/setup test
+	tools/test
 
 test-llvm22:  ## the passes and their tests with LLVM 22, in build-22
 	tools/test-llvm22
 
-setup:        ## packages, .venv, passes; quick when done before
-	@tools/setup
+format:       ## the sources in the form that lint asks for
+	@tools/setup test
+	@tools/format
 
 lint:         ## what CI asks of the sources
+	@tools/setup test
 	tools/lint
 
-bench: setup  ## figures of cost and speed, one line each
-	tools/bench
+coverage:     ## how much of the Python side its tests run
+	@tools/setup test
+	tools/coverage
 
-help:         ## this list
-	@sed -n 's/^\([a-z0-9-]*\):.*## */\1\t/p' Makefile | expand -t 18
+fuzz:         ## a thousand random modules and programs; more: tools/fuzz --help
+	@tools/setup test
+	tools/fuzz
+
+bench:        ## figures of cost and speed, one line each
+	@tools/setup test
+	tools/bench

@@ -19,6 +19,8 @@ from pytpc.cli.main import main
 from pytpc.static.static_info import LeftOut, LinkUnit, StaticInfo
 from pytpc.workspace.colcon import Bases, BuildError
 
+VERSION = (Path(__file__).parents[2] / "VERSION").read_text().strip()
+
 
 def run(*arguments: str | Path) -> Result:
     return CliRunner().invoke(main, [str(argument) for argument in arguments])
@@ -143,7 +145,7 @@ def test_the_module_runs_and_knows_its_version() -> None:
         text=True,
         check=False,
     )
-    assert (ran.returncode, ran.stdout, ran.stderr) == (0, "pytpc, version 0.1.0\n", "")
+    assert (ran.returncode, ran.stdout, ran.stderr) == (0, f"pytpc, version {VERSION}\n", "")
 
 
 def test_every_command_has_help() -> None:

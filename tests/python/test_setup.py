@@ -1,0 +1,132 @@
+"""What `make setup` installs: lists of packages, and no more for a user than a user needs."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import tomllib
+from pathlib import Path
+
+import pytest
+from packaging.requirements import Requirement
+
+from pytpc.base.paths import BUILD_TOOLS
+from pytpc.workspace.doctor.machine import COLCON_EXTENSIONS
+
+ROOT = Path(__file__).parents[2]
+KINDS = ("", "-demo", "-test", "-llvm22")
+LISTS = {name: ROOT / f"tools/debian-packages{name}.txt" for name in KINDS}
+# Each package that the product's messages do not name, and why a user needs it all the same.
+BUILDS_TPC = {
+    "catkin": "the user's packages are catkin packages",
+    "g++": "what clang rejects is built with it; colcon asks gcc for the architecture",
+    "libroscpp-dev": "headers of the log library",
+    "libstd-srvs-dev": "headers of the log library",
+    "llvm-19-dev": "headers of the passes",
+    "ninja-build": "builds the passes",
+    "pkg-config": "finds ROS for the log library",
+    "python3-roslaunch": "pytpc record --launch; brings rosmaster, rosparam and rosout",
+    "python3-rospy": "pytpc relay, and Python nodes that report",
+    "python3-venv": "the Python side lives in one",
+}
+
+
+def packages(name: str) -> list[str]:
+    lines = [line.split("#")[0].strip() for line in LISTS[name].read_text().splitlines()]
+    return [line for line in lines if line]
+
+
+def test_no_package_stands_twice():
+    everything = [package for name in LISTS for package in packages(name)]
+    assert len(everything) == len(set(everything))
+
+
+def test_a_user_gets_what_the_product_asks_for_and_nothing_else():
+    named = {package for words in BUILD_TOOLS.values() for package in words.split()}
+    named |= {"python3-" + name for name in COLCON_EXTENSIONS}
+    assert set(packages("")) == named | set(BUILDS_TPC)
+
+
+def test_the_demo_gets_what_its_robots_declare():
+    declared = {
+        depend.replace("_", "-")
+        for robot in ("image_capture", "water_sampler", "navigation", "simulated_world")
+        for depend in re.findall(
+            r"<\w*depend>(\w+)</\w*depend>", (ROOT / f"examples/{robot}/package.xml").read_text()
+        )
+    }
+    # A ROS package is a Debian package of a longer name, or one that a user has anyway.
+    named = [
+        re.sub(r"^(lib|python3-|ros-)|-dev$", "", package)
+        for package in packages("-demo") + packages("")
+    ]
+    brought = {"message-runtime", "rosgraph-msgs", "roscpp", "simulated-world"}
+    assert declared - set(named) <= brought
+    assert {re.sub(r"^(lib|python3-|ros-)|-dev$", "", p) for p in packages("-demo")} <= declared
+
+
+def project() -> dict:
+    return tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+
+
+def test_a_user_gets_no_python_package_of_the_tests():
+    users = {Requirement(text).name for text in project()["dependencies"]}
+    tests = {Requirement(text).name for text in project()["optional-dependencies"]["dev"]}
+    assert not users & tests
+    assert {"pytest", "hypothesis", "ruff", "mypy", "selenium", "import-linter"} <= tests
+
+
+@pytest.fixture
+def debian(tmp_path: Path) -> Path:
+    """A folder of programs in which dpkg-query knows two packages, one of them removed."""
+    programs = tmp_path / "bin"
+    programs.mkdir()
+    query = programs / "dpkg-query"
+    query.write_text(
+        "#!/bin/sh\necho 'here install ok installed'\necho 'gone deinstall ok config-files'\n"
+        "exit 1\n"
+    )
+    query.chmod(0o755)
+    return programs
+
+
+def missing(programs: Path, *lists: Path) -> str:
+    ran = subprocess.run(
+        [ROOT / "tools/install-packages", "--missing", *lists],
+        env={**os.environ, "PATH": f"{programs}:/usr/bin:/bin"},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return ran.stdout.strip()
+
+
+def test_missing_packages_of_several_lists_are_named(debian, tmp_path):
+    first, second = tmp_path / "first", tmp_path / "second"
+    first.write_text("# a comment\nhere\ngone # another\n\n")
+    second.write_text("her\nnew\n")
+    assert missing(debian, first, second) == "gone her new"
+    first.write_text("here\n")
+    assert missing(debian, first) == ""
+
+
+def test_setup_refuses_a_level_that_it_does_not_know():
+    ran = subprocess.run(
+        [ROOT / "tools/setup", "everything"], capture_output=True, text=True, check=False
+    )
+    assert ran.returncode == 1
+    assert ran.stderr == "setup: error: no level 'everything': user, demo or test\n"
+
+
+def test_one_version_everywhere():
+    version = (ROOT / "VERSION").read_text().strip()
+    assert re.fullmatch(r"\d+\.\d+\.\d+", version)
+    assert project()["dynamic"] == ["version"]
+    # setuptools reads no file from above the package's own folder.
+    evaluation = tomllib.loads((ROOT / "evaluation/pyproject.toml").read_text())
+    assert evaluation["project"]["version"] == version
+    written = re.compile(rf"(?<![\d.]){re.escape(version)}(?![\d.])")
+    for path in (ROOT / "pyproject.toml", ROOT / "CMakeLists.txt"):
+        assert not written.search(path.read_text()), f"{path.name} repeats the version"
+    assert f"## [{version}]" in (ROOT / "CHANGELOG.md").read_text()
