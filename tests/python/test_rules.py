@@ -76,7 +76,7 @@ def test_the_thesis_has_a_profile_of_its_own() -> None:
 
 
 def test_the_example_in_the_documentation_is_right(tmp_path: Path) -> None:
-    text = (TABLES.parents[1] / "docs/workspace.md").read_text().split("```json\n")[1]
+    text = (TABLES.parents[1] / "docs/reference/analysis.md").read_text().split("```json\n")[1]
     path = tmp_path / "own.json"
     path.write_text(text.split("```")[0])
     check_rules(path)

@@ -1,4 +1,4 @@
-"""docs/tutorial.md: what is typed in it does what it says, in Python and on the command line."""
+"""docs/tutorial/diagnose-a-mission.md: what is typed in it does what it says, in Python and on the command line."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import pytest
 from terminals import pytpc
 
 ROOT = Path(__file__).parents[2]
-TUTORIAL = ROOT / "docs/tutorial.md"
+TUTORIAL = ROOT / "docs/tutorial/diagnose-a-mission.md"
 EXAMPLE = "examples/recorded_mission"
 CONSOLE = re.compile(r"^```console\n\$ pytpc (.*)\n((?:.*\n)*?)```$", re.MULTILINE)
 FLAGS = doctest.ELLIPSIS | doctest.IGNORE_EXCEPTION_DETAIL
@@ -71,7 +71,7 @@ def test_the_examples_of_diagnosing(command: str):
         timeout=60,
     )
     heading = f"## {'Ranking' if command.startswith('rank') else 'Suggestions'}\n"
-    section = (ROOT / "docs/diagnosing.md").read_text().partition(heading)[2].partition("\n## ")[0]
+    section = (ROOT / "docs/how-to/diagnose.md").read_text().partition(heading)[2].partition("\n## ")[0]
     begin = section.index("    All 5 marks together")
     block = re.match(r"(?:    .*\n|\n(?=    ))+", section[begin:])
     assert block is not None
