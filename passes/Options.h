@@ -2,8 +2,8 @@
 #ifndef TPC_OPTIONS_H
 #define TPC_OPTIONS_H
 
-#include "Guard.h"
-#include "SourcePath.h"
+#include "support/Guard.h"
+#include "support/SourcePath.h"
 
 #include "llvm/ADT/DenseMap.h"
 #include "llvm/ADT/StringRef.h"

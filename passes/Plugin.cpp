@@ -4,19 +4,19 @@
 // point of extension) and to opt (`-passes=...`). Nothing else.
 //
 //===----------------------------------------------------------------------===//
-#include "BackwardPropagate.h"
-#include "ClassObjectAccess.h"
-#include "Compat.h"
-#include "ExternCallFinder.h"
-#include "GatherResults.h"
-#include "IfStatements.h"
-#include "InstrumentBranches.h"
 #include "LinkUnit.h"
-#include "ParamCallFinder.h"
-#include "ParamUsageFinder.h"
-#include "Prepare.h"
 #include "Rules.h"
-#include "SimpleCallGraph.h"
+#include "calls/SimpleCallGraph.h"
+#include "control/IfStatements.h"
+#include "instrument/InstrumentBranches.h"
+#include "instrument/Prepare.h"
+#include "memory/ClassObjectAccess.h"
+#include "params/ParamCallFinder.h"
+#include "params/ParamUsageFinder.h"
+#include "results/GatherResults.h"
+#include "slice/BackwardPropagate.h"
+#include "slice/ExternCallFinder.h"
+#include "support/Compat.h"
 
 using namespace llvm;
 using namespace tpc;

@@ -2,9 +2,9 @@
 #include "Rules.h"
 
 #include "BuiltinRules.h"
-#include "Names.h"
 #include "Options.h"
 #include "RuleFile.h"
+#include "support/Names.h"
 
 #include "llvm/ADT/SetVector.h"
 #include "llvm/IR/DebugInfoMetadata.h"

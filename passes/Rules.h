@@ -9,7 +9,7 @@
 #ifndef TPC_RULES_H
 #define TPC_RULES_H
 
-#include "Functions.h"
+#include "support/Functions.h"
 
 #include "llvm/ADT/DenseMap.h"
 #include "llvm/ADT/DenseSet.h"

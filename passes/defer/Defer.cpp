@@ -7,8 +7,8 @@
 // their callers, and an executable or library has then not to export them.
 //
 //===----------------------------------------------------------------------===//
-#include "Compat.h"
-#include "SourcePath.h"
+#include "support/Compat.h"
+#include "support/SourcePath.h"
 
 #include "llvm/IR/DebugInfoMetadata.h"
 #include "llvm/IR/InstrTypes.h"

@@ -1,0 +1,230 @@
+//===- FunctionPointers.cpp -----------------------------------------------===//
+#include "calls/FunctionPointers.h"
+
+#include "calls/ClassHierarchy.h"
+#include "support/Functions.h"
+
+#include "llvm/ADT/DenseSet.h"
+#include "llvm/IR/InstIterator.h"
+#include "llvm/IR/IntrinsicInst.h"
+#include "llvm/IR/Operator.h"
+
+using namespace llvm;
+
+namespace tpc {
+
+/// A search that meets more places than this says nothing.
+static constexpr unsigned MaxVisited = 20000;
+/// A pointer with more targets than this has no known ones.
+static constexpr unsigned MaxTargets = 64;
+
+/// The cell of the scalar at the beginning of what \p T describes at \p Where.
+static std::pair<const void *, unsigned>
+enter(Type *T, std::pair<const void *, unsigned> Where) {
+  while (auto *Struct = dyn_cast<StructType>(T)) {
+    if (Struct->isOpaque() || Struct->getNumElements() == 0)
+      break;
+    // A literal type is how a pair of registers is called; it is no class.
+    if (!Struct->isLiteral())
+      Where = {Struct, 0};
+    T = Struct->getElementType(0);
+  }
+  return Where;
+}
+
+FunctionPointers::Cell FunctionPointers::cellOf(const Value *Pointer) {
+  while (true) {
+    const auto *GEP = dyn_cast<GEPOperator>(Pointer);
+    if (!GEP)
+      break;
+    Cell Found{nullptr, NoIndex};
+    Type *T = GEP->getSourceElementType();
+    for (const Use &U : drop_begin(GEP->indices())) {
+      if (auto *Struct = dyn_cast<StructType>(T);
+          Struct && !Struct->isLiteral())
+        Found = {Struct, static_cast<unsigned>(
+                             cast<ConstantInt>(U.get())->getZExtValue())};
+      T = GetElementPtrInst::getTypeAtIndex(T, U.get());
+    }
+    if (Found.first)
+      return enter(T, Found);
+    Pointer = GEP->getPointerOperand();
+  }
+  if (const auto *Local = dyn_cast<AllocaInst>(Pointer))
+    return enter(Local->getAllocatedType(), {Pointer, NoIndex});
+  if (const auto *Global = dyn_cast<GlobalVariable>(Pointer))
+    return enter(Global->getValueType(), {Pointer, NoIndex});
+  // The uses of null are those of all modules, and later LLVMs do not keep
+  // them.
+  if (isa<ConstantData>(Pointer))
+    return {Pointer, NoIndex};
+  // A pointer without a type of its own has that of the fields that are
+  // reached from it; to the first one no step may be left.
+  for (const User *U : Pointer->users())
+    if (const auto *GEP = dyn_cast<GetElementPtrInst>(U);
+        GEP && isa<StructType>(GEP->getSourceElementType()))
+      return enter(GEP->getSourceElementType(), {Pointer, NoIndex});
+  return {Pointer, NoIndex};
+}
+
+void FunctionPointers::addInitializer(const Constant *C, Cell Where) {
+  if (const auto *Struct = dyn_cast<ConstantStruct>(C)) {
+    StructType *T = Struct->getType();
+    for (unsigned N = 0; N < T->getNumElements(); ++N)
+      addInitializer(Struct->getOperand(N),
+                     T->isLiteral() ? Where : Cell{T, N});
+    return;
+  }
+  if (const auto *Array = dyn_cast<ConstantArray>(C)) {
+    for (const Use &U : Array->operands())
+      addInitializer(cast<Constant>(U.get()), Where);
+    return;
+  }
+  if (isa<ConstantExpr>(C) || isa<GlobalValue>(C))
+    Stored[Where].push_back(C);
+}
+
+/// True for the types of which a value can be a function's address: pointers
+/// to members are pairs of integers.
+static bool canCarry(const Type *T) {
+  if (const auto *Struct = dyn_cast<StructType>(T))
+    return any_of(Struct->elements(), canCarry);
+  return T->isPointerTy() || T->isIntegerTy(64);
+}
+
+FunctionPointers::FunctionPointers(Module &M) {
+  for (const GlobalVariable &G : M.globals())
+    if (G.hasInitializer() && !G.getName().starts_with("_ZTV"))
+      addInitializer(G.getInitializer(), {&G, NoIndex});
+  for (Function &F : definedFunctions(M))
+    for (Instruction &I : instructions(F)) {
+      if (auto *Store = dyn_cast<StoreInst>(&I)) {
+        const Value *V = Store->getValueOperand();
+        if (canCarry(V->getType()) && !isa<ConstantData>(V))
+          Stored[cellOf(Store->getPointerOperand())].push_back(V);
+      } else if (auto *Copy = dyn_cast<MemTransferInst>(&I)) {
+        Cell To = cellOf(Copy->getRawDest()),
+             From = cellOf(Copy->getRawSource());
+        if (To != From)
+          CopiedFrom[To].push_back(Copy->getRawSource());
+      }
+    }
+}
+
+/// One way back from a callee to the functions.
+struct FunctionPointers::Search {
+  const FunctionPointers &All;
+  const CallBase &Call;
+  CallersTy Callers;
+  SmallSetVector<Function *, 4> Found;
+  DenseSet<const Value *> SeenValues;
+  DenseSet<Cell> SeenCells;
+  SmallVector<const Value *, 16> Values;
+  SmallVector<std::pair<Cell, const Value *>, 16> Cells;
+
+  void value(const Value *V) {
+    if (SeenValues.insert(V).second)
+      Values.push_back(V);
+  }
+  void memory(const Value *Pointer) {
+    Cell C = cellOf(Pointer);
+    if (SeenCells.insert(C).second)
+      Cells.push_back({C, Pointer});
+  }
+  template <typename Fn> void eachActual(const Argument &Arg, Fn F) {
+    for (const CallBase *Caller : Callers(Arg.getParent()))
+      if (Arg.getArgNo() < Caller->arg_size())
+        F(Caller->getArgOperand(Arg.getArgNo()));
+  }
+  template <typename Fn> void eachReturned(const CallBase &C, Fn F) {
+    if (const Function *Callee = C.getCalledFunction())
+      for (const BasicBlock &BB : *Callee)
+        if (const auto *Return = dyn_cast<ReturnInst>(BB.getTerminator()))
+          if (const Value *V = Return->getReturnValue())
+            F(V);
+  }
+  void step(const Value *V);
+  void step(Cell C);
+  void run(const Value *Callee);
+};
+
+void FunctionPointers::Search::step(const Value *V) {
+  if (auto *F = const_cast<Function *>(dyn_cast<Function>(V))) {
+    if (fits(Call, *F))
+      Found.insert(F);
+    return;
+  }
+  if (const auto *Load = dyn_cast<LoadInst>(V))
+    return memory(Load->getPointerOperand());
+  if (const auto *Arg = dyn_cast<Argument>(V))
+    return eachActual(*Arg, [&](const Value *A) { value(A); });
+  if (const auto *Inner = dyn_cast<CallBase>(V)) {
+    eachReturned(*Inner, [&](const Value *R) { value(R); });
+    return;
+  }
+  if (isa<GlobalVariable>(V) || isa<GEPOperator>(V))
+    return;
+  if (const auto *U = dyn_cast<User>(V))
+    for (const Use &Operand : U->operands())
+      if (canCarry(Operand->getType()))
+        value(Operand);
+}
+
+void FunctionPointers::Search::step(Cell C) {
+  if (auto It = All.Stored.find(C); It != All.Stored.end())
+    for (const Value *V : It->second)
+      value(V);
+  if (auto It = All.CopiedFrom.find(C); It != All.CopiedFrom.end())
+    for (const Value *Source : It->second)
+      memory(Source);
+}
+
+void FunctionPointers::Search::run(const Value *Callee) {
+  value(Callee);
+  while (!Values.empty() || !Cells.empty()) {
+    if (SeenValues.size() + SeenCells.size() > MaxVisited ||
+        Found.size() > MaxTargets)
+      return Found.clear();
+    if (!Values.empty()) {
+      step(Values.pop_back_val());
+      continue;
+    }
+    auto [C, Pointer] = Cells.pop_back_val();
+    step(C);
+    if (C.second != NoIndex)
+      continue;
+    // What a pointer leads to has other names where the pointer came from,
+    // and, for a variable, where it was handed to.
+    const Value *Base = static_cast<const Value *>(C.first);
+    if (const auto *Arg = dyn_cast<Argument>(Base)) {
+      eachActual(*Arg, [&](const Value *A) { memory(A); });
+    } else if (const auto *Phi = dyn_cast<PHINode>(Base)) {
+      for (const Value *In : Phi->incoming_values())
+        memory(In);
+    } else if (const auto *Inner = dyn_cast<CallBase>(Base)) {
+      eachReturned(*Inner, [&](const Value *R) { memory(R); });
+    } else if (const auto *Load = dyn_cast<LoadInst>(Base)) {
+      if (auto It = All.Stored.find(cellOf(Load->getPointerOperand()));
+          It != All.Stored.end())
+        for (const Value *Target : It->second)
+          memory(Target);
+    } else if (isa<AllocaInst>(Base) || isa<GlobalVariable>(Base)) {
+      for (const Use &U : Base->uses())
+        if (const auto *Handed = dyn_cast<CallBase>(U.getUser());
+            Handed && Handed->isArgOperand(&U))
+          if (const Function *Inside = Handed->getCalledFunction();
+              Inside && Handed->getArgOperandNo(&U) < Inside->arg_size())
+            memory(Inside->getArg(Handed->getArgOperandNo(&U)));
+    }
+  }
+}
+
+SmallVector<Function *, 2> FunctionPointers::targets(const CallBase &Call,
+                                                     CallersTy Callers) const {
+  Search S{*this, Call, Callers, {}, {}, {}, {}, {}};
+  S.run(Call.getCalledOperand());
+  SmallVector<Function *, 2> Out(S.Found.begin(), S.Found.end());
+  return Out;
+}
+
+} // namespace tpc

@@ -1,0 +1,211 @@
+//===- SimpleCallGraph.cpp ------------------------------------------------===//
+#include "calls/SimpleCallGraph.h"
+
+#include "Options.h"
+#include "Rules.h"
+#include "calls/ClassHierarchy.h"
+#include "calls/FunctionPointers.h"
+#include "support/Functions.h"
+#include "support/Print.h"
+
+#include "llvm/IR/InstIterator.h"
+#include "llvm/IR/IntrinsicInst.h"
+#include "llvm/IR/Module.h"
+
+using namespace llvm;
+
+namespace tpc {
+
+AnalysisKey SimpleCallGraph::Key;
+
+ArrayRef<CallBase *> CallGraphResult::callers(const Function *F) const {
+  auto It = Callers.find(F);
+  return It == Callers.end() ? ArrayRef<CallBase *>() : ArrayRef(It->second);
+}
+
+ArrayRef<Instruction *> CallGraphResult::mentions(const Function *F) const {
+  auto It = Mentions.find(F);
+  return It == Mentions.end() ? ArrayRef<Instruction *>()
+                              : ArrayRef(It->second);
+}
+
+bool CallGraphResult::allCallsKnown(const Function &F) const {
+  return !F.hasAddressTaken() ||
+         (!HandedOn.contains(&F) &&
+          !UnresolvedTypes.contains(F.getFunctionType()));
+}
+
+SmallVector<Function *, 1>
+CallGraphResult::callees(const CallBase &Call) const {
+  SmallVector<Function *, 1> Found;
+  auto Add = [&](Function *F) {
+    if (!F->isDeclarationForLinker() && !Rules->isOpaque(*F))
+      Found.push_back(F);
+  };
+  if (Function *F = Call.getCalledFunction())
+    Add(F);
+  else if (auto It = Indirect.find(&Call); It != Indirect.end())
+    for_each(It->second, Add);
+  return Found;
+}
+
+/// True where \p F, a library's function, calls what only its data says: what
+/// boost::bind makes of a pointer to a member. All callbacks of a signature
+/// share it.
+static bool callsAnything(const Function &F, UserSources &Sources) {
+  SmallSetVector<const Function *, 8> Work;
+  Work.insert(&F);
+  for (unsigned N = 0; N < Work.size() && N < 64; ++N)
+    for (const Instruction &I : instructions(*Work[N])) {
+      const auto *Call = dyn_cast<CallBase>(&I);
+      if (!Call || Call->isInlineAsm())
+        continue;
+      const Function *Callee = Call->getCalledFunction();
+      if (!Callee)
+        return true;
+      if (!Callee->isDeclaration() && !Sources.has(*Callee))
+        Work.insert(Callee);
+    }
+  return false;
+}
+
+/// Calls \p Add with the instructions that use \p C, be it as a part of another
+/// constant.
+template <typename Fn> static void eachUser(Constant &C, Fn Add) {
+  SmallVector<Constant *, 4> Work{&C};
+  while (!Work.empty())
+    for (Use &U : Work.pop_back_val()->uses()) {
+      if (auto *I = dyn_cast<Instruction>(U.getUser()))
+        Add(*I, U);
+      else if (auto *Outer = dyn_cast<Constant>(U.getUser());
+               Outer && !isa<GlobalValue>(Outer))
+        Work.push_back(Outer);
+    }
+}
+
+void CallGraphResult::findMentions(Module &M, const Options &Opts) {
+  UserSources Sources(Opts);
+  // Uses are in no order that means anything, and the same constant is used
+  // in functions that are not in the module any more.
+  DenseMap<const Instruction *, unsigned> Order;
+  for (Function &F : definedFunctions(M)) {
+    if (Rules->isOpaque(F) || !F.hasAddressTaken())
+      continue;
+    SmallSetVector<Instruction *, 4> Found;
+    eachUser(F, [&](Instruction &I, const Use &U) {
+      auto *Call = dyn_cast<CallBase>(&I);
+      if (I.getModule() == &M && !(Call && Call->isCallee(&U)))
+        Found.insert(&I);
+    });
+    if (!Found.empty())
+      HandedOn.insert(&F);
+    if (Found.empty() || (!Sources.has(F) && callsAnything(F, Sources)))
+      continue;
+    Mentions[&F] = Found.takeVector();
+    for (const Instruction *I : Mentions[&F])
+      Order[I] = 0;
+  }
+  if (Order.empty())
+    return;
+  unsigned Next = 0;
+  for (Function &F : M)
+    for (Instruction &I : instructions(F))
+      if (auto It = Order.find(&I); It != Order.end())
+        It->second = ++Next;
+  for (auto &[F, List] : Mentions)
+    sort(List, [&](const Instruction *A, const Instruction *B) {
+      return Order.lookup(A) < Order.lookup(B);
+    });
+}
+
+/// What a function that is not looked into calls of a library is its own: its
+/// arguments there are no use of what it was handed.
+void CallGraphResult::forgetOpaqueCallers(const Options &Opts) {
+  UserSources Sources(Opts);
+  for (auto &[F, Calls] : Callers)
+    if (!Sources.has(*F))
+      erase_if(Calls, [&](const CallBase *Call) {
+        return Rules->isOpaque(*Call->getFunction());
+      });
+}
+
+CallGraphResult SimpleCallGraph::run(Module &M, ModuleAnalysisManager &AM) {
+  CallGraphResult R;
+  R.Rules = &AM.getResult<RuleAnalysis>(M);
+  for (Function &F : M)
+    R.Callers[&F];
+  SmallVector<CallBase *, 0> ThroughPointers;
+  std::optional<ClassHierarchy> Classes;
+  auto Resolve = [&](CallBase &Call, ArrayRef<Function *> Targets) {
+    for (Function *F : Targets)
+      R.Callers[F].push_back(&Call);
+    R.Indirect[&Call].assign(Targets.begin(), Targets.end());
+  };
+  for (Function &F : definedFunctions(M))
+    for (Instruction &I : instructions(F)) {
+      auto *Call = dyn_cast<CallBase>(&I);
+      if (!Call || Call->isInlineAsm() || isa<IntrinsicInst>(Call))
+        continue;
+      if (Function *Callee = Call->getCalledFunction()) {
+        R.Callers[Callee].push_back(Call);
+        continue;
+      }
+      std::optional<VirtualCall> How = ClassHierarchy::match(*Call);
+      if (!How) {
+        ThroughPointers.push_back(Call);
+        continue;
+      }
+      if (!Classes)
+        Classes.emplace(M);
+      if (auto Targets = Classes->targets(*Call, *How); !Targets.empty())
+        Resolve(*Call, Targets);
+      else
+        R.Unresolved.push_back(Call);
+    }
+  if (!ThroughPointers.empty()) {
+    FunctionPointers Pointers(M);
+    auto Callers = [&](const Function *F) { return R.callers(F); };
+    // A call that is resolved hands on pointers that others call.
+    for (unsigned Round = 0; Round < 2; ++Round)
+      for (CallBase *Call : ThroughPointers)
+        if (!R.Indirect.contains(Call))
+          if (auto Targets = Pointers.targets(*Call, Callers); !Targets.empty())
+            Resolve(*Call, Targets);
+    for (CallBase *Call : ThroughPointers)
+      if (!R.Indirect.contains(Call))
+        R.Unresolved.push_back(Call);
+  }
+  for (const CallBase *Call : R.Unresolved)
+    R.UnresolvedTypes.insert(Call->getFunctionType());
+  const Options Opts = Options::fromCommandLine();
+  R.forgetOpaqueCallers(Opts);
+  R.findMentions(M, Opts);
+  return R;
+}
+
+PreservedAnalyses SimpleCallGraphPrinter::run(Module &M,
+                                              ModuleAnalysisManager &AM) {
+  const CallGraphResult &R = AM.getResult<SimpleCallGraph>(M);
+  OS << "call graph of " << M.getName() << '\n';
+  for (const auto &[F, Calls] : R.Callers) {
+    if (Calls.empty())
+      continue;
+    OS << "  " << F->getName() << " is called\n";
+    for (const CallBase *Call : Calls)
+      OS << "    in " << Call->getFunction()->getName() << place(*Call) << '\n';
+  }
+  for (const Function &F : M) {
+    ArrayRef<Instruction *> Mentions = R.mentions(&F);
+    if (Mentions.empty())
+      continue;
+    OS << "  " << F.getName() << " is mentioned\n";
+    for (const Instruction *I : Mentions)
+      OS << "    in " << I->getFunction()->getName() << place(*I) << '\n';
+  }
+  OS << "  indirect calls: " << R.unresolved().size() << '\n';
+  for (const CallBase *Call : R.unresolved())
+    OS << "    in " << Call->getFunction()->getName() << place(*Call) << '\n';
+  return PreservedAnalyses::all();
+}
+
+} // namespace tpc

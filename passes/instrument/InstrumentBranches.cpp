@@ -1,0 +1,318 @@
+//===- InstrumentBranches.cpp ---------------------------------------------===//
+#include "instrument/InstrumentBranches.h"
+
+#include "control/IfStatements.h"
+#include "support/Compat.h"
+#include "support/Guard.h"
+#include "support/Print.h"
+
+#include "llvm/IR/IRBuilder.h"
+#include "llvm/IR/Instructions.h"
+#include "llvm/IR/Verifier.h"
+#include "llvm/Support/raw_ostream.h"
+
+using namespace llvm;
+
+namespace tpc {
+
+/// `void log_one(char *key, bool result, double cmp, double thresh, bool res)`
+static constexpr StringLiteral LogName = "_Z7log_onePcbddb";
+
+/// The instruction that a report on \p V stands before; null where there is no
+/// place that V alone leads to.
+static Instruction *after(Value *V) {
+  auto *I = cast<Instruction>(V);
+  if (auto *Invoke = dyn_cast<InvokeInst>(I)) {
+    BasicBlock *Next = Invoke->getNormalDest();
+    return Next->getSinglePredecessor() ? &*Next->getFirstInsertionPt()
+                                        : nullptr;
+  }
+  if (isa<PHINode>(I))
+    return &*I->getParent()->getFirstInsertionPt();
+  return I->getNextNode();
+}
+
+/// What \p V is the outcome of, without negations: clang itself turns the
+/// branches of `if (!(a < b))` around, and an outcome that is stored negated is
+/// to be reported alike.
+static Value *withoutNegation(Value *V) {
+  for (Value *Next = V; auto *I = dyn_cast<Instruction>(Next);) {
+    bool Negates = I->getOpcode() == Instruction::Xor &&
+                   isa<ConstantInt>(I->getOperand(1)) &&
+                   cast<ConstantInt>(I->getOperand(1))->isOne();
+    if (!Negates && !isa<ZExtInst>(I) &&
+        !(isa<TruncInst>(I) && I->getType()->isIntegerTy(1)))
+      break;
+    Next = I->getOperand(0);
+    if (Negates)
+      V = Next;
+  }
+  return V;
+}
+
+/// The outcome of \p Predicate in the program that is instrumented.
+static Value *outcomeOf(const Instruction &Predicate,
+                        const AnalysedModule &Analysed) {
+  Value *Outcome = Analysed.original(withoutNegation(conditionOf(Predicate)));
+  return Outcome ? Outcome
+                 : conditionOf(*cast<Instruction>(Analysed.original(
+                       const_cast<Instruction *>(&Predicate))));
+}
+
+/// The truth value that \p V, another one, is joined into by itself alone: what
+/// its function goes on with. In the program that is instrumented, where the
+/// joined one has to be as well.
+static Value *joined(Value *V, const AnalysedModule &Analysed) {
+  SmallVector<Value *, 4> Chain{V};
+  while (V->hasOneUse()) {
+    auto *I = dyn_cast<Instruction>(*V->user_begin());
+    if (!I || !(I->isBitwiseLogicOp() || isa<ZExtInst>(I) ||
+                (isa<TruncInst>(I) && I->getType()->isIntegerTy(1)) ||
+                (isa<ICmpInst>(I) && isa<Constant>(I->getOperand(1)))))
+      break;
+    Chain.push_back(V = I);
+  }
+  for (Value *Last : reverse(Chain))
+    if (Value *There = Analysed.original(withoutNegation(Last)))
+      return There;
+  return nullptr;
+}
+
+/// The report on a flag, a switch or text: there is but one value.
+static bool planFlag(const Comparison &C, bool IsUnsigned,
+                     const AnalysedModule &Analysed, Report &R) {
+  auto *Predicate = cast<Instruction>(Analysed.original(C.Predicate));
+  bool IsText = !C.TextRelation.empty();
+  Value *Flag = C.FlagValue == conditionOf(*C.Predicate)
+                    ? conditionOf(*Predicate)
+                    : Analysed.original(C.FlagValue);
+  if (!Flag || Flag->getType()->isVectorTy() ||
+      (!C.Direct && !C.IsOperand && !IsText))
+    return false;
+  R.Before = Predicate;
+  R.Result = outcomeOf(*C.Predicate, Analysed);
+  R.Switch = dyn_cast<SwitchInst>(Predicate);
+  if (C.IsOperand || (IsText && !C.Direct)) {
+    R.Result = IsText ? joined(C.FlagValue, Analysed) : Flag;
+    R.Before = after(R.Result);
+    R.Switch = nullptr;
+  }
+  R.Outcome = IsText ? Flag : R.Result;
+  // An integer that stands as a condition is compared with zero: the value
+  // itself says more than the outcome.
+  if (auto *NotZero = dyn_cast<CmpInst>(Flag); NotZero && !IsText)
+    Flag = NotZero->getOperand(isa<Constant>(NotZero->getOperand(0)) ? 1 : 0);
+  R.Compared = R.Threshold = Flag;
+  R.Signed = !IsUnsigned && !IsText;
+  return R.Before;
+}
+
+std::optional<Report> planReport(const Comparison &C, bool IsUnsigned,
+                                 const AnalysedModule &Analysed) {
+  Report R;
+  R.Key = C.Key;
+  auto *Predicate = cast_or_null<Instruction>(Analysed.original(C.Predicate));
+  if (!Predicate)
+    return std::nullopt;
+  // A program may have its own log_one, which would call itself without end.
+  if (Predicate->getFunction()->getName() == LogName)
+    return std::nullopt;
+  if (!C.Compare)
+    return planFlag(C, IsUnsigned, Analysed, R) ? std::optional(R)
+                                                : std::nullopt;
+  auto *Compare = cast_or_null<CmpInst>(Analysed.original(C.Compare));
+  if (!Compare || Compare->getType()->isVectorTy())
+    return std::nullopt;
+  R.Threshold = Compare->getOperand(C.Threshold);
+  R.Compared = Compare->getOperand(1 - C.Threshold);
+  R.Outcome = Compare;
+  // Equality does not say how its operands are to be read; what was widened
+  // with zeros was not negative.
+  R.Signed = !Compare->isUnsigned() &&
+             !(Compare->isEquality() &&
+               (IsUnsigned || any_of(Compare->operands(), [](const Use &U) {
+                  return isa<ZExtInst>(U);
+                })));
+  R.Result = C.Direct ? outcomeOf(*C.Predicate, Analysed)
+                      : joined(C.Compare, Analysed);
+  R.Switch = C.Direct ? dyn_cast<SwitchInst>(Predicate) : nullptr;
+  R.Before = C.Direct ? Predicate : after(R.Result);
+  return R;
+}
+
+/// \p V as a double.
+static Value *toDouble(IRBuilder<> &B, Value *V, bool Signed) {
+  Type *Double = B.getDoubleTy();
+  Type *T = V->getType();
+  if (T->isFloatingPointTy())
+    return B.CreateFPCast(V, Double);
+  if (!T->isIntegerTy())
+    return ConstantFP::getNaN(Double);
+  return Signed && !T->isIntegerTy(1) ? B.CreateSIToFP(V, Double)
+                                      : B.CreateUIToFP(V, Double);
+}
+
+static Value *toBool(IRBuilder<> &B, Value *V) {
+  Type *T = V->getType();
+  if (T->isIntegerTy(1))
+    return V;
+  return T->isFloatingPointTy() ? B.CreateFCmpUNE(V, ConstantFP::get(T, 0))
+                                : B.CreateICmpNE(V, Constant::getNullValue(T));
+}
+
+/// Whether \p Switch takes a case that is written out.
+static Value *takesCase(IRBuilder<> &B, SwitchInst &Switch) {
+  Value *Taken = B.getFalse();
+  for (auto Case : Switch.cases())
+    Taken = B.CreateOr(
+        Taken, B.CreateICmpEQ(Switch.getCondition(), Case.getCaseValue()));
+  return Taken;
+}
+
+static FunctionCallee logFunction(Module &M) {
+  LLVMContext &Ctx = M.getContext();
+  Type *Bool = Type::getInt1Ty(Ctx), *Double = Type::getDoubleTy(Ctx);
+  auto *T = FunctionType::get(
+      Type::getVoidTy(Ctx),
+      {PointerType::getUnqual(Ctx), Bool, Double, Double, Bool}, false);
+  FunctionCallee Callee = M.getOrInsertFunction(LogName, T);
+  if (auto *F = dyn_cast<Function>(Callee.getCallee());
+      F && F->isDeclaration()) {
+    F->addParamAttr(1, Attribute::ZExt);
+    F->addParamAttr(4, Attribute::ZExt);
+    F->setDoesNotThrow();
+    // It sees nothing of the program but its key: what the program keeps in
+    // registers stays there across a report.
+    F->setMemoryEffects(MemoryEffects::inaccessibleOrArgMemOnly());
+    F->addParamAttr(0, Attribute::ReadOnly);
+    F->addParamAttr(0, noCapture(Ctx));
+  }
+  return Callee;
+}
+
+/// The log library's word on whether reports are wanted. A program has it
+/// itself, weakly, where the library finds it, so that it takes one look and
+/// works without that library. A shared library asks the log library's, if it
+/// is there: nothing may point into what can be unloaded.
+static GlobalVariable *wantedFlag(Module &M) {
+  if (GlobalVariable *Wanted = M.getNamedGlobal("tpc_reporting"))
+    return Wanted;
+  Type *Byte = Type::getInt8Ty(M.getContext());
+  bool IsProgram = M.getPIELevel() != PIELevel::Default ||
+                   M.getPICLevel() == PICLevel::NotPIC;
+  return new GlobalVariable(M, Byte, /*isConstant=*/false,
+                            IsProgram ? GlobalValue::WeakAnyLinkage
+                                      : GlobalValue::ExternalWeakLinkage,
+                            IsProgram ? ConstantInt::get(Byte, 1) : nullptr,
+                            "tpc_reporting");
+}
+
+/// `if (tpc_reporting) log_one(...)`, a function that the optimiser puts in the
+/// place of its calls: a program whose reports are off pays for a branch.
+static Function *reportFunction(Module &M, FunctionCallee Log) {
+  LLVMContext &Ctx = M.getContext();
+  auto *F = Function::Create(Log.getFunctionType(),
+                             GlobalValue::InternalLinkage, "tpc.report", M);
+  F->addFnAttr(Attribute::AlwaysInline);
+  F->setDoesNotThrow();
+  GlobalVariable *Wanted = wantedFlag(M);
+  auto *Find = BasicBlock::Create(Ctx, "", F);
+  auto *Look = BasicBlock::Create(Ctx, "", F);
+  auto *Report = BasicBlock::Create(Ctx, "", F);
+  auto *Done = BasicBlock::Create(Ctx, "", F);
+  IRBuilder<> B(Find);
+  if (Wanted->hasExternalWeakLinkage())
+    B.CreateCondBr(B.CreateIsNull(Wanted), Report, Look);
+  else
+    B.CreateBr(Look);
+  B.SetInsertPoint(Look);
+  // It may change at any time.
+  LoadInst *Now = B.CreateAlignedLoad(B.getInt8Ty(), Wanted, Align(1));
+  Now->setAtomic(AtomicOrdering::Monotonic);
+  B.CreateCondBr(B.CreateIsNull(Now), Done, Report);
+  B.SetInsertPoint(Report);
+  SmallVector<Value *, 5> Arguments;
+  for (Argument &A : F->args())
+    Arguments.push_back(&A);
+  CallInst *Call = B.CreateCall(Log, Arguments);
+  Call->addParamAttr(1, Attribute::ZExt);
+  Call->addParamAttr(4, Attribute::ZExt);
+  B.CreateBr(Done);
+  B.SetInsertPoint(Done);
+  B.CreateRetVoid();
+  return F;
+}
+
+std::string insertReports(Module &M, ArrayRef<Report> Reports) {
+  if (Reports.empty())
+    return "";
+  bool WasThere = M.getFunction(LogName);
+  bool WasWanted = M.getNamedGlobal("tpc_reporting");
+  FunctionCallee Log = logFunction(M);
+  Function *ReportTo = reportFunction(M, Log);
+  SmallVector<Instruction *, 0> Inserted;
+  StringMap<GlobalVariable *> Keys;
+  Instruction *Above = nullptr, *Before = nullptr;
+  auto Collect = [&] {
+    for (Instruction *I = Before ? Before->getPrevNode() : nullptr; I != Above;
+         I = I->getPrevNode())
+      Inserted.push_back(I);
+    Above = Before = nullptr;
+  };
+  auto Insert = [&](const Report &R) {
+    GlobalVariable *&Key = Keys[R.Key];
+    if (!Key) {
+      Constant *Text = ConstantDataArray::getString(M.getContext(), R.Key);
+      Key = new GlobalVariable(M, Text->getType(), /*isConstant=*/true,
+                               GlobalValue::PrivateLinkage, Text, "tpc.key");
+      Key->setUnnamedAddr(GlobalValue::UnnamedAddr::Global);
+    }
+    Above = R.Before->getPrevNode();
+    Before = R.Before;
+    IRBuilder<> B(R.Before);
+    B.SetCurrentDebugLocation(R.Before->getDebugLoc());
+    Value *Result = R.Switch ? takesCase(B, *R.Switch) : toBool(B, R.Result);
+    Value *Outcome = R.Outcome == R.Result ? Result : toBool(B, R.Outcome);
+    B.CreateCall(ReportTo, {Key, Result, toDouble(B, R.Compared, R.Signed),
+                            toDouble(B, R.Threshold, R.Signed), Outcome});
+    Collect();
+  };
+  std::string Why;
+  raw_string_ostream OS(Why);
+  if (runGuarded([&] { for_each(Reports, Insert); })) {
+    if (!verifyModule(M, &OS))
+      return "";
+    Why = "the instrumented module does not verify: " +
+          StringRef(Why).split('\n').first.str();
+  } else {
+    Collect();
+    Why = "the instrumentation crashed";
+  }
+  for (Instruction *I : reverse(Inserted))
+    I->dropAllReferences();
+  for (Instruction *I : Inserted)
+    I->eraseFromParent();
+  for (auto &[Text, Key] : Keys)
+    Key->eraseFromParent();
+  ReportTo->eraseFromParent();
+  if (GlobalVariable *Wanted = M.getNamedGlobal("tpc_reporting");
+      Wanted && !WasWanted)
+    Wanted->eraseFromParent();
+  if (auto *F = dyn_cast<Function>(Log.getCallee()); F && !WasThere)
+    F->eraseFromParent();
+  return Why;
+}
+
+PreservedAnalyses InstrumentBranchesPrinter::run(Module &M,
+                                                 ModuleAnalysisManager &AM) {
+  const GatheredResults &R = AM.getResult<GatherResults>(M);
+  OS << "reports of " << M.getName() << '\n';
+  for (const Comparison &C : R.Comparisons)
+    OS << "  " << (C.Direct ? "before the predicate" : "where it is evaluated")
+       << tpc::place(C.Direct ? *C.Predicate : C.place()) << " of the "
+       << C.typeName() << " at " << C.Where->getLine() << ':'
+       << C.Where->getColumn() << '\n';
+  return PreservedAnalyses::all();
+}
+
+} // namespace tpc

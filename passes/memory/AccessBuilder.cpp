@@ -1,0 +1,241 @@
+//===- AccessBuilder.cpp - Files the accesses -----------------------------===//
+#include "memory/AccessBuilder.h"
+
+#include "support/Budget.h"
+#include "support/Functions.h"
+#include "support/Names.h"
+#include "support/Print.h"
+
+#include "llvm/IR/InstIterator.h"
+#include "llvm/IR/IntrinsicInst.h"
+
+using namespace llvm;
+
+namespace tpc {
+
+AnalysisKey ClassObjectAccess::Key;
+
+void AccessResult::Builder::addWrite(Instruction &I, const Location &L) {
+  R.filePart(R.WritesByObject, R.PartWrites.size(), L);
+  R.PartWrites.push_back({&I, L});
+}
+
+void AccessResult::Builder::addCopy(Instruction &I, Locations To,
+                                    Locations From) {
+  for (const Location &L : To) {
+    R.fileObject(R.CopiesTo, R.Copies.size(), L);
+    addWrite(I, L);
+  }
+  for (const Location &L : From)
+    R.fileObject(R.CopiesFrom, R.Copies.size(), L);
+  R.Copies.push_back({&I, std::move(To), std::move(From)});
+}
+
+/// What \p Call, a container's method, is handed goes into the elements: the
+/// objects themselves, and the elements of other containers.
+void AccessResult::Builder::putInto(CallBase &Call) {
+  const Value *Container = containerOf(Call);
+  Locations To;
+  addElements(Container, To);
+  for (const Use &Arg : Call.args()) {
+    if (Arg.get() == Container || !Arg->getType()->isPointerTy() ||
+        (Call.hasStructRetAttr() && Arg.getOperandNo() == 0))
+      continue;
+    Locations From = R.resolve(Arg, false);
+    addElements(Arg, From);
+    addCopy(Call, To, std::move(From));
+  }
+}
+
+/// The object that \p Call is a method of, where that leaves the object alone:
+/// it is const, or a container's that puts nothing in.
+static const Value *constantObject(const CallBase &Call,
+                                   const ContainerMethod *Method) {
+  const Function *Callee = Call.getCalledFunction();
+  bool IsConst = Method ? !Method->Writes
+                        : Callee && Callee->getName().starts_with("_ZNK");
+  return IsConst ? containerOf(Call) : nullptr;
+}
+
+/// The container that \p Call, a method of it, puts its arguments into: it does
+/// not write them, unless they are containers that give up their elements.
+static const Value *filledBy(const CallBase &Call,
+                             const ContainerMethod *Method) {
+  const Function *Callee = Call.getCalledFunction();
+  if (!Method || !Method->Writes || !Callee)
+    return nullptr;
+  std::string Name = qualifiedName(Callee->getName());
+  static constexpr StringRef GiveUp[] = {"swap", "merge", "splice"};
+  if (is_contained(GiveUp, StringRef(Name).rsplit(':').second))
+    return nullptr;
+  return containerOf(Call);
+}
+
+/// What \p Call, of which the rules say \p Row, always gives a new value: the
+/// variable of a read that has a default, and text that is made or assigned.
+static const Value *alwaysReplaced(const CallBase &Call, const Rule &Row) {
+  if (Row.Kind == Rule::Read && Row.Value && Row.Default)
+    return argument(Call, Row, Row.Value);
+  if (Row.Kind == Rule::Text && Row.Method && Row.Relation == "copy")
+    return objectOf(Call, Row);
+  return nullptr;
+}
+
+/// Files that \p Call replaces what is at \p Pointer.
+void AccessResult::Builder::fileReplacing(CallBase &Call,
+                                          const Value *Pointer) {
+  const Locations Where = R.handed(Pointer, /*IsOne=*/true);
+  if (Where.empty())
+    return;
+  Type *T = R.typeAt(Where.front());
+  if (!T || !T->isSized() ||
+      any_of(Where, [&](const Location &L) { return R.typeAt(L) != T; }))
+    return;
+  R.Flow->addReplacing(Call, Pointer,
+                       R.Layout->getTypeStoreSize(T).getKnownMinValue());
+  if (Where.size() == 1 && Where.front().isOne())
+    R.Replaced[&Call] = Where.front();
+}
+
+/// True where argument \p N of \p Call leads to one object, not into an array:
+/// the object of a method, and the variable of a read.
+static bool takesOne(const CallBase &Call, unsigned N, const Rule *Row) {
+  if (Row && Row->Kind == Rule::Read && Row->Value &&
+      argument(Call, *Row, Row->Value) == Call.getArgOperand(N))
+    return true;
+  const Function *Callee = Call.getCalledFunction();
+  return N == (Call.hasStructRetAttr() ? 1 : 0) && Callee &&
+         Callee->getName().starts_with("_ZN");
+}
+
+/// What \p Call can write to.
+void AccessResult::Builder::fileCall(CallBase &Call) {
+  // What is only asked about its text is not written.
+  const Rule *Row = Rules.match(Call);
+  if (Row && Row->Kind == Rule::Text && Row->Relation != "copy")
+    return;
+  if (endsLife(Call))
+    return;
+  if (const Value *Pointer = Row ? alwaysReplaced(Call, *Row) : nullptr)
+    fileReplacing(Call, Pointer);
+  bool Opaque = Calls.callees(Call).empty();
+  const ContainerMethod *Method = Rules.container(Call);
+  if (Method && Method->Writes)
+    putInto(Call);
+  const Value *Constant = constantObject(Call, Method);
+  const Value *Filled = filledBy(Call, Method);
+  for (const auto &[N, Arg] : enumerate(Call.args())) {
+    if (!Arg->getType()->isPointerTy() || Call.onlyReadsMemory(N) ||
+        Arg.get() == Constant)
+      continue;
+    if (Filled && Arg.get() != Filled &&
+        !Call.paramHasAttr(N, Attribute::StructRet)) {
+      R.PutIn.insert(&Call.getArgOperandUse(N));
+      continue;
+    }
+    for (const Location &L : R.handed(Arg, takesOne(Call, N, Row))) {
+      const auto *Global = dyn_cast_or_null<GlobalVariable>(L.Root);
+      if (Global && Global->isConstant())
+        continue;
+      addWrite(Call, L);
+      if (!Opaque)
+        continue;
+      R.file(R.HandedIndex, R.Handed.size(), L);
+      R.Handed.push_back({&Call, L});
+    }
+  }
+}
+
+/// Where \p Store keeps the address of another function's local, notes that.
+void AccessResult::Builder::fileKept(const StoreInst &Store) {
+  const Value *Kept = Store.getValueOperand();
+  if (!Kept->getType()->isPointerTy() || isa<Constant>(Kept))
+    return;
+  for (const Location &L : R.resolve(Kept, false))
+    if (const auto *Local = dyn_cast_or_null<AllocaInst>(L.Root);
+        Local && Local->getFunction() != Store.getFunction() && L.Path.empty())
+      R.KeptElsewhere.insert(Local);
+}
+
+void AccessResult::Builder::fileAccesses() {
+  for (Function &F : definedFunctions(M)) {
+    if (Rules.isOpaque(F))
+      continue;
+    for (Instruction &I : instructions(F)) {
+      if (Budget::isSpent())
+        return;
+      if (auto *Load = dyn_cast<LoadInst>(&I)) {
+        for (const Location &L : R.touched(*Load)) {
+          R.file(R.LoadIndex, R.Loads.size(), L);
+          R.Loads.push_back({&I, L});
+        }
+      } else if (auto *Store = dyn_cast<StoreInst>(&I)) {
+        for (const Location &L : R.touched(*Store)) {
+          R.file(R.StoreIndex, R.Stores.size(), L);
+          R.Stores.push_back({&I, L});
+          addWrite(I, L);
+        }
+        fileKept(*Store);
+      } else if (auto *Copy = dyn_cast<MemTransferInst>(&I)) {
+        addCopy(I, R.copied(*Copy, Copy->getRawDest()),
+                R.copied(*Copy, Copy->getRawSource()));
+      } else if (auto *Call = dyn_cast<CallBase>(&I);
+                 Call && !isa<IntrinsicInst>(Call)) {
+        fileCall(*Call);
+      }
+    }
+  }
+}
+
+AccessResult ClassObjectAccess::run(Module &M, ModuleAnalysisManager &AM) {
+  AccessResult R;
+  R.Layout = &M.getDataLayout();
+  R.Debug = std::make_unique<DebugTypes>(*R.Layout);
+  R.findClassesOfGlobals(M);
+  const CallGraphResult &Calls = AM.getResult<SimpleCallGraph>(M);
+  R.Flow =
+      std::make_unique<Reaching>(M, Calls, AM.getResult<Throws>(M), *R.Debug);
+  AccessResult::Builder B(R, Calls, AM.getResult<RuleAnalysis>(M), M);
+  B.findTargets();
+  B.fileAccesses();
+  return R;
+}
+
+PreservedAnalyses ClassObjectAccessPrinter::run(Module &M,
+                                                ModuleAnalysisManager &AM) {
+  const AccessResult &R = AM.getResult<ClassObjectAccess>(M);
+  OS << "accesses of " << M.getName() << '\n';
+  auto PrintItem = [&](Nth Item) {
+    if (Item.isNumber())
+      OS << '[' << Item.Number << ']';
+    else if (Item.Number == Nth::Any)
+      OS << "[any]";
+  };
+  auto Print = [&](const char *What, ArrayRef<Access> List) {
+    for (const Access &A : List) {
+      OS << "  " << What << ' ';
+      if (A.Where.Root)
+        A.Where.Root->printAsOperand(OS, false);
+      PrintItem(A.Where.RootItem);
+      for (const Step &S : A.Where.Path) {
+        if (!S.isField()) {
+          OS << (S.Type == Step::Element ? "[element" : "[byte ");
+          if (S.Type == Step::Bytes)
+            OS << S.Index;
+          OS << ']';
+          continue;
+        }
+        const StructType *T = R.types().typeOf(S.Type);
+        OS << '[' << (T->hasName() ? T->getName() : "literal") << '.' << S.Index
+           << ']';
+        PrintItem(S.Item);
+      }
+      OS << " in " << A.I->getFunction()->getName() << place(*A.I) << '\n';
+    }
+  };
+  Print("load", R.loads());
+  Print("store", R.stores());
+  return PreservedAnalyses::all();
+}
+
+} // namespace tpc

@@ -1,0 +1,130 @@
+//===- CalledBack.cpp -----------------------------------------------------===//
+#include "memory/CalledBack.h"
+
+#include "support/Names.h"
+
+#include "llvm/ADT/PointerIntPair.h"
+#include "llvm/BinaryFormat/Dwarf.h"
+#include "llvm/IR/Module.h"
+
+using namespace llvm;
+
+namespace tpc {
+
+/// Classes in an object that are looked at; one with more in it can call
+/// anything.
+static constexpr unsigned MaxParts = 256;
+
+/// True for the functions that only free or copy what they are handed, or are a
+/// part of the language.
+static bool callsNothing(StringRef Name) {
+  return givesMemoryBack(Name) || Name.starts_with("_Znw") ||
+         Name.starts_with("_Zna") || Name.starts_with("__") || Name == "memcmp";
+}
+
+/// True where \p Class, of which no more than the name is known, may keep
+/// functions. Those of the standard library's classes that do say so.
+static bool mayKeep(const DICompositeType &Class) {
+  StringRef Name = Class.getIdentifier();
+  bool IsStandard = Name.consume_front("_ZTS") &&
+                    (Name.starts_with("St") || Name.starts_with("Sa") ||
+                     Name.starts_with("NSt"));
+  return !IsStandard || Name.contains("function") || Name.contains("PF");
+}
+
+const ClassHierarchy &CalledBack::classes() {
+  if (!Classes)
+    Classes.emplace(M);
+  return *Classes;
+}
+
+/// Adds the virtual functions of \p Class and of what derives from it.
+void CalledBack::addClass(const DICompositeType &Class, Callable &Out) {
+  StringRef Name = Class.getIdentifier();
+  if (!Name.consume_front("_ZTS")) {
+    Out.Unknown |= Class.getVTableHolder() != nullptr;
+    return;
+  }
+  classes().addFunctions(Name, Out.Virtual);
+}
+
+const CalledBack::Callable &CalledBack::ofType(const DIType *T) {
+  std::unique_ptr<Callable> &Out = ByType[T];
+  if (Out)
+    return *Out;
+  Out = std::make_unique<Callable>();
+  // Types, and whether they are but the base class of one that was there.
+  SmallSetVector<PointerIntPair<const DIType *, 1, bool>, 16> Work;
+  auto Add = [&](const DIType *Inner, bool AsBase = false) {
+    if (const DIType *Plain = DebugTypes::plain(Inner))
+      Work.insert({Plain, AsBase});
+  };
+  Add(T);
+  for (unsigned N = 0; N < Work.size(); ++N) {
+    const DIType *Part = Work[N].getPointer();
+    bool IsBase = Work[N].getInt();
+    if (Work.size() > MaxParts) {
+      Out->Unknown = true;
+      break;
+    }
+    Out->Kept |= isa<DISubroutineType>(Part);
+    if (const auto *Pointer = dyn_cast<DIDerivedType>(Part))
+      if (isa_and_nonnull<DISubroutineType>(
+              DebugTypes::plain(Pointer->getBaseType())))
+        Out->Kept = true;
+    const auto *Class = dyn_cast<DICompositeType>(Part);
+    if (!Class)
+      continue;
+    Out->Kept |= Class->isForwardDecl() && mayKeep(*Class);
+    if (Class->getTag() == dwarf::DW_TAG_array_type)
+      Add(Class->getBaseType());
+    else if (!IsBase)
+      addClass(*Class, *Out);
+    for (const DINode *Element : Class->getElements())
+      if (const auto *Member = dyn_cast_or_null<DIDerivedType>(Element)) {
+        bool AsBase = Member->getTag() == dwarf::DW_TAG_inheritance;
+        if (AsBase || (Member->getTag() == dwarf::DW_TAG_member &&
+                       !Member->isStaticMember()))
+          Add(Member->getBaseType(), AsBase);
+      }
+    for (const DINode *Argument : Class->getTemplateParams())
+      if (const auto *Type =
+              dyn_cast_or_null<DITemplateTypeParameter>(Argument)) {
+        const DIType *Pointee = DebugTypes::dereferenced(Type->getType());
+        Add(Pointee ? Pointee : Type->getType());
+      }
+  }
+  return *Out;
+}
+
+/// What can be called of the objects that \p F takes.
+const CalledBack::Callable &CalledBack::ofParameters(const Function &F) {
+  std::unique_ptr<Callable> &Out = ByFunction[&F];
+  if (Out)
+    return *Out;
+  Out = std::make_unique<Callable>();
+  StringRef Name = F.getName();
+  // One in C is handed functions by their addresses.
+  if (!Name.starts_with("_Z"))
+    return *Out;
+  Out->Kept = Name.contains("function") || Name.contains("PF");
+  classes().addFunctionsOfNamed(Name, Out->Virtual);
+  return *Out;
+}
+
+SmallVector<const CalledBack::Callable *, 2>
+CalledBack::handedBy(const CallBase &Call) {
+  SmallVector<const Callable *, 2> Found;
+  const Function *Callee = Call.getCalledFunction();
+  if (!Callee || !Callee->isDeclaration() || Callee->isIntrinsic() ||
+      callsNothing(Callee->getName()))
+    return Found;
+  for (const Use &Arg : Call.args())
+    if (Arg->getType()->isPointerTy() && !isa<ConstantPointerNull>(Arg)) {
+      const DIType *T = Debug.pointee(Arg);
+      Found.push_back(T ? &ofType(T) : &ofParameters(*Callee));
+    }
+  return Found;
+}
+
+} // namespace tpc

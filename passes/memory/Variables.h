@@ -1,0 +1,31 @@
+//===- Variables.h - Names of variables, from debug information -----------===//
+#ifndef TPC_VARIABLES_H
+#define TPC_VARIABLES_H
+
+#include "memory/ClassObjectAccess.h"
+
+namespace tpc {
+
+/// Names the variables of a module as its source does.
+class VariableNames {
+public:
+  VariableNames(const TypeNumbers &Types, const DebugTypes &Debug)
+      : Types(Types), Debug(Debug) {}
+
+  /// The field's, global's or local's own name; empty where it has none.
+  std::string nameOf(const Location &L) const;
+  /// The same, a field with its class: `Node::limit_`.
+  std::string fullNameOf(const Location &L) const;
+
+private:
+  /// The innermost field of \p L that has a name, and its class.
+  std::pair<const llvm::DICompositeType *, llvm::StringRef>
+  fieldOf(const Location &L) const;
+  std::string rootName(const llvm::Value *Root) const;
+  const TypeNumbers &Types;
+  const DebugTypes &Debug;
+};
+
+} // namespace tpc
+
+#endif // TPC_VARIABLES_H

@@ -1,0 +1,215 @@
+//===- ExplainInfo.cpp ----------------------------------------------------===//
+#include "output/ExplainInfo.h"
+
+#include "support/Names.h"
+
+#include "llvm/ADT/DenseSet.h"
+
+#include <map>
+
+using namespace llvm;
+
+namespace tpc {
+
+/// Blind spots, and comparisons that are not exposed, that are listed; all are
+/// counted.
+static constexpr size_t MaxListed = 200;
+
+namespace {
+
+/// What there is to list: each place and parameter once, in the order of kinds,
+/// places and names. A large unit has millions, which is why there are only
+/// numbers here until it is known which few are told.
+class Listing {
+public:
+  using Place = std::tuple<std::string, unsigned, unsigned>;
+  struct Entry {
+    unsigned Kind, Place, Name, Index;
+    auto key() const { return std::make_tuple(Kind, Place, Name); }
+  };
+
+  Listing(const ParamCallFinder::Result &Reads, const Options &Opts)
+      : Opts(Opts) {
+    for (const ParameterRead &R : Reads)
+      Names.try_emplace(R.Name, 0);
+    unsigned Rank = 0;
+    for (auto &[Name, Number] : Names)
+      Number = ++Rank; // 0 is for what is about no parameter
+    for (const ParameterRead &R : Reads)
+      NameOf.push_back(Names.at(R.Name));
+  }
+
+  void add(unsigned Kind, const DILocation *Loc, unsigned Read,
+           unsigned Index) {
+    auto [It, New] = PlaceOf.try_emplace(Loc, 0);
+    if (New)
+      Places[place(Loc)].push_back(Loc);
+    Waiting.push_back({{Kind, 0, nameOf(Read), Index}, Loc});
+  }
+
+  /// The parameter \p Name at \p P, as place and name of an entry.
+  std::optional<std::pair<unsigned, unsigned>> at(const Place &P,
+                                                  const std::string &Name) {
+    auto Found = Places.find(P);
+    auto Named = Names.find(Name);
+    if (Found == Places.end() || Named == Names.end())
+      return std::nullopt;
+    return std::pair(rank(Found->second.front()), Named->second);
+  }
+
+  const std::vector<Entry> &sorted() {
+    unsigned Rank = 0;
+    for (auto &[P, Locs] : Places) {
+      for (const DILocation *Loc : Locs)
+        PlaceOf[Loc] = Rank;
+      ++Rank;
+    }
+    for (auto &[E, Loc] : Waiting) {
+      E.Place = rank(Loc);
+      Entries.push_back(E);
+    }
+    llvm::sort(Entries, [](const Entry &A, const Entry &B) {
+      return std::tuple_cat(A.key(), std::tuple(A.Index)) <
+             std::tuple_cat(B.key(), std::tuple(B.Index));
+    });
+    Entries.erase(std::unique(Entries.begin(), Entries.end(),
+                              [](const Entry &A, const Entry &B) {
+                                return A.key() == B.key();
+                              }),
+                  Entries.end());
+    return Entries;
+  }
+
+private:
+  Place place(const DILocation *Loc) const {
+    if (!Loc)
+      return {"", 0, 0};
+    return {Opts.relative(pathOf(Loc)), Loc->getLine(), Loc->getColumn()};
+  }
+  unsigned nameOf(unsigned Read) const {
+    return Read == BlindSpot::None ? 0 : NameOf[Read];
+  }
+  unsigned rank(const DILocation *Loc) const { return PlaceOf.lookup(Loc); }
+
+  const Options &Opts;
+  std::map<std::string, unsigned> Names;
+  std::vector<unsigned> NameOf; // by read
+  std::map<Place, SmallVector<const DILocation *, 1>> Places;
+  DenseMap<const DILocation *, unsigned> PlaceOf;
+  std::vector<std::pair<Entry, const DILocation *>> Waiting;
+  std::vector<Entry> Entries;
+};
+
+} // namespace
+
+json::Value SourceLines::line(StringRef Path, unsigned Number) {
+  auto [It, New] = Files.try_emplace(Path);
+  if (New)
+    if (auto Buffer = MemoryBuffer::getFile(Path)) {
+      It->second.Text = std::move(*Buffer);
+      It->second.Text->getBuffer().split(It->second.Lines, '\n');
+    }
+  if (Number == 0 || Number > It->second.Lines.size())
+    return nullptr;
+  return json::fixUTF8(It->second.Lines[Number - 1].trim());
+}
+
+ExplainInfo::ExplainInfo(Module &M, ModuleAnalysisManager &AM,
+                         const Options &Opts)
+    : Opts(Opts), Usage(AM.getResult<ParamUsageFinder>(M)),
+      Reads(AM.getResult<ParamCallFinder>(M)),
+      Gathered(AM.getResult<GatherResults>(M)),
+      Calls(AM.getResult<SimpleCallGraph>(M)),
+      Words(AM.getResult<ClassObjectAccess>(M),
+            AM.getResult<ExternCallFinder>(M), Opts),
+      Explain(Usage, AM.getResult<BackwardPropagate>(M), Reads,
+              AM.getResult<ExternCallFinder>(M), Calls, Words) {}
+
+/// `file`, `lineno`, `column`, `function` and the line's text.
+json::Object ExplainInfo::placed(const DILocation *Loc) {
+  if (!Loc)
+    return json::Object{{"file", ""},
+                        {"lineno", 0},
+                        {"column", 0},
+                        {"function", ""},
+                        {"source_code", nullptr}};
+  std::string Path = pathOf(Loc);
+  std::string Function;
+  if (const DISubprogram *In = Loc->getScope()->getSubprogram())
+    Function = In->getLinkageName().empty()
+                   ? In->getName().str()
+                   : qualifiedName(In->getLinkageName());
+  return json::Object{{"file", json::fixUTF8(Opts.relative(Path))},
+                      {"lineno", Loc->getLine()},
+                      {"column", Loc->getColumn()},
+                      {"function", json::fixUTF8(Function)},
+                      {"source_code", Lines.line(Path, Loc->getLine())}};
+}
+
+json::Array ExplainInfo::path(const Comparison &C) {
+  json::Array List;
+  size_t Most = Explainer::stepsFor(Gathered.Comparisons.size());
+  for (const PathStep &S : Explain.path(C, Most)) {
+    json::Object O = placed(S.Loc);
+    O["step"] = S.kindName();
+    O["what"] = json::fixUTF8(S.What);
+    List.push_back(std::move(O));
+  }
+  return List;
+}
+
+ListedPlaces ExplainInfo::notExposed(ArrayRef<SourcePlace> Comparisons) {
+  Listing All(Reads, Opts);
+  for (auto [Index, N] : enumerate(Gathered.Others))
+    if (const DILocation *Loc = Words.userPlace(N.Compared->place());
+        Loc && N.Why == NotReported::NotExposed)
+      All.add(0, Loc, N.Compared->Read, Index);
+  ListedPlaces Out;
+  const std::vector<Listing::Entry> &Sorted = All.sorted();
+  DenseSet<std::pair<unsigned, unsigned>> Exposed;
+  for (const SourcePlace &P : Comparisons)
+    if (auto Known = All.at({P.File, P.Line, P.Column}, P.Source))
+      Exposed.insert(*Known);
+  for (const Listing::Entry &E : Sorted) {
+    if (Exposed.contains({E.Place, E.Name}) || Out.Count++ >= MaxListed)
+      continue;
+    const ParameterComparison &Compared = *Gathered.Others[E.Index].Compared;
+    json::Object O = placed(Words.userPlace(Compared.place()));
+    O["source"] = json::fixUTF8(Reads[Compared.Read].Name);
+    Out.List.push_back(std::move(O));
+  }
+  return Out;
+}
+
+ListedPlaces ExplainInfo::blindSpots() {
+  const std::vector<BlindSpot> Spots =
+      findBlindSpots(Usage, Reads, Gathered, Calls, Words);
+  Listing All(Reads, Opts);
+  // Very many values may end at one place.
+  DenseMap<const Instruction *, const DILocation *> Places;
+  for (auto [Index, S] : enumerate(Spots)) {
+    auto [It, New] = Places.try_emplace(S.At);
+    if (New)
+      It->second = Words.userPlace(*S.At);
+    const DILocation *Loc = It->second;
+    // What a library does inside is its own business, and is counted.
+    if (Loc || !S.At->getDebugLoc())
+      All.add(S.Kind, Loc, S.Read, Index);
+  }
+  ListedPlaces Out;
+  for (const Listing::Entry &E : All.sorted()) {
+    if (Out.Count++ >= MaxListed)
+      continue;
+    const BlindSpot &S = Spots[E.Index];
+    json::Object O = placed(Words.userPlace(*S.At));
+    O["kind"] = S.kindName();
+    O["parameter"] = S.Read == BlindSpot::None
+                         ? json::Value(nullptr)
+                         : json::Value(json::fixUTF8(Reads[S.Read].Name));
+    O["what"] = json::fixUTF8(S.text(Reads, Words));
+    Out.List.push_back(std::move(O));
+  }
+  return Out;
+}
+
+} // namespace tpc

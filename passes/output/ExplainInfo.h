@@ -1,0 +1,77 @@
+//===- ExplainInfo.h - Paths and blind spots in the static information ----===//
+//
+// docs/formats.md: `path` of a comparison, `not_exposed`, `blind_spots`.
+//
+//===----------------------------------------------------------------------===//
+#ifndef TPC_EXPLAININFO_H
+#define TPC_EXPLAININFO_H
+
+#include "results/BlindSpots.h"
+#include "results/Explain.h"
+
+#include "llvm/ADT/StringMap.h"
+#include "llvm/Support/JSON.h"
+#include "llvm/Support/MemoryBuffer.h"
+
+namespace tpc {
+
+/// Source files, for the text of a line.
+class SourceLines {
+public:
+  /// Line \p Number of \p Path, stripped; null where it cannot be read.
+  llvm::json::Value line(llvm::StringRef Path, unsigned Number);
+
+private:
+  struct File {
+    std::unique_ptr<llvm::MemoryBuffer> Text;
+    llvm::SmallVector<llvm::StringRef, 0> Lines;
+  };
+  llvm::StringMap<File> Files;
+};
+
+/// A place of the source where there are comparisons, with one key.
+struct SourcePlace {
+  std::string File; ///< relative to the root of the sources
+  unsigned Line = 0, Column = 0;
+  std::string Source; ///< the parameter; empty for a constant
+  llvm::SmallVector<const Comparison *, 1> Instances; ///< nearest first
+};
+
+/// As many places as are listed, and how many there are.
+struct ListedPlaces {
+  llvm::json::Array List;
+  size_t Count = 0;
+};
+
+/// Writes down why a module's comparisons are found, and why others are not.
+class ExplainInfo {
+public:
+  ExplainInfo(llvm::Module &M, llvm::ModuleAnalysisManager &AM,
+              const Options &Opts);
+
+  llvm::json::Array path(const Comparison &C);
+
+  /// Comparisons with parameters in the user's sources on which nothing
+  /// exposed depends; without the places that are in \p Comparisons, where
+  /// another instance of the same template is exposed.
+  ListedPlaces notExposed(llvm::ArrayRef<SourcePlace> Comparisons);
+
+  /// The blind spots in the user's sources, and those that have no place.
+  ListedPlaces blindSpots();
+
+private:
+  llvm::json::Object placed(const llvm::DILocation *Loc);
+
+  const Options &Opts;
+  const ParameterUsage &Usage;
+  const ParamCallFinder::Result &Reads;
+  const GatheredResults &Gathered;
+  const CallGraphResult &Calls;
+  Wording Words;
+  Explainer Explain;
+  SourceLines Lines;
+};
+
+} // namespace tpc
+
+#endif // TPC_EXPLAININFO_H

@@ -1,0 +1,221 @@
+//===- Follower.cpp - Carries values on -----------------------------------===//
+//
+// What is done with a value that comes to a comparison is in
+// ParamUsageFinder.cpp.
+//
+//===----------------------------------------------------------------------===//
+#include "params/Follower.h"
+
+#include "params/Idioms.h"
+#include "support/Budget.h"
+
+#include "llvm/IR/IntrinsicInst.h"
+
+using namespace llvm;
+
+namespace tpc {
+
+/// Calls inside calls that are told apart; deeper ones come out anywhere.
+static constexpr unsigned MaxCallDepth = 8;
+
+const CallPath *Follower::into(const CallBase *Call, const CallPath *Outer) {
+  if (Outer && Outer->Depth == MaxCallDepth)
+    Outer = nullptr;
+  Paths.push_back(std::make_unique<CallPath>(
+      CallPath{Call, Outer, Outer ? Outer->Depth + 1 : 1}));
+  return Paths.back().get();
+}
+
+/// Places of merged values that are told apart for one read.
+static constexpr unsigned MaxOrigins = 4096;
+
+/// \p Via is the instruction that brings the value to S.V; none where S.V
+/// computes it itself.
+void Follower::push(State S, Instruction *Via) {
+  Transform::KindTy Kind = S.How.kind();
+  bool NewOrigin = S.Origin && !IsOutcome && SeenOrigins.size() < MaxOrigins &&
+                   SeenOrigins.insert({S.V, S.Origin}).second;
+  auto [It, New] = Seen.try_emplace(placeOf(S), Kind);
+  if (!New && It->second <= Kind) {
+    if (!NewOrigin)
+      return;
+    S.IsAnotherOrigin = true;
+  } else {
+    S.IsAnotherOrigin = false;
+    It->second = Kind;
+  }
+  S.Way = Usage.Hops.size();
+  Usage.Hops.push_back({S.V, Via ? Via : cast<Instruction>(S.V), Here});
+  Work.push(std::move(S));
+}
+
+void Follower::end(ValueEnd::KindTy Kind, Instruction *At) {
+  Usage.Ends.push_back({Kind, ReadAtHand, At});
+}
+
+/// The state to go on from; one that was come to more simply is done with.
+std::optional<Follower::State> Follower::next() {
+  while (std::optional<State> S = Work.pop())
+    if ((S->IsAnotherOrigin || Seen.lookup(placeOf(*S)) >= S->How.kind()) &&
+        !Budget::isSpent())
+      return S;
+  return std::nullopt;
+}
+
+Transform throughChoice(Transform How, const Instruction &I) {
+  if (std::optional<Choice> C = choiceOf(I))
+    How.call(C->Largest ? "max" : "min", C->Constant);
+  return How;
+}
+
+/// More variables that a store may write to are more than anybody meant.
+static constexpr unsigned ManyTargets = 16;
+
+const Follower::Stored &Follower::stored(StoreInst &Store) {
+  std::unique_ptr<Stored> &Known = Stores[&Store];
+  if (!Known)
+    Known = std::make_unique<Stored>(
+        Stored{Access.resolve(Store.getPointerOperand(), true).size(),
+               Access.usesOf(Store, Store.getPointerOperand()),
+               Access.partsOf(Store)});
+  return *Known;
+}
+
+/// A value goes on to the loads of the variable that it is stored to.
+void Follower::store(const State &S, StoreInst &Store) {
+  const Stored &To = stored(Store);
+  if (To.Targets == 0)
+    end(ValueEnd::UnknownPointer, &Store);
+  else if (To.Targets > ManyTargets)
+    end(ValueEnd::ManyTargets, &Store);
+  else if (To.Loads.empty() && !IsOutcome)
+    end(ValueEnd::Unread, &Store);
+  if (To.Loads.empty() && !S.In)
+    return;
+  State Next{S.V, S.How, nullptr, false, S.In};
+  SmallVector<ScalarPart, 1> Written = To.Written;
+  if (S.In && !Written.empty() && Written.front().Size) {
+    erase_if(Written, [&](const ScalarPart &P) {
+      return S.In->Low < P.Low || S.In->Low + S.In->Size > P.Low + P.Size;
+    });
+    if (Written.empty())
+      return end(ValueEnd::Mixed, &Store);
+    // The whole scalar, or a bit field in it.
+    ScalarPart Own = Written.front();
+    Next.In.reset();
+    if (S.In->Size < Own.Size)
+      Next.In = {S.In->Low - Own.Low, S.In->Size};
+  }
+  load(Next, Store, Written, To.Loads);
+}
+
+/// The value of \p S, as it stands in the scalar, goes on to \p Loads, which
+/// read what \p Write has put to
+/// \p Written.
+void Follower::load(const State &S, Instruction &Write,
+                    ArrayRef<ScalarPart> Written, ArrayRef<LoadInst *> Loads) {
+  bool WasWide = any_of(Written, [](const ScalarPart &P) { return P.Size; });
+  for (LoadInst *Load : Loads) {
+    State Next{Load, throughChoice(S.How, *Load), nullptr, S.Direct};
+    auto &Known = Parts[Load];
+    if (!Known)
+      Known =
+          std::make_unique<SmallVector<ScalarPart, 1>>(Access.partsOf(*Load));
+    ArrayRef<ScalarPart> Read = *Known;
+    bool IsWide = any_of(Read, [](const ScalarPart &P) { return P.Size; });
+    if (!WasWide && !IsWide) {
+      Next.In = S.In;
+      push(std::move(Next), &Write);
+      continue;
+    }
+    // The scalar that was written, wherever it stands in what is read.
+    for (const ScalarPart &To : Read) {
+      if (none_of(Written, [&](const ScalarPart &From) {
+            return Access.reaches(From.Where, To.Where);
+          }))
+        continue;
+      Next.In = S.In;
+      if (To.Size)
+        Next.In =
+            S.In ? Bits{To.Low + S.In->Low, S.In->Size} : Bits{To.Low, To.Size};
+      push(Next, &Write);
+      break;
+    }
+  }
+}
+
+/// True for the intrinsics that give back their first operand.
+static bool isCopy(const Instruction &I, const Use &U) {
+  const auto *Call = dyn_cast<IntrinsicInst>(&I);
+  if (!Call || U.getOperandNo() != 0)
+    return false;
+  switch (Call->getIntrinsicID()) {
+  case Intrinsic::expect:
+  case Intrinsic::expect_with_probability:
+  case Intrinsic::annotation:
+  case Intrinsic::ssa_copy:
+    return true;
+  default:
+    return false;
+  }
+}
+
+/// Carries what is at \p U on where the user only moves it in a register. False
+/// where it does something else, or would lose it.
+bool Follower::repacked(const State &S, Use &U) {
+  Repacked R = repack(U, S.In);
+  if (R.Kind == Repacked::None)
+    return false;
+  if (R.Kind == Repacked::Gone)
+    return true;
+  std::optional<Bits> In;
+  if (R.Kind == Repacked::Part)
+    In = R.In;
+  push({cast<Instruction>(U.getUser()), S.How, S.Path, S.Direct && !In && !S.In,
+        In});
+  return true;
+}
+
+/// Carries what is at \p U on to where it is the same value still: casts,
+/// merges, variables, arguments, results. False where \p U does something
+/// else with it.
+bool Follower::carry(const State &S, Use &U) {
+  auto *I = cast<Instruction>(U.getUser());
+  if (isa<CastInst>(I) || isa<FreezeInst>(I) || isCopy(*I, U)) {
+    push({I, S.How, S.Path, S.Direct, S.In, S.Origin});
+    return true;
+  }
+  if (isa<PHINode>(I) || (isa<SelectInst>(I) && U.getOperandNo() != 0)) {
+    push({I, S.How, S.Path, false, S.In, S.Origin ? S.Origin : S.V});
+    return true;
+  }
+  if (auto *Store = dyn_cast<StoreInst>(I)) {
+    if (U.getOperandNo() == 0)
+      store(S, *Store);
+    return true;
+  }
+  if (auto *Call = dyn_cast<CallBase>(I); Call && !isa<IntrinsicInst>(Call)) {
+    SmallVector<Function *, 1> Callees = Calls.callees(*Call);
+    if (Callees.empty() || !Call->isArgOperand(&U))
+      return false;
+    for (Function *Callee : Callees)
+      if (Call->getArgOperandNo(&U) < Callee->arg_size())
+        push({Callee->getArg(Call->getArgOperandNo(&U)), S.How,
+              into(Call, S.Path), false, S.In},
+             Call);
+    return true;
+  }
+  if (isa<ReturnInst>(I)) {
+    if (S.Path)
+      push({const_cast<CallBase *>(S.Path->Call), S.How, S.Path->Outer, false,
+            S.In},
+           I);
+    else
+      for (CallBase *Call : Calls.callers(I->getFunction()))
+        push({Call, S.How, nullptr, false, S.In}, I);
+    return true;
+  }
+  return false;
+}
+
+} // namespace tpc

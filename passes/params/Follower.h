@@ -1,0 +1,144 @@
+//===- Follower.h - The way of a parameter's value ------------------------===//
+#ifndef TPC_FOLLOWER_H
+#define TPC_FOLLOWER_H
+
+#include "Rules.h"
+#include "calls/SimpleCallGraph.h"
+#include "memory/ClassObjectAccess.h"
+#include "params/ParamCallFinder.h"
+#include "params/ParamUsageFinder.h"
+#include "params/Registers.h"
+#include "params/TextUsage.h"
+
+#include "llvm/ADT/DenseMap.h"
+#include "llvm/ADT/DenseSet.h"
+
+#include <array>
+#include <memory>
+
+namespace tpc {
+
+/// The calls that a value went into, the last one first.
+struct CallPath {
+  const llvm::CallBase *Call;
+  const CallPath *Outer;
+  unsigned Depth;
+};
+
+/// Follows values forward. Two kinds: a parameter's value, up to the
+/// comparisons, and a comparison's outcome, up to the predicates.
+class Follower {
+public:
+  Follower(llvm::Module &M, llvm::ModuleAnalysisManager &AM)
+      : Calls(AM.getResult<SimpleCallGraph>(M)),
+        Access(AM.getResult<ClassObjectAccess>(M)),
+        Reads(AM.getResult<ParamCallFinder>(M)),
+        Rules(AM.getResult<RuleAnalysis>(M)), Texts(M, Access, Rules) {}
+
+  ParameterUsage run();
+
+private:
+  struct State {
+    llvm::Value *V;
+    Transform How;
+    const CallPath *Path;
+    bool Direct; ///< of an outcome: see Decision
+    /// Where V is several numbers in one: the bits that are this one.
+    std::optional<Bits> In = std::nullopt;
+    /// Where control flow has merged V with other values: the last value
+    /// before that.
+    llvm::Value *Origin = nullptr;
+    /// V was come to before, from another Origin: what it decides stands at
+    /// this one as well.
+    bool IsAnotherOrigin = false;
+    unsigned Way = Hop::None; ///< number of the hop that led here
+  };
+  /// By kind of Transform: what comes to a place in several ways is followed on
+  /// from there with the simplest arithmetic.
+  class Worklist {
+  public:
+    void push(State S) {
+      Transform::KindTy Kind = S.How.kind();
+      ByKind[Kind].push_back(std::move(S));
+    }
+    std::optional<State> pop() {
+      for (llvm::SmallVector<State, 16> &Of : ByKind)
+        if (!Of.empty())
+          return Of.pop_back_val();
+      return std::nullopt;
+    }
+
+  private:
+    std::array<llvm::SmallVector<State, 16>, Transform::Expression + 1> ByKind;
+  };
+
+  void followRead(unsigned N);
+  void decided(const State &S, llvm::Instruction &Predicate, unsigned Read);
+  void useOfMerged(const State &S, llvm::Use &U, unsigned Read);
+  void useOfValue(const State &S, llvm::Use &U, unsigned Read);
+  void compared(const State &S, llvm::CmpInst &Compare, unsigned Operand,
+                unsigned Read);
+  void flag(const State &S, llvm::Value *V, Decision D, unsigned Read,
+            bool IsOperand = false);
+  void followText(unsigned N);
+  llvm::SmallVector<Decision, 2> followOutcome(llvm::Value *Outcome,
+                                               const CallPath *Path);
+  bool repacked(const State &S, llvm::Use &U);
+  bool carry(const State &S, llvm::Use &U);
+  void load(const State &S, llvm::Instruction &Write,
+            llvm::ArrayRef<ScalarPart> Written,
+            llvm::ArrayRef<llvm::LoadInst *> Loads);
+  /// What a store writes to, whatever the value.
+  struct Stored {
+    size_t Targets;
+    llvm::SmallVector<llvm::LoadInst *, 8> Loads;
+    llvm::SmallVector<ScalarPart, 1> Written;
+  };
+  const Stored &stored(llvm::StoreInst &Store);
+  void store(const State &S, llvm::StoreInst &Store);
+  void end(ValueEnd::KindTy Kind, llvm::Instruction *At);
+  /// Nobody asks for the way of a value that is compared nowhere.
+  void forgetHops(size_t From) {
+    Usage.Hops.erase(Usage.Hops.begin() + From, Usage.Hops.end());
+  }
+  void push(State S, llvm::Instruction *Via = nullptr);
+  const CallPath *into(const llvm::CallBase *Call, const CallPath *Outer);
+  static std::pair<const llvm::Value *, const llvm::CallBase *>
+  placeOf(const State &S) {
+    return {S.V, S.Path ? S.Path->Call : nullptr};
+  }
+  std::optional<State> next();
+
+  const CallGraphResult &Calls;
+  const AccessResult &Access;
+  const ParamCallFinder::Result &Reads;
+  const RuleMatches &Rules;
+  const TextUsage Texts;
+
+  // Very many values may come to one place.
+  llvm::DenseMap<const llvm::StoreInst *, std::unique_ptr<Stored>> Stores;
+  llvm::DenseMap<const llvm::LoadInst *,
+                 std::unique_ptr<llvm::SmallVector<ScalarPart, 1>>>
+      Parts;
+
+  ParameterUsage Usage;
+  Worklist Work;
+  unsigned ReadAtHand = 0;
+  bool IsOutcome = false;    ///< what is followed is not the value itself
+  unsigned Here = Hop::None; ///< hop that led to the state at hand
+  /// The simplest arithmetic with which a value was come to, by each call.
+  llvm::DenseMap<std::pair<const llvm::Value *, const llvm::CallBase *>,
+                 Transform::KindTy>
+      Seen;
+  llvm::DenseSet<std::pair<const llvm::Value *, const llvm::Value *>>
+      SeenOrigins;
+  llvm::SmallVector<std::unique_ptr<CallPath>, 16> Paths;
+};
+
+/// \p How, and what \p I, a merge or a load, makes of it where it takes the
+/// value or a constant, whichever is smaller or larger.
+Transform throughChoice(Transform How, const llvm::Instruction &I);
+
+} // namespace tpc
+
+#endif // TPC_FOLLOWER_H

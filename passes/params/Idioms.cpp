@@ -1,0 +1,221 @@
+//===- Idioms.cpp ---------------------------------------------------------===//
+#include "params/Idioms.h"
+
+#include "params/Transform.h"
+
+#include "llvm/IR/GlobalVariable.h"
+#include "llvm/IR/IntrinsicInst.h"
+#include "llvm/IR/Operator.h"
+#include "llvm/IR/PatternMatch.h"
+
+using namespace llvm;
+
+namespace tpc {
+
+bool isSameVariable(const Value *A, const Value *B) {
+  auto AtBeginning = [](const Value *V) {
+    const auto *GEP = dyn_cast<GEPOperator>(V);
+    for (; GEP && GEP->hasAllZeroIndices(); GEP = dyn_cast<GEPOperator>(V))
+      V = GEP->getPointerOperand();
+    return V;
+  };
+  A = AtBeginning(A);
+  B = AtBeginning(B);
+  if (A == B)
+    return true;
+  const auto *L = dyn_cast<LoadInst>(A), *M = dyn_cast<LoadInst>(B);
+  if (L && M)
+    return isSameVariable(L->getPointerOperand(), M->getPointerOperand());
+  const auto *G = dyn_cast<GEPOperator>(A), *H = dyn_cast<GEPOperator>(B);
+  return G && H && G->getSourceElementType() == H->getSourceElementType() &&
+         equal(G->indices(), H->indices()) &&
+         isSameVariable(G->getPointerOperand(), H->getPointerOperand());
+}
+
+namespace {
+
+/// One of the two values; with Pointed what a pointer leads to.
+struct Side {
+  const Value *V;
+  bool Pointed;
+};
+
+/// A merge of two values and the comparison that decides: True where it holds.
+struct Merged {
+  const CmpInst *Compare;
+  Side True, False;
+};
+
+} // namespace
+
+/// The one constant that the local variable \p Pointer ever holds.
+static const Value *pointedConstant(const Value *Pointer) {
+  if (const auto *Global = dyn_cast<GlobalVariable>(Pointer))
+    return Global->isConstant() && Global->hasInitializer()
+               ? Global->getInitializer()
+               : nullptr;
+  if (!isa<AllocaInst>(Pointer))
+    return nullptr;
+  const Value *Found = nullptr;
+  for (const User *U : Pointer->users()) {
+    const auto *Store = dyn_cast<StoreInst>(U);
+    if (Store && Store->getPointerOperand() == Pointer) {
+      if (Found || !isa<Constant>(Store->getValueOperand()))
+        return nullptr;
+      Found = Store->getValueOperand();
+    } else if (isa<CallBase>(U) &&
+               !cast<Instruction>(U)->isLifetimeStartOrEnd())
+      return nullptr;
+  }
+  return Found;
+}
+
+static std::optional<double> constantOf(const Side &S) {
+  const Value *V = S.Pointed ? pointedConstant(S.V) : S.V;
+  return V ? constantNumber(V) : std::nullopt;
+}
+
+/// True where \p V is the value of \p S, as far as the text goes: nothing that
+/// the idiom has in between changes a variable.
+static bool isSide(const Value *V, const Side &S) {
+  if (auto C = constantOf(S))
+    return constantNumber(V) == C ||
+           (S.Pointed && isa<LoadInst>(V) &&
+            isSameVariable(cast<LoadInst>(V)->getPointerOperand(), S.V));
+  const auto *Load = dyn_cast<LoadInst>(V);
+  if (S.Pointed)
+    return Load && isSameVariable(Load->getPointerOperand(), S.V);
+  const auto *Own = dyn_cast<LoadInst>(S.V);
+  return V == S.V ||
+         (Load && Own &&
+          isSameVariable(Load->getPointerOperand(), Own->getPointerOperand()));
+}
+
+/// The branch that decides by which edge a phi with two is entered, and the
+/// number of the phi's way where its condition holds.
+static std::optional<std::pair<const BranchInst *, unsigned>>
+deciderOf(const PHINode &Phi) {
+  if (Phi.getNumIncomingValues() != 2)
+    return std::nullopt;
+  // The first block of a way that is nobody else's; null where the deciding
+  // block itself goes on to the phi.
+  auto Decider = [](const BasicBlock *BB, const BasicBlock *&First) {
+    First = nullptr;
+    const auto *Br = dyn_cast<BranchInst>(BB->getTerminator());
+    for (unsigned Steps = 0; Br && !Br->isConditional() && Steps < 4; ++Steps) {
+      First = BB;
+      BB = BB->getSinglePredecessor();
+      Br = BB ? dyn_cast<BranchInst>(BB->getTerminator()) : nullptr;
+    }
+    return Br && Br->isConditional() ? Br : nullptr;
+  };
+  const BasicBlock *First0, *First1;
+  const BranchInst *Br = Decider(Phi.getIncomingBlock(0), First0);
+  if (!Br || Br != Decider(Phi.getIncomingBlock(1), First1))
+    return std::nullopt;
+  const BasicBlock *Way0 = First0 ? First0 : Phi.getParent();
+  const BasicBlock *Way1 = First1 ? First1 : Phi.getParent();
+  if (Way0 == Way1)
+    return std::nullopt;
+  return std::pair(Br, Br->getSuccessor(0) == Way0 ? 0U : 1U);
+}
+
+static std::optional<Merged> mergedBy(const Instruction &I, bool Pointed) {
+  if (const auto *Select = dyn_cast<SelectInst>(&I)) {
+    const auto *Compare = dyn_cast<CmpInst>(Select->getCondition());
+    if (!Compare)
+      return std::nullopt;
+    return Merged{Compare,
+                  {Select->getTrueValue(), Pointed},
+                  {Select->getFalseValue(), Pointed}};
+  }
+  const auto *Phi = dyn_cast<PHINode>(&I);
+  auto Decider = Phi ? deciderOf(*Phi) : std::nullopt;
+  if (!Decider)
+    return std::nullopt;
+  auto [Br, True] = *Decider;
+  const auto *Compare = dyn_cast<CmpInst>(Br->getCondition());
+  if (!Compare)
+    return std::nullopt;
+  return Merged{Compare,
+                {Phi->getIncomingValue(True), Pointed},
+                {Phi->getIncomingValue(1 - True), Pointed}};
+}
+
+std::optional<Choice> choiceOf(const Instruction &Merge) {
+  const auto *Load = dyn_cast<LoadInst>(&Merge);
+  const auto *Merging =
+      Load ? dyn_cast<Instruction>(Load->getPointerOperand()) : &Merge;
+  if (!Merging || Merging->getType()->isPointerTy() != (Load != nullptr))
+    return std::nullopt;
+  auto M = mergedBy(*Merging, Load != nullptr);
+  if (!M)
+    return std::nullopt;
+  auto IfTrue = constantOf(M->True), IfFalse = constantOf(M->False);
+  if (IfTrue.has_value() == IfFalse.has_value())
+    return std::nullopt;
+  const Value *L = M->Compare->getOperand(0), *R = M->Compare->getOperand(1);
+  CmpInst::Predicate P = M->Compare->getPredicate();
+  if (isSide(L, M->False) && isSide(R, M->True))
+    P = CmpInst::getSwappedPredicate(P);
+  else if (!isSide(L, M->True) || !isSide(R, M->False))
+    return std::nullopt;
+  // The first one is taken where it is less, or where it is greater.
+  switch (P) {
+  case CmpInst::ICMP_SLT:
+  case CmpInst::ICMP_SLE:
+  case CmpInst::ICMP_ULT:
+  case CmpInst::ICMP_ULE:
+  case CmpInst::FCMP_OLT:
+  case CmpInst::FCMP_OLE:
+    return Choice{false, IfTrue ? *IfTrue : *IfFalse};
+  case CmpInst::ICMP_SGT:
+  case CmpInst::ICMP_SGE:
+  case CmpInst::ICMP_UGT:
+  case CmpInst::ICMP_UGE:
+  case CmpInst::FCMP_OGT:
+  case CmpInst::FCMP_OGE:
+    return Choice{true, IfTrue ? *IfTrue : *IfFalse};
+  default:
+    return std::nullopt;
+  }
+}
+
+/// True where \p A and \p B are computed alike from the same variables, which
+/// nothing changes in between but in programs that are not written.
+static bool isSameValue(const Value *A, const Value *B, unsigned Depth = 0) {
+  if (A == B)
+    return true;
+  const auto *I = dyn_cast<Instruction>(A), *J = dyn_cast<Instruction>(B);
+  if (!I || !J || Depth == 4 || I->getParent() != J->getParent() ||
+      !I->isSameOperationAs(J))
+    return false;
+  if (const auto *Load = dyn_cast<LoadInst>(I))
+    return isSameVariable(Load->getPointerOperand(),
+                          cast<LoadInst>(J)->getPointerOperand());
+  return (isa<BinaryOperator>(I) || isa<CastInst>(I)) &&
+         all_of(zip(I->operands(), J->operands()), [&](auto Pair) {
+           return isSameValue(std::get<0>(Pair), std::get<1>(Pair), Depth + 1);
+         });
+}
+
+int squareOf(const Instruction &I) {
+  using namespace PatternMatch;
+  const auto *Fma = dyn_cast<IntrinsicInst>(&I);
+  if (I.getOpcode() != Instruction::FMul && I.getOpcode() != Instruction::Mul &&
+      !(Fma && Fma->getIntrinsicID() == Intrinsic::fmuladd))
+    return 0;
+  const Value *L = I.getOperand(0), *R = I.getOperand(1);
+  int Sign = 1;
+  for (const Value **Side : {&L, &R}) {
+    const Value *Inner;
+    auto Negated = m_CombineOr(m_FNeg(m_Value(Inner)), m_Neg(m_Value(Inner)));
+    if (match(*Side, Negated)) {
+      *Side = Inner;
+      Sign = -Sign;
+    }
+  }
+  return isSameValue(L, R) ? Sign : 0;
+}
+
+} // namespace tpc

@@ -1,0 +1,97 @@
+//===- ParamCallFinder.cpp ------------------------------------------------===//
+#include "params/ParamCallFinder.h"
+
+#include "memory/ClassObjectAccess.h"
+#include "params/ParameterObjects.h"
+#include "params/Texts.h"
+#include "support/Names.h"
+#include "support/Print.h"
+
+#include "llvm/IR/Constants.h"
+#include "llvm/IR/Instructions.h"
+#include "llvm/IR/Module.h"
+#include "llvm/Support/FormatVariadic.h"
+
+using namespace llvm;
+
+namespace tpc {
+
+AnalysisKey ParamCallFinder::Key;
+
+/// `double` from `double&` or `double const&`.
+static std::string valueType(const Function &F, const Rule &R) {
+  SmallVector<std::string, 4> Types = parameterTypes(F);
+  unsigned Number = R.Value.value_or(R.Default.value_or(~0U));
+  if (Number >= Types.size())
+    return R.Value ? "" : resultType(F);
+  StringRef T = Types[Number];
+  T.consume_back("&");
+  T.consume_back(" const");
+  if (T.starts_with("std::__cxx11::basic_string<char"))
+    return "std::string";
+  return T.str();
+}
+
+json::Value jsonOf(const Constant &C, StringRef Type) {
+  if (const auto *Int = dyn_cast<ConstantInt>(&C)) {
+    if (Type == "bool" || Int->getBitWidth() == 1)
+      return !Int->isZero();
+    if (Int->getBitWidth() > 64)
+      return nullptr;
+    if (Type.starts_with("unsigned"))
+      return Int->getZExtValue();
+    return Int->getSExtValue();
+  }
+  if (const auto *Float = dyn_cast<ConstantFP>(&C)) {
+    APFloat Value = Float->getValueAPF();
+    bool Loses;
+    Value.convert(APFloat::IEEEdouble(), APFloat::rmNearestTiesToEven, &Loses);
+    // JSON has no infinity and no NaN.
+    return Value.isFinite() ? json::Value(Value.convertToDouble())
+                            : json::Value(nullptr);
+  }
+  return nullptr;
+}
+
+static json::Value defaultOf(const CallBase &Call, const Rule &R,
+                             StringRef Type, Texts &Known) {
+  const Value *V = argument(Call, R, R.Default);
+  if (!V)
+    return nullptr;
+  if (Type == "std::string" || Type.contains("char ")) {
+    std::string Text = Known.textAt(V, Call);
+    return isDynamic(Text) ? json::Value(nullptr) : json::fixUTF8(Text);
+  }
+  const Constant *C = Known.constantOf(V);
+  return C ? jsonOf(*C, Type) : nullptr;
+}
+
+ParamCallFinder::Result ParamCallFinder::run(Module &M,
+                                             ModuleAnalysisManager &AM) {
+  const RuleMatches &Rules = AM.getResult<RuleAnalysis>(M);
+  const AccessResult &Access = AM.getResult<ClassObjectAccess>(M);
+  Texts Known(Rules, AM.getResult<SimpleCallGraph>(M), &Access);
+  Result R;
+  forEachCall(M, Rules, Rule::Read, [&](CallBase &Call, const Rule &Row) {
+    std::string Type = valueType(*Call.getCalledFunction(), Row);
+    json::Value Default = defaultOf(Call, Row, Type, Known);
+    R.push_back({&Call, &Row, Known.nameOf(Call, Row), std::move(Type),
+                 std::move(Default), argument(Call, Row, Row.Value)});
+  });
+  findAccessors(M, Rules, Access, R);
+  findConfigs(M, Rules, Access, R);
+  return R;
+}
+
+PreservedAnalyses ParamCallFinderPrinter::run(Module &M,
+                                              ModuleAnalysisManager &AM) {
+  const auto &R = AM.getResult<ParamCallFinder>(M);
+  OS << "parameter reads of " << M.getName() << ": " << R.size() << '\n';
+  for (const ParameterRead &Read : R)
+    OS << "  " << Read.Row->Function << " '" << Read.Name << "' " << Read.Type
+       << " default " << formatv("{0}", Read.Default) << " in "
+       << Read.Call->getFunction()->getName() << place(*Read.Call) << '\n';
+  return PreservedAnalyses::all();
+}
+
+} // namespace tpc

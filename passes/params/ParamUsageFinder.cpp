@@ -1,0 +1,317 @@
+//===- ParamUsageFinder.cpp -----------------------------------------------===//
+#include "params/ParamUsageFinder.h"
+
+#include "calls/SimpleCallGraph.h"
+#include "control/IfStatements.h"
+#include "memory/ClassObjectAccess.h"
+#include "params/Follower.h"
+#include "params/Idioms.h"
+#include "params/ParamCallFinder.h"
+#include "params/Registers.h"
+#include "params/TextUsage.h"
+#include "support/Print.h"
+
+#include "llvm/IR/IntrinsicInst.h"
+#include "llvm/IR/Module.h"
+
+using namespace llvm;
+
+namespace tpc {
+
+AnalysisKey ParamUsageFinder::Key;
+
+unsigned ParameterUsage::lost() const {
+  return count_if(Ends, [](const ValueEnd &E) {
+    return E.Kind == ValueEnd::Mixed || E.Kind == ValueEnd::NoNumber;
+  });
+}
+
+SmallVector<Hop, 16> ParameterUsage::pathTo(unsigned Last) const {
+  SmallVector<Hop, 16> Path;
+  for (unsigned N = Last; N != Hop::None; N = Hops[N].From)
+    Path.push_back(Hops[N]);
+  std::reverse(Path.begin(), Path.end());
+  return Path;
+}
+
+/// True for the operations that make one truth value of two.
+static bool isLogical(const Instruction &I) {
+  return I.getOpcode() == Instruction::And ||
+         I.getOpcode() == Instruction::Or || I.getOpcode() == Instruction::Xor;
+}
+
+/// True where \p I decides by \p U.
+static bool decidesBy(const Instruction &I, const Use &U) {
+  return isPredicate(I) && U.get() == conditionOf(I) &&
+         !(isa<SelectInst>(I) && U.getOperandNo() != 0);
+}
+
+/// The predicates that \p Outcome, a truth value, decides.
+SmallVector<Decision, 2> Follower::followOutcome(Value *Outcome,
+                                                 const CallPath *Path) {
+  Worklist OuterWork = std::exchange(Work, {});
+  auto OuterSeen = std::move(Seen);
+  unsigned OuterHere = Here;
+  Seen.clear();
+  IsOutcome = true;
+  size_t HopsBefore = Usage.Hops.size();
+  SmallVector<Decision, 2> Found;
+  push({Outcome, {}, Path, true});
+  while (std::optional<State> At = next()) {
+    const State &S = *At;
+    Here = S.Way;
+    for (Use &U : S.V->uses()) {
+      auto *I = dyn_cast<Instruction>(U.getUser());
+      if (!I)
+        continue;
+      if (!S.In && decidesBy(*I, U))
+        Found.push_back({I, S.Direct, S.Way});
+      else if (repacked(S, U))
+        continue;
+      else if (S.In && !carry(S, U))
+        end(ValueEnd::Outcome, I);
+      else if (S.In)
+        continue;
+      else if (isLogical(*I) || isa<ICmpInst>(I))
+        push({I, {}, S.Path, S.Direct});
+      else if (!carry(S, U))
+        end(ValueEnd::Outcome, I);
+    }
+  }
+  Work = std::move(OuterWork);
+  Seen = std::move(OuterSeen);
+  Here = OuterHere;
+  IsOutcome = false;
+  if (Found.empty())
+    forgetHops(HopsBefore);
+  return Found;
+}
+
+/// \p V, made of what \p S follows, decides \p D by itself.
+void Follower::flag(const State &S, Value *V, Decision D, unsigned Read,
+                    bool IsOperand) {
+  ParameterComparison C;
+  // An argument has no place of its own: there the flag stands at the branch.
+  C.IsOperand = IsOperand && isa<Instruction>(V);
+  C.How = S.How;
+  C.ByArgument = S.Path && Calls.callers(D.Predicate->getFunction()).size() > 1;
+  C.Read = Read;
+  C.Flag = V;
+  C.Decisions.push_back(D);
+  Usage.Comparisons.push_back(std::move(C));
+}
+
+/// True where \p I is what `&&` or `||` makes of its last operand \p U: all
+/// other ways to it are decided already.
+static bool isShortCircuit(const Instruction &I, const Use &U) {
+  const auto *Phi = dyn_cast<PHINode>(&I);
+  return Phi && Phi->getType()->isIntegerTy(1) &&
+         Phi->getNumIncomingValues() > 1 &&
+         all_of(Phi->incoming_values(),
+                [&](const Use &In) { return &In == &U || isa<Constant>(In); });
+}
+
+/// True where \p Compare only asks whether an operand is not zero, as C++ does
+/// where a number stands as a condition.
+static bool asksForNonZero(const CmpInst &Compare, unsigned Operand) {
+  const auto *Zero = dyn_cast<Constant>(Compare.getOperand(1 - Operand));
+  return Zero && Zero->isZeroValue() &&
+         (Compare.getPredicate() == CmpInst::ICMP_NE ||
+          Compare.getPredicate() == CmpInst::FCMP_UNE);
+}
+
+void Follower::compared(const State &S, CmpInst &Compare, unsigned Operand,
+                        unsigned Read) {
+  if (Compare.getOperand(0) == Compare.getOperand(1) ||
+      Compare.getOperand(0)->getType()->isPtrOrPtrVectorTy())
+    return;
+  // Whether it is a number is a question of its own.
+  if (Compare.getPredicate() == CmpInst::FCMP_UNO ||
+      Compare.getPredicate() == CmpInst::FCMP_ORD)
+    return end(ValueEnd::Mixed, &Compare);
+  if (S.How.kind() == Transform::None && asksForNonZero(Compare, Operand)) {
+    for (const Decision &D : followOutcome(&Compare, S.Path))
+      flag(S, &Compare, D, Read, /*IsOperand=*/!D.Direct);
+    return;
+  }
+  ParameterComparison C;
+  C.Read = Read;
+  C.Compare = &Compare;
+  C.Operand = Operand;
+  C.How = S.How;
+  C.ByArgument = S.Path && Calls.callers(Compare.getFunction()).size() > 1;
+  C.Decisions = followOutcome(&Compare, S.Path);
+  Usage.Comparisons.push_back(std::move(C));
+}
+
+/// The value itself decides \p Predicate.
+void Follower::decided(const State &S, Instruction &Predicate, unsigned Read) {
+  if (S.How.kind() == Transform::None || isa<SwitchInst>(Predicate))
+    flag(S, S.Origin ? S.Origin : S.V, {&Predicate, !S.Origin, S.Way}, Read,
+         /*IsOperand=*/S.Origin != nullptr);
+}
+
+/// Of a merged value that was followed from another of its origins already
+/// only what it decides is asked.
+void Follower::useOfMerged(const State &S, Use &U, unsigned Read) {
+  auto *I = dyn_cast<Instruction>(U.getUser());
+  if (!I || S.In)
+    return;
+  if (decidesBy(*I, U))
+    decided(S, *I, Read);
+  else if (const auto *Cast = dyn_cast<CastInst>(I))
+    push({I, applyCast(S.How, *Cast), S.Path, S.Direct, S.In, S.Origin});
+  else if ((isa<PHINode>(I) && !isShortCircuit(*I, U)) || isa<SelectInst>(I) ||
+           isa<FreezeInst>(I))
+    carry(S, U);
+}
+
+void Follower::useOfValue(const State &S, Use &U, unsigned Read) {
+  auto *I = dyn_cast<Instruction>(U.getUser());
+  if (!I)
+    return;
+  if (S.IsAnotherOrigin)
+    return useOfMerged(S, U, Read);
+  if (repacked(S, U))
+    return;
+  if (S.In) {
+    if (!carry(S, U))
+      end(ValueEnd::Mixed, I);
+    return;
+  }
+  if (auto *Compare = dyn_cast<CmpInst>(I))
+    return compared(S, *Compare, U.getOperandNo(), Read);
+  if (decidesBy(*I, U))
+    return decided(S, *I, Read);
+  if (isLogical(*I) && S.V->getType()->isIntegerTy(1)) {
+    for (Decision D : followOutcome(I, S.Path))
+      flag(S, S.V, D, Read, /*IsOperand=*/!D.Direct);
+    return;
+  }
+  if (isShortCircuit(*I, U) && S.How.kind() == Transform::None &&
+      isa<Instruction>(S.V)) {
+    for (Decision D : followOutcome(I, S.Path))
+      flag(S, S.V, {D.Predicate, false, D.Way}, Read, /*IsOperand=*/true);
+    return;
+  }
+  if (const auto *Cast = dyn_cast<CastInst>(I))
+    return push({I, applyCast(S.How, *Cast), S.Path, S.Direct, S.In, S.Origin});
+  if (choiceOf(*I))
+    return push({I, throughChoice(S.How, *I), S.Path, S.Direct});
+  if (auto *Call = dyn_cast<CallBase>(I))
+    if (const Rule *Row = Rules.match(*Call);
+        Row && Row->Kind == Rule::Held && Row->Relation == "into" &&
+        argument(*Call, *Row, Row->Value) == S.V) {
+      for (CallBase *Out : Texts.numbersFrom(*Call, *Row))
+        push({Out, S.How, nullptr, false}, Call);
+      return;
+    }
+  if (carry(S, U))
+    return;
+  if (std::optional<Transform> T = apply(S.How, *I, S.V, squareOf(*I)))
+    push({I, std::move(*T), S.Path, S.Direct});
+  else if (!isa<IntrinsicInst>(I) || !I->getType()->isVoidTy())
+    end(ValueEnd::Mixed, I);
+}
+
+/// True for the types whose values are compared as numbers.
+static bool isNumber(StringRef Type) {
+  static constexpr StringRef Numbers[] = {
+      "bool",  "char",           "signed char", "unsigned char",
+      "short", "unsigned short", "int",         "unsigned int",
+      "long",  "unsigned long",  "long long",   "unsigned long long",
+      "float", "double",         "long double"};
+  return is_contained(Numbers, Type);
+}
+
+/// Text is followed as an object: what is called with it compares or copies it.
+void Follower::followText(unsigned N) {
+  const ParameterRead &Read = Reads[N];
+  const Value *Object = Read.Target;
+  if (!Object && Read.Call->hasStructRetAttr())
+    Object = Read.Call->getArgOperand(0);
+  if (!Object)
+    return end(ValueEnd::NoNumber, Read.Call);
+  Seen.clear();
+  TextUsage::Found Found = Texts.comparisonsOf(Object);
+  for (unsigned Lost = 0; Lost < Found.Lost; ++Lost)
+    end(ValueEnd::Mixed, Read.Call);
+  for (const TextComparison &T : Found.Comparisons) {
+    ParameterComparison C;
+    C.Read = N;
+    C.Flag = T.Outcome;
+    C.TextRelation = T.Relation;
+    C.ByArgument =
+        T.ByArgument && Calls.callers(T.Outcome->getFunction()).size() > 1;
+    C.Decisions = followOutcome(T.Outcome, nullptr);
+    Usage.Comparisons.push_back(std::move(C));
+  }
+}
+
+void Follower::followRead(unsigned N) {
+  const ParameterRead &R = Reads[N];
+  ReadAtHand = N;
+  size_t HopsBefore = Usage.Hops.size(), Before = Usage.Comparisons.size();
+  Here = Hop::None;
+  if (isText(R.Type))
+    return followText(N);
+  if (!isNumber(R.Type))
+    return end(ValueEnd::NoNumber, R.Call);
+  Seen.clear();
+  SeenOrigins.clear();
+  for (Value *V : R.Values)
+    push({V, {}, nullptr, true}, V == R.Call ? nullptr : R.Call);
+  if (!R.Target && R.Values.empty())
+    push({R.Call, {}, nullptr, true});
+  if (R.Target) {
+    SmallVector<LoadInst *, 8> Loads = Access.usesOf(*R.Call, R.Target);
+    if (Loads.empty())
+      end(Access.resolve(R.Target, true).empty() ? ValueEnd::UnknownPointer
+                                                 : ValueEnd::Unread,
+          R.Call);
+    SmallVector<ScalarPart, 1> Written;
+    for (Location &L : Access.resolve(R.Target, true))
+      Written.push_back({std::move(L)});
+    load({R.Call, {}, nullptr, true}, *R.Call, Written, Loads);
+  }
+  while (std::optional<State> At = next()) {
+    const State &S = *At;
+    Here = S.Way;
+    for (Use &U : S.V->uses())
+      useOfValue(S, U, N);
+  }
+  if (Usage.Comparisons.size() == Before)
+    forgetHops(HopsBefore);
+}
+
+ParameterUsage Follower::run() {
+  for (unsigned N = 0; N < Reads.size(); ++N)
+    followRead(N);
+  return std::move(Usage);
+}
+
+ParameterUsage ParamUsageFinder::run(Module &M, ModuleAnalysisManager &AM) {
+  return Follower(M, AM).run();
+}
+
+PreservedAnalyses ParamUsageFinderPrinter::run(Module &M,
+                                               ModuleAnalysisManager &AM) {
+  const ParameterUsage &R = AM.getResult<ParamUsageFinder>(M);
+  const auto &Reads = AM.getResult<ParamCallFinder>(M);
+  OS << "parameter usage of " << M.getName() << ": " << R.Comparisons.size()
+     << " comparisons, " << R.lost() << " lost\n";
+  for (const ParameterComparison &C : R.Comparisons) {
+    OS << "  '" << Reads[C.Read].Name << "' as " << C.How.text() << ' ';
+    const auto *Where = C.Compare                ? cast<Instruction>(C.Compare)
+                        : C.TextRelation.empty() ? C.Decisions.front().Predicate
+                                                 : cast<Instruction>(C.Flag);
+    OS << (C.Compare || !C.TextRelation.empty() ? "compared" : "flag") << " in "
+       << Where->getFunction()->getName() << place(*Where);
+    for (const Decision &D : C.Decisions)
+      OS << (D.Direct ? " decides" : " later decides") << place(*D.Predicate);
+    OS << '\n';
+  }
+  return PreservedAnalyses::all();
+}
+
+} // namespace tpc

@@ -1,0 +1,222 @@
+//===- ParameterObjects.cpp -----------------------------------------------===//
+#include "params/ParameterObjects.h"
+
+#include "Options.h"
+#include "memory/ClassObjectAccess.h"
+#include "params/Texts.h"
+#include "support/Names.h"
+
+#include "llvm/ADT/SmallPtrSet.h"
+#include "llvm/ADT/StringSet.h"
+#include "llvm/IR/Module.h"
+
+#include <map>
+
+using namespace llvm;
+
+namespace tpc {
+
+//===----------------------------------------------------------------------===//
+// Objects of which a method gives the value
+//===----------------------------------------------------------------------===//
+
+/// An object that a read made: the pointers to it, and where it is kept.
+struct MadeObject {
+  unsigned Read;
+  SmallPtrSet<const Value *, 2> Pointers;
+  Locations Where;
+};
+
+/// The object that \p Read gives; null where it gives the value itself.
+static Value *objectOf(const ParameterRead &Read,
+                       const StringSet<> &ObjectClasses) {
+  if (Read.Target)
+    return ObjectClasses.contains(plainType(Read.Type)) ? Read.Target : nullptr;
+  if (!Read.Type.empty() && !ObjectClasses.contains(plainType(Read.Type)))
+    return nullptr;
+  if (Read.Call->hasStructRetAttr())
+    return Read.Call->getArgOperand(0);
+  return Read.Call->getType()->isPointerTy() ? Read.Call : nullptr;
+}
+
+/// \p Made and the objects that it is copied to: a call that is handed another
+/// object and it, and no more, is an assignment or a copying constructor.
+static MadeObject madeBy(unsigned Read, Value *Made,
+                         const AccessResult &Access) {
+  MadeObject O{Read, {}, Access.resolve(Made, false)};
+  O.Pointers.insert(Made->stripPointerCasts());
+  for (const User *U : Made->users()) {
+    const auto *Assign = dyn_cast<CallBase>(U);
+    if (!Assign || Assign->arg_size() != 2 || Assign->getArgOperand(1) != Made)
+      continue;
+    const Value *To = Assign->getArgOperand(0);
+    if (!To->getType()->isPointerTy())
+      continue;
+    O.Pointers.insert(To->stripPointerCasts());
+    append_range(O.Where, Access.resolve(To, false));
+  }
+  return O;
+}
+
+/// The values that \p Call, an accessor, gives: its result, or what is read by
+/// the reference that it returns.
+static SmallVector<Value *, 1> valuesOf(CallBase &Call) {
+  if (!Call.getType()->isPointerTy())
+    return {&Call};
+  SmallVector<Value *, 1> Loads;
+  for (User *U : Call.users())
+    if (auto *Load = dyn_cast<LoadInst>(U))
+      Loads.push_back(Load);
+  return Loads;
+}
+
+void findAccessors(Module &M, const RuleMatches &Rules,
+                   const AccessResult &Access,
+                   std::vector<ParameterRead> &Reads) {
+  struct Accessor {
+    CallBase *Call;
+    const Rule *Row;
+  };
+  SmallVector<Accessor, 0> Accessors;
+  StringSet<> Classes;
+  forEachCall(M, Rules, Rule::Accessor, [&](CallBase &Call, const Rule &Row) {
+    Accessors.push_back({&Call, &Row});
+    Classes.insert(StringRef(Row.Function).rsplit("::").first);
+  });
+  if (Accessors.empty())
+    return;
+  SmallVector<MadeObject, 0> Objects;
+  for (unsigned N = 0; N < Reads.size(); ++N)
+    if (Value *Made = objectOf(Reads[N], Classes)) {
+      Objects.push_back(madeBy(N, Made, Access));
+      Reads[N].Type = "";
+      Reads[N].Target = nullptr;
+    }
+  for (auto [Call, Row] : Accessors) {
+    const Value *Object = objectOf(*Call, *Row);
+    // An accessor can give an object that has accessors again.
+    while (const auto *Outer = dyn_cast_or_null<CallBase>(Object)) {
+      const Rule *OuterRow = Rules.match(*Outer);
+      if (!OuterRow || OuterRow->Kind != Rule::Accessor)
+        break;
+      Object = objectOf(*Outer, *OuterRow);
+    }
+    std::string Type = plainType(resultType(*Call->getCalledFunction()));
+    SmallVector<Value *, 1> Values = valuesOf(*Call);
+    if (!Object || Values.empty())
+      continue;
+    Object = Object->stripPointerCasts();
+    Locations Where = Access.resolve(Object, false);
+    bool Found = false;
+    for (const MadeObject &O : Objects) {
+      if (!O.Pointers.contains(Object) && none_of(Where, [&](const auto &L) {
+            return any_of(O.Where, [&](const auto &P) { return L.mayBe(P); });
+          }))
+        continue;
+      Found = true;
+      ParameterRead &Read = Reads[O.Read];
+      append_range(Read.Values, Values);
+      if (Read.Type.empty())
+        Read.Type = Type;
+    }
+    if (!Found)
+      Reads.push_back({Call, Row, DynamicName, Type, nullptr, nullptr,
+                       SmallVector<Value *, 1>(Values)});
+  }
+}
+
+//===----------------------------------------------------------------------===//
+// Classes of which each field is a parameter
+//===----------------------------------------------------------------------===//
+
+/// The name of \p Class with its scopes.
+static std::string nameWithScopes(const DICompositeType &Class) {
+  std::string Name = Class.getName().str();
+  for (const DIScope *S = Class.getScope(); S; S = S->getScope())
+    if (isa<DINamespace>(S) || isa<DICompositeType>(S))
+      Name = (S->getName() + "::" + Name).str();
+  return Name;
+}
+
+/// A field of a class: what it is called, its type, its default, and where it
+/// is read.
+struct Field {
+  std::string Name, Type;
+  json::Value Default = nullptr;
+  SmallVector<Value *, 1> Loads;
+};
+
+/// Gives \p Fields of the class \p Name the defaults that the generated code
+/// sets: constants that go to a field of a variable `__default__`.
+static void findDefaults(Module &M, StringRef Name, const AccessResult &Access,
+                         std::map<unsigned, Field> &Fields) {
+  DebugTypes &Debug = Access.debugTypes();
+  auto FieldName = [&](const Step &S) {
+    const DICompositeType *Class = Debug.classOf(S.Class);
+    return Class
+               ? Debug.fieldName(Class, Access.types().typeOf(S.Type), S.Index)
+               : "";
+  };
+  std::string Statics = (Name + "Statics::").str();
+  for (Function &F : definedFunctions(M)) {
+    if (!StringRef(qualifiedName(F.getName())).starts_with(Statics))
+      continue;
+    for (Instruction &I : instructions(F)) {
+      auto *Store = dyn_cast<StoreInst>(&I);
+      auto *Value =
+          Store ? dyn_cast<Constant>(Store->getValueOperand()) : nullptr;
+      if (!Value)
+        continue;
+      for (const Location &L : Access.resolve(Store->getPointerOperand(), true))
+        if (L.Path.size() > 1 &&
+            FieldName(L.Path[L.Path.size() - 2]) == "__default__")
+          if (auto It = Fields.find(L.Path.back().Index); It != Fields.end())
+            It->second.Default = jsonOf(*Value, It->second.Type);
+    }
+  }
+}
+
+/// The fields of the class \p Name that the user's code reads, by position.
+static std::map<unsigned, Field>
+fieldsOf(StringRef Name, const RuleMatches &Rules, const AccessResult &Access) {
+  const Options Opts = Options::fromCommandLine();
+  UserSources Sources(Opts);
+  DebugTypes &Debug = Access.debugTypes();
+  std::map<unsigned, Field> Fields;
+  for (const auto &[I, Where] : Access.loads()) {
+    if (Where.Path.empty() || Rules.isOpaque(*I->getFunction()) ||
+        !Sources.has(I->getDebugLoc()))
+      continue;
+    const Step &Last = Where.Path.back();
+    const DICompositeType *Class = Debug.classOf(Last.Class);
+    if (!Class || nameWithScopes(*Class) != Name)
+      continue;
+    StructType *Layout = Access.types().typeOf(Last.Type);
+    Field &F = Fields[Last.Index];
+    F.Name = Debug.fieldName(Class, Layout, Last.Index);
+    if (const DIType *T = Debug.field(Class, Layout, Last.Index))
+      F.Type = T->getName();
+    if (!is_contained(F.Loads, I))
+      F.Loads.push_back(I);
+  }
+  return Fields;
+}
+
+void findConfigs(Module &M, const RuleMatches &Rules,
+                 const AccessResult &Access,
+                 std::vector<ParameterRead> &Reads) {
+  StringSet<> Done;
+  forEachCall(M, Rules, Rule::Config, [&](CallBase &Call, const Rule &Row) {
+    std::string Class = classArgument(*Call.getCalledFunction());
+    if (Class.empty() || !Done.insert(Class).second)
+      return;
+    std::map<unsigned, Field> Fields = fieldsOf(Class, Rules, Access);
+    findDefaults(M, Class, Access, Fields);
+    for (auto &[Index, F] : Fields)
+      Reads.push_back({&Call, &Row, F.Name.empty() ? DynamicName : F.Name,
+                       F.Type, std::move(F.Default), nullptr,
+                       std::move(F.Loads)});
+  });
+}
+
+} // namespace tpc

@@ -1,0 +1,124 @@
+//===- TextUsage.cpp ------------------------------------------------------===//
+#include "params/TextUsage.h"
+
+#include "llvm/IR/Module.h"
+
+using namespace llvm;
+
+namespace tpc {
+
+bool isText(StringRef Type) {
+  return Type == "std::string" ||
+         Type.starts_with("std::__cxx11::basic_string<char,");
+}
+
+TextUsage::TextUsage(Module &M, const AccessResult &Access,
+                     const RuleMatches &Rules)
+    : Access(Access) {
+  forEachCall(M, Rules, Rule::Text, [&](CallBase &Call, const Rule &Row) {
+    Use U{&Call, &Row, {}};
+    for (unsigned N = 0; N < std::min(2U, Call.arg_size()); ++N)
+      U.Operands.push_back(
+          Call.getArgOperand(N)->getType()->isPointerTy()
+              ? Access.handed(Call.getArgOperand(N), /*IsOne=*/true)
+              : Locations());
+    Uses.push_back(std::move(U));
+  });
+  forEachCall(M, Rules, Rule::Held, [&](CallBase &Call, const Rule &Row) {
+    if (Row.Relation == "outof")
+      Numbers.push_back(
+          {&Call, Access.handed(objectOf(Call, Row), /*IsOne=*/true)});
+  });
+}
+
+SmallVector<CallBase *, 2> TextUsage::numbersFrom(const CallBase &Into,
+                                                  const Rule &Row) const {
+  SmallVector<CallBase *, 2> Found;
+  Locations Objects = Access.handed(objectOf(Into, Row), /*IsOne=*/true);
+  for (const auto &[Call, From] : Numbers)
+    if (any_of(From, [&](const Location &L) {
+          return any_of(Objects, [&](const Location &O) { return L.mayBe(O); });
+        }))
+      Found.push_back(Call);
+  return Found;
+}
+
+/// The operator of \p Compare, a comparison of what string::compare() gives
+/// with zero; empty where it is anything else.
+static StringRef relationToZero(const CmpInst &Compare, const Value *Result) {
+  const auto *Zero = dyn_cast<ConstantInt>(Compare.getOperand(1));
+  if (Compare.getOperand(0) != Result || !Zero || !Zero->isZero())
+    return "";
+  switch (Compare.getPredicate()) {
+  case CmpInst::ICMP_EQ:
+    return "==";
+  case CmpInst::ICMP_NE:
+    return "!=";
+  case CmpInst::ICMP_SLT:
+    return "<";
+  case CmpInst::ICMP_SLE:
+    return "<=";
+  case CmpInst::ICMP_SGT:
+    return ">";
+  case CmpInst::ICMP_SGE:
+    return ">=";
+  default:
+    return "";
+  }
+}
+
+/// `<` for `>`, where the threshold stands on the left.
+static StringRef turned(StringRef Relation) {
+  if (Relation == "<")
+    return ">";
+  if (Relation == "<=")
+    return ">=";
+  if (Relation == ">")
+    return "<";
+  return Relation == ">=" ? "<=" : Relation;
+}
+
+TextUsage::Found TextUsage::comparisonsOf(const Value *Object) const {
+  Found Out;
+  Locations Objects = Access.handed(Object, /*IsOne=*/true);
+  SmallPtrSet<const CallBase *, 8> Seen;
+  for (unsigned Next = 0; Next < Objects.size() && Next < 16; ++Next) {
+    const Location Here = Objects[Next];
+    auto IsHere = [&](const Location &L) { return L.mayBe(Here); };
+    for (const Use &U : Uses) {
+      StringRef Relation = U.Row->Relation;
+      if (Relation == "copy") {
+        if (U.Operands.size() == 2 && any_of(U.Operands[1], IsHere))
+          for (const Location &To : U.Operands[0])
+            if (none_of(Objects,
+                        [&](const Location &L) { return L.isSame(To); }))
+              Objects.push_back(To);
+        continue;
+      }
+      const auto *Operand = find_if(
+          U.Operands, [&](const Locations &L) { return any_of(L, IsHere); });
+      if (Operand == U.Operands.end() || !Seen.insert(U.Call).second)
+        continue;
+      unsigned N = Operand - U.Operands.begin();
+      bool ByArgument = isa<Argument>(U.Call->getArgOperand(N));
+      bool Left = N == 0 && U.Call->arg_size() > 1;
+      if (Relation != "compare") {
+        Out.Comparisons.push_back(
+            {U.Call, Left ? turned(Relation) : Relation, ByArgument});
+        continue;
+      }
+      for (User *V : U.Call->users()) {
+        auto *Compare = dyn_cast<CmpInst>(V);
+        StringRef Own = Compare ? relationToZero(*Compare, U.Call) : "";
+        if (Own.empty())
+          ++Out.Lost;
+        else
+          Out.Comparisons.push_back(
+              {Compare, Left ? turned(Own) : Own, ByArgument});
+      }
+    }
+  }
+  return Out;
+}
+
+} // namespace tpc

@@ -1,0 +1,338 @@
+//===- Texts.cpp - The way back to what makes a name ----------------------===//
+#include "params/Texts.h"
+
+#include "support/Names.h"
+
+#include "llvm/Analysis/ConstantFolding.h"
+#include "llvm/Analysis/ValueTracking.h"
+#include "llvm/IR/CFG.h"
+#include "llvm/IR/IntrinsicInst.h"
+#include "llvm/IR/Module.h"
+#include "llvm/Support/SaveAndRestore.h"
+
+using namespace llvm;
+
+namespace tpc {
+
+/// Steps from one object to another in a row and in all, and blocks of one
+/// function, beyond which a text is not followed.
+static constexpr unsigned MaxDepth = 64, MaxSteps = 5000, MaxBlocks = 2000;
+
+/// Adds \p New, by another way, to \p Into: what two ways give differently is
+/// not known.
+template <typename Known> static void merge(Known &Into, const Known &New) {
+  if (New.None)
+    return;
+  if (Into.None) {
+    Into = New;
+    return;
+  }
+  Into.Varies |= New.Varies;
+  Into.Absolute |= New.Absolute;
+  if (Into.Text != New.Text)
+    Into.Text = DynamicName;
+}
+
+/// What \p Object, which the function itself makes or gets, holds above \p I
+/// in \p BB; None where nothing on the way sets it.
+Texts::Known Texts::above(const Value *Object, const Instruction *I,
+                          const BasicBlock *BB, Kind K, Places &Seen) {
+  while (true) {
+    for (; I; I = I->getPrevNode()) {
+      const auto *Call = dyn_cast<CallBase>(I);
+      if (!Call || isa<IntrinsicInst>(Call))
+        continue;
+      for (const auto &[N, Arg] : enumerate(Call->args())) {
+        if (Arg != Object)
+          continue;
+        std::optional<Effect> E = effect(*Call, N, K);
+        if (!E)
+          return unknown(K);
+        if (E->Does == Effect::Clears)
+          return {""};
+        if (E->Does == Effect::Sets)
+          return E->To;
+      }
+    }
+    if (Seen.size() > MaxBlocks)
+      return unknown(K);
+    const BasicBlock *Only = BB->getSinglePredecessor();
+    if (!Only)
+      break;
+    // A block that is asked for again on a way round a loop adds nothing.
+    if (!Seen.try_emplace(Only, Known{"", false, true}).second)
+      return Seen[Only];
+    BB = Only;
+    I = &BB->back();
+  }
+  Known All{"", false, true};
+  for (const BasicBlock *Pred : predecessors(BB)) {
+    auto [It, New] = Seen.try_emplace(Pred, Known{"", false, true});
+    if (New) {
+      Known Found = above(Object, &Pred->back(), Pred, K, Seen);
+      Seen[Pred] = Found;
+    }
+    merge(All, Seen[Pred]);
+  }
+  return All;
+}
+
+Texts::Known Texts::local(const Value *Object, const Instruction &At, Kind K) {
+  Places Seen;
+  return above(Object, At.getPrevNode(), At.getParent(), K, Seen);
+}
+
+/// What the calls of its function hand over as \p Arg.
+Texts::Known Texts::ofArgument(const Argument &Arg, Kind K) {
+  auto [It, New] = Arguments.try_emplace(&Arg, Known{"", false, true});
+  if (!New)
+    return It->second;
+  const Function *F = Arg.getParent();
+  Known All{"", false, true};
+  bool Differ = false;
+  for (const CallBase *Call : Calls.callers(F)) {
+    // A callback's arguments come from elsewhere.
+    Known One =
+        Call->getCalledFunction() == F && Arg.getArgNo() < Call->arg_size()
+            ? find(Call->getArgOperand(Arg.getArgNo()), *Call, K)
+            : unknown(K);
+    if (One.None)
+      continue;
+    Differ |= !All.None && All.Text != One.Text;
+    merge(All, One);
+  }
+  if (All.None)
+    All = unknown(K);
+  All.Varies |= Differ;
+  if (All.Varies)
+    Shared.insert(F);
+  return Arguments[&Arg] = All;
+}
+
+/// What the function that \p Call enters returns.
+Texts::Known Texts::returned(const CallBase &Call, Kind K) {
+  Known All{"", false, true};
+  for (const Function *F : Calls.callees(Call))
+    for (const BasicBlock &BB : *F) {
+      const auto *Return = dyn_cast<ReturnInst>(BB.getTerminator());
+      if (!Return)
+        continue;
+      Known One = Call.hasStructRetAttr()
+                      ? local(F->getArg(0), *Return, K)
+                      : find(Return->getReturnValue(), *Return, K);
+      merge(All, One.None ? unknown(K) : One);
+    }
+  return All.None ? unknown(K) : All;
+}
+
+/// What the pointer that \p Call returns leads to.
+Texts::Known Texts::ofResult(const CallBase &Call, Kind K) {
+  const Function *F = Call.getCalledFunction();
+  if (!F)
+    return unknown(K);
+  if (const Rule *Row = Rules.match(Call); Row && Row->Kind == Rule::Naming)
+    return joined(Call, *Row);
+  StringRef Name = calleeOf(*F).Name;
+  if (Name.consume_front("std::__cxx11::basic_string::")) {
+    if (Name == "c_str" || Name == "data")
+      return find(Call.getArgOperand(0), Call, K);
+    // What changes a string returns it.
+    std::optional<Effect> E = ofString(Call, Name);
+    return E && E->Does == Effect::Sets ? E->To : unknown(K);
+  }
+  if (!Calls.callees(Call).empty())
+    return returned(Call, K);
+  // A new object is what its constructor makes of it.
+  Known All{"", false, true};
+  for (const Use &U : Call.uses()) {
+    const auto *User = dyn_cast<CallBase>(U.getUser());
+    if (!User || !User->isArgOperand(&U))
+      continue;
+    std::optional<Effect> E = effect(*User, User->getArgOperandNo(&U), K);
+    if (E && E->Does == Effect::Sets)
+      merge(All, E->To);
+  }
+  return All.None ? unknown(K) : All;
+}
+
+/// What everything that writes the member or global \p L gives it. That it was
+/// empty before is not meant.
+Texts::Known Texts::ofMember(const Location &L, Kind K) {
+  if (auto *It = find_if(Members, [&](auto &M) { return M.first.isSame(L); });
+      It != Members.end())
+    return It->second;
+  size_t Mine = Members.size();
+  Members.push_back({L, Known{"", false, true}});
+  Known All{"", false, true};
+  bool Cleared = false;
+  for (const Instruction *W : Access->writesInto(L)) {
+    const auto *Call = dyn_cast<CallBase>(W);
+    if (!Call || isa<IntrinsicInst>(Call))
+      continue;
+    bool Entered = !Calls.callees(*Call).empty();
+    for (const auto &[N, Arg] : enumerate(Call->args())) {
+      // What a function that is looked into does, its own calls tell.
+      if (!Arg->getType()->isPointerTy() ||
+          (Entered && !(N == 0 && Call->hasStructRetAttr())) ||
+          none_of(Access->resolve(Arg, false),
+                  [&](const Location &O) { return O.mayBe(L); }))
+        continue;
+      std::optional<Effect> E = effect(*Call, N, K);
+      if (!E)
+        merge(All, {DynamicName});
+      else if (E->Does == Effect::Sets)
+        merge(All, E->To);
+      else
+        Cleared |= E->Does == Effect::Clears;
+    }
+  }
+  if (All.None)
+    All = Cleared ? Known{""} : unknown(K);
+  return Members[Mine].second = All;
+}
+
+Texts::Known Texts::inMemory(const Value *Pointer, Kind K) {
+  if (!Access)
+    return unknown(K);
+  Known All{"", false, true};
+  bool Any = false;
+  for (const Location &L : Access->resolve(Pointer, false)) {
+    Any = true;
+    merge(All, ofMember(L, K));
+  }
+  return Any ? All : unknown(K);
+}
+
+/// What the pointer that \p Load gives leads to.
+Texts::Known Texts::loaded(const LoadInst &Load, Kind K) {
+  const DataLayout &Layout = Load.getModule()->getDataLayout();
+  if (auto *C = dyn_cast<Constant>(Load.getPointerOperand()))
+    if (Constant *Folded = ConstantFoldLoadFromConstPtr(
+            const_cast<Constant *>(C), Load.getType(), Layout))
+      return find(Folded, Load, K);
+  if (!Access)
+    return unknown(K);
+  Known All{"", false, true};
+  for (const Instruction *W : Access->definitionsOf(Load)) {
+    const auto *Store = dyn_cast<StoreInst>(W);
+    merge(All, Store ? find(Store->getValueOperand(), *Store, K)
+                     : Known{DynamicName});
+  }
+  const auto *Global = dyn_cast<GlobalVariable>(Load.getPointerOperand());
+  if (All.None && Global && Global->hasLocalLinkage() &&
+      Global->hasInitializer())
+    return find(Global->getInitializer(), Load, K);
+  return All.None ? unknown(K) : All;
+}
+
+Texts::Known Texts::follow(const Value *P, const Instruction &At, Kind K) {
+  if (const auto *Arg = dyn_cast<Argument>(P)) {
+    Known Here = local(Arg, At, K);
+    return Here.None ? ofArgument(*Arg, K) : Here;
+  }
+  if (isa<AllocaInst>(P)) {
+    Known Here = local(P, At, K);
+    return Here.None ? inMemory(P, K) : Here;
+  }
+  if (const auto *Call = dyn_cast<CallBase>(P))
+    return ofResult(*Call, K);
+  if (const auto *Load = dyn_cast<LoadInst>(P))
+    return loaded(*Load, K);
+  Known All{"", false, true};
+  if (const auto *Phi = dyn_cast<PHINode>(P)) {
+    for (unsigned N = 0; N < Phi->getNumIncomingValues(); ++N)
+      merge(All, find(Phi->getIncomingValue(N),
+                      *Phi->getIncomingBlock(N)->getTerminator(), K));
+    return All;
+  }
+  if (const auto *Select = dyn_cast<SelectInst>(P)) {
+    merge(All, find(Select->getTrueValue(), At, K));
+    merge(All, find(Select->getFalseValue(), At, K));
+    return All;
+  }
+  return inMemory(P, K);
+}
+
+Texts::Known Texts::find(const Value *Pointer, const Instruction &At, Kind K) {
+  StringRef Plain;
+  if (K == Kind::Text && getConstantStringInfo(Pointer, Plain))
+    return {Plain.str()};
+  if (Depth == MaxDepth || ++Steps > MaxSteps)
+    return {DynamicName};
+  SaveAndRestore Deeper(Depth, Depth + 1);
+  // A null pointer leads to no object.
+  if (isa<ConstantPointerNull>(Pointer))
+    return {"", false, true};
+  return follow(Pointer, At, K);
+}
+
+//===----------------------------------------------------------------------===//
+// What is asked
+//===----------------------------------------------------------------------===//
+
+Texts::Known Texts::knownAt(const Value *Pointer, const Instruction &At) {
+  if (!Pointer || !Pointer->getType()->isPointerTy())
+    return unknown(Kind::Text);
+  Steps = 0;
+  Known K = find(Pointer, At, Kind::Text);
+  return K.None ? unknown(Kind::Text) : K;
+}
+
+std::string Texts::textAt(const Value *Pointer, const Instruction &At) {
+  return knownAt(Pointer, At).Text;
+}
+
+std::string Texts::nameOf(const CallBase &Call, const Rule &Row) {
+  Known Name = knownAt(argument(Call, Row, Row.Name), Call);
+  const Value *Handle = Row.Handle ? objectOf(Call, Row) : nullptr;
+  if (!Handle || Name.Absolute)
+    return Name.Text;
+  Steps = 0;
+  return joinNames(find(Handle, Call, Kind::Handle).Text, Name.Text);
+}
+
+const Constant *Texts::constantOf(const Value *V) {
+  // Bounded by the arguments that lead to arguments.
+  for (unsigned N = 0; N < MaxDepth; ++N) {
+    if (const auto *Global = dyn_cast<GlobalVariable>(V))
+      return Global->isConstant() && Global->hasInitializer()
+                 ? Global->getInitializer()
+                 : nullptr;
+    if (const auto *C = dyn_cast<Constant>(V))
+      return C;
+    const Value *Next = nullptr;
+    // In memory a bool is a byte.
+    if (const auto *Wide = dyn_cast<ZExtInst>(V);
+        Wide && Wide->getSrcTy()->isIntegerTy(1))
+      Next = Wide->getOperand(0);
+    else if (const auto *Arg = dyn_cast<Argument>(V)) {
+      // Where several calls differ, nothing is the default.
+      for (const CallBase *Call : Calls.callers(Arg->getParent())) {
+        if (Call->getCalledFunction() != Arg->getParent() ||
+            Arg->getArgNo() >= Call->arg_size() ||
+            (Next && Next != Call->getArgOperand(Arg->getArgNo())))
+          return nullptr;
+        Next = Call->getArgOperand(Arg->getArgNo());
+      }
+    } else if (isa<AllocaInst>(V)) {
+      // A temporary that one value is stored to, or that is made of one.
+      for (const User *U : V->users()) {
+        const auto *Store = dyn_cast<StoreInst>(U);
+        const auto *Call = dyn_cast<CallBase>(U);
+        const Value *One = Store ? Store->getValueOperand() : nullptr;
+        if (Call && Call->arg_size() == 2 && Call->getArgOperand(0) == V)
+          One = dyn_cast<Constant>(Call->getArgOperand(1));
+        if (One && Next && Next != One)
+          return nullptr;
+        if (One)
+          Next = One;
+      }
+    }
+    if (!Next)
+      return nullptr;
+    V = Next;
+  }
+  return nullptr;
+}
+
+} // namespace tpc

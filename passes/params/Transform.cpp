@@ -1,0 +1,390 @@
+//===- Transform.cpp ------------------------------------------------------===//
+#include "params/Transform.h"
+
+#include "llvm/ADT/StringSwitch.h"
+#include "llvm/IR/Constants.h"
+#include "llvm/IR/Instructions.h"
+#include "llvm/IR/IntrinsicInst.h"
+
+#include <charconv>
+#include <cmath>
+
+using namespace llvm;
+
+namespace tpc {
+
+std::string shortest(double X) {
+  char Buffer[32];
+  auto End = std::to_chars(Buffer, Buffer + sizeof(Buffer), X).ptr;
+  return std::string(Buffer, End);
+}
+
+//===----------------------------------------------------------------------===//
+// The expression
+//===----------------------------------------------------------------------===//
+
+Transform::KindTy Transform::kind() const {
+  if (Inner)
+    return Expression;
+  return Scale == 1 && Offset == 0 ? None : Affine;
+}
+
+void Transform::multiply(double Factor) {
+  Scale *= Factor;
+  Offset *= Factor;
+  Width = 0;
+}
+
+void Transform::divide(double Divisor) {
+  Scale /= Divisor;
+  Offset /= Divisor;
+  Width = 0;
+}
+
+void Transform::add(double Term) {
+  Offset += Term;
+  Width = 0;
+}
+
+void Transform::call(StringRef Op, std::optional<double> Constant, bool First) {
+  Transform Outer;
+  Outer.Inner = std::make_shared<const Application>(
+      Application{Op.str(), std::move(*this), Constant, First});
+  *this = std::move(Outer);
+}
+
+/// The sign between two operands; empty for a function's name.
+static StringRef signOf(const Application &A) {
+  return StringSwitch<StringRef>(A.Op)
+      .Case("/", " / ")
+      .Case("rem", " rem ")
+      .Case("shr", " >> ")
+      .Case("and", " & ")
+      .Default("");
+}
+
+static bool isSquare(const Application &A) {
+  return A.Op == "pow" && !A.First && A.Constant == 2;
+}
+
+/// The text of \p T as an operand of a sign.
+static std::string operandText(const Transform &T) {
+  bool Plain = T.Scale == 1 && T.Offset == 0 &&
+               (!T.Inner || (signOf(*T.Inner).empty() && !isSquare(*T.Inner)));
+  return Plain ? T.text() : "(" + T.text() + ")";
+}
+
+static std::string applicationText(const Application &A) {
+  if (isSquare(A))
+    return operandText(A.Of) + "^2";
+  if (A.Op == "wrap" || A.Op == "wrapu")
+    return A.Op + shortest(*A.Constant) + "(" + A.Of.text() + ")";
+  if (A.Op == "div") {
+    std::string X = operandText(A.Of), C = shortest(*A.Constant);
+    return "trunc(" + (A.First ? C + " / " + X : X + " / " + C) + ")";
+  }
+  StringRef Sign = signOf(A);
+  if (!A.Constant)
+    return A.Op + "(" + A.Of.text() + ")";
+  std::string Own = Sign.empty() ? A.Of.text() : operandText(A.Of);
+  std::string C = shortest(*A.Constant);
+  std::string Middle = Sign.empty() ? ", " : Sign.str();
+  std::string Both = A.First ? C + Middle + Own : Own + Middle + C;
+  return Sign.empty() ? A.Op + "(" + Both + ")" : Both;
+}
+
+bool Transform::isNarrowing() const {
+  return Inner && Scale == 1 && Offset == 0 &&
+         (Inner->Op == "wrap" || Inner->Op == "wrapu") &&
+         Inner->Of.kind() == None;
+}
+
+std::string Transform::text() const {
+  if (kind() == None)
+    return "x";
+  std::string T = Inner ? applicationText(*Inner) : "x";
+  if (Inner && !signOf(*Inner).empty() && (Scale != 1 || Offset != 0))
+    T = "(" + T + ")";
+  if (Scale == -1 && Inner)
+    T = "-" + T;
+  else if (Scale != 1)
+    T = shortest(Scale) + " * " + T;
+  if (Offset != 0)
+    T += (Offset < 0 ? " - " : " + ") + shortest(std::fabs(Offset));
+  return T;
+}
+
+json::Value Transform::tree() const {
+  json::Value T = "x";
+  if (Inner) {
+    T = json::Array{Inner->Op, Inner->Of.tree()};
+    if (Inner->Constant)
+      T.getAsArray()->insert(T.getAsArray()->begin() + (Inner->First ? 1 : 2),
+                             *Inner->Constant);
+  }
+  if (Scale != 1)
+    T = json::Array{"*", Scale, std::move(T)};
+  if (Offset != 0)
+    T = json::Array{"+", std::move(T), Offset};
+  return T;
+}
+
+//===----------------------------------------------------------------------===//
+// The program's operations
+//===----------------------------------------------------------------------===//
+
+std::optional<double> constantNumber(const Value *V, bool Unsigned) {
+  while (const auto *Cast = dyn_cast<CastInst>(V))
+    V = Cast->getOperand(0);
+  if (const auto *Int = dyn_cast<ConstantInt>(V)) {
+    if (Int->getBitWidth() > 64)
+      return std::nullopt;
+    return Unsigned ? static_cast<double>(Int->getZExtValue())
+                    : static_cast<double>(Int->getSExtValue());
+  }
+  const auto *Float = dyn_cast<ConstantFP>(V);
+  if (!Float || !Float->getValueAPF().isFinite())
+    return std::nullopt;
+  APFloat Value = Float->getValueAPF();
+  bool Loses;
+  Value.convert(APFloat::IEEEdouble(), APFloat::rmNearestTiesToEven, &Loses);
+  return Value.convertToDouble();
+}
+
+/// Applies `V op C` (or `C op V` where \p Left) to \p T; false where that is
+/// no arithmetic that is kept.
+static bool applyConstant(Transform &T, unsigned Opcode, double C, bool Left) {
+  switch (Opcode) {
+  case Instruction::Add:
+  case Instruction::FAdd:
+    T.add(C);
+    return true;
+  case Instruction::Sub:
+  case Instruction::FSub:
+    if (Left)
+      T.multiply(-1);
+    T.add(Left ? C : -C);
+    return true;
+  case Instruction::Mul:
+  case Instruction::FMul:
+    T.multiply(C);
+    return C != 0;
+  case Instruction::FDiv:
+    if (Left)
+      T.call("/", C, true);
+    else
+      T.divide(C);
+    return C != 0;
+  case Instruction::SDiv:
+  case Instruction::UDiv:
+    T.call("div", C, Left);
+    return C != 0;
+  case Instruction::SRem:
+  case Instruction::URem:
+  case Instruction::FRem:
+    T.call("rem", C, Left);
+    return C != 0;
+  case Instruction::Shl:
+    T.multiply(std::exp2(C));
+    return !Left;
+  case Instruction::AShr:
+  case Instruction::LShr:
+    T.call("shr", C);
+    return !Left;
+  case Instruction::And:
+    T.call("and", C);
+    return true;
+  case Instruction::Xor: // ~x
+    T.multiply(-1);
+    T.add(-1);
+    return C == -1;
+  default:
+    return false;
+  }
+}
+
+/// Our name for what \p Call computes from numbers: an intrinsic, or a function
+/// of the C library with the suffix of its type; empty for anything else.
+static StringRef functionOf(const CallBase &Call) {
+  const Function *F = Call.getCalledFunction();
+  if (!F || !F->isDeclaration())
+    return "";
+  StringRef Name = F->getName();
+  Type *T = Call.getType();
+  if (F->isIntrinsic()) {
+    Name = Intrinsic::getBaseName(F->getIntrinsicID());
+    Name.consume_front("llvm.");
+  } else if (T->isFloatTy()) {
+    Name.consume_back("f");
+  } else if (T->isX86_FP80Ty() || T->isFP128Ty()) {
+    Name.consume_back("l");
+  }
+  return StringSwitch<StringRef>(Name)
+      .Case("fabs", "abs")
+      .Case("abs", "abs")
+      .Case("labs", "abs")
+      .Case("llabs", "abs")
+      .Case("fmin", "min")
+      .Case("minnum", "min")
+      .Case("smin", "min")
+      .Case("umin", "min")
+      .Case("fmax", "max")
+      .Case("maxnum", "max")
+      .Case("smax", "max")
+      .Case("umax", "max")
+      .Case("round", "round")
+      .Case("lround", "round")
+      .Case("llround", "round")
+      .Case("pow", "pow")
+      .Case("powi", "pow")
+      .Case("fmod", "rem")
+      .Case("sqrt", Name)
+      .Case("exp", Name)
+      .Case("log", Name)
+      .Case("log2", Name)
+      .Case("log10", Name)
+      .Case("sin", Name)
+      .Case("cos", Name)
+      .Case("tan", Name)
+      .Case("asin", Name)
+      .Case("acos", Name)
+      .Case("atan", Name)
+      .Case("floor", Name)
+      .Case("ceil", Name)
+      .Case("trunc", Name)
+      .Default("");
+}
+
+static bool takesTwo(StringRef Function) {
+  return Function == "pow" || Function == "rem" || Function == "min" ||
+         Function == "max";
+}
+
+/// \p T after a call of a mathematical function with \p V.
+static std::optional<Transform> applyCall(Transform T, const CallBase &Call,
+                                          const Value *V) {
+  StringRef Function = functionOf(Call);
+  if (Function.empty())
+    return std::nullopt;
+  if (!takesTwo(Function)) {
+    if (Call.getArgOperand(0) != V)
+      return std::nullopt;
+    T.call(Function);
+    return T;
+  }
+  bool First = Call.getArgOperand(1) == V;
+  auto C = constantNumber(Call.getArgOperand(First ? 0 : 1));
+  if (!C)
+    return std::nullopt;
+  T.call(Function, C, First && (Function == "pow" || Function == "rem"));
+  return T;
+}
+
+/// \p Sign times the square of \p T, the same whichever factor T is.
+static void square(Transform &T, int Sign) {
+  if (T.Scale < 0)
+    T.multiply(-1);
+  T.call("pow", 2);
+  T.multiply(Sign);
+}
+
+/// \p T after a multiplication and addition in one.
+static std::optional<Transform> applyFma(Transform T, const CallBase &Fma,
+                                         const Value *V, int Square) {
+  const Value *A = Fma.getArgOperand(0), *B = Fma.getArgOperand(1),
+              *C = Fma.getArgOperand(2);
+  auto Term = constantNumber(C);
+  if (Square && Term) {
+    square(T, Square);
+    T.add(*Term);
+    return T;
+  }
+  auto Factor = constantNumber(A == V ? B : A);
+  if (C == V) {
+    auto Other = constantNumber(B);
+    if (!Factor || !Other)
+      return std::nullopt;
+    T.add(*Factor * *Other);
+    return T;
+  }
+  if (!Factor || !Term || *Factor == 0)
+    return std::nullopt;
+  T.multiply(*Factor);
+  T.add(*Term);
+  return T;
+}
+
+std::optional<Transform> apply(Transform T, const Instruction &I,
+                               const Value *V, int Square) {
+  if (I.getOpcode() == Instruction::FNeg) {
+    T.multiply(-1);
+    return T;
+  }
+  if (const auto *Call = dyn_cast<CallBase>(&I)) {
+    Intrinsic::ID Id = Call->getIntrinsicID();
+    return Id == Intrinsic::fmuladd || Id == Intrinsic::fma
+               ? applyFma(std::move(T), *Call, V, Square)
+               : applyCall(std::move(T), *Call, V);
+  }
+  if (!isa<BinaryOperator>(I))
+    return std::nullopt;
+  if (Square) {
+    square(T, Square);
+    return T;
+  }
+  const Value *L = I.getOperand(0), *R = I.getOperand(1);
+  unsigned Opcode = I.getOpcode();
+  auto C = constantNumber(L == V ? R : L, Opcode == Instruction::UDiv ||
+                                              Opcode == Instruction::URem);
+  if (!C || !applyConstant(T, Opcode, *C, R == V))
+    return std::nullopt;
+  return T;
+}
+
+/// Where the last step of \p T cut to \p Bits, and now it turns out that the
+/// rest is read without a sign.
+static void readUnsigned(Transform &T, unsigned Bits) {
+  if (!T.Inner || T.Scale != 1 || T.Offset != 0 || T.Inner->Op != "wrap" ||
+      *T.Inner->Constant != Bits)
+    return;
+  unsigned Width = T.Width;
+  Transform Of = T.Inner->Of;
+  Of.call("wrapu", Bits);
+  T = std::move(Of);
+  T.Width = Width;
+}
+
+Transform applyCast(Transform T, const CastInst &Cast) {
+  unsigned From = Cast.getSrcTy()->getScalarSizeInBits();
+  unsigned To = Cast.getDestTy()->getScalarSizeInBits();
+  switch (Cast.getOpcode()) {
+  case Instruction::Trunc:
+    // To one bit: a truth value, which is a byte in memory.
+    if (To > 1 && (!T.Width || T.Width > To)) {
+      T.call("wrap", To);
+      T.Width = To;
+    }
+    break;
+  case Instruction::FPToSI:
+  case Instruction::FPToUI:
+    if (!T.Width) {
+      T.call("trunc");
+      T.Width = To;
+    }
+    break;
+  case Instruction::ZExt:
+  case Instruction::UIToFP:
+    readUnsigned(T, From);
+    [[fallthrough]];
+  case Instruction::SExt:
+  case Instruction::SIToFP:
+    if (!T.Width)
+      T.Width = From;
+    break;
+  default:
+    break;
+  }
+  return T;
+}
+
+} // namespace tpc

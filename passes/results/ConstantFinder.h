@@ -1,0 +1,58 @@
+//===- ConstantFinder.h - Comparisons with constants ----------------------===//
+//
+// Thesis, future work: constants of the source that guard an exposing
+// statement. Listed are comparisons of a number with a literal, an enumerator,
+// a constant that the compiler folded, or a global that is constant, that
+// decide a predicate of the slice: by values inside its function, or as the
+// result of a function that it calls.
+//
+// Not listed: null pointers; truth values (`flag == true`); `n != 0`, which is
+// also what clang makes of `if (n)` and `if (!n)`; the labels of a switch;
+// constants that reach the comparison through a variable.
+//
+//===----------------------------------------------------------------------===//
+#ifndef TPC_CONSTANTFINDER_H
+#define TPC_CONSTANTFINDER_H
+
+#include "calls/SimpleCallGraph.h"
+#include "memory/ClassObjectAccess.h"
+#include "results/GatherResults.h"
+
+#include "llvm/ADT/DenseSet.h"
+#include "llvm/ADT/MapVector.h"
+#include "llvm/ADT/STLFunctionalExtras.h"
+
+namespace tpc {
+
+class ConstantFinder {
+public:
+  /// \p Where gives a comparison's place in the user's own sources; null where
+  /// it is not to be listed.
+  ConstantFinder(
+      const CallGraphResult &Calls, const AccessResult &Access,
+      const SliceResult &Slice,
+      llvm::function_ref<const llvm::DILocation *(const llvm::CmpInst &)> Where)
+      : Calls(Calls), Access(Access), Slice(Slice), Where(Where) {}
+
+  std::vector<Comparison> run(llvm::ArrayRef<llvm::Instruction *> Predicates);
+
+private:
+  void decide(llvm::Instruction &Predicate, const SliceEntry &E);
+  void compared(llvm::CmpInst &Compare, llvm::Instruction &Predicate,
+                const SliceEntry &E, bool Direct);
+
+  const llvm::Constant *numberOf(const llvm::Value *V) const;
+  const llvm::Constant *returnedBy(const llvm::CallBase &Call) const;
+  const llvm::Constant *ofConstMember(const llvm::LoadInst &Load) const;
+  std::string nameOf(const llvm::Value *V, bool Unsigned) const;
+
+  const CallGraphResult &Calls;
+  const AccessResult &Access;
+  const SliceResult &Slice;
+  llvm::function_ref<const llvm::DILocation *(const llvm::CmpInst &)> Where;
+  llvm::MapVector<llvm::CmpInst *, Comparison> Found;
+};
+
+} // namespace tpc
+
+#endif // TPC_CONSTANTFINDER_H

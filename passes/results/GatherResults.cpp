@@ -1,0 +1,363 @@
+//===- GatherResults.cpp --------------------------------------------------===//
+#include "results/GatherResults.h"
+
+#include "Options.h"
+#include "Rules.h"
+#include "calls/SimpleCallGraph.h"
+#include "control/Conditions.h"
+#include "control/IfStatements.h"
+#include "params/ParamCallFinder.h"
+#include "results/ConstantFinder.h"
+#include "results/Sides.h"
+#include "support/Budget.h"
+#include "support/Names.h"
+
+#include "llvm/ADT/SetVector.h"
+#include "llvm/ADT/SmallPtrSet.h"
+#include "llvm/ADT/StringExtras.h"
+#include "llvm/Analysis/ValueTracking.h"
+#include "llvm/IR/Instructions.h"
+#include "llvm/IR/Module.h"
+#include "llvm/Support/SHA1.h"
+
+using namespace llvm;
+
+namespace tpc {
+
+AnalysisKey GatherResults::Key;
+
+StringRef Comparison::typeName() const {
+  switch (Type) {
+  case Parameter:
+    return "parameter";
+  case Flag:
+    return "flag";
+  case Derived:
+    return "derived";
+  case Constant:
+    return "constant";
+  }
+  llvm_unreachable("no such type");
+}
+
+StringRef Comparison::relation() const {
+  if (!TextRelation.empty())
+    return TextRelation;
+  if (!Compare)
+    return "flag";
+  CmpInst::Predicate P =
+      Threshold == 1 ? Compare->getPredicate() : Compare->getSwappedPredicate();
+  switch (P) {
+  case CmpInst::ICMP_EQ:
+  case CmpInst::FCMP_OEQ:
+  case CmpInst::FCMP_UEQ:
+    return "==";
+  case CmpInst::ICMP_NE:
+  case CmpInst::FCMP_ONE:
+  case CmpInst::FCMP_UNE:
+    return "!=";
+  case CmpInst::ICMP_SGT:
+  case CmpInst::ICMP_UGT:
+  case CmpInst::FCMP_OGT:
+  case CmpInst::FCMP_UGT:
+    return ">";
+  case CmpInst::ICMP_SGE:
+  case CmpInst::ICMP_UGE:
+  case CmpInst::FCMP_OGE:
+  case CmpInst::FCMP_UGE:
+    return ">=";
+  case CmpInst::ICMP_SLT:
+  case CmpInst::ICMP_ULT:
+  case CmpInst::FCMP_OLT:
+  case CmpInst::FCMP_ULT:
+    return "<";
+  default:
+    return "<=";
+  }
+}
+
+/// The nearest of the predicates that \p C decides and that an exposing
+/// statement depends on; of several equally near ones the first.
+static bool nearest(const ParameterComparison &C, const SliceResult &Slice,
+                    Comparison &Out) {
+  bool Found = false;
+  for (const Decision &D : C.Decisions) {
+    std::optional<SliceEntry> E = Slice.lookup(D.Predicate);
+    if (!E || (Found && E->Distance >= Out.Slice.Distance))
+      continue;
+    Found = true;
+    Out.Predicate = D.Predicate;
+    Out.Direct = D.Direct;
+    Out.Way = D.Way;
+    Out.Slice = *E;
+  }
+  return Found;
+}
+
+/// Counts for each comparison the others of its condition that compare a
+/// parameter.
+static void countOthers(GatheredResults &R) {
+  SmallVector<const Instruction *, 0> Predicates;
+  for (const auto *List : {&R.Comparisons, &R.Constants})
+    for (const Comparison &C : *List)
+      Predicates.push_back(C.Predicate);
+  const Conditions All(Predicates);
+  // A condition's comparisons are few, a unit's are many.
+  DenseMap<const Instruction *, SmallVector<const Comparison *, 2>> ByCondition;
+  for (const Comparison &C : R.Comparisons)
+    ByCondition[All.of(*C.Predicate)].push_back(&C);
+  for (auto *List : {&R.Comparisons, &R.Constants})
+    for (Comparison &C : *List)
+      C.OtherThresholds = count_if(
+          ByCondition.lookup(All.of(*C.Predicate)), [&](const Comparison *O) {
+            return O != &C && (O->Compare != C.Compare || !C.Compare);
+          });
+}
+
+/// A UUID of version 5 (RFC 4122) of \p Name, in a namespace of our own.
+static std::string uuidOf(StringRef Name) {
+  static constexpr uint8_t Namespace[16] = {0x6b, 0x0f, 0x7a, 0x52, 0x2c, 0x9e,
+                                            0x4d, 0x61, 0x9a, 0x37, 0x8f, 0x15,
+                                            0xc3, 0x40, 0x5e, 0xd8};
+  SHA1 Hash;
+  Hash.update(ArrayRef(Namespace));
+  Hash.update(Name);
+  std::array<uint8_t, 20> Digest = Hash.final();
+  Digest[6] = (Digest[6] & 0x0f) | 0x50;
+  Digest[8] = (Digest[8] & 0x3f) | 0x80;
+  std::string Hex = toHex(ArrayRef(Digest).take_front(16), /*LowerCase=*/true);
+  return Hex.substr(0, 8) + "-" + Hex.substr(8, 4) + "-" + Hex.substr(12, 4) +
+         "-" + Hex.substr(16, 4) + "-" + Hex.substr(20);
+}
+
+namespace {
+
+/// Gives comparisons their keys. What a macro writes several times has one
+/// place; there the order in the function tells it apart. Instances of one
+/// function have the same keys, and so have those that were inlined.
+class Namer {
+public:
+  explicit Namer(const Options &Opts) : Opts(Opts) {}
+
+  /// \p What is the parameter or the constant.
+  std::string keyOf(const Comparison &C, StringRef What) {
+    std::string Name = join(
+        std::initializer_list<std::string>{
+            Opts.Package, Opts.LinkUnit, Opts.relative(pathOf(C.Where)),
+            functionNameFor(*C.Where), std::to_string(C.Where->getLine()),
+            std::to_string(C.Where->getColumn()), What.str()},
+        "\n");
+    auto &Here =
+        Places[Name][{C.place().getFunction(), C.Where->getInlinedAt()}];
+    auto *Known = find(Here, &C.place());
+    if (size_t Ordinal = Known - Here.begin())
+      Name += "\n" + std::to_string(Ordinal);
+    if (Known == Here.end())
+      Here.push_back(&C.place());
+    return uuidOf(Name);
+  }
+
+private:
+  using Instance = std::pair<const Function *, const DILocation *>;
+  const Options &Opts;
+  StringMap<DenseMap<Instance, SmallVector<const Instruction *, 1>>> Places;
+};
+
+/// Finds out where comparisons stand in the user's own sources.
+class Places {
+public:
+  Places(const Options &Opts, const RuleMatches &Rules)
+      : Sources(Opts), Rules(Rules) {}
+
+  /// The place of \p I, or of the call of the transparent function that it is
+  /// in; null where it is in code that is not the user's.
+  const DILocation *of(const Instruction &I) {
+    const DISubprogram *Through = nullptr;
+    const DILocation *Loc = I.getDebugLoc();
+    for (; Loc && !Sources.has(Loc); Loc = Loc->getInlinedAt())
+      Through = Loc->getScope()->getSubprogram();
+    return Loc && (!Through || Rules.isTransparent(*Through)) ? Loc : nullptr;
+  }
+
+private:
+  UserSources Sources;
+  const RuleMatches &Rules;
+};
+
+} // namespace
+
+/// True where \p Compare is about a global object of an opaque class: what
+/// the macros for logging ask of their own.
+static bool asksLibrary(const CmpInst &Compare, const RuleMatches &Rules) {
+  return any_of(Compare.operands(), [&](const Use &U) {
+    const auto *Load = dyn_cast<LoadInst>(U);
+    const auto *Global = Load ? dyn_cast<GlobalVariable>(getUnderlyingObject(
+                                    Load->getPointerOperand()))
+                              : nullptr;
+    const auto *Class =
+        Global ? dyn_cast<StructType>(Global->getValueType()) : nullptr;
+    return Class && Rules.isOpaque(plainClassName(*Class));
+  });
+}
+
+/// \p P without what is found out about its surroundings.
+static Comparison comparisonOf(const ParameterComparison &P) {
+  Comparison C{};
+  C.Compare = P.Compare;
+  C.Threshold = P.Operand;
+  C.FlagValue = P.Flag;
+  C.TextRelation = P.TextRelation;
+  C.IsOperand = P.IsOperand;
+  if (!P.How.isNarrowing())
+    C.How = P.How;
+  C.Type = C.How.kind() != Transform::None    ? Comparison::Derived
+           : P.Flag && P.TextRelation.empty() ? Comparison::Flag
+                                              : Comparison::Parameter;
+  C.Reads.push_back(P.Read);
+  return C;
+}
+
+namespace {
+
+/// Collects what is reported of the comparisons with parameters.
+class Gatherer {
+public:
+  Gatherer(Module &M, ModuleAnalysisManager &AM, Places &Own)
+      : Usage(AM.getResult<ParamUsageFinder>(M)),
+        Reads(AM.getResult<ParamCallFinder>(M)),
+        Slice(AM.getResult<BackwardPropagate>(M)), Own(Own),
+        Both(Usage, Reads, AM.getResult<SimpleCallGraph>(M),
+             AM.getResult<ClassObjectAccess>(M),
+             [&](const ParameterComparison &P) {
+               Comparison Ignored{};
+               return nearest(P, Slice, Ignored);
+             }) {}
+
+  GatheredResults run() {
+    for (const ParameterComparison &P : Usage.Comparisons) {
+      if (Budget::isSpent())
+        break;
+      if (std::optional<NotReported::WhyTy> Why = gather(P))
+        R.Others.push_back({&P, *Why});
+    }
+    return std::move(R);
+  }
+  /// Of run(): what is compared with a parameter.
+  bool isWithParameter(const CmpInst &Compare) const {
+    return WithParameter.contains(&Compare);
+  }
+
+private:
+  std::optional<NotReported::WhyTy> gather(const ParameterComparison &P);
+  void add(Comparison C);
+
+  const ParameterUsage &Usage;
+  const ParamCallFinder::Result &Reads;
+  const SliceResult &Slice;
+  Places &Own;
+  Sides Both;
+  GatheredResults R;
+  SmallPtrSet<const CmpInst *, 16> WithParameter;
+  /// Numbers of comparisons, by what compares.
+  DenseMap<const Value *, SmallVector<unsigned, 1>> Known;
+};
+
+} // namespace
+
+/// Why \p P is not reported; none where it is.
+std::optional<NotReported::WhyTy>
+Gatherer::gather(const ParameterComparison &P) {
+  Comparison C = comparisonOf(P);
+  if (!nearest(P, Slice, C))
+    return NotReported::NotExposed;
+  WithParameter.insert(P.Compare);
+  if (P.Flag)
+    WithParameter.insert(dyn_cast<CmpInst>(P.Flag));
+  C.Where = Own.of(C.place());
+  if (!C.Where && C.place().getDebugLoc()) {
+    ++R.OutsideSources;
+    return NotReported::OutsideSources;
+  }
+  if (!C.Where) {
+    ++R.WithoutDebugInfo;
+    return NotReported::WithoutDebugInfo;
+  }
+  // The same comparison is reported with its other operand.
+  if (Both.isOtherWay(P, *C.Predicate))
+    return std::nullopt;
+  if (Both.isMeasured(P, *C.Predicate))
+    return NotReported::Measured;
+  if (P.ByArgument)
+    R.Shared.insert(const_cast<Function *>(C.place().getFunction()));
+  add(std::move(C));
+  return std::nullopt;
+}
+
+/// Adds \p C, of one read. A second read of the same parameter is the same
+/// comparison.
+void Gatherer::add(Comparison C) {
+  unsigned Read = C.Reads.front();
+  SmallVector<unsigned, 1> &Alike = Known[C.Compare ? C.Compare : C.FlagValue];
+  auto *Same = find_if(Alike, [&](unsigned N) {
+    const Comparison &O = R.Comparisons[N];
+    return O.Compare == C.Compare && O.Predicate == C.Predicate &&
+           O.FlagValue == C.FlagValue && O.Threshold == C.Threshold &&
+           Reads[O.Reads.front()].Name == Reads[Read].Name;
+  });
+  if (Same == Alike.end()) {
+    Alike.push_back(R.Comparisons.size());
+    R.Comparisons.push_back(std::move(C));
+  } else if (auto &All = R.Comparisons[*Same].Reads; !is_contained(All, Read)) {
+    All.push_back(Read);
+  }
+}
+
+GatheredResults GatherResults::run(Module &M, ModuleAnalysisManager &AM) {
+  const ParamCallFinder::Result &Reads = AM.getResult<ParamCallFinder>(M);
+  const Options Opts = Options::fromCommandLine();
+  const RuleMatches &Rules = AM.getResult<RuleAnalysis>(M);
+  Places Own(Opts, Rules);
+  Gatherer WithParameters(M, AM, Own);
+  GatheredResults R = WithParameters.run();
+  auto PlaceOf = [&](const CmpInst &Compare) {
+    return WithParameters.isWithParameter(Compare) ||
+                   asksLibrary(Compare, Rules)
+               ? nullptr
+               : Own.of(Compare);
+  };
+  R.Constants = ConstantFinder(AM.getResult<SimpleCallGraph>(M),
+                               AM.getResult<ClassObjectAccess>(M),
+                               AM.getResult<BackwardPropagate>(M), PlaceOf)
+                    .run(AM.getResult<IfStatements>(M).predicates());
+  countOthers(R);
+  Namer Keys(Opts);
+  for (Comparison &C : R.Comparisons)
+    C.Key = Keys.keyOf(C, Reads[C.Reads.front()].Name);
+  for (Comparison &C : R.Constants)
+    C.Key = Keys.keyOf(C, "constant " + C.ConstantName);
+  return R;
+}
+
+/// What the printer says of \p C and of where it stands.
+static void print(raw_ostream &OS, const Comparison &C, StringRef What) {
+  OS << "  " << C.typeName() << " '" << What << "' relation " << C.relation()
+     << " as " << C.How.text() << " distance " << C.Slice.Distance << " others "
+     << C.OtherThresholds << " in " << C.place().getFunction()->getName()
+     << " at " << C.Where->getLine() << ':' << C.Where->getColumn() << '\n';
+}
+
+PreservedAnalyses GatherResultsPrinter::run(Module &M,
+                                            ModuleAnalysisManager &AM) {
+  const GatheredResults &R = AM.getResult<GatherResults>(M);
+  const auto &Reads = AM.getResult<ParamCallFinder>(M);
+  OS << "threshold predicate comparisons of " << M.getName() << ": "
+     << R.Comparisons.size() << '\n';
+  for (const Comparison &C : R.Comparisons)
+    print(OS, C, Reads[C.Reads.front()].Name);
+  OS << "comparisons with constants: " << R.Constants.size() << '\n';
+  for (const Comparison &C : R.Constants)
+    print(OS, C, C.ConstantName);
+  return PreservedAnalyses::all();
+}
+
+} // namespace tpc

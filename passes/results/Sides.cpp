@@ -1,0 +1,184 @@
+//===- Sides.cpp ----------------------------------------------------------===//
+#include "results/Sides.h"
+
+#include "calls/SimpleCallGraph.h"
+#include "params/Texts.h"
+
+#include "llvm/IR/IntrinsicInst.h"
+
+using namespace llvm;
+
+namespace tpc {
+
+/// A value with more sources than this is taken for a measured one.
+static constexpr unsigned MaxSources = 256;
+
+Sides::Sides(const ParameterUsage &Usage, const ParamCallFinder::Result &Reads,
+             const CallGraphResult &Calls, const AccessResult &Access,
+             function_ref<bool(const ParameterComparison &)> IsExposed)
+    : Usage(Usage), Reads(Reads), Calls(Calls), Access(Access) {
+  for (const ParameterRead &Read : Reads) {
+    Parameters.insert(Read.Call);
+    Parameters.insert(Read.Values.begin(), Read.Values.end());
+  }
+  for (const ParameterComparison &C : Usage.Comparisons)
+    if (C.Compare && IsExposed(C))
+      ByCompare[C.Compare].push_back(&C);
+}
+
+/// True where \p Call gets a pointer to one of \p Variables, and not only to an
+/// object that it is in: a node hands itself on all the time.
+bool Sides::isHanded(const Instruction &Call,
+                     ArrayRef<Location> Variables) const {
+  const auto *To = dyn_cast<CallBase>(&Call);
+  return !To || any_of(To->args(), [&](const Use &Arg) {
+    return Arg->getType()->isPointerTy() &&
+           any_of(Access.resolve(Arg, false), [&](const Location &A) {
+             return is_contained(Variables, A);
+           });
+  });
+}
+
+/// The variables that \p Write, a store or a parameter's read, writes.
+Locations Sides::writtenBy(const Instruction &Write) const {
+  Locations All;
+  if (const Value *Pointer = getLoadStorePointerOperand(&Write))
+    All = Access.resolve(Pointer, true);
+  for (const ParameterRead &Read : Reads)
+    if (Read.Call == &Write && Read.Target)
+      append_range(All, Access.resolve(Read.Target, true));
+  return All;
+}
+
+/// What \p Load can have found; false where that is not only what is stored by
+/// the program to the same variable.
+bool Sides::addStored(const LoadInst &Load, Sources &Out) const {
+  Locations From = Access.resolve(Load.getPointerOperand(), true);
+  if (From.empty())
+    return false;
+  ArrayRef<Instruction *> Writes = Access.definitionsOf(Load);
+  for (const Instruction *Write : Writes) {
+    if (Parameters.contains(Write))
+      continue;
+    if (const auto *Store = dyn_cast<StoreInst>(Write))
+      Out.push_back(Store->getValueOperand());
+    else if (isHanded(*Write, From))
+      return false;
+  }
+  // What a callback is handed is taken for any object of its class, also for
+  // one that is a part of a larger one. That is not meant.
+  return all_of(From, [&](const Location &A) {
+    return any_of(Writes, [&](const Instruction *Write) {
+      return any_of(writtenBy(*Write), [&](const Location &B) {
+        return (!A.Root == !B.Root || A.Path.size() == B.Path.size()) &&
+               A.mayBe(B);
+      });
+    });
+  });
+}
+
+/// Adds what \p V is computed from; false where that is not known, or comes
+/// from outside.
+bool Sides::addSources(const Value *V, Sources &Out) const {
+  if (const auto *Arg = dyn_cast<Argument>(V)) {
+    const Function &F = *Arg->getParent();
+    ArrayRef<CallBase *> Callers = Calls.callers(&F);
+    if (Callers.empty() || !Calls.allCallsKnown(F))
+      return false;
+    for (const CallBase *Call : Callers) {
+      if (Arg->getArgNo() >= Call->arg_size())
+        return false;
+      Out.push_back(Call->getArgOperand(Arg->getArgNo()));
+    }
+    return true;
+  }
+  if (const auto *Load = dyn_cast<LoadInst>(V))
+    return addStored(*Load, Out);
+  if (const auto *Call = dyn_cast<CallBase>(V)) {
+    if (isa<IntrinsicInst>(Call) && Call->doesNotAccessMemory()) {
+      append_range(Out, Call->args());
+      return true;
+    }
+    SmallVector<Function *, 1> Callees = Calls.callees(*Call);
+    for (const Function *F : Callees)
+      for (const BasicBlock &BB : *F)
+        if (const auto *Return = dyn_cast<ReturnInst>(BB.getTerminator())) {
+          // A callee by another type may return nothing.
+          if (!Return->getReturnValue())
+            return false;
+          Out.push_back(Return->getReturnValue());
+        }
+    return !Callees.empty();
+  }
+  if (const auto *Select = dyn_cast<SelectInst>(V)) {
+    Out.append({Select->getTrueValue(), Select->getFalseValue()});
+    return true;
+  }
+  if (!isa<CastInst>(V) && !isa<PHINode>(V) && !isa<FreezeInst>(V) &&
+      !isa<BinaryOperator>(V) && !isa<UnaryOperator>(V))
+    return false;
+  append_range(Out, cast<User>(V)->operands());
+  return true;
+}
+
+/// True where \p V is computed of parameters and constants alone.
+bool Sides::isConfigured(const Value *V) {
+  auto [It, New] = Known.try_emplace(V, false);
+  if (!New)
+    return It->second;
+  Sources Work{V};
+  SmallPtrSet<const Value *, 16> Seen;
+  while (!Work.empty()) {
+    const Value *Next = Work.pop_back_val();
+    if (isa<Constant>(Next) || Parameters.contains(Next) ||
+        !Seen.insert(Next).second)
+      continue;
+    if (Seen.size() > MaxSources || !addSources(Next, Work))
+      return false;
+  }
+  return Known[V] = true;
+}
+
+/// The length of the way from the read to the predicate.
+size_t Sides::lengthOf(const ParameterComparison &C) const {
+  return Usage.pathTo(C.Decisions.front().Way).size();
+}
+
+/// Of two parameters whose names depend on what runs nobody knows whether they
+/// are one.
+bool Sides::isSameParameter(unsigned Read, unsigned Other) const {
+  StringRef Name = Reads[Read].Name;
+  return Read == Other ||
+         (Name == Reads[Other].Name && !Name.contains(DynamicName));
+}
+
+static bool decides(const ParameterComparison &C, const Instruction &P) {
+  return any_of(C.Decisions,
+                [&](const Decision &D) { return D.Predicate == &P; });
+}
+
+bool Sides::isOtherWay(const ParameterComparison &C,
+                       const Instruction &Predicate) {
+  return C.Compare && any_of(ByCompare.lookup(C.Compare),
+                             [&](const ParameterComparison *Other) {
+                               return Other->Operand != C.Operand &&
+                                      decides(*Other, Predicate) &&
+                                      isSameParameter(Other->Read, C.Read) &&
+                                      lengthOf(*Other) < lengthOf(C) &&
+                                      !isMeasured(*Other, Predicate);
+                             });
+}
+
+bool Sides::isMeasured(const ParameterComparison &C,
+                       const Instruction &Predicate) {
+  return C.Compare &&
+         any_of(ByCompare.lookup(C.Compare),
+                [&](const ParameterComparison *Other) {
+                  return Other->Operand != C.Operand &&
+                         decides(*Other, Predicate);
+                }) &&
+         !isConfigured(C.Compare->getOperand(C.Operand)) &&
+         isConfigured(C.Compare->getOperand(1 - C.Operand));
+}
+
+} // namespace tpc

@@ -1,0 +1,64 @@
+//===- Sides.h - Which operand is the threshold ---------------------------===//
+//
+// Both operands of a comparison can have the value of a parameter:
+// `if (out.data < lower_)` after `out.data = upper_`. A threshold is what is
+// always configured; what is a measured value on another way is what is
+// compared with it.
+//
+//===----------------------------------------------------------------------===//
+#ifndef TPC_SIDES_H
+#define TPC_SIDES_H
+
+#include "memory/ClassObjectAccess.h"
+#include "params/ParamCallFinder.h"
+#include "params/ParamUsageFinder.h"
+
+#include "llvm/ADT/SmallPtrSet.h"
+
+namespace tpc {
+
+class Sides {
+public:
+  /// Of \p Usage only what \p IsExposed holds for is looked at: another side
+  /// that is not reported makes this one no less of a threshold.
+  Sides(const ParameterUsage &Usage, const ParamCallFinder::Result &Reads,
+        const CallGraphResult &Calls, const AccessResult &Access,
+        llvm::function_ref<bool(const ParameterComparison &)> IsExposed);
+
+  /// True where the other operand is the same parameter by a shorter way, and
+  /// may be the threshold, in what decides \p Predicate: calls of a function
+  /// may differ there.
+  bool isOtherWay(const ParameterComparison &C,
+                  const llvm::Instruction &Predicate);
+  /// True where \p C is, in what decides \p Predicate, about the operand that
+  /// is not the threshold: it can be something else than a parameter, and the
+  /// other one cannot.
+  bool isMeasured(const ParameterComparison &C,
+                  const llvm::Instruction &Predicate);
+
+private:
+  using Sources = llvm::SmallVector<const llvm::Value *, 8>;
+  bool isConfigured(const llvm::Value *V);
+  Locations writtenBy(const llvm::Instruction &Write) const;
+  bool addSources(const llvm::Value *V, Sources &Out) const;
+  bool addStored(const llvm::LoadInst &Load, Sources &Out) const;
+  bool isHanded(const llvm::Instruction &Call,
+                llvm::ArrayRef<Location> Variables) const;
+  bool isSameParameter(unsigned Read, unsigned Other) const;
+  size_t lengthOf(const ParameterComparison &C) const;
+
+  const ParameterUsage &Usage;
+  const ParamCallFinder::Result &Reads;
+  const CallGraphResult &Calls;
+  const AccessResult &Access;
+  llvm::SmallPtrSet<const llvm::Value *, 16> Parameters;
+  /// The comparisons of which both operands have a parameter's value.
+  llvm::DenseMap<const llvm::CmpInst *,
+                 llvm::SmallVector<const ParameterComparison *, 4>>
+      ByCompare;
+  llvm::DenseMap<const llvm::Value *, bool> Known;
+};
+
+} // namespace tpc
+
+#endif // TPC_SIDES_H

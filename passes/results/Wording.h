@@ -1,0 +1,60 @@
+//===- Wording.h - What the program does, in the source's words -----------===//
+//
+// For people who read why a comparison is reported, and where the analysis is
+// blind: names of functions and variables as the source has them, and the
+// places of the user's own sources that library code stands for.
+//
+//===----------------------------------------------------------------------===//
+#ifndef TPC_WORDING_H
+#define TPC_WORDING_H
+
+#include "Options.h"
+#include "memory/Variables.h"
+#include "slice/ExternCallFinder.h"
+
+namespace tpc {
+
+/// True for what clang makes of `a * b + c`: a call, but of nothing that the
+/// source calls.
+bool isMultiplyAdd(const llvm::Instruction &I);
+
+class Wording {
+public:
+  Wording(const AccessResult &Access, const ExternCallFinder::Result &Exposing,
+          const Options &Opts);
+
+  /// The user's line that \p I belongs to: its own or, where a library's
+  /// function was inlined, that of the call. Null for library code.
+  const llvm::DILocation *userPlace(const llvm::Instruction &I);
+
+  /// `above()`: without scopes and parameters.
+  static std::string function(const llvm::Function &F);
+  static std::string callee(const llvm::CallBase &Call);
+  /// `Node::limit_`; empty where nothing names it.
+  std::string variable(const llvm::Value *Pointer) const;
+  /// The same for a whole object.
+  std::string object(const llvm::Value *Pointer) const;
+  /// The variable, constant or call that \p V is; empty where it is none.
+  std::string value(const llvm::Value *V) const;
+  /// \p Before and `into Node::limit_`, say; without what nothing names.
+  static std::string with(std::string Before, llvm::StringRef Preposition,
+                          const std::string &Name);
+  std::string argument(const llvm::Argument &Arg) const;
+  /// `published on /camera`
+  std::string exposed(const ExposingStatement &E) const;
+  /// What a predicate can guard: `publish() on /camera`, `the call of f()`,
+  /// `the store to Node::state_`, `line 12`.
+  std::string guarded(const llvm::Instruction &I);
+
+private:
+  std::string nameOf(const llvm::Value *Pointer, bool Scalar) const;
+
+  const AccessResult &Access;
+  UserSources Sources;
+  VariableNames Names;
+  llvm::DenseMap<const llvm::Instruction *, const ExposingStatement *> Exposing;
+};
+
+} // namespace tpc
+
+#endif // TPC_WORDING_H

@@ -1,0 +1,92 @@
+//===- ExternCallFinder.cpp -----------------------------------------------===//
+#include "slice/ExternCallFinder.h"
+
+#include "memory/ClassObjectAccess.h"
+#include "params/Texts.h"
+#include "support/Print.h"
+
+#include "llvm/IR/Module.h"
+
+using namespace llvm;
+
+namespace tpc {
+
+AnalysisKey ExternCallFinder::Key;
+
+/// A publisher or client that got a name: where it is kept, and the name.
+struct NamedObject {
+  Location Where;
+  std::string Topic;
+};
+
+/// The publishers and clients of \p M. `advertise` gives its result to a
+/// temporary or variable; from a temporary, a call that is handed both it and
+/// another object (the assignment) passes the name on.
+static SmallVector<NamedObject, 0> namedObjects(Module &M,
+                                                const RuleMatches &Rules,
+                                                const AccessResult &Access,
+                                                Texts &Known) {
+  SmallVector<NamedObject, 0> Found;
+  forEachCall(M, Rules, Rule::Topic, [&](CallBase &Call, const Rule &Row) {
+    std::string Topic = Known.nameOf(Call, Row);
+    if (isDynamic(Topic) || !Call.hasStructRetAttr())
+      return;
+    Value *Made = Call.getArgOperand(0);
+    for (const Location &L : Access.resolve(Made, false))
+      Found.push_back({L, Topic});
+    if (!isa<AllocaInst>(Made))
+      return;
+    for (User *U : Made->users()) {
+      auto *Assign = dyn_cast<CallBase>(U);
+      if (!Assign || Assign->arg_size() != 2 ||
+          Assign->getArgOperand(1) != Made)
+        continue;
+      for (const Location &L : Access.resolve(Assign->getArgOperand(0), false))
+        Found.push_back({L, Topic});
+    }
+  });
+  return Found;
+}
+
+/// The one topic of \p Object; empty where there is none or more than one.
+static std::string topicOf(const Value *Object, ArrayRef<NamedObject> Named,
+                           const AccessResult &Access) {
+  std::string Topic;
+  if (!Object)
+    return Topic;
+  for (const Location &L : Access.resolve(Object, false))
+    for (const NamedObject &N : Named)
+      if (L.mayBe(N.Where)) {
+        if (!Topic.empty() && Topic != N.Topic)
+          return "";
+        Topic = N.Topic;
+      }
+  return Topic;
+}
+
+ExternCallFinder::Result ExternCallFinder::run(Module &M,
+                                               ModuleAnalysisManager &AM) {
+  const RuleMatches &Rules = AM.getResult<RuleAnalysis>(M);
+  const AccessResult &Access = AM.getResult<ClassObjectAccess>(M);
+  Texts Known(Rules, AM.getResult<SimpleCallGraph>(M), &Access);
+  SmallVector<NamedObject, 0> Named = namedObjects(M, Rules, Access, Known);
+  Result R;
+  forEachCall(M, Rules, Rule::Exposing, [&](CallBase &Call, const Rule &Row) {
+    std::string Topic = Row.Name ? Known.nameOf(Call, Row)
+                                 : topicOf(objectOf(Call, Row), Named, Access);
+    R.push_back({&Call, &Row, isDynamic(Topic) ? "" : std::move(Topic)});
+  });
+  return R;
+}
+
+PreservedAnalyses ExternCallFinderPrinter::run(Module &M,
+                                               ModuleAnalysisManager &AM) {
+  const auto &R = AM.getResult<ExternCallFinder>(M);
+  OS << "exposing statements of " << M.getName() << ": " << R.size() << '\n';
+  for (const ExposingStatement &E : R)
+    OS << "  " << E.Row->Function << " topic '" << E.Topic << "' in "
+       << E.Call->getFunction()->getName() << place(*E.Call) << '\n';
+  return PreservedAnalyses::all();
+}
+
+} // namespace tpc

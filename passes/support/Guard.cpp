@@ -1,0 +1,97 @@
+//===- Guard.cpp ----------------------------------------------------------===//
+#include "support/Guard.h"
+
+#include "support/Budget.h"
+
+#include "llvm/Support/CrashRecoveryContext.h"
+#include "llvm/Support/ErrorHandling.h"
+
+#include <csignal>
+#include <cstdlib>
+#include <memory>
+#include <vector>
+
+using namespace llvm;
+
+namespace tpc {
+
+/// Where the stack has run out there is none left for a signal's handler: it
+/// gets its own, unless this thread has one.
+class SignalStack {
+public:
+  SignalStack() {
+    stack_t Now{};
+    if (sigaltstack(nullptr, &Now) != 0 || !(Now.ss_flags & SS_DISABLE))
+      return;
+    Memory = std::make_unique<char[]>(Size);
+    Now.ss_sp = Memory.get();
+    Now.ss_size = Size;
+    Now.ss_flags = 0;
+    sigaltstack(&Now, nullptr);
+  }
+  ~SignalStack() {
+    stack_t Off{};
+    Off.ss_flags = SS_DISABLE;
+    if (Memory)
+      sigaltstack(&Off, nullptr);
+  }
+  SignalStack(const SignalStack &) = delete;
+  SignalStack &operator=(const SignalStack &) = delete;
+
+private:
+  static constexpr size_t Size = 1 << 17;
+  std::unique_ptr<char[]> Memory;
+};
+
+bool runGuarded(function_ref<void()> F) {
+  CrashRecoveryContext::Enable();
+  SignalStack Stack;
+  struct sigaction Before{};
+  sigaction(SIGSEGV, nullptr, &Before);
+  struct sigaction OnStack = Before;
+  OnStack.sa_flags |= SA_ONSTACK;
+  sigaction(SIGSEGV, &OnStack, nullptr);
+  // LLVM's own way to end at a fatal error prints a bug report and may exit.
+  ScopedFatalErrorHandler Fatal(
+      [](void *, const char *, bool) { std::abort(); });
+  CrashRecoveryContext Context;
+  bool Survived = Context.RunSafely(F);
+  sigaction(SIGSEGV, &Before, nullptr);
+  return Survived;
+}
+
+/// Takes stack until there is none.
+static unsigned overflow(volatile unsigned Depth) {
+  volatile char Frame[4096] = {};
+  return Depth ? overflow(Depth + 1) + Frame[Depth % sizeof(Frame)] : 0;
+}
+
+void fail(Failure Kind) {
+  std::vector<std::vector<char>> Memory;
+  switch (Kind) {
+  case Failure::None:
+    return;
+  case Failure::Crash:
+    LLVM_BUILTIN_TRAP;
+    return;
+  case Failure::Overflow:
+    overflow(1);
+    return;
+  case Failure::Fatal:
+    report_fatal_error("injected");
+  case Failure::Allocation:
+    // More than any machine has.
+    Memory.emplace_back(size_t(1) << 60);
+    return;
+  case Failure::Memory:
+    while (!Budget::isSpent())
+      Memory.emplace_back(1 << 16, 'x');
+    return;
+  case Failure::Time:
+    while (!Budget::isSpent())
+      ;
+    return;
+  }
+}
+
+} // namespace tpc
