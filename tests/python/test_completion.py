@@ -14,7 +14,7 @@ from click.shell_completion import BashComplete
 from click.testing import CliRunner
 
 from pytpc.cli.completion_commands import parameter_names
-from pytpc.cli.main import SUMMARIES, main
+from pytpc.cli.main import main, summaries
 
 ROOT = Path(__file__).parents[2]
 EXAMPLE = ROOT / "examples/recorded_mission"
@@ -27,7 +27,7 @@ def offered(*words: str, incomplete: str = "") -> list[str]:
 
 
 def test_commands_and_options():
-    assert offered() == list(SUMMARIES)
+    assert offered() == list(summaries())
     assert offered(incomplete="ra") == ["rank"]
     assert "--static" in offered("watch", incomplete="--")
     assert offered("rank", "--types", incomplete="d") == ["doubt"]

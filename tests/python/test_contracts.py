@@ -54,3 +54,7 @@ def test_each_contract_is_broken_by_an_import(tmp_path: Path) -> None:
     assert status == 1
     assert verdicts == dict.fromkeys(contracts().values(), "BROKEN")
     assert set(BREAKS) == set(contracts())
+
+
+def test_lint_asks_for_the_contracts() -> None:
+    assert "lint-imports" in (ROOT / "tools" / "lint").read_text()

@@ -286,7 +286,7 @@ def test_a_warning_is_shown_and_is_no_failure(workspace: Path, sound: None) -> N
     (workspace / "src/arm/CMakeLists.txt").write_bytes(LISTS + b"add_link_options(-static)\n")
     status, out, _ = run(workspace)
     assert status == 0
-    assert "-static does not go together" in out
+    assert "-static cannot be combined" in out
     assert out.splitlines()[-1] == "1 warning"
 
 

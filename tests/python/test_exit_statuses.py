@@ -20,7 +20,7 @@ import pytest
 from click.testing import CliRunner, Result
 from mission_samples import comparison, static_info
 
-from pytpc.cli.main import SUMMARIES, main
+from pytpc.cli.main import main, summaries
 from terminals import pytpc
 
 ROOT = Path(__file__).parents[2]
@@ -104,10 +104,10 @@ def last_error(result: Result) -> str:
 
 
 def test_every_command_is_looked_at():
-    assert set(SUMMARIES) == {*RECORDINGS, *STATICS, *FOLDERS, *GRAPHS, *WORDS}
+    assert set(summaries()) == {*RECORDINGS, *STATICS, *FOLDERS, *GRAPHS, *WORDS}
 
 
-@pytest.mark.parametrize("name", SUMMARIES)
+@pytest.mark.parametrize("name", summaries())
 def test_2_for_what_was_typed_wrongly_and_0_for_help(name: str):
     # A remapping or a negative value of theirs may look like an option.
     if name not in {"apply", "relay"}:
@@ -119,7 +119,7 @@ def test_2_for_what_was_typed_wrongly_and_0_for_help(name: str):
     assert f"Usage: main {name}" in helped.stdout
 
 
-@pytest.mark.parametrize("name", SUMMARIES)
+@pytest.mark.parametrize("name", summaries())
 def test_130_when_interrupted(name: str, monkeypatch: pytest.MonkeyPatch):
     def interrupted(*_: object) -> None:
         raise KeyboardInterrupt

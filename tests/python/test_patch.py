@@ -94,7 +94,7 @@ def test_an_edited_block_is_refused_with_its_line(data: bytes, line: int) -> Non
 def test_a_block_that_was_moved_is_restored_but_not_patched() -> None:
     moved = b"# Copyright\n\n" + LF_BLOCK + b"a()\n"
     assert restore_text(moved) == b"# Copyright\n\na()\n"
-    with pytest.raises(WorkspaceError, match="has to come first") as caught:
+    with pytest.raises(WorkspaceError, match="must come first") as caught:
         patch_text(moved, FILE)
     assert caught.value.line == 3
 

@@ -158,7 +158,7 @@ def test_a_file_that_changed_since_it_was_read_is_not_overwritten(workspace: Pat
     face = workspace / "src/face/CMakeLists.txt"
     face.write_bytes(b"project(face)\nadd_library(new)\n")
     before = contents(workspace)
-    with pytest.raises(WorkspaceError, match="changed meanwhile; no file was changed") as caught:
+    with pytest.raises(WorkspaceError, match="changed meanwhile; no file was written") as caught:
         apply_changes(changes)
     assert caught.value.path == str(face)
     assert contents(workspace) == before

@@ -347,7 +347,7 @@ def test_what_is_declared_is_on_the_card(tmp_path):
 
 
 def test_the_package_brings_its_templates():
-    folder = Path(__file__).parents[2] / "pytpc" / "report" / "templates"
+    folder = Path(__file__).parents[2] / "pytpc" / "present" / "page" / "templates"
     assert {p.name for p in folder.iterdir()} == {
         *("report.html.j2", "report.css"),
         *("report.js", "report-figures.js", "report-timeline.js"),

@@ -275,7 +275,7 @@ def package(tmp_path, monkeypatch):
             path.write_text(text)
         verdict_digest._code_digest.cache_clear()
 
-    monkeypatch.setattr(verdict_digest, "_PACKAGE", folder)
+    monkeypatch.setattr(verdict_digest, "_PACKAGES", {"pytpc": folder})
     monkeypatch.setattr(verdict_digest, "_JUDGES", ())
     yield write
     verdict_digest._code_digest.cache_clear()
