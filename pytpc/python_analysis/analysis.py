@@ -9,22 +9,22 @@ from importlib.metadata import PackageNotFoundError, version
 
 from pytpc.base.errors import InputError
 from pytpc.python_analysis.budget import SECONDS, Budget, BudgetSpentError, what_failed
-from pytpc.python_analysis.constant_finder import find_constants
-from pytpc.python_analysis.constants import DYNAMIC, Constants
-from pytpc.python_analysis.flow import Flow
-from pytpc.python_analysis.follow import Fact, Follower
-from pytpc.python_analysis.gather import Found, Gatherer, end_position, key_of, position
-from pytpc.python_analysis.ir import Instr
-from pytpc.python_analysis.names import named_variable
-from pytpc.python_analysis.packages import Entry
-from pytpc.python_analysis.path import path_of
-from pytpc.python_analysis.pointsto import PointsTo
-from pytpc.python_analysis.program import Loader, Program
-from pytpc.python_analysis.raising import add_raising_calls
-from pytpc.python_analysis.reads import Exposed, Read, find_exposing, find_reads
+from pytpc.python_analysis.comparisons.constant_finder import find_constants
+from pytpc.python_analysis.comparisons.follow import Fact, Follower
+from pytpc.python_analysis.comparisons.gather import Found, Gatherer, end_position, key_of, position
+from pytpc.python_analysis.comparisons.path import path_of
+from pytpc.python_analysis.comparisons.reads import Exposed, Read, find_exposing, find_reads
+from pytpc.python_analysis.comparisons.slicing import Slice, Slicer
+from pytpc.python_analysis.flow.constants import DYNAMIC, Constants
+from pytpc.python_analysis.flow.raising import add_raising_calls
+from pytpc.python_analysis.flow.value_flow import Flow
+from pytpc.python_analysis.ir.instructions import Instr
+from pytpc.python_analysis.ir.names import named_variable
+from pytpc.python_analysis.ir.program import Loader, Program
+from pytpc.python_analysis.points_to.points_to import PointsTo
 from pytpc.python_analysis.rules_file import Rules
-from pytpc.python_analysis.slicing import Slice, Slicer
-from pytpc.python_analysis.sources import lines_of
+from pytpc.python_analysis.sources.packages import Entry
+from pytpc.python_analysis.sources.source_files import lines_of
 from pytpc.static.link_unit import (
     BlindSpot,
     Comparison,

@@ -10,7 +10,7 @@ import traceback
 from pathlib import Path
 from types import TracebackType
 
-from pytpc.python_analysis.ir import Instr
+from pytpc.python_analysis.ir.instructions import Instr
 
 _ARRIVAL_S = 1.0
 SECONDS = 120.0

@@ -9,10 +9,10 @@ from pathlib import Path
 from oracle_python.instrument import Place
 from oracle_python.runner import Compiled, Outcome, Run
 from pytpc.python_analysis.analysis import analyse
-from pytpc.python_analysis.gather import Found, span_of
-from pytpc.python_analysis.packages import entry_of
-from pytpc.python_analysis.program import Loader, Program
+from pytpc.python_analysis.comparisons.gather import Found, span_of
+from pytpc.python_analysis.ir.program import Loader, Program
 from pytpc.python_analysis.rules_file import load_rules
+from pytpc.python_analysis.sources.packages import entry_of
 
 INPUTS = (1, 2, 3)
 _WAYS = ("all", "first")

@@ -15,8 +15,8 @@ from pathlib import Path
 
 from pytpc.base.errors import InputError
 from pytpc.python_analysis.analysis import analyse_entry
-from pytpc.python_analysis.packages import entry_of
 from pytpc.python_analysis.rules_file import load_rules
+from pytpc.python_analysis.sources.packages import entry_of
 
 _SLOWEST = 10
 _SAID_EVERY = 10.0

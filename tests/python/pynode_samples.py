@@ -12,8 +12,8 @@ from textwrap import dedent
 from typing import Any
 
 from pytpc.python_analysis.analysis import analyse_entry
-from pytpc.python_analysis.packages import entry_of
 from pytpc.python_analysis.rules_file import load_rules
+from pytpc.python_analysis.sources.packages import entry_of
 from pytpc.static.link_unit import Comparison, LinkUnit
 
 PRELUDE = "import rospy\nfrom std_msgs.msg import Float64\npub = rospy.Publisher('out', Float64)\n"

@@ -74,7 +74,12 @@ CASES = [
     ),
     (replace(SOUND, modules={"em": "3.3.4"}), E, "cannot import catkin_pkg", "python3-catkin-pkg"),
     (replace(SOUND, modules={**SOUND.modules, "em": "4.1"}), E, "empy 4.1", "pip uninstall empy"),
-    (replace(SOUND, python=Path("/opt/conda/bin/python3")), N, "the first python3 on PATH", "PYTHON_EXEC"),
+    (
+        replace(SOUND, python=Path("/opt/conda/bin/python3")),
+        N,
+        "the first python3 on PATH",
+        "PYTHON_EXEC",
+    ),
     (
         replace(SOUND, missing_parts=("share/tpc/flags",)),
         E,

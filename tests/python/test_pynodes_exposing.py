@@ -8,8 +8,8 @@ import pytest
 from pynode_samples import analysed, found, marked, only
 
 from pytpc.python_analysis.analysis import analyse_entry
-from pytpc.python_analysis.packages import entry_of
 from pytpc.python_analysis.rules_file import load_rules
+from pytpc.python_analysis.sources.packages import entry_of
 
 _READ = "limit = rospy.get_param('~limit')\n"
 

@@ -7,10 +7,10 @@ from textwrap import indent
 
 from pynode_samples import analysed
 
-from pytpc.python_analysis.packages import entry_of
-from pytpc.python_analysis.pointsto import PointsTo
-from pytpc.python_analysis.program import Loader, Program
+from pytpc.python_analysis.ir.program import Loader, Program
+from pytpc.python_analysis.points_to.points_to import PointsTo
 from pytpc.python_analysis.rules_file import load_rules
+from pytpc.python_analysis.sources.packages import entry_of
 
 LIMIT = """
 class Limit:

@@ -10,9 +10,9 @@ from click.testing import CliRunner
 
 from pytpc.base.errors import InputError
 from pytpc.cli.main import main
-from pytpc.python_analysis.cmake_programs import read_programs
-from pytpc.python_analysis.packages import Entry, NameFault, entries
-from pytpc.python_analysis.setup_files import read_setup
+from pytpc.python_analysis.sources.cmake_programs import read_programs
+from pytpc.python_analysis.sources.packages import Entry, NameFault, entries
+from pytpc.python_analysis.sources.setup_files import read_setup
 from pytpc.static.static_info import StaticInfo
 
 MANIFEST = """<package format="2"><name>{}</name><version>0.0.1</version>

@@ -17,11 +17,11 @@ from pytpc.cli.main import main
 from pytpc.python_analysis import analysis
 from pytpc.python_analysis.analysis import analyse_entry
 from pytpc.python_analysis.budget import Budget, BudgetSpentError
-from pytpc.python_analysis.constants import Constants
-from pytpc.python_analysis.packages import entry_of
-from pytpc.python_analysis.reads import find_reads
+from pytpc.python_analysis.comparisons.reads import find_reads
+from pytpc.python_analysis.flow.constants import Constants
 from pytpc.python_analysis.rules_file import load_rules
-from pytpc.python_analysis.sources import parse
+from pytpc.python_analysis.sources.packages import entry_of
+from pytpc.python_analysis.sources.source_files import parse
 from pytpc.static.link_unit import LinkUnit
 from pytpc.static.static_info import StaticInfo
 

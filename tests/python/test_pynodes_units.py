@@ -11,8 +11,8 @@ from pynode_samples import PRELUDE, analysed, only
 
 from pytpc.base.errors import InputError
 from pytpc.cli.main import main
-from pytpc.python_analysis.packages import entries
 from pytpc.python_analysis.rules_file import load_rules
+from pytpc.python_analysis.sources.packages import entries
 from pytpc.static.static_info import StaticInfo
 
 MANIFEST = """<package format="2"><name>guard</name><version>0.0.1</version>

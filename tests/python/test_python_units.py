@@ -20,8 +20,8 @@ from pytpc.build.python_nodes import python_of_build
 from pytpc.build.python_units import PythonUnits, analyse_workspaces, named_beside
 from pytpc.cli.main import main
 from pytpc.python_analysis.analysis import analyse_entry
-from pytpc.python_analysis.packages import Entry
 from pytpc.python_analysis.rules_file import load_rules
+from pytpc.python_analysis.sources.packages import Entry
 from pytpc.static.link_unit import LinkUnit
 from pytpc.static.static_info import StaticInfo, load_link_unit, unit_files
 from pytpc.workspace.packages import find_packages, packages_up_to

@@ -1,0 +1,1 @@
+"""From reads and exposing statements to the threshold predicate comparisons."""

@@ -1,0 +1,275 @@
+"""The threshold predicate comparisons: what the two ways, forward and backward, agree on."""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+import uuid
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Literal
+
+from pytpc.python_analysis.comparisons.follow import FLAG, Compared, Fact, Follower
+from pytpc.python_analysis.comparisons.reads import Read
+from pytpc.python_analysis.comparisons.slicing import Slice
+from pytpc.python_analysis.flow.contexts import Stack
+from pytpc.python_analysis.flow.library_calls import INSIDE, TURNED, Inside
+from pytpc.python_analysis.ir.instructions import Instr
+
+RELATIONS = {
+    "Lt": "<", "LtE": "<=", "Gt": ">", "GtE": ">=", "Eq": "==", "NotEq": "!=",
+    "Is": "==", "IsNot": "!=", "In": "==", "NotIn": "!=",
+}  # fmt: skip
+_ALL_KINDS = 3
+_NAMESPACE = bytes.fromhex("6b0f7a522c9e4d619a378f15c3405ed8")
+
+
+Span = tuple[tuple[int, int], tuple[int, int]]
+"""Line and column of the first character and of the one behind the last, from 1."""
+
+
+@dataclass
+class Found:
+    """A comparison with one parameter: at one place of the source, for all its copies in blocks.
+
+    Of one with a constant ``parameter`` is its name, and there are no ``facts``.
+    """
+
+    at: Instr
+    operand: int
+    parameter: str
+    facts: list[Fact]
+    predicates: dict[Instr, None] = field(default_factory=dict)
+    distance: int = 0
+    predicate: Instr | None = None
+    inside: Inside | None = None
+
+    @property
+    def span(self) -> Span:
+        """Where it stands."""
+        return span_of(self.at, self.operand)
+
+    @property
+    def reads(self) -> list[Read]:
+        """The reads that give it its value."""
+        return list(dict.fromkeys(fact.read for fact in self.facts))
+
+    @property
+    def relation(self) -> str:
+        """The operator, with the threshold on the right-hand side."""
+        if self.inside is not None:
+            return self.inside.relation
+        if self.operand < 0:
+            return "flag" if self.operand == FLAG else "<"
+        sign = RELATIONS[str(self.at.data)]
+        return TURNED.get(sign, sign) if self.operand == 0 else sign
+
+    @property
+    def threshold(self) -> Instr:
+        """What the parameter's value is compared as."""
+        if self.inside is not None:
+            return self.at.args[1 + INSIDE - self.operand]
+        return self.at.args[self.operand] if self.operand >= 0 else self.at
+
+    @property
+    def operand_text(self) -> str | None:
+        """Which operand the threshold is, as in the schema."""
+        if self.inside is not None:
+            return self.inside.operand
+        return ("left", "right")[self.operand] if self.operand >= 0 else None
+
+    @property
+    def type(self) -> Literal["parameter", "flag", "derived", "constant"]:
+        """As in the schema."""
+        if not self.facts:
+            return "constant"
+        if not self.facts[0].how.plain:
+            return "derived"
+        return "flag" if self.operand == FLAG else "parameter"
+
+
+def position(instr: Instr) -> tuple[int, int]:
+    """Line and column from 1; 0 where there is none."""
+    return _start(instr.node)
+
+
+def end_position(instr: Instr) -> tuple[int, int]:
+    """Line and column behind the last character, from 1."""
+    return _end(instr.node)
+
+
+def span_of(at: Instr, operand: int) -> Span:
+    """Where the comparison ``at`` (or a flag) begins and ends.
+
+    The first link of a chain begins where the chain does (with the parentheses around its left
+    operand), the others at their left operand. A value pattern is the whole comparison.
+    """
+    node = at.node
+    if operand < 0 or not isinstance(node, ast.Compare):
+        return _start(node), _end(node)
+    first = at.args[0].node is node.left
+    last = at.args[1].node is node.comparators[-1]
+    return _start(node if first else at.args[0].node), _end(node if last else at.args[1].node)
+
+
+def _start(node: ast.AST) -> tuple[int, int]:
+    return getattr(node, "lineno", 0), getattr(node, "col_offset", -1) + 1
+
+
+def _end(node: ast.AST) -> tuple[int, int]:
+    return getattr(node, "end_lineno", 0), getattr(node, "end_col_offset", -1) + 1
+
+
+def key_of(parts: list[str]) -> uuid.UUID:
+    """The key of a comparison: a UUID of version 5, as the passes make it."""
+    digest = hashlib.sha1(_NAMESPACE + "\n".join(parts).encode(), usedforsecurity=False).digest()
+    return uuid.UUID(bytes=digest[:16], version=5)
+
+
+class Gatherer:
+    """Joins comparisons of one place, and drops those that are none of a parameter."""
+
+    def __init__(self, follower: Follower, found: Slice) -> None:
+        """Both ways are done."""
+        self.follower = follower
+        self.slice = found
+        self._kinds: dict[tuple[Instr, Stack], frozenset[str]] = {}
+
+    def run(self) -> tuple[list[Found], list[Found]]:
+        """The comparisons that decide something exposed, and the others."""
+        joined: dict[tuple[object, ...], Found] = {}
+        both = {each.at for each in self._exposed() if each.operand == 0} & {
+            each.at for each in self._exposed() if each.operand == 1
+        }
+        for compared in self.follower.compared.values():
+            if self._is_measured(compared, both):
+                continue
+            key = (
+                compared.at.function.module,
+                span_of(compared.at, compared.operand),
+                compared.operand, compared.fact.name,
+            )  # fmt: skip
+            if key not in joined:
+                joined[key] = Found(compared.at, compared.operand, compared.fact.name, [])
+                joined[key].inside = compared.inside
+            joined[key].facts.append(compared.fact)
+            joined[key].predicates.update(dict.fromkeys(compared.predicates))
+        exposed: list[Found] = []
+        others: list[Found] = []
+        for found in joined.values():
+            found.facts.sort(key=lambda fact: (not fact.how.plain, fact.how.inner is not None))
+            (exposed if self._nearest(found) else others).append(found)
+        return exposed, others
+
+    def constants(self, candidates: Iterable[Found], taken: Iterable[Found]) -> list[Found]:
+        """Of comparisons with constants those that decide something exposed.
+
+        Args:
+            candidates: all of them.
+            taken: the comparisons with parameters, which count as those alone.
+        """
+        with_parameter = {each.at.node for each in taken}
+        return [
+            each
+            for each in candidates
+            if each.at.node not in with_parameter and self._nearest(each)
+        ]
+
+    def _exposed(self) -> list[Compared]:
+        distance = self.slice.distance
+        return [
+            each
+            for each in self.follower.compared.values()
+            if any(predicate in distance for predicate in each.predicates)
+        ]
+
+    def _nearest(self, found: Found) -> bool:
+        distance = self.slice.distance
+        near = [predicate for predicate in found.predicates if predicate in distance]
+        if not near:
+            return False
+        found.predicate = min(near, key=lambda each: (distance[each], each.number))
+        found.distance = distance[found.predicate]
+        return True
+
+    def _is_measured(self, compared: Compared, both: set[Instr]) -> bool:
+        """True where the parameter is only one of the things that the operand may be.
+
+        What may be something measured is the threshold only where the other side is measured, too.
+        """
+        stack = compared.fact.stack
+        if compared.inside is not None:
+            others = (self.kinds(each, stack) for each in compared.inside.others)
+            only = frozenset[str]().union(*others) <= {"const"}
+            return only and "other" in self.kinds(compared.fact.at, stack)
+        if compared.operand < 0:
+            return "other" in self.kinds(compared.fact.at, stack)
+        own = self.kinds(compared.at.args[compared.operand], stack)
+        if "other" not in own:
+            return False
+        other = self.kinds(compared.at.args[1 - compared.operand], stack)
+        return other <= {"const"} or (compared.at in both and "other" not in other)
+
+    def kinds(self, instr: Instr, stack: Stack) -> frozenset[str]:
+        """What a value may come from, in a function called by ``stack``.
+
+        Returns:
+            Of ``param``, ``const`` and ``other`` those that are possible.
+        """
+        way = (instr, stack)
+        if way not in self._kinds:
+            found: set[str] = set()
+            seen = {way}
+            waiting = [way]
+            while waiting and len(found) < _ALL_KINDS:
+                here = waiting.pop()
+                if here in self._kinds:
+                    found |= self._kinds[here]
+                    continue
+                own, further = self._step(*here)
+                found |= own
+                waiting += [each for each in further if each not in seen]
+                seen.update(further)
+            self._kinds[way] = frozenset(found)
+        return self._kinds[way]
+
+    def _step(self, instr: Instr, stack: Stack) -> tuple[set[str], list[tuple[Instr, Stack]]]:
+        """What a value is by itself, and the values that it may come from."""
+        facts = self.follower.facts.get(instr, ())
+        if any(fact.before is None or fact.before.name != fact.name for fact in facts):
+            return {"param"}, []
+        values: Iterable[Instr] = ()
+        match instr.op:
+            case "const" | "function" | "class" | "module" | "external":
+                return {"const"}, []
+            case "binary" | "unary" | "copy":
+                return set(), [(value, stack) for value in instr.args]
+            case "call" if not self._is_own(instr) and (facts or self._computes(instr)):
+                values = instr.args[1:]
+                alone = {"param"} if facts else {"const"}
+                return set() if values else alone, [(value, stack) for value in values]
+            case "build":
+                values = instr.args
+                return set() if values else {"const"}, [(value, stack) for value in values]
+            case "param" if stack and self._given(instr, stack):
+                return set(), [(value, stack[:-1]) for value in self._given(instr, stack)]
+        if instr.op == "param" and instr.function in self.follower.flow.points.calls.registered:
+            return {"other"}, []
+        origins = list(self.follower.flow.origins(instr))
+        if not origins:
+            values = instr.args[:1] if facts else ()
+            return set() if facts else {"other"}, [(value, stack) for value in values]
+        own = instr.function
+        return set(), [(each, stack if each.function is own else ()) for each in origins]
+
+    def _given(self, param: Instr, stack: Stack) -> list[Instr]:
+        return self.follower.flow.points.calls.given.get((stack[-1], param), [])
+
+    def _computes(self, instr: Instr) -> bool:
+        """True for a call that makes a value of its arguments alone: ``abs``, ``max``."""
+        flow = self.follower.flow
+        paths = flow.points.calls.outside.get(instr, {})
+        return any(path in self.follower.rules.arithmetic for path, _ in paths)
+
+    def _is_own(self, instr: Instr) -> bool:
+        return instr in self.follower.flow.points.calls.callees

@@ -1,0 +1,141 @@
+"""Lists of parameter objects: what ``get_parameters`` returns, and what a callback is handed.
+
+Their elements are reads where their value is taken. The name is that with which the element's name
+is compared (``if p.name == "limit": self.limit = p.value``), else that at its place in the list
+that was asked for; where neither is known, it is ``<dynamic>``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from pytpc.python_analysis.flow.constants import DYNAMIC, Constants
+from pytpc.python_analysis.ir.control import control_dependence, post_dominators
+from pytpc.python_analysis.ir.instructions import Block, Function, Instr
+
+
+@dataclass(frozen=True)
+class TakenValue:
+    """``instr`` has the value of the parameter ``name``."""
+
+    name: str
+    instr: Instr
+
+
+class ParameterLists:
+    """Finds the elements of lists, and the names of those whose value is taken."""
+
+    def __init__(self, constants: Constants) -> None:
+        """Nothing is looked at yet."""
+        self._constants = constants
+        self._flow = constants.flow
+        self._control: dict[Function, dict[Block, list[Block]]] = {}
+
+    def taken(self, start: Instr, names: list[str]) -> Iterator[TakenValue]:
+        """The values that are taken of the elements of the list ``start``.
+
+        Args:
+            start: what has the list.
+            names: of its elements in order; empty where they are not known.
+        """
+        elements = self._elements(start)
+        values = self._flow.points.rules.values
+        for element, place in elements.items():
+            for user in self._flow.users.get(element, ()):
+                if user.op == "attr" and str(user.data) in values:
+                    known = self._names(user, elements, place, names)
+                    for value in self._values(user):
+                        yield from (TakenValue(name, value) for name in known)
+
+    def named(self, asked: Instr) -> list[str]:
+        """The names in a list of names, or of tuples that begin with one."""
+        found: list[str] = []
+        for each in self._flow.points.of(asked):
+            if each.kind != "container" or each.site is None or each.site.op != "build":
+                return []
+            for part in each.site.args:
+                first = part.args[0] if part.op == "build" and part.args else part
+                words = self._constants.names(first)
+                found.append(words[0] if len(words) == 1 else DYNAMIC)
+        return found
+
+    def _values(self, attr: Instr) -> list[Instr]:
+        """The attribute itself, or the calls of it."""
+        users = self._flow.users.get(attr, ())
+        return [user for user in users if user.op == "call" and user.args[0] is attr] or [attr]
+
+    def _elements(self, start: Instr) -> dict[Instr, int | None]:
+        found: dict[Instr, int | None] = {}
+        lists = {start}
+        waiting: list[tuple[Instr, bool, int | None]] = [(start, True, None)]
+        while waiting:
+            value, is_list, place = waiting.pop()
+            following = [(to, is_list, place) for to, _ in self._flow.copies(value)]
+            for user in self._flow.users.get(value, ()) if is_list else ():
+                if user.op == "iter":
+                    uses = self._flow.users.get(user, ())
+                    following += [(use, False, None) for use in uses if use.op == "next"]
+                elif user.op == "item" and user.args[0] is value:
+                    keys = list(self._constants.values(user.args[1]))
+                    key = keys[0] if len(keys) == 1 else None
+                    following.append((user, False, key if isinstance(key, int) else None))
+            for to, is_more, at in following:
+                if is_more and to not in lists:
+                    lists.add(to)
+                    waiting.append((to, True, None))
+                elif not is_more and to not in found:
+                    found[to] = at
+                    waiting.append((to, False, at))
+        return found
+
+    def _names(
+        self, attr: Instr, elements: dict[Instr, int | None], place: int | None, names: list[str]
+    ) -> list[str]:
+        compared = self._compared(attr, elements)
+        if compared is not None:
+            return [compared]
+        if place is not None and -len(names) <= place < len(names):
+            return [names[place]]
+        return list(dict.fromkeys(names)) or [DYNAMIC]
+
+    def _compared(self, attr: Instr, elements: dict[Instr, int | None]) -> str | None:
+        """The constant that the element's name is equal to where ``attr`` is run."""
+        function = attr.function
+        if function not in self._control:
+            self._control[function] = control_dependence(function)
+        immediate = post_dominators(function)
+        seen = {attr.block}
+        waiting = [attr.block]
+        while waiting:
+            block = waiting.pop(0)
+            for above in self._control[function].get(block, ()):
+                is_yes = _leads(above.successors[0], block, immediate)
+                name = self._equal(above.instrs[-1], elements, is_yes)
+                if name is not None:
+                    return name
+                if above not in seen:
+                    seen.add(above)
+                    waiting.append(above)
+        return None
+
+    def _equal(self, branch: Instr, elements: dict[Instr, int | None], is_yes: bool) -> str | None:
+        if branch.op != "branch" or branch.args[0].op != "compare":
+            return None
+        compare = branch.args[0]
+        if compare.data != ("Eq" if is_yes else "NotEq"):
+            return None
+        for one, other in (compare.args, compare.args[::-1]):
+            subject = one.args[0] if one.op == "match" else one
+            if subject.op == "attr" and subject.data == "name" and subject.args[0] in elements:
+                words = self._constants.names(other)
+                return words[0] if len(words) == 1 else None
+        return None
+
+
+def _leads(first: Block, block: Block, immediate: list[int]) -> bool:
+    """True where ``block`` runs whenever ``first`` does."""
+    runner = first.number
+    while runner >= 0 and runner != block.number and immediate[runner] != runner:
+        runner = immediate[runner]
+    return runner == block.number

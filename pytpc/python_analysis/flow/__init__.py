@@ -1,0 +1,1 @@
+"""Where values go to and come from."""

@@ -1,0 +1,1 @@
+"""Functions as blocks of instructions, and which branches control them."""

@@ -1,0 +1,371 @@
+"""From expressions of the syntax tree to instructions."""
+
+from __future__ import annotations
+
+import ast
+import builtins
+from collections.abc import Callable, Sequence
+
+from pytpc.python_analysis.ir.builder import Builder
+from pytpc.python_analysis.ir.instructions import ANY, Block, Instr, Shape, Variable
+from pytpc.python_analysis.ir.literals import known_elements
+from pytpc.python_analysis.ir.scopes import Names
+
+UNROLLED = 24
+"""A loop over at most so many constants is taken apart."""
+
+
+class ExpressionLowering(Builder):
+    """Lowers the expressions of one function; statements are its subclass's."""
+
+    # Conditions
+
+    def condition(self, node: ast.expr, yes: Block, no: Block) -> None:
+        """Evaluate ``node`` and go on at ``yes`` or ``no``."""
+        for part in ast.walk(node):
+            self.function.conditions.setdefault(part, node)
+        match node:
+            case ast.BoolOp(op=op, values=values):
+                for value in values[:-1]:
+                    further = self.new_block()
+                    if isinstance(op, ast.And):
+                        self.condition(value, further, no)
+                    else:
+                        self.condition(value, yes, further)
+                    self.block = further
+                self.condition(values[-1], yes, no)
+            case ast.UnaryOp(op=ast.Not(), operand=operand):
+                self.condition(operand, no, yes)
+            case ast.Compare():
+                self._links(node, yes, no)
+            case ast.Constant(value=value):
+                self.jump(yes if value else no)
+            case _:
+                self.branch(self.value(node), node, yes, no)
+
+    def _links(self, node: ast.Compare, yes: Block, no: Block) -> None:
+        left = self.value(node.left)
+        for op, right in zip(node.ops, node.comparators, strict=True):
+            after = self.value(right)
+            outcome = self.emit("compare", node, left, after, data=type(op).__name__)
+            further = yes if right is node.comparators[-1] else self.new_block()
+            self.branch(outcome, node, further, no)
+            self.block, left = further, after
+
+    def chosen(self, node: ast.expr, choose: Callable[[Variable, Block], None]) -> Instr:
+        """The value of an expression that control flow chooses; ``choose`` stores it and jumps."""
+        variable, after = self.temporary(), self.new_block()
+        choose(variable, after)
+        self.block = after
+        return self.emit("load", node, data=variable)
+
+    def _and_or(self, node: ast.BoolOp) -> Instr:
+        def choose(variable: Variable, after: Block) -> None:
+            for operand in node.values:
+                value = self.value(operand)
+                self.emit("store", operand, value, data=variable)
+                if operand is node.values[-1]:
+                    self.jump(after)
+                    return
+                further = self.new_block()
+                ways = (further, after) if isinstance(node.op, ast.And) else (after, further)
+                self.branch(value, operand, *ways)
+                self.block = further
+
+        return self.chosen(node, choose)
+
+    def _if_else(self, node: ast.IfExp) -> Instr:
+        def choose(variable: Variable, after: Block) -> None:
+            yes, no = self.new_block(), self.new_block()
+            self.condition(node.test, yes, no)
+            for block, part in ((yes, node.body), (no, node.orelse)):
+                self.block = block
+                self.emit("store", part, self.value(part), data=variable)
+                self.jump(after)
+
+        return self.chosen(node, choose)
+
+    def _compare(self, node: ast.Compare) -> Instr:
+        if len(node.ops) == 1:
+            left, right = self.value(node.left), self.value(node.comparators[0])
+            return self.emit("compare", node, left, right, data=type(node.ops[0]).__name__)
+
+        def choose(variable: Variable, after: Block) -> None:
+            left = self.value(node.left)
+            for op, right_node in zip(node.ops, node.comparators, strict=True):
+                right = self.value(right_node)
+                outcome = self.emit("compare", node, left, right, data=type(op).__name__)
+                self.emit("store", node, outcome, data=variable)
+                if right_node is node.comparators[-1]:
+                    self.jump(after)
+                    return
+                further = self.new_block()
+                self.branch(outcome, node, further, after)
+                self.block, left = further, right
+
+        return self.chosen(node, choose)
+
+    # Values
+
+    def value(self, node: ast.expr) -> Instr:
+        """The instruction that has the value of ``node``."""
+        lower = getattr(self, f"_value_{type(node).__name__}", None)
+        if lower is not None:
+            found: Instr = lower(node)
+            return found
+        # A form of a later Python: its parts are evaluated, its value is not known.
+        parts = [
+            self.value(part) for part in ast.iter_child_nodes(node) if isinstance(part, ast.expr)
+        ]
+        return self.emit("build", node, *parts, data="text")
+
+    def _value_Constant(self, node: ast.Constant) -> Instr:
+        return self.emit("const", node, data=node.value)
+
+    def _value_Name(self, node: ast.Name) -> Instr:
+        return self.name(node.id, node)
+
+    def name(self, name: str, node: ast.AST) -> Instr:
+        """The value of a name."""
+        for renamed in reversed(self.scope.renamed):
+            if name in renamed:
+                known = renamed[name]
+                op = "load" if isinstance(known, Variable) else "const"
+                return self.emit(op, node, data=known)
+        if self.scope.own_attribute(name) and self.scope.class_value is not None:
+            return self.emit("attr", node, self.scope.class_value, data=name)
+        variable = self.scope.variable(name)
+        if variable is not None:
+            return self.emit("load", node, data=variable)
+        if self.stars and not hasattr(builtins, name):
+            return self.emit("attr", node, self.stars[-1], data=name)
+        if name == "__name__":
+            return self.emit("build", node, data="text")
+        return self.emit("external", node, data=f"builtins.{name}")
+
+    def _value_Attribute(self, node: ast.Attribute) -> Instr:
+        return self.emit("attr", node, self.value(node.value), data=node.attr)
+
+    def _value_Subscript(self, node: ast.Subscript) -> Instr:
+        return self.emit("item", node, self.value(node.value), self.value(node.slice))
+
+    def _value_Slice(self, node: ast.Slice) -> Instr:
+        parts = [self.value(part) for part in (node.lower, node.upper, node.step) if part]
+        return self.emit("build", node, *parts, data="slice")
+
+    def _value_Call(self, node: ast.Call) -> Instr:
+        if isinstance(node.func, ast.Name) and node.func.id == "super" and not node.args:
+            return self._super(node)
+        function = self.value(node.func)
+        values, names = [], []
+        for argument in node.args:
+            starred = isinstance(argument, ast.Starred)
+            values.append(self.value(argument))
+            names.append("*" if starred else None)
+        for keyword in node.keywords:
+            values.append(self.value(keyword.value))
+            names.append(keyword.arg or "**")
+        return self.emit("call", node, function, *values, data=Shape(tuple(names)))
+
+    def _super(self, node: ast.Call) -> Instr:
+        """``super()`` knows its class and object from where it stands."""
+        function = self.emit("external", node.func, data="builtins.super")
+        first = self.function.parameters[:1]
+        args = [self.emit("load", node, data=variable) for variable in first]
+        return self.emit("call", node, function, *args, data=Shape((None,) * len(args)))
+
+    def _value_BinOp(self, node: ast.BinOp) -> Instr:
+        left, right = self.value(node.left), self.value(node.right)
+        return self.emit("binary", node, left, right, data=type(node.op).__name__)
+
+    def _value_UnaryOp(self, node: ast.UnaryOp) -> Instr:
+        operand = self.value(node.operand)
+        return self.emit("unary", node, operand, data=type(node.op).__name__)
+
+    def _value_BoolOp(self, node: ast.BoolOp) -> Instr:
+        return self._and_or(node)
+
+    def _value_IfExp(self, node: ast.IfExp) -> Instr:
+        return self._if_else(node)
+
+    def _value_Compare(self, node: ast.Compare) -> Instr:
+        return self._compare(node)
+
+    def _value_Tuple(self, node: ast.Tuple) -> Instr:
+        return self._sequence(node, node.elts, "tuple")
+
+    def _value_List(self, node: ast.List) -> Instr:
+        return self._sequence(node, node.elts, "list")
+
+    def _value_Set(self, node: ast.Set) -> Instr:
+        return self._sequence(node, node.elts, "set")
+
+    def _sequence(self, node: ast.expr, elements: Sequence[ast.expr], kind: str) -> Instr:
+        if any(isinstance(element, ast.Starred) for element in elements):
+            built = self.emit("build", node, data=kind)
+            for element in elements:
+                inner = element.value if isinstance(element, ast.Starred) else element
+                value = self.value(inner)
+                if inner is not element:
+                    value = self.emit("next", inner, self.emit("iter", inner, value))
+                self.put(built, None, value, element)
+            return built
+        return self.emit("build", node, *[self.value(part) for part in elements], data=kind)
+
+    def put(self, container: Instr, key: Instr | None, value: Instr, node: ast.AST) -> None:
+        """Store into a container; without ``key`` somewhere."""
+        where = key if key is not None else self.emit("const", node, data=ANY)
+        self.emit("setitem", node, container, where, value)
+
+    def _value_Dict(self, node: ast.Dict) -> Instr:
+        built = self.emit("build", node, data="dict")
+        for key, value in zip(node.keys, node.values, strict=True):
+            if key is None:
+                inner = self.value(value)
+                method = self.emit("attr", value, built, data="update")
+                self.emit("call", value, method, inner, data=Shape((None,)))
+            else:
+                where = self.value(key)
+                self.put(built, where, self.value(value), value)
+        return built
+
+    def _value_JoinedStr(self, node: ast.JoinedStr) -> Instr:
+        return self.emit("build", node, *[self.value(part) for part in node.values], data="text")
+
+    def _value_FormattedValue(self, node: ast.FormattedValue) -> Instr:
+        return self.emit("build", node, self.value(node.value), data="text")
+
+    def _value_Starred(self, node: ast.Starred) -> Instr:
+        return self.emit("copy", node, self.value(node.value))
+
+    def _value_Await(self, node: ast.Await) -> Instr:
+        return self.emit("copy", node, self.value(node.value))
+
+    def _value_NamedExpr(self, node: ast.NamedExpr) -> Instr:
+        value = self.value(node.value)
+        self.store_name(node.target.id, value, node)
+        return self.emit("copy", node, value)
+
+    def _value_Yield(self, node: ast.Yield) -> Instr:
+        self.function.is_generator = True
+        value = self.value(node.value) if node.value else self.emit("const", node)
+        return self.emit("yield", node, value)
+
+    def _value_YieldFrom(self, node: ast.YieldFrom) -> Instr:
+        self.function.is_generator = True
+        source = self.emit("iter", node, self.value(node.value))
+        return self.emit("yield", node, self.emit("next", node, source))
+
+    def _value_Lambda(self, node: ast.Lambda) -> Instr:
+        return self.make_function(node, "<lambda>", node.args, Names())
+
+    def _value_ListComp(self, node: ast.ListComp) -> Instr:
+        return self._comprehension(node, node.generators, "list")
+
+    def _value_SetComp(self, node: ast.SetComp) -> Instr:
+        return self._comprehension(node, node.generators, "set")
+
+    def _value_GeneratorExp(self, node: ast.GeneratorExp) -> Instr:
+        return self._comprehension(node, node.generators, "list")
+
+    def _value_DictComp(self, node: ast.DictComp) -> Instr:
+        return self._comprehension(node, node.generators, "dict")
+
+    def _comprehension(
+        self, node: ast.expr, generators: Sequence[ast.comprehension], kind: str
+    ) -> Instr:
+        """The loops of a comprehension stand in the function itself, with names of their own."""
+        built = self.emit("build", node, data=kind)
+        after = self.new_block()
+        depth = len(self.scope.renamed)
+        self._generate(node, list(generators), built, after)
+        del self.scope.renamed[depth:]
+        self.block = after
+        return built
+
+    def _generate(
+        self, node: ast.expr, generators: list[ast.comprehension], built: Instr, after: Block
+    ) -> None:
+        if not generators:
+            if isinstance(node, ast.DictComp):
+                key = self.value(node.key)
+                self.put(built, key, self.value(node.value), node.value)
+            elif isinstance(node, ast.ListComp | ast.SetComp | ast.GeneratorExp):
+                self.put(built, None, self.value(node.elt), node.elt)
+            self.jump(after)
+            return
+        first, rest = generators[0], generators[1:]
+        elements = self.known_elements(first.target, first.iter)
+        if elements is not None:
+            for element in elements:
+                further = self.new_block()
+                self.scope.renamed.append(dict(element))
+                self._filtered(node, first, rest, built, further)
+                self.scope.renamed.pop()
+                self.block = further
+            self.jump(after)
+            return
+        source = self.emit("iter", first.iter, self.value(first.iter))
+        head, body = self.new_block(), self.new_block()
+        self.jump(head)
+        self.block = head
+        self.branch(self.emit("more", first.iter, source), first.iter, body, after)
+        self.block = body
+        self.scope.renamed.append(self._fresh(first.target))
+        self.assign(first.target, self.emit("next", first.iter, source))
+        self._filtered(node, first, rest, built, head)
+
+    def _filtered(
+        self,
+        node: ast.expr,
+        generator: ast.comprehension,
+        rest: list[ast.comprehension],
+        built: Instr,
+        after: Block,
+    ) -> None:
+        for test in generator.ifs:
+            further = self.new_block()
+            self.condition(test, further, after)
+            self.block = further
+        self._generate(node, rest, built, after)
+
+    def _fresh(self, target: ast.expr) -> dict[str, Variable | object]:
+        """A variable of its own for each name in the target of a comprehension."""
+        names = [part.id for part in ast.walk(target) if isinstance(part, ast.Name)]
+        return {name: self.temporary() for name in names}
+
+    def known_elements(self, target: ast.expr, source: ast.expr) -> list[dict[str, object]] | None:
+        """What the names of ``target`` are, for each element, where all are constants and few."""
+        if any(
+            isinstance(part, ast.Name) and part.id in renamed
+            for part in ast.walk(source)
+            for renamed in self.scope.renamed
+        ):
+            return None
+        return known_elements(target, source, self.module, UNROLLED)
+
+    # What statements give
+
+    def store_name(self, name: str, value: Instr, node: ast.AST) -> None:
+        """Bind a name."""
+        for renamed in reversed(self.scope.renamed):
+            known = renamed.get(name)
+            if isinstance(known, Variable):
+                self.emit("store", node, value, data=known)
+                return
+        if self.scope.own_attribute(name) and self.scope.class_value is not None:
+            self.emit("setattr", node, self.scope.class_value, value, data=name)
+            return
+        variable = self.scope.variable(name)
+        if variable is not None:
+            self.emit("store", node, value, data=variable)
+
+    def assign(self, target: ast.expr, value: Instr) -> None:
+        """Bind a target."""
+        raise NotImplementedError
+
+    def make_function(
+        self, node: ast.AST, name: str, arguments: ast.arguments, names: Names
+    ) -> Instr:
+        """A function as a value."""
+        raise NotImplementedError

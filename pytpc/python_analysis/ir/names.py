@@ -1,0 +1,48 @@
+"""Names of variables, and of attributes as far as they are known before anything is solved."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from pytpc.python_analysis.ir.instructions import Instr, Variable
+
+
+@dataclass(frozen=True)
+class NamePattern:
+    """A name of which the beginning and the end are known; both empty where nothing is."""
+
+    start: str = ""
+    end: str = ""
+
+    def takes(self, name: str) -> bool:
+        """True where ``name`` may be meant."""
+        fits = name.startswith(self.start) and name.endswith(self.end)
+        return fits and len(name) >= len(self.start) + len(self.end)
+
+
+def attribute_named(instr: Instr) -> str | NamePattern:
+    """The name that a value is, or what is known of it: ``"max_" + axis``, ``f"{axis}_limit"``."""
+    if instr.op == "const" and isinstance(instr.data, str):
+        return instr.data
+    is_put_together = (instr.op, instr.data) in (("binary", "Add"), ("build", "text"))
+    if not is_put_together or not instr.args:
+        return NamePattern()
+    first, last = attribute_named(instr.args[0]), attribute_named(instr.args[-1])
+    if len(instr.args) == 1:
+        return first
+    return NamePattern(
+        first if isinstance(first, str) else first.start,
+        last if isinstance(last, str) else last.end,
+    )
+
+
+def named_variable(instr: Instr) -> str | None:
+    """The variable or attribute whose value an instruction has."""
+    if instr.op == "load" and isinstance(instr.data, Variable):
+        return None if instr.data.name.startswith("<") else instr.data.name
+    if instr.op == "attr":
+        owner = named_variable(instr.args[0])
+        return f"{owner}.{instr.data}" if owner else str(instr.data)
+    if instr.op in ("copy", "item") and instr.args:
+        return named_variable(instr.args[0])
+    return None

@@ -1,0 +1,142 @@
+"""A link unit of Python: a script and the modules of the workspace that it imports."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+
+from pytpc.base.errors import InputError
+from pytpc.python_analysis.ir.instructions import Function, Instr, Module
+from pytpc.python_analysis.ir.lower import lower_module
+from pytpc.python_analysis.sources.packages import Entry
+from pytpc.python_analysis.sources.source_files import module_files, parse
+
+
+@dataclass(frozen=True)
+class Unread:
+    """A module that is imported and cannot be read or parsed; ``path`` as modules have it."""
+
+    path: str
+    error: InputError
+
+
+@dataclass
+class Program:
+    """All modules of a link unit, the script's first; ``name`` and ``package`` as in the JSON."""
+
+    name: str
+    package: str
+    root: Path
+    modules: list[Module] = field(default_factory=list)
+    faults: list[Unread] = field(default_factory=list)
+
+    @property
+    def functions(self) -> list[Function]:
+        """Those of all modules."""
+        return [function for module in self.modules for function in module.functions]
+
+    @cached_property
+    def attributes(self) -> list[str]:
+        """The names of all attributes that are stored into, sorted; for when all is loaded."""
+        names = {str(instr.data) for instr in self.instructions() if instr.op == "setattr"}
+        return sorted(names)
+
+    def instructions(self) -> list[Instr]:
+        """Those of all functions, in order."""
+        return [instr for function in self.functions for instr in function.instructions()]
+
+    def relative(self, path: Path) -> str:
+        """A file as static information names it: outside of the package by its absolute path."""
+        return str(path.relative_to(self.root) if path.is_relative_to(self.root) else path)
+
+
+class Loader:
+    """Loads a script and, as it is lowered, what it imports."""
+
+    def __init__(self, program: Program, entry: Entry) -> None:
+        """``entry`` says where the program begins and where modules are looked for."""
+        self.program = program
+        self.entry = entry
+        self._known: dict[Path, Module | None] = {}
+        self._numbers = [0]
+
+    def load(self) -> Program:
+        """Load the script and all that follows from it.
+
+        Raises:
+            InputError: the script cannot be read or parsed.
+        """
+        script = self.entry.script.absolute()
+        source, tree = parse(script)
+        self._add(script, self.entry.module, source, _begun(tree, self.entry.begin))
+        for module in self.program.modules:
+            lower_module(module, self.resolve, self._numbers)
+        return self.program
+
+    def _add(self, path: Path, name: str, source: str, tree: ast.Module) -> Module:
+        is_package = path.name == "__init__.py"
+        module = Module(name, self.program.relative(path), source, tree, is_package)
+        self._known[path] = module
+        self.program.modules.append(module)
+        return module
+
+    def _module(self, path: Path, name: str) -> Module | None:
+        """The module of a file; None, once and for all, where it cannot be parsed."""
+        path = path.absolute()
+        if path not in self._known:
+            try:
+                return self._add(path, name, *parse(path))
+            except InputError as error:
+                self._known[path] = None
+                self.program.faults.append(Unread(self.program.relative(path), error))
+        return self._known[path]
+
+    def resolve(self, user: Module, name: str, dots: int) -> Module | str:
+        """What an import in ``user`` means: a module of the workspace, else a dotted name."""
+        if dots == 0:
+            for path in self.entry.places(name):
+                return self._module(path, name) or name
+            return name
+        folder = (self.program.root / user.path).parent
+        for _ in range(dots - 1):
+            folder = folder.parent
+        if not name:
+            start = folder / "__init__.py"
+            found = self._module(start, folder.name) if start.is_file() else None
+            return found or folder.name
+        full = f"{folder.name}.{name}"
+        for path in module_files(folder.joinpath(*name.split("."))):
+            return self._module(path, full) or full
+        return full
+
+
+def _begun(tree: ast.Module, begin: str) -> ast.Module:
+    """The module with a call of the function ``begin`` at its end, as an entry point calls it.
+
+    The call stands where the function's name is bound.
+    """
+    if not begin:
+        return tree
+    first, *rest = begin.split(".")
+    where = next((each for each in tree.body if first in _bound_by(each)), None)
+    if where is None:
+        return tree
+    function: ast.expr = ast.Name(first, ast.Load())
+    for name in rest:
+        function = ast.Attribute(function, name, ast.Load())
+    call = ast.Expr(ast.Call(function, [], []))
+    for node in ast.walk(call):
+        ast.copy_location(node, where)
+    return ast.Module([*tree.body, call], tree.type_ignores)
+
+
+def _bound_by(statement: ast.stmt) -> Iterator[str]:
+    if isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+        yield statement.name
+    elif isinstance(statement, ast.Import | ast.ImportFrom):
+        yield from (alias.asname or alias.name.split(".")[0] for alias in statement.names)
+    elif isinstance(statement, ast.Assign):
+        yield from (part.id for part in statement.targets if isinstance(part, ast.Name))

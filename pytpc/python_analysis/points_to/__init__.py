@@ -1,0 +1,1 @@
+"""Which objects a value may be, and so what a call calls."""

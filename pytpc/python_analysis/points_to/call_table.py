@@ -1,0 +1,69 @@
+"""Who calls whom, and with what."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from pytpc.python_analysis.ir.instructions import Function, Instr, Shape
+from pytpc.python_analysis.points_to.objects import Obj
+
+Given = tuple[str | None, Instr]
+"""An argument: its keyword (``*``, ``**``: unpacked; None: positional) and its value."""
+
+
+class CallTable:
+    """Who calls whom.
+
+    ``callees``: an instruction -> the functions that it runs. ``callers``: the reverse.
+    ``outside``: an instruction -> the dotted names that it calls, each with the object whose method
+    it is. ``given``: a call and a parameter -> the values that it gives to it, its default among
+    them where it gives none. ``registered``: a function -> the calls that hand it to something
+    outside, which may run it later.
+    """
+
+    def __init__(self) -> None:
+        """Nothing is called yet."""
+        self.callees: dict[Instr, dict[Function, None]] = {}
+        self.callers: dict[Function, dict[Instr, None]] = {}
+        self.outside: dict[Instr, dict[tuple[str, Obj | None], None]] = {}
+        self.registered: dict[Function, dict[Instr, None]] = {}
+        self.callbacks: dict[Instr, dict[Function, None]] = {}
+        self.given: dict[tuple[Instr, Instr], list[Instr]] = {}
+        self._awaiting: dict[tuple[Instr, Instr], list[Callable[[Instr], None]]] = {}
+        self._sites: dict[Instr, list[Instr]] = {}
+        self._awaiting_site: dict[Instr, list[Callable[[Instr], None]]] = {}
+
+    @staticmethod
+    def arguments(instr: Instr) -> list[Given]:
+        """The arguments of a call as they are written."""
+        shape = instr.data
+        names = shape.names if isinstance(shape, Shape) else ()
+        return list(zip(names, instr.args[1:], strict=True))
+
+    def when_given(self, site: Instr, param: Instr, action: Callable[[Instr], None]) -> None:
+        """Call ``action`` for each value that the call ``site`` gives to ``param``."""
+        self._awaiting.setdefault((site, param), []).append(action)
+        for value in list(self.given.get((site, param), ())):
+            action(value)
+
+    def may_unpack(self, site: Instr, param: Instr) -> bool:
+        """True where what ``site`` unpacks may be the value of ``param``: no argument is."""
+        return param in self.given.get((site, param), ())
+
+    def when_site(self, param: Instr, action: Callable[[Instr], None]) -> None:
+        """Call ``action`` for each call that gives something to ``param``."""
+        self._awaiting_site.setdefault(param, []).append(action)
+        for site in list(self._sites.get(param, ())):
+            action(site)
+
+    def give(self, site: Instr, param: Instr, value: Instr) -> None:
+        """``site`` gives ``value`` to ``param``."""
+        known = self.given.setdefault((site, param), [])
+        if not known:
+            self._sites.setdefault(param, []).append(site)
+            for act in list(self._awaiting_site.get(param, ())):
+                act(site)
+        if value not in known:
+            known.append(value)
+            for action in list(self._awaiting.get((site, param), ())):
+                action(value)

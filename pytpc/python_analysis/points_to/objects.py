@@ -1,0 +1,148 @@
+"""What a value may be: the abstract objects of the points-to analysis."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterable
+from dataclasses import dataclass, field
+
+from pytpc.python_analysis.ir.instructions import ClassInfo, Function, Instr, Module
+
+EVERY = "[+]"
+"""The slot that stands for all elements of a container, where one is read by an unknown key."""
+SOME = "[*]"
+"""The slot of the elements at unknown keys."""
+UNNAMED = "<unnamed>"
+"""The slot of an object's attributes that are set by unknown names."""
+ATTRIBUTES = "<attributes>"
+"""The slot that stands for all of them, where one is read by an unknown name."""
+OTHER = "<other>"
+"""The dotted name of what no rule is about."""
+_DEEPEST = 2
+
+
+@dataclass(eq=False, slots=True)
+class Obj:
+    """An abstract object.
+
+    ``kind`` and what ``ref`` and ``parent`` are: ``function`` (Function), ``method`` (Function,
+    the object), ``class`` (ClassInfo), ``instance`` (ClassInfo), ``module`` (Module), ``external``
+    (by ``path``), ``made`` (by calling what is outside the sources: ``path``), ``part`` (an
+    attribute of something made: ``path``, the object), ``container``, ``partial`` (the call that
+    made it, the function), ``super`` (ClassInfo after which is looked up, the object),
+    ``namespace`` (an object's ``__dict__``: the object). ``site`` is the instruction that makes it.
+    """
+
+    kind: str
+    number: int
+    path: str = ""
+    ref: object = None
+    parent: Obj | None = None
+    site: Instr | None = None
+    parts: dict[str, Obj] = field(default_factory=dict)
+    slots: dict[str, None] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        """For people who debug."""
+        return f"<{self.kind} {self.path or self.ref}>"
+
+    @property
+    def function(self) -> Function | None:
+        """The function that it is, or is bound to."""
+        return self.ref if isinstance(self.ref, Function) else None
+
+    @property
+    def class_info(self) -> ClassInfo | None:
+        """The class that it is, or is an instance of."""
+        return self.ref if isinstance(self.ref, ClassInfo) else None
+
+
+Field = tuple[Obj, str]
+"""A slot of an object: an attribute by its name, an element by ``[key]``."""
+
+
+class Heap:
+    """Makes abstract objects, each once."""
+
+    def __init__(self, paths: Iterable[str]) -> None:
+        """``paths`` are the dotted names that the rules are about."""
+        self._known: dict[Hashable, Obj] = {}
+        self._about = {"collections.namedtuple"}
+        for path in paths:
+            parts = path.split(".")
+            self._about.update(".".join(parts[:end]) for end in range(1, len(parts) + 1))
+
+    def _get(
+        self,
+        kind: str,
+        path: str = "",
+        ref: object = None,
+        parent: Obj | None = None,
+        site: Instr | None = None,
+    ) -> Obj:
+        key = (kind, path, id(ref), parent, site)
+        if key not in self._known:
+            self._known[key] = Obj(kind, len(self._known), path, ref, parent, site)
+        return self._known[key]
+
+    def function(self, function: Function) -> Obj:
+        """A function."""
+        return self._get("function", ref=function)
+
+    def method(self, function: Function, owner: Obj) -> Obj:
+        """A function bound to an object."""
+        return self._get("method", ref=function, parent=owner)
+
+    def class_(self, info: ClassInfo) -> Obj:
+        """A class of the sources."""
+        return self._get("class", ref=info)
+
+    def instance(self, info: ClassInfo, site: Instr | None) -> Obj:
+        """What calling a class gives at ``site``; None where no call is known."""
+        return self._get("instance", ref=info, site=site)
+
+    def module(self, module: Module) -> Obj:
+        """A module of the sources."""
+        return self._get("module", ref=module)
+
+    def external(self, path: str) -> Obj:
+        """Something outside the sources, by its dotted name."""
+        return self._get("external", path)
+
+    def made(self, path: str, site: Instr) -> Obj:
+        """What something outside the sources gives when it is called at ``site``."""
+        return self._get("made", path if path in self._about else OTHER, site=site)
+
+    def container(self, kind: str, site: Instr) -> Obj:
+        """A list, tuple, set or dict."""
+        return self._get("container", kind, site=site)
+
+    def partial(self, function: Obj, site: Instr) -> Obj:
+        """A function with arguments that are given already."""
+        return self._get("partial", parent=function, site=site)
+
+    def super_(self, info: ClassInfo, owner: Obj) -> Obj:
+        """``super()`` in a method of ``info`` for the object ``owner``."""
+        return self._get("super", ref=info, parent=owner)
+
+    def namespace(self, owner: Obj) -> Obj:
+        """The attributes of ``owner`` as a dict."""
+        return self._get("namespace", parent=owner)
+
+    def part(self, owner: Obj, name: str, path: str) -> Obj:
+        """The attribute ``name`` of something made outside the sources."""
+        depth, above = 0, owner
+        while above.kind == "part" and above.parent is not None:
+            depth, above = depth + 1, above.parent
+        if depth >= _DEEPEST:
+            return owner
+        full = f"{path}.{name}"
+        if full not in self._about and owner.kind not in ("container", "namespace"):
+            full = f"{OTHER}.{name}"
+        found = self._get("part", full, parent=owner)
+        owner.parts[name] = found
+        return found
+
+
+def element(key: object) -> str:
+    """The slot of an element at a constant key."""
+    return f"[{key!r}]"
