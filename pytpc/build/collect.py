@@ -1,4 +1,4 @@
-"""All static information of workspaces and build folders, without what is stale, merged."""
+"""Merges the static information of workspaces and build folders, leaving out what is stale."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _NOT_SOURCES = frozenset({".git", ".hg", ".svn", OWN_FOLDER})
 
 @dataclass(frozen=True, slots=True)
 class Collected:
-    """The merged static information, and the files that are not in it."""
+    """The merged static information, and the files that were left out."""
 
     static: StaticInfo
     dropped: tuple[Stale, ...]
@@ -96,11 +96,11 @@ def _read(
     Args:
         sources: as for ``collect_sources``.
         on_progress: the same.
-        required: whether a folder must have static information.
+        required: whether each folder must contain static information.
 
     Raises:
         InputError: a file is broken.
-        WorkspaceError: a folder is without.
+        WorkspaceError: a folder has none.
     """
     copies: dict[str, str] = {}
     files: list[UnitFile] = []
@@ -129,7 +129,7 @@ def _cmake_folders(sources: Iterable[Path]) -> set[Path]:
 
 
 def _left_out(folders: Iterable[Path], units: Iterable[LinkUnit]) -> list[LeftOut]:
-    """The link units of all build folders that no file is of, each once."""
+    """The link units of all build folders that have no file, each once."""
     known = names_of(units)
     found = {
         (unit.package, unit.link_unit): unit
@@ -199,7 +199,7 @@ def _build_bases(source: Path) -> list[Path]:
 
 
 def _is_gone(folder: str) -> bool:
-    """Whether a folder is not there; one that may not be looked at is."""
+    """Whether a folder is missing; one without permission to look counts as present."""
     try:
         Path(folder).stat()
     except (FileNotFoundError, NotADirectoryError):
@@ -217,7 +217,7 @@ def _built_targets(build_folder: Path) -> list[BuiltTarget] | None:
 
 
 def _content(artifact: Path | None) -> mmap.mmap | bytes | None:
-    """A program's or library's bytes, not read before they are looked at."""
+    """A program's or library's bytes, read on first use."""
     if artifact is None or not artifact.is_file():
         return None
     with artifact.open("rb") as stream:

@@ -1,8 +1,8 @@
-"""Packages that build with the user's compiler and not with TPC: these are left alone.
+"""Packages that build with the user's compiler but not with TPC.
 
-clang takes less than gcc here and there. Rather than end the build, such a package is configured
-anew without anything of TPC's, compiler included, and that is remembered in ``left-alone.json``
-until the user asks for another try.
+clang rejects some code that gcc accepts. Instead of failing the build, such a package is configured
+again without TPC and with the user's compiler. ``left-alone.json`` remembers it until the user asks
+for another try.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from pytpc.build.faults import first_error
 from pytpc.workspace.colcon import Bases, BuildError
 from pytpc.workspace.packages import Package
 
-# gcc brings its own OpenMP; that of clang is a package which clang does not need.
+# gcc comes with OpenMP; for clang it is a separate package.
 OPENMP_MEND = "clang's OpenMP may be what is missing: apt-get install libomp-19-dev"
 _OPENMP = re.compile(r"Could NOT find OpenMP|'omp\.h' file not found|unable to find library -lomp")
 _FILE = "left-alone.json"
@@ -27,14 +27,14 @@ _ASIDE = "set-aside"
 
 
 class LeftAlone:
-    """The packages of one build that are left alone, each with the reason.
+    """The packages of one build that are built without TPC, each with the reason.
 
     A package is first tried: its build folder is set aside. The try ends with ``keep`` or
     ``give_up``; one that was interrupted is undone when the next build begins.
     """
 
     def __init__(self, bases: Bases, packages: Sequence[Package], *, retry: bool = False) -> None:
-        """Read what earlier builds left alone of ``packages``.
+        """Read which of ``packages`` earlier builds built without TPC.
 
         Args:
             bases: of the build.
@@ -63,7 +63,7 @@ class LeftAlone:
         return [folder for name, folder in self._folders.items() if name in self.reasons]
 
     def can_try(self, error: BuildError) -> bool:
-        """Whether the package that failed was built with TPC."""
+        """Whether the failed package was built with TPC."""
         return error.package in self._folders and error.package not in self.reasons
 
     def begin(self, error: BuildError) -> None:
@@ -76,11 +76,11 @@ class LeftAlone:
         (self._bases.build / error.package).replace(aside)
 
     def keep(self) -> None:
-        """All that were tried build without TPC: remember that."""
+        """Every package that was tried builds without TPC: remember that."""
         self._keep(set(self._tried))
 
     def give_up(self, error: BuildError) -> None:
-        """One does not build without TPC, either: its build folder is as it was."""
+        """A package fails without TPC, too: restore its build folder."""
         self._keep(self._tried & error.finished)
         for name in sorted(self._tried):
             del self.reasons[name]
@@ -104,7 +104,8 @@ class LeftAlone:
             return {}
         data = parse_json(path)
         if not isinstance(data, dict) or not all(isinstance(why, str) for why in data.values()):
-            raise InputError("not a list of packages with reasons; it can be removed", path)
+            what = "not a list of packages with reasons; delete this file and build again"
+            raise InputError(what, path)
         return {name: why for name, why in data.items() if name in self._folders}
 
     def _save(self) -> None:
@@ -117,7 +118,7 @@ class LeftAlone:
 
 
 def _reason(error: BuildError) -> str:
-    """The first error in the output, with what clang lacks where gcc does not."""
+    """The first error in the output, with a hint where clang lacks what gcc has."""
     text = "\n".join(error.tail)
     why = first_error(text) if text else error.message
     if _OPENMP.search(text):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-# What a machine lacks, by the words in which it is said; the group is the name.
+# Messages that name something missing on this machine; the group is its name.
 _MISSING = tuple(
     re.compile(pattern)
     for pattern in (
@@ -39,9 +39,9 @@ _LONGEST = 300
 
 
 def missing_names(output: str) -> tuple[str, ...]:
-    """What the output says is not on this machine, each once, in the order of the output.
+    """What the output says is missing on this machine, each once, in the order of the output.
 
-    CMake also says what it would only have liked to find: nothing is taken where no error is.
+    CMake also names optional things it did not find: without an error nothing is reported.
     """
     lines = output.splitlines()
     names: dict[str, None] = {}
@@ -60,7 +60,7 @@ def missing_names(output: str) -> tuple[str, ...]:
 
 
 def first_error(output: str) -> str:
-    """The first thing in the output that reads as an error, on one line; else its last line."""
+    """The first error in the output as one line; without one, the last line."""
     lines = [line.rstrip() for line in output.splitlines()]
     for at, line in enumerate(lines):
         cmake = _CMAKE_ERROR.match(line)

@@ -29,7 +29,7 @@ _DECLARING = frozenset({"package.xml", "setup.cfg", "pyproject.toml", "CMakeList
 
 
 def digest_of(roots: Iterable[Path], rules: Rules, asked: Iterable[str]) -> str:
-    """A text that is another one when the analysis may give something else.
+    """A digest that changes when the result of the analysis may change.
 
     Args:
         roots: the folders of all packages that may be imported from.
@@ -58,12 +58,12 @@ def load_kept(path: Path, build_base: Path, digest: str) -> PythonUnits | None:
         units = tuple(_unit(build_base / package, *which) for package, *which in data["written"])
         return PythonUnits(units, tuple(LeftOut(*left_out) for left_out in data["left_out"]))
     except (OSError, InputError, KeyError, TypeError, ValueError):
-        # It was never written, or somebody changed it: everything is analysed again.
+        # Missing or edited: everything is analysed again.
         return None
 
 
 def _unit(folder: Path, name: str, digest: str) -> LinkUnit:
-    """A unit as it was written: what has not changed need not be checked again.
+    """A unit as it was written; unchanged files need no second check.
 
     Raises:
         OSError: the file is gone.
@@ -71,7 +71,7 @@ def _unit(folder: Path, name: str, digest: str) -> LinkUnit:
     """
     data = python_unit_file(folder, name).read_bytes()
     if hashlib.sha256(data).hexdigest() != digest:
-        raise ValueError("not as it was written")
+        raise ValueError("changed since it was written")
     return replace(LinkUnit.from_checked(json.loads(data)), build_folder=str(folder.absolute()))
 
 

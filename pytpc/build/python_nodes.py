@@ -1,6 +1,6 @@
-"""The Python nodes of a workspace that is built: analysed, written beside what C++ has, and read.
+"""Analyses the Python nodes of a workspace and writes them beside the link units of C++.
 
-``pytpc.build.python_units`` says how; this says which, and what of an earlier build still holds.
+``pytpc.build.python_units`` does the work; this decides which scripts, and reuses what still holds.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """The Python nodes of packages as link units: found, analysed, named, and kept in build folders.
 
-The room between ``pynodes``, which analyses one script, and what builds and collects.
+It stands between ``python_analysis``, which analyses one script, and build and collect.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ _PRODUCTS = frozenset({"build", "devel", "install", "log", "__pycache__", "node_
 
 @dataclass(frozen=True, slots=True)
 class Scripts:
-    """The scripts that are nodes, and those of which nobody can say it, with the reason."""
+    """The scripts that are nodes, and those that could not be classified, with the reason."""
 
     entries: tuple[Entry, ...]
     left_out: tuple[LeftOut, ...] = ()
@@ -121,7 +121,7 @@ def analyse_scripts(
         try:
             faults: list[InputError] = []
             unit = replace(analyse_entry(entry, rules, seconds, faults.append), script=script)
-            # A text of the source that no JSON can have would stop the whole build.
+            # Source text that JSON cannot hold must not stop the whole build.
             dump_json(unit.to_json())
         except InputError as error:
             left_out[_left_out(entry.package, script, error)] = None
@@ -134,7 +134,7 @@ def analyse_scripts(
 
 
 def analysis_files() -> list[Path]:
-    """The files that the analysis consists of, sorted: as they change, its results may."""
+    """The source files of the analysis, sorted: when they change, its results may change."""
     own = Path(pytpc.__file__).parent
     found = (path for end in ("*.py", "*.json") for path in (own / "python_analysis").rglob(end))
     return sorted([Path(__file__), *(own / name for name in _USED_BY_ANALYSIS), *found])

@@ -1,7 +1,7 @@
 """Which link units a build has, which of them were analysed, and why the others were not.
 
 CMake's file API says what is linked; ``tpc/targets.tsv``, which tpc.cmake leaves in the build
-folder, says what it left out and why; the objects and the file that was linked say the rest.
+folder, says what it left out and why; the object files and the linked file say the rest.
 """
 
 from __future__ import annotations
@@ -115,7 +115,7 @@ def left_out_units(build_folder: Path) -> list[LeftOut]:
         if unit is not None:
             reason = None if unit.static_info.is_file() else _why(unit, target)
         elif recorded is not None:
-            reason = "it was made in a part of the build that tpc.cmake does not see"
+            reason = "it was built by a part of the build that tpc.cmake does not see"
         elif not here.is_file():
             reason = "its package was configured without TPC"
         if reason is not None:
@@ -138,7 +138,7 @@ def stale_files(build_folder: Path, files: list[Path]) -> Iterator[Path]:
 
 
 def remark(unit: LinkUnit) -> str:
-    """What there is to say of an analysed unit: ``ok``, or why it has no comparisons."""
+    """The status of an analysed unit: ``ok``, or why it has no comparisons."""
     if unit.status != "ok":
         return "left as it was"
     counts = unit.counts
@@ -161,7 +161,7 @@ def _why(unit: Recorded, target: LinkTarget) -> str:
         data.startswith(_BITCODE) and b"ThinLTO" not in path.read_bytes()
         for path, data in zip(objects, beginnings, strict=True)
     ):
-        return "it was compiled for ThinLTO, which sees no link unit as a whole"
+        return "it was compiled for ThinLTO, which never sees a whole link unit"
     return (
         "the linker did not run the analysis, or its file was removed since; "
         f"remove {unit.artifact} and build again"

@@ -1,7 +1,7 @@
-"""Files of link units that describe nothing which is built any more.
+"""Files of link units that are no longer built.
 
 A target may have been renamed or removed, or linked again without TPC; its file stays behind, and
-its keys would be listed and never be reported.
+its keys would be listed but never reported.
 """
 
 from __future__ import annotations
@@ -93,7 +93,7 @@ def drop_without_sources(
         removed |= missing if missing != inside else set()
     kept = [file for file in files if file.unit.source_root not in removed]
     dropped = [
-        Stale(file, f"its sources, {file.unit.source_root}, are no more")
+        Stale(file, f"its sources, {file.unit.source_root}, no longer exist")
         for file in files
         if file.unit.source_root in removed
     ]
@@ -119,12 +119,12 @@ def drop_without_scripts(
         if script is None or not gone(script) or gone(file.unit.source_root):
             kept.append(file)
         else:
-            dropped.append(Stale(file, f"its script, {script}, is no more"))
+            dropped.append(Stale(file, f"its script, {script}, no longer exists"))
     return kept, dropped
 
 
 def drop_repeated(files: Iterable[UnitFile]) -> tuple[list[UnitFile], list[Stale]]:
-    """Of each link unit the file that was written last; of two of one time the first by path.
+    """The newest file of each link unit; of two equally old ones the first by path.
 
     A script and a target of one name are two.
     """
@@ -156,7 +156,7 @@ def _identity(unit: LinkUnit) -> tuple[str, str, str | None]:
 def _why_stale(file: UnitFile, targets: Sequence[BuiltTarget]) -> str | None:
     target = next((each for each in targets if each.name == file.unit.link_unit), None)
     if target is None:
-        return "its target is no more"
+        return "its target no longer exists"
     unit, content = file.unit, target.content
     keys = [found.key for found in unit.comparisons if found.type != "constant"]
     if content is None or len(keys) <= unit.counts.not_instrumented:

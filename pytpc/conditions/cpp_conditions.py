@@ -31,7 +31,7 @@ _HEADS = {
     CursorKind.DO_STMT: "do",
     CursorKind.CONDITIONAL_OPERATOR: "?:",
 }
-# What a comparison is joined into a larger one by; a cast has no kind of its own.
+# Operators that join comparisons into a larger condition; a cast has no kind of its own.
 _JOINING = frozenset(
     {
         CursorKind.BINARY_OPERATOR,
@@ -99,14 +99,14 @@ def libclang() -> bool:
 
 
 def precompile(arguments: Sequence[str], target: Path) -> bool:
-    """Precompile what nearly every file of a ROS package begins with, in C++.
+    """Precompile the headers that nearly every C++ file of a ROS package includes.
 
     Args:
         arguments: for clang; the files that ``target`` is used for must have the same.
         target: the file to be written, in a folder of its own.
 
     Returns:
-        False where that is not possible.
+        False if that is not possible.
     """
     header = str(target.with_suffix(".hpp"))
     as_header = ["c++-header" if argument == "c++" else argument for argument in arguments]
@@ -267,7 +267,7 @@ def _length(cursor: Cursor) -> int:
 
 
 def _joins(cursor: Cursor, part: Cursor) -> bool:
-    """Whether ``part``, which is meant, is meant as a part of ``cursor``."""
+    """Whether ``part`` is meant as a part of ``cursor``."""
     if cursor.kind == CursorKind.CALL_EXPR:
         # Classes have operators of their own. Of a call whose function is pointed at the outcome
         # is meant; what std::min and its kind compare inside has the place of their call, too.

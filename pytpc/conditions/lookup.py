@@ -1,4 +1,4 @@
-"""The conditions of many TPCs: each file parsed once, and not again while nothing has changed."""
+"""The conditions of many TPCs: each file is parsed once, and again only when something changed."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from pytpc.static.places import Tpc
 from pytpc.static.static_info import StaticInfo, python_unit_file
 
 _FORMAT = 1
-# How often progress is told while nothing is finished.
+# How often progress is reported while nothing is finished.
 _TICK_S = 1.0
 # A parsed file takes a quarter of a GiB.
 _AT_ONCE = 4
@@ -44,7 +44,7 @@ CHANGED = "the source file has changed since the build"
 NO_LIBCLANG = "libclang 19 is not on this machine (apt-get install libclang1-19)"
 NOT_FOUND = "clang finds no condition here"
 NOT_IN_PYTHON = "there is no condition here"
-NEWER = "the source file is newer than the build; of these lines only the comparison's is as built"
+NEWER = "the source file is newer than the build; only the line of the comparison is certain"
 WITHOUT_FLAGS = "parsed without the flags of the build"
 
 Place = tuple[int, int]
@@ -52,7 +52,7 @@ Place = tuple[int, int]
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """The condition of a TPC; without one, ``note`` says why only the line is known.
+    """The condition of a TPC; if there is none, ``note`` says why only the line is known.
 
     With one, ``note`` is empty, or says what makes it less than certain.
     """
@@ -288,7 +288,7 @@ def _keep(path: Path, job: _Job, parsed: Parsed) -> None:
     try:
         write_atomic(path, json.dumps(data, ensure_ascii=False).encode("utf-8", "replace"))
     except TpcError:
-        # A cache that cannot be written costs time next time, and nothing now.
+        # A cache that cannot be written costs time in the next run only.
         return
 
 

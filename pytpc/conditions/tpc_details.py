@@ -1,4 +1,4 @@
-"""All that is known about a TPC, for people: what ``show``, the page and SARIF say alike."""
+"""All that is known about a TPC, in the words that ``show``, the page and SARIF share."""
 
 from __future__ import annotations
 
@@ -131,7 +131,7 @@ def in_words(transform: Transform) -> str:
 
 
 def shown_default(default: Default, *, python: bool = False) -> str:
-    """A default as C++ has it, or Python; no default is said so."""
+    """A default as C++ or Python writes it, or a note that there is none."""
     if default is None:
         return "none in the source"
     if isinstance(default, bool):

@@ -33,8 +33,8 @@ KEY = KEYS[0].encode()
 
 
 def test_a_unit_without_a_target_is_stale() -> None:
-    assert reasons(unit(), BuiltTarget("other", KEY)) == ["its target is no more"]
-    assert reasons(failed_unit(), BuiltTarget("other", None)) == ["its target is no more"]
+    assert reasons(unit(), BuiltTarget("other", KEY)) == ["its target no longer exists"]
+    assert reasons(failed_unit(), BuiltTarget("other", None)) == ["its target no longer exists"]
 
 
 def test_a_program_with_none_of_the_keys_was_linked_without_tpc() -> None:
@@ -68,7 +68,7 @@ def test_what_was_built_of_a_package_that_was_removed_is_stale(tmp_path: Path) -
     found = collect_sources([tmp_path])
     assert [each.package for each in found.static.units] == ["face", "other"]
     assert [each.reason for each in found.dropped] == [
-        f"its sources, {tmp_path}/src/arm, are no more"
+        f"its sources, {tmp_path}/src/arm, no longer exist"
     ]
 
 
@@ -158,7 +158,7 @@ def test_the_targets_and_programs_of_a_real_answer_are_asked(tmp_path: Path) -> 
     assert [each.link_unit for each in found.static.units] == ["detector"]
     assert [(stale.file.unit.link_unit, stale.reason) for stale in found.dropped] == [
         ("empty", "it was linked again without TPC"),
-        ("gone", "its target is no more"),
+        ("gone", "its target no longer exists"),
         ("relinked", "it was linked again without TPC"),
     ]
 

@@ -307,7 +307,7 @@ def test_of_a_build_folder_what_is_written_there_counts(workspace: Path) -> None
     found = collect_sources([base])
     assert names(found.static) == ALL[1:]
     assert [one.reason for one in found.dropped] == [
-        f"its script, {workspace}/src/camera/camera/node.py, is no more"
+        f"its script, {workspace}/src/camera/camera/node.py, no longer exists"
     ]
 
 

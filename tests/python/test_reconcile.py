@@ -54,11 +54,11 @@ def test_each_unit_has_its_reason(tmp_path: Path) -> None:
     objects(tmp_path, "removed", FULL, NATIVE)
     removed = f"remove {tmp_path}/devel/removed and build again"
     assert reasons(tmp_path) == {
-        "hidden": "it was made in a part of the build that tpc.cmake does not see",
+        "hidden": "it was built by a part of the build that tpc.cmake does not see",
         "left": "it is a test",
         "native": "its objects are native code, not compiled with -flto",
         "removed": "the linker did not run the analysis, or its file was removed since; " + removed,
-        "thin": "it was compiled for ThinLTO, which sees no link unit as a whole",
+        "thin": "it was compiled for ThinLTO, which never sees a whole link unit",
     }
 
 

@@ -162,5 +162,5 @@ def test_what_has_no_target_any_more_is_stale(built: BuildResult, tmp_path: Path
     (base / "arm/tpc/old_node.json").write_text(text, encoding="utf-8")
     collected = collect_sources([base])
     assert [(each.file.unit.link_unit, each.reason) for each in collected.dropped] == [
-        ("old_node", "its target is no more")
+        ("old_node", "its target no longer exists")
     ]
