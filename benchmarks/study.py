@@ -17,7 +17,7 @@ from typing import Any
 from figures import figure
 
 from pytpc_evaluation.study.judge import POSITIONS_FILE
-from pytpc_evaluation.study.report.making import RESULTS_FILE, make_report
+from pytpc_evaluation.study.report.making import FIGURES_FILE, make_report
 from pytpc_evaluation.study.report.parts import SECOND_ROUND
 
 TOPIC = "study"
@@ -29,18 +29,18 @@ def main(words: Sequence[str] | None = None) -> None:
     """Print the figures."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--out", type=Path, default=_ROOT / "out" / "study")
-    parser.add_argument("--results", type=Path, default=_ROOT / "docs" / "study" / RESULTS_FILE)
+    parser.add_argument("--results", type=Path, default=_ROOT / "docs" / "study" / FIGURES_FILE)
     args = parser.parse_args(words)
     if (args.out / POSITIONS_FILE).is_file():
         print(f"# from the study in {args.out}", flush=True)
-        numbers = _numbers_of(args.out)
+        figures = _figures_of(args.out)
     elif args.results.is_file():
         print(f"# from the numbers of the page, {args.results}", flush=True)
-        numbers = json.loads(args.results.read_text())
+        figures = json.loads(args.results.read_text())
     else:
         print(f"# neither {args.out} nor {args.results} is there", flush=True)
         return
-    for one in numbers["figures"]:
+    for one in figures:
         if one["name"].endswith((f"-{HALF}", f"-{SECOND_ROUND.name}")):
             name = one["name"].removesuffix(f"-{HALF}")
             figure(
@@ -48,10 +48,12 @@ def main(words: Sequence[str] | None = None) -> None:
             )
 
 
-def _numbers_of(study: Path) -> dict[str, Any]:
-    """The numbers of a study, whose page is not kept."""
+def _figures_of(study: Path) -> list[dict[str, Any]]:
+    """The figures of a study, whose page is not kept."""
     with tempfile.TemporaryDirectory() as folder:
-        return make_report(study, Path(folder) / "study.md", [HALF], draw=False).numbers
+        made = make_report(study, Path(folder) / "study.md", [HALF], draw=False)
+    figures: list[dict[str, Any]] = made.numbers["figures"]
+    return figures
 
 
 if __name__ == "__main__":

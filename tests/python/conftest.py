@@ -56,5 +56,6 @@ def made_study(study: Path, tmp_path_factory: pytest.TempPathFactory) -> Made:
 
 @pytest.fixture(scope="session")
 def study_text(made_study: Made) -> str:
-    """The text of its page."""
-    return made_study.page.read_text()
+    """The text of its page, and behind it that of the page with all tables."""
+    tables = made_study.page.parent / "study/tables.md"
+    return made_study.page.read_text() + tables.read_text()

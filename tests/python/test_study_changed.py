@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 
 import pytest
 from mission_samples import ns
@@ -51,7 +52,7 @@ def test_the_changes_on_the_page(own_study, tmp_path):
         treatment = json.loads((folder / "treatment.json").read_text())
         (folder / "treatment.json").write_text(json.dumps({**treatment, "node": NODE}))
     made = make_report(own_study, tmp_path / "study.md", draw=False)
-    text = made.page.read_text()
+    text = re.sub(r"\n +", " ", made.page.read_text())
     assert row_of(text, "How large changes are", "alpha") == [
         "2", "0.69", "2", "33", "1", "0.47", "1.6", "100"
     ]  # fmt: skip

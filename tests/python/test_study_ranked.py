@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 from collections import Counter
 from dataclasses import asdict
@@ -237,7 +238,9 @@ def test_each_judging_of_what_is_held_back_is_written_down(own, tmp_path, monkey
     times = [datetime.fromisoformat(one.time) for one in found]
     assert times == sorted(times)
     assert {time.utcoffset() for time in times} == {timedelta(0)}
-    text = make_report(own, tmp_path / "study.md", draw=False).page.read_text()
+    text = re.sub(
+        r"\n +", " ", make_report(own, tmp_path / "study.md", draw=False).page.read_text()
+    )
     said = f"judged 3 times, from {found[0].time} to {found[2].time}, by 2 states of the methods."
     assert said in text.replace("\\", "")
     tuning = make_report(own, tmp_path / "study.md", ["tuning"], draw=False).page.read_text()

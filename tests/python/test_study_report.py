@@ -48,7 +48,7 @@ def benchmark():
 
 def test_the_figures_of_the_benchmark(study, made_study, tmp_path, capsys, monkeypatch):
     monkeypatch.syspath_prepend(str(ROOT / "benchmarks"))
-    results = made_study.page.parent / "study/results.json"
+    results = made_study.page.parent / "study/figures.json"
     benchmark().main(["--out", str(tmp_path / "none"), "--results", str(results)])
     committed = capsys.readouterr().out.splitlines()
     benchmark().main(["--out", str(study), "--results", str(tmp_path / "none.json")])
@@ -83,7 +83,8 @@ def test_without_results_the_rest_is_there(own_study, tmp_path):
     assert "Nothing has been flown again as suggested yet." in made.troubles
     assert "- Nothing has been ranked yet." in text
     assert "No result can be judged yet." in text
-    assert row_of(text, "alpha: ranks at marks", "type1_low")[0] == "1"
+    tables = (tmp_path / "study/tables.md").read_text()
+    assert row_of(tables, "alpha: ranks at marks", "type1_low")[0] == "1"
     assert made.numbers["figures"] == []
 
 
@@ -140,7 +141,8 @@ def test_a_mission_that_is_not_planned_is_in_no_half(own_study, tmp_path):
     treatment = {"type": "type1", "parameter": "~low", "node": "/node", "old": 8, "new": 5}
     fly(own_study, ("alpha", "type1_new", 1), treatment, [])
     made = make_report(own_study, tmp_path / "study.md", draw=False)
-    assert row_of(made.page.read_text(), "The treatments", "alpha", "type1_new")[1] == "unknown"
+    tables = (tmp_path / "study/tables.md").read_text()
+    assert row_of(tables, "The treatments", "alpha", "type1_new")[1] == "unknown"
     assert "type1_new" not in json.dumps(made.numbers["tables"]["repairs-all"])
 
 

@@ -8,6 +8,11 @@ from pathlib import Path
 import click
 
 from pytpc.cli.options import PATH
+from pytpc_evaluation.study.plan import HALVES, Half
+
+CHOSEN: dict[str, tuple[Half, ...]] = {"tuning": ("tuning",), "held-back": ("held-back",)}
+CHOSEN["both"] = HALVES
+"""The halves that ``--half`` stands for."""
 
 STUDY = click.option(
     "--out",

@@ -10,7 +10,7 @@ import click
 from pytpc.base.wording import many, plain
 from pytpc.cli.console import progress, warn
 from pytpc.cli.options import JSON, PATH
-from pytpc_evaluation.commands.study_options import RANK_AGAIN, RANK_JOBS, STUDY
+from pytpc_evaluation.commands.study_options import CHOSEN, RANK_AGAIN, RANK_JOBS, STUDY
 
 
 @click.command("report")
@@ -25,7 +25,7 @@ from pytpc_evaluation.commands.study_options import RANK_AGAIN, RANK_JOBS, STUDY
 )
 @click.option(
     "--half",
-    type=click.Choice(["tuning", "held-back", "both"]),
+    type=click.Choice(list(CHOSEN)),
     default="both",
     show_default=True,
     help="Whose results are shown.",
@@ -42,14 +42,13 @@ def report_command(
     are not as they were then. What is missing in the folder is said on the page.
     """
     # matplotlib takes half a second to import, which other commands need not wait for.
-    from pytpc_evaluation.study.report.folder import HALVES  # noqa: PLC0415
     from pytpc_evaluation.study.report.making import json_text, make_report  # noqa: PLC0415
 
     with ExitStack() as stack:
         made = make_report(
             out,
             docs,
-            [one for one in HALVES if half in {one, "both"}],
+            CHOSEN[half],
             lambda what: stack.enter_context(progress(what)),
             rank="again" if again else "missing",
             jobs=jobs,

@@ -7,15 +7,14 @@ from pathlib import Path
 import click
 
 from pytpc.cli.console import progress
-from pytpc_evaluation.commands.study_options import RANK_AGAIN, RANK_JOBS, STUDY
-from pytpc_evaluation.commands.study_suggestions import HALVES
+from pytpc_evaluation.commands.study_options import CHOSEN, RANK_AGAIN, RANK_JOBS, STUDY
 
 
 @click.command("sensitivity")
 @STUDY
 @click.option(
     "--half",
-    type=click.Choice(list(HALVES)),
+    type=click.Choice(list(CHOSEN)),
     default="tuning",
     show_default=True,
     help="Whose missions are ranked.",
@@ -31,5 +30,5 @@ def sensitivity_command(*, out: Path, half: str, again: bool, jobs: int) -> None
     from pytpc_evaluation.study.report.sensitivity import SENSITIVITY_FILE, rank_by_others  # noqa: PLC0415
 
     with progress("ranking by other people's marks") as advance:
-        rank_by_others(out, HALVES[half], advance, again=again, jobs=jobs)
+        rank_by_others(out, CHOSEN[half], advance, again=again, jobs=jobs)
     click.echo(f"{out / SENSITIVITY_FILE}", err=True)

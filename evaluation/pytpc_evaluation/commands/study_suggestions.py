@@ -12,24 +12,18 @@ from rich.text import Text
 
 from pytpc.base.wording import many, plain
 from pytpc.cli.console import console, progress, warn
-from pytpc.cli.options import JSON, PATH
+from pytpc.cli.options import JSON
+from pytpc_evaluation.commands.study_options import CHOSEN, STUDY
 from pytpc_evaluation.study.methods import METHODS
-from pytpc_evaluation.study.plan import Half
 from pytpc_evaluation.study.resume import alone_with_results
 from pytpc_evaluation.study.suggested import WANTED_FILE
 from pytpc_evaluation.study.suggestion_chains import VARIANTS, Chain, shares
 from pytpc_evaluation.study.suggestions import next_round
 
-HALVES: dict[str, tuple[Half, ...]] = {
-    "tuning": ("tuning",),
-    "held-back": ("held-back",),
-    "both": ("tuning", "held-back"),
-}
-
 
 @click.command("suggestions")
-@click.option("--out", type=PATH, default=Path("out") / "study", show_default=True)
-@click.option("--half", type=click.Choice(list(HALVES)), default="both", show_default=True)
+@STUDY
+@click.option("--half", type=click.Choice(list(CHOSEN)), default="both", show_default=True)
 @click.option(
     "--variant",
     "variants",
@@ -62,9 +56,9 @@ def suggestions_command(
     ranking = None if method is None else METHODS[method]
     with alone_with_results(out), progress("working out suggestions") as advance:
         chains = next_round(
-            out, HALVES[half], ranking, variants or tuple(VARIANTS), advance, again=again
+            out, CHOSEN[half], ranking, variants or tuple(VARIANTS), advance, again=again
         )
-    mine = [chain for chain in chains if chain.half in HALVES[half]]
+    mine = [chain for chain in chains if chain.half in CHOSEN[half]]
     for chain in mine:
         for one in chain.tries:
             if one.failed:

@@ -8,12 +8,12 @@ treatments. Two seeds of one treatment are not two findings. Where all treatment
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+from scipy.special import bdtri
 
 DRAWS = 2000
 BINS = 5
@@ -84,8 +84,8 @@ def share(values: npt.ArrayLike, units: Sequence[object]) -> Estimate:
     """
     found = estimate(values, units)
     if found.treatments and found.value in (0.0, 1.0):
-        end = _TAIL ** (1 / found.treatments)
-        low, high = (end, 1.0) if found.value else (0.0, 1.0 - end)
+        end = upper_limit(0, found.treatments)
+        low, high = (1.0 - end, 1.0) if found.value else (0.0, end)
         return found._replace(low=low, high=high)
     return found
 
@@ -99,15 +99,7 @@ def upper_limit(count: int, of: int) -> float:
         count: how many were seen, at most ``of``.
         of: how many could be; at least one.
     """
-    if count == of:
-        return 1.0
-    low, high = count / of, 1.0
-    # 60 halvings are more than a double can tell apart.
-    for _ in range(60):
-        middle = (low + high) / 2
-        few = sum(math.comb(of, k) * middle**k * (1 - middle) ** (of - k) for k in range(count + 1))
-        low, high = (middle, high) if few > _TAIL else (low, middle)
-    return low
+    return 1.0 if count == of else float(bdtri(count, of, _TAIL))
 
 
 class Bin(NamedTuple):

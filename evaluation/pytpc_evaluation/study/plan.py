@@ -22,6 +22,7 @@ from pytpc_evaluation.study.changes import drawn_changes, harmless_changes
 from pytpc_evaluation.treatment import Treatment
 
 Half = Literal["tuning", "held-back"]
+HALVES: tuple[Half, ...] = ("held-back", "tuning")
 Kind = Literal["mission", "reference", "suggested"]
 
 SEEDS = (1, 2)

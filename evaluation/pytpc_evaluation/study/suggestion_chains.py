@@ -15,6 +15,7 @@ import numpy as np
 from pytpc.diagnosis.question import EVERY_SOURCE, Source
 from pytpc.static.parameters import same_parameter
 from pytpc_evaluation.study.listed import read_list
+from pytpc_evaluation.study.plan import Half
 
 CHAINS_FILE = Path("results") / "suggestion-chains.json"
 HEADLINE = "lasting"
@@ -77,7 +78,7 @@ class Chain:
     system: str
     treatment: str
     type: str
-    half: str
+    half: Half
     seed: int
     variant: str
     old: float

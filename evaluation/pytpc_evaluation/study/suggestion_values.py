@@ -18,7 +18,6 @@ from pytpc.static.parameters import DYNAMIC, same_parameter
 from pytpc.static.static_info import StaticInfo
 from pytpc_evaluation.study.data import load_mission
 from pytpc_evaluation.study.methods.ours import tpc_reference
-from pytpc_evaluation.study.plan import Half
 from pytpc_evaluation.study.suggestion_chains import (
     RANKED,
     RANKED_REFERENCE,
@@ -27,8 +26,6 @@ from pytpc_evaluation.study.suggestion_chains import (
     Chain,
     Try,
 )
-
-_HALVES: dict[str, Half] = {"tuning": "tuning", "held-back": "held-back"}
 
 
 def next_try(chain: Chain, out: Path) -> Try:
@@ -73,7 +70,7 @@ def _ranked(chain: Chain, out: Path) -> Try:
     It is the first of the ranking `tpc_reference` by the marks as they were said, with the value
     that `pytpc suggest` and `pytpc rank` lead with for it.
     """
-    mission = load_mission(out, out / "missions" / chain.mission, _HALVES[chain.half])
+    mission = load_mission(out, out / "missions" / chain.mission, chain.half)
     case = mission.case("confused")
     if not case.recording.marks:
         return Try("", None, None, None, reason="nobody set a mark")

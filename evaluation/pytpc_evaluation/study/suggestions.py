@@ -9,14 +9,15 @@ asks for next, and writes
   to be flown;
 - ``results/suggestion-chains.json``: how far each chain is.
 
-A chain is one mission and one variant. ``smallest`` is SPEC 8's value; ``lasting`` has what the log
-alone says, again from the log of each flight that did not help; ``with-default`` may take the
-source's default, too (in these robots it is the value before the treatment, so that this flatters),
-and ``with-reference`` a clean run's. They are told the changed parameter and the right types of the
-marks, of all users. ``suspects`` is told the types: it tries the first of a ranking in turn, each
-with what the log alone says. ``ranked`` is told nothing: the first of the ranking beside a clean
-run, by the marks as they were said, with what the log alone says; ``ranked-reference`` is that with
-the clean run's value. What was flown for one chain counts for all that want the same.
+A chain is one mission and one variant. ``smallest`` is the thesis's value. ``lasting`` has what the
+log alone says, and tries again from the log of each flight that did not help. ``with-default`` may
+also take the default in the source (in these robots it is the value before the treatment, which
+flatters), and ``with-reference`` a clean run's value. These are told the changed parameter and the
+right types of the marks, of all users. ``suspects`` is told the types: it tries the first of a
+ranking in turn, each with what the log alone says. ``ranked`` is told nothing: it takes the first
+of the ranking beside a clean run, by the marks as they were said, with what the log alone says;
+``ranked-reference`` is the same with the clean run's value. What was flown for one chain counts for
+all that want the same.
 """
 
 from __future__ import annotations

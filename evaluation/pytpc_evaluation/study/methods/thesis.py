@@ -1,4 +1,4 @@
-"""The thesis's ranking (SPEC 7), joined over the marks as its table 6.16 does: by the mean rank.
+"""The thesis's ranking, joined over the marks as its table 6.16 does: by the mean rank.
 
 A parameter without a score at a mark has rank 0 there. Marks without a type are ranked by both.
 """

@@ -29,11 +29,9 @@ from pytpc_evaluation.study.dataset import (
     STUDY_FILE,
     load_causes,
 )
-from pytpc_evaluation.study.plan import Half
 from pytpc_evaluation.survey.source_lines import count_lines
 from pytpc_evaluation.treatment import Treatment
 
-HALVES: tuple[Half, ...] = ("held-back", "tuning")
 UNKNOWN = "unknown"
 _SEED = "seed-"
 
@@ -46,7 +44,7 @@ class Flight:
 
     ``changes`` are the treatment's own and the harmless ones.
 
-    The recording's own marks have the types that were right to give. ``half`` is of ``HALVES``, or
+    The recording's own marks have the types that were right to give. ``half`` is a ``Half``, or
     ``UNKNOWN``. ``strayed``: the first error that was seen is not of the treatment's type, so that
     it may be one of the flight's own and not the treatment's.
     """

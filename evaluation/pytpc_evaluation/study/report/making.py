@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Literal, TypeVar
 
@@ -13,7 +13,7 @@ from pytpc.base.errors import InputError, TpcError
 from pytpc.base.tables import Table, as_csv, as_json
 from pytpc_evaluation.study.data import LABELS
 from pytpc_evaluation.study.judge import POSITIONS_FILE
-from pytpc_evaluation.study.plan import Half
+from pytpc_evaluation.study.plan import HALVES, Half
 from pytpc_evaluation.study.report import original as thesis_tables
 from pytpc_evaluation.study.report.changed import Changed, changed_in, changes_table
 from pytpc_evaluation.study.report.confidence import (
@@ -24,18 +24,19 @@ from pytpc_evaluation.study.report.confidence import (
     reliability_table,
 )
 from pytpc_evaluation.study.report.drawings import Advance, Drawing, draw_results, draw_systems
-from pytpc_evaluation.study.report.folder import HALVES, Flight, Study, load_study, told
+from pytpc_evaluation.study.report.folder import Flight, Study, load_study, told
 from pytpc_evaluation.study.report.headline import Headline, headlines
 from pytpc_evaluation.study.report.judged import (
     HELD_BACK,
     JUDGED_FILE,
+    Judging,
     load_judgings,
     told_judgings,
 )
 from pytpc_evaluation.study.report.judging import rank_missions
 from pytpc_evaluation.study.report.original import Original
 from pytpc_evaluation.study.report.other_people import others_table, parts_with_others
-from pytpc_evaluation.study.report.page import BESIDE, IMAGES, Contents, page
+from pytpc_evaluation.study.report.page import BESIDE, IMAGES, Contents, page, tables_page
 from pytpc_evaluation.study.report.parts import Part, parts_of
 from pytpc_evaluation.study.report.positions import Position, read_positions
 from pytpc_evaluation.study.report.ranked import (
@@ -61,8 +62,9 @@ from pytpc_evaluation.study.suggestion_chains import CHAINS_FILE, Chain, load_ch
 from pytpc_evaluation.study.suggestions import HEADLINE_FILE
 
 RESULTS_FILE = "results.json"
-_NOT_HELPED_FILE = "tried.md"
-_DISCUSSION_FILE = "discussion.md"
+FIGURES_FILE = "figures.json"
+"""What the repository keeps of ``RESULTS_FILE``."""
+_TABLES_PAGE = "tables.md"
 _SCHEMA = 1
 
 Row = TypeVar("Row", Position, Repair, Chain)
@@ -93,7 +95,7 @@ def make_report(
     Args:
         folder: the study's.
         target: the page. Its figures go to ``images/study`` beside it, its tables and the numbers
-            to ``study``, where the texts that people wrote are looked for.
+            to ``study``.
         halves: the halves whose results are shown; others are not even ranked.
         on_progress: called with what begins, gives what is called with (done, all).
         rank: let the methods rank the missions that are not ranked yet, or all of ``halves`` again.
@@ -127,7 +129,6 @@ def make_report(
         troubles += [trouble.replace(f"{folder}/", "") for trouble in undrawn]
     changed = changed_in(study.systems, progress("replaying what was changed"))
     tables, full = _tables(study, originals, results, changed)
-    beside = target.parent / BESIDE
     contents = Contents(
         changed=changed,
         rounds=rounds_of(study.systems),
@@ -141,14 +142,14 @@ def make_report(
         headlines=_headlines(results),
         troubles=troubles,
         remarks=[remark for system in study.systems for remark in system.remarks],
-        judged=results.judged,
-        tried=_text(beside / _NOT_HELPED_FILE),
-        discussion=_text(beside / _DISCUSSION_FILE),
+        judged=told_judgings(results.judged),
     )
-    return _write(contents, full, target)
+    return _write(contents, full, results.judged, target)
 
 
-def _write(contents: Contents, full: Mapping[str, Table], target: Path) -> Made:
+def _write(
+    contents: Contents, full: Mapping[str, Table], judged: Sequence[Judging], target: Path
+) -> Made:
     """Write the page and what stands beside it, but its figures, which are drawn already."""
     numbers = {
         "schema": _SCHEMA,
@@ -161,8 +162,14 @@ def _write(contents: Contents, full: Mapping[str, Table], target: Path) -> Made:
     for name, table in full.items():
         written.append(beside / f"{name}.csv")
         write_atomic(written[-1], as_csv(table).encode())
-    written.append(beside / RESULTS_FILE)
-    write_atomic(written[-1], json_text(numbers).encode())
+    for name, text in (
+        (RESULTS_FILE, json_text(numbers)),
+        (FIGURES_FILE, _listed(numbers["figures"])),
+        (JUDGED_FILE.name, _listed([asdict(one) for one in judged])),
+        (_TABLES_PAGE, tables_page(contents)),
+    ):
+        written.append(beside / name)
+        write_atomic(written[-1], text.encode())
     write_atomic(target, page(contents).encode())
     return Made(target, tuple(written), numbers, tuple(contents.troubles))
 
@@ -171,7 +178,7 @@ def _write(contents: Contents, full: Mapping[str, Table], target: Path) -> Made:
 class _Results:
     """What is shown of the results: that of ``parts``, with the missions ``flights``.
 
-    ``judged`` says how often the half that is held back was judged; empty if it is not shown.
+    ``judged`` is when the half that is held back was judged; empty if it is not shown.
     ``others`` are verdicts by other people's marks, of all halves; there may be none.
     """
 
@@ -181,7 +188,7 @@ class _Results:
     others: Sequence[Position]
     repairs: Sequence[Repair]
     chains: Sequence[Chain]
-    judged: str
+    judged: Sequence[Judging]
 
 
 def _read_results(
@@ -203,16 +210,16 @@ def _read_results(
         others=_others(folder, halves, troubles),
         repairs=repairs,
         chains=_results(folder / CHAINS_FILE, load_chains, troubles, "asked for suggestions"),
-        judged=_judged(folder, troubles) if HELD_BACK in halves else "",
+        judged=_judged(folder, troubles) if HELD_BACK in halves else (),
     )
 
 
-def _judged(folder: Path, troubles: list[str]) -> str:
+def _judged(folder: Path, troubles: list[str]) -> Sequence[Judging]:
     try:
-        return told_judgings(load_judgings(folder))
+        return load_judgings(folder)
     except InputError as error:
         troubles.append(f"{JUDGED_FILE.name} is left out: {error.message}.")
-        return ""
+        return ()
 
 
 def _headlines(results: _Results) -> list[Headline]:
@@ -226,6 +233,11 @@ def _headlines(results: _Results) -> list[Headline]:
             part,
         )
     ]
+
+
+def _listed(rows: Sequence[object]) -> str:
+    """A list as JSON, one object a line: what changes shows in a diff."""
+    return "[\n" + ",\n".join(json.dumps(row, ensure_ascii=False) for row in rows) + "\n]\n"
 
 
 def json_text(numbers: object) -> str:
@@ -277,6 +289,7 @@ def _tables(
         tables[f"{one.name}-runtime-short"] = thesis_tables.runtime_short(one.runtime)
         tables[f"{one.name}-found-compared"] = thesis_tables.found_compared(one)
         full.update({f"{one.name}-{table.label}": table for table in one.tables()})
+    full.update({label: tables[label] for label in map("positions-{}".format, LABELS)})
     return tables, full
 
 
@@ -308,10 +321,3 @@ def _others(folder: Path, halves: Sequence[Half], troubles: list[str]) -> list[P
     if not current:
         troubles.append("Rankings by other people's marks are out of date: `study sensitivity`.")
     return rows
-
-
-def _text(path: Path) -> str:
-    try:
-        return path.read_text(encoding="utf-8")
-    except FileNotFoundError:
-        return ""

@@ -100,7 +100,7 @@ def runtime_short(found: RuntimeStatistics) -> Table:
 
 
 def runtime_compared(originals: Sequence[Original]) -> Table:
-    """The figures of SPEC 11 that table 6.12 gives, next to the thesis's."""
+    """What table 6.12 gives of docs/reference/thesis-figures.md, beside the thesis's figures."""
     columns = [Column(one.name, 2) for one in originals]
     columns += [Column("thesis: image capture", 2), Column("thesis: three systems", 2)]
     values = [runtime_figures(one.runtime) for one in originals]

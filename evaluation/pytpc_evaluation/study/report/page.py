@@ -1,8 +1,9 @@
-"""docs/study.md from its template: nothing is worked out here."""
+"""docs/study.md and docs/study/tables.md from their templates: nothing is worked out here."""
 
 from __future__ import annotations
 
 import re
+import textwrap
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -12,6 +13,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 from pytpc.base.tables import Table, as_markdown, markdown
 from pytpc_evaluation.study.metrics import CONFIDENT, DRAWS
 from pytpc_evaluation.study.report.changed import Changed
+from pytpc_evaluation.study.report.conclusion import conclusion
 from pytpc_evaluation.study.report.confidence import SURE_METHODS
 from pytpc_evaluation.study.report.drawings import Drawing
 from pytpc_evaluation.study.report.headline import TOP, Headline
@@ -24,7 +26,8 @@ IMAGES = "images/study"
 BESIDE = "study"
 """Where figures and tables are, from the page."""
 
-_TEMPLATE = "study.md.j2"
+_LONGEST_LINE = 120
+_PREFIX = re.compile(r" *(?:\d+\. |- )?")
 _NOTHING = "There is nothing for this table yet."
 _GAPS = re.compile(r"\n{3,}")
 
@@ -36,7 +39,6 @@ class Contents:
     ``rounds`` are counts of treatments with a changed parameter, see `rounds_of`.
 
     ``judged`` is how often the half that is held back was judged, empty where that is not known.
-    ``tried`` and ``discussion`` are Markdown that people wrote, empty where nobody did.
     """
 
     systems: Sequence[str]
@@ -52,32 +54,39 @@ class Contents:
     troubles: Sequence[str]
     remarks: Sequence[str]
     judged: str
-    tried: str
-    discussion: str
 
 
 def page(contents: Contents) -> str:
     """The page as Markdown, the same for the same contents."""
+    return _made("study.md.j2", contents)
 
+
+def tables_page(contents: Contents) -> str:
+    """The page with every table and figure, as Markdown; it is beside the tables, in ``BESIDE``."""
+    return _made("tables.md.j2", contents)
+
+
+def _made(template: str, contents: Contents) -> str:
     def table(label: str) -> str:
         found = contents.tables.get(label)
         if found is None or not (found.rows or found.summary):
             return _NOTHING
         return as_markdown(found).strip()
 
-    def drawn(beginning: str) -> str:
-        return _images(one for one in contents.drawings if one.file.startswith(beginning))
+    def drawn(beginning: str, folder: str) -> str:
+        found = (one for one in contents.drawings if one.file.startswith(beginning))
+        return _images(found, folder)
 
-    def missions_of(system: str) -> str:
+    def missions_of(system: str, folder: str) -> str:
         own = (one for one in contents.drawings if one.system == system)
-        return _images(one for one in own if one.file != f"{system}-runtime.png")
+        return _images((one for one in own if one.file != f"{system}-runtime.png"), folder)
 
-    text = _template().render(
+    text = _template(template).render(
         vars(contents),
+        conclusion=conclusion(contents.tables),
         table=table,
         drawn=drawn,
         missions_of=missions_of,
-        beside=BESIDE,
         draws=DRAWS,
         near=f"{NEAR:g}",
         confident=f"{CONFIDENT:g}",
@@ -86,18 +95,37 @@ def page(contents: Contents) -> str:
         top=TOP,
         sure_methods=SURE_METHODS,
     )
-    return _GAPS.sub("\n\n", text).strip() + "\n"
+    return wrapped(_GAPS.sub("\n\n", text).strip()) + "\n"
 
 
-def _images(drawings: Iterable[Drawing]) -> str:
+def wrapped(text: str) -> str:
+    """Markdown whose prose has lines of at most 120 characters; tables and links stay whole."""
+    lines: list[str] = []
+    for line in text.split("\n"):
+        if len(line) <= _LONGEST_LINE or line.startswith(("|", "!", "#")):
+            lines.append(line)
+            continue
+        beginning = _PREFIX.match(line)
+        indent = " " * (0 if beginning is None else beginning.end())
+        lines += textwrap.wrap(
+            line,
+            _LONGEST_LINE,
+            subsequent_indent=indent,
+            break_long_words=False,
+            break_on_hyphens=False,
+        )
+    return "\n".join(lines)
+
+
+def _images(drawings: Iterable[Drawing], folder: str) -> str:
     return "\n\n".join(
-        f"![{markdown(one.caption)}]({IMAGES}/{one.file})\n\n*{markdown(one.caption)}*"
+        f"![{markdown(one.caption)}]({folder}/{one.file})\n\n*{markdown(one.caption)}*"
         for one in drawings
     )
 
 
 @cache
-def _template() -> Template:
+def _template(name: str) -> Template:
     environment = Environment(
         loader=PackageLoader(__package__, "templates"),
         trim_blocks=True,
@@ -105,4 +133,4 @@ def _template() -> Template:
         undefined=StrictUndefined,
     )
     environment.filters["markdown"] = markdown
-    return environment.get_template(_TEMPLATE)
+    return environment.get_template(name)

@@ -56,7 +56,7 @@ class Position(Judged):
 
     @property
     def rank(self) -> float:
-        """1 for the first, and 1/n for the last of n (SPEC 7)."""
+        """1 for the first, and 1/n for the last of n (docs/reference/scores.md#rank)."""
         return 1.0 - (self.place - 1.0) / self.parameters if self.parameters else 0.0
 
 

@@ -22,11 +22,12 @@ BESIDE_CLEAN = "tpc+reference"
 BASELINE = "thesis"
 CHANCE = "random"
 CHANCE_OF_DIFFERENT = "differs-at-random"
+TURNED = "turned-decisions"
 METHODS = (OURS, BESIDE_CLEAN, "tpc+changes", BASELINE, "thesis-doubt", "importance",
-           "turned-decisions", "largest-change", "recent-change", CHANCE_OF_DIFFERENT,
+           TURNED, "largest-change", "recent-change", CHANCE_OF_DIFFERENT,
            CHANCE)  # fmt: skip
 TARGETS: Mapping[str, float] = {"typed": 0.90, "untyped": 0.80, "confused": 0.80}
-"""The share of treatments with the changed parameter in the top 3 (the issue's targets)."""
+"""The share of treatments with the changed parameter in the top 3 that was aimed at."""
 TARGET_PLACES = 3
 OPEN = "interval holds the target"
 """What is said of a verdict that other treatments might have turned."""

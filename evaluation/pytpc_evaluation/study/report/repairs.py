@@ -22,7 +22,7 @@ from pytpc_evaluation.study.report.ranked import percent, verdict_of
 from pytpc_evaluation.study.suggestion_chains import HEADLINE, MOST_TRIES, VARIANTS, Chain, outcomes
 
 TARGET = 0.80
-"""The share of treatments in which the error is to be gone (the issue's target)."""
+"""The share of treatments in which the error is to be gone."""
 
 _MISSION = ("system", "treatment", "seed")
 _COLUMNS = (*_MISSION, "parameter", "value", "gone", "new", "failure")

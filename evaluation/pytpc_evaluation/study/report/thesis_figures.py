@@ -1,7 +1,7 @@
 """The thesis's numbers that the page compares with, as printed there, by table.
 
 Tables 6.12 to 6.16 are of its image capture missions alone; ``RANGES`` are over its three systems
-(chapters 6.3 to 6.6, as SPEC 11 has them).
+(chapters 6.3 to 6.6; docs/reference/thesis-figures.md).
 """
 
 from __future__ import annotations
