@@ -3,7 +3,7 @@
 from typing import Any
 
 from pytpc_evaluation.survey.source_lines import LineCount, SourceLines
-from pytpc_evaluation.survey.survey import Build, Found, NotBuilt, TreeResult
+from pytpc_evaluation.survey.trees import Build, Found, NotBuilt, TreeResult
 
 BAD = NotBuilt("bad", "CMake: CMakeLists.txt:3: Could not find it", ("Eigen3",))
 AFTER = NotBuilt("after", "skipped: what it needs does not build")

@@ -10,8 +10,8 @@ from survey_samples import BAD, build, found, result
 
 from pytpc.cli.main import main
 from pytpc_evaluation.commands import survey_commands
-from pytpc_evaluation.survey.survey import TreeResult
-from pytpc_evaluation.survey.survey_run import Options, Step
+from pytpc_evaluation.survey.surveying import Options, Step
+from pytpc_evaluation.survey.trees import TreeResult
 
 RESULTS = [result("arm", 10.0, 12.5, found=found(4)), result("leg", 4.0, build(5.0, BAD))]
 

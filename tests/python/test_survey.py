@@ -12,7 +12,8 @@ from survey_samples import AFTER, BAD, build, found, result
 from pytpc.base.errors import InputError
 from pytpc.base.tables import statistics
 from pytpc.static.static_info import LinkUnit
-from pytpc_evaluation.survey.survey import (
+from pytpc_evaluation.survey.static_tables import tables
+from pytpc_evaluation.survey.trees import (
     Tree,
     TreePackage,
     TreeResult,
@@ -20,7 +21,6 @@ from pytpc_evaluation.survey.survey import (
     found_in,
     needed_trees,
 )
-from pytpc_evaluation.survey.survey_rows import tables
 
 
 def tree(name: str, **packages: str) -> Tree:

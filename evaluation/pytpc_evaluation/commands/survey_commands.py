@@ -19,10 +19,10 @@ from pytpc.base.checked_json import dump_json
 from pytpc.base.errors import WorkspaceError
 from pytpc.base.tables import Table
 from pytpc.base.wording import many, plain
-from pytpc_evaluation.survey.survey import TreeResult
-from pytpc_evaluation.survey.survey_rows import tables
-from pytpc_evaluation.survey.survey_run import Options, Step, survey
-from pytpc_evaluation.survey.survey_tables import FORMATS, documents, faults, shown
+from pytpc_evaluation.survey.static_tables import tables
+from pytpc_evaluation.survey.survey_documents import FORMATS, documents, faults, shown
+from pytpc_evaluation.survey.surveying import Options, Step, survey
+from pytpc_evaluation.survey.trees import TreeResult
 
 _FOLDER = click.Path(path_type=Path, file_okay=True)
 _JOB_LINE = re.compile(r"^(Starting >>>|Finished <<<|Failed +<<<|Aborted +<<<) (?P<name>\S+)")

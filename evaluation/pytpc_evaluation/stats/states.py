@@ -18,11 +18,10 @@ from typing import Any, Protocol
 
 import numpy as np
 import pyarrow as pa
-from rosbags.highlevel import AnyReader
-from rosbags.typesys import Stores, get_typestore
 
 from pytpc.base.columns import Floats, read_table
 from pytpc.base.errors import InputError, TpcError
+from pytpc.ingest.topics import BagTopics, open_topics
 
 _POSES = {
     "geometry_msgs/msg/PoseStamped": "pose",
@@ -98,16 +97,9 @@ def robot_state(
     Raises:
         InputError: the bag cannot be read, or one of ``wanted`` is not in it; one line.
     """
-    fallback = get_typestore(Stores.ROS2_HUMBLE)
-    try:
-        with AnyReader([bag], default_typestore=fallback) as reader:
-            fields = [_field(text) for text in wanted] or _guessed(reader)
-            return _read(reader, fields, start_ns, on_progress)
-    except TpcError as error:
-        raise InputError(error.message, bag) from error
-    except Exception as error:  # rosbags raises whatever its parsers do
-        said = " ".join(str(error).split()) or type(error).__name__
-        raise InputError(f"the robot's state cannot be read: {said}", bag) from error
+    with open_topics(bag, "the robot's state") as topics:
+        fields = [_field(text) for text in wanted] or _guessed(topics)
+        return _read(topics, fields, start_ns, on_progress)
 
 
 def seen_state(sights: Path, start_ns: int) -> RobotState:
@@ -144,31 +136,23 @@ def seen_state(sights: Path, start_ns: int) -> RobotState:
 
 
 def _read(
-    reader: AnyReader,
+    topics: BagTopics,
     fields: Sequence[_Field],
     start_ns: int,
     on_progress: Callable[[int, int], None] | None,
 ) -> RobotState:
-    topics = {connection.topic for connection in reader.connections}
+    names = {topic.name for topic in topics.topics}
     for field in fields:
-        if field.topic not in topics:
-            raise TpcError(f"no topic {field.topic}; there are {', '.join(sorted(topics))}")
-    wanted = {field.topic for field in fields}
-    connections = [c for c in reader.connections if c.topic in wanted]
-    total = sum(connection.msgcount for connection in connections)
+        if field.topic not in names:
+            raise TpcError(f"no topic {field.topic}; there are {', '.join(sorted(names))}")
     times: dict[_Field, list[float]] = {field: [] for field in fields}
     values: dict[_Field, list[float | str]] = {field: [] for field in fields}
-    for number, (connection, time_ns, raw) in enumerate(
-        reader.messages(connections) if connections else (), start=1
-    ):
-        message = reader.deserialize(raw, connection.msgtype)
+    for topic, time_ns, message in topics.messages({field.topic for field in fields}, on_progress):
         at = (_stamp(message) or time_ns) - start_ns
         for field in fields:
-            if field.topic == connection.topic:
+            if field.topic == topic:
                 times[field].append(at / 1e9)
                 values[field].append(_value(message, field))
-        if on_progress is not None and number % 512 == 0:
-            on_progress(number, total)
     series, phases = [], []
     for field in fields:
         seconds = np.array(times[field])
@@ -191,23 +175,21 @@ def _field(text: str) -> _Field:
     return _Field(topic, tuple(path.split(".")), f"{topic}.{path}")
 
 
-def _guessed(reader: AnyReader) -> list[_Field]:
+def _guessed(topics: BagTopics) -> list[_Field]:
     """Position and yaw of what looks most like the robot, and what looks like a mission's state."""
-    poses = {c.topic: c.msgtype for c in reader.connections if c.msgtype in _POSES and c.msgcount}
+    there = [topic for topic in topics.topics if topic.messages]
+    poses = {topic.name: topic.type for topic in there if topic.type in _POSES}
     fields = []
-    own = sorted((_likeness(topic), topic) for topic in poses if _likeness(topic) is not None)
+    own = sorted((_likeness(name), name) for name in poses if _likeness(name) is not None)
     if own:
-        topic = own[0][1]
-        fields = _pose_fields(topic, poses[topic])
-    for connection in sorted(reader.connections, key=lambda c: c.topic):
-        if connection.topic.rpartition("/")[2] in _STATES and connection.msgcount:
-            found = reader.typestore.fielddefs[connection.msgtype][1]
-            names = {name: kind for name, kind in found if kind[0].value == 1}
-            name = next((name for name in _NAMES if name in names), None)
-            if name is not None:
-                field = _Field(connection.topic, (name,), f"{connection.topic}.{name}")
-                fields += [field] if field not in fields else []
-    return fields
+        name = own[0][1]
+        fields = _pose_fields(name, poses[name])
+    for topic in there:
+        if topic.name.rpartition("/")[2] in _STATES:
+            field = next((one for one in _NAMES if one in topic.plain_fields), None)
+            if field is not None:
+                fields.append(_Field(topic.name, (field,), f"{topic.name}.{field}"))
+    return list(dict.fromkeys(fields))
 
 
 def _pose_fields(topic: str, msgtype: str) -> list[_Field]:

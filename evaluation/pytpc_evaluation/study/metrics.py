@@ -84,8 +84,9 @@ def share(values: npt.ArrayLike, units: Sequence[object]) -> Estimate:
     """
     found = estimate(values, units)
     if found.treatments and found.value in (0.0, 1.0):
-        end = upper_limit(0, found.treatments)
-        low, high = (1.0 - end, 1.0) if found.value else (0.0, end)
+        # At its ends the interval has a closed form.
+        end = _TAIL ** (1 / found.treatments)
+        low, high = (end, 1.0) if found.value else (0.0, 1.0 - end)
         return found._replace(low=low, high=high)
     return found
 

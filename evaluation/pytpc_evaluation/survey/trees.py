@@ -1,8 +1,8 @@
 """A survey of source trees: what was measured of each, and the order in which they are built.
 
 A *tree* is a folder with ROS packages, or with one plain CMake project. Everything in this module
-is data to data; ``pytpc_evaluation.survey.survey_build`` builds,
-``pytpc_evaluation.survey.survey_rows`` makes tables of the results.
+is data to data; ``pytpc_evaluation.survey.measured_build`` builds,
+``pytpc_evaluation.survey.static_tables`` makes tables of the results.
 """
 
 from __future__ import annotations

@@ -16,8 +16,8 @@ from pytpc.base.tables import (
     shown,
 )
 from pytpc.base.wording import many
-from pytpc_evaluation.survey.survey import TreeResult
-from pytpc_evaluation.survey.survey_rows import tables
+from pytpc_evaluation.survey.static_tables import tables
+from pytpc_evaluation.survey.trees import TreeResult
 
 __all__ = ["FORMATS", "as_csv", "as_latex", "as_markdown", "documents", "faults", "latex", "shown"]
 

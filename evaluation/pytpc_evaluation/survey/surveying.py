@@ -18,8 +18,9 @@ from pytpc.base.paths import cmake_file, defer_plugin, log_library, plugin, pref
 from pytpc.build.python_units import PythonUnits, analyse_scripts, analysis_files, scripts_at
 from pytpc.python_analysis.rules_file import load_rules
 from pytpc.workspace.colcon import Bases
+from pytpc_evaluation.survey.measured_build import Measured, measure, read_tree, underlaid
 from pytpc_evaluation.survey.source_lines import count_lines, source_files
-from pytpc_evaluation.survey.survey import (
+from pytpc_evaluation.survey.trees import (
     RESULT_VERSION,
     Tree,
     TreeResult,
@@ -27,7 +28,6 @@ from pytpc_evaluation.survey.survey import (
     found_in,
     needed_trees,
 )
-from pytpc_evaluation.survey.survey_build import Measured, measure, read_tree, underlaid
 
 PLAIN, TPC = "plain", "tpc"
 

@@ -27,7 +27,7 @@ from pytpc.workspace.cmake_syntax import find_fault
 from pytpc.workspace.cmake_targets import ask_for_targets, link_targets
 from pytpc.workspace.colcon import Bases, build_environment, colcon_command, ended_jobs, run_lines
 from pytpc.workspace.packages import MANIFEST, Package, package_folders, read_manifest
-from pytpc_evaluation.survey.survey import Build, NotBuilt, Tree, TreePackage
+from pytpc_evaluation.survey.trees import Build, NotBuilt, Tree, TreePackage
 
 BUILD_TYPE = "RelWithDebInfo"
 _PROJECT = re.compile(r"^[ \t]*project[ \t]*\(\s*\"?(?P<name>[^\s\"()$]+)", re.I | re.M)

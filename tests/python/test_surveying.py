@@ -12,10 +12,10 @@ from survey_samples import build
 from mixed_workspace import BROKEN_TEXT, make_mixed
 from pytpc.base.errors import RunError, WorkspaceError
 from pytpc.workspace.colcon import Bases
-from pytpc_evaluation.survey import survey_run
-from pytpc_evaluation.survey.survey import Tree
-from pytpc_evaluation.survey.survey_build import Measured, read_tree, underlaid
-from pytpc_evaluation.survey.survey_run import Options, Step, survey
+from pytpc_evaluation.survey import surveying
+from pytpc_evaluation.survey.measured_build import Measured, read_tree, underlaid
+from pytpc_evaluation.survey.surveying import Options, Step, survey
+from pytpc_evaluation.survey.trees import Tree
 
 Log = list[tuple[str, str]]
 Below = dict[tuple[str, str], str]
@@ -49,7 +49,7 @@ def built(prefix: Path, below: Below, monkeypatch: pytest.MonkeyPatch) -> Log:
         below[log[-1]] = environment.get("BELOW", "")
         return Measured(build(2.0))
 
-    monkeypatch.setattr(survey_run, "measure", measure)
+    monkeypatch.setattr(surveying, "measure", measure)
     return log
 
 
@@ -165,7 +165,7 @@ def test_an_interrupted_survey_goes_on(
     tmp_path: Path, trees: tuple[Path, Path], built: Log, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     output = tmp_path / "out"
-    pretended: Callable[..., Measured] = survey_run.measure
+    pretended: Callable[..., Measured] = surveying.measure
 
     def interrupted(tree: Tree, *arguments: object, **named: object) -> Measured:
         if tree.name == "upper":
@@ -175,7 +175,7 @@ def test_an_interrupted_survey_goes_on(
     run(output, *trees)
     # Measuring again is interrupted, too: the old result of that tree has gone with its builds.
     with monkeypatch.context() as context, pytest.raises(KeyboardInterrupt):
-        context.setattr(survey_run, "measure", interrupted)
+        context.setattr(surveying, "measure", interrupted)
         run(output, *trees, rerun=True)
     assert [path.stem.split("-")[0] for path in (output / "results").iterdir()] == ["lower"]
     built.clear()

@@ -5,8 +5,8 @@ import io
 
 from survey_samples import AFTER, BAD, build, found, result
 
-from pytpc_evaluation.survey.survey_rows import tables
-from pytpc_evaluation.survey.survey_tables import (
+from pytpc_evaluation.survey.static_tables import tables
+from pytpc_evaluation.survey.survey_documents import (
     as_csv,
     as_latex,
     as_markdown,

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from pytpc.base.tables import STATISTICS, Cell, Column, Table, statistics
 from pytpc_evaluation.survey.source_lines import CPP, HEADER, PYTHON
-from pytpc_evaluation.survey.survey import Build, TreeResult
+from pytpc_evaluation.survey.trees import Build, TreeResult
 
 
 @dataclass(frozen=True, slots=True)
