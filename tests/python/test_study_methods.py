@@ -237,7 +237,7 @@ def test_a_mission_that_was_not_flown_to_its_end_is_left_out(tmp_path):
 @pytest.mark.parametrize("text", ["[]", "{}", '{"missions": [{"half": "tuning"}]}'])
 def test_a_folder_without_a_plan_is_refused(tmp_path, text):
     (tmp_path / "study.json").write_text(text)
-    with pytest.raises(InputError, match="not about a study"):
+    with pytest.raises(InputError, match="not a study's file"):
         list(missions(tmp_path))
 
 

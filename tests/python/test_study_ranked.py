@@ -263,7 +263,7 @@ def test_an_interrupted_judging_counts(own):
 def test_judgings_that_cannot_be_read_are_said(own, tmp_path):
     (own / JUDGED_FILE).write_text('[{"time": 1}]')
     made = make_report(own, tmp_path / "study.md", draw=False)
-    assert any(one.startswith("judged.json is left out: not about") for one in made.troubles)
+    assert any(one.startswith("judged.json is left out: not a list") for one in made.troubles)
 
 
 @pytest.fixture

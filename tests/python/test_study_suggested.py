@@ -90,7 +90,7 @@ def test_the_list_is_read(tmp_path):
         ([{**ROW, "seed": "1"}], "seed '1'"),
         ([{**ROW, "system": 1}], "are not texts"),
         ([{name: ROW[name] for name in ROW if name != "value"}], "'value' is missing"),
-        ([ROW, {**ROW, "value": 2.0}], "robot/type1_b/1 stands there twice"),
+        ([ROW, {**ROW, "value": 2.0}], "robot/type1_b/1 is listed twice"),
     ],
 )
 def test_a_wrong_list_is_an_error(tmp_path, document, what):
@@ -153,7 +153,7 @@ def test_failures_that_cannot_be_read(tmp_path):
     path.parent.mkdir()
     for text in ("{}", '[{"mission": 1}]', "[1]"):
         path.write_text(text)
-        with pytest.raises(InputError, match="not about flights that failed"):
+        with pytest.raises(InputError, match="not a list of failed flights"):
             load_failed(tmp_path)
 
 

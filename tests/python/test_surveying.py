@@ -210,7 +210,7 @@ def test_two_surveys_do_not_write_into_one_folder(
     tmp_path: Path, trees: tuple[Path, Path], built: Log
 ) -> None:
     def second(step: Step) -> None:
-        with pytest.raises(WorkspaceError, match="out: another survey is at work here"):
+        with pytest.raises(WorkspaceError, match="out: another survey is running here"):
             run(tmp_path / "out", trees[1])
         assert run(tmp_path / "elsewhere", trees[1]) == ["lower"]
 

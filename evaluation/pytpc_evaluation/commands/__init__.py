@@ -6,7 +6,10 @@ SUMMARIES = {
     "stats": (f"{_HERE}.stats_commands", "Tables and figures of a study from recorded missions."),
     "study": (
         f"{_HERE}.study_commands",
-        "Fly the study of the example robots; its halves; its tables.",
+        "Fly the study of the example robots, and write its page.",
     ),
-    "survey": (f"{_HERE}.survey_commands", "Build source trees with and without TPC; tables."),
+    "survey": (
+        f"{_HERE}.survey_commands",
+        "Build source trees with and without TPC, and compare them.",
+    ),
 }

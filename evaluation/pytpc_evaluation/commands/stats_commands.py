@@ -36,7 +36,7 @@ _BY_NUMBER = {number: name for name, number in NUMBERS.items()}
     "--treatments",
     type=PATH,
     metavar="DIR",
-    help="Folders with a treatment.json each, for missions that have none in theirs.",
+    help="Folder of treatments, for missions without a treatment.json of their own.",
 )
 @click.option(
     "--table",
@@ -45,7 +45,7 @@ _BY_NUMBER = {number: name for name, number in NUMBERS.items()}
     multiple=True,
     default=("all",),
     show_default=True,
-    help="May be given several times.",
+    help="Write only this table, by name or number; may be repeated.",
 )
 @click.option(
     "--format",
@@ -53,7 +53,7 @@ _BY_NUMBER = {number: name for name, number in NUMBERS.items()}
     type=click.Choice(list(_SUFFIXES)),
     default="text",
     show_default=True,
-    help="csv and json have the numbers in full.",
+    help="Format of the tables; csv and json do not round.",
 )
 @JSON
 @click.option(
@@ -61,7 +61,7 @@ _BY_NUMBER = {number: name for name, number in NUMBERS.items()}
     "--output",
     type=PATH,
     metavar="OUT",
-    help="A file; a folder that is there, or several tables as CSV: a file in it for each table.",
+    help="Write to this file; into a folder, or of several tables as CSV, a file for each table.",
 )
 @click.option("--figures", type=PATH, metavar="DIR", help="Draw the figures into this folder.")
 @click.option(
@@ -71,15 +71,15 @@ _BY_NUMBER = {number: name for name, number in NUMBERS.items()}
     multiple=True,
     default=("png",),
     show_default=True,
-    help="May be given several times.",
+    help="Format of the figures; may be repeated.",
 )
 @click.option(
     "--state",
     "states",
     multiple=True,
     metavar="TOPIC.FIELD",
-    help="What of the robot is drawn above the ranks, as /odom.pose.pose.position.x; several times."
-    " Otherwise a pose and a state are looked for.",
+    help="Draw this field above the ranks, as /odom.pose.pose.position.x; may be repeated. By"
+    " default a pose and a state are looked for.",
 )
 @WINDOW
 def stats_command(  # noqa: PLR0917
@@ -98,7 +98,7 @@ def stats_command(  # noqa: PLR0917
     """Write the tables of the study (6.12 to 6.16) from recorded missions, and its figures.
 
     A MISSION is a folder of `pytpc record`, or any INPUT of `pytpc convert`; a folder of missions
-    stands for all of them. What was changed in each, its treatment.json tells.
+    stands for all of them. Each mission's treatment.json says what was changed in it.
     """
     form = "json" if as_json else form
     chosen = _chosen(names)
@@ -137,7 +137,7 @@ def _check(missions: Sequence[StudyMission], static: StaticInfo) -> None:
         key for m in missions for key in (*m.recording.events.keys, *m.recording.summaries.keys)
     }
     if seen and not seen & known:
-        raise InputError("none of the reports is known to the static information: other build")
+        raise InputError("the static information knows none of the reports: it is of another build")
 
 
 def _print(tables: Sequence[Table], form: str) -> None:

@@ -39,7 +39,7 @@ def _flown(command: Command) -> Command:
         type=click.IntRange(1, 16),
         default=1,
         show_default=True,
-        help="Fly so many at once.",
+        help="How many missions fly at once.",
     )
     rate = click.option(
         "--rate",
@@ -52,21 +52,23 @@ def _flown(command: Command) -> Command:
 
 @click.group("study")
 def study_group() -> None:
-    """Fly the study: treated missions of the example robots, and people who look on.
+    """Fly the study: missions of the example robots with known errors, and people who watch them.
 
-    Its folder, and how it is gone on with after an interruption: docs/study-data.md.
+    docs/reference/study-data.md describes its folder, and how an interrupted study continues.
     """
 
 
 @study_group.command("run")
-@click.option("--system", "systems", multiple=True, help="Fly this robot; may be repeated.")
-@click.option("--treatment", "treatments", multiple=True, help="Fly this one; may be repeated.")
+@click.option("--system", "systems", multiple=True, help="Fly only this robot; may be repeated.")
+@click.option(
+    "--treatment", "treatments", multiple=True, help="Fly only this treatment; may be repeated."
+)
 @click.option(
     "--seed",
     "seeds",
     type=click.Choice([str(seed) for seed in SEEDS]),
     multiple=True,
-    help="Fly with this seed.",
+    help="Fly only with this seed; may be repeated.",
 )
 @click.option("--quick", is_flag=True, help="One robot, one error of each type, one seed.")
 @_flown
@@ -83,9 +85,9 @@ def run_command(
 ) -> None:
     """Build the robots, fly their missions, and have people set marks.
 
-    What was flown with the same inputs is not flown again, so an interrupted run goes on where it
-    was. Where a mission fails it is tried once more; then the others go on, and the exit status
-    is 1.
+    What was flown with the same inputs is not flown again, so an interrupted run continues where it
+    stopped. A mission that fails is tried once more; if it fails again, the others go on, and the
+    exit status is 1.
     """
     seed_numbers = [int(seed) for seed in seeds]
     selection = Selection(systems, treatments, seed_numbers, quick=quick)
@@ -107,10 +109,10 @@ def run_command(
 def suggested_command(
     *, wanted: Path | None, out: Path, rate: float | None, jobs: int, as_json: bool
 ) -> None:
-    """Fly missions again, each with one parameter set to a value, and say what came of it.
+    """Fly missions again, each with one parameter set to a suggested value; show what changed.
 
-    WANTED is a JSON list of objects with system, treatment, seed, parameter, node and value;
-    results/suggestions-wanted.json of the study's folder where it is not given.
+    WANTED is a JSON list of objects with system, treatment, seed, parameter, node and value. The
+    default is results/suggestions-wanted.json in the study's folder.
     """
     suggestions = load_wanted(wanted or out / WANTED_FILE)
     selection = Selection(sorted({one.system for one in suggestions}))
@@ -135,10 +137,10 @@ def suggested_command(
 @study_group.command("halves")
 @JSON
 def halves_command(*, as_json: bool) -> None:
-    """Say which mission is in which half of the study: the one for tuning, or held back.
+    """List the missions with the half of the study that each is in: tuning or held-back.
 
-    Within each type of treatment the names are sorted by SHA-256 of SYSTEM/NAME, and go into the
-    two halves by turns; of the clean missions the first seed is for tuning.
+    Within each type of treatment the names are sorted by the SHA-256 of SYSTEM/NAME and go into the
+    two halves by turns. Of the clean missions the first seed is for tuning.
     """
     flights = [one for example in EXAMPLES for one in flights_of(example) if one.half]
     if as_json:

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any, TypeVar
 
 import click
 
 from pytpc.cli.options import PATH
 from pytpc_evaluation.study.plan import HALVES, Half
+
+Command = TypeVar("Command", bound=Callable[..., Any])
 
 CHOSEN: dict[str, tuple[Half, ...]] = {"tuning": ("tuning",), "held-back": ("held-back",)}
 CHOSEN["both"] = HALVES
@@ -22,11 +26,24 @@ STUDY = click.option(
     metavar="DIR",
     help="The study's folder.",
 )
-RANK_AGAIN = click.option("--again", is_flag=True, help="Rank also what has been ranked.")
+
+
+def half_option(default: str, text: str) -> Callable[[Command], Command]:
+    """The option ``--half``: one of ``CHOSEN``."""
+    return click.option(
+        "--half",
+        type=click.Choice(list(CHOSEN)),
+        default=default,
+        show_default=True,
+        help=text,
+    )
+
+
+RANK_AGAIN = click.option("--again", is_flag=True, help="Rank everything again.")
 RANK_JOBS = click.option(
     "--jobs",
     type=click.IntRange(1, 64),
     default=os.cpu_count() or 1,
     show_default="cores of this machine",
-    help="How many processes rank.",
+    help="How many processes rank at once.",
 )

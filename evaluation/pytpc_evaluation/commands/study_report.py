@@ -10,7 +10,13 @@ import click
 from pytpc.base.wording import many, plain
 from pytpc.cli.console import progress, warn
 from pytpc.cli.options import JSON, PATH
-from pytpc_evaluation.commands.study_options import CHOSEN, RANK_AGAIN, RANK_JOBS, STUDY
+from pytpc_evaluation.commands.study_options import (
+    CHOSEN,
+    RANK_AGAIN,
+    RANK_JOBS,
+    STUDY,
+    half_option,
+)
 
 
 @click.command("report")
@@ -21,25 +27,19 @@ from pytpc_evaluation.commands.study_options import CHOSEN, RANK_AGAIN, RANK_JOB
     default=Path("docs/study.md"),
     show_default=True,
     metavar="FILE",
-    help="The page; its figures and tables go beside it.",
+    help="The page; figures and tables are written beside it.",
 )
-@click.option(
-    "--half",
-    type=click.Choice(list(CHOSEN)),
-    default="both",
-    show_default=True,
-    help="Whose results are shown.",
-)
+@half_option("both", "Show the results of this half.")
 @RANK_AGAIN
 @RANK_JOBS
 @JSON
 def report_command(
     *, out: Path, docs: Path, half: str, again: bool, jobs: int, as_json: bool
 ) -> None:
-    """Write every table and figure of the study: a page, with figures and CSV beside it.
+    """Write the study's page, with its tables, figures and data beside it.
 
-    First each method ranks the missions that it has not ranked yet, or that, as the method itself,
-    are not as they were then. What is missing in the folder is said on the page.
+    First each method ranks the missions that it has not ranked yet, and those that changed since,
+    as the method itself may have. The page says what is missing in the folder.
     """
     # matplotlib takes half a second to import, which other commands need not wait for.
     from pytpc_evaluation.study.report.making import json_text, make_report  # noqa: PLC0415

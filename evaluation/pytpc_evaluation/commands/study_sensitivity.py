@@ -7,25 +7,25 @@ from pathlib import Path
 import click
 
 from pytpc.cli.console import progress
-from pytpc_evaluation.commands.study_options import CHOSEN, RANK_AGAIN, RANK_JOBS, STUDY
+from pytpc_evaluation.commands.study_options import (
+    CHOSEN,
+    RANK_AGAIN,
+    RANK_JOBS,
+    STUDY,
+    half_option,
+)
 
 
 @click.command("sensitivity")
 @STUDY
-@click.option(
-    "--half",
-    type=click.Choice(list(CHOSEN)),
-    default="tuning",
-    show_default=True,
-    help="Whose missions are ranked.",
-)
+@half_option("tuning", "Rank the missions of this half.")
 @RANK_AGAIN
 @RANK_JOBS
 def sensitivity_command(*, out: Path, half: str, again: bool, jobs: int) -> None:
-    """Rank the missions by the marks of other people than the study's.
+    """Rank the missions by the marks of other people than the study's own.
 
-    They are faster or slower, vary more, mark both kinds of errors equally often, are one person
-    alone, or toss a coin for the type. Nothing is flown; ``study report`` shows what comes of it.
+    They are faster or slower, vary more, mark both kinds of errors equally often, work alone, or
+    toss a coin for the type. Nothing is flown; ``study report`` shows the result.
     """
     from pytpc_evaluation.study.report.sensitivity import SENSITIVITY_FILE, rank_by_others  # noqa: PLC0415
 

@@ -13,7 +13,7 @@ from rich.text import Text
 from pytpc.base.wording import many, plain
 from pytpc.cli.console import console, progress, warn
 from pytpc.cli.options import JSON
-from pytpc_evaluation.commands.study_options import CHOSEN, STUDY
+from pytpc_evaluation.commands.study_options import CHOSEN, STUDY, half_option
 from pytpc_evaluation.study.methods import METHODS
 from pytpc_evaluation.study.resume import alone_with_results
 from pytpc_evaluation.study.suggested import WANTED_FILE
@@ -23,13 +23,13 @@ from pytpc_evaluation.study.suggestions import next_round
 
 @click.command("suggestions")
 @STUDY
-@click.option("--half", type=click.Choice(list(CHOSEN)), default="both", show_default=True)
+@half_option("both", "Ask about the missions of this half.")
 @click.option(
     "--variant",
     "variants",
     type=click.Choice(list(VARIANTS)),
     multiple=True,
-    help="Only this one; may be repeated.",
+    help="Ask for only this variant; may be repeated.",
 )
 @click.option(
     "--method",
@@ -37,7 +37,9 @@ from pytpc_evaluation.study.suggestions import next_round
     help="Also try the first suspects of this ranking.",
 )
 @click.option(
-    "--again", is_flag=True, help="Ask anew: the ranking or the advice changed; flights are kept."
+    "--again",
+    is_flag=True,
+    help="Start over, after the ranking or the advice changed; flights are kept.",
 )
 @JSON
 def suggestions_command(
@@ -49,9 +51,9 @@ def suggestions_command(
     again: bool,
     as_json: bool,
 ) -> None:
-    """Take in the suggestions that were flown, and say which are to be flown next.
+    """Read the results of flown suggestions, and list what to fly next.
 
-    By turns with ``study suggested``, until nothing is left.
+    Run it by turns with ``study suggested`` until nothing is left.
     """
     ranking = None if method is None else METHODS[method]
     with alone_with_results(out), progress("working out suggestions") as advance:

@@ -63,24 +63,26 @@ def _formats(_context: click.Context, _option: click.Parameter, value: str) -> t
     type=click.IntRange(min=1),
     default=os.cpu_count() or 1,
     show_default="processors",
-    help="Packages, and compilers in each, at a time.",
+    help="How many packages build at once, and compilers in each.",
 )
 @click.option(
     "--underlay",
     type=click.Path(path_type=Path),
     multiple=True,
     metavar="SETUP",
-    help="A set-up script to source before each build; again for more.",
+    help="Source this set-up script before each build; may be repeated.",
 )
 @click.option(
     "--cmake-arg",
     "cmake_args",
     multiple=True,
     metavar="ARG",
-    help="An argument for each package's CMake, as -DNAME=VALUE; again for more.",
+    help="Pass this to each package's CMake, as -DNAME=VALUE; may be repeated.",
 )
-@click.option("--no-plain", is_flag=True, help="No builds without TPC, so no time factors.")
-@click.option("--rerun", is_flag=True, help="Measure again what is known from an earlier run.")
+@click.option(
+    "--no-plain", is_flag=True, help="Skip the builds without TPC, and with them the time factors."
+)
+@click.option("--rerun", is_flag=True, help="Measure again what an earlier run measured.")
 def survey_command(
     *,
     trees: tuple[Path, ...],
@@ -93,10 +95,10 @@ def survey_command(
     no_plain: bool,
     rerun: bool,
 ) -> None:
-    """Build source trees with and without TPC, and tell times, comparisons and lines of code.
+    """Build source trees with and without TPC; compare times, comparisons and lines of code.
 
     A DIR is a folder with ROS packages, or a CMake project; each is a row. A DIR that needs
-    packages of another one is built upon it. An interrupted survey goes on where it was.
+    packages of another one is built on top of it. An interrupted survey continues where it stopped.
     """
     for folder in trees:
         if not folder.is_dir():

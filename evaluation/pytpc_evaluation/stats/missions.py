@@ -179,7 +179,7 @@ def _run(path: Path) -> dict[str, Any]:
         return {}
     document = parse_json(path)
     if not isinstance(document, dict):
-        raise InputError("not about a run: an object is expected", path)
+        raise InputError("not a run's file: an object is expected", path)
     return document
 
 

@@ -77,7 +77,7 @@ def study_complaints(mission: StudyMission, static_info: StaticInfo) -> Iterator
     if not len(mission.recording.events) and not len(mission.recording.summaries):
         yield "no threshold reports: was the workspace built with TPC?"
     if mission.treatment is None:
-        yield "its treatment is not known, so that it is in no table about changed parameters"
+        yield "its treatment is unknown, so it is left out of the tables about changed parameters"
     elif mission.treatment.parameter is not None and not any(
         same_parameter(mission.treatment.parameter, parameter_name(comparison))
         for comparison in static_info.thresholds.values()

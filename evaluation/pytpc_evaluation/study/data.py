@@ -160,7 +160,7 @@ def places(out: Path, wanted: Sequence[Half]) -> list[tuple[Path, Half]]:
             raise ValueError("it does not say which missions there are")
         halves: dict[Path, Half] = {out / row["folder"]: row["half"] for row in rows}
     except (KeyError, TypeError, ValueError) as error:
-        raise InputError(f"not about a study: {error}", out / STUDY_FILE) from error
+        raise InputError(f"not a study's file: {error}", out / STUDY_FILE) from error
     return sorted(
         (path, half)
         for path, half in halves.items()

@@ -105,7 +105,7 @@ def load_wanted(path: Path) -> list[Wanted]:
     seen: set[tuple[str, str, int]] = set()
     for one in wanted:
         if one.mission in seen:
-            raise InputError(f"{'/'.join(map(str, one.mission))} stands there twice", path)
+            raise InputError(f"{'/'.join(map(str, one.mission))} is listed twice", path)
         seen.add(one.mission)
     return wanted
 
@@ -221,7 +221,7 @@ def load_failed(out: Path) -> list[Failed]:
     Raises:
         InputError: it cannot be read.
     """
-    return read_list(out / FAILED_FILE, lambda one: Failed(**one), "not about flights that failed")
+    return read_list(out / FAILED_FILE, lambda one: Failed(**one), "not a list of failed flights")
 
 
 def _save_failed(rows: Sequence[Mapping[str, Any]], out: Path) -> None:

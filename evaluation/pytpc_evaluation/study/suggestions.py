@@ -208,7 +208,7 @@ def _missions(out: Path) -> Iterator[Mapping[str, Any]]:
             if row["type"] in {"type1", "type2"} and flown.is_file():
                 yield row
     except (KeyError, TypeError) as error:
-        raise InputError(f"not about a study: {error}", out / STUDY_FILE) from error
+        raise InputError(f"not a study's file: {error}", out / STUDY_FILE) from error
 
 
 def _name(row: Mapping[str, Any]) -> str:

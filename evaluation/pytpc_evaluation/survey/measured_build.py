@@ -66,7 +66,7 @@ def read_tree(folder: Path, name: str | None = None) -> Tree:
         raise WorkspaceError("no such folder", folder)
     folder = Path(os.path.normpath(folder.absolute()))
     if any("\ud800" <= character <= "\udfff" for character in str(folder)):
-        raise WorkspaceError("the path is not UTF-8, so it stands in no table", plain(str(folder)))
+        raise WorkspaceError("the path is not UTF-8, so no table can hold it", plain(str(folder)))
     packages: dict[str, TreePackage] = {}
     unreadable: list[NotBuilt] = []
     for place in package_folders(folder):

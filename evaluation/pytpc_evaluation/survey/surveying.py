@@ -106,7 +106,7 @@ def _alone(output: Path) -> Iterator[None]:
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
         yield
     except BlockingIOError as error:
-        raise WorkspaceError("another survey is at work here", output) from error
+        raise WorkspaceError("another survey is running here", output) from error
     finally:
         os.close(descriptor)
 

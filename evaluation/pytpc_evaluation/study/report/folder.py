@@ -129,7 +129,7 @@ def load_study(folder: Path, on_progress: Progress | None = None) -> Study:
         raise InputError("no such folder; `pytpc study run` makes it", folder)
     document = parse_json(folder / STUDY_FILE)
     if not isinstance(document, dict):
-        raise InputError("not about a study: an object is expected", folder / STUDY_FILE)
+        raise InputError("not a study's file: an object is expected", folder / STUDY_FILE)
     troubles: list[str] = []
     names = sorted(path.name for path in (folder / MISSIONS).glob("*") if path.is_dir())
     paths = {name: sorted((folder / MISSIONS / name).glob(f"*/{_SEED}[0-9]")) for name in names}

@@ -42,7 +42,7 @@ def load_judgings(folder: Path) -> list[Judging]:
     Raises:
         InputError: the file cannot be read, or is not about that.
     """
-    return read_list(folder / JUDGED_FILE, lambda one: Judging(**one), "not about judgings")
+    return read_list(folder / JUDGED_FILE, lambda one: Judging(**one), "not a list of judgings")
 
 
 def save_judging(folder: Path, methods: Iterable[tuple[str, str]], missions: int) -> None:

@@ -218,7 +218,7 @@ def _ranked(tasks: Sequence[_Task], jobs: int) -> Generator[tuple[_Task, list[Ju
             for future in as_completed(running):
                 yield running[future], future.result()
         except BrokenProcessPool as error:
-            raise RunError("a process that ranks has died: is there memory for more?") from error
+            raise RunError("a process that ranks has died; is there memory for so many?") from error
         except BaseException:
             # The pool would wait for all that they have begun.
             for process in active_children():

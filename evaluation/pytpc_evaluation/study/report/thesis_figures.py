@@ -18,8 +18,6 @@ RUNTIME_SUMMARY: Mapping[str, tuple[float, ...]] = {
 }
 """The last rows of table 6.12, column by column."""
 
-RUNTIME_ROWS = 19
-"""Table 6.12 lists so many parameters (its text says 32)."""
 
 CONFUSION: Mapping[str, tuple[int, int]] = {"type1": (2, 15), "type2": (26, 25)}
 """Table 6.13: marks of type I and of type II on the treatments of a type."""
