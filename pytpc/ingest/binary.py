@@ -24,8 +24,8 @@ import numpy.typing as npt
 from pytpc.base.columns import Bools, Int32s, Int64s
 from pytpc.base.errors import InputError
 from pytpc.base.wording import many
-from pytpc.ingest import binary_layout as layout
 from pytpc.ingest.binary_clock import Clock
+from pytpc.ingest.binary_layout import CHUNK, RECORD, FileHeader, whole_bytes
 from pytpc.ingest.binary_system import (
     System,
     open_summaries,
@@ -35,6 +35,7 @@ from pytpc.ingest.binary_system import (
 )
 from pytpc.ingest.gathering import Channel, Gathering, Progress, Reports
 from pytpc.ingest.spool import Rows
+from pytpc.python_runtime import log_layout as layout
 from pytpc.recording.mission import Dropped
 
 Bytes = npt.NDArray[np.uint8]
@@ -108,7 +109,7 @@ class _Reader:
         self._stream = stream
         self._gathering = gathering
         self._on_progress = on_progress
-        self.header = layout.FileHeader.of(stream.read(layout.HEADER_BYTES))
+        self.header = FileHeader.of(stream.read(layout.HEADER_BYTES))
         self._node = _node_of(self.header, path)
         self._node_code = gathering.nodes.code(self._node)
         self._channel: Channel = gathering.channel(str(path), "file")
@@ -193,7 +194,7 @@ class _Reader:
             flat = buffer[row : last + 1].reshape(-1)
             count = os.preadv(self._stream.fileno(), [flat.data], place)
             flat[count:] = 0
-            whole = layout.whole_bytes(count % layout.CHUNK_BYTES)
+            whole = whole_bytes(count % layout.CHUNK_BYTES)
             if count < flat.size and whole < count % layout.CHUNK_BYTES:
                 # The record at which the file ends is not whole, whatever its first word says.
                 begin = count - count % layout.CHUNK_BYTES + whole
@@ -203,7 +204,7 @@ class _Reader:
     def _load_one(self, place: int) -> Bytes:
         """uint8[n], n at most 65536: what there is of one chunk, in whole records."""
         there = min(layout.CHUNK_BYTES, self._size - place)
-        chunk: Bytes = self._load([place])[0][: layout.whole_bytes(there)]
+        chunk: Bytes = self._load([place])[0][: whole_bytes(there)]
         return chunk
 
     def _read_system(self) -> None:
@@ -211,11 +212,11 @@ class _Reader:
         expected = 0
         for place in self._system_chunks:
             chunk = self._load_one(place)
-            first = int(chunk[: layout.CHUNK.itemsize].view(layout.CHUNK)["first"][0])
+            first = int(chunk[: CHUNK.itemsize].view(CHUNK)["first"][0])
             # A chunk that has no room for a long record counts as full.
             if first > expected:
                 self._gathering.lost[self._node] += first - expected
-            expected = max(expected, first) + layout.RECORDS
+            expected = max(expected, first) + layout.RECORDS_OF_CHUNK
             read_system(chunk, place, system, self._skip)
         self._torn += system.torn
 
@@ -261,12 +262,12 @@ class _Reader:
         while thread.read < len(thread.chunks):
             places = thread.chunks[thread.read : thread.read + _GROUP]
             loaded = self._load(places)
-            records = loaded[:, layout.CHUNK_HEADER_BYTES :].view(layout.RECORD)
+            records = loaded[:, layout.CHUNK_HEADER_BYTES :].view(RECORD)
             first = thread.firsts[thread.read]
             is_last = thread.read + len(places) == len(thread.chunks)
             whole = self._whole(thread, loaded, records, places)
             if whole is not None:
-                thread.expected = first + layout.RECORDS * len(places)
+                thread.expected = first + layout.RECORDS_OF_CHUNK * len(places)
                 thread.block = whole
                 thread.read += len(places)
             else:
@@ -288,7 +289,9 @@ class _Reader:
             return None
         firsts = thread.firsts[thread.read : thread.read + len(places)]
         expected = range(
-            thread.expected, thread.expected + layout.RECORDS * len(places), layout.RECORDS
+            thread.expected,
+            thread.expected + layout.RECORDS_OF_CHUNK * len(places),
+            layout.RECORDS_OF_CHUNK,
         )
         # Kind and flags of all records.
         what = loaded[:, layout.CHUNK_HEADER_BYTES :].view("<u2")[:, :: layout.RECORD_BYTES // 2]
@@ -333,8 +336,8 @@ class _Reader:
                 )
             chunk = records[row]
             ends = np.flatnonzero(chunk["what"] == 0)
-            used = int(ends[0]) if ends.size else layout.RECORDS
-            if used < layout.RECORDS:
+            used = int(ends[0]) if ends.size else layout.RECORDS_OF_CHUNK
+            if used < layout.RECORDS_OF_CHUNK:
                 begin = layout.CHUNK_HEADER_BYTES + used * layout.RECORD_BYTES
                 self._torn += bool(loaded[row, begin : begin + layout.RECORD_BYTES].any())
             thread.expected = first + used
@@ -467,7 +470,7 @@ def _byte(place: int, record: int) -> int:
     return place + layout.CHUNK_HEADER_BYTES + record * layout.RECORD_BYTES
 
 
-def _node_of(header: layout.FileHeader, path: Path) -> str:
+def _node_of(header: FileHeader, path: Path) -> str:
     """What to call the process: as its node, or, where it never was one, as its program.
 
     A forked child has its parent's name. What one of them evaluates says nothing about the other.

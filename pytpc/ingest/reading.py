@@ -15,13 +15,13 @@ from pytpc.base.wording import many
 from pytpc.ingest.bag import read_bag_into
 from pytpc.ingest.bag_chunks import MAGIC as BAG_MAGIC
 from pytpc.ingest.binary import read_binary
-from pytpc.ingest.binary_layout import MAGIC as TPC_MAGIC
 from pytpc.ingest.duplicates import TOLERANCE_NS
 from pytpc.ingest.folder import read_folder_into
 from pytpc.ingest.gathering import Gathering, Progress
 from pytpc.ingest.outcome import Outcome
 from pytpc.ingest.ros2_bag import MCAP_MAGIC, SQLITE_MAGIC, read_ros2_into
 from pytpc.ingest.text import read_text_into
+from pytpc.python_runtime.log_layout import MAGIC as TPC_MAGIC
 from pytpc.recording.marks import Mark, joined, marks_beside, read_marks
 from pytpc.recording.mission import (
     EVENTS_FILE,
