@@ -23,7 +23,7 @@ from pathlib import Path
 import numpy as np
 from figures import figure
 
-from pytpc.ingest.binary import _Reader
+from pytpc.ingest.binary import _TpcReader
 from pytpc.ingest.binary_layout import RECORD
 from pytpc.ingest.gathering import Gathering
 from pytpc.python_runtime import log_layout as layout
@@ -225,7 +225,7 @@ def against_copying(path: Path) -> tuple[float, float, float]:
         mapped.append(time.perf_counter() - began)
         began = time.perf_counter()
         with path.open("rb", buffering=0) as stream:
-            reader = _Reader(path, stream, Gathering(), None)  # type: ignore[arg-type]
+            reader = _TpcReader(path, stream, Gathering(), None)  # type: ignore[arg-type]
             count = sum(len(block) for block in reader.blocks())
         reading.append(time.perf_counter() - began)
     assert count == (data.size - 4096 - 65536) // 65536 * layout.RECORDS_OF_CHUNK

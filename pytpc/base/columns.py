@@ -5,7 +5,8 @@ A word column (keys, nodes) is int32 codes into a tuple of words; in Arrow it is
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+import contextlib
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TypeVar
 
@@ -14,7 +15,7 @@ import numpy.typing as npt
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from pytpc.base.atomic import write_atomic
+from pytpc.base.atomic import replacing, write_atomic
 from pytpc.base.errors import InputError
 
 Int64s = npt.NDArray[np.int64]
@@ -160,7 +161,7 @@ def read_table(path: Path, what: str, of: Callable[[pa.Table], Read]) -> Read:
     Raises:
         InputError: the file cannot be read, is no Parquet, or ``of`` finds fault with it.
     """
-    try:
+    with _as_input_errors(path, what):
         # Its error is in the words of the system.
         path.open("rb").close()
         # Arrow's threads let go of what they read after the table is there. Where that is of Python
@@ -168,6 +169,35 @@ def read_table(path: Path, what: str, of: Callable[[pa.Table], Read]) -> Read:
         with pa.OSFile(str(path)) as file:
             table = pq.ParquetFile(file).read()
         return of(table)
+
+
+@contextlib.contextmanager
+def table_writer(path: Path, schema: pa.Schema) -> Iterator[Callable[[pa.Table], None]]:
+    """Write Parquet in parts, atomically: what is given writes one part.
+
+    Raises:
+        TpcError: the file cannot be written; what stood there before is untouched.
+    """
+    with replacing(path) as staged, pq.ParquetWriter(staged, schema, compression="zstd") as writer:
+        yield writer.write_table
+
+
+def read_parts(path: Path, what: str, schema: pa.Schema, rows: int) -> Iterator[pa.Table]:
+    """Read a Parquet file of ``what`` ("events") in parts of at most ``rows``.
+
+    Raises:
+        InputError: the file cannot be read, is no Parquet, or has other columns.
+    """
+    with _as_input_errors(path, what), pq.ParquetFile(path) as file:
+        check_schema(file.schema_arrow, schema)
+        for batch in file.iter_batches(rows):
+            yield pa.Table.from_batches([batch])
+
+
+@contextlib.contextmanager
+def _as_input_errors(path: Path, what: str) -> Iterator[None]:
+    try:
+        yield
     except InputError as error:
         raise InputError(error.message, path) from error
     except OSError as error:

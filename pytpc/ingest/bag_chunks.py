@@ -106,7 +106,7 @@ def read_index(stream: BinaryIO) -> BagIndex:
 
 
 @dataclass(frozen=True)
-class Messages:
+class ChunkMessages:
     """The messages of a chunk, in the order of the file; n of them.
 
     ``data`` is the chunk's bytes; ``connection``, ``time_ns`` (the recorder's), ``begin`` and
@@ -122,7 +122,7 @@ class Messages:
     behind: int
 
 
-def messages(stream: BinaryIO, index: BagIndex, wanted: Collection[int]) -> Iterator[Messages]:
+def messages(stream: BinaryIO, index: BagIndex, wanted: Collection[int]) -> Iterator[ChunkMessages]:
     """The messages of the connections ``wanted``, chunk by chunk.
 
     The index behind each chunk says where they are; where it does not fit the chunk, or is not
@@ -144,7 +144,7 @@ def messages(stream: BinaryIO, index: BagIndex, wanted: Collection[int]) -> Iter
             found = _by_index(data, _entries(stream, chosen))
         except BrokenBagError:
             found = None
-        yield Messages(data, *(_by_search(data, chosen) if found is None else found), behind)
+        yield ChunkMessages(data, *(_by_search(data, chosen) if found is None else found), behind)
 
 
 def _entries(stream: BinaryIO, chosen: frozenset[int]) -> list[tuple[int, Rows]]:

@@ -27,13 +27,13 @@ from pytpc.base.wording import many
 from pytpc.ingest.binary_clock import Clock
 from pytpc.ingest.binary_layout import CHUNK, RECORD, FileHeader, whole_bytes
 from pytpc.ingest.binary_system import (
-    System,
+    SystemRecords,
     open_summaries,
     read_system,
     summary_rows,
     written_summaries,
 )
-from pytpc.ingest.gathering import Channel, Gathering, Progress, Reports
+from pytpc.ingest.gathering import Channel, Gathering, Progress, ReportColumns
 from pytpc.ingest.spool import Rows
 from pytpc.python_runtime import log_layout as layout
 from pytpc.recording.mission import Dropped
@@ -47,7 +47,7 @@ _IDENTITY = np.dtype([("thread", "<u4"), ("site", "<u4"), ("period", "<u4")])
 
 
 @dataclass
-class Block(Reports):
+class RecordBlock(ReportColumns):
     """Reports of one thread, or of several in order; ``steady`` does not fall."""
 
     steady: Int64s
@@ -56,12 +56,14 @@ class Block(Reports):
         """How many reports."""
         return int(self.steady.size)
 
-    def part(self, rows: slice | Int64s | Bools) -> Block:
+    def part(self, rows: slice | Int64s | Bools) -> RecordBlock:
         """Some of them."""
-        return Block(**{field.name: getattr(self, field.name)[rows] for field in fields(self)})
+        return RecordBlock(
+            **{field.name: getattr(self, field.name)[rows] for field in fields(self)}
+        )
 
     @classmethod
-    def joined(cls, blocks: list[Block]) -> Block:
+    def joined(cls, blocks: list[RecordBlock]) -> RecordBlock:
         """All of ``blocks`` behind one another."""
         names = [field.name for field in fields(cls)]
         columns: dict[str, Any] = {
@@ -82,7 +84,7 @@ class _Thread:
     expected: int = 0
     simulated_ns: int = -1
     steady: int = -(2**63)
-    block: Block | None = None
+    block: RecordBlock | None = None
 
 
 def read_binary(path: Path, gathering: Gathering, on_progress: Progress | None = None) -> None:
@@ -93,7 +95,7 @@ def read_binary(path: Path, gathering: Gathering, on_progress: Progress | None =
     """
     try:
         with path.open("rb", buffering=0) as stream:
-            reader = _Reader(path, cast(BinaryIO, stream), gathering, on_progress)
+            reader = _TpcReader(path, cast(BinaryIO, stream), gathering, on_progress)
             reader.read()
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror or error}", path) from error
@@ -101,7 +103,7 @@ def read_binary(path: Path, gathering: Gathering, on_progress: Progress | None =
         raise InputError(f"not a file of reports: {error}", path) from error
 
 
-class _Reader:
+class _TpcReader:
     def __init__(
         self, path: Path, stream: BinaryIO, gathering: Gathering, on_progress: Progress | None
     ) -> None:
@@ -118,7 +120,7 @@ class _Reader:
         self._size = os.fstat(stream.fileno()).st_size
         self._buffer = np.empty((_GROUP, layout.CHUNK_BYTES), np.uint8)
         self._done = 0
-        self._system = System()
+        self._system = SystemRecords()
         self._system_chunks: list[int] = []
         self._live_chunks: list[int] = []
         self._torn = 0
@@ -135,7 +137,7 @@ class _Reader:
         self._complaints()
         self._progress(self._chunk_count)
 
-    def blocks(self) -> Iterator[Block]:
+    def blocks(self) -> Iterator[RecordBlock]:
         """All reports in the order of the steady clock; what is not reports is taken in before."""
         threads = self._chunks()
         self._read_system()
@@ -222,7 +224,7 @@ class _Reader:
 
     # --- reports
 
-    def _merged(self, threads: list[_Thread]) -> Iterator[Block]:
+    def _merged(self, threads: list[_Thread]) -> Iterator[RecordBlock]:
         """All reports in the order of the steady clock; equal times by thread."""
         waiting = sorted(threads, key=lambda thread: (thread.first_steady, thread.number))
         active: list[_Thread] = []
@@ -243,7 +245,7 @@ class _Reader:
                 continue
             active = [thread for thread in active if self._next_block(thread)]
 
-    def _up_to(self, active: list[_Thread], bound: int) -> Block:
+    def _up_to(self, active: list[_Thread], bound: int) -> RecordBlock:
         parts = []
         for thread in active:
             assert thread.block is not None
@@ -253,7 +255,7 @@ class _Reader:
                 thread.block = thread.block.part(slice(cut, None))
         if len(parts) == 1:
             return parts[0]
-        block = Block.joined(parts)
+        block = RecordBlock.joined(parts)
         return block.part(np.argsort(block.steady, kind="stable"))
 
     def _next_block(self, thread: _Thread) -> bool:
@@ -283,7 +285,7 @@ class _Reader:
         loaded: Bytes,
         records: npt.NDArray[np.void],
         places: list[int],
-    ) -> Block | None:
+    ) -> RecordBlock | None:
         """The usual case: chunks full of reports of known sites, on the wall's clock."""
         if thread.simulated_ns != -1:
             return None
@@ -304,7 +306,7 @@ class _Reader:
         if int(keys.min()) < 0:
             return None
         steady = self._rising(thread, np.ascontiguousarray(records["steady"]).reshape(-1))
-        return Block(
+        return RecordBlock(
             steady=steady,
             time_ns=self._clock.rising(steady),
             key=keys,
@@ -321,7 +323,7 @@ class _Reader:
         records: npt.NDArray[np.void],
         places: list[int],
         is_last: bool,
-    ) -> Block:
+    ) -> RecordBlock:
         """Chunks of which one at least is not full, or has something else than reports."""
         blocks = []
         for row, place in enumerate(places):
@@ -342,9 +344,9 @@ class _Reader:
                 self._torn += bool(loaded[row, begin : begin + layout.RECORD_BYTES].any())
             thread.expected = first + used
             blocks.append(self._chunk(thread, chunk[:used].copy(), place))
-        return Block.joined(blocks)
+        return RecordBlock.joined(blocks)
 
-    def _chunk(self, thread: _Thread, chunk: npt.NDArray[np.void], place: int) -> Block:
+    def _chunk(self, thread: _Thread, chunk: npt.NDArray[np.void], place: int) -> RecordBlock:
         what = chunk["what"]
         kinds = what & 0xFF
         reports = kinds == layout.REPORT
@@ -369,7 +371,7 @@ class _Reader:
                 thread.simulated_ns = int(sim_ns[-1])
         kept = reports & (keys >= 0)
         flags = what >> 8
-        return Block(
+        return RecordBlock(
             steady=steady,
             time_ns=times,
             key=keys,
@@ -389,7 +391,7 @@ class _Reader:
         thread.steady = int(steady[-1])
         return steady
 
-    def _hand_in(self, block: Block) -> None:
+    def _hand_in(self, block: RecordBlock) -> None:
         self._last_ns = max(self._last_ns, int(block.time_ns.max()))
         self._gathering.add_events(self._channel, self._node_code, block)
 

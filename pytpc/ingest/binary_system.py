@@ -31,7 +31,7 @@ Skip = Callable[[str], None]
 
 
 @dataclass
-class System:
+class SystemRecords:
     """What was read of the system's chunks, but for summaries; times are of the steady clock."""
 
     keys: dict[int, str] = field(default_factory=dict)
@@ -53,7 +53,7 @@ class System:
             yield Dropped(self.keys.get(site, ""), node, count, min(flops, count), why)
 
 
-def read_system(chunk: Chunk, place: int, system: System, skip: Skip) -> None:
+def read_system(chunk: Chunk, place: int, system: SystemRecords, skip: Skip) -> None:
     """Read all of a chunk of system records but the summaries into ``system``.
 
     Args:
@@ -191,7 +191,7 @@ def _records(data: bytes, place: int, skip: Skip) -> Iterator[tuple[int, int, in
         begin += length
 
 
-def _site(system: System, number: int, text: bytes) -> str | None:
+def _site(system: SystemRecords, number: int, text: bytes) -> str | None:
     """Take in what a site is called; what is wrong with it, if anything."""
     try:
         key = text.decode("utf-8")

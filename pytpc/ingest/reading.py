@@ -18,7 +18,7 @@ from pytpc.ingest.binary import read_binary
 from pytpc.ingest.duplicates import TOLERANCE_NS
 from pytpc.ingest.folder import read_folder_into
 from pytpc.ingest.gathering import Gathering, Progress
-from pytpc.ingest.outcome import Outcome
+from pytpc.ingest.outcome import Merged
 from pytpc.ingest.ros2_bag import MCAP_MAGIC, SQLITE_MAGIC, read_ros2_into
 from pytpc.ingest.text import read_text_into
 from pytpc.python_runtime.log_layout import MAGIC as TPC_MAGIC
@@ -65,7 +65,7 @@ def read(
         return replace(recording, marks=joined([*recording.marks, *_beside(given[0])]))
     gathering = Gathering()
     gather(given, gathering, on_progress)
-    return Outcome(gathering, name_of(given), tolerance_ns).recording()
+    return Merged(gathering, name_of(given), tolerance_ns).recording()
 
 
 def read_bag(path: Path, on_progress: Progress | None = None) -> Recording:
@@ -77,7 +77,7 @@ def read_bag(path: Path, on_progress: Progress | None = None) -> Recording:
     gathering = Gathering()
     read_bag_into(path, gathering, on_progress)
     gathering.marks += _beside(path)
-    return Outcome(gathering, path.stem).recording()
+    return Merged(gathering, path.stem).recording()
 
 
 @contextmanager
@@ -87,7 +87,7 @@ def opened(
     on_progress: Progress | None = None,
     *,
     tolerance_ns: int = TOLERANCE_NS,
-) -> Iterator[Outcome]:
+) -> Iterator[Merged]:
     """The same with little memory: what is too much for it goes to files in ``scratch``.
 
     Args:
@@ -108,7 +108,7 @@ def opened(
     try:
         gathering = Gathering(folder)
         gather(paths, gathering, on_progress)
-        yield Outcome(gathering, name_of(paths), tolerance_ns)
+        yield Merged(gathering, name_of(paths), tolerance_ns)
     finally:
         shutil.rmtree(folder, ignore_errors=True)
 

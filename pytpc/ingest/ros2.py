@@ -10,14 +10,14 @@ from __future__ import annotations
 
 import struct
 
-from pytpc.ingest.ros1 import Log
+from pytpc.ingest.ros1 import LogMessage
 
 _HEAD = 4
 _TIME = {0: struct.Struct(">iI"), 1: struct.Struct("<iI")}
 _LENGTH = {0: struct.Struct(">I"), 1: struct.Struct("<I")}
 
 
-def decode_log(raw: bytes) -> Log:
+def decode_log(raw: bytes) -> LogMessage:
     """Read an rcl_interfaces/Log up to its text; it has no number.
 
     Raises:
@@ -31,7 +31,7 @@ def decode_log(raw: bytes) -> Log:
         msg, _ = _string(raw, at, order)
     except (struct.error, IndexError) as error:
         raise ValueError(f"a log message of {len(raw)} bytes ends too early") from error
-    return Log(0, seconds * 10**9 + nanoseconds, node, msg)
+    return LogMessage(0, seconds * 10**9 + nanoseconds, node, msg)
 
 
 def decode_string(raw: bytes) -> bytes:

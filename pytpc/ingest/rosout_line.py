@@ -75,7 +75,7 @@ class Drop:
 
 
 @dataclass(frozen=True, slots=True)
-class Batch:
+class BatchHead:
     """The first line of a message of several lines.
 
     ``seq`` is the number, in its process, of the first of the ``count`` reports that follow;
@@ -138,12 +138,12 @@ def parse_stamped_other(text: str, node: str) -> Summary | Drop | Malformed | No
     return None if stamp is None else _other(text, stamp.end(), node)
 
 
-def parse_batch(text: str) -> Batch | Malformed:
+def parse_batch(text: str) -> BatchHead | Malformed:
     """Read ``#seq:N,count:N,dropped:N,pid:P,steady:S``."""
     found = _BATCH.fullmatch(text)
     if found is None:
         return Malformed("a line that begins with # is #seq:N,count:N,dropped:N,pid:P,steady:S", 1)
-    return Batch(*(int(number) for number in found.groups()[:4]))
+    return BatchHead(*(int(number) for number in found.groups()[:4]))
 
 
 def nanoseconds(text: str) -> int:

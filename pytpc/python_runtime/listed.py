@@ -50,7 +50,7 @@ class ListedFile(NamedTuple):
     comparisons: tuple[Listed, ...]
 
 
-class Table:
+class ListedFiles:
     """The source files with comparisons, found by the last part of their names."""
 
     def __init__(self, files: Iterable[ListedFile]) -> None:
@@ -123,7 +123,7 @@ class _Unit(NamedTuple):
         return any(file.path.endswith(module) for file in self.files)
 
 
-def read_table(paths: Iterable[str], script: str | None = None) -> Table:
+def read_table(paths: Iterable[str], script: str | None = None) -> ListedFiles:
     """Read files of static information, merged ones, and folders that hold such files.
 
     Args:
@@ -137,7 +137,7 @@ def read_table(paths: Iterable[str], script: str | None = None) -> Table:
     units = _all_units(paths)
     if script is not None:
         units = _of_script(units, script)
-    return Table(file for unit in units for file in unit.files)
+    return ListedFiles(file for unit in units for file in unit.files)
 
 
 def names_script(paths: Iterable[str], script: str) -> bool:

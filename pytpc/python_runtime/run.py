@@ -21,7 +21,7 @@ if __name__ == "__main__" and not __package__:
 
 from pytpc.python_runtime.errors import HookError
 from pytpc.python_runtime.instrument import Instrument
-from pytpc.python_runtime.listed import BUILT, Table, read_table
+from pytpc.python_runtime.listed import BUILT, ListedFiles, read_table
 from pytpc.python_runtime.loader import install
 from pytpc.python_runtime.runtime import RUNTIME
 from pytpc.python_runtime.script import run_script
@@ -39,7 +39,7 @@ Runs a Python node; the comparisons of the static information report.
 """
 
 
-class Words(NamedTuple):
+class CommandLine(NamedTuple):
     """The command line."""
 
     static: list[str]
@@ -48,7 +48,7 @@ class Words(NamedTuple):
     arguments: list[str]
 
 
-def parsed(words: list[str]) -> Words | None:
+def parsed(words: list[str]) -> CommandLine | None:
     """What the command line says; None where help is asked for.
 
     Raises:
@@ -73,7 +73,7 @@ def parsed(words: list[str]) -> Words | None:
             raise HookError(f"{word}: no such option, or its value is missing; see --help")
     if not rest:
         raise HookError("which script is to be run? see --help")
-    return Words(static, verbose, rest[0], rest[1:])
+    return CommandLine(static, verbose, rest[0], rest[1:])
 
 
 def static_of_environment() -> list[str]:
@@ -98,7 +98,7 @@ def static_around(script: str) -> str | None:
     return None
 
 
-def prepared(given: Words) -> Instrument:
+def prepared(given: CommandLine) -> Instrument:
     """Read the static information of a script and install the hook.
 
     Raises:
@@ -121,17 +121,17 @@ def prepared(given: Words) -> Instrument:
     return instrument
 
 
-def _found(given: Words) -> tuple[list[str], Table]:
+def _found(given: CommandLine) -> tuple[list[str], ListedFiles]:
     path = static_around(given.script)
     if path is None:
-        return [], Table([])
+        return [], ListedFiles([])
     if given.verbose:
         warn(f"the static information is {path}")
     try:
         return [path], read_table([path], given.script)
     except HookError as error:
         warn(f"{error}; nothing is reported")
-        return [path], Table([])
+        return [path], ListedFiles([])
 
 
 def main(words: list[str] | None = None) -> None:
@@ -153,7 +153,7 @@ def main(words: list[str] | None = None) -> None:
         sys.exit(1)
 
 
-def _hide_command(given: Words) -> None:
+def _hide_command(given: CommandLine) -> None:
     """Let ``sys.orig_argv`` have the interpreter, its options, and the script, as if by itself."""
     words: list[str] | None = getattr(sys, "orig_argv", None)
     if words is not None:

@@ -163,7 +163,7 @@ def values(cmp: object, thresh: object, outcome: bool) -> tuple[float, float]:
     return left, right
 
 
-class Comparison(Site):
+class ComparisonSite(Site):
     """One link of a comparison. See the module's text.
 
     A link that others follow keeps its right operand and its outcome, by the frame in which it was
@@ -320,7 +320,7 @@ def _linker(operation: str, reported: tuple[Reported, ...], held: Held) -> Funct
     return link
 
 
-class Flag(Site):
+class FlagSite(Site):
     """A parameter that is a condition by itself.
 
     `truth` where the program asks for the truth alone; `value` where it takes the value itself.

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from pytpc.base.errors import TpcError
-from pytpc.recording.marking_session import Change
+from pytpc.recording.marking_session import MarkChange
 from pytpc.recording.marks import Mark, read_marks, write_marks
 
 
@@ -32,11 +32,11 @@ class MarksFile:
         except OSError as error:
             raise TpcError(f"cannot be made: {error.strerror}", path.parent) from error
         self.path = path
-        self.pending: list[Change] = []
+        self.pending: list[MarkChange] = []
         self.fault: str | None = None
         self.before: tuple[Mark, ...] = read_marks(path) if path.exists() else ()
 
-    def take(self, change: Change) -> None:
+    def take(self, change: MarkChange) -> None:
         """A change that is to be written by the next ``flush``."""
         self.pending.append(change)
 

@@ -26,7 +26,7 @@ _MOST_TRIES = 1000
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class JournalEntry:
     """One change.
 
     ``path`` is the file and ``before`` its bytes; of a change of a running robot both are None and
@@ -94,7 +94,7 @@ class Journal:
         finally:
             os.close(descriptor)
 
-    def entries(self) -> list[Entry]:
+    def entries(self) -> list[JournalEntry]:
         """All changes that can be read, the oldest first."""
         return self._all()[0]
 
@@ -102,8 +102,8 @@ class Journal:
         """What is wrong with the notes that cannot be read; the others are good all the same."""
         return self._all()[1]
 
-    def _all(self) -> tuple[list[Entry], list[InputError]]:
-        entries, errors = list[Entry](), list[InputError]()
+    def _all(self) -> tuple[list[JournalEntry], list[InputError]]:
+        entries, errors = list[JournalEntry](), list[InputError]()
         try:
             paths = sorted(path for path in self._folder.glob("*.json") if path.stem.isdigit())
         except OSError:
@@ -124,7 +124,7 @@ class Journal:
         before: bytes | None = None,
         after: bytes = b"",
         live: Mapping[str, Any] | None = None,
-    ) -> Entry:
+    ) -> JournalEntry:
         """Write down a change that is about to be made.
 
         Raises:
@@ -167,18 +167,18 @@ class Journal:
                 return target
         raise OSError(0, "no number is free")
 
-    def remove(self, entry: Entry) -> None:
+    def remove(self, entry: JournalEntry) -> None:
         """Forget a change that was taken back, or was not made after all."""
         (self._folder / f"{entry.number:06d}.json").unlink(missing_ok=True)
 
 
-def _read(path: Path) -> Entry:
+def _read(path: Path) -> JournalEntry:
     try:
         document = json.loads(path.read_text(encoding="utf-8"))
         if document["schema"] != SCHEMA:
             raise ValueError(f"version {document['schema']}")
         before = document["before"]
-        return Entry(
+        return JournalEntry(
             int(path.stem),
             str(document["time"]),
             str(document["parameter"]),

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from pytpc.base.errors import InputError
 from pytpc.static.parameters import same_parameter
-from pytpc.values.apply import Change, decoded, read_file
+from pytpc.values.apply import FileChange, decoded, read_file
 from pytpc.values.installed import is_installed, of_the_system, source_of
 from pytpc.values.journal import digest
 from pytpc.values.launch_edit import LaunchEdit, add_param, edit_argument, edit_inline, edit_param
@@ -126,7 +126,7 @@ def chosen(target: Target, parameter: str) -> Origin:
     )
 
 
-def plan_yaml(path: Path, parameter: str, given: str, *, force: bool = False) -> Change:
+def plan_yaml(path: Path, parameter: str, given: str, *, force: bool = False) -> FileChange:
     """Work out a change of a YAML file; nothing is written.
 
     Args:
@@ -157,12 +157,12 @@ def plan_yaml(path: Path, parameter: str, given: str, *, force: bool = False) ->
     notes = (*edit.notes, *_where(path, real))
     name = "/" + "/".join(meant[0])
     after = edit.text.encode("utf-8")
-    return Change(name, real, data, after, edit.old, edit.new, edit.lineno, notes)
+    return FileChange(name, real, data, after, edit.old, edit.new, edit.lineno, notes)
 
 
 def plan_origin(
     origin: Origin, given: str, *, force: bool = False, files: Mapping[str, str] | None = None
-) -> Change:
+) -> FileChange:
     """Work out a change of the file that set a value; nothing is written.
 
     Args:
@@ -207,7 +207,9 @@ def plan_origin(
     notes = [*found.notes, *_where(path, real)]
     if origin.value is not None and repr(origin.value) != repr(found.old):
         notes.append(f"the robot had {origin.value!r}; the file was changed since")
-    return Change(origin.name, real, data, after, found.old, found.new, found.lineno, tuple(notes))
+    return FileChange(
+        origin.name, real, data, after, found.old, found.new, found.lineno, tuple(notes)
+    )
 
 
 def _edit_launch(
@@ -234,7 +236,7 @@ def _edit_launch(
     return edit_inline(data, origin.keys, lineno, given, force=force)
 
 
-def plan_addition(origin: Origin, target: Target, given: str, default: object = None) -> Change:
+def plan_addition(origin: Origin, target: Target, given: str, default: object = None) -> FileChange:
     """Work out a ``<param>`` for a value that no file sets; nothing is written.
 
     It goes into the tag of the node in whose namespace it is, else to the end of the launch file.
@@ -265,7 +267,7 @@ def plan_addition(origin: Origin, target: Target, given: str, default: object = 
     except Refused as error:
         raise InputError(str(error), file, error.lineno) from error
     notes = _where(path, real)
-    return Change(origin.name, real, data, edit.data, None, value, edit.lineno, notes)
+    return FileChange(origin.name, real, data, edit.data, None, value, edit.lineno, notes)
 
 
 def _offset_of(data: bytes, node: LaunchNode) -> int:

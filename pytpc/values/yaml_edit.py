@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from pytpc.values.new_value import Refused, degrees_text, guessed, read_value, yaml_text
 from pytpc.values.scalars import number_text, type_of
-from pytpc.values.yaml_tree import Setting, YamlNode, read_yaml, settings, value_of
+from pytpc.values.yaml_tree import YamlNode, YamlSetting, read_yaml, settings, value_of
 
 Keys = tuple[str, ...]
 _DEGREES = re.compile(r"\s*deg\(.*\)\s*")
@@ -28,7 +28,7 @@ class Edit:
     notes: tuple[str, ...] = ()
 
 
-def all_settings(text: str) -> list[Mapping[Keys, Setting]]:
+def all_settings(text: str) -> list[Mapping[Keys, YamlSetting]]:
     """What each document of a YAML text sets.
 
     Raises:
@@ -85,13 +85,13 @@ def edit_yaml(text: str, keys: Keys, given: str, *, force: bool = False) -> Edit
     return Edit(text, keys, old, new, spot.lineno, tuple(notes))
 
 
-def _changed_with(document: Mapping[Keys, Setting], spot: YamlNode) -> list[Keys]:
+def _changed_with(document: Mapping[Keys, YamlSetting], spot: YamlNode) -> list[Keys]:
     """The keys of all values that change when the text of this node does."""
     return [one.keys for one in document.values() if one.written is spot or one.node is spot]
 
 
 def _notes(
-    document: Mapping[Keys, Setting], setting: Setting, spot: YamlNode, force: bool
+    document: Mapping[Keys, YamlSetting], setting: YamlSetting, spot: YamlNode, force: bool
 ) -> list[str]:
     """What else to know of a change.
 
@@ -177,7 +177,7 @@ def _put(text: str, node: YamlNode, piece: str) -> str:
 
 
 def _check(
-    before: list[Mapping[Keys, Setting]], text: str, changed: Mapping[tuple[int, Keys], object]
+    before: list[Mapping[Keys, YamlSetting]], text: str, changed: Mapping[tuple[int, Keys], object]
 ) -> None:
     """See that the text says what it should: these values are new, and every other one is not.
 
@@ -191,7 +191,7 @@ def _check(
 
 
 def _all_values(
-    documents: list[Mapping[Keys, Setting]],
+    documents: list[Mapping[Keys, YamlSetting]],
 ) -> dict[tuple[int, Keys], tuple[str, int]]:
     """The values of all documents, each with how often its keys stand before it.
 

@@ -17,7 +17,7 @@ from tpc_file import TpcFile, report, site, sync
 from pytpc.base.errors import InputError
 from pytpc.ingest import Dropped, read, save_recording
 from pytpc.ingest.bag import _DECODERS
-from pytpc.ingest.bag_chunks import Messages as Chunk
+from pytpc.ingest.bag_chunks import ChunkMessages as Chunk
 from pytpc.ingest.gathering import Gathering
 from pytpc.ingest.messages import Messages
 from pytpc.ingest.rosout_line import PREFIX
