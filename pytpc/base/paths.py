@@ -144,7 +144,8 @@ def require_tools(names: Iterable[str] = BUILD_TOOLS) -> dict[str, Path]:
     if absent:
         packages = " ".join(dict.fromkeys(BUILD_TOOLS[name] for name in absent))
         raise MissingToolError(
-            f"{_listed(absent)} not found on this machine; mend it with: apt-get install {packages}"
+            f"{_listed(absent)} not found on this machine; install it with:"
+            f" apt-get install {packages}"
         )
     return found
 
@@ -163,7 +164,7 @@ def require_ros() -> None:
     absent = [name for name in _ROS_PLACES if name not in found]
     if absent:
         raise MissingToolError(
-            f"{_listed(absent)} of ROS 1 not found on this machine; mend it with:"
+            f"{_listed(absent)} of ROS 1 not found on this machine; install it with:"
             f" apt-get install {ROS_PACKAGES}"
         )
 

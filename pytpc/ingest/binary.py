@@ -91,7 +91,7 @@ def read_binary(path: Path, gathering: Gathering, on_progress: Progress | None =
     """Read a .tpc file.
 
     Raises:
-        InputError: it is none, or of another version.
+        InputError: it is not such a file, or of another version.
     """
     try:
         with path.open("rb", buffering=0) as stream:

@@ -65,7 +65,7 @@ def decode_description(raw: bytes, topic: str) -> list[Declared]:
     """The declarations in a serialised ConfigDescription.
 
     Raises:
-        ValueError, IndexError, struct.error: it is none.
+        ValueError, IndexError, struct.error: it is not such a message.
     """
     reader = _DescriptionReader(raw)
     parameters = []

@@ -66,4 +66,4 @@ def read_folder_into(
 
 def _check(path: Path, said: int, found: int) -> None:
     if said != found:
-        raise InputError(f"has {found} rows, but marks.json tells of {said}", path)
+        raise InputError(f"has {found} rows, but marks.json says {said}", path)

@@ -57,7 +57,7 @@ def read(
         tolerance_ns: how far apart in time the same report may be in two files.
 
     Raises:
-        InputError: a file is not there, is none of these, or is broken; one line.
+        InputError: a file is missing, of no known format, or broken; one line.
     """
     given = [paths] if isinstance(paths, Path) else list(paths)
     if len(given) == 1 and is_ingested(given[0]):
@@ -138,14 +138,14 @@ def gather(
         gathering.late_notes.append(f"no report in {many(len(empty), 'text file')}, as {empty[0]}")
     for path in paths:
         for left in sorted(path.glob("*.bag.active")):
-            gathering.late_notes.append(f"{left}: not read; mend it with: rosbag reindex")
+            gathering.late_notes.append(f"{left}: not read; recover it with: rosbag reindex")
 
 
 def sources(path: Path) -> list[Path]:
     """The recordings that ``path`` stands for: itself, or those in a folder, by name.
 
     Raises:
-        InputError: it is not there, or is a folder without recordings.
+        InputError: it is not there, or is no recordings in this folder.
     """
     if not path.exists():
         raise InputError("no such bag, file or folder", path)
@@ -160,10 +160,10 @@ def sources(path: Path) -> list[Path]:
         raise InputError(f"cannot be read: {error.strerror or error}", path) from error
     found = [entry for entry in entries if _is_recording(entry)]
     if not found and any(path.glob("*.bag.active")):
-        what = "only a bag that was cut off: rosbag reindex it, then take .active from its name"
+        what = "only an unfinished bag: run rosbag reindex on it, then remove .active from its name"
         raise InputError(what, path)
     if not found:
-        raise InputError("a folder without recordings", path)
+        raise InputError("no recordings in this folder", path)
     return found
 
 

@@ -26,7 +26,7 @@ def decode_log(raw: bytes) -> LogMessage:
     try:
         order = raw[1] & 1
         seconds, nanoseconds = _TIME[order].unpack_from(raw, _HEAD)
-        # The level, one byte, stands in front of the name.
+        # One byte, the level, precedes the name.
         node, at = _string(raw, _HEAD + 9, order)
         msg, _ = _string(raw, at, order)
     except (struct.error, IndexError) as error:

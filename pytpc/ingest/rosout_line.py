@@ -1,4 +1,6 @@
-"""The text of one report (SPEC 5), read strictly: pure functions from a line to a record.
+"""Reads the text of one report strictly: pure functions from a line to a record.
+
+Format: docs/reference/formats.md#reports.
 
 ``parse_report`` and ``parse_other`` read what is in the ``msg`` of a /rosout message,
 ``parse_stamped``, ``parse_stamped_other`` and ``parse_batch`` a line of the ``data`` of a
@@ -89,7 +91,7 @@ class BatchHead:
 
 
 class Malformed(NamedTuple):
-    """A line that begins like a report and is none: what is wrong, and at which column (from 1)."""
+    """A line that only begins like a report: what is wrong, and at which column (from 1)."""
 
     what: str
     column: int
@@ -124,7 +126,7 @@ def parse_stamped(text: str) -> StampedReport | Malformed:
 
 
 def parse_other(text: str, node: str) -> Summary | Drop | Malformed | None:
-    """Read ``threshold_summary:...`` or ``threshold_dropped:...`` (docs/formats.md).
+    """Read ``threshold_summary:...`` or ``threshold_dropped:...``.
 
     Returns:
         What it says; ``Malformed`` where the text only begins like one; None for anything else.

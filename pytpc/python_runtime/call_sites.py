@@ -35,7 +35,7 @@ _NUMBERS = frozenset({int, float, bool})
 
 
 class ComparedInside(NamedTuple):
-    """One comparison of a call: its key, its relation, and its operand as in docs/formats.md."""
+    """One comparison of a call: what reports it, its relation and the name of its operand."""
 
     reported: Reported
     relation: str

@@ -233,14 +233,14 @@ def _is_swapped(node: ast.Compare, link: int, listed: Listed) -> bool:
 
 
 def _text(node: ast.expr) -> str:
-    """``self.limit`` as it stands in the source; empty for what is no name."""
+    """``self.limit`` as written in the source; empty for anything but a name."""
     if isinstance(node, ast.Name):
         return node.id
     if isinstance(node, ast.Attribute):
         return f"{_text(node.value)}.{node.attr}"
     if isinstance(node, ast.Subscript):
         inner = node.slice
-        # Until Python 3.9 the index stands in a node of its own.
+        # Before Python 3.9 the index has a node of its own.
         inner = getattr(inner, "value", inner) if type(inner).__name__ == "Index" else inner
         if isinstance(inner, ast.Constant):
             return f"{_text(node.value)}[{inner.value!r}]"

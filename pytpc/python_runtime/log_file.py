@@ -1,4 +1,4 @@
-"""The binary file of reports (docs/formats.md), written straight into mapped memory.
+"""The binary file of reports (docs/reference/formats.md), written straight into mapped memory.
 
 The kernel keeps what was written whatever happens to the process. Space is allocated on the disk
 before it is mapped, so that a full disk is an error and no signal. Each thread has chunks of its
@@ -190,7 +190,7 @@ class LogFile(Room):
     def _prepared(
         self, place: _ThreadPlace, one: Reported, chunk: _Chunk, at: int, now: int
     ) -> tuple[_Chunk, int] | None:
-        """Where to write where something stands in the way; None where there is no room."""
+        """Where to write when something is in the way; None when there is no room."""
         if now >= self._sync_at:
             self.look(now)
             self._each_second()

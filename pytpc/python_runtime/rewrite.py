@@ -6,7 +6,7 @@ was, is evaluated exactly once and in the original order, by the program's own f
 comparison had, so that tracebacks, debuggers and coverage see the lines and columns of the source.
 
 The calls go to an object (`pytpc.python_runtime.sites`) that is a constant of the code: nothing is
-added to any namespace. `ast` knows no such constants, so a text stands in the tree for each, and is
+added to any namespace. `ast` knows no such constants, so the tree has a text for each, which is
 replaced in the compiled code.
 """
 
@@ -75,7 +75,7 @@ def rewrite(
 
 
 def constant_text(number: int) -> str:
-    """What stands in a tree for an object that is a constant of the code."""
+    """The node that represents an object which will be a constant of the code."""
     return f"{_MARK}{number}"
 
 
@@ -220,7 +220,7 @@ class _Rewriter:
     def _expression(
         self, node: ast.expr, asked: bool, negation: ast.expr | None = None
     ) -> ast.expr:
-        """What stands in the place of ``node``, the operand of ``negation`` if there is one."""
+        """What replaces ``node``, the operand of ``negation`` if there is one."""
         flags = self._found.flags.get(node)
         links = self._found.links.get(node) if isinstance(node, ast.Compare) else None
         asker = self._asker

@@ -33,9 +33,9 @@ usage: python -m pytpc.python_runtime [--static FILE]... [--verbose] NODE.py [AR
 
 Runs a Python node; the comparisons of the static information report.
 
-  --static FILE  static information (JSON), or a folder that has some; may be given
-                 several times. Else TPC_STATIC, several with colons between them.
-  --verbose      say at the end which files report, and what was not reported
+  --static FILE  static information (JSON), or a folder that contains it; may be given
+                 several times. Default: TPC_STATIC, separated by colons.
+  --verbose      print at the end which files reported, and what was not found
 """
 
 
@@ -49,10 +49,10 @@ class CommandLine(NamedTuple):
 
 
 def parsed(words: list[str]) -> CommandLine | None:
-    """What the command line says; None where help is asked for.
+    """Parse the command line; None if it asks for help.
 
     Raises:
-        HookError: it says nothing that can be done.
+        HookError: an unknown option, or no script.
     """
     static: list[str] = []
     verbose = False
@@ -72,7 +72,7 @@ def parsed(words: list[str]) -> CommandLine | None:
         else:
             raise HookError(f"{word}: no such option, or its value is missing; see --help")
     if not rest:
-        raise HookError("which script is to be run? see --help")
+        raise HookError("no script given; see --help")
     return CommandLine(static, verbose, rest[0], rest[1:])
 
 
@@ -82,9 +82,9 @@ def static_of_environment() -> list[str]:
 
 
 def static_around(script: str) -> str | None:
-    """What ``pytpc build`` left in a folder above the script, else above the current one.
+    """The static.json of ``pytpc build`` in a folder above the script, else above the current one.
 
-    The script's folder is first where it stands, and then where a link leads to.
+    The script's folder is first that of the path given, then that of the file a link points to.
     """
     for start in (os.path.abspath(script), os.path.realpath(script), os.path.join(os.getcwd(), "")):
         folder = os.path.dirname(start)
@@ -102,7 +102,8 @@ def prepared(given: CommandLine) -> Instrument:
     """Read the static information of a script and install the hook.
 
     Raises:
-        HookError: a file that was named cannot be read. One that was only found is left, and said.
+        HookError: a file that was named cannot be read. One that was only found is left out, with a
+            warning.
     """
     static = given.static or static_of_environment()
     if static:
@@ -135,7 +136,7 @@ def _found(given: CommandLine) -> tuple[list[str], ListedFiles]:
 
 
 def main(words: list[str] | None = None) -> None:
-    """Run a node; ends with status 1 and one line where it cannot be."""
+    """Run a node; if that is not possible, print one line and exit with status 1."""
     try:
         given = parsed(sys.argv[1:] if words is None else words)
         if given is None:
@@ -154,7 +155,7 @@ def main(words: list[str] | None = None) -> None:
 
 
 def _hide_command(given: CommandLine) -> None:
-    """Let ``sys.orig_argv`` have the interpreter, its options, and the script, as if by itself."""
+    """Make ``sys.orig_argv`` look as if the script had been started directly."""
     words: list[str] | None = getattr(sys, "orig_argv", None)
     if words is not None:
         mine = len(words) - len(sys.argv)

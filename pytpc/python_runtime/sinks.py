@@ -1,4 +1,4 @@
-"""What a sink takes, and its lines of text (docs/formats.md, "Reports")."""
+"""What a sink takes, and its lines of text (docs/reference/formats.md#reports)."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from pytpc.python_runtime.sites import Reported
 
 
-# |cmp - thresh| above which an evaluation is far (SPEC 7).
+# |cmp - thresh| above which an evaluation is far (docs/reference/scores.md#score-of-type-ii).
 _FAR = 1e-4
 
 

@@ -68,7 +68,7 @@ def _locked(folder: Path) -> Iterator[None]:
     """Nobody else who asks for this has the folder.
 
     Raises:
-        OSError: somebody has, or there is no such folder.
+        OSError: it exists already, or there is no such folder.
     """
     descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
     try:

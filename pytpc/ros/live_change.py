@@ -56,7 +56,7 @@ def take_back_live(
     now = robot.value(name)
     if not force and repr(now) not in (repr(new), repr(old)):
         raise RunError(
-            f"{name} is {shown(now)} now, which somebody else has set; --force sets {entry.old}"
+            f"{name} is {shown(now)} now: something else has set it; --force sets {entry.old}"
         )
     if not dry_run:
         robot.take_back(name, old, str(live["service"]))

@@ -19,13 +19,13 @@ from pytpc.recording.marks import (
 )
 from pytpc.ros.ros1.mark_publisher import MarkPublisher
 
-# A mark that nobody heard is sent to who connects within this time: a recorder that is just
+# A mark without listeners is sent to those who connect within this time: a recorder that is just
 # starting, a master that is being restarted. Later ones may be recording another mission.
 _HELD_S = 60.0
 
 
 class _HeldMark(NamedTuple):
-    """A message that nobody has heard, and until when (steady seconds) it is kept."""
+    """A message without listeners, and until when (steady seconds) it is kept."""
 
     topic: str
     content: int | str
@@ -92,7 +92,7 @@ class GraphMarks:
         return ""
 
     def tick(self) -> None:
-        """Send what nobody heard to who has come since, in its order."""
+        """Send messages that had no listeners to those who have connected since, in order."""
         waiting, self._held = self._held, deque()
         for held in waiting:
             sent = self._publisher.publish(held.topic, held.content)

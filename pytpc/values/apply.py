@@ -86,7 +86,7 @@ def apply_change(change: FileChange, journal: Journal) -> JournalEntry:
 
 def _apply_change(change: FileChange, journal: Journal) -> JournalEntry:
     if read_file(change.path) != change.before:
-        raise TpcError("somebody else has just changed it; run the command again", change.path)
+        raise TpcError("the file has changed meanwhile; run the command again", change.path)
     entry = journal.add(
         change.parameter,
         (shown(change.old), shown(change.new)),
@@ -106,8 +106,7 @@ def undo_change(entry: JournalEntry, journal: Journal) -> FileChange:
     """What taking back a change of a file does to it; nothing is written.
 
     Raises:
-        TpcError: the file was changed since, by another change that is taken back first or by
-            somebody.
+        TpcError: the file has changed since, by a later change or by someone else.
     """
     path, before = entry.path, entry.before
     assert path is not None, "a change of a file"
@@ -115,11 +114,10 @@ def undo_change(entry: JournalEntry, journal: Journal) -> FileChange:
     now = read_file(path)
     later = [e for e in journal.entries() if e.path == path and e.number > entry.number]
     if later:
-        raise TpcError(f"change {later[-1].number} came after it; take that back first", path)
+        raise TpcError(f"change {later[-1].number} came later; undo that first", path)
     if now != before and digest(now) != entry.after:
         raise TpcError(
-            f"was changed since: change {entry.number} is not taken back; the value was"
-            f" {entry.old}",
+            f"has changed since: change {entry.number} is not undone; the value was {entry.old}",
             path,
         )
     return FileChange(entry.parameter, path, now, before, entry.new, entry.old, 0)

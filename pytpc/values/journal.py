@@ -84,7 +84,7 @@ class Journal:
             )
         except OSError as error:
             raise TpcError(
-                f"the change cannot be noted for --undo: {error.strerror}", self._folder
+                f"the change cannot be recorded for --undo: {error.strerror}", self._folder
             ) from error
         try:
             # Some file systems of a network have no locks; then it is as it would be without.
@@ -143,7 +143,7 @@ class Journal:
         }
         data = json.dumps(document, indent=1).encode() + b"\n"
         try:
-            # What stood in a file may be nobody else's business.
+            # The content of a file may be private.
             self._folder.mkdir(parents=True, exist_ok=True, mode=0o700)
             staged = stage_beside(self._folder / "new", data, 0o600)
             try:
@@ -152,7 +152,7 @@ class Journal:
                 staged.unlink()
         except OSError as error:
             raise TpcError(
-                f"the change cannot be noted for --undo: {error.strerror}", self._folder
+                f"the change cannot be recorded for --undo: {error.strerror}", self._folder
             ) from error
         return _read(target)
 

@@ -112,7 +112,7 @@ class Places:
         return self._from_param(self._at(name, launch, int(setting["lineno"]), setting), setting)
 
     def _at(self, name: str, path: Path, lineno: int | None, setting: Mapping[str, Any]) -> Origin:
-        """An origin at a line, of a launch file as long as nobody says otherwise."""
+        """An origin at a line, of a launch file unless stated otherwise."""
         return Origin(
             name=name,
             kind="launch",

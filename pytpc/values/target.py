@@ -61,7 +61,7 @@ def read_target(path: Path, args: Mapping[str, str], env: Mapping[str, str]) -> 
     if path.is_dir() or path.suffix in (".bag", ".parquet"):
         if not origins_file(path).is_file():
             raise InputError(
-                f"no {ORIGINS_FILE}: it was not recorded where values came from; give the launch"
+                f"no {ORIGINS_FILE}: the origins of its values were not recorded; give the launch"
                 " file, or record with `pytpc record`",
                 path,
             )
@@ -105,7 +105,7 @@ def chosen(target: Target, parameter: str) -> Origin:
         parameter: its full name, or the end of it.
 
     Returns:
-        Of a full name that nobody set: an origin of the kind ``default``.
+        For a full name that is not set: an origin of the kind ``default``.
 
     Raises:
         InputError: several parameters are meant, or none.
@@ -121,7 +121,7 @@ def chosen(target: Target, parameter: str) -> Origin:
         return Origin(parameter, "default", None, None, None, "")
     names = _listed([node.name for node in target.nodes]) or "no node is known"
     raise InputError(
-        f"nobody sets {parameter}; where it has its default, give its full name, as in"
+        f"{parameter} is not set anywhere; to change a default, give the full name, as in"
         f" /NODE/{parameter.lstrip('~/')} ({names})"
     )
 
@@ -173,7 +173,7 @@ def plan_origin(
             lines may be others, and a tag is changed only where no other one may be meant.
 
     Raises:
-        InputError: no file set it, the file is not here any more, or the change is refused.
+        InputError: no file set it, the file is no longer there, or the change is refused.
     """
     path = origin.path
     if origin.note.startswith(IN_ARGS):
@@ -185,8 +185,8 @@ def plan_origin(
     file = origin.source or path
     if of_the_system(file) and not force:
         raise InputError(
-            "it was installed with the system; set the value in a launch file of your own (--add),"
-            " or --force",
+            "it belongs to an installed package; set the value in a launch file of your own"
+            " (--add), or --force",
             file,
         )
     real = file.resolve()
@@ -282,7 +282,7 @@ def _offset_of(data: bytes, node: LaunchNode) -> int:
     if len(named) == 1:
         return named[0].offset
     if not here:
-        raise Refused(f"the tag of {node.name} is not here any more", node.lineno)
+        raise Refused(f"the tag of {node.name} is no longer there", node.lineno)
     return here[0].offset
 
 
@@ -292,8 +292,8 @@ def _why_not(origin: Origin) -> str:
         return f"{name} is {origin.note}; give {origin.argument}:=VALUE there instead"
     if origin.kind == "default":
         return (
-            f"nobody sets {name}: it has its default in the code; --add puts it into the launch"
-            " file"
+            f"{name} is not set anywhere and has its default in the code; --add puts it into the"
+            " launch file"
         )
     if origin.kind == "runtime":
         return (

@@ -17,7 +17,7 @@ def entry_of(journal: Journal, what: str) -> JournalEntry:
         what: its number, a file of which the last change is meant, or empty for the last of all.
 
     Raises:
-        InputError: there is none.
+        InputError: there is no such change.
     """
     entries = journal.entries()
     if what.isdigit() and not Path(what).exists():
@@ -29,7 +29,7 @@ def entry_of(journal: Journal, what: str) -> JournalEntry:
         meant = entries
     if not meant:
         raise InputError(
-            f"no change of {what} is noted" if what else "no change is noted: nothing to take back"
+            f"no change of {what} is recorded" if what else "no change is recorded: nothing to undo"
         )
     return meant[-1]
 

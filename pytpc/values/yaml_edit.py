@@ -50,7 +50,7 @@ def edit_yaml(text: str, keys: Keys, given: str, *, force: bool = False) -> Edit
         force: change the type, or a value that other parameters have, too (an anchor).
 
     Raises:
-        Refused: see docs/applying.md; the message says what to do.
+        Refused: see docs/how-to/change-a-parameter.md; the message says what to do.
     """
     documents = all_settings(text)
     having = [document for document in documents if keys in document]
@@ -96,7 +96,7 @@ def _notes(
     """What else to know of a change.
 
     Raises:
-        Refused: other parameters have the same text as their value, and nobody wants to force it.
+        Refused: other parameters share the text of the value, and ``force`` is not given.
     """
     others = [keys for keys in _changed_with(document, spot) if keys != setting.keys]
     if others:
@@ -115,7 +115,7 @@ def _notes(
 
 def _read(node: YamlNode) -> object:
     if node.kind == "scalar" and node.style in ("|", ">"):
-        raise Refused("it is a block of text, which is not changed here", node.lineno)
+        raise Refused("it is a block of text, which cannot be changed", node.lineno)
     try:
         return value_of(node)
     except ValueError as error:
@@ -187,7 +187,7 @@ def _check(
     for place, value in changed.items():
         wanted[place] = (repr(value), wanted[place][1])
     if found != wanted:
-        raise Refused("it cannot be written without changing something else")
+        raise Refused("it cannot be written without changing other values")
 
 
 def _all_values(

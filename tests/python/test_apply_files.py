@@ -88,14 +88,14 @@ def test_sources(tmp_path: Path) -> None:
 def test_a_change_that_somebody_was_faster_with(params: Path, tmp_path: Path) -> None:
     journal = Journal(tmp_path / "journal")
     change = FileChange("/a", params, b"older", b"newer", 1, 2, 1)
-    with pytest.raises(TpcError, match="somebody else has just changed it"):
+    with pytest.raises(TpcError, match="the file has changed meanwhile"):
         apply_change(change, journal)
     assert journal.entries() == []
 
 
 def test_without_a_note_nothing_is_written(apply, params: Path, tmp_path: Path) -> None:
     (tmp_path / "state").write_text("a file where the folder should be")
-    assert "cannot be noted for --undo" in apply(params, "limit", "0.035", status=1).output
+    assert "cannot be recorded for --undo" in apply(params, "limit", "0.035", status=1).output
     assert params.read_text() == MISSION_PARAMS
 
 

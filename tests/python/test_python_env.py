@@ -87,7 +87,7 @@ def test_without_python_nothing_is_set(tmp_path):
     static.write_text(static_text("nodes/node.py"))
     assert mission_env(env, static)["TPC_STATIC"] == str(static)
     static.write_text('{"units": [\n')
-    with pytest.raises(InputError, match=r"static\.json:2: no JSON"):
+    with pytest.raises(InputError, match=r"static\.json:2: not JSON"):
         mission_env(env, static)
 
 
