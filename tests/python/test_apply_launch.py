@@ -156,7 +156,7 @@ def test_yaml_in_a_launch_file() -> None:
     assert edit.lineno == 5
     plain = INLINE.replace("a < b", "a").format(value="1.5", open="", close="").encode()
     assert edit_inline(plain, ("speed",), 5, "2.5").data == plain.replace(b"1.5", b"2.5")
-    with pytest.raises(Refused, match="no <rosparam> with it"):
+    with pytest.raises(Refused, match="the <rosparam> with it is gone"):
         edit_inline(plain, ("speed",), 8, "2.5")
 
 
