@@ -23,9 +23,10 @@ from pathlib import Path
 import numpy as np
 from figures import figure
 
-from pytpc.ingest import binary_layout as layout
-from pytpc.ingest.binary import _Reader
+from pytpc.ingest.binary import _TpcReader
+from pytpc.ingest.binary_layout import RECORD
 from pytpc.ingest.gathering import Gathering
+from pytpc.python_runtime import log_layout as layout
 
 ROOT = Path(__file__).parents[1]
 TOPIC = "runtime-cost"
@@ -94,7 +95,7 @@ def write_tpc(path: Path, chunks: int, threads: int = 1) -> int:
     for number, key in enumerate(KEYS, start=1):
         system += struct.pack("<IIII16s", 2, number, len(key), 0, key[:16].encode())
         system += key[16:].encode().ljust(32, b"\0")
-    seconds = chunks * layout.RECORDS * STEP_NS // 10**9 + 2
+    seconds = chunks * layout.RECORDS_OF_CHUNK * STEP_NS // 10**9 + 2
     # Real time gains a microsecond a second; a sync record a second, as many as fit.
     for second in range(min(seconds, 1900)):
         at = second * 10**9
@@ -102,18 +103,20 @@ def write_tpc(path: Path, chunks: int, threads: int = 1) -> int:
     with path.open("wb") as stream:
         stream.write(head.ljust(4096, b"\0"))
         stream.write((struct.pack("<IIQQ40x", 2, 0, 0, 0) + system).ljust(65536, b"\0"))
-        records = np.zeros(layout.RECORDS, layout.RECORD)
-        records["cmp"], records["thresh"] = values(layout.RECORDS)
-        records["site"] = np.arange(layout.RECORDS) % len(KEYS) + 1
+        records = np.zeros(layout.RECORDS_OF_CHUNK, RECORD)
+        records["cmp"], records["thresh"] = values(layout.RECORDS_OF_CHUNK)
+        records["site"] = np.arange(layout.RECORDS_OF_CHUNK) % len(KEYS) + 1
         records["what"] = 1 | (records["cmp"] > 0.5).astype(np.uint32) * 0x300
         # Threads take turns; each chunk of one covers the time of one chunk of all others.
         for chunk in range(chunks):
             turn, thread = divmod(chunk, threads)
-            first = turn * layout.RECORDS
-            steady = (np.arange(first, first + layout.RECORDS) * threads + thread) * STEP_NS
+            first = turn * layout.RECORDS_OF_CHUNK
+            steady = (
+                np.arange(first, first + layout.RECORDS_OF_CHUNK) * threads + thread
+            ) * STEP_NS
             records["steady"] = steady
             stream.write(struct.pack("<IIQQ40x", 1, thread + 1, first, 1) + records.tobytes())
-    return chunks * layout.RECORDS
+    return chunks * layout.RECORDS_OF_CHUNK
 
 
 def write_bag(path: Path, reports: int) -> None:
@@ -222,10 +225,10 @@ def against_copying(path: Path) -> tuple[float, float, float]:
         mapped.append(time.perf_counter() - began)
         began = time.perf_counter()
         with path.open("rb", buffering=0) as stream:
-            reader = _Reader(path, stream, Gathering(), None)  # type: ignore[arg-type]
+            reader = _TpcReader(path, stream, Gathering(), None)  # type: ignore[arg-type]
             count = sum(len(block) for block in reader.blocks())
         reading.append(time.perf_counter() - began)
-    assert count == (data.size - 4096 - 65536) // 65536 * layout.RECORDS
+    assert count == (data.size - 4096 - 65536) // 65536 * layout.RECORDS_OF_CHUNK
     return statistics.median(reading), statistics.median(mapped), statistics.median(copying)
 
 
@@ -278,7 +281,7 @@ def _converted(folder: Path, kind: str, gigabytes: float) -> None:
 
 def _formats(folder: Path) -> None:
     tpc, bag, csv, log = (folder / f"m.{kind}" for kind in ("tpc", "bag", "csv", "log"))
-    write_tpc(tpc, REPORTS // layout.RECORDS * 10)
+    write_tpc(tpc, REPORTS // layout.RECORDS_OF_CHUNK * 10)
     reading, mapped, copying = against_copying(tpc)
     for name, base in (("copying_the_file", mapped), ("copying_memory", copying)):
         ratio = reading / base

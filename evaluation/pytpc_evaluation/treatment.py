@@ -33,7 +33,7 @@ class Treatment:
     left out), ``node`` whose it is,
     ``old`` and ``new`` its values; all None where no parameter is changed. ``launch`` are arguments
     for the launch file, ``overlay`` is the file with the parameters, ``effect`` a sentence.
-    ``tipping`` is the value at which the behaviour tips, None where nobody looked for it.
+    ``tipping`` is the value at which the behaviour tips, None where it was not searched for.
     ``round`` counts the rounds of the study: in which it was added.
     """
 
@@ -83,7 +83,7 @@ def save_treatment(treatment: Treatment, mission: Path) -> None:
     """Copy what was done into a mission's folder, for those who read the mission later.
 
     Raises:
-        InputError: the treatment's file cannot be read any more.
+        InputError: the treatment's file can no longer be read.
         TpcError: the copy cannot be written.
     """
     path = treatment.overlay.with_name(TREATMENT_FILE)

@@ -21,7 +21,7 @@ from pytpc.base.errors import RunError
 from pytpc.diagnosis.ranking.watching import KeptRankings, Look, Seen, Watching
 from pytpc.present.marking_terminal import Mission
 from pytpc.present.watch_screen import LAYOUTS, Options, Panel, Status, watch_screen
-from pytpc.recording.marking_session import Change, Session, View
+from pytpc.recording.marking_session import MarkChange, Session, View
 from pytpc.recording.mission import Recording
 from pytpc.recording.summaries import Summary
 from pytpc.ros.ros1.master import Master, own_host
@@ -254,7 +254,7 @@ class WatchedMission:
         """What the mission shows of itself."""
         return self._mission.view()
 
-    def send(self, change: Change) -> str:
+    def send(self, change: MarkChange) -> str:
         """Keep the ranking of this instant, tell the mission, and say who is suspected."""
         self.take()
         self.kept.follow(change, self.watching, believe=self._believe)

@@ -6,6 +6,7 @@ import contextlib
 import os
 import re
 import secrets
+from collections.abc import Iterator
 from pathlib import Path
 
 from pytpc.base.errors import TpcError
@@ -25,7 +26,7 @@ def stage_beside(target: Path, data: bytes, mode: int = 0o644) -> Path:
     Raises:
         OSError: the folder cannot be written or the disk is full; then nothing is left behind.
     """
-    staged = target.with_name(f".{target.name}.tpc-{secrets.token_hex(4)}")
+    staged = _beside(target)
     descriptor = os.open(staged, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, mode)
     try:
         with os.fdopen(descriptor, "wb") as stream:
@@ -67,3 +68,28 @@ def write_atomic(target: Path, data: bytes) -> None:
             raise
     except OSError as error:
         raise TpcError(f"cannot be written: {error.strerror or error}", target) from error
+
+
+@contextlib.contextmanager
+def replacing(path: Path) -> Iterator[Path]:
+    """A new file beside ``path`` that takes its place when all went well.
+
+    Raises:
+        TpcError: it cannot be written; what stood there before is untouched.
+    """
+    staged = _beside(path)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        yield staged
+        with staged.open("rb") as stream:
+            os.fsync(stream.fileno())
+        staged.replace(path)
+    except OSError as error:
+        raise TpcError(f"cannot be written: {error.strerror or error}", path) from error
+    finally:
+        with contextlib.suppress(OSError):
+            staged.unlink(missing_ok=True)
+
+
+def _beside(target: Path) -> Path:
+    return target.with_name(f".{target.name}.tpc-{secrets.token_hex(4)}")

@@ -75,12 +75,14 @@ def dump_json(data: object) -> bytes:
     try:
         text = json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
     except ValueError as error:
-        raise InputError(f"no JSON can have it: {error}") from error
+        raise InputError(f"cannot be written as JSON: {error}") from error
     try:
         return text.encode()
     except UnicodeEncodeError as error:
         line = text[text.rfind("\n", 0, error.start) : text.find("\n", error.start)]
-        raise InputError(f"not UTF-8, so no JSON can have it: {plain(line.strip())}") from error
+        raise InputError(
+            f"not UTF-8, so cannot be written as JSON: {plain(line.strip())}"
+        ) from error
 
 
 def check_unit(data: object, path: Path, pointer: str = "") -> dict[str, Any]:

@@ -5,16 +5,17 @@ A word column (keys, nodes) is int32 codes into a tuple of words; in Arrow it is
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+import contextlib
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, ClassVar, Self, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from pytpc.base.atomic import write_atomic
+from pytpc.base.atomic import replacing, write_atomic
 from pytpc.base.errors import InputError
 
 Int64s = npt.NDArray[np.int64]
@@ -26,6 +27,12 @@ Read = TypeVar("Read")
 Columns = dict[str, npt.NDArray[np.generic]]
 
 WORDS = pa.dictionary(pa.int32(), pa.string())
+_KINDS = {
+    WORDS: np.int32,
+    pa.int64(): np.int64,
+    pa.bool_(): np.bool_,
+    pa.float64(): np.float64,
+}
 
 
 def frozen(values: npt.NDArray[Scalar]) -> npt.NDArray[Scalar]:
@@ -33,28 +40,6 @@ def frozen(values: npt.NDArray[Scalar]) -> npt.NDArray[Scalar]:
     view = values.view()
     view.flags.writeable = False
     return view
-
-
-def check_columns(columns: Mapping[str, npt.NDArray[np.generic]], rows: int) -> None:
-    """See that all columns have as many rows.
-
-    Raises:
-        ValueError: one has not.
-    """
-    if any(column.shape != (rows,) for column in columns.values()):
-        raise ValueError("columns of different lengths")
-
-
-def check_words(codes: Int32s, words: Sequence[str]) -> None:
-    """See that ``words`` are distinct and every code has one.
-
-    Raises:
-        ValueError: a word occurs twice, or a code has none.
-    """
-    if len(set(words)) != len(words):
-        raise ValueError("a key or node is named twice")
-    if codes.size and (int(codes.min()) < 0 or int(codes.max()) >= len(words)):
-        raise ValueError("a code has no key or node")
 
 
 def sorted_words(codes: Mapping[str, int]) -> tuple[list[str], Int32s]:
@@ -73,23 +58,115 @@ def recode(codes: Int32s, words: Sequence[str], among: Sequence[str]) -> Int32s:
     return table[codes]
 
 
-def join(
-    tables: Sequence[tuple[Columns, Sequence[str], Sequence[str]]],
-) -> tuple[Columns, list[str], list[str]]:
-    """The columns of all ``tables`` (columns, keys, nodes) behind one another; words sorted.
+class WordTable:
+    """A table whose columns ``key`` and ``node`` are codes into the words ``keys`` and ``nodes``.
 
-    There must be at least one table.
+    A subclass is a frozen dataclass with a field for each column of ``schema``, an array that
+    cannot be written, and for the two tuples of words. ``of`` makes one, sorted by the column
+    ``order``. ``what`` is what its file is called in messages.
     """
-    keys = sorted({key for _, keys, _ in tables for key in keys})
-    nodes = sorted({node for _, _, nodes in tables for node in nodes})
-    recoded = []
-    for columns, own_keys, own_nodes in tables:
-        part = dict(columns)
-        part["key"] = recode(np.asarray(part["key"], np.int32), own_keys, keys)
-        part["node"] = recode(np.asarray(part["node"], np.int32), own_nodes, nodes)
-        recoded.append(part)
-    joined = {name: np.concatenate([part[name] for part in recoded]) for name in recoded[0]}
-    return joined, keys, nodes
+
+    schema: ClassVar[pa.Schema]
+    order: ClassVar[str]
+    what: ClassVar[str]
+    keys: tuple[str, ...]
+    nodes: tuple[str, ...]
+
+    @classmethod
+    def of(cls, *, keys: Iterable[str], nodes: Iterable[str], **columns: npt.ArrayLike) -> Self:
+        """Sort the columns (stably) and check that they fit together.
+
+        Raises:
+            ValueError: columns of different lengths, a code without a word, or a word twice.
+            TypeError: a column is missing or has another name.
+        """
+        kinds = {field.name: _KINDS.get(field.type) for field in cls.schema}
+        typed = {name: np.asarray(values, kinds.get(name)) for name, values in columns.items()}
+        if len(typed) == len(kinds):
+            times = typed[cls.order]
+            if any(column.shape != times.shape for column in typed.values()):
+                raise ValueError("columns of different lengths")
+            if bool(np.any(times[1:] < times[:-1])):
+                order = np.argsort(times, kind="stable")
+                typed = {name: column[order] for name, column in typed.items()}
+        words = {"keys": tuple(keys), "nodes": tuple(nodes)}
+        table = cls(**{name: frozen(column) for name, column in typed.items()}, **words)
+        _check_words(typed["key"], table.keys)
+        _check_words(typed["node"], table.nodes)
+        return table
+
+    @classmethod
+    def empty(cls, keys: Iterable[str] = ()) -> Self:
+        """No rows, with the given keys."""
+        return cls.of(keys=keys, nodes=(), **{name: [] for name in cls.schema.names})
+
+    @classmethod
+    def concat(cls, parts: Sequence[Self]) -> Self:
+        """All rows of ``parts``; rows of one time keep the order of the parts. Words are sorted."""
+        if not parts:
+            return cls.empty()
+        keys = sorted({key for part in parts for key in part.keys})
+        nodes = sorted({node for part in parts for node in part.nodes})
+        recoded = []
+        for part in parts:
+            columns = part.columns()
+            columns["key"] = recode(np.asarray(columns["key"], np.int32), part.keys, keys)
+            columns["node"] = recode(np.asarray(columns["node"], np.int32), part.nodes, nodes)
+            recoded.append(columns)
+        joined = {name: np.concatenate([part[name] for part in recoded]) for name in recoded[0]}
+        return cls.of(**joined, keys=keys, nodes=nodes)
+
+    def __len__(self) -> int:
+        """The number of rows."""
+        return int(getattr(self, self.order).size)
+
+    def columns(self) -> Columns:
+        """The columns by name, in the order of ``schema``."""
+        return {name: getattr(self, name) for name in self.schema.names}
+
+    def equals(self, other: Self) -> bool:
+        """Whether both hold the same rows (NaN equals NaN) under the same words."""
+        theirs = other.columns()
+        return (self.keys, self.nodes) == (other.keys, other.nodes) and all(
+            np.array_equal(mine, theirs[name], equal_nan=mine.dtype == np.float64)
+            for name, mine in self.columns().items()
+        )
+
+    def take(self, rows: slice | Int64s | Bools) -> Self:
+        """The rows at ``rows`` (a slice, row numbers or a mask), with the same words."""
+        columns = {name: column[rows] for name, column in self.columns().items()}
+        return self.of(**columns, keys=self.keys, nodes=self.nodes)
+
+    def to_arrow(self) -> pa.Table:
+        """The table in the schema ``schema``."""
+        return to_arrow(self.columns(), {"key": self.keys, "node": self.nodes}, self.schema)
+
+    @classmethod
+    def from_arrow(cls, table: pa.Table) -> Self:
+        """The reverse of ``to_arrow``; the rows may be in any order and the columns in chunks.
+
+        Raises:
+            InputError: a column is missing, is of another type or has missing values.
+        """
+        columns, words = from_arrow(table, cls.schema)
+        return cls.of(**columns, keys=words["key"], nodes=words["node"])
+
+    def write(self, path: Path) -> None:
+        """Write Parquet, atomically.
+
+        Raises:
+            TpcError: the file cannot be written; what stood there before is untouched.
+        """
+        write_table(self.to_arrow(), path)
+
+    @classmethod
+    def read(cls, path: Path) -> Self:
+        """Read a file of ``write``.
+
+        Raises:
+            InputError: the file cannot be read, is no Parquet, or has other columns.
+        """
+        return read_table(path, cls.what, cls.from_arrow)
 
 
 def to_arrow(
@@ -127,7 +204,7 @@ def from_arrow(
     """The reverse of ``to_arrow``; the columns may be in chunks.
 
     Raises:
-        InputError: a column is missing, is of another type or has empty places.
+        InputError: a column is missing, is of another type or has missing values.
     """
     check_schema(table.schema, schema)
     columns: dict[str, npt.ArrayLike] = {}
@@ -135,7 +212,7 @@ def from_arrow(
     for field in schema:
         column = table.column(field.name)
         if column.null_count:
-            raise InputError(f"column {field.name} has {column.null_count} empty places")
+            raise InputError(f"column {field.name} has {column.null_count} missing values")
         if field.type == WORDS:
             columns[field.name], words[field.name] = _codes(column)
         else:
@@ -160,7 +237,7 @@ def read_table(path: Path, what: str, of: Callable[[pa.Table], Read]) -> Read:
     Raises:
         InputError: the file cannot be read, is no Parquet, or ``of`` finds fault with it.
     """
-    try:
+    with _as_input_errors(path, what):
         # Its error is in the words of the system.
         path.open("rb").close()
         # Arrow's threads let go of what they read after the table is there. Where that is of Python
@@ -168,12 +245,53 @@ def read_table(path: Path, what: str, of: Callable[[pa.Table], Read]) -> Read:
         with pa.OSFile(str(path)) as file:
             table = pq.ParquetFile(file).read()
         return of(table)
+
+
+@contextlib.contextmanager
+def table_writer(path: Path, schema: pa.Schema) -> Iterator[Callable[[pa.Table], None]]:
+    """Write Parquet in parts, atomically: what is given writes one part.
+
+    Raises:
+        TpcError: the file cannot be written; what stood there before is untouched.
+    """
+    with replacing(path) as staged, pq.ParquetWriter(staged, schema, compression="zstd") as writer:
+        yield writer.write_table
+
+
+def read_parts(path: Path, what: str, schema: pa.Schema, rows: int) -> Iterator[pa.Table]:
+    """Read a Parquet file of ``what`` ("events") in parts of at most ``rows``.
+
+    Raises:
+        InputError: the file cannot be read, is no Parquet, or has other columns.
+    """
+    with _as_input_errors(path, what), pq.ParquetFile(path) as file:
+        check_schema(file.schema_arrow, schema)
+        for batch in file.iter_batches(rows):
+            yield pa.Table.from_batches([batch])
+
+
+@contextlib.contextmanager
+def _as_input_errors(path: Path, what: str) -> Iterator[None]:
+    try:
+        yield
     except InputError as error:
         raise InputError(error.message, path) from error
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror or error}", path) from error
     except (pa.ArrowException, ValueError) as error:
         raise InputError(f"not a file of {what}: {error}", path) from error
+
+
+def _check_words(codes: npt.NDArray[Any], words: Sequence[str]) -> None:
+    """See that ``words`` are distinct and every code has one.
+
+    Raises:
+        ValueError: a word occurs twice, or a code has none.
+    """
+    if len(set(words)) != len(words):
+        raise ValueError("a key or node is named twice")
+    if codes.size and (int(codes.min()) < 0 or int(codes.max()) >= len(words)):
+        raise ValueError("a code has no key or node")
 
 
 def _codes(column: pa.ChunkedArray) -> tuple[Int32s, list[str]]:

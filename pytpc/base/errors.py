@@ -1,4 +1,4 @@
-"""The errors that a user of TPC can cause or meet: one small family, one line each."""
+"""The errors that a user of TPC can meet: one small family, one line each."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from os import PathLike, fspath
 
 
 class TpcError(Exception):
-    """Something that the user can mend.
+    """A problem that the user can fix.
 
     The command line prints ``str(error)`` as one line and ends with status 1.
 
@@ -35,7 +35,7 @@ class TpcError(Exception):
 
 
 class InputError(TpcError):
-    """A file that cannot be read as what it should be."""
+    """A file that cannot be read, or is not of the expected format."""
 
 
 class WorkspaceError(TpcError):
@@ -43,8 +43,8 @@ class WorkspaceError(TpcError):
 
 
 class MissingToolError(TpcError):
-    """Something that TPC needs is not on this machine."""
+    """A program or file that TPC needs is not installed."""
 
 
 class RunError(TpcError):
-    """A program that TPC started did not do what it should."""
+    """A program that TPC started failed."""

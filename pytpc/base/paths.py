@@ -6,6 +6,7 @@ import os
 import shutil
 import sys
 from collections.abc import Iterable, Mapping
+from functools import partial
 from pathlib import Path
 
 from pytpc.base.errors import MissingToolError
@@ -64,63 +65,37 @@ def how_to_install() -> str:
     return "run `make setup` in a checkout of TPC, then export TPC_PREFIX=CHECKOUT/build/install"
 
 
-def cmake_file() -> Path:
-    """The installed tpc.cmake.
-
-    Raises:
-        MissingToolError: it is not there; the message says how to install it.
-    """
-    return _installed(_CMAKE_FILE)
-
-
 def cmake_place() -> Path:
     """Where tpc.cmake is, or would be: it need not exist."""
     return prefix() / _CMAKE_FILE
 
 
-def plugin() -> Path:
-    """The installed LLVM plugin.
+def installed(place: str) -> Path:
+    """A file of the installed C++ half.
 
     Raises:
         MissingToolError: it is not there; the message says how to install it.
     """
-    return _installed("lib/tpc/TpcPasses.so")
+    path = prefix() / place
+    if path.is_file():
+        return path
+    command = how_to_install()
+    if os.environ.get("TPC_PREFIX"):
+        other = f"unset TPC_PREFIX, or {command}" if is_checkout() else command
+        raise MissingToolError(f"missing, and TPC_PREFIX points here; {other}", path)
+    raise MissingToolError(f"TPC's compiler plugins are not installed; {command}", path)
 
 
-def defer_plugin() -> Path:
-    """The installed plugin of clang that leaves its passes to the link.
-
-    Raises:
-        MissingToolError: it is not there; the message says how to install it.
-    """
-    return _installed("lib/tpc/TpcDefer.so")
-
-
-def log_library() -> Path:
-    """The installed library that instrumented nodes report through.
-
-    Raises:
-        MissingToolError: it is not there; the message says how to install it.
-    """
-    return _installed("lib/libtpc_log.so")
-
-
-def compiler_wrapper() -> Path:
-    """The installed tpc-clang++, the compiler for builds that are not CMake.
-
-    Raises:
-        MissingToolError: it is not there; the message says how to install it.
-    """
-    return _installed("bin/tpc-clang++")
-
-
-def mixin_index() -> Path:
-    """The installed index of colcon's mixins.
-
-    Raises:
-        MissingToolError: it is not there; the message says how to install it.
-    """
-    return _installed("share/tpc/colcon/index.yaml")
+cmake_file = partial(installed, _CMAKE_FILE)
+plugin = partial(installed, "lib/tpc/TpcPasses.so")
+# The plugin of clang that leaves its passes to the link.
+defer_plugin = partial(installed, "lib/tpc/TpcDefer.so")
+# The library that instrumented nodes report through.
+log_library = partial(installed, "lib/libtpc_log.so")
+# tpc-clang++, the compiler for builds that are not CMake.
+compiler_wrapper = partial(installed, "bin/tpc-clang++")
+# The index of colcon's mixins.
+mixin_index = partial(installed, "share/tpc/colcon/index.yaml")
 
 
 def accepting_flags() -> list[str]:
@@ -129,7 +104,7 @@ def accepting_flags() -> list[str]:
     Raises:
         MissingToolError: the installed half is not there.
     """
-    lines = _installed("share/tpc/flags").read_text("utf-8").splitlines()
+    lines = installed("share/tpc/flags").read_text("utf-8").splitlines()
     return [line.removeprefix("accept ") for line in lines if line.startswith("accept ")]
 
 
@@ -169,7 +144,8 @@ def require_tools(names: Iterable[str] = BUILD_TOOLS) -> dict[str, Path]:
     if absent:
         packages = " ".join(dict.fromkeys(BUILD_TOOLS[name] for name in absent))
         raise MissingToolError(
-            f"{_listed(absent)} not found on this machine; mend it with: apt-get install {packages}"
+            f"{_listed(absent)} not found on this machine; install it with:"
+            f" apt-get install {packages}"
         )
     return found
 
@@ -188,7 +164,7 @@ def require_ros() -> None:
     absent = [name for name in _ROS_PLACES if name not in found]
     if absent:
         raise MissingToolError(
-            f"{_listed(absent)} of ROS 1 not found on this machine; mend it with:"
+            f"{_listed(absent)} of ROS 1 not found on this machine; install it with:"
             f" apt-get install {ROS_PACKAGES}"
         )
 
@@ -201,17 +177,6 @@ def ros_places(prefixes: Iterable[Path]) -> dict[str, Path]:
             if (prefix / place).is_file():
                 found.setdefault(name, prefix)
     return found
-
-
-def _installed(place: str) -> Path:
-    path = prefix() / place
-    if path.is_file():
-        return path
-    command = how_to_install()
-    if os.environ.get("TPC_PREFIX"):
-        other = f"unset TPC_PREFIX, or {command}" if is_checkout() else command
-        raise MissingToolError(f"missing, and TPC_PREFIX points here; {other}", path)
-    raise MissingToolError(f"TPC's compiler plugins are not installed; {command}", path)
 
 
 def _listed(names: list[str]) -> str:

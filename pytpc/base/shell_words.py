@@ -11,14 +11,14 @@ SHELLS = ("sh", "fish")
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
+class EnvChange:
     """Variables that get a value, and those that go."""
 
     values: Mapping[str, str]
     gone: tuple[str, ...]
 
     @classmethod
-    def between(cls, before: Mapping[str, str], after: Mapping[str, str]) -> Change:
+    def between(cls, before: Mapping[str, str], after: Mapping[str, str]) -> EnvChange:
         """What makes ``after`` of ``before``."""
         values = {name: value for name, value in after.items() if before.get(name) != value}
         return cls(dict(sorted(values.items())), tuple(sorted(before.keys() - after.keys())))

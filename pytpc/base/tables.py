@@ -177,7 +177,7 @@ def as_latex(table: Table) -> str:
 def as_json(table: Table) -> dict[str, Any]:
     """A table as an object for JSON: ``rows`` and ``summary`` are lists of objects by column.
 
-    What is not known, and what is no finite number, is null.
+    Unknown values and numbers that are not finite are null.
     """
     names = _names(table)
 
@@ -196,7 +196,7 @@ def as_json(table: Table) -> dict[str, Any]:
 def as_rich(table: Table, width: int) -> list[RichTable]:
     """A table for a terminal of so many columns, without its title and notes.
 
-    Where the columns do not fit beside each other the rest stands in further tables, with the names
+    Columns that do not fit side by side go into further tables, with the names
     again: rich itself would leave them out.
     """
     names = [plain(name) for name, _ in (*table.rows, *table.summary)]

@@ -10,7 +10,7 @@ import click
 
 from pytpc.base.errors import InputError, WorkspaceError
 from pytpc.base.paths import MERGED_FILE, OWN_FOLDER
-from pytpc.base.shell_words import SHELLS, Change
+from pytpc.base.shell_words import SHELLS, EnvChange
 from pytpc.build.build import installed, workspace_env
 from pytpc.cli.console import warn
 from pytpc.cli.options import PATH
@@ -43,7 +43,7 @@ def env_command(*, source: Path | None, off: bool, setup: bool, shell: str, as_j
         raise click.UsageError("--off undoes what env sets, and not what setup.bash does")
     before = dict(os.environ)
     after = without_python(before) if off else _on(source, before, setup=setup)
-    change = Change.between(before, after)
+    change = EnvChange.between(before, after)
     click.echo(change.json() if as_json else change.text(shell), nl=False)
 
 

@@ -14,7 +14,7 @@ from pytpc.cli.console import progress
 from pytpc.cli.options import PATH, warn_about
 from pytpc.ingest import Recording
 from pytpc.ingest.duplicates import TOLERANCE_NS
-from pytpc.ingest.outcome import Outcome
+from pytpc.ingest.outcome import Merged
 from pytpc.ingest.reading import opened
 from pytpc.recording.marks import MARK_TYPES
 
@@ -86,7 +86,7 @@ def _standing(path: Path) -> Path:
     return next((folder for folder in path.absolute().parents if folder.is_dir()), Path("/"))
 
 
-def _summary_of(recording: Recording, outcome: Outcome, output: Path) -> dict[str, object]:
+def _summary_of(recording: Recording, outcome: Merged, output: Path) -> dict[str, object]:
     return {
         "output": str(output),
         "name": recording.name,

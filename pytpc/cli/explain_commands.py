@@ -16,7 +16,13 @@ from rich.text import Text
 from pytpc.base.wording import many, plain
 from pytpc.cli.console import console
 from pytpc.cli.sources import SOURCES, static_of
-from pytpc.static.explanations import Explanation, Found, look_up, where, why_no_comparison
+from pytpc.static.explanations import (
+    Explanation,
+    FoundComparison,
+    look_up,
+    where,
+    why_no_comparison,
+)
 from pytpc.static.parameters import parameter_name
 from pytpc.static.static_info import LinkUnit, PathStep, StaticInfo
 
@@ -89,7 +95,7 @@ def blind_spots_command(sources: tuple[Path, ...], as_json: bool) -> None:
 COMMANDS: list[click.Command] = [explain_command, blind_spots_command]
 
 
-def _heading(found: Found) -> Text:
+def _heading(found: FoundComparison) -> Text:
     comparison, unit = found.comparison, found.unit
     text = Text(plain(parameter_name(comparison)), style="bold")
     text.append(f"  {plain(where(comparison))}", style="default not bold")
@@ -101,7 +107,7 @@ def _heading(found: Found) -> Text:
     return text
 
 
-def _print_way(console: Console, found: Found) -> None:
+def _print_way(console: Console, found: FoundComparison) -> None:
     console.print(_heading(found))
     path = found.comparison.path
     if not path:

@@ -37,7 +37,7 @@ from pytpc.diagnosis.suggestion.declared import Declared, declared_in, read_decl
 from pytpc.ingest import Recording
 from pytpc.present.as_json import blame_json
 from pytpc.present.rankings import Row, print_blame, print_rankings, rows_of
-from pytpc.recording.marking_session import Change
+from pytpc.recording.marking_session import MarkChange
 from pytpc.recording.marks import (
     MARK_TYPES,
     Mark,
@@ -213,11 +213,11 @@ def marks_command(
     marks = found.marks
     if add is not None:
         mark = _mark_to_add(found, *add, observer, note)
-        _change(recording, Change(None, mark))
+        _change(recording, MarkChange(None, mark))
         marks = joined([*marks, mark])
     if remove is not None:
         gone = _mark_to_remove(recording, marks, remove)
-        _change(recording, Change(gone, None))
+        _change(recording, MarkChange(gone, None))
         marks = tuple(mark for mark in marks if mark != gone)
     if as_json:
         click.echo(
@@ -265,7 +265,7 @@ def _mark_to_remove(source: Path, marks: Sequence[Mark], number: int) -> Mark:
     return gone
 
 
-def _change(source: Path, change: Change) -> None:
+def _change(source: Path, change: MarkChange) -> None:
     """Apply a change to the file of marks beside a recording.
 
     Raises:

@@ -20,8 +20,8 @@ from pytpc.cli.console import console, progress, warn
 from pytpc.ros.live_change import set_live, take_back_live
 from pytpc.ros.ros1.live_values import LiveChange, Robot
 from pytpc.ros.ros1.master import uri_of
-from pytpc.values.apply import Change, apply_change, change_as_json, diff_of, shown
-from pytpc.values.journal import Entry, Journal, folder_of
+from pytpc.values.apply import FileChange, apply_change, change_as_json, diff_of, shown
+from pytpc.values.journal import Journal, JournalEntry, folder_of
 from pytpc.values.origins import Origin, as_json, to_json
 from pytpc.values.target import (
     Target,
@@ -167,7 +167,7 @@ def _plan(
     setting: tuple[str, str],
     workspace: Path | None,
     options: _Options,
-) -> Change:
+) -> FileChange:
     parameter, value = setting
     for word in args:
         if _ARGUMENT.fullmatch(word) is None:
@@ -183,8 +183,8 @@ def _plan(
     return plan_origin(origin, value, force=options.force, files=target.files)
 
 
-def _write(change: Change, journal: Journal, options: _Options) -> dict[str, object]:
-    entry: Entry | None = None
+def _write(change: FileChange, journal: Journal, options: _Options) -> dict[str, object]:
+    entry: JournalEntry | None = None
     same = change.before == change.after
     if not options.dry_run and not same:
         entry = apply_change(change, journal)
@@ -309,7 +309,7 @@ def _list(journal: Journal, as_json: bool) -> None:
         click.echo("no changes are noted", err=True)
 
 
-def _entry_json(entry: Entry) -> dict[str, object]:
+def _entry_json(entry: JournalEntry) -> dict[str, object]:
     return {
         "number": entry.number,
         "time": entry.time,
@@ -321,7 +321,7 @@ def _entry_json(entry: Entry) -> dict[str, object]:
     }
 
 
-def _show_diff(change: Change) -> None:
+def _show_diff(change: FileChange) -> None:
     for line in diff_of(change).splitlines():
         click.echo("\t".join(plain(part) for part in line.split("\t")))
 

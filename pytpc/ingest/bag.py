@@ -24,7 +24,8 @@ def read_bag_into(path: Path, gathering: Gathering, on_progress: Progress | None
     """Read a ROS 1 bag.
 
     Reports come from /rosout, /rosout_agg and /threshold_information. Time is the message's own
-    stamp; where that is 0, the time at which the bag got it. Marks are docs/formats.md's topics.
+    stamp; where that is 0, the time at which the bag got it. Marks come
+    from the topics of docs/reference/formats.md#marks.
 
     Args:
         path: the file.
@@ -78,7 +79,7 @@ def _broken(path: Path, error: BrokenBagError) -> InputError:
         return InputError(f"cannot be read: {failure.strerror or failure}", path)
     if damage is None:
         return InputError(f"damaged: {error}", path)
-    hint = "" if damage.startswith("not a") else f'; "rosbag reindex {path.name}" saves the rest'
+    hint = "" if damage.startswith("not a") else f'; "rosbag reindex {path.name}" recovers the rest'
     return InputError(damage + hint, path)
 
 

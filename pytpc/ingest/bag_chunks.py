@@ -1,8 +1,9 @@
 """The messages of a ROS 1 bag in the order of the file, with little memory and little per message.
 
 rosbags' reader keeps an object for each message of a bag in memory and parses each record's header
-in full; a mission has millions of them. Here the connections are read from the index, as there, but
-the messages from the chunks themselves, one chunk at a time, and all of a chunk at once. Format: http://wiki.ros.org/Bags/Format/2.0
+in full; a mission has millions of them (docs/explanation/choices.md#bags). Here the connections are
+read from the index, as there, but the messages chunk by chunk, all of a chunk at once.
+Format: http://wiki.ros.org/Bags/Format/2.0
 """
 
 from __future__ import annotations
@@ -24,7 +25,6 @@ from pytpc.ingest.spool import Rows
 
 MAGIC = b"#ROSBAG V2.0\n"
 _LENGTH = struct.Struct("<I")
-_TWO = struct.Struct("<II")
 _LARGEST_CHUNK = 1 << 30
 _LARGEST_HEADER = 1 << 20
 _LARGEST_FILE = 1 << 60
@@ -106,7 +106,7 @@ def read_index(stream: BinaryIO) -> BagIndex:
 
 
 @dataclass(frozen=True)
-class Messages:
+class ChunkMessages:
     """The messages of a chunk, in the order of the file; n of them.
 
     ``data`` is the chunk's bytes; ``connection``, ``time_ns`` (the recorder's), ``begin`` and
@@ -122,7 +122,7 @@ class Messages:
     behind: int
 
 
-def messages(stream: BinaryIO, index: BagIndex, wanted: Collection[int]) -> Iterator[Messages]:
+def messages(stream: BinaryIO, index: BagIndex, wanted: Collection[int]) -> Iterator[ChunkMessages]:
     """The messages of the connections ``wanted``, chunk by chunk.
 
     The index behind each chunk says where they are; where it does not fit the chunk, or is not
@@ -144,7 +144,7 @@ def messages(stream: BinaryIO, index: BagIndex, wanted: Collection[int]) -> Iter
             found = _by_index(data, _entries(stream, chosen))
         except BrokenBagError:
             found = None
-        yield Messages(data, *(_by_search(data, chosen) if found is None else found), behind)
+        yield ChunkMessages(data, *(_by_search(data, chosen) if found is None else found), behind)
 
 
 def _entries(stream: BinaryIO, chosen: frozenset[int]) -> list[tuple[int, Rows]]:
@@ -211,7 +211,7 @@ def _u32(raw: npt.NDArray[np.uint8]) -> Int64s:
 
 
 def _by_search(data: bytes, chosen: frozenset[int]) -> _Found:
-    found = list(_in_chunk(data, frozenset(number.to_bytes(4, "little") for number in chosen)))
+    found = list(_in_chunk(data, chosen))
     columns = np.array(found, np.int64).reshape(-1, 4).T
     return columns[0], columns[1], columns[2], columns[3]
 
@@ -238,38 +238,24 @@ def _unpacked(header: dict[bytes, bytes], data: bytes) -> bytes:
     return unpacked
 
 
-def _in_chunk(data: bytes, chosen: frozenset[bytes]) -> Iterator[tuple[int, int, int, int]]:
+def _in_chunk(data: bytes, chosen: frozenset[int]) -> Iterator[tuple[int, int, int, int]]:
     """Connection, time, begin and end of each message in a chunk's bytes."""
-    form = _FORMS[0]
     at, size = 0, len(data)
-    try:
-        while at < size:
+    while at < size:
+        try:
             body = at + 4 + _LENGTH.unpack_from(data, at)[0]
             begin = body + 4
             end = begin + _LENGTH.unpack_from(data, body)[0]
-            if end > size:
-                raise BrokenBagError("a record goes past the end of its chunk")
-            found = form.fullmatch(data, at + 4, body)
-            if found is None:
-                # Another writer's order of the fields, another kind of record, or more fields.
-                form = next((f for f in _FORMS if f.fullmatch(data, at + 4, body)), form)
-                found = form.fullmatch(data, at + 4, body)
-            if found is not None:
-                raw, time = found["conn"], found["time"]
-            else:
-                fields = _fields(data[at + 4 : body])
-                if fields.get(b"op") != bytes([_MESSAGE]):
-                    at = end
-                    continue
-                raw, time = fields.get(b"conn", b""), fields.get(b"time", b"")
-                if len(raw) != 4 or len(time) != 8:
-                    raise BrokenBagError("a message without connection or time")
-            at = end
-            if raw in chosen:
-                seconds, nanoseconds = _TWO.unpack(time)
-                yield int.from_bytes(raw, "little"), seconds * 10**9 + nanoseconds, begin, end
-    except struct.error as error:
-        raise BrokenBagError("a record is cut off") from error
+        except struct.error as error:
+            raise BrokenBagError("a record is cut off") from error
+        if end > size:
+            raise BrokenBagError("a record goes past the end of its chunk")
+        fields = _fields(data[at + 4 : body])
+        at = end
+        if fields.get(b"op") == bytes([_MESSAGE]):
+            number = _number(fields, b"conn", 4)
+            if number in chosen:
+                yield number, _time(fields, b"time"), begin, end
 
 
 def _form(order: tuple[bytes, ...]) -> re.Pattern[bytes]:

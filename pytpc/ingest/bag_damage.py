@@ -8,12 +8,11 @@ header, whose ``index_pos`` is 0 until the recorder closes the file
 
 from __future__ import annotations
 
-import struct
 from pathlib import Path
 from typing import BinaryIO
 
-MAGIC = b"#ROSBAG V2.0\n"
-_LENGTH = struct.Struct("<I")
+from pytpc.ingest.bag_chunks import MAGIC
+
 _LONGEST_HEADER = 1 << 20
 
 
@@ -66,10 +65,10 @@ def _field(stream: BinaryIO, size: int, longest: int) -> bytes | None:
 
 def _skip(stream: BinaryIO, size: int) -> int | None:
     """Read a length; the byte after the field that it announces, None where the file is shorter."""
-    raw = stream.read(_LENGTH.size)
-    if len(raw) < _LENGTH.size:
+    raw = stream.read(4)
+    if len(raw) < 4:
         return None
-    end = int(stream.tell() + _LENGTH.unpack(raw)[0])
+    end = stream.tell() + int.from_bytes(raw, "little")
     return end if end <= size else None
 
 

@@ -24,17 +24,18 @@ import numpy.typing as npt
 from pytpc.base.columns import Bools, Int32s, Int64s
 from pytpc.base.errors import InputError
 from pytpc.base.wording import many
-from pytpc.ingest import binary_layout as layout
 from pytpc.ingest.binary_clock import Clock
+from pytpc.ingest.binary_layout import CHUNK, RECORD, FileHeader, whole_bytes
 from pytpc.ingest.binary_system import (
-    System,
+    SystemRecords,
     open_summaries,
     read_system,
     summary_rows,
     written_summaries,
 )
-from pytpc.ingest.gathering import Channel, Gathering, Progress, Reports
+from pytpc.ingest.gathering import Channel, Gathering, Progress, ReportColumns
 from pytpc.ingest.spool import Rows
+from pytpc.python_runtime import log_layout as layout
 from pytpc.recording.mission import Dropped
 
 Bytes = npt.NDArray[np.uint8]
@@ -46,7 +47,7 @@ _IDENTITY = np.dtype([("thread", "<u4"), ("site", "<u4"), ("period", "<u4")])
 
 
 @dataclass
-class Block(Reports):
+class RecordBlock(ReportColumns):
     """Reports of one thread, or of several in order; ``steady`` does not fall."""
 
     steady: Int64s
@@ -55,12 +56,14 @@ class Block(Reports):
         """How many reports."""
         return int(self.steady.size)
 
-    def part(self, rows: slice | Int64s | Bools) -> Block:
+    def part(self, rows: slice | Int64s | Bools) -> RecordBlock:
         """Some of them."""
-        return Block(**{field.name: getattr(self, field.name)[rows] for field in fields(self)})
+        return RecordBlock(
+            **{field.name: getattr(self, field.name)[rows] for field in fields(self)}
+        )
 
     @classmethod
-    def joined(cls, blocks: list[Block]) -> Block:
+    def joined(cls, blocks: list[RecordBlock]) -> RecordBlock:
         """All of ``blocks`` behind one another."""
         names = [field.name for field in fields(cls)]
         columns: dict[str, Any] = {
@@ -81,18 +84,18 @@ class _Thread:
     expected: int = 0
     simulated_ns: int = -1
     steady: int = -(2**63)
-    block: Block | None = None
+    block: RecordBlock | None = None
 
 
 def read_binary(path: Path, gathering: Gathering, on_progress: Progress | None = None) -> None:
     """Read a .tpc file.
 
     Raises:
-        InputError: it is none, or of another version.
+        InputError: it is not such a file, or of another version.
     """
     try:
         with path.open("rb", buffering=0) as stream:
-            reader = _Reader(path, cast(BinaryIO, stream), gathering, on_progress)
+            reader = _TpcReader(path, cast(BinaryIO, stream), gathering, on_progress)
             reader.read()
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror or error}", path) from error
@@ -100,7 +103,7 @@ def read_binary(path: Path, gathering: Gathering, on_progress: Progress | None =
         raise InputError(f"not a file of reports: {error}", path) from error
 
 
-class _Reader:
+class _TpcReader:
     def __init__(
         self, path: Path, stream: BinaryIO, gathering: Gathering, on_progress: Progress | None
     ) -> None:
@@ -108,7 +111,7 @@ class _Reader:
         self._stream = stream
         self._gathering = gathering
         self._on_progress = on_progress
-        self.header = layout.FileHeader.of(stream.read(layout.HEADER_BYTES))
+        self.header = FileHeader.of(stream.read(layout.HEADER_BYTES))
         self._node = _node_of(self.header, path)
         self._node_code = gathering.nodes.code(self._node)
         self._channel: Channel = gathering.channel(str(path), "file")
@@ -117,7 +120,7 @@ class _Reader:
         self._size = os.fstat(stream.fileno()).st_size
         self._buffer = np.empty((_GROUP, layout.CHUNK_BYTES), np.uint8)
         self._done = 0
-        self._system = System()
+        self._system = SystemRecords()
         self._system_chunks: list[int] = []
         self._live_chunks: list[int] = []
         self._torn = 0
@@ -134,7 +137,7 @@ class _Reader:
         self._complaints()
         self._progress(self._chunk_count)
 
-    def blocks(self) -> Iterator[Block]:
+    def blocks(self) -> Iterator[RecordBlock]:
         """All reports in the order of the steady clock; what is not reports is taken in before."""
         threads = self._chunks()
         self._read_system()
@@ -193,7 +196,7 @@ class _Reader:
             flat = buffer[row : last + 1].reshape(-1)
             count = os.preadv(self._stream.fileno(), [flat.data], place)
             flat[count:] = 0
-            whole = layout.whole_bytes(count % layout.CHUNK_BYTES)
+            whole = whole_bytes(count % layout.CHUNK_BYTES)
             if count < flat.size and whole < count % layout.CHUNK_BYTES:
                 # The record at which the file ends is not whole, whatever its first word says.
                 begin = count - count % layout.CHUNK_BYTES + whole
@@ -203,7 +206,7 @@ class _Reader:
     def _load_one(self, place: int) -> Bytes:
         """uint8[n], n at most 65536: what there is of one chunk, in whole records."""
         there = min(layout.CHUNK_BYTES, self._size - place)
-        chunk: Bytes = self._load([place])[0][: layout.whole_bytes(there)]
+        chunk: Bytes = self._load([place])[0][: whole_bytes(there)]
         return chunk
 
     def _read_system(self) -> None:
@@ -211,17 +214,17 @@ class _Reader:
         expected = 0
         for place in self._system_chunks:
             chunk = self._load_one(place)
-            first = int(chunk[: layout.CHUNK.itemsize].view(layout.CHUNK)["first"][0])
+            first = int(chunk[: CHUNK.itemsize].view(CHUNK)["first"][0])
             # A chunk that has no room for a long record counts as full.
             if first > expected:
                 self._gathering.lost[self._node] += first - expected
-            expected = max(expected, first) + layout.RECORDS
+            expected = max(expected, first) + layout.RECORDS_OF_CHUNK
             read_system(chunk, place, system, self._skip)
         self._torn += system.torn
 
     # --- reports
 
-    def _merged(self, threads: list[_Thread]) -> Iterator[Block]:
+    def _merged(self, threads: list[_Thread]) -> Iterator[RecordBlock]:
         """All reports in the order of the steady clock; equal times by thread."""
         waiting = sorted(threads, key=lambda thread: (thread.first_steady, thread.number))
         active: list[_Thread] = []
@@ -242,7 +245,7 @@ class _Reader:
                 continue
             active = [thread for thread in active if self._next_block(thread)]
 
-    def _up_to(self, active: list[_Thread], bound: int) -> Block:
+    def _up_to(self, active: list[_Thread], bound: int) -> RecordBlock:
         parts = []
         for thread in active:
             assert thread.block is not None
@@ -252,7 +255,7 @@ class _Reader:
                 thread.block = thread.block.part(slice(cut, None))
         if len(parts) == 1:
             return parts[0]
-        block = Block.joined(parts)
+        block = RecordBlock.joined(parts)
         return block.part(np.argsort(block.steady, kind="stable"))
 
     def _next_block(self, thread: _Thread) -> bool:
@@ -261,12 +264,12 @@ class _Reader:
         while thread.read < len(thread.chunks):
             places = thread.chunks[thread.read : thread.read + _GROUP]
             loaded = self._load(places)
-            records = loaded[:, layout.CHUNK_HEADER_BYTES :].view(layout.RECORD)
+            records = loaded[:, layout.CHUNK_HEADER_BYTES :].view(RECORD)
             first = thread.firsts[thread.read]
             is_last = thread.read + len(places) == len(thread.chunks)
             whole = self._whole(thread, loaded, records, places)
             if whole is not None:
-                thread.expected = first + layout.RECORDS * len(places)
+                thread.expected = first + layout.RECORDS_OF_CHUNK * len(places)
                 thread.block = whole
                 thread.read += len(places)
             else:
@@ -282,13 +285,15 @@ class _Reader:
         loaded: Bytes,
         records: npt.NDArray[np.void],
         places: list[int],
-    ) -> Block | None:
+    ) -> RecordBlock | None:
         """The usual case: chunks full of reports of known sites, on the wall's clock."""
         if thread.simulated_ns != -1:
             return None
         firsts = thread.firsts[thread.read : thread.read + len(places)]
         expected = range(
-            thread.expected, thread.expected + layout.RECORDS * len(places), layout.RECORDS
+            thread.expected,
+            thread.expected + layout.RECORDS_OF_CHUNK * len(places),
+            layout.RECORDS_OF_CHUNK,
         )
         # Kind and flags of all records.
         what = loaded[:, layout.CHUNK_HEADER_BYTES :].view("<u2")[:, :: layout.RECORD_BYTES // 2]
@@ -301,7 +306,7 @@ class _Reader:
         if int(keys.min()) < 0:
             return None
         steady = self._rising(thread, np.ascontiguousarray(records["steady"]).reshape(-1))
-        return Block(
+        return RecordBlock(
             steady=steady,
             time_ns=self._clock.rising(steady),
             key=keys,
@@ -318,7 +323,7 @@ class _Reader:
         records: npt.NDArray[np.void],
         places: list[int],
         is_last: bool,
-    ) -> Block:
+    ) -> RecordBlock:
         """Chunks of which one at least is not full, or has something else than reports."""
         blocks = []
         for row, place in enumerate(places):
@@ -333,15 +338,15 @@ class _Reader:
                 )
             chunk = records[row]
             ends = np.flatnonzero(chunk["what"] == 0)
-            used = int(ends[0]) if ends.size else layout.RECORDS
-            if used < layout.RECORDS:
+            used = int(ends[0]) if ends.size else layout.RECORDS_OF_CHUNK
+            if used < layout.RECORDS_OF_CHUNK:
                 begin = layout.CHUNK_HEADER_BYTES + used * layout.RECORD_BYTES
                 self._torn += bool(loaded[row, begin : begin + layout.RECORD_BYTES].any())
             thread.expected = first + used
             blocks.append(self._chunk(thread, chunk[:used].copy(), place))
-        return Block.joined(blocks)
+        return RecordBlock.joined(blocks)
 
-    def _chunk(self, thread: _Thread, chunk: npt.NDArray[np.void], place: int) -> Block:
+    def _chunk(self, thread: _Thread, chunk: npt.NDArray[np.void], place: int) -> RecordBlock:
         what = chunk["what"]
         kinds = what & 0xFF
         reports = kinds == layout.REPORT
@@ -366,7 +371,7 @@ class _Reader:
                 thread.simulated_ns = int(sim_ns[-1])
         kept = reports & (keys >= 0)
         flags = what >> 8
-        return Block(
+        return RecordBlock(
             steady=steady,
             time_ns=times,
             key=keys,
@@ -386,7 +391,7 @@ class _Reader:
         thread.steady = int(steady[-1])
         return steady
 
-    def _hand_in(self, block: Block) -> None:
+    def _hand_in(self, block: RecordBlock) -> None:
         self._last_ns = max(self._last_ns, int(block.time_ns.max()))
         self._gathering.add_events(self._channel, self._node_code, block)
 
@@ -467,7 +472,7 @@ def _byte(place: int, record: int) -> int:
     return place + layout.CHUNK_HEADER_BYTES + record * layout.RECORD_BYTES
 
 
-def _node_of(header: layout.FileHeader, path: Path) -> str:
+def _node_of(header: FileHeader, path: Path) -> str:
     """What to call the process: as its node, or, where it never was one, as its program.
 
     A forked child has its parent's name. What one of them evaluates says nothing about the other.

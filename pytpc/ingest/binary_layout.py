@@ -1,26 +1,22 @@
-"""The binary file of reports, byte for byte (docs/formats.md has it in words)."""
+"""The records of the binary file of reports, as numpy reads them (docs/reference/formats.md).
+
+The constants are those of the writer, `pytpc.python_runtime.log_layout`.
+"""
 
 from __future__ import annotations
 
-import struct
 from dataclasses import dataclass
 
 import numpy as np
 
-MAGIC = b"TPCLOG1\n"
-HEADER_BYTES = 4096
-RECORD_BYTES = 32
-CHUNK_BYTES = 65536
-CHUNK_HEADER_BYTES = 64
-RECORDS = (CHUNK_BYTES - CHUNK_HEADER_BYTES) // RECORD_BYTES
-SUMMARY_RECORDS = 5
-SLOT_BYTES = 192
-SLOTS = (CHUNK_BYTES - CHUNK_HEADER_BYTES) // SLOT_BYTES
-
-THREAD_CHUNK, SYSTEM_CHUNK, LIVE_CHUNK = 1, 2, 3
-REPORT, SITE, SYNC, SIMULATED, SUMMARY, DROPPED, POLICY = range(1, 8)
-REASONS = {1: "site", 2: "process", 3: "nested", 4: "stopped"}
-STOPPED = 2
+from pytpc.python_runtime.log_layout import (
+    CHUNK_BYTES,
+    CHUNK_HEADER_BYTES,
+    HEADER,
+    HEADER_BYTES,
+    MAGIC,
+    RECORD_BYTES,
+)
 
 RECORD = np.dtype(
     [("what", "<u4"), ("site", "<u4"), ("steady", "<i8"), ("cmp", "<f8"), ("thresh", "<f8")]
@@ -46,8 +42,6 @@ KEPT = np.dtype(
     ]
 )
 SLOT = np.dtype([("kept", KEPT), ("begun", "<u8"), ("spare", "<u8", 3)])
-
-_HEADER = struct.Struct("<8sIIIIqqIIQII256s256s1024s")
 
 
 def whole_bytes(count: int) -> int:
@@ -82,7 +76,7 @@ class FileHeader:
         if len(data) < HEADER_BYTES:
             raise ValueError(f"the file ends at byte {len(data)}, within its header")
         magic, size, record, chunk, pid, steady, real, state, _, lost, parent, _, *texts = (
-            _HEADER.unpack_from(data)
+            HEADER.unpack_from(data)
         )
         if magic != MAGIC:
             raise ValueError("its first bytes are not those of a .tpc file")

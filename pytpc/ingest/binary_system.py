@@ -10,10 +10,11 @@ import numpy as np
 import numpy.typing as npt
 
 from pytpc.base.columns import Bools, Int32s
-from pytpc.ingest import binary_layout as layout
 from pytpc.ingest.binary_clock import Clock
+from pytpc.ingest.binary_layout import KEPT, RECORD, SLOT
 from pytpc.ingest.gathering import SUMMARY_ROW, Gathering
 from pytpc.ingest.spool import Rows
+from pytpc.python_runtime import log_layout as layout
 from pytpc.recording.mission import Dropped
 
 _MOST_SITES = 1 << 22
@@ -21,6 +22,7 @@ _LONGEST_KEY = 1 << 12
 _LARGEST_COUNT = 2**62
 _HEAD = 16
 _NOT_PRINTED = re.compile(r"[\x00-\x1f\x7f]")
+_REASONS = {number: name for name, number in layout.REASONS.items()}
 _AS_THEY_ARE = ("cmp", "thresh", "diff_min", "diff_max", "low", "high")
 _COUNTS = ("count", "flops", "far", "odd")
 
@@ -29,7 +31,7 @@ Skip = Callable[[str], None]
 
 
 @dataclass
-class System:
+class SystemRecords:
     """What was read of the system's chunks, but for summaries; times are of the steady clock."""
 
     keys: dict[int, str] = field(default_factory=dict)
@@ -47,11 +49,11 @@ class System:
     def dropped(self, node: str) -> Iterator[Dropped]:
         """What was left out, a record each."""
         for site, reason, count, flops in self.drops:
-            why = layout.REASONS.get(reason, "unknown")
+            why = _REASONS.get(reason, "unknown")
             yield Dropped(self.keys.get(site, ""), node, count, min(flops, count), why)
 
 
-def read_system(chunk: Chunk, place: int, system: System, skip: Skip) -> None:
+def read_system(chunk: Chunk, place: int, system: SystemRecords, skip: Skip) -> None:
     """Read all of a chunk of system records but the summaries into ``system``.
 
     Args:
@@ -63,7 +65,7 @@ def read_system(chunk: Chunk, place: int, system: System, skip: Skip) -> None:
     data = chunk.tobytes()
     if len(data) <= layout.CHUNK_HEADER_BYTES:
         return
-    records = np.frombuffer(data, layout.RECORD, -1, layout.CHUNK_HEADER_BYTES)
+    records = np.frombuffer(data, RECORD, -1, layout.CHUNK_HEADER_BYTES)
     end = layout.CHUNK_HEADER_BYTES
     for kind, begin, end in _records(data, place, skip):  # noqa: B007
         record = records[(begin - layout.CHUNK_HEADER_BYTES) // layout.RECORD_BYTES]
@@ -89,21 +91,21 @@ def read_system(chunk: Chunk, place: int, system: System, skip: Skip) -> None:
 
 
 def written_summaries(chunk: Chunk) -> Rows:
-    """The summaries of a chunk of system records, as ``layout.KEPT``."""
+    """The summaries of a chunk of system records, as ``KEPT``."""
     data = chunk.tobytes()
     begins = [
         begin for kind, begin, _ in _records(data, 0, lambda _: None) if kind == layout.SUMMARY
     ]
-    places = np.array(begins, np.int64)[:, None] + np.arange(layout.KEPT.itemsize)
-    kept: Rows = chunk[places].view(layout.KEPT).reshape(-1)
+    places = np.array(begins, np.int64)[:, None] + np.arange(KEPT.itemsize)
+    kept: Rows = chunk[places].view(KEPT).reshape(-1)
     return kept
 
 
 def open_summaries(chunk: Chunk) -> tuple[Rows, int]:
-    """The periods of a live chunk, as ``layout.KEPT``, and how many of them are half counted."""
+    """The periods of a live chunk, as ``KEPT``, and how many of them are half counted."""
     count = max(0, (chunk.size - layout.CHUNK_HEADER_BYTES) // layout.SLOT_BYTES)
     data = chunk.tobytes().ljust(layout.CHUNK_HEADER_BYTES, b"\0")
-    slots = np.frombuffer(data, layout.SLOT, count, layout.CHUNK_HEADER_BYTES)
+    slots = np.frombuffer(data, SLOT, count, layout.CHUNK_HEADER_BYTES)
     used = slots[slots["kept"]["count"] != 0]
     return used["kept"].copy(), int(np.count_nonzero(used["begun"] != used["kept"]["count"]))
 
@@ -121,7 +123,7 @@ def summary_rows(
     """Rows of ``SUMMARY_ROW`` for the summaries ``kept``.
 
     Args:
-        kept: of type ``layout.KEPT``.
+        kept: of type ``KEPT``.
         clock: of the file; taken where a summary has no ROS time of its own.
         last_ns: the end of periods that are open.
         key_of_site: int32[n]: the code of each site's key, -1 where there is none.
@@ -181,7 +183,7 @@ def _records(data: bytes, place: int, skip: Skip) -> Iterator[tuple[int, int, in
                 skip(f"a key of {key_length} bytes at byte {place + begin}")
                 return
         elif kind == layout.SUMMARY:
-            length *= layout.SUMMARY_RECORDS
+            length = KEPT.itemsize
         if begin + length > len(data):
             skip(f"a record is cut off at byte {place + begin}")
             return
@@ -189,7 +191,7 @@ def _records(data: bytes, place: int, skip: Skip) -> Iterator[tuple[int, int, in
         begin += length
 
 
-def _site(system: System, number: int, text: bytes) -> str | None:
+def _site(system: SystemRecords, number: int, text: bytes) -> str | None:
     """Take in what a site is called; what is wrong with it, if anything."""
     try:
         key = text.decode("utf-8")

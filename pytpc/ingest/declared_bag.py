@@ -65,9 +65,9 @@ def decode_description(raw: bytes, topic: str) -> list[Declared]:
     """The declarations in a serialised ConfigDescription.
 
     Raises:
-        ValueError, IndexError, struct.error: it is none.
+        ValueError, IndexError, struct.error: it is not such a message.
     """
-    reader = _Reader(raw)
+    reader = _DescriptionReader(raw)
     parameters = []
     for _ in range(reader.number("<I")):
         reader.group()
@@ -105,7 +105,7 @@ def _constants(edit_method: str) -> object:
     return known.get("enum") if isinstance(known, dict) else None
 
 
-class _Reader:
+class _DescriptionReader:
     """Goes through the bytes of a message."""
 
     def __init__(self, raw: bytes) -> None:

@@ -167,7 +167,7 @@ class Once:
 
 
 def clock_notes(channels: list[Channel]) -> Iterator[str]:
-    """What is to be said of sources that lie apart in time: nobody knows whether it is the clock's
+    """Notes on sources that lie apart in time: nothing tells whether it is the clock's
     doing."""
     spans: dict[str, tuple[int, int]] = {}
     for channel in channels:

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
-import pyarrow as pa
-import pyarrow.parquet as pq
 
-from pytpc.base import columns as tables
+from pytpc.base.columns import read_parts
 from pytpc.base.errors import InputError
-from pytpc.ingest.gathering import SUMMARY_ROW, Gathering, Progress, Reports
+from pytpc.ingest.gathering import SUMMARY_ROW, Gathering, Progress, ReportColumns
 from pytpc.recording import events as event_table
 from pytpc.recording import summaries as summary_table
 from pytpc.recording.events import Events
@@ -32,11 +29,11 @@ def read_folder_into(
     recording, events, summaries = read_marks(folder)
     channel = gathering.channel(str(folder), "events")
     done = 0
-    for table in _tables(folder / EVENTS_FILE, event_table.SCHEMA, "events"):
+    for table in read_parts(folder / EVENTS_FILE, "events", event_table.SCHEMA, _ROWS):
         part = Events.from_arrow(table)
         key = gathering.keys.all(part.keys)[part.key]
         node = gathering.nodes.all(part.nodes)[part.node]
-        reports = Reports(part.time_ns, key, part.result, part.cmp, part.thresh, part.res)
+        reports = ReportColumns(part.time_ns, key, part.result, part.cmp, part.thresh, part.res)
         gathering.add_events(channel, node, reports)
         done += len(part)
         if on_progress is not None:
@@ -44,7 +41,8 @@ def read_folder_into(
     _check(folder / EVENTS_FILE, events, done)
     done = 0
     if summaries:
-        for table in _tables(folder / SUMMARIES_FILE, summary_table.SCHEMA, "summaries"):
+        path = folder / SUMMARIES_FILE
+        for table in read_parts(path, "summaries", summary_table.SCHEMA, _ROWS):
             rows = Summaries.from_arrow(table)
             made = np.zeros(len(rows), SUMMARY_ROW)
             for name, column in rows.columns().items():
@@ -54,7 +52,7 @@ def read_folder_into(
             made["channel"] = channel.code
             gathering.add_summary_rows(made)
             done += len(rows)
-        _check(folder / SUMMARIES_FILE, summaries, done)
+        _check(path, summaries, done)
     gathering.marks += recording.marks
     gathering.notes += recording.notes
     gathering.spans.append((recording.start_ns, recording.end_ns))
@@ -66,20 +64,6 @@ def read_folder_into(
     gathering.malformed += recording.malformed - len(recording.malformed_first)
 
 
-def _tables(path: Path, schema: pa.Schema, what: str) -> Iterator[pa.Table]:
-    try:
-        with pq.ParquetFile(path) as file:
-            tables.check_schema(file.schema_arrow, schema)
-            for batch in file.iter_batches(_ROWS):
-                yield pa.Table.from_batches([batch])
-    except OSError as error:
-        raise InputError(f"not a file of {what}: {error.strerror or error}", path) from error
-    except (pa.ArrowException, ValueError) as error:
-        raise InputError(f"not a file of {what}: {error}", path) from error
-    except InputError as error:
-        raise InputError(error.message, path) from error
-
-
 def _check(path: Path, said: int, found: int) -> None:
     if said != found:
-        raise InputError(f"has {found} rows, but marks.json tells of {said}", path)
+        raise InputError(f"has {found} rows, but marks.json says {said}", path)

@@ -56,7 +56,7 @@ _LARGEST_TABLE = 1 << 20
 MOST_CHANNELS = 1 << 16
 
 
-class Words:
+class WordCodes:
     """Words and their codes, in the order in which they came."""
 
     def __init__(self) -> None:
@@ -73,7 +73,7 @@ class Words:
 
 
 @dataclass
-class Reports:
+class ReportColumns:
     """Reports as columns of one length; ``key`` is codes of a gathering's words."""
 
     time_ns: Int64s
@@ -123,8 +123,8 @@ class Gathering:
 
     def __init__(self, folder: Path | None = None, run_rows: int = RUN_ROWS) -> None:
         """Nothing was read yet."""
-        self.keys = Words()
-        self.nodes = Words()
+        self.keys = WordCodes()
+        self.nodes = WordCodes()
         self.channels: list[Channel] = []
         self.events = Spool(
             EVENT_ROW, "time_ns", None if folder is None else folder / "events", run_rows
@@ -170,7 +170,7 @@ class Gathering:
         self._turn += count
         return range(self._turn - count + 1, self._turn + 1)
 
-    def add_events(self, channel: Channel, node: Int32s | int, reports: Reports) -> None:
+    def add_events(self, channel: Channel, node: Int32s | int, reports: ReportColumns) -> None:
         """Take in reports of one node, or of those of which ``node`` has the codes."""
         time_ns = reports.time_ns
         if not time_ns.size:

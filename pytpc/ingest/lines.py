@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from pytpc.ingest.bulk_lines import LINES, read_lines
-from pytpc.ingest.gathering import Channel, Gathering, Reports
-from pytpc.ingest.rosout_line import PREFIX, Batch, Drop, Malformed, parse_report, parse_stamped
+from pytpc.ingest.gathering import Channel, Gathering, ReportColumns
+from pytpc.ingest.rosout_line import PREFIX, BatchHead, Drop, Malformed, parse_report, parse_stamped
 from pytpc.recording.events import Report
 from pytpc.recording.mission import Dropped
 
@@ -79,7 +79,7 @@ class Lines:
                 self.unstamped += int(np.count_nonzero(zero))
                 time_ns = np.where(zero, given, time_ns)
             key = self.gathering.keys.all(part.keys)[part.key]
-            reports = Reports(time_ns, key, part.result, part.cmp, part.thresh, part.res)
+            reports = ReportColumns(time_ns, key, part.result, part.cmp, part.thresh, part.res)
             self.gathering.add_events(self.channel, nodes[part.begin : part.end], reports)
         self._lines, self._times, self._nodes = [], [], []
         self._turns, self._places = [], []
@@ -100,7 +100,7 @@ class Lines:
         else:
             found = parse_report(PREFIX + text)
         if isinstance(found, Report):
-            reports = Reports(
+            reports = ReportColumns(
                 np.array([time_ns], np.int64),
                 np.array([self.gathering.keys.code(found.key)], np.int32),
                 np.array([found.result]),
@@ -128,7 +128,7 @@ class Batches:
     told: Counter[str] = field(default_factory=Counter)
     missed: Counter[str] = field(default_factory=Counter)
 
-    def see(self, node: str, batch: Batch) -> None:
+    def see(self, node: str, batch: BatchHead) -> None:
         """Take in the first line of a message."""
         process = (node, batch.pid)
         expected = self.next_seq.get(process)

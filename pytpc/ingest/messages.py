@@ -13,10 +13,10 @@ import numpy as np
 
 from pytpc.base.columns import Bools, Int64s
 from pytpc.base.wording import many
-from pytpc.ingest.bag_chunks import Messages as Chunk
+from pytpc.ingest.bag_chunks import ChunkMessages as Chunk
 from pytpc.ingest.gathering import Channel, Gathering, Way
 from pytpc.ingest.lines import Batches, Lines
-from pytpc.ingest.ros1 import Log, decode_logs
+from pytpc.ingest.ros1 import LogMessage, decode_logs
 from pytpc.ingest.rosout_line import (
     DROPPED_PREFIX,
     PREFIX,
@@ -46,7 +46,7 @@ _WITH_TIME = tuple(f",{prefix}".encode() for prefix in (SUMMARY_PREFIX, DROPPED_
 class Decoders:
     """How the three kinds of messages are read; each raises ValueError where bytes are missing."""
 
-    log: Callable[[bytes], Log]
+    log: Callable[[bytes], LogMessage]
     text: Callable[[bytes], bytes]
     time: Callable[[bytes], int]
 
@@ -200,7 +200,7 @@ class Messages:
         others = np.concatenate([rows[begun & ~reports], np.flatnonzero(~long)])
         for row in np.sort(others).tolist():
             msg = chunk.data[logs.msg_begin[row] : logs.msg_end[row]]
-            log = Log(0, int(logs.stamp_ns[row]), names[row], msg)
+            log = LogMessage(0, int(logs.stamp_ns[row]), names[row], msg)
             self._text_of(log, ROSOUT, int(bag_ns[row]))
         rows = rows[reports]
         stamps = logs.stamp_ns[rows]
@@ -237,7 +237,7 @@ class Messages:
             self._gaps_of_senders.see(caller.encode() or log.node, log.seq)
         self._text_of(log, topic, time_ns)
 
-    def _text_of(self, log: Log, topic: str, time_ns: int) -> None:
+    def _text_of(self, log: LogMessage, topic: str, time_ns: int) -> None:
         self._unstamped.see_all([log.node], [time_ns])
         if not log.msg.startswith(_BEGIN):
             return

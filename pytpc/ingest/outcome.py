@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
-import os
-import secrets
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,10 +10,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pyarrow as pa
-import pyarrow.parquet as pq
 
-from pytpc.base.columns import WORDS, recode, sorted_words
-from pytpc.base.errors import TpcError
+from pytpc.base.atomic import replacing
+from pytpc.base.columns import recode, sorted_words, table_writer, to_arrow
 from pytpc.ingest.duplicates import APART_NS, TOLERANCE_NS, Once, clock_notes
 from pytpc.ingest.gathering import SUMMARY_ROW, Gathering
 from pytpc.ingest.spool import Rows
@@ -31,7 +27,7 @@ Told = Callable[[int, int], None]
 
 
 @dataclass
-class Outcome:
+class Merged:
     """What was read, with sorted words and every report once; the events are still blocks."""
 
     gathering: Gathering
@@ -143,7 +139,7 @@ class Outcome:
         return self.rest(Events.empty(), Summaries.empty())
 
     def save_csv(self, path: Path, told: Told | None = None) -> Recording:
-        """Write the events in the thesis's form (docs/formats.md), without nodes; see ``save``."""
+        """Write the events as CSV in the thesis's form, without nodes; see ``save``."""
         total = max(1, len(self.gathering.events))
         with replacing(path) as staged, staged.open("w", encoding="ascii") as stream:
             for rows in self.event_blocks():
@@ -165,12 +161,10 @@ class Outcome:
         self, path: Path, schema: pa.Schema, blocks: Iterator[Rows], told: Told | None = None
     ) -> None:
         total = max(1, len(self.gathering.events))
-        with (
-            replacing(path) as staged,
-            pq.ParquetWriter(staged, schema, compression="zstd") as writer,
-        ):
+        with table_writer(path, schema) as write:
             for rows in blocks:
-                writer.write_table(_table(rows, schema, self._words()))
+                columns = {name: np.ascontiguousarray(rows[name]) for name in schema.names}
+                write(to_arrow(columns, self._words(), schema))
                 if told is not None:
                     told(self.events, total)
 
@@ -204,27 +198,6 @@ class Outcome:
         times = self._times(marks)
         if times and any(_apart(times, span) for span in self.gathering.spans):
             yield "the bag was recorded on another clock than the reports'"
-
-
-@contextlib.contextmanager
-def replacing(path: Path) -> Iterator[Path]:
-    """A new file beside ``path`` that takes its place when all went well.
-
-    Raises:
-        TpcError: it cannot be written; what stood there before is untouched.
-    """
-    staged = path.with_name(f".{path.name}.tpc-{secrets.token_hex(4)}")
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        yield staged
-        with staged.open("rb") as stream:
-            os.fsync(stream.fileno())
-        staged.replace(path)
-    except OSError as error:
-        raise TpcError(f"cannot be written: {error.strerror or error}", path) from error
-    finally:
-        with contextlib.suppress(OSError):
-            staged.unlink(missing_ok=True)
 
 
 def _apart(times: list[int], span: tuple[int, int]) -> bool:
@@ -263,19 +236,6 @@ def _packed(rows: Rows) -> npt.NDArray[np.bytes_]:
         packed[name] = rows[name]
     whole: npt.NDArray[np.bytes_] = packed.view(f"S{packed.dtype.itemsize}")
     return whole
-
-
-def _table(rows: Rows, schema: pa.Schema, words: dict[str, list[str]]) -> pa.Table:
-    arrays = []
-    for column in schema:
-        values = np.ascontiguousarray(rows[column.name])
-        if column.type == WORDS:
-            arrays.append(
-                pa.DictionaryArray.from_arrays(values, pa.array(words[column.name], pa.string()))
-            )
-        else:
-            arrays.append(pa.array(values, column.type))
-    return pa.Table.from_arrays(arrays, schema=schema)
 
 
 def _shortest(value: float) -> str:

@@ -15,13 +15,13 @@ from pytpc.base.wording import many
 from pytpc.ingest.bag import read_bag_into
 from pytpc.ingest.bag_chunks import MAGIC as BAG_MAGIC
 from pytpc.ingest.binary import read_binary
-from pytpc.ingest.binary_layout import MAGIC as TPC_MAGIC
 from pytpc.ingest.duplicates import TOLERANCE_NS
 from pytpc.ingest.folder import read_folder_into
 from pytpc.ingest.gathering import Gathering, Progress
-from pytpc.ingest.outcome import Outcome
+from pytpc.ingest.outcome import Merged
 from pytpc.ingest.ros2_bag import MCAP_MAGIC, SQLITE_MAGIC, read_ros2_into
 from pytpc.ingest.text import read_text_into
+from pytpc.python_runtime.log_layout import MAGIC as TPC_MAGIC
 from pytpc.recording.marks import Mark, joined, marks_beside, read_marks
 from pytpc.recording.mission import (
     EVENTS_FILE,
@@ -57,7 +57,7 @@ def read(
         tolerance_ns: how far apart in time the same report may be in two files.
 
     Raises:
-        InputError: a file is not there, is none of these, or is broken; one line.
+        InputError: a file is missing, of no known format, or broken; one line.
     """
     given = [paths] if isinstance(paths, Path) else list(paths)
     if len(given) == 1 and is_ingested(given[0]):
@@ -65,7 +65,7 @@ def read(
         return replace(recording, marks=joined([*recording.marks, *_beside(given[0])]))
     gathering = Gathering()
     gather(given, gathering, on_progress)
-    return Outcome(gathering, name_of(given), tolerance_ns).recording()
+    return Merged(gathering, name_of(given), tolerance_ns).recording()
 
 
 def read_bag(path: Path, on_progress: Progress | None = None) -> Recording:
@@ -77,7 +77,7 @@ def read_bag(path: Path, on_progress: Progress | None = None) -> Recording:
     gathering = Gathering()
     read_bag_into(path, gathering, on_progress)
     gathering.marks += _beside(path)
-    return Outcome(gathering, path.stem).recording()
+    return Merged(gathering, path.stem).recording()
 
 
 @contextmanager
@@ -87,7 +87,7 @@ def opened(
     on_progress: Progress | None = None,
     *,
     tolerance_ns: int = TOLERANCE_NS,
-) -> Iterator[Outcome]:
+) -> Iterator[Merged]:
     """The same with little memory: what is too much for it goes to files in ``scratch``.
 
     Args:
@@ -108,7 +108,7 @@ def opened(
     try:
         gathering = Gathering(folder)
         gather(paths, gathering, on_progress)
-        yield Outcome(gathering, name_of(paths), tolerance_ns)
+        yield Merged(gathering, name_of(paths), tolerance_ns)
     finally:
         shutil.rmtree(folder, ignore_errors=True)
 
@@ -138,14 +138,14 @@ def gather(
         gathering.late_notes.append(f"no report in {many(len(empty), 'text file')}, as {empty[0]}")
     for path in paths:
         for left in sorted(path.glob("*.bag.active")):
-            gathering.late_notes.append(f"{left}: not read; mend it with: rosbag reindex")
+            gathering.late_notes.append(f"{left}: not read; recover it with: rosbag reindex")
 
 
 def sources(path: Path) -> list[Path]:
     """The recordings that ``path`` stands for: itself, or those in a folder, by name.
 
     Raises:
-        InputError: it is not there, or is a folder without recordings.
+        InputError: it is not there, or is no recordings in this folder.
     """
     if not path.exists():
         raise InputError("no such bag, file or folder", path)
@@ -160,10 +160,10 @@ def sources(path: Path) -> list[Path]:
         raise InputError(f"cannot be read: {error.strerror or error}", path) from error
     found = [entry for entry in entries if _is_recording(entry)]
     if not found and any(path.glob("*.bag.active")):
-        what = "only a bag that was cut off: rosbag reindex it, then take .active from its name"
+        what = "only an unfinished bag: run rosbag reindex on it, then remove .active from its name"
         raise InputError(what, path)
     if not found:
-        raise InputError("a folder without recordings", path)
+        raise InputError("no recordings in this folder", path)
     return found
 
 

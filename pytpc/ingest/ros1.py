@@ -22,7 +22,7 @@ _HEADER = struct.Struct("<IIII")
 _TIME = struct.Struct("<II")
 
 
-class Log(NamedTuple):
+class LogMessage(NamedTuple):
     """A log message: ``seq`` is the publisher's own counter, ``stamp_ns`` 0 where unstamped."""
 
     seq: int
@@ -31,7 +31,7 @@ class Log(NamedTuple):
     msg: bytes
 
 
-def decode_log(raw: bytes) -> Log:
+def decode_log(raw: bytes) -> LogMessage:
     """Read a rosgraph_msgs/Log up to its text.
 
     Raises:
@@ -47,7 +47,7 @@ def decode_log(raw: bytes) -> Log:
     except struct.error as error:
         raise ValueError(f"a log message of {len(raw)} bytes ends too early") from error
     stamp_ns = seconds * 10**9 + nanoseconds
-    return Log(seq, stamp_ns, raw[node_at : msg_at - _LENGTH.size], raw[msg_at:end])
+    return LogMessage(seq, stamp_ns, raw[node_at : msg_at - _LENGTH.size], raw[msg_at:end])
 
 
 @dataclass(frozen=True)

@@ -10,14 +10,14 @@ from __future__ import annotations
 
 import struct
 
-from pytpc.ingest.ros1 import Log
+from pytpc.ingest.ros1 import LogMessage
 
 _HEAD = 4
 _TIME = {0: struct.Struct(">iI"), 1: struct.Struct("<iI")}
 _LENGTH = {0: struct.Struct(">I"), 1: struct.Struct("<I")}
 
 
-def decode_log(raw: bytes) -> Log:
+def decode_log(raw: bytes) -> LogMessage:
     """Read an rcl_interfaces/Log up to its text; it has no number.
 
     Raises:
@@ -26,12 +26,12 @@ def decode_log(raw: bytes) -> Log:
     try:
         order = raw[1] & 1
         seconds, nanoseconds = _TIME[order].unpack_from(raw, _HEAD)
-        # The level, one byte, stands in front of the name.
+        # One byte, the level, precedes the name.
         node, at = _string(raw, _HEAD + 9, order)
         msg, _ = _string(raw, at, order)
     except (struct.error, IndexError) as error:
         raise ValueError(f"a log message of {len(raw)} bytes ends too early") from error
-    return Log(0, seconds * 10**9 + nanoseconds, node, msg)
+    return LogMessage(0, seconds * 10**9 + nanoseconds, node, msg)
 
 
 def decode_string(raw: bytes) -> bytes:

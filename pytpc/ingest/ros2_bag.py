@@ -35,7 +35,8 @@ _IN_A_URI = frozenset("?#%")
 def read_ros2_into(path: Path, gathering: Gathering, on_progress: Progress | None = None) -> None:
     """Read a .mcap or .db3 file, or a folder of rosbag2.
 
-    Reports come from /rosout and /threshold_information, marks from docs/formats.md's topics.
+    Reports come from /rosout and /threshold_information, marks from the topics of
+    docs/reference/formats.md#marks.
 
     Raises:
         InputError: the file is truncated or damaged, or of ROS 1; one line.
@@ -114,12 +115,12 @@ def _broken(path: Path, error: Exception) -> InputError:
         return InputError(f"cannot be read: {error.strerror}", path)
     said = " ".join(str(error).split()) or type(error).__name__
     if "Profile is not ros2" in said:
-        return InputError("an .mcap file that is not of ROS 2: rosbags does not read it", path)
-    hint = f'; "mcap recover {path.name}" saves the rest'
+        return InputError("not an .mcap file of ROS 2, the only kind that rosbags reads", path)
+    hint = f'; "mcap recover {path.name}" recovers the rest'
     if path.is_dir():
         hint = ""
     elif _first(path) != MCAP_MAGIC:
-        hint = f'; "sqlite3 {path.name} .recover" saves the rest'
+        hint = f'; "sqlite3 {path.name} .recover" recovers the rest'
     size = "" if path.is_dir() else f" ({path.stat().st_size:,} bytes)"
     return InputError(f"truncated or damaged{size}: {said}{hint}", path)
 

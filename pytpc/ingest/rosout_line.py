@@ -1,4 +1,6 @@
-"""The text of one report (SPEC 5), read strictly: pure functions from a line to a record.
+"""Reads the text of one report strictly: pure functions from a line to a record.
+
+Format: docs/reference/formats.md#reports.
 
 ``parse_report`` and ``parse_other`` read what is in the ``msg`` of a /rosout message,
 ``parse_stamped``, ``parse_stamped_other`` and ``parse_batch`` a line of the ``data`` of a
@@ -75,7 +77,7 @@ class Drop:
 
 
 @dataclass(frozen=True, slots=True)
-class Batch:
+class BatchHead:
     """The first line of a message of several lines.
 
     ``seq`` is the number, in its process, of the first of the ``count`` reports that follow;
@@ -89,7 +91,7 @@ class Batch:
 
 
 class Malformed(NamedTuple):
-    """A line that begins like a report and is none: what is wrong, and at which column (from 1)."""
+    """A line that only begins like a report: what is wrong, and at which column (from 1)."""
 
     what: str
     column: int
@@ -124,7 +126,7 @@ def parse_stamped(text: str) -> StampedReport | Malformed:
 
 
 def parse_other(text: str, node: str) -> Summary | Drop | Malformed | None:
-    """Read ``threshold_summary:...`` or ``threshold_dropped:...`` (docs/formats.md).
+    """Read ``threshold_summary:...`` or ``threshold_dropped:...``.
 
     Returns:
         What it says; ``Malformed`` where the text only begins like one; None for anything else.
@@ -138,12 +140,12 @@ def parse_stamped_other(text: str, node: str) -> Summary | Drop | Malformed | No
     return None if stamp is None else _other(text, stamp.end(), node)
 
 
-def parse_batch(text: str) -> Batch | Malformed:
+def parse_batch(text: str) -> BatchHead | Malformed:
     """Read ``#seq:N,count:N,dropped:N,pid:P,steady:S``."""
     found = _BATCH.fullmatch(text)
     if found is None:
         return Malformed("a line that begins with # is #seq:N,count:N,dropped:N,pid:P,steady:S", 1)
-    return Batch(*(int(number) for number in found.groups()[:4]))
+    return BatchHead(*(int(number) for number in found.groups()[:4]))
 
 
 def nanoseconds(text: str) -> int:

@@ -18,7 +18,7 @@ from pytpc.ingest.lines import Batches, Lines
 from pytpc.ingest.rosout_line import (
     LATEST_NS,
     PREFIX,
-    Batch,
+    BatchHead,
     Drop,
     Malformed,
     nanoseconds,
@@ -169,7 +169,7 @@ class _Csv(_Taker):
             return
         if line.startswith(b"#"):
             batch = parse_batch(_plain(line))
-            if isinstance(batch, Batch):
+            if isinstance(batch, BatchHead):
                 self.batches.see(self.node, batch)
             else:
                 self.other(batch, self.node, number, _plain(line))

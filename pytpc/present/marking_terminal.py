@@ -21,7 +21,7 @@ from pytpc.base.errors import RunError
 from pytpc.base.signals import signals_end
 from pytpc.recording.marking_session import (
     PLAYER_HELP,
-    Change,
+    MarkChange,
     Player,
     Session,
     View,
@@ -62,7 +62,7 @@ class Mission(Protocol):
     def view(self) -> View:
         """What is to be shown of it."""
 
-    def send(self, change: Change) -> str:
+    def send(self, change: MarkChange) -> str:
         """Something happened to the marks; what the observer is to be told of it, or nothing."""
 
     def tick(self) -> None:
@@ -101,7 +101,7 @@ class RecordedMission:
         status = f"{at} of {whole}, {state}, speed {player.speed:g}"
         return View(self._title, (status,), player.start_ns, self.now_ns(), PLAYER_HELP)
 
-    def send(self, change: Change) -> str:
+    def send(self, change: MarkChange) -> str:
         """Nobody else is to know."""
         return ""
 

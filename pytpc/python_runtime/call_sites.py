@@ -34,8 +34,8 @@ _RELATIONS = {
 _NUMBERS = frozenset({int, float, bool})
 
 
-class Inside(NamedTuple):
-    """One comparison of a call: its key, its relation, and its operand as in docs/formats.md."""
+class ComparedInside(NamedTuple):
+    """One comparison of a call: what reports it, its relation and the name of its operand."""
 
     reported: Reported
     relation: str
@@ -47,7 +47,7 @@ class LibraryCall(Site):
 
     __slots__ = ("call",)
 
-    def __init__(self, inside: tuple[Inside, ...]) -> None:
+    def __init__(self, inside: tuple[ComparedInside, ...]) -> None:
         """All comparisons of the place."""
         logs = tuple(map(_logger, inside))
 
@@ -84,7 +84,7 @@ def _try(log: Callable[[Given, object], None], given: Given, result: object) -> 
             raise
 
 
-def _logger(one: Inside) -> Callable[[Given, object], None]:
+def _logger(one: ComparedInside) -> Callable[[Given, object], None]:
     """What reports one comparison of a call with these arguments and this result."""
     kind, name, *first_alone = one.operand.split()
     compared = _RELATIONS[one.relation]

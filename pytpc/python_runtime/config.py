@@ -1,7 +1,7 @@
-"""What a process reports, and where to: the same settings as those of the C++ runtime.
+"""What a process reports, and where to: docs/reference/runtime.md#settings.
 
-docs/running.md has them. A setting that is no value of it gets a warning and is left as it was: a
-node is never stopped for this.
+The settings are those of the C++ runtime. An invalid value logs a warning and the previous setting
+stays; it never stops a node.
 """
 
 from __future__ import annotations

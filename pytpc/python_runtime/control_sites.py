@@ -38,7 +38,7 @@ class Loop(Site):
             return repeat(element, is_turn)
 
         def over(iterable: Any) -> Iterator[Any]:  # noqa: ANN401
-            """The same elements, with reports; what is no ``range`` is left as it is."""
+            """The same elements, with reports; anything but a ``range`` is returned unchanged."""
             if type(iterable) is not range:
                 return repeat(iterable)
             stop = iterable.stop

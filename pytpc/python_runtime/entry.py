@@ -18,7 +18,7 @@ _BY_SETUPTOOLS = re.compile(
 _BY_PIP = re.compile(r"^from ([\w.]+) import \w+$", re.MULTILINE)
 
 
-class Program(NamedTuple):
+class EntryPoint(NamedTuple):
     """A script's name without ``.py``, and the module that it runs where it is an entry point's."""
 
     stem: str
@@ -33,9 +33,9 @@ class Program(NamedTuple):
         return (f"{path}.py", f"{path}/__init__.py")
 
 
-def program_of(script: str) -> Program:
+def program_of(script: str) -> EntryPoint:
     """What the script is called, and what it runs; a script that cannot be read runs itself."""
-    return Program(stem_of(script), _module(script))
+    return EntryPoint(stem_of(script), _module(script))
 
 
 def stem_of(script: str) -> str:

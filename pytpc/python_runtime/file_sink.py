@@ -7,7 +7,7 @@ from time import monotonic_ns
 from typing import TYPE_CHECKING, Any
 
 from pytpc.python_runtime.log_layout import OUTCOME_BIT, RESULT_BIT, SUMMARY
-from pytpc.python_runtime.sinks import Sink, Summary
+from pytpc.python_runtime.sinks import PeriodSummary, Sink
 
 if TYPE_CHECKING:
     from pytpc.python_runtime.log_file import LogFile
@@ -18,7 +18,7 @@ _SUMMARY = struct.Struct("<IqddqIIQQQddddddQqq16x")
 _COUNT_AT, _BEGUN_AT = 48, 160
 
 
-def packed(kept: Summary, *, is_open: bool = False) -> bytes:
+def packed(kept: PeriodSummary, *, is_open: bool = False) -> bytes:
     """A summary as it is in the file, but for its first word."""
     return _SUMMARY.pack(
         kept.one.number,
@@ -43,7 +43,7 @@ def packed(kept: Summary, *, is_open: bool = False) -> bytes:
     )
 
 
-def what_of(kept: Summary) -> int:
+def what_of(kept: PeriodSummary) -> int:
     """The first word."""
     return SUMMARY | (RESULT_BIT if kept.result else 0) | (OUTCOME_BIT if kept.res else 0)
 
@@ -57,7 +57,7 @@ class FileSink(Sink):
         self.take = file.take  # type: ignore[method-assign,assignment]
         self.edge = file.edge  # type: ignore[method-assign]
 
-    def summary(self, summary: Summary) -> None:
+    def summary(self, summary: PeriodSummary) -> None:
         """Write it among the system's records."""
         self.file.announce(summary.one)
         self.file.write_summary(packed(summary), what_of(summary))
@@ -103,7 +103,7 @@ class LiveSlot:
             struct.pack_into("<Q", self._bytes, self._at + _COUNT_AT, 0)
             struct.pack_into("<Q", self._bytes, self._at + _BEGUN_AT, 0)
 
-    def write(self, kept: Summary) -> None:
+    def write(self, kept: PeriodSummary) -> None:
         """The summary with one more evaluation; its end is open."""
         if self._bytes is None:
             return

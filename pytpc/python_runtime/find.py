@@ -34,14 +34,14 @@ RELATIONS = {
 _MIRRORED = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "==": "==", "!=": "!="}
 
 
-class Place(NamedTuple):
+class ListedPlace(NamedTuple):
     """A listed comparison in the tree. ``swapped``: its threshold is the left operand."""
 
     listed: Listed
     swapped: bool
 
 
-class Found(NamedTuple):
+class FoundPlaces(NamedTuple):
     """What is to be rewritten.
 
     ``links``: comparison -> number of the link -> what it reports. ``flags``: expression -> what it
@@ -51,12 +51,12 @@ class Found(NamedTuple):
     ``missing``: what is not there; ``unsupported``: what is, where it cannot be reported.
     """
 
-    links: dict[ast.Compare, dict[int, list[Place]]]
-    flags: dict[ast.expr, list[Place]]
-    loops: dict[ast.expr, list[Place]]
-    subjects: dict[ast.expr, list[Place]]
-    patterns: dict[ast.expr, list[Place]]
-    calls: dict[ast.expr, list[Place]]
+    links: dict[ast.Compare, dict[int, list[ListedPlace]]]
+    flags: dict[ast.expr, list[ListedPlace]]
+    loops: dict[ast.expr, list[ListedPlace]]
+    subjects: dict[ast.expr, list[ListedPlace]]
+    patterns: dict[ast.expr, list[ListedPlace]]
+    calls: dict[ast.expr, list[ListedPlace]]
     unsupported: list[Listed]
     missing: list[Listed]
 
@@ -69,10 +69,10 @@ class Found(NamedTuple):
         return links + flags + sum(len(places) for kind in others for places in kind.values())
 
 
-def find(tree: ast.Module, listed: Sequence[Listed]) -> Found:
+def find(tree: ast.Module, listed: Sequence[Listed]) -> FoundPlaces:
     """Where each of ``listed`` is in ``tree``."""
     index = _Index(tree)
-    found = Found({}, {}, {}, {}, {}, {}, [], [])
+    found = FoundPlaces({}, {}, {}, {}, {}, {}, [], [])
     for one in listed:
         ways = [_as_call] if one.is_inside else [_as_link, _as_pattern, _as_loop, _as_flag]
         if not any(way(index, found, one) for way in ways):
@@ -195,7 +195,7 @@ def _ends(node: ast.expr, listed: Listed) -> bool:
     )
 
 
-def _as_link(index: _Index, found: Found, listed: Listed) -> bool:
+def _as_link(index: _Index, found: FoundPlaces, listed: Listed) -> bool:
     if listed.relation == "flag":
         return False
     candidates: list[tuple[bool, bool, int, ast.Compare, int]] = []
@@ -209,7 +209,7 @@ def _as_link(index: _Index, found: Found, listed: Listed) -> bool:
     if not candidates:
         return False
     _, _, _, node, link = min(candidates, key=lambda candidate: candidate[:3])
-    place = Place(listed, _is_swapped(node, link, listed))
+    place = ListedPlace(listed, _is_swapped(node, link, listed))
     found.links.setdefault(node, {}).setdefault(link, []).append(place)
     return True
 
@@ -233,24 +233,24 @@ def _is_swapped(node: ast.Compare, link: int, listed: Listed) -> bool:
 
 
 def _text(node: ast.expr) -> str:
-    """``self.limit`` as it stands in the source; empty for what is no name."""
+    """``self.limit`` as written in the source; empty for anything but a name."""
     if isinstance(node, ast.Name):
         return node.id
     if isinstance(node, ast.Attribute):
         return f"{_text(node.value)}.{node.attr}"
     if isinstance(node, ast.Subscript):
         inner = node.slice
-        # Until Python 3.9 the index stands in a node of its own.
+        # Before Python 3.9 the index has a node of its own.
         inner = getattr(inner, "value", inner) if type(inner).__name__ == "Index" else inner
         if isinstance(inner, ast.Constant):
             return f"{_text(node.value)}[{inner.value!r}]"
     return ""
 
 
-def _as_call(index: _Index, found: Found, listed: Listed) -> bool:
+def _as_call(index: _Index, found: FoundPlaces, listed: Listed) -> bool:
     for node in index.names.get((listed.lineno, listed.column), []):
         if isinstance(node, ast.Call) and _ends(node, listed) and _has_names(node):
-            found.calls.setdefault(node, []).append(Place(listed, False))
+            found.calls.setdefault(node, []).append(ListedPlace(listed, False))
             return True
     return False
 
@@ -260,29 +260,29 @@ def _has_names(call: ast.Call) -> bool:
     return all(keyword.arg is not None for keyword in call.keywords)
 
 
-def _as_pattern(index: _Index, found: Found, listed: Listed) -> bool:
+def _as_pattern(index: _Index, found: FoundPlaces, listed: Listed) -> bool:
     position = (listed.lineno, listed.column)
     patterns = index.patterns.get(position, [])
     if patterns:
-        found.patterns.setdefault(patterns[0], []).append(Place(listed, False))
+        found.patterns.setdefault(patterns[0], []).append(ListedPlace(listed, False))
     elif position in index.inner_patterns:
         found.unsupported.append(listed)
     return bool(patterns) or position in index.inner_patterns
 
 
-def _as_loop(index: _Index, found: Found, listed: Listed) -> bool:
+def _as_loop(index: _Index, found: FoundPlaces, listed: Listed) -> bool:
     loops = index.loops.get((listed.lineno, listed.column), [])
     if not loops or listed.relation == "flag":
         return False
-    found.loops.setdefault(loops[0], []).append(Place(listed, False))
+    found.loops.setdefault(loops[0], []).append(ListedPlace(listed, False))
     return True
 
 
-def _as_flag(index: _Index, found: Found, listed: Listed) -> bool:
+def _as_flag(index: _Index, found: FoundPlaces, listed: Listed) -> bool:
     position = (listed.lineno, listed.column)
     subjects = [node for node in index.subjects.get(position, []) if _ends(node, listed)]
     if subjects:
-        found.subjects.setdefault(subjects[0], []).append(Place(listed, False))
+        found.subjects.setdefault(subjects[0], []).append(ListedPlace(listed, False))
         return True
     operands = index.operands.get(position, [])
     if not operands and listed.relation == "flag":
@@ -293,7 +293,7 @@ def _as_flag(index: _Index, found: Found, listed: Listed) -> bool:
     chosen = max(exact or operands, key=_length)
     values = flags_of(chosen)
     for value in values:
-        found.flags.setdefault(value, []).append(Place(listed, False))
+        found.flags.setdefault(value, []).append(ListedPlace(listed, False))
     if not values:
         found.unsupported.append(listed)
     return True

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from pytpc.python_runtime import quiet
 from pytpc.python_runtime.find import matching
-from pytpc.python_runtime.listed import ListedFile, Table
+from pytpc.python_runtime.listed import ListedFile, ListedFiles
 from pytpc.python_runtime.rewrite import rewrite
 from pytpc.python_runtime.words import many, warn
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 _TRACING = (b"settrace", b"setprofile", b"sys.monitoring")
 
 
-class Done(NamedTuple):
+class Instrumented(NamedTuple):
     """One module that was rewritten, or was to be."""
 
     path: str
@@ -31,11 +31,11 @@ class Done(NamedTuple):
 class Instrument:
     """Compiles the modules that have listed comparisons."""
 
-    def __init__(self, table: Table, register: Register) -> None:
+    def __init__(self, table: ListedFiles, register: Register) -> None:
         """Nothing is compiled yet."""
         self.table = table
         self._register = register
-        self.done: list[Done] = []
+        self.done: list[Instrumented] = []
 
     def knows(self, path: str) -> bool:
         """Whether a file of this name has comparisons."""
@@ -72,7 +72,7 @@ class Instrument:
             what = "choice between conditions" if is_flag else "value within a pattern"
             warn(f"{path}:{listed.lineno}: a {what} is not reported")
         missing += len(rewritten.unsupported)
-        self.done.append(Done(path, rewritten.instrumented, missing))
+        self.done.append(Instrumented(path, rewritten.instrumented, missing))
         return rewritten.code
 
     def _chosen(self, data: bytes, path: str) -> ListedFile | None:
@@ -84,9 +84,9 @@ class Instrument:
             names = ", ".join(sorted({candidate.path for candidate in candidates})[:2])
             if self.table.is_exact(path):
                 warn(f"{path}: not as it was analysed, and not reported; analyse it again")
-                self.done.append(Done(path, 0, len(candidates[0].comparisons)))
+                self.done.append(Instrumented(path, 0, len(candidates[0].comparisons)))
             else:
-                self.done.append(Done(f"{path} (not {names})", 0, 0))
+                self.done.append(Instrumented(f"{path} (not {names})", 0, 0))
         return chosen
 
 

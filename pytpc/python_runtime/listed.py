@@ -1,6 +1,6 @@
-"""Which comparisons are to report: read from the static information.
+"""The comparisons that should report, read from the static information.
 
-The hook does not check the files against the schema; what it cannot use is an error that names the
+The hook does not check the files against the schema; unusable content is an error that names the
 file.
 """
 
@@ -50,7 +50,7 @@ class ListedFile(NamedTuple):
     comparisons: tuple[Listed, ...]
 
 
-class Table:
+class ListedFiles:
     """The source files with comparisons, found by the last part of their names."""
 
     def __init__(self, files: Iterable[ListedFile]) -> None:
@@ -123,7 +123,7 @@ class _Unit(NamedTuple):
         return any(file.path.endswith(module) for file in self.files)
 
 
-def read_table(paths: Iterable[str], script: str | None = None) -> Table:
+def read_table(paths: Iterable[str], script: str | None = None) -> ListedFiles:
     """Read files of static information, merged ones, and folders that hold such files.
 
     Args:
@@ -137,7 +137,7 @@ def read_table(paths: Iterable[str], script: str | None = None) -> Table:
     units = _all_units(paths)
     if script is not None:
         units = _of_script(units, script)
-    return Table(file for unit in units for file in unit.files)
+    return ListedFiles(file for unit in units for file in unit.files)
 
 
 def names_script(paths: Iterable[str], script: str) -> bool:
@@ -219,9 +219,9 @@ def _document(path: str) -> Any:  # noqa: ANN401
     except OSError as error:
         raise HookError(f"cannot be read: {error.strerror or error}", path) from error
     except json.JSONDecodeError as error:
-        raise HookError(f"no JSON: {error.msg}", path, error.lineno) from error
+        raise HookError(f"not JSON: {error.msg}", path, error.lineno) from error
     except ValueError as error:
-        raise HookError(f"no JSON: {error}", path) from error
+        raise HookError(f"not JSON: {error}", path) from error
 
 
 def _of_document(path: str) -> list[_Unit]:
@@ -245,7 +245,7 @@ def _units(document: Any, path: str) -> list[_Unit]:  # noqa: ANN401
             if not _is_compiled(unit):
                 units.append(_Unit(unit["link_unit"], unit.get("package"), script, root, listed))
     except (KeyError, TypeError, AttributeError) as error:
-        raise HookError(f"no static information ({type(error).__name__}: {error})", path) from None
+        raise HookError(f"not static information ({type(error).__name__}: {error})", path) from None
     return units
 
 

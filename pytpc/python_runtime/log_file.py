@@ -1,4 +1,4 @@
-"""The binary file of reports (docs/formats.md), written straight into mapped memory.
+"""The binary file of reports (docs/reference/formats.md), written straight into mapped memory.
 
 The kernel keeps what was written whatever happens to the process. Space is allocated on the disk
 before it is mapped, so that a full disk is an error and no signal. Each thread has chunks of its
@@ -86,7 +86,7 @@ class _NoChunk(_Chunk):
         self.begin = self.end = 0
 
 
-class _Place:
+class _ThreadPlace:
     """Where a thread writes: its chunk, and how many records were in those before."""
 
     __slots__ = ("chunk", "former", "is_changing", "number", "sim_ns", "written")
@@ -124,7 +124,7 @@ class _Owner:
 
     __slots__ = ("_free", "_place")
 
-    def __init__(self, place: _Place, free: list[_Place]) -> None:
+    def __init__(self, place: _ThreadPlace, free: list[_ThreadPlace]) -> None:
         self._place = place
         self._free = free
 
@@ -146,7 +146,7 @@ class LogFile(Room):
         self._each_second = each_second
         self._local = threading.local()
         self._threads = 0
-        self._free: list[_Place] = []
+        self._free: list[_ThreadPlace] = []
         self._system: _SystemChunk | None = None
         self._live: tuple[tuple[Extent, int], int] | None = None
         self._sync_at = 0
@@ -188,9 +188,9 @@ class LogFile(Room):
         return take
 
     def _prepared(
-        self, place: _Place, one: Reported, chunk: _Chunk, at: int, now: int
+        self, place: _ThreadPlace, one: Reported, chunk: _Chunk, at: int, now: int
     ) -> tuple[_Chunk, int] | None:
-        """Where to write where something stands in the way; None where there is no room."""
+        """Where to write when something is in the way; None when there is no room."""
         if now >= self._sync_at:
             self.look(now)
             self._each_second()
@@ -201,7 +201,7 @@ class LogFile(Room):
             return self._simulated(place, found, now)
         return found
 
-    def _claimed(self, place: _Place) -> tuple[_Chunk, int] | None:
+    def _claimed(self, place: _ThreadPlace) -> tuple[_Chunk, int] | None:
         """The next record of the calling thread, in a new chunk where its own is full."""
         while True:
             chunk = place.chunk
@@ -216,7 +216,7 @@ class LogFile(Room):
                 return None
 
     def _simulated(
-        self, place: _Place, found: tuple[_Chunk, int], now: int
+        self, place: _ThreadPlace, found: tuple[_Chunk, int], now: int
     ) -> tuple[_Chunk, int] | None:
         """Write the simulated time where it has changed; the record behind it."""
         chunk, at = found
@@ -245,19 +245,19 @@ class LogFile(Room):
 
     # --- threads and chunks
 
-    def _new_place(self) -> _Place:
+    def _new_place(self) -> _ThreadPlace:
         """The calling thread's place: a new one, or that of a thread that has ended."""
         try:
             place = self._free.pop()
         except IndexError:
             with self._lock:
                 self._threads += 1
-                place = _Place(self._threads)
+                place = _ThreadPlace(self._threads)
         self._local.owner = _Owner(place, self._free)
         self._local.place = place
         return place
 
-    def _place(self) -> _Place:
+    def _place(self) -> _ThreadPlace:
         try:
             return self._local.place  # type: ignore[no-any-return]
         except AttributeError:
@@ -267,7 +267,7 @@ class LogFile(Room):
         """The number of the calling thread in this file, from 1."""
         return self._place().number
 
-    def _next_chunk(self, place: _Place) -> bool:
+    def _next_chunk(self, place: _ThreadPlace) -> bool:
         place.is_changing = True
         try:
             written = place.written + (RECORDS_OF_CHUNK if place.chunk.end else 0)

@@ -1,6 +1,7 @@
 """The binary file of reports, byte for byte, and where a new one is made.
 
-docs/formats.md has the layout in words, runtime_log/Layout.h in C++.
+docs/reference/formats.md has the layout in words, runtime_log/Layout.h in C++. The reader of these
+files, `pytpc.ingest.binary`, uses these numbers too.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from pytpc.python_runtime import ros_state
 from pytpc.python_runtime.file_sink import FileSink, LiveSlot
-from pytpc.python_runtime.sinks import Sink, Summary
+from pytpc.python_runtime.sinks import PeriodSummary, Sink
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -76,12 +76,12 @@ class Caps:
                     self._sink.dropped(one, counts[at], counts[at + 1], why)
 
 
-class _Open:
+class _OpenPeriod:
     """The open period of one comparison in one thread."""
 
     __slots__ = ("kept", "slot")
 
-    def __init__(self, kept: Summary, slot: LiveSlot | None) -> None:
+    def __init__(self, kept: PeriodSummary, slot: LiveSlot | None) -> None:
         self.kept = kept
         self.slot = slot
 
@@ -96,7 +96,7 @@ class Edges:
         self._period_ns = config.period_ns
         self._start = monotonic_ns()
         self._lock = threading.RLock()
-        self._open: dict[tuple[int, Reported], _Open] = {}
+        self._open: dict[tuple[int, Reported], _OpenPeriod] = {}
         self._file = sink.file if isinstance(sink, FileSink) else None
 
     def take(self, one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> None:
@@ -122,13 +122,13 @@ class Edges:
                 held.slot.write(kept)
         self._sink.settle()
 
-    def _new(self, thread: int, one: Reported) -> _Open:
+    def _new(self, thread: int, one: Reported) -> _OpenPeriod:
         """A comparison that is new to its thread."""
         slot = None
         if self._file is not None:
             self._file.announce(one)
             slot = LiveSlot(self._file)
-        return _Open(Summary(one, thread), slot)
+        return _OpenPeriod(PeriodSummary(one, thread), slot)
 
     def _edge(self, one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> int:
         """Report it where the predicate came to something else than the last time."""
@@ -140,7 +140,7 @@ class Edges:
             self._sink.edge(one, result, cmp, thresh, res)
         return int(is_flop)
 
-    def _close(self, held: _Open) -> None:
+    def _close(self, held: _OpenPeriod) -> None:
         self._sink.summary(held.kept)
         held.kept.evaluations = 0
         if held.slot is not None:

@@ -21,7 +21,7 @@ _SIGNS = (
 )
 
 
-class _Reader:
+class _RelayReader:
     """Stands in a relay in the place of what it calls."""
 
     def __init__(self, instrument: Instrument) -> None:
@@ -70,6 +70,6 @@ def relayed(data: bytes, path: str, instrument: Instrument) -> CodeType | None:
         return None
     tree = ast.parse(data, path)
     mark = constant_text(0)
-    constants: dict[str, object] = {mark: _Reader(instrument)}
+    constants: dict[str, object] = {mark: _RelayReader(instrument)}
     _Calls(mark).visit(tree)
     return with_constants(compile(tree, path, "exec", dont_inherit=True), constants)

@@ -6,7 +6,7 @@ was, is evaluated exactly once and in the original order, by the program's own f
 comparison had, so that tracebacks, debuggers and coverage see the lines and columns of the source.
 
 The calls go to an object (`pytpc.python_runtime.sites`) that is a constant of the code: nothing is
-added to any namespace. `ast` knows no such constants, so a text stands in the tree for each, and is
+added to any namespace. `ast` knows no such constants, so the tree has a text for each, which is
 replaced in the compiled code.
 """
 
@@ -17,16 +17,16 @@ import sys
 from types import CodeType
 from typing import TYPE_CHECKING, NamedTuple
 
-from pytpc.python_runtime.call_sites import Inside, LibraryCall
+from pytpc.python_runtime.call_sites import ComparedInside, LibraryCall
 from pytpc.python_runtime.control_sites import Loop, Subject
-from pytpc.python_runtime.find import Found, Place, find, values_of
+from pytpc.python_runtime.find import FoundPlaces, ListedPlace, find, values_of
 from pytpc.python_runtime.listed import Listed
-from pytpc.python_runtime.sites import Comparison, Flag, Reported
+from pytpc.python_runtime.sites import ComparisonSite, FlagSite, Reported
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    Register = Callable[[Place], Reported]
+    Register = Callable[[ListedPlace], Reported]
 
 # Python 3.11 says of a failed `assert` that it is where the comparison in it is, if there is one.
 # The same holds for an error in the truth of a condition behind a comparison.
@@ -75,7 +75,7 @@ def rewrite(
 
 
 def constant_text(number: int) -> str:
-    """What stands in a tree for an object that is a constant of the code."""
+    """The node that represents an object which will be a constant of the code."""
     return f"{_MARK}{number}"
 
 
@@ -102,7 +102,7 @@ class _Chain(NamedTuple):
     """
 
     node: ast.Compare
-    links: dict[int, list[Place]]
+    links: dict[int, list[ListedPlace]]
     asked: bool
     place: ast.expr
 
@@ -114,7 +114,9 @@ class _Rewriter:
     truth, once, and for nothing else.
     """
 
-    def __init__(self, found: Found, register: Register, constants: dict[str, object]) -> None:
+    def __init__(
+        self, found: FoundPlaces, register: Register, constants: dict[str, object]
+    ) -> None:
         self._found = found
         self._register = register
         self._constants = constants
@@ -218,7 +220,7 @@ class _Rewriter:
     def _expression(
         self, node: ast.expr, asked: bool, negation: ast.expr | None = None
     ) -> ast.expr:
-        """What stands in the place of ``node``, the operand of ``negation`` if there is one."""
+        """What replaces ``node``, the operand of ``negation`` if there is one."""
         flags = self._found.flags.get(node)
         links = self._found.links.get(node) if isinstance(node, ast.Compare) else None
         asker = self._asker
@@ -294,7 +296,7 @@ class _Rewriter:
             rest = ast.Compare(left=left, ops=node.ops[link:], comparators=node.comparators[link:])
             return ast.copy_location(rest, node)
         reported = tuple(self._register(place) for place in links.get(link, ()))
-        comparison = Comparison(type(node.ops[link]).__name__, reported)
+        comparison = ComparisonSite(type(node.ops[link]).__name__, reported)
         right = node.comparators[link]
         is_last = link + 1 == len(node.ops)
         method = "link" if not is_last else "truth" if chain.asked else "compare"
@@ -308,9 +310,9 @@ class _Rewriter:
         body = self._chain(chain, link + 1, handed, node)
         return ast.copy_location(ast.IfExp(test=this, body=body, orelse=ended), node)
 
-    def _library_call(self, node: ast.Call, places: list[Place]) -> ast.expr:
+    def _library_call(self, node: ast.Call, places: list[ListedPlace]) -> ast.expr:
         inside = tuple(
-            Inside(self._register(place), place.listed.relation, place.listed.operand or "")
+            ComparedInside(self._register(place), place.listed.relation, place.listed.operand or "")
             for place in places
         )
         names: list[ast.expr | None] = [
@@ -322,9 +324,9 @@ class _Rewriter:
         site = self._constant(LibraryCall(inside), _first(node))
         return self._call(site, "call", [node.func, *node.args, keywords], node)
 
-    def _flag(self, node: ast.expr, places: list[Place], asker: ast.AST | None) -> ast.expr:
+    def _flag(self, node: ast.expr, places: list[ListedPlace], asker: ast.AST | None) -> ast.expr:
         """``node`` with a report of its truth, for which ``asker`` asks if anything does."""
-        flag = Flag(tuple(self._register(place) for place in places))
+        flag = FlagSite(tuple(self._register(place) for place in places))
         method = "value" if asker is None else "truth"
         place = node if asker is None or not _ASKERS_PLACE else asker
         return self._call(self._constant(flag, _first(node)), method, [node], place)

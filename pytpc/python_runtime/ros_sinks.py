@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from pytpc.python_runtime import ros_state
 from pytpc.python_runtime.sinks import (
+    PeriodSummary,
     Sink,
-    Summary,
     dropped_line,
     report_line,
     seconds,
@@ -57,7 +57,7 @@ class RosoutSink(Sink):
         line = f"threshold_information:{report_line(one, result, cmp, thresh, res)}"
         self._waiting.append((line, 1))
 
-    def summary(self, summary: Summary) -> None:
+    def summary(self, summary: PeriodSummary) -> None:
         """One line."""
         line = f"threshold_summary:{summary_line(summary)}"
         self._waiting.append((line, summary.evaluations))
@@ -124,7 +124,7 @@ class _Waiting(NamedTuple):
 
 
 class TopicSink(Sink):
-    """Batches on /threshold_information, made by the helper thread (docs/formats.md)."""
+    """Batches on /threshold_information, made by the helper thread."""
 
     def __init__(self) -> None:
         """Nothing is advertised yet."""
@@ -144,7 +144,7 @@ class TopicSink(Sink):
         """Keep it until the next batch."""
         self._keep(_Waiting(ros_state.time_now_ns(), one, (result, cmp, thresh, res), ""))
 
-    def summary(self, summary: Summary) -> None:
+    def summary(self, summary: PeriodSummary) -> None:
         """Keep it until the next batch."""
         line = f"threshold_summary:{summary_line(summary)}"
         self._keep(_Waiting(summary.end_ros_ns, None, None, line))

@@ -21,7 +21,7 @@ if __name__ == "__main__" and not __package__:
 
 from pytpc.python_runtime.errors import HookError
 from pytpc.python_runtime.instrument import Instrument
-from pytpc.python_runtime.listed import BUILT, Table, read_table
+from pytpc.python_runtime.listed import BUILT, ListedFiles, read_table
 from pytpc.python_runtime.loader import install
 from pytpc.python_runtime.runtime import RUNTIME
 from pytpc.python_runtime.script import run_script
@@ -33,13 +33,13 @@ usage: python -m pytpc.python_runtime [--static FILE]... [--verbose] NODE.py [AR
 
 Runs a Python node; the comparisons of the static information report.
 
-  --static FILE  static information (JSON), or a folder that has some; may be given
-                 several times. Else TPC_STATIC, several with colons between them.
-  --verbose      say at the end which files report, and what was not reported
+  --static FILE  static information (JSON), or a folder that contains it; may be given
+                 several times. Default: TPC_STATIC, separated by colons.
+  --verbose      print at the end which files reported, and what was not found
 """
 
 
-class Words(NamedTuple):
+class CommandLine(NamedTuple):
     """The command line."""
 
     static: list[str]
@@ -48,11 +48,11 @@ class Words(NamedTuple):
     arguments: list[str]
 
 
-def parsed(words: list[str]) -> Words | None:
-    """What the command line says; None where help is asked for.
+def parsed(words: list[str]) -> CommandLine | None:
+    """Parse the command line; None if it asks for help.
 
     Raises:
-        HookError: it says nothing that can be done.
+        HookError: an unknown option, or no script.
     """
     static: list[str] = []
     verbose = False
@@ -72,8 +72,8 @@ def parsed(words: list[str]) -> Words | None:
         else:
             raise HookError(f"{word}: no such option, or its value is missing; see --help")
     if not rest:
-        raise HookError("which script is to be run? see --help")
-    return Words(static, verbose, rest[0], rest[1:])
+        raise HookError("no script given; see --help")
+    return CommandLine(static, verbose, rest[0], rest[1:])
 
 
 def static_of_environment() -> list[str]:
@@ -82,9 +82,9 @@ def static_of_environment() -> list[str]:
 
 
 def static_around(script: str) -> str | None:
-    """What ``pytpc build`` left in a folder above the script, else above the current one.
+    """The static.json of ``pytpc build`` in a folder above the script, else above the current one.
 
-    The script's folder is first where it stands, and then where a link leads to.
+    The script's folder is first that of the path given, then that of the file a link points to.
     """
     for start in (os.path.abspath(script), os.path.realpath(script), os.path.join(os.getcwd(), "")):
         folder = os.path.dirname(start)
@@ -98,11 +98,12 @@ def static_around(script: str) -> str | None:
     return None
 
 
-def prepared(given: Words) -> Instrument:
+def prepared(given: CommandLine) -> Instrument:
     """Read the static information of a script and install the hook.
 
     Raises:
-        HookError: a file that was named cannot be read. One that was only found is left, and said.
+        HookError: a file that was named cannot be read. One that was only found is left out, with a
+            warning.
     """
     static = given.static or static_of_environment()
     if static:
@@ -121,21 +122,21 @@ def prepared(given: Words) -> Instrument:
     return instrument
 
 
-def _found(given: Words) -> tuple[list[str], Table]:
+def _found(given: CommandLine) -> tuple[list[str], ListedFiles]:
     path = static_around(given.script)
     if path is None:
-        return [], Table([])
+        return [], ListedFiles([])
     if given.verbose:
         warn(f"the static information is {path}")
     try:
         return [path], read_table([path], given.script)
     except HookError as error:
         warn(f"{error}; nothing is reported")
-        return [path], Table([])
+        return [path], ListedFiles([])
 
 
 def main(words: list[str] | None = None) -> None:
-    """Run a node; ends with status 1 and one line where it cannot be."""
+    """Run a node; if that is not possible, print one line and exit with status 1."""
     try:
         given = parsed(sys.argv[1:] if words is None else words)
         if given is None:
@@ -153,8 +154,8 @@ def main(words: list[str] | None = None) -> None:
         sys.exit(1)
 
 
-def _hide_command(given: Words) -> None:
-    """Let ``sys.orig_argv`` have the interpreter, its options, and the script, as if by itself."""
+def _hide_command(given: CommandLine) -> None:
+    """Make ``sys.orig_argv`` look as if the script had been started directly."""
     words: list[str] | None = getattr(sys, "orig_argv", None)
     if words is not None:
         mine = len(words) - len(sys.argv)

@@ -27,7 +27,7 @@ from pytpc.python_runtime.sites import Reported
 from pytpc.python_runtime.words import warn
 
 if TYPE_CHECKING:
-    from pytpc.python_runtime.find import Place
+    from pytpc.python_runtime.find import ListedPlace
 
 _TURN_S = 0.02
 _LATE_S = 0.25
@@ -60,7 +60,7 @@ class Runtime:
             after_in_child=self._child,
         )
 
-    def register(self, place: Place) -> Reported:
+    def register(self, place: ListedPlace) -> Reported:
         """The report of a place; one for each key and side."""
         key = place.listed.key
         with self._lock:

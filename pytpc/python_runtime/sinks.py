@@ -1,4 +1,4 @@
-"""What a sink takes, and its lines of text (docs/formats.md, "Reports")."""
+"""What a sink takes, and its lines of text (docs/reference/formats.md#reports)."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ if TYPE_CHECKING:
     from pytpc.python_runtime.sites import Reported
 
 
-# |cmp - thresh| above which an evaluation is far (SPEC 7).
+# |cmp - thresh| above which an evaluation is far (docs/reference/scores.md#score-of-type-ii).
 _FAR = 1e-4
 
 
-class Summary:
+class PeriodSummary:
     """All evaluations of one comparison in one thread and period, as they come. Times in ns."""
 
     __slots__ = (
@@ -86,7 +86,7 @@ class Sink:
         """A flop, or a first evaluation, under the policy ``edges``."""
         self.take(one, result, cmp, thresh, res)
 
-    def summary(self, summary: Summary) -> None:
+    def summary(self, summary: PeriodSummary) -> None:
         """A period that is over."""
 
     def dropped(self, one: Reported | None, count: int, flops: int, why: str) -> None:
@@ -128,7 +128,7 @@ def seconds(ns: int, decimals: int) -> str:
     return f"{sign}{whole}.{rest:09d}"[: len(sign) + len(str(whole)) + 1 + decimals]
 
 
-def summary_line(kept: Summary) -> str:
+def summary_line(kept: PeriodSummary) -> str:
     """The same with count, flops, and so on."""
     usable = kept.evaluations - kept.odd
     numbers = (kept.least, kept.largest, kept.total, kept.absolute, kept.low, kept.high)

@@ -116,7 +116,7 @@ def count_unknown() -> None:
 
 
 def number_of(value: Any) -> float | None:  # noqa: ANN401
-    """What ``value`` is as a number; None for what is none, or could say so only by its own code.
+    """``value`` as a number; None if it is not one, or if only its own code could convert it.
 
     Numbers are those of the language and of classes derived from them (by the base's method),
     numpy's scalars, and ROS's times and durations in seconds.
@@ -155,7 +155,7 @@ def truth_of(value: object) -> bool | None:
 
 
 def values(cmp: object, thresh: object, outcome: bool) -> tuple[float, float]:
-    """What is reported of two values; of what is no number, the outcome stands for both."""
+    """What is reported of two values; if one is not a number, the outcome is reported for both."""
     left = number_of(cmp)
     right = number_of(thresh)
     if left is None or right is None:
@@ -163,7 +163,7 @@ def values(cmp: object, thresh: object, outcome: bool) -> tuple[float, float]:
     return left, right
 
 
-class Comparison(Site):
+class ComparisonSite(Site):
     """One link of a comparison. See the module's text.
 
     A link that others follow keeps its right operand and its outcome, by the frame in which it was
@@ -320,7 +320,7 @@ def _linker(operation: str, reported: tuple[Reported, ...], held: Held) -> Funct
     return link
 
 
-class Flag(Site):
+class FlagSite(Site):
     """A parameter that is a condition by itself.
 
     `truth` where the program asks for the truth alone; `value` where it takes the value itself.

@@ -1,4 +1,4 @@
-"""What the hook has to say: one line on standard error, as the C++ runtime does."""
+"""Warnings of the hook: one line on standard error each, as from the C++ runtime."""
 
 from __future__ import annotations
 

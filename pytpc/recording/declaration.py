@@ -40,7 +40,7 @@ def make_declared(
     description: object,
     place: str,
 ) -> Declared:
-    """A declaration from what stands in one of dynamic_reconfigure; what makes no sense is None.
+    """A declaration of dynamic_reconfigure; None for one that makes no sense.
 
     ``constants`` are those of the enumeration, each with a ``name`` and a ``value``.
     """

@@ -1,24 +1,23 @@
 """Evaluations of threshold predicate comparisons as columns: in numpy, Arrow and Parquet.
 
 ``Events`` is one table sorted by time; ``EventBuilder`` makes it from records one at a time,
-``read_parquet`` and ``write_parquet`` keep it on disk. The columns are those of docs/formats.md.
+``read_parquet`` and ``write_parquet`` keep it on disk. The columns are those of
+docs/reference/formats.md#events.
 """
 
 from __future__ import annotations
 
 from array import array
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 import pyarrow as pa
 
 from pytpc.base import columns as tables
-from pytpc.base.columns import Bools, Columns, Floats, Int32s, Int64s, frozen, sorted_words
+from pytpc.base.columns import Bools, Floats, Int32s, Int64s, frozen, sorted_words
 
 __all__ = ["SCHEMA", "Bools", "EventBuilder", "Events", "Floats", "Int32s", "Int64s", "KeyIndex"]
 __all__ += ["Report", "concat", "read_parquet", "write_parquet"]
@@ -34,11 +33,11 @@ SCHEMA = pa.schema(
         pa.field("node", tables.WORDS, nullable=False),
     ]
 )
-"""SPEC 6. Parquet keeps it; a file with other columns or types is refused."""
+"""docs/reference/formats.md#events. A Parquet file with other columns or types is refused."""
 
 
 class Report(NamedTuple):
-    """What one evaluation reports: SPEC 5's ``log_one``."""
+    """What one evaluation reports: docs/reference/runtime.md#log_one."""
 
     key: str
     result: bool
@@ -64,7 +63,7 @@ class KeyIndex:
 
 
 @dataclass(frozen=True, eq=False)
-class Events:
+class Events(tables.WordTable):
     """n evaluations, sorted by time; what happened at the same time keeps its recorded order.
 
     ``time_ns`` int64[n]; ``key`` int32[n], codes into ``keys``; ``result`` bool[n] (the predicate);
@@ -82,61 +81,9 @@ class Events:
     keys: tuple[str, ...]
     nodes: tuple[str, ...]
 
-    @classmethod
-    def of(
-        cls,
-        *,
-        time_ns: npt.ArrayLike,
-        key: npt.ArrayLike,
-        result: npt.ArrayLike,
-        cmp: npt.ArrayLike,
-        thresh: npt.ArrayLike,
-        res: npt.ArrayLike,
-        node: npt.ArrayLike,
-        keys: Iterable[str],
-        nodes: Iterable[str],
-    ) -> Events:
-        """Sort the columns by time (stably) and check that they fit together.
-
-        Raises:
-            ValueError: columns of different lengths, a code without a word, or a word twice.
-        """
-        table = cls(
-            frozen(np.asarray(time_ns, dtype=np.int64)),
-            frozen(np.asarray(key, dtype=np.int32)),
-            frozen(np.asarray(result, dtype=np.bool_)),
-            frozen(np.asarray(cmp, dtype=np.float64)),
-            frozen(np.asarray(thresh, dtype=np.float64)),
-            frozen(np.asarray(res, dtype=np.bool_)),
-            frozen(np.asarray(node, dtype=np.int32)),
-            tuple(keys),
-            tuple(nodes),
-        )
-        tables.check_columns(table._columns(), len(table))
-        tables.check_words(table.key, table.keys)
-        tables.check_words(table.node, table.nodes)
-        if bool(np.any(table.time_ns[1:] < table.time_ns[:-1])):
-            return table.take(np.argsort(table.time_ns, kind="stable"))
-        return table
-
-    @classmethod
-    def empty(cls, keys: Iterable[str] = ()) -> Events:
-        """No evaluations, of the given keys."""
-        return cls.of(
-            time_ns=[], key=[], result=[], cmp=[], thresh=[], res=[], node=[], keys=keys, nodes=()
-        )
-
-    def __len__(self) -> int:
-        """The number of evaluations."""
-        return int(self.time_ns.size)
-
-    def equals(self, other: Events) -> bool:
-        """Whether both hold the same evaluations (NaN equals NaN) under the same words."""
-        theirs = other._columns()
-        return (self.keys, self.nodes) == (other.keys, other.nodes) and all(
-            np.array_equal(mine, theirs[name], equal_nan=mine.dtype == np.float64)
-            for name, mine in self._columns().items()
-        )
+    schema = SCHEMA
+    order = "time_ns"
+    what = "events"
 
     @cached_property
     def by_key(self) -> KeyIndex:
@@ -173,43 +120,13 @@ class Events:
         last = int(np.searchsorted(self.time_ns, end_ns, side="right"))
         return self.take(slice(first, max(first, last)))
 
-    def take(self, rows: slice | Int64s | Bools) -> Events:
-        """The evaluations at ``rows`` (a slice, row numbers or a mask), with the same words."""
-        columns = {name: column[rows] for name, column in self._columns().items()}
-        return Events.of(**columns, keys=self.keys, nodes=self.nodes)
-
     def with_keys(self, keys: Sequence[str]) -> Events:
         """The same table with ``keys`` as its keys; evaluations of other keys are left out."""
         codes = tables.recode(self.key, self.keys, keys)
         kept = codes >= 0
-        columns = {name: column[kept] for name, column in self._columns().items()}
+        columns = {name: column[kept] for name, column in self.columns().items()}
         columns["key"] = codes[kept]
         return Events.of(**columns, keys=keys, nodes=self.nodes)
-
-    def to_arrow(self) -> pa.Table:
-        """The table in the schema ``SCHEMA``."""
-        return tables.to_arrow(self._columns(), {"key": self.keys, "node": self.nodes}, SCHEMA)
-
-    @classmethod
-    def from_arrow(cls, table: pa.Table) -> Events:
-        """The reverse of ``to_arrow``; the rows may be in any order and the columns in chunks.
-
-        Raises:
-            InputError: a column is missing, is of another type or has empty places.
-        """
-        columns, words = tables.from_arrow(table, SCHEMA)
-        return cls.of(**columns, keys=words["key"], nodes=words["node"])
-
-    def _columns(self) -> Columns:
-        return {
-            "time_ns": self.time_ns,
-            "key": self.key,
-            "result": self.result,
-            "cmp": self.cmp,
-            "thresh": self.thresh,
-            "res": self.res,
-            "node": self.node,
-        }
 
 
 class EventBuilder:
@@ -255,30 +172,6 @@ class EventBuilder:
         )
 
 
-def concat(parts: Sequence[Events]) -> Events:
-    """All evaluations of ``parts``; equal times keep the order of the parts.
-
-    The keys and nodes of the result are sorted.
-    """
-    if not parts:
-        return Events.empty()
-    joined, keys, nodes = tables.join([(part._columns(), part.keys, part.nodes) for part in parts])
-    return Events.of(**joined, keys=keys, nodes=nodes)
-
-
-def write_parquet(events: Events, path: Path) -> None:
-    """Write the table, atomically.
-
-    Raises:
-        TpcError: the file cannot be written; what stood there before is untouched.
-    """
-    tables.write_table(events.to_arrow(), path)
-
-
-def read_parquet(path: Path) -> Events:
-    """Read what ``write_parquet`` wrote.
-
-    Raises:
-        InputError: the file cannot be read, is no Parquet, or has other columns.
-    """
-    return tables.read_table(path, "events", Events.from_arrow)
+concat = Events.concat
+read_parquet = Events.read
+write_parquet = Events.write

@@ -27,7 +27,7 @@ SPEEDS = (0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
 _STEPS_NS = {"left": -5, "right": 5, "down": -60, "up": 60, ",": -1, ".": 1}
 
 
-class Change(NamedTuple):
+class MarkChange(NamedTuple):
     """What a key did to the marks: one was made (``before`` is None), taken back (``after`` is
     None) or got a note."""
 
@@ -62,7 +62,7 @@ class Session:
     used: frozenset[int] = frozenset()
 
 
-def press(session: Session, key: str, now_ns: int | None) -> tuple[Session, Change | None]:
+def press(session: Session, key: str, now_ns: int | None) -> tuple[Session, MarkChange | None]:
     """What a key does.
 
     Args:
@@ -85,7 +85,7 @@ def press(session: Session, key: str, now_ns: int | None) -> tuple[Session, Chan
     return _look_back(session, key)
 
 
-def _look_back(session: Session, key: str) -> tuple[Session, Change | None]:
+def _look_back(session: Session, key: str) -> tuple[Session, MarkChange | None]:
     """Keys about the last mark: a note to it, or take it back."""
     if not session.marks:
         return replace(session, said="no mark yet"), None
@@ -93,12 +93,12 @@ def _look_back(session: Session, key: str) -> tuple[Session, Change | None]:
     if key == "n":
         return replace(session, typing=last.note, said=""), None
     said = f"taken back: {_named(last)}"
-    return replace(session, marks=session.marks[:-1], said=said), Change(last, None)
+    return replace(session, marks=session.marks[:-1], said=said), MarkChange(last, None)
 
 
 def _mark(
     session: Session, kind: MarkType | None, now_ns: int | None
-) -> tuple[Session, Change | None]:
+) -> tuple[Session, MarkChange | None]:
     if now_ns is None:
         return replace(session, said="not marked: the graph has no time yet (no /clock)"), None
     # While a clock stands still two marks would have one time, and what is taken back or noted is
@@ -109,15 +109,15 @@ def _mark(
     mark = Mark(now_ns, kind, session.observer)
     said = f"marked: {_named(mark)}"
     after = replace(session, marks=(*session.marks, mark), said=said, used=used | {now_ns})
-    return after, Change(None, mark)
+    return after, MarkChange(None, mark)
 
 
-def _type(session: Session, text: str, key: str) -> tuple[Session, Change | None]:
+def _type(session: Session, text: str, key: str) -> tuple[Session, MarkChange | None]:
     if key == "enter":
         last = session.marks[-1]
         noted = replace(last, note=text.strip())
         after = replace(session, marks=(*session.marks[:-1], noted), typing=None, said="noted")
-        return after, Change(last, noted)
+        return after, MarkChange(last, noted)
     if key == "escape":
         return replace(session, typing=None, said=""), None
     if key == "backspace":

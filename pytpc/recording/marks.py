@@ -1,7 +1,7 @@
 """Marks: the times at which an observer says that the robot does wrong.
 
 On a graph they are messages (``topic_of_marks``), beside a bag a CSV file (``read_marks``). What
-the columns and topics are stands in docs/formats.md.
+the columns and topics are: docs/reference/formats.md#marks.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from pytpc.base.errors import InputError
 
 MarkType = Literal["I", "II"]
 """``I``: the robot did something that it should not have; ``II``: it should do something and does
-not (SPEC 1)."""
+not (docs/reference/glossary.md#type-i)."""
 
 MARK_TYPES: tuple[MarkType, ...] = get_args(MarkType)
 UNDO_TOPIC = "mark_undo"
@@ -155,7 +155,7 @@ class MarkMessages:
         """
         found = parse_note(text)
         if found is None:
-            raise ValueError("no note: SECONDS.NANOSECONDS,NOTE is expected")
+            raise ValueError("not a note: expected SECONDS.NANOSECONDS,NOTE")
         self._notes.append((observer_of(topic, NOTE_TOPIC) or "", *found))
 
     def marks(self) -> tuple[Mark, ...]:
@@ -191,7 +191,7 @@ def write_marks(marks: Sequence[Mark], path: Path) -> None:
 
 
 def read_marks(path: Path) -> tuple[Mark, ...]:
-    """Read what ``write_marks`` wrote, or somebody by hand; columns may be missing at the end.
+    """Read a file of ``write_marks``, or one written by hand; trailing columns may be missing.
 
     Raises:
         InputError: it cannot be read, or a line is no mark.

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from pytpc.base.errors import TpcError
-from pytpc.recording.marking_session import Change
+from pytpc.recording.marking_session import MarkChange
 from pytpc.recording.marks import Mark, read_marks, write_marks
 
 
@@ -32,11 +32,11 @@ class MarksFile:
         except OSError as error:
             raise TpcError(f"cannot be made: {error.strerror}", path.parent) from error
         self.path = path
-        self.pending: list[Change] = []
+        self.pending: list[MarkChange] = []
         self.fault: str | None = None
         self.before: tuple[Mark, ...] = read_marks(path) if path.exists() else ()
 
-    def take(self, change: Change) -> None:
+    def take(self, change: MarkChange) -> None:
         """A change that is to be written by the next ``flush``."""
         self.pending.append(change)
 
@@ -68,7 +68,7 @@ def _locked(folder: Path) -> Iterator[None]:
     """Nobody else who asks for this has the folder.
 
     Raises:
-        OSError: somebody has, or there is no such folder.
+        OSError: it exists already, or there is no such folder.
     """
     descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
     try:

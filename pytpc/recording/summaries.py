@@ -1,23 +1,20 @@
 """Summaries of evaluations as columns: what the policy ``edges`` keeps of a site in a period.
 
 Under ``edges`` the events hold the first evaluation of each comparison and its flops; all
-evaluations, those too, are in the summaries. The columns are those of docs/formats.md.
+evaluations, those too, are in the summaries. The columns are those of docs/reference/formats.md.
 """
 
 from __future__ import annotations
 
 from array import array
-from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pyarrow as pa
 
 from pytpc.base import columns as tables
-from pytpc.base.columns import Bools, Columns, Floats, Int32s, Int64s, frozen, sorted_words
+from pytpc.base.columns import Bools, Floats, Int32s, Int64s, sorted_words
 
 _INTEGERS = ("begin_ns", "end_ns", "count", "flops", "far", "odd")
 _BOOLS = ("result", "res")
@@ -66,7 +63,7 @@ class Summary:
 
 
 @dataclass(frozen=True, eq=False)
-class Summaries:
+class Summaries(tables.WordTable):
     """n summaries, sorted by ``begin_ns``; equal ones keep their recorded order.
 
     ``key`` and ``node`` are int32[n], codes into ``keys`` and ``nodes``; the other columns are
@@ -95,75 +92,9 @@ class Summaries:
     keys: tuple[str, ...]
     nodes: tuple[str, ...]
 
-    @classmethod
-    def of(
-        cls, *, keys: Iterable[str], nodes: Iterable[str], **columns: npt.ArrayLike
-    ) -> Summaries:
-        """Sort the columns by ``begin_ns`` (stably) and check that they fit together.
-
-        Raises:
-            ValueError: columns of different lengths, a code without a word, or a word twice.
-            TypeError: a column is missing or has another name.
-        """
-        typed: dict[str, npt.NDArray[np.generic]] = {}
-        for name, values in columns.items():
-            kind = np.int32 if name in {"key", "node"} else np.int64
-            if name in _BOOLS or name in _FLOATS:
-                typed[name] = np.asarray(values, np.bool_ if name in _BOOLS else np.float64)
-            else:
-                typed[name] = np.asarray(values, kind)
-        begins = typed["begin_ns"]
-        tables.check_columns(typed, begins.size)
-        if bool(np.any(begins[1:] < begins[:-1])):  # type: ignore[operator]
-            order = np.argsort(begins, kind="stable")
-            typed = {name: column[order] for name, column in typed.items()}
-        columns_of: dict[str, npt.NDArray[np.generic]] = {
-            name: frozen(column) for name, column in typed.items()
-        }
-        table = cls(**columns_of, keys=tuple(keys), nodes=tuple(nodes))  # type: ignore[arg-type]
-        tables.check_words(table.key, table.keys)
-        tables.check_words(table.node, table.nodes)
-        return table
-
-    @classmethod
-    def empty(cls) -> Summaries:
-        """No summaries."""
-        return cls.of(keys=(), nodes=(), **{name: [] for name in SCHEMA.names})
-
-    def __len__(self) -> int:
-        """The number of summaries."""
-        return int(self.begin_ns.size)
-
-    def equals(self, other: Summaries) -> bool:
-        """Whether both hold the same summaries (NaN equals NaN) under the same words."""
-        theirs = other.columns()
-        return (self.keys, self.nodes) == (other.keys, other.nodes) and all(
-            np.array_equal(mine, theirs[name], equal_nan=mine.dtype == np.float64)
-            for name, mine in self.columns().items()
-        )
-
-    def take(self, rows: slice | Int64s | Bools) -> Summaries:
-        """The summaries at ``rows`` (a slice, row numbers or a mask), with the same words."""
-        columns = {name: column[rows] for name, column in self.columns().items()}
-        return Summaries.of(**columns, keys=self.keys, nodes=self.nodes)
-
-    def columns(self) -> Columns:
-        """The columns by name, in the order of ``SCHEMA``."""
-        return {name: getattr(self, name) for name in SCHEMA.names}
-
-    def to_arrow(self) -> pa.Table:
-        """The table in the schema ``SCHEMA``."""
-        return tables.to_arrow(self.columns(), {"key": self.keys, "node": self.nodes}, SCHEMA)
-
-    @classmethod
-    def from_arrow(cls, table: pa.Table) -> Summaries:
-        """The reverse of ``to_arrow``; the rows may be in any order and the columns in chunks.
-
-        Raises:
-            InputError: a column is missing, is of another type or has empty places.
-        """
-        columns, words = tables.from_arrow(table, SCHEMA)
-        return cls.of(**columns, keys=words["key"], nodes=words["node"])
+    schema = SCHEMA
+    order = "begin_ns"
+    what = "summaries"
 
 
 class SummaryBuilder:
@@ -201,30 +132,5 @@ class SummaryBuilder:
         return Summaries.of(**columns, keys=keys, nodes=nodes)
 
 
-def concat_summaries(parts: Sequence[Summaries]) -> Summaries:
-    """All summaries of ``parts``; those that begin at the same time keep the order of the parts.
-
-    The keys and nodes of the result are sorted.
-    """
-    if not parts:
-        return Summaries.empty()
-    joined, keys, nodes = tables.join([(part.columns(), part.keys, part.nodes) for part in parts])
-    return Summaries.of(**joined, keys=keys, nodes=nodes)
-
-
-def write_summaries(summaries: Summaries, path: Path) -> None:
-    """Write Parquet, atomically.
-
-    Raises:
-        TpcError: the file cannot be written; what stood there before is untouched.
-    """
-    tables.write_table(summaries.to_arrow(), path)
-
-
-def read_summaries(path: Path) -> Summaries:
-    """Read what ``write_summaries`` wrote.
-
-    Raises:
-        InputError: the file cannot be read, is no Parquet, or has other columns.
-    """
-    return tables.read_table(path, "summaries", Summaries.from_arrow)
+read_summaries = Summaries.read
+write_summaries = Summaries.write

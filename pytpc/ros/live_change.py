@@ -7,11 +7,13 @@ import contextlib
 from pytpc.base.errors import RunError, TpcError
 from pytpc.ros.ros1.live_values import LiveChange, Robot
 from pytpc.values.apply import shown
-from pytpc.values.journal import Entry, Journal
+from pytpc.values.journal import Journal, JournalEntry
 from pytpc.values.origins import from_json, to_json
 
 
-def set_live(robot: Robot, change: LiveChange, journal: Journal) -> tuple[Entry, object, bool]:
+def set_live(
+    robot: Robot, change: LiveChange, journal: Journal
+) -> tuple[JournalEntry, object, bool]:
     """Set a value on the running robot, and note it.
 
     Returns:
@@ -41,7 +43,7 @@ def set_live(robot: Robot, change: LiveChange, journal: Journal) -> tuple[Entry,
 
 
 def take_back_live(
-    entry: Entry, journal: Journal, *, dry_run: bool = False, force: bool = False
+    entry: JournalEntry, journal: Journal, *, dry_run: bool = False, force: bool = False
 ) -> None:
     """Take a change of the running robot back and forget it.
 
@@ -54,7 +56,7 @@ def take_back_live(
     now = robot.value(name)
     if not force and repr(now) not in (repr(new), repr(old)):
         raise RunError(
-            f"{name} is {shown(now)} now, which somebody else has set; --force sets {entry.old}"
+            f"{name} is {shown(now)} now: something else has set it; --force sets {entry.old}"
         )
     if not dry_run:
         robot.take_back(name, old, str(live["service"]))

@@ -7,7 +7,7 @@ from collections import deque
 from typing import NamedTuple
 
 from pytpc.base.wording import many
-from pytpc.recording.marking_session import Change, View
+from pytpc.recording.marking_session import MarkChange, View
 from pytpc.recording.marks import (
     MARK_TYPES,
     NOTE_TOPIC,
@@ -19,13 +19,13 @@ from pytpc.recording.marks import (
 )
 from pytpc.ros.ros1.mark_publisher import MarkPublisher
 
-# A mark that nobody heard is sent to who connects within this time: a recorder that is just
+# A mark without listeners is sent to those who connect within this time: a recorder that is just
 # starting, a master that is being restarted. Later ones may be recording another mission.
 _HELD_S = 60.0
 
 
-class _Held(NamedTuple):
-    """A message that nobody has heard, and until when (steady seconds) it is kept."""
+class _HeldMark(NamedTuple):
+    """A message without listeners, and until when (steady seconds) it is kept."""
 
     topic: str
     content: int | str
@@ -49,7 +49,7 @@ class GraphMarks:
         times = [topic_for(Mark(0, kind, observer)) for kind in (*MARK_TYPES, None)]
         times.append(topic_of_observer(observer, UNDO_TOPIC))
         self._publisher = MarkPublisher(master, times, [topic_of_observer(observer, NOTE_TOPIC)])
-        self._held: deque[_Held] = deque()
+        self._held: deque[_HeldMark] = deque()
         self._start_ns: int | None = None
 
     def now_ns(self) -> int | None:
@@ -79,7 +79,7 @@ class GraphMarks:
         status = f"{self._publisher.fault or 'connected'}; {heard}; {clock}"
         return View(f"{self._what}{who} on {self._master}", (status,), start_ns, now_ns)
 
-    def send(self, change: Change) -> str:
+    def send(self, change: MarkChange) -> str:
         """Tell the graph what happened to the marks."""
         before, after = change
         if after is None and before is not None:
@@ -92,7 +92,7 @@ class GraphMarks:
         return ""
 
     def tick(self) -> None:
-        """Send what nobody heard to who has come since, in its order."""
+        """Send messages that had no listeners to those who have connected since, in order."""
         waiting, self._held = self._held, deque()
         for held in waiting:
             sent = self._publisher.publish(held.topic, held.content)
@@ -105,4 +105,4 @@ class GraphMarks:
 
     def _publish(self, topic: str, content: int | str) -> None:
         if self._publisher.publish(topic, content) == 0:
-            self._held.append(_Held(topic, content, time.monotonic() + _HELD_S))
+            self._held.append(_HeldMark(topic, content, time.monotonic() + _HELD_S))

@@ -1,4 +1,4 @@
-"""Which command runs a node with reports: its own interpreter, or itself where it is no Python."""
+"""The command that runs a node with reports: its interpreter, or a C++ node itself."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ def command_of(
 ) -> list[str]:
     """The command line that runs ``node``.
 
-    A Python script is run by the interpreter of its first line, else by ``python3``; what is no
-    Python, as a C++ node, is run as it is.
+    A Python script is run by the interpreter of its first line, else by ``python3``; anything else,
+    such as a C++ node, is run directly.
 
     Raises:
-        InputError: there is no such file, or nothing that could run it.
+        InputError: the file does not exist, or nothing can run it.
     """
     words = interpreter_of(node)
     if words is None:
         if not os.access(node, os.X_OK):
-            raise InputError("neither a Python script nor a program", node)
+            raise InputError("neither a Python script nor executable", node)
         return [str(node), *arguments]
     options = [word for path in static for word in ("--static", str(path))]
     if verbose:
@@ -38,7 +38,7 @@ def command_of(
 
 
 def interpreter_of(node: Path) -> list[str] | None:
-    """The words of a script's first line, without ``env``; None where it is no Python script.
+    """The words of a script's first line, without ``env``; None if it is not a Python script.
 
     Raises:
         InputError: it cannot be read.
@@ -55,12 +55,12 @@ def interpreter_of(node: Path) -> list[str] | None:
         if words and Path(words[0]).name.startswith(("python", "pypy")):
             found = shutil.which(words[0])
             if found is None:
-                raise InputError(f"its interpreter {words[0]} is not on this machine", node, 1)
+                raise InputError(f"its interpreter {words[0]} is not installed", node, 1)
             return [found, *words[1:]]
         return None
     if node.suffix != ".py":
         return None
     found = shutil.which("python3")
     if found is None:
-        raise InputError("there is no python3 on this machine", node)
+        raise InputError("python3 is not installed", node)
     return [found]

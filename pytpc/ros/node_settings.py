@@ -40,7 +40,7 @@ def chosen(running: Sequence[str], named: Iterable[str]) -> list[str]:
         )
     for name in wanted:
         if name not in running:
-            raise RunError(f"{name} is no instrumented node that runs; there are {_list(running)}")
+            raise RunError(f"{name} is not a running instrumented node; there are {_list(running)}")
     return list(dict.fromkeys(wanted)) or list(running)
 
 

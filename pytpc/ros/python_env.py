@@ -1,6 +1,6 @@
-"""The environment in which Python nodes report without anything being changed for them.
+"""The environment in which unchanged Python nodes report.
 
-Three variables do it: docs/python-nodes.md, Running. Whoever starts nodes, or has them started,
+Three variables do it: docs/reference/python-runtime.md. Whoever starts nodes, or has them started,
 adds them: a mission, a user's shell.
 """
 
@@ -25,7 +25,7 @@ def has_python(static: Path) -> bool:
     """Whether a file of static information has comparisons in Python sources.
 
     Raises:
-        InputError: it cannot be read, or is none.
+        InputError: it cannot be read, or is not static information.
     """
     try:
         return len(read_table([str(static)])) > 0
@@ -44,7 +44,7 @@ def with_python(env: Mapping[str, str], static: Path) -> dict[str, str]:
 
 
 def without_python(env: Mapping[str, str]) -> dict[str, str]:
-    """What ``with_python`` was given: nothing of ours is in it."""
+    """The environment that ``with_python`` was given."""
     others = _other_folders(env)
     rest = {name: value for name, value in env.items() if name not in (SWITCH, STATIC, _MODULES)}
     return {**rest, _MODULES: os.pathsep.join(others)} if others else rest

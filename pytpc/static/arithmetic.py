@@ -1,7 +1,7 @@
-"""What a threshold is computed from its parameter by.
+"""The arithmetic by which a threshold is computed from its parameter.
 
-The tree is that of docs/formats.md: a number, ``"x"`` (the parameter), or a tuple of an operator
-and its operands, one of which holds ``"x"``.
+It is a tree (docs/reference/formats.md#transform): a number, ``"x"`` (the parameter), or a tuple of
+an operator and its operands, one of which holds ``"x"``.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from collections.abc import Callable, Sequence
 Tree = float | str | tuple["Tree", ...]
 
 SINGLE = "single"
-"""The operator of a parameter that is kept in a C++ float; it stands in no file."""
+"""The operator of a parameter that is kept in a C++ float; it is in no file."""
 
 
 def _wrap(value: float, bits: float) -> float:

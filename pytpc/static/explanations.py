@@ -29,7 +29,7 @@ _KEY = re.compile(r"[0-9a-f]{4,8}(-[0-9a-f-]*)?")
 
 
 @dataclass(frozen=True)
-class Found:
+class FoundComparison:
     """A comparison that answers the question, with its link unit."""
 
     unit: LinkUnit
@@ -46,7 +46,7 @@ class Explanation:
     """
 
     question: str
-    comparisons: tuple[Found, ...]
+    comparisons: tuple[FoundComparison, ...]
     reads: tuple[tuple[LinkUnit, ParameterRead], ...] = ()
     not_exposed: tuple[tuple[LinkUnit, NotExposed], ...] = ()
     blind_spots: tuple[tuple[LinkUnit, BlindSpot], ...] = ()
@@ -69,11 +69,11 @@ def look_up(static: StaticInfo, question: str) -> Explanation:
     return _of_parameter(static, question)
 
 
-def _all(static: StaticInfo) -> Iterator[Found]:
-    return (Found(unit, found) for unit in static.units for found in unit.comparisons)
+def _all(static: StaticInfo) -> Iterator[FoundComparison]:
+    return (FoundComparison(unit, found) for unit in static.units for found in unit.comparisons)
 
 
-def _sorted(found: Iterable[Found]) -> tuple[Found, ...]:
+def _sorted(found: Iterable[FoundComparison]) -> tuple[FoundComparison, ...]:
     return tuple(sorted(found, key=lambda each: each.comparison.distance))
 
 

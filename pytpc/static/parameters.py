@@ -7,7 +7,7 @@ import re
 from pytpc.static.link_unit import Comparison
 
 DYNAMIC = "<dynamic>"
-"""What stands in a name for a part that only the running node knows."""
+"""Replaces the part of a name that only the running node knows."""
 
 
 def same_parameter(given: str, source: str) -> bool:

@@ -1,7 +1,8 @@
 """What the static analysis found in a workspace: its link units, read, checked and merged.
 
-Every link unit has one JSON file (docs/formats.md). ``load_link_unit`` reads one, ``collect`` all
-of a build base, and ``StaticInfo`` is the merged document that the rest of pytpc works with.
+Every link unit has one JSON file (docs/reference/formats.md#static-information). ``load_link_unit``
+reads one, ``collect`` all of a build base, and ``StaticInfo`` is the merged document that the rest
+of pytpc works with.
 """
 
 from __future__ import annotations
@@ -163,7 +164,7 @@ class StaticInfo:
         return Path(self._owners[key].source_root) / self.comparisons[key].file
 
     def to_json(self) -> dict[str, Any]:
-        """The document of docs/formats.md: the units, and the TPCs that follow from them."""
+        """The merged document: the units, and the TPCs that follow from them."""
         return {
             "schema": SCHEMA_VERSION,
             "units": [unit.to_json() for unit in self.units],
@@ -236,7 +237,7 @@ def _rooted(data: object, folder: Path) -> object:
 
 
 def load_link_unit(path: Path) -> LinkUnit:
-    """Read the file of one link unit, which knows its build folder where it stands in one.
+    """Read the file of one link unit; below a build folder, the unit knows that folder.
 
     Raises:
         InputError: the file cannot be read, is not JSON (with the line), or breaks the schema

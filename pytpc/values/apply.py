@@ -13,12 +13,12 @@ from pathlib import Path
 
 from pytpc.base.atomic import stage_beside
 from pytpc.base.errors import InputError, TpcError
-from pytpc.values.journal import Entry, Journal, digest
+from pytpc.values.journal import Journal, JournalEntry, digest
 from pytpc.values.scalars import number_text
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
+class FileChange:
     """What a new value does to one file.
 
     ``path`` is the file itself, behind symbolic links. ``old`` is None where the parameter stood
@@ -73,7 +73,7 @@ def shown(value: object) -> str:
     return number_text(value) if isinstance(value, float) else str(value)
 
 
-def apply_change(change: Change, journal: Journal) -> Entry:
+def apply_change(change: FileChange, journal: Journal) -> JournalEntry:
     """Write a change, and note it so that it can be taken back.
 
     Raises:
@@ -84,9 +84,9 @@ def apply_change(change: Change, journal: Journal) -> Entry:
         return _apply_change(change, journal)
 
 
-def _apply_change(change: Change, journal: Journal) -> Entry:
+def _apply_change(change: FileChange, journal: Journal) -> JournalEntry:
     if read_file(change.path) != change.before:
-        raise TpcError("somebody else has just changed it; run the command again", change.path)
+        raise TpcError("the file has changed meanwhile; run the command again", change.path)
     entry = journal.add(
         change.parameter,
         (shown(change.old), shown(change.new)),
@@ -102,12 +102,11 @@ def _apply_change(change: Change, journal: Journal) -> Entry:
     return entry
 
 
-def undo_change(entry: Entry, journal: Journal) -> Change:
+def undo_change(entry: JournalEntry, journal: Journal) -> FileChange:
     """What taking back a change of a file does to it; nothing is written.
 
     Raises:
-        TpcError: the file was changed since, by another change that is taken back first or by
-            somebody.
+        TpcError: the file has changed since, by a later change or by someone else.
     """
     path, before = entry.path, entry.before
     assert path is not None, "a change of a file"
@@ -115,14 +114,13 @@ def undo_change(entry: Entry, journal: Journal) -> Change:
     now = read_file(path)
     later = [e for e in journal.entries() if e.path == path and e.number > entry.number]
     if later:
-        raise TpcError(f"change {later[-1].number} came after it; take that back first", path)
+        raise TpcError(f"change {later[-1].number} came later; undo that first", path)
     if now != before and digest(now) != entry.after:
         raise TpcError(
-            f"was changed since: change {entry.number} is not taken back; the value was"
-            f" {entry.old}",
+            f"has changed since: change {entry.number} is not undone; the value was {entry.old}",
             path,
         )
-    return Change(entry.parameter, path, now, before, entry.new, entry.old, 0)
+    return FileChange(entry.parameter, path, now, before, entry.new, entry.old, 0)
 
 
 def replace_file(path: Path, data: bytes) -> None:
@@ -150,7 +148,7 @@ def replace_file(path: Path, data: bytes) -> None:
         raise TpcError(f"cannot be written: {error.strerror or error}", path) from error
 
 
-def diff_of(change: Change) -> str:
+def diff_of(change: FileChange) -> str:
     """The change as a unified diff; bytes that are no UTF-8 are shown as replacement characters."""
     before, after = (_lines(data) for data in (change.before, change.after))
     name = str(change.path).lstrip("/")
@@ -166,7 +164,7 @@ def _lines(data: bytes) -> list[str]:
     return [line.decode("utf-8", "replace") for line in re.findall(rb"[^\n]*\n|[^\n]+", data)]
 
 
-def change_as_json(change: Change) -> Mapping[str, object]:
+def change_as_json(change: FileChange) -> Mapping[str, object]:
     """A change for a program that reads it."""
     return {
         "parameter": change.parameter,

@@ -29,7 +29,7 @@ def read_changes(path: Path) -> tuple[Change, ...]:
     """
     document = parse_json(path)
     if not isinstance(document, list):
-        raise InputError("not a history of changes: a list is expected", path)
+        raise InputError("not a history of changes: expected a list", path)
     return tuple(_change(one, path) for one in document)
 
 

@@ -87,7 +87,7 @@ def read_cfg(text: bytes, path: Path) -> tuple[list[Declared], list[str]]:
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         line = getattr(error, "lineno", None) or 1
         return [], [f"{path}:{line}: not Python 3: {getattr(error, 'msg', None) or error}"]
-    reader = _Reader(path)
+    reader = _CfgReader(path)
     try:
         reader.run(tree.body)
     except RecursionError:
@@ -95,7 +95,7 @@ def read_cfg(text: bytes, path: Path) -> tuple[list[Declared], list[str]]:
     return reader.found, reader.skipped
 
 
-class _Reader:
+class _CfgReader:
     """Goes through the statements with the values that it knows."""
 
     def __init__(self, path: Path) -> None:

@@ -39,7 +39,7 @@ def source_of(path: Path | None) -> Path | None:
 
 
 def is_installed(path: Path) -> bool:
-    """Whether a file stands in an install space (``share/PACKAGE`` beside a set-up script)."""
+    """Whether a file is in an install space (``share/PACKAGE`` beside a set-up script)."""
     return _installed_place(path.resolve()) is not None
 
 

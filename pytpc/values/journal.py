@@ -26,7 +26,7 @@ _MOST_TRIES = 1000
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class JournalEntry:
     """One change.
 
     ``path`` is the file and ``before`` its bytes; of a change of a running robot both are None and
@@ -84,7 +84,7 @@ class Journal:
             )
         except OSError as error:
             raise TpcError(
-                f"the change cannot be noted for --undo: {error.strerror}", self._folder
+                f"the change cannot be recorded for --undo: {error.strerror}", self._folder
             ) from error
         try:
             # Some file systems of a network have no locks; then it is as it would be without.
@@ -94,7 +94,7 @@ class Journal:
         finally:
             os.close(descriptor)
 
-    def entries(self) -> list[Entry]:
+    def entries(self) -> list[JournalEntry]:
         """All changes that can be read, the oldest first."""
         return self._all()[0]
 
@@ -102,8 +102,8 @@ class Journal:
         """What is wrong with the notes that cannot be read; the others are good all the same."""
         return self._all()[1]
 
-    def _all(self) -> tuple[list[Entry], list[InputError]]:
-        entries, errors = list[Entry](), list[InputError]()
+    def _all(self) -> tuple[list[JournalEntry], list[InputError]]:
+        entries, errors = list[JournalEntry](), list[InputError]()
         try:
             paths = sorted(path for path in self._folder.glob("*.json") if path.stem.isdigit())
         except OSError:
@@ -124,7 +124,7 @@ class Journal:
         before: bytes | None = None,
         after: bytes = b"",
         live: Mapping[str, Any] | None = None,
-    ) -> Entry:
+    ) -> JournalEntry:
         """Write down a change that is about to be made.
 
         Raises:
@@ -143,7 +143,7 @@ class Journal:
         }
         data = json.dumps(document, indent=1).encode() + b"\n"
         try:
-            # What stood in a file may be nobody else's business.
+            # The content of a file may be private.
             self._folder.mkdir(parents=True, exist_ok=True, mode=0o700)
             staged = stage_beside(self._folder / "new", data, 0o600)
             try:
@@ -152,7 +152,7 @@ class Journal:
                 staged.unlink()
         except OSError as error:
             raise TpcError(
-                f"the change cannot be noted for --undo: {error.strerror}", self._folder
+                f"the change cannot be recorded for --undo: {error.strerror}", self._folder
             ) from error
         return _read(target)
 
@@ -167,18 +167,18 @@ class Journal:
                 return target
         raise OSError(0, "no number is free")
 
-    def remove(self, entry: Entry) -> None:
+    def remove(self, entry: JournalEntry) -> None:
         """Forget a change that was taken back, or was not made after all."""
         (self._folder / f"{entry.number:06d}.json").unlink(missing_ok=True)
 
 
-def _read(path: Path) -> Entry:
+def _read(path: Path) -> JournalEntry:
     try:
         document = json.loads(path.read_text(encoding="utf-8"))
         if document["schema"] != SCHEMA:
             raise ValueError(f"version {document['schema']}")
         before = document["before"]
-        return Entry(
+        return JournalEntry(
             int(path.stem),
             str(document["time"]),
             str(document["parameter"]),

@@ -52,13 +52,13 @@ def edit_param(
         force: change the type, or replace what roslaunch works out.
 
     Raises:
-        Refused: see docs/applying.md.
+        Refused: see docs/how-to/change-a-parameter.md.
     """
     tags = tags_of(data)
     found = [t for t in tags if t.name == "param" and _names(t, name)]
     here = [tag for tag in found if tag.lineno == lineno] or (found if len(found) == 1 else [])
     if len(here) != 1:
-        raise Refused(f"no <param> for {name} is here any more; {_GIVE}", lineno or None)
+        raise Refused(f"the <param> for {name} is gone; {_GIVE}", lineno or None)
     tag = here[0]
     value = tag.attributes.get("value")
     if value is None:
@@ -89,13 +89,13 @@ def edit_argument(
         force: change it all the same where there are others.
 
     Raises:
-        Refused: see docs/applying.md.
+        Refused: see docs/how-to/change-a-parameter.md.
     """
     tags = tags_of(data)
     found = [t for t in tags if t.name == "arg" and _attribute(t, "name") == name]
     here = [tag for tag in found if tag.lineno == lineno] or (found if len(found) == 1 else [])
     if len(here) != 1:
-        raise Refused(f"no <arg> {name} is here any more; {_GIVE}", lineno or None)
+        raise Refused(f"the <arg> {name} is gone; {_GIVE}", lineno or None)
     tag = here[0]
     value = tag.attributes.get("value") or tag.attributes.get("default")
     if value is None:
@@ -114,12 +114,12 @@ def edit_argument(
 def edit_inline(
     data: bytes, keys: tuple[str, ...], lineno: int, given: str, *, force: bool = False
 ) -> LaunchEdit:
-    """Put a value into the YAML that stands in a ``<rosparam>``.
+    """Put a value into the YAML inside a ``<rosparam>``.
 
     ``lineno`` is that of the value, or 0: the only one that sets it is meant.
 
     Raises:
-        Refused: see docs/applying.md.
+        Refused: see docs/how-to/change-a-parameter.md.
     """
     encoding = encoding_of(data)
     spans = [
@@ -139,10 +139,10 @@ def edit_inline(
         edit = edit_yaml(data[start:end].decode(encoding), keys, given, force=force)
         in_section = data[:start].endswith(b"<![CDATA[")
         if "]]>" in edit.text if in_section else "<" in edit.text or "&" in edit.text:
-            raise Refused("the value has characters that mean something to XML", lineno)
+            raise Refused("the value has characters that are special in XML", lineno)
         result = data[:start] + _encoded(edit.text, encoding) + data[end:]
         return LaunchEdit(result, edit.old, edit.new, first + edit.lineno, edit.notes)
-    raise Refused(f"no <rosparam> with it is here any more; {_GIVE}", lineno or None)
+    raise Refused(f"the <rosparam> with it is gone; {_GIVE}", lineno or None)
 
 
 def _sets(text: str, keys: tuple[str, ...]) -> bool:
@@ -163,13 +163,13 @@ def add_param(data: bytes, offset: int | None, name: str, value: object, given: 
         given: what was typed.
 
     Raises:
-        Refused: the node's tag is not here any more.
+        Refused: the node's tag is no longer there.
     """
     tags = tags_of(data)
     wanted = "launch" if offset is None else "node"
     found = [t for t in tags if t.name == wanted and (offset is None or t.offset == offset)]
     if not found:
-        raise Refused("the tag of the node is not here any more; give the launch file")
+        raise Refused("the tag of the node is no longer there; give the launch file")
     tag = found[0]
     kind = {"bool": "bool", "int": "int", "double": "double"}.get(type_of(value), "str")
     text = launch_text(value, given, kind, "")
@@ -183,7 +183,7 @@ def add_param(data: bytes, offset: int | None, name: str, value: object, given: 
         head = data[:slash].rstrip() + b">"
         tail, more = data[tag.head_end :], f"{newline}{indent}</{tag.name}>"
     else:
-        # The tag's end stands in a line of its own, or behind something.
+        # The closing tag is on a line of its own, or follows something.
         head, tail = data[: tag.end].rstrip(), data[tag.end :]
         more = newline + indent
     added = _encoded(f"{newline}{step}{line}{more}", encoding_of(data))
@@ -230,7 +230,7 @@ def _check(data: bytes, result: bytes, place: tuple[int, str], text: str) -> Non
     ]
     found = [{name: one.value for name, one in tag.attributes.items()} for tag in after]
     if found != wanted or [tag.name for tag in before] != [tag.name for tag in after]:
-        raise Refused("it cannot be written without changing something else")
+        raise Refused("it cannot be written without changing other values")
 
 
 def _typed(given: str, kind: str) -> object:

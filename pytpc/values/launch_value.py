@@ -50,7 +50,7 @@ def _looks_like(text: str) -> object:
 
 
 def launch_text(value: object, given: str, kind: str, old: str) -> str:
-    """A value as it stands in a ``<param>`` of this type, so that roslaunch reads it.
+    """A value as written in a ``<param>`` of this type, so that roslaunch reads it.
 
     Args:
         value: bool, int, float or text.
@@ -79,7 +79,7 @@ def launch_text(value: object, given: str, kind: str, old: str) -> str:
         if _same(read, value):
             return text
     if kind == "auto":
-        raise Refused(f"roslaunch would not read {given!r} as it is meant; give the tag a type")
+        raise Refused(f"roslaunch would read {given!r} as another type; give the tag a type")
     raise Refused(f'{given!r} does not fit type="{kind}"')
 
 

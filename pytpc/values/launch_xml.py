@@ -132,7 +132,7 @@ def meaning(raw: str) -> str:
 
 
 def written(value: str, quote: str) -> str:
-    """A value as it stands in an attribute between these quotes."""
+    """A value as written in an attribute between these quotes."""
     text = value.replace("&", "&amp;").replace("<", "&lt;")
     return text.replace(quote, "&quot;" if quote == '"' else "&apos;")
 

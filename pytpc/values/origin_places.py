@@ -12,7 +12,7 @@ from pytpc.values.installed import source_of
 from pytpc.values.launch_xml import inner_text, read_tags
 from pytpc.values.origins import Origin
 from pytpc.values.trace import Trace
-from pytpc.values.yaml_tree import Setting, read_yaml, settings
+from pytpc.values.yaml_tree import YamlSetting, read_yaml, settings
 
 _ONE_ARGUMENT = re.compile(r"\s*\$\(arg\s+([^)\s]+)\s*\)\s*")
 _COMMAND_LINE = "command line"
@@ -26,7 +26,7 @@ class _Files:
         self._bytes: dict[Path, bytes] = {}
         self._lines: dict[Path, list[bytes]] = {}
         self._texts: dict[Path, dict[int, tuple[int, int] | None]] = {}
-        self._yaml: dict[tuple[Path, int], dict[str, Setting]] = {}
+        self._yaml: dict[tuple[Path, int], dict[str, YamlSetting]] = {}
         self._sources: dict[Path, Path | None] = {}
 
     def data(self, path: Path) -> bytes:
@@ -62,7 +62,7 @@ class _Files:
             self._texts[launch] = {tag.offset: inner_text(tag, data) for tag in tags}
         return self._texts[launch].get(offset)
 
-    def settings(self, path: Path, start: int, end: int | None = None) -> dict[str, Setting]:
+    def settings(self, path: Path, start: int, end: int | None = None) -> dict[str, YamlSetting]:
         """What a YAML file, or a piece of a file, sets, by keys as ROS joins them.
 
         Nothing where it cannot be read.
@@ -112,7 +112,7 @@ class Places:
         return self._from_param(self._at(name, launch, int(setting["lineno"]), setting), setting)
 
     def _at(self, name: str, path: Path, lineno: int | None, setting: Mapping[str, Any]) -> Origin:
-        """An origin at a line, of a launch file as long as nobody says otherwise."""
+        """An origin at a line, of a launch file unless stated otherwise."""
         return Origin(
             name=name,
             kind="launch",

@@ -27,7 +27,7 @@ class Origin:
 
     ``name`` is the parameter's full name on the server (``/mission/min_coverage_limit``). ``kind``:
     a YAML file that a launch file loads, the launch file itself (``<param>``), an ``argument`` on
-    roslaunch's command line, the default in the code (nobody set it), set at ``runtime``.
+    roslaunch's command line, the default in the code (it is not set), set at ``runtime``.
     ``path`` and ``lineno`` are the place, ``text`` the source line; ``via`` the launch files on the
     way to it, ``note`` a sentence about what is not certain. ``value`` is as on the server.
 
@@ -177,10 +177,10 @@ def origin_for(
     """The origin of a parameter as the source names it (``~limit``, ``limit``, ``/a/limit``).
 
     Args:
-        origins: of a mission; where there are none nothing is known.
+        origins: of a mission; empty if they are not known.
         source: the name in the source, with ``<dynamic>`` for what only the running node knows.
         node: the node's full name, whose namespace the name is in; empty where it is not known.
-        default: the default in the code, of which the value is where nobody set another.
+        default: the default in the code, which applies where no value is set.
 
     Returns:
         None where nothing is known: no origins, a name that is dynamic as a whole, or one that

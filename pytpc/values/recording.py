@@ -14,7 +14,7 @@ from pytpc.values.yaml_tree import YamlNode, read_yaml, settings, value_of
 
 # What roslaunch and the master keep for themselves.
 OF_ROS = ("/rosdistro", "/rosversion", "/run_id", "/roslaunch", "/tcp_keepalive")
-NO_LAUNCH = "the graph ran already, and nobody said which launch file it was started with"
+NO_LAUNCH = "the graph was already running, and no launch file was given"
 BY_A_NODE = (
     "set by a program, not by the launch file; a node with dynamic_reconfigure writes all of its"
     " values when it starts"
@@ -56,7 +56,7 @@ def origins_of(
     Args:
         trace: what the launch file sets; None where that is not known.
         at_end: the server at the end of the mission, by full names.
-        at_start: the same right after the launch; None where nobody looked.
+        at_start: the same right after the launch; None if it was not read.
     """
     launched: dict[str, Origin] = {}
     if trace is not None:

@@ -78,7 +78,7 @@ def _tagged(text: str, tag: str) -> object:
         return text
     reader = _READERS.get({"degrees": "angle", "radians": "angle"}.get(name, name))
     if reader is None:
-        raise ValueError(f"the tag {tag} is not read here")
+        raise ValueError(f"the tag {tag} is not supported")
     if name in ("degrees", "radians") and not _ANGLE.fullmatch(text.strip()):
         return reader(f"{name[:3]}({text})")
     return reader(text)
@@ -137,7 +137,7 @@ def _sum_of(text: str) -> float:
     if not terms or "".join("".join(term) for term in terms).replace(" ", "") != text.replace(
         " ", ""
     ):
-        raise ValueError(f"rad({text}) is not read here")
+        raise ValueError(f"rad({text}) is not supported")
     for sign, term in terms:
         value = 1.0
         factors = re.split(r"\s*([*/])\s*", term.strip())

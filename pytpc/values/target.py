@@ -8,7 +8,7 @@ from pathlib import Path
 
 from pytpc.base.errors import InputError
 from pytpc.static.parameters import same_parameter
-from pytpc.values.apply import Change, decoded, read_file
+from pytpc.values.apply import FileChange, decoded, read_file
 from pytpc.values.installed import is_installed, of_the_system, source_of
 from pytpc.values.journal import digest
 from pytpc.values.launch_edit import LaunchEdit, add_param, edit_argument, edit_inline, edit_param
@@ -61,7 +61,7 @@ def read_target(path: Path, args: Mapping[str, str], env: Mapping[str, str]) -> 
     if path.is_dir() or path.suffix in (".bag", ".parquet"):
         if not origins_file(path).is_file():
             raise InputError(
-                f"no {ORIGINS_FILE}: it was not recorded where values came from; give the launch"
+                f"no {ORIGINS_FILE}: the origins of its values were not recorded; give the launch"
                 " file, or record with `pytpc record`",
                 path,
             )
@@ -105,7 +105,7 @@ def chosen(target: Target, parameter: str) -> Origin:
         parameter: its full name, or the end of it.
 
     Returns:
-        Of a full name that nobody set: an origin of the kind ``default``.
+        For a full name that is not set: an origin of the kind ``default``.
 
     Raises:
         InputError: several parameters are meant, or none.
@@ -121,12 +121,12 @@ def chosen(target: Target, parameter: str) -> Origin:
         return Origin(parameter, "default", None, None, None, "")
     names = _listed([node.name for node in target.nodes]) or "no node is known"
     raise InputError(
-        f"nobody sets {parameter}; where it has its default, give its full name, as in"
+        f"{parameter} is not set anywhere; to change a default, give the full name, as in"
         f" /NODE/{parameter.lstrip('~/')} ({names})"
     )
 
 
-def plan_yaml(path: Path, parameter: str, given: str, *, force: bool = False) -> Change:
+def plan_yaml(path: Path, parameter: str, given: str, *, force: bool = False) -> FileChange:
     """Work out a change of a YAML file; nothing is written.
 
     Args:
@@ -157,12 +157,12 @@ def plan_yaml(path: Path, parameter: str, given: str, *, force: bool = False) ->
     notes = (*edit.notes, *_where(path, real))
     name = "/" + "/".join(meant[0])
     after = edit.text.encode("utf-8")
-    return Change(name, real, data, after, edit.old, edit.new, edit.lineno, notes)
+    return FileChange(name, real, data, after, edit.old, edit.new, edit.lineno, notes)
 
 
 def plan_origin(
     origin: Origin, given: str, *, force: bool = False, files: Mapping[str, str] | None = None
-) -> Change:
+) -> FileChange:
     """Work out a change of the file that set a value; nothing is written.
 
     Args:
@@ -173,7 +173,7 @@ def plan_origin(
             lines may be others, and a tag is changed only where no other one may be meant.
 
     Raises:
-        InputError: no file set it, the file is not here any more, or the change is refused.
+        InputError: no file set it, the file is no longer there, or the change is refused.
     """
     path = origin.path
     if origin.note.startswith(IN_ARGS):
@@ -185,8 +185,8 @@ def plan_origin(
     file = origin.source or path
     if of_the_system(file) and not force:
         raise InputError(
-            "it was installed with the system; set the value in a launch file of your own (--add),"
-            " or --force",
+            "it belongs to an installed package; set the value in a launch file of your own"
+            " (--add), or --force",
             file,
         )
     real = file.resolve()
@@ -207,7 +207,9 @@ def plan_origin(
     notes = [*found.notes, *_where(path, real)]
     if origin.value is not None and repr(origin.value) != repr(found.old):
         notes.append(f"the robot had {origin.value!r}; the file was changed since")
-    return Change(origin.name, real, data, after, found.old, found.new, found.lineno, tuple(notes))
+    return FileChange(
+        origin.name, real, data, after, found.old, found.new, found.lineno, tuple(notes)
+    )
 
 
 def _edit_launch(
@@ -234,7 +236,7 @@ def _edit_launch(
     return edit_inline(data, origin.keys, lineno, given, force=force)
 
 
-def plan_addition(origin: Origin, target: Target, given: str, default: object = None) -> Change:
+def plan_addition(origin: Origin, target: Target, given: str, default: object = None) -> FileChange:
     """Work out a ``<param>`` for a value that no file sets; nothing is written.
 
     It goes into the tag of the node in whose namespace it is, else to the end of the launch file.
@@ -265,7 +267,7 @@ def plan_addition(origin: Origin, target: Target, given: str, default: object = 
     except Refused as error:
         raise InputError(str(error), file, error.lineno) from error
     notes = _where(path, real)
-    return Change(origin.name, real, data, edit.data, None, value, edit.lineno, notes)
+    return FileChange(origin.name, real, data, edit.data, None, value, edit.lineno, notes)
 
 
 def _offset_of(data: bytes, node: LaunchNode) -> int:
@@ -280,7 +282,7 @@ def _offset_of(data: bytes, node: LaunchNode) -> int:
     if len(named) == 1:
         return named[0].offset
     if not here:
-        raise Refused(f"the tag of {node.name} is not here any more", node.lineno)
+        raise Refused(f"the tag of {node.name} is no longer there", node.lineno)
     return here[0].offset
 
 
@@ -290,8 +292,8 @@ def _why_not(origin: Origin) -> str:
         return f"{name} is {origin.note}; give {origin.argument}:=VALUE there instead"
     if origin.kind == "default":
         return (
-            f"nobody sets {name}: it has its default in the code; --add puts it into the launch"
-            " file"
+            f"{name} is not set anywhere and has its default in the code; --add puts it into the"
+            " launch file"
         )
     if origin.kind == "runtime":
         return (

@@ -72,7 +72,7 @@ def roslaunch_python(env: Mapping[str, str]) -> str:
     program = shutil.which("roslaunch", path=path)
     if program is None:
         raise MissingToolError(
-            "roslaunch not found; mend it with: apt-get install python3-roslaunch"
+            "roslaunch not found; install it with: apt-get install python3-roslaunch"
         )
     with Path(program).open("rb") as stream:
         first = stream.read(_SHEBANG_BYTES).partition(b"\n")[0].decode("utf-8", "replace")
@@ -118,12 +118,12 @@ def trace_launch(
             check=False,
         )
     except subprocess.TimeoutExpired as error:
-        raise RunError(f"reading it does not end in {patience_s:.0f} s", launch) from error
+        raise RunError(f"was not read within {patience_s:.0f} s", launch) from error
     if ran.returncode != 0:
         said = ran.stderr.decode("utf-8", "replace").strip().splitlines()
         if said and said[-1].startswith("ModuleNotFoundError"):
             raise MissingToolError(
-                f"{command[0]} has no roslaunch; mend it with: apt-get install python3-roslaunch"
+                f"{command[0]} has no roslaunch; install it with: apt-get install python3-roslaunch"
             )
         why = said[-1] if said else "no reason"
         # Of includes without an end roslaunch names each.

@@ -5,11 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 from pytpc.base.errors import InputError
-from pytpc.values.apply import Change, replace_file, undo_change
-from pytpc.values.journal import Entry, Journal
+from pytpc.values.apply import FileChange, replace_file, undo_change
+from pytpc.values.journal import Journal, JournalEntry
 
 
-def entry_of(journal: Journal, what: str) -> Entry:
+def entry_of(journal: Journal, what: str) -> JournalEntry:
     """The change that is to be taken back.
 
     Args:
@@ -17,7 +17,7 @@ def entry_of(journal: Journal, what: str) -> Entry:
         what: its number, a file of which the last change is meant, or empty for the last of all.
 
     Raises:
-        InputError: there is none.
+        InputError: there is no such change.
     """
     entries = journal.entries()
     if what.isdigit() and not Path(what).exists():
@@ -29,12 +29,12 @@ def entry_of(journal: Journal, what: str) -> Entry:
         meant = entries
     if not meant:
         raise InputError(
-            f"no change of {what} is noted" if what else "no change is noted: nothing to take back"
+            f"no change of {what} is recorded" if what else "no change is recorded: nothing to undo"
         )
     return meant[-1]
 
 
-def take_back_file(entry: Entry, journal: Journal, *, dry_run: bool = False) -> Change:
+def take_back_file(entry: JournalEntry, journal: Journal, *, dry_run: bool = False) -> FileChange:
     """Take a change of a file back and forget it; what that does to the file.
 
     Raises:

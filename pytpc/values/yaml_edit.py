@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from pytpc.values.new_value import Refused, degrees_text, guessed, read_value, yaml_text
 from pytpc.values.scalars import number_text, type_of
-from pytpc.values.yaml_tree import Setting, YamlNode, read_yaml, settings, value_of
+from pytpc.values.yaml_tree import YamlNode, YamlSetting, read_yaml, settings, value_of
 
 Keys = tuple[str, ...]
 _DEGREES = re.compile(r"\s*deg\(.*\)\s*")
@@ -28,7 +28,7 @@ class Edit:
     notes: tuple[str, ...] = ()
 
 
-def all_settings(text: str) -> list[Mapping[Keys, Setting]]:
+def all_settings(text: str) -> list[Mapping[Keys, YamlSetting]]:
     """What each document of a YAML text sets.
 
     Raises:
@@ -50,7 +50,7 @@ def edit_yaml(text: str, keys: Keys, given: str, *, force: bool = False) -> Edit
         force: change the type, or a value that other parameters have, too (an anchor).
 
     Raises:
-        Refused: see docs/applying.md; the message says what to do.
+        Refused: see docs/how-to/change-a-parameter.md; the message says what to do.
     """
     documents = all_settings(text)
     having = [document for document in documents if keys in document]
@@ -85,18 +85,18 @@ def edit_yaml(text: str, keys: Keys, given: str, *, force: bool = False) -> Edit
     return Edit(text, keys, old, new, spot.lineno, tuple(notes))
 
 
-def _changed_with(document: Mapping[Keys, Setting], spot: YamlNode) -> list[Keys]:
+def _changed_with(document: Mapping[Keys, YamlSetting], spot: YamlNode) -> list[Keys]:
     """The keys of all values that change when the text of this node does."""
     return [one.keys for one in document.values() if one.written is spot or one.node is spot]
 
 
 def _notes(
-    document: Mapping[Keys, Setting], setting: Setting, spot: YamlNode, force: bool
+    document: Mapping[Keys, YamlSetting], setting: YamlSetting, spot: YamlNode, force: bool
 ) -> list[str]:
     """What else to know of a change.
 
     Raises:
-        Refused: other parameters have the same text as their value, and nobody wants to force it.
+        Refused: other parameters share the text of the value, and ``force`` is not given.
     """
     others = [keys for keys in _changed_with(document, spot) if keys != setting.keys]
     if others:
@@ -115,7 +115,7 @@ def _notes(
 
 def _read(node: YamlNode) -> object:
     if node.kind == "scalar" and node.style in ("|", ">"):
-        raise Refused("it is a block of text, which is not changed here", node.lineno)
+        raise Refused("it is a block of text, which cannot be changed", node.lineno)
     try:
         return value_of(node)
     except ValueError as error:
@@ -177,7 +177,7 @@ def _put(text: str, node: YamlNode, piece: str) -> str:
 
 
 def _check(
-    before: list[Mapping[Keys, Setting]], text: str, changed: Mapping[tuple[int, Keys], object]
+    before: list[Mapping[Keys, YamlSetting]], text: str, changed: Mapping[tuple[int, Keys], object]
 ) -> None:
     """See that the text says what it should: these values are new, and every other one is not.
 
@@ -187,11 +187,11 @@ def _check(
     for place, value in changed.items():
         wanted[place] = (repr(value), wanted[place][1])
     if found != wanted:
-        raise Refused("it cannot be written without changing something else")
+        raise Refused("it cannot be written without changing other values")
 
 
 def _all_values(
-    documents: list[Mapping[Keys, Setting]],
+    documents: list[Mapping[Keys, YamlSetting]],
 ) -> dict[tuple[int, Keys], tuple[str, int]]:
     """The values of all documents, each with how often its keys stand before it.
 

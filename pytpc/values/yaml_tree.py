@@ -57,7 +57,7 @@ class YamlNode:
 
 
 @dataclass(frozen=True, slots=True)
-class Setting:
+class YamlSetting:
     """A value in a tree of maps: its keys from the top and its node.
 
     ``key`` is the node of the last key. ``written`` is what stands behind it: the node itself, or
@@ -143,17 +143,17 @@ def _skip_properties(node: YamlNode, text: str) -> None:
             node.start += 1
 
 
-def settings(document: YamlNode) -> dict[tuple[str, ...], Setting]:
+def settings(document: YamlNode) -> dict[tuple[str, ...], YamlSetting]:
     """All values below the maps of a document, by their keys; the last of equal keys holds.
 
     A list is one value, as on the parameter server. Keys that are no texts are left out.
     """
-    found: dict[tuple[str, ...], Setting] = {}
+    found: dict[tuple[str, ...], YamlSetting] = {}
     if document.kind == "map":
         _gather(document, (), "", found, ())
     elif document.text or document.kind == "list":
         # The whole document is one value: <rosparam param="x">5</rosparam>.
-        found[()] = Setting((), document, document.behind, document)
+        found[()] = YamlSetting((), document, document.behind, document)
     return found
 
 
@@ -161,7 +161,7 @@ def _gather(
     node: YamlNode,
     keys: tuple[str, ...],
     shared: str,
-    found: dict[tuple[str, ...], Setting],
+    found: dict[tuple[str, ...], YamlSetting],
     open_maps: tuple[int, ...],
 ) -> None:
     if id(node) in open_maps:
@@ -173,7 +173,7 @@ def _gather(
         if below.kind == "map":
             _gather(below, place, how, found, (*open_maps, id(node)))
         else:
-            found[place] = Setting(place, pair.key, below, pair.value, how, pair.earlier)
+            found[place] = YamlSetting(place, pair.key, below, pair.value, how, pair.earlier)
 
 
 @dataclass(frozen=True, slots=True)

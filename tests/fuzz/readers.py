@@ -27,7 +27,7 @@ from pathlib import Path
 from fuzz.reader_samples import EXTENSIONS, WORDS, samples
 from pytpc.base.errors import TpcError
 from pytpc.ingest.gathering import Gathering
-from pytpc.ingest.outcome import Outcome
+from pytpc.ingest.outcome import Merged
 from pytpc.ingest.reading import gather
 
 SECONDS = 5
@@ -72,7 +72,7 @@ def read_input(path: Path) -> int:
     """Read one input as a user would; the number of events."""
     gathering = Gathering()
     gather([path], gathering)
-    recording = Outcome(gathering, "fuzz").recording()
+    recording = Merged(gathering, "fuzz").recording()
     return len(recording.events)
 
 

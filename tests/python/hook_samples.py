@@ -16,7 +16,7 @@ from typing import Any
 from hook_places import comparisons, others
 
 from pytpc.python_runtime import quiet, sites
-from pytpc.python_runtime.find import Place
+from pytpc.python_runtime.find import ListedPlace
 from pytpc.python_runtime.listed import Listed
 from pytpc.python_runtime.rewrite import rewrite
 from pytpc.python_runtime.sites import Reported
@@ -63,7 +63,7 @@ def taking() -> Iterator[Taken]:
         sites.set_take(before)
 
 
-def register(place: Place) -> Reported:
+def register(place: ListedPlace) -> Reported:
     return Reported(place.listed.key, 1, place.swapped)
 
 

@@ -34,7 +34,7 @@ def test_a_yaml_file(apply, params: Path) -> None:
     assert done.stderr == "to take it back: pytpc apply --undo 1\n"
     apply("--undo")
     assert params.read_text() == MISSION_PARAMS
-    assert "nothing to take back" in apply("--undo", status=1).output
+    assert "nothing to undo" in apply("--undo", status=1).output
 
 
 def test_a_dry_run(apply, params: Path) -> None:
@@ -87,7 +87,7 @@ def test_undo_refuses_a_file_that_was_changed(apply, params: Path) -> None:
     mine = params.read_text() + "# and mine\n"
     params.write_text(mine)
     refused = apply("--undo", status=1)
-    assert f"{params}: was changed since: change 1 is not taken back" in refused.output
+    assert f"{params}: has changed since: change 1 is not undone" in refused.output
     assert params.read_text() == mine
 
 
@@ -100,14 +100,14 @@ def test_undo_of_one_of_several(apply, params: Path, tmp_path: Path) -> None:
     listed = apply("--list").output
     assert all(text in listed for text in ("/mission/limit", "/mission/other", "second.yaml"))
     # The first change of this file stands below the second.
-    assert "change 2 came after it" in apply("--undo", "1", status=1).output
+    assert "change 2 came later" in apply("--undo", "1", status=1).output
     apply("--undo", params)
     assert params.read_text() == MISSION_PARAMS.replace("0.058", "0.035")
     assert second.read_text() == "a: 2\n"
     apply("--undo", "1")
     apply("--undo")
     assert (params.read_text(), second.read_text()) == (MISSION_PARAMS, "a: 1\n")
-    assert "no change of 7 is noted" in apply("--undo", "7", status=1).output
+    assert "no change of 7 is recorded" in apply("--undo", "7", status=1).output
 
 
 def test_symbolic_links_and_permissions_stay(apply, params: Path, tmp_path: Path) -> None:
@@ -224,7 +224,8 @@ def test_what_is_refused_by_origin(apply, tmp_path: Path) -> None:
     assert "the output of a command" in apply(launch, "/text", "2", status=1).output
     merged = apply(launch, "/other/mass", "5", status=1).output
     assert "config/params.yaml:6: it is the value of arm/mass, too" in merged
-    assert "nobody sets left/arm/nothing" in apply(launch, "left/arm/nothing", "2", status=1).output
+    refused = apply(launch, "left/arm/nothing", "2", status=1)
+    assert "left/arm/nothing is not set anywhere" in refused.output
     assert "--add puts it" in apply(launch, "/left/arm/nothing", "2", status=1).output
     assert "is not NAME:=VALUE" in apply(launch, "/alone", "2", "rate", status=2).output
 

@@ -15,7 +15,7 @@ from pytpc.base.errors import RunError, TpcError
 from pytpc.ros.live_change import set_live
 from pytpc.ros.ros1.live_values import LiveChange, Robot
 from pytpc.values import apply
-from pytpc.values.apply import Change, apply_change, replace_file
+from pytpc.values.apply import FileChange, apply_change, replace_file
 from pytpc.values.installed import is_installed, of_the_system, source_of
 from pytpc.values.journal import Journal, folder_of
 
@@ -87,15 +87,15 @@ def test_sources(tmp_path: Path) -> None:
 
 def test_a_change_that_somebody_was_faster_with(params: Path, tmp_path: Path) -> None:
     journal = Journal(tmp_path / "journal")
-    change = Change("/a", params, b"older", b"newer", 1, 2, 1)
-    with pytest.raises(TpcError, match="somebody else has just changed it"):
+    change = FileChange("/a", params, b"older", b"newer", 1, 2, 1)
+    with pytest.raises(TpcError, match="the file has changed meanwhile"):
         apply_change(change, journal)
     assert journal.entries() == []
 
 
 def test_without_a_note_nothing_is_written(apply, params: Path, tmp_path: Path) -> None:
     (tmp_path / "state").write_text("a file where the folder should be")
-    assert "cannot be noted for --undo" in apply(params, "limit", "0.035", status=1).output
+    assert "cannot be recorded for --undo" in apply(params, "limit", "0.035", status=1).output
     assert params.read_text() == MISSION_PARAMS
 
 
@@ -135,8 +135,8 @@ def test_of_two_changes_at_once_none_is_lost(params: Path, tmp_path: Path, monke
     journal = Journal(tmp_path / "state")
     before = params.read_bytes()
 
-    def change(old: bytes, new: bytes) -> Change:
-        return Change("/x", params, before, before.replace(old, new), 0, 1, 1)
+    def change(old: bytes, new: bytes) -> FileChange:
+        return FileChange("/x", params, before, before.replace(old, new), 0, 1, 1)
 
     writing, errors = threading.Event(), list[TpcError]()
 

@@ -49,7 +49,7 @@ def test_a_param(before: str, given: str, after: str) -> None:
         ('name="x" value="$(eval 1+2)"', "5", "roslaunch works its value out"),
         ('name="x" command="date"', "5", "the output of a command"),
         ('name="x" value="{a: 1}" type="yaml"', "5", 'type="yaml"'),
-        ('name="y" value="7"', "8", "no <param> for /n/x is here any more"),
+        ('name="y" value="7"', "8", "the <param> for /n/x is gone"),
     ],
 )
 def test_a_param_that_is_refused(attributes: str, given: str, said: str) -> None:
@@ -156,17 +156,17 @@ def test_yaml_in_a_launch_file() -> None:
     assert edit.lineno == 5
     plain = INLINE.replace("a < b", "a").format(value="1.5", open="", close="").encode()
     assert edit_inline(plain, ("speed",), 5, "2.5").data == plain.replace(b"1.5", b"2.5")
-    with pytest.raises(Refused, match="no <rosparam> with it"):
+    with pytest.raises(Refused, match="the <rosparam> with it is gone"):
         edit_inline(plain, ("speed",), 8, "2.5")
 
 
 def test_yaml_in_a_launch_file_must_stay_xml() -> None:
     before = b"<launch><rosparam>\nname: x\n</rosparam></launch>"
-    with pytest.raises(Refused, match="mean something to XML"):
+    with pytest.raises(Refused, match="are special in XML"):
         edit_inline(before, ("name",), 2, "a<b")
     section = b"<launch><rosparam><![CDATA[\nname: x\n]]></rosparam></launch>"
     assert b"'a<b'" in edit_inline(section, ("name",), 2, "a<b").data
-    with pytest.raises(Refused, match="mean something to XML"):
+    with pytest.raises(Refused, match="are special in XML"):
         edit_inline(section, ("name",), 2, "a]]>b")
 
 
@@ -207,7 +207,7 @@ def test_added_to_the_end() -> None:
     assert edit.data == (
         b'<launch>\n  <arg name=\'a\'/>\n  <param name="/n/x" value="a b" type="str"/>\n</launch>\n'
     )
-    with pytest.raises(Refused, match="the tag of the node is not here any more"):
+    with pytest.raises(Refused, match="the tag of the node is no longer there"):
         add_param(b"<launch></launch>", 3, "x", 1, "1")
 
 

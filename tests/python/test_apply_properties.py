@@ -13,7 +13,7 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pytpc.values.apply import Change, apply_change, replace_file, undo_change
+from pytpc.values.apply import FileChange, apply_change, replace_file, undo_change
 from pytpc.values.journal import Journal
 from pytpc.values.launch_edit import edit_param
 from pytpc.values.launch_value import launch_value
@@ -206,7 +206,7 @@ def test_undo_gives_the_bytes_back(before: bytes, after: bytes, mode: int) -> No
         path.write_bytes(before)
         path.chmod(mode)
         journal = Journal(Path(folder) / "journal")
-        entry = apply_change(Change("/a", path, before, after, 1, 2, 1), journal)
+        entry = apply_change(FileChange("/a", path, before, after, 1, 2, 1), journal)
         assert path.read_bytes() == after
         undone = undo_change(entry, journal)
         replace_file(undone.path, undone.after)

@@ -21,7 +21,7 @@ def test_a_history(tmp_path):
 @pytest.mark.parametrize(
     ("document", "said"),
     [
-        ({}, "a list is expected"),
+        ({}, "expected a list"),
         ([1], "1 is no object"),
         ([{"parameter": 1, "old": 1, "new": 2}], "parameter and node are texts"),
         ([{"parameter": "a", "node": None, "old": 1, "new": 2}], "parameter and node are texts"),

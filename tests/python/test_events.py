@@ -183,7 +183,7 @@ def test_files_that_are_not_events(tmp_path):
         read_parquet(path)
     empty_place = table.set_column(3, "cmp", pa.array([None], pa.float64()))
     pq.write_table(empty_place, path)
-    with pytest.raises(InputError, match="column cmp has 1 empty places"):
+    with pytest.raises(InputError, match="column cmp has 1 missing values"):
         read_parquet(path)
 
 

@@ -231,7 +231,9 @@ def test_a_bag_that_was_not_closed(tmp_path):
     place = whole.index(b"index_pos=") + len(b"index_pos=")
     path = tmp_path / "killed.bag"
     path.write_bytes(whole[:place] + bytes(8) + whole[place + 8 :])
-    with pytest.raises(InputError, match=r'not closed .*; "rosbag reindex killed\.bag" saves the'):
+    with pytest.raises(
+        InputError, match=r'not closed .*; "rosbag reindex killed\.bag" recovers the'
+    ):
         read_bag(path)
 
 

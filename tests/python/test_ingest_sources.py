@@ -17,7 +17,7 @@ from tpc_file import TpcFile, report, site, sync
 from pytpc.base.errors import InputError
 from pytpc.ingest import Dropped, read, save_recording
 from pytpc.ingest.bag import _DECODERS
-from pytpc.ingest.bag_chunks import Messages as Chunk
+from pytpc.ingest.bag_chunks import ChunkMessages as Chunk
 from pytpc.ingest.gathering import Gathering
 from pytpc.ingest.messages import Messages
 from pytpc.ingest.rosout_line import PREFIX
@@ -88,7 +88,7 @@ def test_ros2_files_that_are_cut_are_one_line(ros2):
             read(ros2)
         assert "\n" not in str(caught.value)
         assert "truncated or damaged" in str(caught.value)
-        assert "saves the rest" in str(caught.value)
+        assert "recovers the rest" in str(caught.value)
 
 
 # Found by fuzzing.
@@ -252,7 +252,7 @@ def test_what_is_nothing_that_is_read(tmp_path):
     with pytest.raises(InputError, match="no such bag, file or folder"):
         read(tmp_path / "y")
     (tmp_path / "empty").mkdir()
-    with pytest.raises(InputError, match="a folder without recordings"):
+    with pytest.raises(InputError, match="no recordings in this folder"):
         read(tmp_path / "empty")
 
 
@@ -455,7 +455,7 @@ def test_rotated_logs_and_a_bag_that_was_cut_off(tmp_path):
     recording = read(tmp_path)
     assert [cmp for *_, cmp in found(recording)] == [2, 1, 0]
     assert recording.notes == (
-        f"{tmp_path / 'm.bag.active'}: not read; mend it with: rosbag reindex",
+        f"{tmp_path / 'm.bag.active'}: not read; recover it with: rosbag reindex",
     )
 
 
@@ -497,7 +497,7 @@ def test_marks_of_all_kinds(tmp_path):
         Mark(ns(12), "II", "later"),
     )
     assert recording.marks == expected
-    assert recording.malformed_first[0].what.startswith("no note")
+    assert recording.malformed_first[0].what.startswith("not a note")
     assert read(tmp_path).marks == expected
     save_recording(recording, tmp_path / "m")
     (tmp_path / "m.marks.csv").write_text("time_ns,type,observer,note\n13000000000,I\n")

@@ -19,7 +19,7 @@ from pytpc.cli.main import main
 from pytpc.ingest import load_recording, read
 from pytpc.ingest import spool as spool_module
 from pytpc.ingest.gathering import Gathering
-from pytpc.ingest.outcome import Outcome
+from pytpc.ingest.outcome import Merged
 from pytpc.ingest.reading import gather, opened
 from pytpc.recording.events import read_parquet
 
@@ -60,7 +60,7 @@ def test_runs_on_disk_give_the_same(mission, tmp_path, monkeypatch):
     scratch.mkdir()
     gathering = Gathering(scratch, run_rows=97)
     gather(mission, gathering)
-    Outcome(gathering, "a").save(tmp_path / "out")
+    Merged(gathering, "a").save(tmp_path / "out")
     parts = load_recording(tmp_path / "out")
     assert parts.events.equals(whole.events)
     assert parts.summaries.equals(whole.summaries)

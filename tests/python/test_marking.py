@@ -8,11 +8,19 @@ from hypothesis import strategies as st
 from mission_samples import ns
 from rich.cells import cell_len
 
-from pytpc.recording.marking_session import Change, Player, Session, View, clock_text, press, screen
+from pytpc.recording.marking_session import (
+    MarkChange,
+    Player,
+    Session,
+    View,
+    clock_text,
+    press,
+    screen,
+)
 from pytpc.recording.marks import Mark
 
 
-def pressed(keys: list[tuple[str, float | None]]) -> tuple[Session, list[Change]]:
+def pressed(keys: list[tuple[str, float | None]]) -> tuple[Session, list[MarkChange]]:
     """A session of ``ana`` after ``keys``, each at its second, and what it changed."""
     session, changes = Session("ana"), []
     for key, seconds in keys:
@@ -28,14 +36,14 @@ def at(seconds: float, kind, note: str = "") -> Mark:
 def test_one_key_each():
     session, changes = pressed([("1", 1), ("2", 2), ("3", 3)])
     assert session.marks == (at(1, "I"), at(2, "II"), at(3, None))
-    assert changes == [Change(None, mark) for mark in session.marks]
+    assert changes == [MarkChange(None, mark) for mark in session.marks]
     assert (session.said, session.ended) == ("marked: wrong", False)
 
 
 def test_undo_takes_back_the_last_one_made():
     session, changes = pressed([("1", 5), ("2", 3), ("u", 9), ("u", 9), ("u", 9)])
     assert session.marks == ()
-    assert changes[2:] == [Change(at(3, "II"), None), Change(at(5, "I"), None)]
+    assert changes[2:] == [MarkChange(at(3, "II"), None), MarkChange(at(5, "I"), None)]
     assert session.said == "no mark yet"
 
 
@@ -44,7 +52,7 @@ def test_a_note_goes_to_the_last_mark():
     keys = ["1", "n", "1", "q", "ä", "left", "x", "backspace", " ", "enter", "n", "z", "escape"]
     session, changes = pressed([(key, 1) for key in keys])
     assert session.marks == (at(1, "I", "1qä"),)
-    assert changes == [Change(None, at(1, "I")), Change(at(1, "I"), at(1, "I", "1qä"))]
+    assert changes == [MarkChange(None, at(1, "I")), MarkChange(at(1, "I"), at(1, "I", "1qä"))]
     assert session.typing is None
 
 
@@ -70,7 +78,7 @@ def test_marks_of_one_time_are_told_apart():
 def test_a_time_that_was_taken_back_is_not_marked_again():
     session, changes = pressed([("1", 1), ("u", 1), ("1", 1)])
     assert session.marks == (Mark(ns(1) + 1, "I", "ana"),)
-    assert changes[1] == Change(at(1, "I"), None)
+    assert changes[1] == MarkChange(at(1, "I"), None)
 
 
 def test_other_keys_do_nothing():

@@ -101,7 +101,7 @@ def test_types_of_messages():
 )
 def test_no_note(text: str):
     assert parse_note(text) is None
-    with pytest.raises(ValueError, match="no note"):
+    with pytest.raises(ValueError, match="not a note"):
         MarkMessages().add_text("/mark_note", text)
 
 
@@ -180,7 +180,7 @@ def test_a_bag_with_notes_and_what_was_taken_back(bag: Path):
     recording = read_bag(bag)
     assert recording.marks == (IN_BAG,)
     assert [(one.topic, one.what) for one in recording.malformed_first] == [
-        ("/ana/mark_note", "no note: SECONDS.NANOSECONDS,NOTE is expected")
+        ("/ana/mark_note", "not a note: expected SECONDS.NANOSECONDS,NOTE")
     ]
 
 

@@ -233,7 +233,7 @@ def test_a_workspace_that_is_found_broken_ends_no_program(static, tmp_path):
     built.write_text("{")
     off = {"TPC_STATIC": "", "TPC_PYTHON": ""}
     said = run(static, sys.executable, RUN, script(tmp_path, BY_PIP), "a", "b", cwd=tmp_path, **off)
-    assert said.splitlines()[0].startswith(f"tpc: {built}:1: no JSON")
+    assert said.splitlines()[0].startswith(f"tpc: {built}:1: not JSON")
     assert said.splitlines()[-1] == "many"
     assert reported(static) == []
 

@@ -311,12 +311,12 @@ def test_the_environment_leaves_other_programs_alone(package, tmp_path):
 
 def test_errors_are_one_line(package, tmp_path):
     for words, said in [
-        ((), "which script"),
+        ((), "no script given"),
         (("--statik", "x"), "no such option"),
         ((str(tmp_path / "none.py"),), "none.py: cannot be run: No such file"),
         (("--static", str(tmp_path / "none.json"), "x.py"), "none.json: cannot be read"),
         (("--static", str(package / "nodes"), "x.py"), "no static information below"),
-        (("--static", str(package / "nodes/node.py"), "x.py"), "no JSON"),
+        (("--static", str(package / "nodes/node.py"), "x.py"), "not JSON"),
     ]:
         done = run(package, *RUN, *words)
         assert done.returncode == 1
@@ -341,7 +341,7 @@ def test_pytpc_run_takes_the_interpreter_of_the_script(package, tmp_path):
     node.write_text("#!/usr/bin/python2.7\n")
     done = CliRunner().invoke(main, ["run", str(node)])
     assert done.exit_code == 1
-    assert "python2.7 is not on this machine" in done.output
+    assert "python2.7 is not installed" in done.output
 
 
 def test_verbose_says_what_reported_and_what_did_not(package):

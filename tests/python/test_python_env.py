@@ -12,7 +12,7 @@ from click.testing import CliRunner
 
 import pytpc
 from pytpc.base.errors import InputError
-from pytpc.base.shell_words import Change
+from pytpc.base.shell_words import EnvChange
 from pytpc.build.build import installed
 from pytpc.cli import mission_commands
 from pytpc.cli.main import main
@@ -87,12 +87,12 @@ def test_without_python_nothing_is_set(tmp_path):
     static.write_text(static_text("nodes/node.py"))
     assert mission_env(env, static)["TPC_STATIC"] == str(static)
     static.write_text('{"units": [\n')
-    with pytest.raises(InputError, match=r"static\.json:2: no JSON"):
+    with pytest.raises(InputError, match=r"static\.json:2: not JSON"):
         mission_env(env, static)
 
 
 def test_changes_as_text():
-    change = Change.between(
+    change = EnvChange.between(
         {"SAME": "1", "OLD": "x", "GONE": "y"}, {"SAME": "1", "OLD": r"it's \n", "NEW": "a b"}
     )
     assert change.text("sh") == "export NEW='a b'\nexport OLD='it'\"'\"'s \\n'\nunset GONE\n"
@@ -101,7 +101,7 @@ def test_changes_as_text():
         "set": {"NEW": "a b", "OLD": r"it's \n"},
         "unset": ["GONE"],
     }
-    assert Change.between({"A": "1"}, {"A": "1"}).text("sh") == ""
+    assert EnvChange.between({"A": "1"}, {"A": "1"}).text("sh") == ""
 
 
 def test_a_shell_has_it_and_has_it_no_more(workspace):

@@ -119,7 +119,7 @@ def test_a_text_that_no_json_can_have_costs_that_script_alone(workspace: Path) -
     found = built(workspace)
     assert names(found) == ["camera/node", "mission/scripts/mission.py"]
     (reason,) = (one.reason for one in found.left_out if one.link_unit == "scripts/pump.py")
-    assert reason.startswith("not UTF-8, so no JSON can have it: ")
+    assert reason.startswith("not UTF-8, so cannot be written as JSON: ")
 
 
 def test_a_module_of_two_scripts_is_one_row(workspace: Path) -> None:

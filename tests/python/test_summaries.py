@@ -16,7 +16,6 @@ from pytpc.recording.summaries import (
     Summaries,
     Summary,
     SummaryBuilder,
-    concat_summaries,
     read_summaries,
     write_summaries,
 )
@@ -80,11 +79,11 @@ def test_every_field_comes_back(tmp_path):
 
 
 def test_concat_and_take():
-    joined = concat_summaries([table(summary(2, 3, "/z")), Summaries.empty(), table(summary(1))])
+    joined = Summaries.concat([table(summary(2, 3, "/z")), Summaries.empty(), table(summary(1))])
     assert joined.keys == (key(1), key(3))
     assert [joined.nodes[code] for code in joined.node] == ["/uav", "/z"]
     assert joined.take(joined.count > 3).begin_ns.tolist() == []
-    assert len(concat_summaries([])) == 0
+    assert len(Summaries.concat([])) == 0
 
 
 def test_columns_that_do_not_fit():

@@ -14,7 +14,7 @@ from pytpc.api.live_reports import Reports
 from pytpc.diagnosis.ranking.watching import BINS, KeptRankings, Look, Seen, Watching
 from pytpc.diagnosis.scores.live_scores import LiveRanking
 from pytpc.present.watch_screen import LAYOUTS, Options, Panel, Status, table, watch_screen
-from pytpc.recording.marking_session import Change, Session, View
+from pytpc.recording.marking_session import MarkChange, Session, View
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
 from pytpc.recording.summaries import Summary
@@ -123,13 +123,13 @@ def test_a_summary_is_many_evaluations():
 def test_rankings_are_kept_at_marks_noted_and_taken_back():
     kept, found = KeptRankings(5), watching(*EVENTS)
     mark, other = Mark(110 * S, "II"), Mark(111 * S, "I")
-    kept.follow(Change(None, mark), found)
-    kept.follow(Change(None, other), found)
+    kept.follow(MarkChange(None, mark), found)
+    kept.follow(MarkChange(None, other), found)
     assert len(kept) == 2
     assert [row.suspect.parameter for row in kept[0].look.rows["II"]] == ["~speed", "~limit"]
     noted = Mark(110 * S, "II", note="stuck")
-    kept.follow(Change(mark, noted), found)
-    kept.follow(Change(other, None), found)
+    kept.follow(MarkChange(mark, noted), found)
+    kept.follow(MarkChange(other, None), found)
     assert len(kept) == 1
     assert kept.of(noted) is not None
     assert kept.of(mark) is None
@@ -137,7 +137,7 @@ def test_rankings_are_kept_at_marks_noted_and_taken_back():
 
 def test_a_mark_whose_type_is_not_believed_is_ranked_by_both():
     kept = KeptRankings(5)
-    kept.follow(Change(None, Mark(110 * S, "I")), watching(*EVENTS), believe=False)
+    kept.follow(MarkChange(None, Mark(110 * S, "I")), watching(*EVENTS), believe=False)
     parameters = {suspect.parameter for suspect in kept[0].ranking.suspects}
     assert parameters == {"~speed", "~limit"}
 
@@ -362,5 +362,5 @@ def test_columns_go_one_by_one_as_room_goes(width: int, headings: list[str]):
 def test_ties_are_named_as_ties():
     events = [seen(at, number, cmp, 1) for at, cmp in ((101, 0), (102, 2)) for number in (0, 1)]
     kept = KeptRankings(5)
-    kept.follow(Change(None, Mark(103 * S, "I")), watching(*events))
+    kept.follow(MarkChange(None, Mark(103 * S, "I")), watching(*events))
     assert sorted(kept[0].words().split(", ")) == ["1= ~limit", "1= ~speed"]

@@ -198,14 +198,14 @@ def test_absent_tools_are_one_line_with_the_command(
     with pytest.raises(MissingToolError) as caught:
         paths.require_tools()
     assert str(caught.value) == (
-        "llvm-ranlib-19 not found on this machine; mend it with: apt-get install llvm-19"
+        "llvm-ranlib-19 not found on this machine; install it with: apt-get install llvm-19"
     )
     (tmp_path / "clang-19").unlink()
     (tmp_path / "clang++-19").unlink()
     with pytest.raises(MissingToolError) as caught:
         paths.require_tools()
     assert str(caught.value) == (
-        "clang-19, clang++-19 and llvm-ranlib-19 not found on this machine; mend it with:"
+        "clang-19, clang++-19 and llvm-ranlib-19 not found on this machine; install it with:"
         " apt-get install clang-19 llvm-19"
     )
 

@@ -143,7 +143,7 @@ def test_a_node_without_it_has_to_ask_again(apply, graph: RosGraph) -> None:
     graph.call("setParam", "/plain/gain", 4)
     refused = apply("--undo")
     assert refused.exit_code == 1
-    assert "/plain/gain is 4 now, which somebody else has set" in refused.output
+    assert "/plain/gain is 4 now: something else has set it" in refused.output
     assert graph.call("getParam", "/plain/gain") == 4
     assert apply("--undo", "--force").exit_code == 0
     assert graph.call("getParam", "/plain/gain") == 2

@@ -409,7 +409,7 @@ def test_parameters_hold_from_the_start_and_wrong_ones_get_a_warning(graph, node
     assert code == 1 and "/tpc is no folder of parameters" in output
     code, output = pytpc("sink", "/other")
     assert code == 1 and output.strip().endswith(
-        "/other is no instrumented node that runs; there are /reporter"
+        "/other is not a running instrumented node; there are /reporter"
     )
     assert graph.stop(process) == 0
     code, output = pytpc("sink")

@@ -17,7 +17,7 @@ from typing import NamedTuple
 from pytpc.diagnosis.ranking.ranking import MarkRanking, Suspect
 from pytpc.diagnosis.scores.live_scores import LiveRanking
 from pytpc.diagnosis.scores.scores import WINDOW_S
-from pytpc.recording.marking_session import Change
+from pytpc.recording.marking_session import MarkChange
 from pytpc.recording.marks import Mark, MarkType
 from pytpc.recording.summaries import Summary
 from pytpc.static.static_info import StaticInfo
@@ -261,7 +261,7 @@ class KeptRankings:
         """What was kept at a mark; None for one of an earlier session."""
         return next((one for one in self._kept if one.mark == mark), None)
 
-    def follow(self, change: Change, watching: Watching, *, believe: bool = True) -> None:
+    def follow(self, change: MarkChange, watching: Watching, *, believe: bool = True) -> None:
         """Keep, forget or rename what belongs to a mark that was made, taken back or noted."""
         before, after = change
         if before is not None and after is not None:

@@ -4,8 +4,8 @@ A script of the static information is started again by pytpc/python_runtime/run.
 process and with the same options of the interpreter; every other program goes on as it was. Another
 sitecustomize, which this one hides, is run as well.
 
-Every Python program that is started in such an environment comes by here, roslaunch and rosparam
-among them: what is none of ours is told without importing anything, or parsing.
+Every Python program that is started in such an environment runs this, roslaunch and rosparam among
+them: programs that do not concern us are recognised without importing or parsing anything.
 """
 
 import os
@@ -32,7 +32,7 @@ def _hidden() -> None:
 
 
 def _script() -> str:
-    """The script that this process is to run with reports; empty where it is none."""
+    """The script that this process should run with reports; empty if there is none."""
     is_on = os.environ.get("TPC_PYTHON", "") not in ("", "0")
     if not is_on or os.environ.get("TPC_PYTHON_STARTED") == str(os.getpid()):
         return ""

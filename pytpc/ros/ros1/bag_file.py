@@ -60,7 +60,7 @@ class BagFile:
                 latching=1 if source.latched else None,
             )
             self._connections[key] = connection
-        # A chunk stands in memory until it is full: with marks alone, for the whole mission.
+        # A chunk is kept in memory until it is full: with marks alone, for the whole mission.
         due = time.monotonic() - self._kept > KEEP_S or MarkMessages.message_type(source.topic)
         self._writer.chunk_threshold = -1 if due else _CHUNK
         # Before the first /clock it is 0, which rosbag play and info take for a broken entry.
@@ -80,6 +80,6 @@ class BagFile:
     @staticmethod
     def _pad(stream: BinaryIO) -> None:
         """Make the first record as long as rosbag's own: `rosbag reindex` writes it anew, and what
-        is longer then stands in the first chunk."""
+        is longer would overwrite the first chunk."""
         stream.seek(_FIRST_PADDING_AT)
         stream.write(_LENGTH.pack(_FIRST_PADDING))

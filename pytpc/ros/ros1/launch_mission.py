@@ -241,9 +241,9 @@ def dump_params(env: Mapping[str, str], path: Path) -> None:
             timeout=_DUMP_PATIENCE_S,
         )
     except FileNotFoundError as error:
-        raise RunError("rosparam not found; mend it with: apt-get install ros-core") from error
+        raise RunError("rosparam not found; install it with: apt-get install ros-core") from error
     except subprocess.TimeoutExpired as error:
-        raise RunError("rosparam dump does not end") from error
+        raise RunError("rosparam dump timed out") from error
     except subprocess.CalledProcessError as error:
         said = error.stderr.decode("utf-8", "replace").strip().splitlines()[-1:]
         raise RunError(f"rosparam dump failed: {' '.join(said)}") from error

@@ -1,8 +1,9 @@
 """Setting a value on the running robot: the parameter server, and dynamic_reconfigure.
 
-A node of ROS 1 reads a parameter when it asks for it, mostly once, when it starts. One with
-dynamic_reconfigure takes a new value over at once, by its service ``set_parameters``; what it then
-has (its own limits hold) is in the answer. Neither ROS nor the node's package is needed here.
+A node of ROS 1 reads a parameter when it asks for it, usually once, when it starts. One with
+dynamic_reconfigure takes a new value at once, by its service ``set_parameters``; the answer has the
+value that it then uses (it applies limits of its own). Neither ROS nor the node's package is
+needed here.
 
 Protocol: http://wiki.ros.org/ROS/Parameter%20Server%20API.
 """
@@ -82,7 +83,7 @@ class Robot:
         except Refused as error:
             raise InputError(f"{name}: {error}") from error
         if not isinstance(new, bool | int | float | str):
-            raise InputError(f"{name} is a {type_of(new)}, which is not set here")
+            raise InputError(f"{name} is a {type_of(new)}, which cannot be set on a running robot")
         state = self._master.state()
         service = f"{name.rpartition('/')[0]}/{SERVICE}"
         below = tuple(sorted(node for node in state.nodes if name.startswith(f"{node}/")))

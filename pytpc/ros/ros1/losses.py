@@ -5,7 +5,7 @@ from __future__ import annotations
 import struct
 from collections import Counter
 
-from pytpc.ingest.rosout_line import Batch, parse_batch
+from pytpc.ingest.rosout_line import BatchHead, parse_batch
 
 _LOG_HEAD = struct.Struct("<IIII")
 _LENGTH = struct.Struct("<I")
@@ -61,7 +61,10 @@ def _text(data: bytes, at: int) -> tuple[bytes, int]:
 
 
 class BatchCounter:
-    """The same for numbered messages on /threshold_information (docs/formats.md)."""
+    """The same for numbered messages on /threshold_information.
+
+    Their first line: docs/reference/formats.md#reports.
+    """
 
     def __init__(self, counter: LossCounter) -> None:
         """Losses are added to those of ``counter``."""
@@ -81,7 +84,7 @@ class BatchCounter:
         if not text.startswith(b"#"):
             return 1
         batch = parse_batch(text.partition(b"\n")[0].decode("utf-8", "replace"))
-        if not isinstance(batch, Batch):
+        if not isinstance(batch, BatchHead):
             return 0
         process = (node, batch.pid)
         expected = self._next.get(process)

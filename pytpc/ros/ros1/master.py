@@ -55,7 +55,7 @@ def call(uri: str, method: str, *arguments: object) -> object:
         The value.
 
     Raises:
-        CALL_ERRORS: nobody answers, or the code is not 1.
+        CALL_ERRORS: no answer, or a code other than 1.
     """
     proxy = xmlrpc.client.ServerProxy(uri, transport=_PatientTransport())
     try:

@@ -149,7 +149,7 @@ class RawPublisher:
             threading.Thread(target=self._welcome, args=(connection,), daemon=True).start()
 
     def _welcome(self, connection: socket.socket) -> None:
-        """Shake hands with a subscriber; whoever is none is sent away."""
+        """Shake hands with a subscriber; close the connection of anything else."""
         try:
             connection.settimeout(_PATIENCE_S)
             connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)

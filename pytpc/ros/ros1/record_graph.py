@@ -123,7 +123,7 @@ class _Beginning(threading.Thread):
             self._found = try_trace(self._env, self._launch, self._args)
 
     def ended(self) -> tuple[Trace | None, str]:
-        """What the launch file sets, or why that is not known; waits for it, but not for ever."""
+        """What the launch file sets, or why that is not known; waits for it, within limits."""
         self.join(2 * MISSION_PATIENCE_S)
         if self._launch is None:
             return None, NO_LAUNCH
@@ -145,11 +145,9 @@ def _refuse_earlier(out_dir: Path) -> None:
     bag = out_dir / BAG_FILE
     active = bag.with_name(f"{bag.name}.active")
     if bag.exists():
-        raise RunError("has a recording already; give another folder", out_dir)
+        raise RunError("already has a recording; give another folder", out_dir)
     if active.exists():
-        what = (
-            "is a recording that was cut off; save it with rosbag reindex, or give another folder"
-        )
+        what = "is an unfinished recording; recover it with rosbag reindex, or give another folder"
         raise RunError(what, active)
 
 

@@ -145,7 +145,7 @@ class Discovery:
                     self._subscriber.subscribe(topic)
                     self._topics[topic] = None
             for topic in self._topics:
-                # A master that was started anew knows nobody.
+                # A restarted master knows no node.
                 if self._subscriber.master.caller not in state.subscribers.get(topic, ()):
                     self._subscriber.subscribe(topic)
         except RunError:

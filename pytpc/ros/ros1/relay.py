@@ -139,14 +139,14 @@ def run(arguments: Sequence[str], say: Say) -> None:
         from std_msgs.msg import String  # noqa: PLC0415
     except ImportError as error:
         raise MissingToolError(
-            "rospy is not installed; mend it with: apt-get install python3-rospy"
+            "rospy is not installed; install it with: apt-get install python3-rospy"
         ) from error
     stop = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: stop.set())
     uri = uri_of(os.environ)
     name = _name(arguments)
-    # First, because rospy waits for ever for a master.
+    # First, because rospy waits forever for a master.
     subscriber = RawSubscriber(Master(uri, f"{name}_reader"), own_host(os.environ, uri), [ROSOUT])
     try:
         rospy.init_node(
