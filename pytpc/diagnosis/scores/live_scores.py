@@ -24,13 +24,13 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from pytpc.diagnosis.question import PLAIN, Question
-from pytpc.diagnosis.ranking.ranking import MarkRanking, Ranker
+from pytpc.diagnosis.question import PLAIN, WINDOW_S, Question
+from pytpc.diagnosis.ranking.ranking import Ranker
+from pytpc.diagnosis.results.suspects import Evaluation, MarkRanking
 from pytpc.diagnosis.scores.bounds import Reports
 from pytpc.diagnosis.scores.live_streams import AGAIN, Rows, Stream, SummaryStream, end_of
-from pytpc.diagnosis.scores.log_evidence import Evaluation
 from pytpc.diagnosis.scores.score_tables import Tpcs, TpcScores, parameter_tables, tpc_scores
-from pytpc.diagnosis.scores.scores import NEVER, WINDOW_S, Before, not_negative
+from pytpc.diagnosis.scores.scores import NEVER, Before, not_negative
 from pytpc.recording.events import Events, Floats
 from pytpc.recording.marks import Mark
 from pytpc.recording.summaries import Summaries, Summary, SummaryBuilder

@@ -9,16 +9,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from pytpc.diagnosis.question import WINDOW_S
 from pytpc.diagnosis.scores.bounds import Reports, type2_bounds
-from pytpc.diagnosis.scores.scores import (
-    WINDOW_S,
-    Formula,
-    by_parameter,
-    combined,
-    ranks,
-    type1,
-    type2,
-)
+from pytpc.diagnosis.scores.scores import Formula, by_parameter, combined, ranks, type1, type2
 from pytpc.recording.events import Floats, Int64s
 from pytpc.recording.marks import MarkType
 from pytpc.static.parameters import parameter_name
