@@ -30,10 +30,10 @@ import numpy as np
 
 from pytpc.diagnosis.question import PLAIN, WINDOW_S, Question
 from pytpc.diagnosis.results.suspects import MarkRanking, Suspect
-from pytpc.diagnosis.scores.bounds import Reports
 from pytpc.diagnosis.scores.log_evidence import Evidence, Log
 from pytpc.diagnosis.scores.score_tables import Tables, Tpcs, parameter_tables, tpc_scores
 from pytpc.diagnosis.scores.scores import NONE, combined
+from pytpc.diagnosis.scores.summary_scores import Reports
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark, MarkType
 from pytpc.recording.mission import Recording

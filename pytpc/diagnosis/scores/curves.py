@@ -7,8 +7,8 @@ import numpy as np
 from pytpc.base.errors import TpcError
 from pytpc.diagnosis.question import PLAIN, Question
 from pytpc.diagnosis.results.mission import RankCurves
-from pytpc.diagnosis.scores.bounds import Reports
 from pytpc.diagnosis.scores.score_tables import Tpcs, parameter_tables, tpc_scores
+from pytpc.diagnosis.scores.summary_scores import Reports
 from pytpc.recording.mission import Recording
 from pytpc.static.static_info import StaticInfo
 

@@ -15,7 +15,7 @@ The cost is O(log n) for a key at a time, whatever the length of the window.
 
 Where the policy ``edges`` kept summaries instead of every evaluation, type I is the same number,
 because the first evaluation and all flops are among the events; for type II see
-`pytpc.diagnosis.scores.bounds`.
+`pytpc.diagnosis.scores.summary_scores`.
 """
 
 from __future__ import annotations
