@@ -16,29 +16,31 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import overload
 
+from pytpc.api.report import CARDS, MissionReport
+from pytpc.api.report import write_report as write_page
 from pytpc.base.errors import InputError
 from pytpc.base.wording import Number
-from pytpc.diagnosis.question import PLAIN, Question, Types
+from pytpc.diagnosis.question import PLAIN, WINDOW_S, Question, Types
 from pytpc.diagnosis.ranking.blame import blame
-from pytpc.diagnosis.ranking.ranking import MarkRanking, rank_marks
-from pytpc.diagnosis.scores.curves import STEP_S, RankCurves, rank_curves
-from pytpc.diagnosis.scores.scores import WINDOW_S
+from pytpc.diagnosis.ranking.ranking import rank_marks
+from pytpc.diagnosis.results.advice import WhatIf
+from pytpc.diagnosis.results.mission import RankCurves
+from pytpc.diagnosis.results.suspects import MarkRanking
+from pytpc.diagnosis.scores.curves import STEP_S, rank_curves
 from pytpc.diagnosis.suggestion.advise import advise
 from pytpc.diagnosis.suggestion.blamed import advise_blamed
-from pytpc.diagnosis.suggestion.declared import Declared, declared_in
 from pytpc.diagnosis.suggestion.joining import with_remedies
-from pytpc.diagnosis.suggestion.what_if import WhatIf
 from pytpc.diagnosis.suggestion.what_if import what_if as replay
 from pytpc.ingest import Recording
 from pytpc.ingest import read as read_recording
 from pytpc.present.answers import Advices, Diagnosed
 from pytpc.present.notebook import Table
-from pytpc.present.page.html import CARDS, MissionReport
-from pytpc.present.page.html import write_report as write_page
+from pytpc.recording.declaration import Declared
 from pytpc.recording.known_change import read_known_change
 from pytpc.recording.marks import Mark, MarkType
 from pytpc.static.static_info import StaticInfo, read_static
 from pytpc.values.changes import Change
+from pytpc.values.declared_files import declared_in
 from pytpc.values.origins import read_origins
 
 __all__ = ["Advices", "Change", "Diagnosed", "Rankings", "curves", "diagnose", "load_static"]
@@ -53,7 +55,7 @@ _SHOWN = 5
 class Rankings(Sequence[MarkRanking]):
     """The rankings of one mission, one for each mark, in the order of the marks.
 
-    A sequence of `pytpc.diagnosis.ranking.ranking.MarkRanking`; ``recording`` and ``static_info``
+    A sequence of `pytpc.diagnosis.results.suspects.MarkRanking`; ``recording`` and ``static_info``
     are what was ranked, ``source`` where the mission was read from, if it was ranked by its path:
     what else is in its folder is in the report then. ``question`` is what it was ranked with, and
     what is made of it uses it, too. ``table`` has the first suspects of each

@@ -18,7 +18,8 @@ from rich.text import Text
 
 from pytpc.api.live_reports import Item, Reports
 from pytpc.base.errors import RunError
-from pytpc.diagnosis.ranking.watching import KeptRankings, Look, Seen, Watching
+from pytpc.diagnosis.ranking.watching import KeptRankings, Watching
+from pytpc.diagnosis.results.live import Look, Seen
 from pytpc.present.marking_terminal import Mission
 from pytpc.present.watch_screen import LAYOUTS, Options, Panel, Status, watch_screen
 from pytpc.recording.marking_session import MarkChange, Session, View
@@ -303,7 +304,7 @@ class WatchedMission:
     def panel(self, now_ns: int, *, utf8: bool) -> Panel:
         """What is to be shown of an instant."""
         options = self._options._replace(utf8=utf8)
-        return Panel(self._look_at(now_ns), self.kept, self.status(), options)
+        return Panel(self._look_at(now_ns), tuple(self.kept), self.status(), options)
 
     def _look_at(self, now_ns: int) -> Look:
         """The look of now: worked out where anything is new, and some time has gone since."""

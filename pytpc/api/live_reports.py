@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections import Counter, deque
 from typing import NamedTuple
 
-from pytpc.diagnosis.ranking.watching import Seen
+from pytpc.diagnosis.results.live import Seen
 from pytpc.ingest.ros1 import decode_log, decode_string
 from pytpc.ingest.rosout_line import (
     Malformed,

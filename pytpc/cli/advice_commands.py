@@ -28,17 +28,20 @@ from pytpc.cli.options import (
 )
 from pytpc.cli.sources import static_of
 from pytpc.diagnosis.question import Question, Types
-from pytpc.diagnosis.ranking.blame import Blame, blame
-from pytpc.diagnosis.ranking.ranking import MarkRanking, rank_marks
-from pytpc.diagnosis.suggestion.blamed import BlamedAdvice, advise_blamed
-from pytpc.diagnosis.suggestion.declared import Declared, declared_in
-from pytpc.diagnosis.suggestion.joining import JoinedAdvice, MarkGroup, join_advice
-from pytpc.diagnosis.suggestion.what_if import WhatIf, what_if
+from pytpc.diagnosis.ranking.blame import blame
+from pytpc.diagnosis.ranking.ranking import rank_marks
+from pytpc.diagnosis.results.advice import BlamedAdvice, JoinedAdvice, MarkGroup, WhatIf
+from pytpc.diagnosis.results.suspects import Blame, MarkRanking
+from pytpc.diagnosis.suggestion.blamed import advise_blamed
+from pytpc.diagnosis.suggestion.joining import join_advice
+from pytpc.diagnosis.suggestion.what_if import what_if
 from pytpc.ingest import Recording
 from pytpc.present.as_json import blame_json, group_json, what_if_json
+from pytpc.recording.declaration import Declared
 from pytpc.recording.marks import MARK_TYPES, MarkType
 from pytpc.static.parameters import parameter_name, same_parameter
 from pytpc.static.static_info import Comparison, StaticInfo
+from pytpc.values.declared_files import declared_in
 
 _WHAT: dict[MarkType | None, str] = {
     "I": "type I, did what it should not",

@@ -13,8 +13,8 @@ import click
 from pytpc.base.errors import InputError
 from pytpc.base.wording import plain
 from pytpc.cli.console import progress, warn
+from pytpc.diagnosis.question import WINDOW_S
 from pytpc.diagnosis.ranking.complaints import complaints
-from pytpc.diagnosis.scores.scores import WINDOW_S
 from pytpc.ingest import Recording, read
 from pytpc.static.static_info import StaticInfo
 

@@ -29,14 +29,15 @@ from pytpc.cli.options import (
 from pytpc.cli.rank_together import TOGETHER, Judge, Score
 from pytpc.cli.sources import static_of
 from pytpc.diagnosis.question import Question, Types
-from pytpc.diagnosis.ranking.blame import Blame
 from pytpc.diagnosis.ranking.clocks import two_clocks
-from pytpc.diagnosis.ranking.ranking import MarkRanking, rank_marks
-from pytpc.diagnosis.suggestion.blamed import BlamedAdvice
-from pytpc.diagnosis.suggestion.declared import Declared, declared_in, read_declared
+from pytpc.diagnosis.ranking.ranking import rank_marks
+from pytpc.diagnosis.results.advice import BlamedAdvice, Suggested
+from pytpc.diagnosis.results.suspects import Blame, MarkRanking
+from pytpc.diagnosis.suggestion.advise import suggest_each
 from pytpc.ingest import Recording
 from pytpc.present.as_json import blame_json
-from pytpc.present.rankings import Row, print_blame, print_rankings, rows_of
+from pytpc.present.rankings import print_blame, print_rankings
+from pytpc.recording.declaration import Declared
 from pytpc.recording.marking_session import MarkChange
 from pytpc.recording.marks import (
     MARK_TYPES,
@@ -49,6 +50,7 @@ from pytpc.recording.marks import (
 )
 from pytpc.recording.marks_file import MarksFile
 from pytpc.static.static_info import StaticInfo
+from pytpc.values.declared_files import declared_in, read_declared
 
 
 @click.command("rank")
@@ -145,7 +147,7 @@ class _Asked:
         if together is not None and not self.each and not len(recording.summaries):
             return _Ranked(recording, together, [])
         rankings = rank_marks(recording, self.static, question)
-        marks = [(one, rows_of(one, recording, self.static, question)) for one in rankings]
+        marks = [(one, suggest_each(recording, self.static, one, question)) for one in rankings]
         return _Ranked(recording, together, marks)
 
 
@@ -155,7 +157,7 @@ class _Ranked:
 
     recording: Recording
     together: tuple[Blame, list[BlamedAdvice]] | None
-    marks: list[tuple[MarkRanking, list[Row]]]
+    marks: list[tuple[MarkRanking, list[Suggested]]]
 
     def show(self) -> None:
         """Print it."""
@@ -328,7 +330,9 @@ def _warn_plainly(line: str) -> None:
     warn(plain(line))
 
 
-def _json_of(ranking: MarkRanking, recording: Recording, rows: list[Row]) -> dict[str, object]:
+def _json_of(
+    ranking: MarkRanking, recording: Recording, rows: list[Suggested]
+) -> dict[str, object]:
     mark = ranking.mark
     return {
         "mission": recording.name,
@@ -343,8 +347,8 @@ def _json_of(ranking: MarkRanking, recording: Recording, rows: list[Row]) -> dic
     }
 
 
-def _json_of_suspect(row: Row) -> dict[str, object]:
-    suspect, advice = row.suspect, row.advice
+def _json_of_suspect(row: Suggested) -> dict[str, object]:
+    suspect, advice = row.suspect, row.suggestion
     return {
         "position": suspect.position,
         "tied": suspect.tied,

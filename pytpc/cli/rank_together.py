@@ -14,9 +14,11 @@ from pytpc.base.wording import plain
 from pytpc.cli.console import warn
 from pytpc.cli.options import PATH, check_reports, recording_of
 from pytpc.diagnosis.question import Question
-from pytpc.diagnosis.ranking.blame import Blame, blame
+from pytpc.diagnosis.ranking.blame import blame
+from pytpc.diagnosis.results.advice import BlamedAdvice
+from pytpc.diagnosis.results.suspects import Blame
 from pytpc.diagnosis.scores.score_tables import Tpcs
-from pytpc.diagnosis.suggestion.blamed import BlamedAdvice, advise_blamed
+from pytpc.diagnosis.suggestion.blamed import advise_blamed
 from pytpc.ingest import Recording
 from pytpc.ros.mission_run import PARAMS_FILE
 from pytpc.static.parameters import same_parameter

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import click
 
+from pytpc.api.report import CARDS, MissionReport, write_report
 from pytpc.base.errors import TpcError
 from pytpc.base.wording import many, plain
 from pytpc.cli.console import progress, warn
@@ -26,10 +27,9 @@ from pytpc.cli.sources import static_of
 from pytpc.diagnosis.question import Question, Types
 from pytpc.diagnosis.ranking.clocks import two_clocks
 from pytpc.diagnosis.ranking.ranking import rank_marks
-from pytpc.diagnosis.suggestion.declared import declared_in
-from pytpc.present.page.html import CARDS, MissionReport, write_report
 from pytpc.recording.known_change import read_known_change
 from pytpc.static.static_info import StaticInfo
+from pytpc.values.declared_files import declared_in
 from pytpc.values.origins import read_origins
 
 
@@ -121,7 +121,7 @@ def _json_of(output: Path, missions: list[MissionReport]) -> dict[str, object]:
                 "name": mission.name,
                 "marks": [
                     {
-                        "seconds": mission.seconds(ranking.mark.time_ns),
+                        "seconds": (ranking.mark.time_ns - mission.recording.start_ns) / 1e9,
                         "type": ranking.mark.type,
                         "first": ranking.suspects[0].parameter if ranking.suspects else None,
                         "enough": ranking.enough,

@@ -36,7 +36,8 @@ from pytpc.cli.options import (
 from pytpc.cli.sources import static_of
 from pytpc.diagnosis.question import Question, Types
 from pytpc.diagnosis.ranking.clocks import two_clocks
-from pytpc.diagnosis.ranking.watching import KINDS, Look, Row, Watching
+from pytpc.diagnosis.ranking.watching import KINDS, Watching
+from pytpc.diagnosis.results.live import LiveRow, Look
 from pytpc.diagnosis.scores.live_scores import LiveRanking
 from pytpc.ingest import Recording
 from pytpc.present.marking_terminal import Mission
@@ -223,7 +224,7 @@ def _json_of(look: Look, status: Status, into_ns: int | None) -> dict[str, objec
     }
 
 
-def _suspect(row: Row) -> dict[str, object]:
+def _suspect(row: LiveRow) -> dict[str, object]:
     suspect, last = row.suspect, row.last
     found = suspect.comparison
     return {

@@ -6,10 +6,12 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal, get_args
 
-from pytpc.diagnosis.scores.scores import WINDOW_S
 from pytpc.recording.declaration import Declared
 from pytpc.recording.marks import Mark, MarkType
 from pytpc.recording.mission import Recording
+
+WINDOW_S = 12.0
+"""The window of type II, in seconds."""
 
 Types = Literal["believe", "doubt", "ignore"]
 """How far the observer's types of the marks are believed, see `pytpc.diagnosis.ranking.ranking`."""

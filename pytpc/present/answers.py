@@ -8,10 +8,8 @@ from html import escape
 from typing import overload
 
 from pytpc.base.wording import exact, percent, plain, show
-from pytpc.diagnosis.ranking.blame import Blame
-from pytpc.diagnosis.ranking.ranking import MarkRanking
-from pytpc.diagnosis.suggestion.advise import Advice
-from pytpc.diagnosis.suggestion.blamed import BlamedAdvice
+from pytpc.diagnosis.results.advice import Advice, BlamedAdvice
+from pytpc.diagnosis.results.suspects import Blame, MarkRanking
 from pytpc.present.notebook import Table
 
 
@@ -19,7 +17,7 @@ from pytpc.present.notebook import Table
 class Advices(Sequence[Advice]):
     """What to do with the suspects at one mark, in their order.
 
-    A sequence of `pytpc.diagnosis.suggestion.advise.Advice`: suspect, value to try, smallest
+    A sequence of `pytpc.diagnosis.results.advice.Advice`: suspect, value to try, smallest
     change, and what they would have changed.
     """
 
@@ -48,8 +46,7 @@ class Advices(Sequence[Advice]):
         """A row for each suspect."""
         rows = []
         for advice in self.advices:
-            least, remedy = advice.suggestion, advice.remedy
-            told = least if remedy is None or remedy.value is None else remedy
+            least, told = advice.suggestion, advice.told
             then = advice.what_if if told is least else advice.tried
             what = f"{told.direction} to {exact(told.value)}"
             rows.append(
@@ -80,7 +77,7 @@ class Diagnosed:
 
     ``blame`` has all suspects with their probabilities, and what keeps them from being surer;
     ``advice`` is the value to try of the first ones
-    (`pytpc.diagnosis.suggestion.blamed.BlamedAdvice`).
+    (`pytpc.diagnosis.results.advice.BlamedAdvice`).
     """
 
     blame: Blame

@@ -6,15 +6,18 @@ import math
 from collections.abc import Sequence
 
 from pytpc.base.wording import Number
-from pytpc.diagnosis.ranking.blame import Blame
-from pytpc.diagnosis.suggestion.advise import Advice
-from pytpc.diagnosis.suggestion.blamed import BlamedAdvice
-from pytpc.diagnosis.suggestion.declared import Declared
-from pytpc.diagnosis.suggestion.joining import JoinedAdvice, MarkGroup
-from pytpc.diagnosis.suggestion.remedy import Remedy
-from pytpc.diagnosis.suggestion.suggest import Suggestion
-from pytpc.diagnosis.suggestion.what_if import WhatIf
+from pytpc.diagnosis.results.advice import (
+    Advice,
+    BlamedAdvice,
+    JoinedAdvice,
+    MarkGroup,
+    Remedy,
+    Suggestion,
+    WhatIf,
+)
+from pytpc.diagnosis.results.suspects import Blame
 from pytpc.diagnosis.thresholds.intervals import Intervals
+from pytpc.recording.declaration import Declared
 from pytpc.recording.marks import Mark
 
 Json = dict[str, object]

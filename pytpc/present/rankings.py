@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from rich.console import Console, Group, RenderableType
 from rich.padding import Padding
@@ -11,15 +10,11 @@ from rich.table import Table
 from rich.text import Text
 
 from pytpc.base.wording import exact, percent, plain, show
-from pytpc.diagnosis.question import Question
-from pytpc.diagnosis.ranking.blame import Blame
-from pytpc.diagnosis.ranking.ranking import MarkRanking, Suspect
-from pytpc.diagnosis.suggestion.blamed import BlamedAdvice
-from pytpc.diagnosis.suggestion.declared import declared_for
-from pytpc.diagnosis.suggestion.suggest import At, Suggestion, suggest
+from pytpc.diagnosis.results.advice import BlamedAdvice, Suggested
+from pytpc.diagnosis.results.suspects import Blame, MarkRanking
 from pytpc.recording.marks import MarkType
 from pytpc.recording.mission import Recording
-from pytpc.static.static_info import Comparison, StaticInfo
+from pytpc.static.static_info import Comparison
 
 _WHAT = {
     "I": "type I, did what it should not",
@@ -30,31 +25,10 @@ _KINDS: dict[MarkType, str] = {"I": "I: did", "II": "II: does not"}
 _WAYS = {"raise": "raise to", "lower": "lower to", "switch": "switch to"}
 
 
-@dataclass(frozen=True, slots=True)
-class Row:
-    """A suspect with what is suggested for it."""
-
-    suspect: Suspect
-    advice: Suggestion
-
-
-def rows_of(
-    ranking: MarkRanking, recording: Recording, static_info: StaticInfo, question: Question
-) -> list[Row]:
-    """The first suspects at a mark, each with its suggestion."""
-    rows = []
-    for suspect in ranking.suspects[: question.top]:
-        source = static_info.source_path(suspect.key)
-        asked = question.about(declared_for(question.declared, suspect, source))
-        at = At(ranking.mark.time_ns, suspect.type)
-        rows.append(Row(suspect, suggest(recording, static_info, suspect.comparison, at, asked)))
-    return rows
-
-
 def print_rankings(
     console: Console,
     recording: Recording,
-    rankings: Sequence[tuple[MarkRanking, list[Row]]],
+    rankings: Sequence[tuple[MarkRanking, list[Suggested]]],
 ) -> None:
     """Print a table for each mark: position, parameter, value, suggestion, source line, score."""
     for number, (ranking, rows) in enumerate(rankings, start=1):
@@ -100,7 +74,7 @@ def _blamed_cells(one: BlamedAdvice) -> list[Text]:
 
 
 def _mark(
-    number: int, ranking: MarkRanking, recording: Recording, rows: list[Row]
+    number: int, ranking: MarkRanking, recording: Recording, rows: list[Suggested]
 ) -> RenderableType:
     mark = ranking.mark
     seconds = (mark.time_ns - recording.start_ns) / 1e9
@@ -139,8 +113,8 @@ def _lack(ranking: MarkRanking) -> Text:
     return Text(plain(f"not enough evidence: {ranking.reason}"), style="yellow")
 
 
-def _cells(row: Row, mixed: bool) -> list[Text]:
-    suspect, advice = row.suspect, row.advice
+def _cells(row: Suggested, mixed: bool) -> list[Text]:
+    suspect, advice = row.suspect, row.suggestion
     current = advice.current if advice.current is not None else suspect.last.thresh
     if advice.direction is None:
         what = Text(plain(f"none: {advice.reason}"), style="dim")

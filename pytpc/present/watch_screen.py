@@ -14,7 +14,7 @@ from rich.cells import cell_len
 from rich.text import Text
 
 from pytpc.base.wording import exact, many, plain
-from pytpc.diagnosis.ranking.watching import KeptRankings, Look, Part, Row
+from pytpc.diagnosis.results.live import Kept, LiveRow, Look, Part
 from pytpc.recording.marking_session import Session, View, clock_text, cut, folded
 from pytpc.recording.marks import Mark, MarkType
 
@@ -85,7 +85,7 @@ class Panel(NamedTuple):
     """What is watched, beside the session and the view of `pytpc.recording.marking_session`."""
 
     look: Look
-    kept: KeptRankings
+    kept: Sequence[Kept]
     status: Status
     options: Options
 
@@ -97,7 +97,7 @@ class _Column(NamedTuple):
     width: int
     right: bool
     need: int
-    text: Callable[[Row, bool], str]
+    text: Callable[[LiveRow, bool], str]
 
 
 def watch_screen(session: Session, view: View, panel: Panel, width: int, height: int) -> list[Text]:
@@ -220,7 +220,7 @@ def _marks(session: Session, view: View, panel: Panel, width: int, room: int) ->
     lines = [Text(cut(f"{many(len(session.marks), 'mark')}:", width), style="bold")]
     for mark in shown:
         when = clock_text(mark.time_ns - view.start_ns)
-        kept = panel.kept.of(mark)
+        kept = next((one for one in panel.kept if one.mark == mark), None)
         named = "made earlier" if kept is None else kept.words()
         text = f"{when:>9}  {mark.type or '-':2}  {named}{_note(mark)}"
         lines.append(Text(cut(text.rstrip(), width), style=_COLOURS[mark.type]))
@@ -243,7 +243,9 @@ def _keys(view: View) -> str:
     return "  ".join(word.replace(" ", "\N{NO-BREAK SPACE}") for word in words)
 
 
-def _columns(kind: MarkType | None, width: int, rows: Sequence[Row]) -> tuple[list[_Column], int]:
+def _columns(
+    kind: MarkType | None, width: int, rows: Sequence[LiveRow]
+) -> tuple[list[_Column], int]:
     """The columns that have room, in their order, and how wide the names are."""
     longest = max(cell_len(plain(row.suspect.parameter)) for row in rows)
     score = _Column("Score", 6, True, 1, lambda row, _: score_text(row.suspect.score))
@@ -262,7 +264,7 @@ def _columns(kind: MarkType | None, width: int, rows: Sequence[Row]) -> tuple[li
     return [], max(1, width - _NUMBER)
 
 
-def _now(row: Row) -> str:
+def _now(row: LiveRow) -> str:
     """What is compared now: ``0.0527 > 0.058``."""
     if row.last is None:
         return ""
@@ -277,7 +279,7 @@ def _now(row: Row) -> str:
     return f"{left} {relation} {right}"
 
 
-def _now_width(rows: Sequence[Row]) -> int:
+def _now_width(rows: Sequence[LiveRow]) -> int:
     return min(_WIDEST_NOW, max(3, *(cell_len(_now(row)) for row in rows)))
 
 

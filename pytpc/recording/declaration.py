@@ -15,7 +15,8 @@ class Declared:
     """One declaration.
 
     ``type`` is ``bool``, ``int``, ``double`` or ``str``; ``choices`` are the values of an
-    enumeration with their names. ``place`` is ``file:line``, or the topic that said so.
+    enumeration with their names. ``place`` is ``file:line``, or the topic that said so. ``package``
+    is the folder of the package whose file declares it; empty where a node published it.
     """
 
     parameter: str
@@ -27,6 +28,7 @@ class Declared:
     choices: tuple[tuple[str, Number | str], ...]
     description: str
     place: str
+    package: str = ""
 
 
 def make_declared(

@@ -93,6 +93,12 @@ class Events(tables.WordTable):
         offsets = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
         return KeyIndex(frozen(order), frozen(offsets))
 
+    def rows_of(self, key: str) -> Int64s:
+        """The rows of a key, in the order of time; none where the table does not know it."""
+        if key not in self.keys:
+            return np.empty(0, dtype=np.int64)
+        return self.by_key.rows(self.keys.index(key))
+
     @cached_property
     def previous(self) -> Int64s:
         """int64[n]: for each row the row of the same key's evaluation before it, -1 where none.

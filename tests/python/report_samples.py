@@ -9,9 +9,9 @@ from html.parser import HTMLParser
 
 from mission_samples import comparison, events, ns, static_info
 
+from pytpc.api.report import MissionReport, write_report
 from pytpc.diagnosis.ranking.ranking import rank_marks
 from pytpc.ingest import Recording
-from pytpc.present.page.html import MissionReport, write_report
 from pytpc.recording.marks import Mark
 from pytpc.static.static_info import PathStep
 

@@ -10,9 +10,9 @@ from mission_samples import comparison, events, ns, static_info
 from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.ranking import rank_marks
 from pytpc.diagnosis.suggestion.advise import advise, alternatives
-from pytpc.diagnosis.suggestion.declared import Declared
 from pytpc.diagnosis.suggestion.joining import join_advice
 from pytpc.present.as_json import advice_json, group_json
+from pytpc.recording.declaration import Declared
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
 

@@ -10,8 +10,8 @@ from mission_samples import comparison, events, key, ns, static_info
 
 from pytpc.base.wording import percent
 from pytpc.diagnosis.question import Question
-from pytpc.diagnosis.ranking.blame import Accused, Blame, blame
-from pytpc.diagnosis.scores.log_evidence import Evaluation
+from pytpc.diagnosis.ranking.blame import blame
+from pytpc.diagnosis.results.suspects import Accused, Blame, Evaluation
 from pytpc.diagnosis.suggestion.blamed import advise_blamed
 from pytpc.ingest import Recording
 from pytpc.recording.marks import Mark

@@ -13,9 +13,9 @@ from mission_samples import comparison, key, ns, static_info
 
 from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.ranking import rank_marks
-from pytpc.diagnosis.scores.bounds import Reports, type2_bounds
 from pytpc.diagnosis.scores.live_scores import LiveRanking, LiveScores, TooOldError
 from pytpc.diagnosis.scores.scores import NONE, Before, Formula, type1, type2
+from pytpc.diagnosis.scores.summary_scores import Reports, type2_of_summaries
 from pytpc.ingest import Recording
 from pytpc.recording.events import EventBuilder, Report
 from pytpc.recording.marks import Mark
@@ -235,11 +235,11 @@ def test_live_is_offline_with_summaries(periods, window):
         for mark in (begin + 0.1, begin + 0.05):
             first, second = live.scores_at(ns(mark))
             events = table(rows)
-            bounds = type2_bounds(
+            expected = type2_of_summaries(
                 Reports(events, builder.build()), ns(mark), DISTANCE, Formula(window)
             )
             assert first.tolist() == type1(events, ns(mark), DISTANCE)[0].tolist()
-            assert second == pytest.approx(bounds.value[0], rel=1e-9)
+            assert second == pytest.approx(expected[0], rel=1e-9)
         begin += step
 
 

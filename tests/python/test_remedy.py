@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from mission_samples import comparison, events, key, ns, static_info
 
 from pytpc.diagnosis.question import Question
-from pytpc.diagnosis.suggestion.declared import Declared
 from pytpc.diagnosis.suggestion.remedy import remedy
+from pytpc.recording.declaration import Declared
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording

@@ -15,15 +15,14 @@ from hypothesis import strategies as st
 from mission_samples import comparison, events, key, ns, static_info
 from report_samples import NASTY, Page, mission, written
 
+from pytpc.api.report import MissionReport, write_report
 from pytpc.base.errors import TpcError
 from pytpc.base.wording import percent
 from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.blame import blame
 from pytpc.diagnosis.ranking.ranking import rank_marks
-from pytpc.diagnosis.suggestion.declared import Declared
 from pytpc.diagnosis.suggestion.joining import join_advice
 from pytpc.ingest import MalformedRecord, Recording
-from pytpc.present.page.html import MissionReport, write_report
 from pytpc.present.page.series import (
     BINS,
     BOTH,
@@ -36,6 +35,7 @@ from pytpc.present.page.series import (
     thin,
     with_gaps,
 )
+from pytpc.recording.declaration import Declared
 from pytpc.recording.marks import Mark
 from pytpc.recording.summaries import Summary, SummaryBuilder
 from pytpc.values.origins import Origin
@@ -338,7 +338,9 @@ def test_where_the_value_came_from_is_on_the_card(tmp_path):
 # Below 0.5 would do; the highest of 0, 0.05, 0.1, ... below it is 0.45.
 def test_what_is_declared_is_on_the_card(tmp_path):
     place = f"{tmp_path}/src/cfg/A.cfg:4"
-    declared = Declared("coverage", "double", 0.0, 0.55, 0.05, 0.5, (), "how much", place)
+    declared = Declared(
+        "coverage", "double", 0.0, 0.55, 0.05, 0.5, (), "how much", place, package=str(tmp_path)
+    )
     text = "".join(
         Page(written(tmp_path, mission(tmp_path, question=Question(declared=[declared])))).text
     )

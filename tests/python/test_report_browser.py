@@ -17,9 +17,9 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import WebDriverWait
 
+from pytpc.api.report import MissionReport, write_report
 from pytpc.diagnosis.ranking.ranking import rank_marks
 from pytpc.ingest import Recording
-from pytpc.present.page.html import MissionReport, write_report
 from pytpc.recording.marks import Mark
 from pytpc.static.static_info import PathStep
 

@@ -13,9 +13,9 @@ import pytest
 from mission_samples import comparison, events, key, ns, static_info
 from report_samples import Page, mission, written
 
+from pytpc.api.report import MissionReport
 from pytpc.diagnosis.ranking.ranking import rank_marks
 from pytpc.ingest import Recording
-from pytpc.present.page.html import MissionReport
 from pytpc.present.page.series import FALSE, TRUE
 from pytpc.recording.marks import Mark
 from pytpc.recording.summaries import Summary, SummaryBuilder

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from mission_samples import comparison, events, link_unit
 
 from pytpc.diagnosis.suggestion.choice import Choice, Possible, choose, readable
-from pytpc.diagnosis.suggestion.declared import Declared
 from pytpc.diagnosis.thresholds.intervals import Interval, words
+from pytpc.recording.declaration import Declared
 from pytpc.static.static_info import ParameterRead
 
 

@@ -11,7 +11,8 @@ from rich.text import Text
 
 from pytpc.api.live_mission import GraphFeed, RecordedFeed
 from pytpc.api.live_reports import Reports
-from pytpc.diagnosis.ranking.watching import BINS, KeptRankings, Look, Seen, Watching
+from pytpc.diagnosis.ranking.watching import BINS, KeptRankings, Watching
+from pytpc.diagnosis.results.live import Look, Seen
 from pytpc.diagnosis.scores.live_scores import LiveRanking
 from pytpc.present.watch_screen import LAYOUTS, Options, Panel, Status, table, watch_screen
 from pytpc.recording.marking_session import MarkChange, Session, View
@@ -131,8 +132,7 @@ def test_rankings_are_kept_at_marks_noted_and_taken_back():
     kept.follow(MarkChange(mark, noted), found)
     kept.follow(MarkChange(other, None), found)
     assert len(kept) == 1
-    assert kept.of(noted) is not None
-    assert kept.of(mark) is None
+    assert [one.mark for one in kept] == [noted]
 
 
 def test_a_mark_whose_type_is_not_believed_is_ranked_by_both():
@@ -143,7 +143,7 @@ def test_a_mark_whose_type_is_not_believed_is_ranked_by_both():
 
 
 def panel(look: Look, options: Options, kept: KeptRankings | None = None) -> Panel:
-    return Panel(look, kept or KeptRankings(5), Status(6, 2.0, 1), options)
+    return Panel(look, tuple(kept or ()), Status(6, 2.0, 1), options)
 
 
 def shown(

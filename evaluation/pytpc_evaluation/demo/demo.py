@@ -14,11 +14,12 @@ from pathlib import Path
 from rich.table import Table
 from rich.text import Text
 
+from pytpc.api.report import MissionReport
 from pytpc.base.errors import RunError
-from pytpc.diagnosis.ranking.ranking import MarkRanking, rank_marks
+from pytpc.diagnosis.ranking.ranking import rank_marks
+from pytpc.diagnosis.results.suspects import MarkRanking
 from pytpc.diagnosis.suggestion.suggest import At, suggest
 from pytpc.ingest import Recording, read_bag, save_recording
-from pytpc.present.page.html import MissionReport
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import EVENTS_FILE, MARKS_FILE
 from pytpc.ros.mission_run import MissionRun, Progress

@@ -15,12 +15,12 @@ from pathlib import Path
 import click
 from rich.console import Console
 
+from pytpc.api.report import write_report
 from pytpc.base.errors import TpcError
 from pytpc.base.wording import many
 from pytpc.build.build import build_workspace, workspace_env
 from pytpc.cli.console import progress
 from pytpc.cli.mission_commands import mission_progress
-from pytpc.present.page.html import write_report
 from pytpc.ros.python_env import mission_env
 from pytpc.static.static_info import StaticInfo
 from pytpc.workspace.colcon import BuildError

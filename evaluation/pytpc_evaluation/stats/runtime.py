@@ -21,7 +21,7 @@ import numpy as np
 from pytpc.base.columns import Floats, Int64s
 from pytpc.base.tables import Column, Table, statistics
 from pytpc.base.wording import many
-from pytpc.diagnosis.scores.bounds import covered
+from pytpc.diagnosis.scores.summary_scores import covered
 from pytpc.recording.events import Events
 from pytpc.recording.mission import Recording
 from pytpc.recording.summaries import Summaries

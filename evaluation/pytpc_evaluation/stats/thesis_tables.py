@@ -7,9 +7,9 @@ from functools import partial
 from typing import TypeVar
 
 from pytpc.base.tables import Table
+from pytpc.diagnosis.question import WINDOW_S
 from pytpc.diagnosis.ranking.clocks import two_clocks
 from pytpc.diagnosis.ranking.complaints import complaints
-from pytpc.diagnosis.scores.scores import WINDOW_S
 from pytpc.static.parameters import parameter_name, same_parameter
 from pytpc.static.static_info import StaticInfo
 from pytpc_evaluation.stats.delays import delays_of, delays_table

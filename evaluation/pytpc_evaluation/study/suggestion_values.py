@@ -11,8 +11,9 @@ from pytpc.base.errors import InputError
 from pytpc.base.wording import percent
 from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.blame import blame
+from pytpc.diagnosis.results.advice import Remedy
 from pytpc.diagnosis.suggestion.blamed import advise_blamed
-from pytpc.diagnosis.suggestion.remedy import Remedy, remedy
+from pytpc.diagnosis.suggestion.remedy import remedy
 from pytpc.recording.mission import Recording, load_recording
 from pytpc.static.parameters import DYNAMIC, same_parameter
 from pytpc.static.static_info import StaticInfo

@@ -7,110 +7,25 @@ marks or the reports are not enough.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
-from pytpc.base.wording import many, percent
+from pytpc.base.wording import many
 from pytpc.diagnosis.question import PLAIN, Question
 from pytpc.diagnosis.ranking.diagnosing import diagnose_beside
 from pytpc.diagnosis.ranking.posterior import Decisive, Diagnosis
 from pytpc.diagnosis.ranking.ranking import outside
-from pytpc.diagnosis.scores.log_evidence import Evaluation, Log
+from pytpc.diagnosis.results.suspects import Accused, Blame, Evaluation
+from pytpc.diagnosis.scores.log_evidence import Log
 from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.recording.events import Events
-from pytpc.recording.marks import Mark, MarkType
+from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
-from pytpc.static.parameters import same_parameter
-from pytpc.static.static_info import Comparison, StaticInfo
-
-SURE = 0.5
-"""From this probability on the first parameter is accused: it is likelier than all else together"""
+from pytpc.static.static_info import StaticInfo
 
 _DIGITS = 9
 """Scores that differ by rounding only are tied."""
-
-
-@dataclass(frozen=True, slots=True)
-class Accused:
-    """A parameter and the probability that it is to blame.
-
-    ``position`` counts from 1; ``tied`` parameters have the same one. ``type`` is the likelier kind
-    of error if it is this parameter: I, the robot did what it should not, or II, it does not do
-    what it should. ``key`` and ``comparison`` are those that decide, ``last`` its last evaluation
-    up to the last mark.
-    """
-
-    position: int
-    tied: bool
-    parameter: str
-    probability: float
-    type: MarkType
-    key: str
-    comparison: Comparison
-    last: Evaluation
-
-
-@dataclass(frozen=True, slots=True)
-class Blame:
-    """All parameters that were compared, the likeliest first.
-
-    ``none`` is the probability that it is none of the parameters, ``parameters`` how many there
-    are, ``marks`` from which it was worked out. ``notes`` say what keeps it from being surer.
-    """
-
-    suspects: tuple[Accused, ...]
-    none: float
-    parameters: int
-    marks: tuple[Mark, ...]
-    notes: tuple[str, ...]
-
-    @property
-    def confidence(self) -> float:
-        """The probability of the first; 0 where nobody is suspected."""
-        return self.suspects[0].probability if self.suspects else 0.0
-
-    @property
-    def accused(self) -> str | None:
-        """The parameter that is held for likelier than all else together; None: not sure."""
-        return self.suspects[0].parameter if self.confidence >= SURE else None
-
-    @property
-    def text(self) -> str:
-        """The verdict in one line."""
-        if not self.suspects:
-            return "not enough evidence to suspect anybody"
-        first = self.suspects[0]
-        name, sure = first.parameter, percent(first.probability)
-        if self.accused is not None:
-            return f"blame {name}: {sure}; none of the parameters: {percent(self.none)}"
-        if self.none > first.probability:
-            return (
-                f"not sure: none of the parameters is likeliest ({percent(self.none)}; a fault in "
-                f"the code is none of them), then {name} ({sure})"
-            )
-        return (
-            f"not sure: {name} is likeliest ({sure}); none of the parameters: {percent(self.none)}"
-        )
-
-    def only(self, parameter: str) -> Blame:
-        """The same with the one suspect, at its position; with none where it is not suspected."""
-        exact = [one for one in self.suspects if one.parameter == parameter]
-        same = [one for one in self.suspects if same_parameter(parameter, one.parameter)]
-        return replace(self, suspects=tuple(exact or same))
-
-    @property
-    def title(self) -> str:
-        """Which marks they are: ``All 5 marks together: 1 of type I, 4 of type II``."""
-        count = len(self.marks)
-        observers = len({mark.observer for mark in self.marks})
-        by = f" of {observers} observers" if observers > 1 else ""
-        which = f"All {count} marks{by} together" if count > 1 else "The one mark"
-        kinds = [mark.type for mark in self.marks]
-        named: tuple[tuple[MarkType | None, str], ...]
-        named = (("I", "of type I"), ("II", "of type II"), (None, "without a type"))
-        said = [f"{kinds.count(kind)} {words}" for kind, words in named if kind in kinds]
-        return f"{which}: {', '.join(said)}"
 
 
 def blame(recording: Recording, static_info: StaticInfo, question: Question = PLAIN) -> Blame:
@@ -171,7 +86,7 @@ def _suspects(
 
 def _last(events: Events, by: Decisive, time_ns: int) -> Evaluation:
     """The last evaluation of a comparison in a node up to a time, else its first."""
-    rows = events.by_key.rows(events.keys.index(by.key))
+    rows = events.rows_of(by.key)
     rows = rows[events.node[rows] == events.nodes.index(by.node)]
     place = int(np.searchsorted(events.time_ns[rows], time_ns, side="right")) - 1
     row = int(rows[max(0, place)])

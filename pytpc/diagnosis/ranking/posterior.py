@@ -27,8 +27,8 @@ import numpy as np
 from pytpc.base.columns import Floats, Int64s
 from pytpc.diagnosis.ranking.mark_evidence import SHARE, Evidence, evidence, marked
 from pytpc.diagnosis.ranking.result_streams import Streams
-from pytpc.diagnosis.scores.bounds import Reports
 from pytpc.diagnosis.scores.score_tables import Tpcs, parameter_tables, tpc_scores
+from pytpc.diagnosis.scores.summary_scores import Reports
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
 from pytpc.static.static_info import StaticInfo

@@ -28,16 +28,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pytpc.diagnosis.question import PLAIN, Question
-from pytpc.diagnosis.scores.bounds import Reports
-from pytpc.diagnosis.scores.log_evidence import Evaluation, Evidence, Log
+from pytpc.diagnosis.question import PLAIN, WINDOW_S, Question
+from pytpc.diagnosis.results.suspects import MarkRanking, Suspect
+from pytpc.diagnosis.scores.log_evidence import Evidence, Log
 from pytpc.diagnosis.scores.score_tables import Tables, Tpcs, parameter_tables, tpc_scores
-from pytpc.diagnosis.scores.scores import NONE, WINDOW_S, combined
+from pytpc.diagnosis.scores.scores import NONE, combined
+from pytpc.diagnosis.scores.summary_scores import Reports
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark, MarkType
 from pytpc.recording.mission import Recording
-from pytpc.static.parameters import same_parameter
-from pytpc.static.static_info import Comparison, StaticInfo
+from pytpc.static.static_info import StaticInfo
 
 DOUBT: dict[MarkType, float] = {"I": 26 / 32, "II": 45 / 70}
 """How probable the other type is after a mark of this one."""
@@ -47,59 +47,6 @@ FEWEST = 2
 
 # A robot on simulated time and one on the wall's are decades apart, two missions hours.
 APART_NS = 24 * 3600 * 10**9
-
-
-@dataclass(frozen=True, slots=True)
-class Suspect:
-    """A parameter at a mark.
-
-    ``position`` counts from 1; parameters between which nothing decides are ``tied`` and have the
-    same one. ``key`` and ``comparison`` are its most suspicious TPC, ``score`` that one's score by
-    the formula of ``type`` (SPEC 7). ``rank`` is what they are ordered by: the parameter's rank
-    among all parameters, or what is made of both where the type is not believed. ``keys`` are all
-    TPCs of the parameter that the log has. ``last`` is the TPC's last evaluation up to the mark.
-    ``rank1`` and ``rank2`` are the parameter's ranks by type I and by type II, 0 where it has no
-    such score.
-    """
-
-    position: int
-    parameter: str
-    key: str
-    comparison: Comparison
-    type: MarkType
-    score: float
-    rank: float
-    keys: tuple[str, ...]
-    last: Evaluation
-    tied: bool = False
-    rank1: float = 0.0
-    rank2: float = 0.0
-
-
-@dataclass(frozen=True, slots=True)
-class MarkRanking:
-    """The suspects at one mark, most suspicious first; parameters without a score are not here.
-
-    ``parameters`` is the number of parameters among which they were ranked. Where there is not
-    ``enough`` evidence to go by the order, or for any at all, ``reason`` says why; else it is
-    empty.
-    """
-
-    mark: Mark
-    suspects: tuple[Suspect, ...]
-    parameters: int
-    enough: bool = True
-    reason: str = ""
-
-    def position_of(self, parameter: str) -> int | None:
-        """The position of a parameter, None where it has no score at this mark."""
-        found = self.suspect_of(parameter)
-        return None if found is None else found.position
-
-    def suspect_of(self, parameter: str) -> Suspect | None:
-        """The most suspicious of what ``parameter`` can mean, see `same_parameter`."""
-        same = (s for s in self.suspects if same_parameter(parameter, s.parameter))
-        return next(same, None)
 
 
 def rank_marks(

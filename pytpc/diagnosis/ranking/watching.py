@@ -10,13 +10,13 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple
 
-from pytpc.diagnosis.ranking.ranking import MarkRanking, Suspect
+from pytpc.diagnosis.question import WINDOW_S
+from pytpc.diagnosis.results.live import Kept, LiveRow, Look, Part, Seen
+from pytpc.diagnosis.results.suspects import MarkRanking, Suspect
 from pytpc.diagnosis.scores.live_scores import LiveRanking
-from pytpc.diagnosis.scores.scores import WINDOW_S
 from pytpc.recording.marking_session import MarkChange
 from pytpc.recording.marks import Mark, MarkType
 from pytpc.recording.summaries import Summary
@@ -25,55 +25,7 @@ from pytpc.static.static_info import StaticInfo
 BINS = 8
 """So many parts of the window are shown of each comparison, the last of them now."""
 
-_NAMED = 3
-
 KINDS: tuple[MarkType | None, ...] = ("I", "II", None)
-
-
-class Seen(NamedTuple):
-    """One evaluation, as it came."""
-
-    time_ns: int
-    key: str
-    node: str
-    result: bool
-    cmp: float
-    thresh: float
-    res: bool
-
-
-class Part(NamedTuple):
-    """What a comparison did in one part of the window.
-
-    ``distance`` is the mean of |cmp - thresh| over max - min (0 is on the threshold, as in D of
-    SPEC 7), NaN where it was not evaluated; ``flopped`` says whether the result changed.
-    """
-
-    distance: float
-    flopped: bool
-
-
-@dataclass(frozen=True, slots=True)
-class Row:
-    """A suspect as it is shown: ``parts`` are the last ``BINS`` of its comparison; ``flop_s`` are
-    the seconds since its last flop, None where it has not flopped; ``last`` is its last evaluation,
-    None where there are summaries alone."""
-
-    suspect: Suspect
-    last: Seen | None
-    flop_s: float | None
-    parts: tuple[Part, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Look:
-    """What is to be shown of one instant: the rows by type (None: both combined), and why there
-    are none where there are none."""
-
-    now_ns: int
-    rows: Mapping[MarkType | None, tuple[Row, ...]]
-    reasons: Mapping[MarkType | None, str]
-    parameters: int
 
 
 @dataclass(slots=True)
@@ -212,7 +164,7 @@ class Watching:
                 del track.bins[old]
         return part
 
-    def _row(self, suspect: Suspect, now_ns: int) -> Row:
+    def _row(self, suspect: Suspect, now_ns: int) -> LiveRow:
         track = self._tracks.get(suspect.key, _Track())
         flop_s = None if track.flop_ns is None else max(0, now_ns - track.flop_ns) / 1e9
         newest = now_ns // self._bin_ns
@@ -223,22 +175,7 @@ class Watching:
             known = part.count > 0 and spread > 0
             mean = part.total / part.count / spread if known else math.nan
             parts.append(Part(min(1.0, mean) if known else math.nan, part.flops > 0))
-        return Row(suspect, track.last, flop_s, tuple(parts))
-
-
-class Kept(NamedTuple):
-    """A mark with what was known when it was made."""
-
-    mark: Mark
-    ranking: MarkRanking
-    look: Look
-
-    def words(self) -> str:
-        """The first suspects, or why there is none."""
-        (rows,), (reason,) = self.look.rows.values(), self.look.reasons.values()
-        firsts = [row.suspect for row in rows[:_NAMED]]
-        named = [f"{one.position}{'=' if one.tied else ''} {one.parameter}" for one in firsts]
-        return ", ".join(named) or reason or "no parameter has a score"
+        return LiveRow(suspect, track.last, flop_s, tuple(parts))
 
 
 class KeptRankings:
@@ -257,9 +194,9 @@ class KeptRankings:
         """One of them."""
         return self._kept[index]
 
-    def of(self, mark: Mark) -> Kept | None:
-        """What was kept at a mark; None for one of an earlier session."""
-        return next((one for one in self._kept if one.mark == mark), None)
+    def __iter__(self) -> Iterator[Kept]:
+        """All of them."""
+        return iter(self._kept)
 
     def follow(self, change: MarkChange, watching: Watching, *, believe: bool = True) -> None:
         """Keep, forget or rename what belongs to a mark that was made, taken back or noted."""

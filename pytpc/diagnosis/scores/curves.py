@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from pytpc.base.columns import Floats, Int64s
 from pytpc.base.errors import TpcError
 from pytpc.diagnosis.question import PLAIN, Question
-from pytpc.diagnosis.scores.bounds import Reports
+from pytpc.diagnosis.results.mission import RankCurves
 from pytpc.diagnosis.scores.score_tables import Tpcs, parameter_tables, tpc_scores
+from pytpc.diagnosis.scores.summary_scores import Reports
 from pytpc.recording.mission import Recording
 from pytpc.static.static_info import StaticInfo
 
@@ -19,24 +17,6 @@ STEP_S = 0.1
 
 # Some 2 GB in all five tables. A mission that seems to take decades has two clocks in it.
 _MOST_NUMBERS = 50_000_000
-
-
-@dataclass(frozen=True, eq=False)
-class RankCurves:
-    """Scores and ranks of p parameters at t times.
-
-    ``times_ns`` int64[t]; ``parameters`` the p names, sorted; ``score1``, ``score2`` float64[t, p]
-    (`pytpc.diagnosis.scores.scores.NONE` where none), ``rank1``, ``rank2`` and ``combined``
-    float64[t, p] in [0, 1], 1 the most suspicious.
-    """
-
-    times_ns: Int64s
-    parameters: tuple[str, ...]
-    score1: Floats
-    score2: Floats
-    rank1: Floats
-    rank2: Floats
-    combined: Floats
 
 
 def rank_curves(

@@ -3,7 +3,7 @@
 What is kept are the evaluations of the window and of some seconds more, of each comparison in each
 node (a stream); what is older is counted: flops, the last of them, and the extremes of the values.
 So memory is bounded by the window, whatever the length of the mission. The scores are worked out by
-the functions of `pytpc.diagnosis.scores.scores` and `pytpc.diagnosis.scores.bounds` themselves,
+the very functions of `pytpc.diagnosis.scores.scores` and `pytpc.diagnosis.scores.summary_scores`,
 from what is kept and what was counted (`pytpc.diagnosis.scores.scores.Before`).
 
 Reports may come in any order between nodes: every stream has its own newest time. Within a stream
@@ -24,13 +24,13 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from pytpc.diagnosis.question import PLAIN, Question
-from pytpc.diagnosis.ranking.ranking import MarkRanking, Ranker
-from pytpc.diagnosis.scores.bounds import Reports
+from pytpc.diagnosis.question import PLAIN, WINDOW_S, Question
+from pytpc.diagnosis.ranking.ranking import Ranker
+from pytpc.diagnosis.results.suspects import Evaluation, MarkRanking
 from pytpc.diagnosis.scores.live_streams import AGAIN, Rows, Stream, SummaryStream, end_of
-from pytpc.diagnosis.scores.log_evidence import Evaluation
 from pytpc.diagnosis.scores.score_tables import Tpcs, TpcScores, parameter_tables, tpc_scores
-from pytpc.diagnosis.scores.scores import NEVER, WINDOW_S, Before, not_negative
+from pytpc.diagnosis.scores.scores import NEVER, Before, not_negative
+from pytpc.diagnosis.scores.summary_scores import Reports
 from pytpc.recording.events import Events, Floats
 from pytpc.recording.marks import Mark
 from pytpc.recording.summaries import Summaries, Summary, SummaryBuilder
@@ -39,7 +39,7 @@ from pytpc.static.static_info import StaticInfo
 LATE_S = 10.0
 """How much later than a newer one of its stream a report may come; how far back a mark may lie."""
 
-# Longer than a summary and a report of it may be apart, see `pytpc.diagnosis.scores.bounds`.
+# Longer than a summary and a report of it may be apart, see ``covered``.
 _SUMMARY_SLACK_NS = 1_000_000_000
 _MOST_UNKNOWN = 1000
 
@@ -147,7 +147,7 @@ class LiveScores:
         """Both scores at one time, of all that was added and is not later.
 
         Returns:
-            float64[n] each: what ``type1`` and ``type2`` (``type2_bounds``' value for keys with
+            float64[n] each: what ``type1`` and ``type2`` (``type2_of_summaries`` for keys with
             summaries) give for the table of all that was added.
 
         Raises:

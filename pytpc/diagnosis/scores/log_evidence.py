@@ -8,19 +8,9 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
+from pytpc.diagnosis.results.suspects import Evaluation
 from pytpc.recording.events import Bools, Events, Int64s
 from pytpc.recording.summaries import Summaries
-
-
-class Evaluation(NamedTuple):
-    """One evaluation, as it was reported, or the last of a summary."""
-
-    time_ns: int
-    result: bool
-    cmp: float
-    thresh: float
-    res: bool
-    node: str
 
 
 class Evidence(Protocol):

@@ -9,16 +9,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from pytpc.diagnosis.scores.bounds import Reports, type2_bounds
-from pytpc.diagnosis.scores.scores import (
-    WINDOW_S,
-    Formula,
-    by_parameter,
-    combined,
-    ranks,
-    type1,
-    type2,
-)
+from pytpc.diagnosis.question import WINDOW_S
+from pytpc.diagnosis.scores.scores import Formula, by_parameter, combined, ranks, type1
+from pytpc.diagnosis.scores.summary_scores import Reports, type2_of_summaries
 from pytpc.recording.events import Floats, Int64s
 from pytpc.recording.marks import MarkType
 from pytpc.static.parameters import parameter_name
@@ -105,17 +98,15 @@ def tpc_scores(
 
     Args:
         tpcs: n of them.
-        reports: the events with ``tpcs.keys`` as their keys (`Events.with_keys`); where there are
-            summaries of a TPC, its type II is `type2_bounds`' value.
+        reports: the events with ``tpcs.keys`` as their keys (`Events.with_keys`).
         times_ns: int64[t], in any order.
         window_s: the window of type II in seconds.
     """
-    events, summaries, before = reports
     formula = Formula(window_s)
-    first = type1(events, times_ns, tpcs.distance, formula, before)
-    if not len(summaries):
-        return TpcScores(first, type2(events, times_ns, tpcs.distance, formula, before))
-    return TpcScores(first, type2_bounds(reports, times_ns, tpcs.distance, formula).value)
+    return TpcScores(
+        type1(reports.events, times_ns, tpcs.distance, formula, reports.before),
+        type2_of_summaries(reports, times_ns, tpcs.distance, formula),
+    )
 
 
 def parameter_tables(tpcs: Tpcs, scores: TpcScores) -> Tables:

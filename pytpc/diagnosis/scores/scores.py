@@ -15,7 +15,7 @@ The cost is O(log n) for a key at a time, whatever the length of the window.
 
 Where the policy ``edges`` kept summaries instead of every evaluation, type I is the same number,
 because the first evaluation and all flops are among the events; for type II see
-`pytpc.diagnosis.scores.bounds`.
+`pytpc.diagnosis.scores.summary_scores`.
 """
 
 from __future__ import annotations
@@ -27,13 +27,11 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from pytpc.diagnosis.question import WINDOW_S
 from pytpc.recording.events import Bools, Events, Floats, Int64s
 
 NONE = 9999.9
 """The score of a TPC that has none."""
-
-WINDOW_S = 12.0
-"""The window of type II, in seconds."""
 
 EQUAL = 1e-4
 """Up to this difference a value counts as the threshold itself (n_i of type II)."""

@@ -2,35 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from pytpc.diagnosis.question import PLAIN, Question
-from pytpc.diagnosis.ranking.ranking import MarkRanking, Suspect
-from pytpc.diagnosis.suggestion.declared import Declared, declared_for
-from pytpc.diagnosis.suggestion.remedy import Remedy
-from pytpc.diagnosis.suggestion.suggest import At, Suggestion, suggest
-from pytpc.diagnosis.suggestion.what_if import WhatIf, what_if
+from pytpc.diagnosis.results.advice import Advice, Suggested, Suggestion
+from pytpc.diagnosis.results.suspects import MarkRanking, Suspect
+from pytpc.diagnosis.suggestion.declared import declared_for
+from pytpc.diagnosis.suggestion.suggest import At, suggest
+from pytpc.diagnosis.suggestion.what_if import what_if
+from pytpc.recording.declaration import Declared
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
 from pytpc.static.static_info import StaticInfo
-
-
-@dataclass(frozen=True, slots=True)
-class Advice:
-    """A suspect with what to do.
-
-    ``suggestion`` is SPEC 8's smallest change, and ``what_if`` what it would have changed, None
-    where nothing is suggested. ``remedy`` is the value to try, and ``tried`` what that would have
-    changed; `pytpc.diagnosis.suggestion.joining.with_remedies` fills them, for they need the other
-    marks.
-    """
-
-    suspect: Suspect
-    suggestion: Suggestion
-    what_if: WhatIf | None
-    declared: Declared | None
-    remedy: Remedy | None = None
-    tried: WhatIf | None = None
 
 
 def advise(
@@ -52,6 +35,19 @@ def advise(
     """
     return [
         _advice(recording, static_info, ranking.mark, suspect, question)
+        for suspect in ranking.suspects[: question.top]
+    ]
+
+
+def suggest_each(
+    recording: Recording,
+    static_info: StaticInfo,
+    ranking: MarkRanking,
+    question: Question = PLAIN,
+) -> list[Suggested]:
+    """The first suspects at a mark, each with its suggestion; arguments as of ``advise``."""
+    return [
+        Suggested(suspect, _suggested(recording, static_info, ranking.mark, suspect, question)[0])
         for suspect in ranking.suspects[: question.top]
     ]
 
@@ -90,9 +86,7 @@ def _advice(
     suspect: Suspect,
     question: Question,
 ) -> Advice:
-    about = declared_for(question.declared, suspect, static_info.source_path(suspect.key))
-    at = At(mark.time_ns, suspect.type)
-    suggestion = suggest(recording, static_info, suspect.comparison, at, question.about(about))
+    suggestion, about = _suggested(recording, static_info, mark, suspect, question)
     if suggestion.value is None:
         return Advice(suspect, suggestion, None, about)
     marks = [one for one in recording.marks if one.type in {suspect.type, None} or one == mark]
@@ -101,3 +95,16 @@ def _advice(
     replay = question.replayed(suspect.type, marks)
     then = what_if(recording, static_info, suspect.parameter, suggestion.value, replay)
     return Advice(suspect, suggestion, then, about)
+
+
+def _suggested(
+    recording: Recording,
+    static_info: StaticInfo,
+    mark: Mark,
+    suspect: Suspect,
+    question: Question,
+) -> tuple[Suggestion, Declared | None]:
+    """The suggestion for a suspect, and what is declared of its parameter."""
+    about = declared_for(question.declared, suspect, static_info.source_path(suspect.key))
+    at = At(mark.time_ns, suspect.type)
+    return suggest(recording, static_info, suspect.comparison, at, question.about(about)), about

@@ -4,25 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from pytpc.diagnosis.question import PLAIN, Changed, Question
-from pytpc.diagnosis.ranking.blame import Accused, Blame
+from pytpc.diagnosis.results.advice import BlamedAdvice, Remedy
+from pytpc.diagnosis.results.suspects import Blame
 from pytpc.diagnosis.suggestion.declared import declared_for
-from pytpc.diagnosis.suggestion.remedy import Remedy, remedy, restored
-from pytpc.diagnosis.suggestion.what_if import WhatIf, what_if
+from pytpc.diagnosis.suggestion.remedy import remedy, restored
+from pytpc.diagnosis.suggestion.what_if import what_if
 from pytpc.recording.mission import Recording
 from pytpc.static.parameters import same_parameter
 from pytpc.static.static_info import StaticInfo
-
-
-@dataclass(frozen=True, slots=True)
-class BlamedAdvice:
-    """One of them with the value to try; ``what_if`` is None where there is none."""
-
-    accused: Accused
-    remedy: Remedy
-    what_if: WhatIf | None
 
 
 def advise_blamed(

@@ -12,7 +12,6 @@ import numpy as np
 
 from pytpc.base.wording import Number, show
 from pytpc.diagnosis.suggestion.choice import Possible
-from pytpc.diagnosis.suggestion.declared import Declared
 from pytpc.diagnosis.suggestion.suggestion_evidence import Evidence, NoneBecauseError
 from pytpc.diagnosis.thresholds.intervals import Interval, Intervals, holds, intersection
 from pytpc.diagnosis.thresholds.units import (
@@ -22,6 +21,7 @@ from pytpc.diagnosis.thresholds.units import (
     is_whole,
     unit_of,
 )
+from pytpc.recording.declaration import Declared
 from pytpc.static.link_unit import Comparison, LinkUnit
 
 _CLOSE, _TINY = 1e-9, 1e-12

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 
 from pytpc.base.wording import Number, show
-from pytpc.diagnosis.suggestion.declared import Declared
 from pytpc.diagnosis.thresholds.intervals import Interval, Intervals, holds, intersection, words
+from pytpc.recording.declaration import Declared
 
 WHOLE = "whole number"
 _FIRST_DIGITS = 3

@@ -6,44 +6,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 from pytpc.diagnosis.question import PLAIN, Question
-from pytpc.diagnosis.ranking.ranking import MarkRanking
-from pytpc.diagnosis.suggestion.advise import Advice, advise
-from pytpc.diagnosis.suggestion.remedy import Remedy, remedy
-from pytpc.diagnosis.suggestion.what_if import WhatIf, what_if
+from pytpc.diagnosis.results.advice import Advice, JoinedAdvice, MarkGroup, Remedy, WhatIf
+from pytpc.diagnosis.results.suspects import MarkRanking
+from pytpc.diagnosis.suggestion.advise import advise
+from pytpc.diagnosis.suggestion.remedy import remedy
+from pytpc.diagnosis.suggestion.what_if import what_if
 from pytpc.diagnosis.thresholds.intervals import holds
 from pytpc.recording.marks import Mark, MarkType
 from pytpc.recording.mission import Recording
 from pytpc.static.static_info import StaticInfo
-
-
-@dataclass(frozen=True, slots=True)
-class JoinedAdvice:
-    """One parameter at the marks of a group, with the advice that does at the most of them.
-
-    It is a suspect at ``named`` of the marks, and the suggested value would do at ``agreed``.
-    ``remedy`` is the value to try, from all marks of the group together, and ``what_if`` what it
-    would have changed, None where there is none.
-    """
-
-    advice: Advice
-    named: int
-    agreed: int
-    remedy: Remedy
-    what_if: WhatIf | None
-
-
-@dataclass(frozen=True, slots=True)
-class MarkGroup:
-    """Marks of one type whose first suspect and the direction of its suggestion are the same.
-
-    ``suspects`` are ordered by their mean position. ``reasons`` say at which marks there is not
-    enough evidence, and why.
-    """
-
-    marks: tuple[Mark, ...]
-    type: MarkType | None
-    suspects: tuple[JoinedAdvice, ...]
-    reasons: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from pytpc.base.errors import InputError
 from pytpc.base.wording import Number
 from pytpc.diagnosis.question import Source
+from pytpc.diagnosis.results.advice import Known
 from pytpc.diagnosis.suggestion.case import Case, case_of, shown_current
 from pytpc.diagnosis.suggestion.suggestion_evidence import Evidence, NoneBecauseError
 from pytpc.diagnosis.thresholds.replay import tracks_of
@@ -22,14 +21,6 @@ NAMES: dict[Source, str] = {
     "declared": "the declared default",
 }
 """How each kind of evidence is called, the strongest first."""
-
-
-@dataclass(frozen=True, slots=True)
-class Known:
-    """A value in the parameter's unit, and who says that it is good."""
-
-    source: Source
-    value: float
 
 
 def known_values(

@@ -23,58 +23,27 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
 
 import numpy as np
 
 from pytpc.base.columns import Floats
 from pytpc.base.wording import Number, exact, many, show
 from pytpc.diagnosis.question import PLAIN, Question
+from pytpc.diagnosis.results.advice import Basis, Direction, Known, Remedy, Suggestion
 from pytpc.diagnosis.suggestion.case import Case, case_of, refuse, shown_current, values_for
 from pytpc.diagnosis.suggestion.choice import choose
-from pytpc.diagnosis.suggestion.declared import Declared
-from pytpc.diagnosis.suggestion.known import NAMES, Known, known_values, value_in
+from pytpc.diagnosis.suggestion.known import NAMES, known_values, value_in
 from pytpc.diagnosis.suggestion.lasting import Lasting, lasting
-from pytpc.diagnosis.suggestion.suggest import At, Direction, Suggestion, suggest_for_most
+from pytpc.diagnosis.suggestion.suggest import At, suggest_for_most
 from pytpc.diagnosis.suggestion.suggestion_evidence import Evidence, NoneBecauseError
 from pytpc.diagnosis.thresholds.intervals import Interval, Intervals, holds, intersection, words
 from pytpc.diagnosis.thresholds.outcomes import thresholds_for
 from pytpc.diagnosis.thresholds.replay import Track, tracks_of
 from pytpc.diagnosis.thresholds.units import NoUnitError
+from pytpc.recording.declaration import Declared
 from pytpc.recording.marks import MARK_TYPES, Mark, MarkType
 from pytpc.recording.mission import Recording
 from pytpc.static.static_info import StaticInfo
-
-Basis = Literal[
-    "reference", "default", "declared", "lasting", "growth", "between", "smallest", "before"
-]
-
-
-@dataclass(frozen=True, slots=True)
-class Remedy:
-    """What to try.
-
-    ``current`` and ``value`` are in the parameter's unit, as `Suggestion` has them; ``basis`` is
-    the evidence that decided: a known value, the lasting one, one that is stepped to because the
-    values ``growth`` bounds nothing, one ``between`` those that were flown, the ``smallest``
-    change, or the one of ``before`` it was changed (`pytpc.diagnosis.suggestion.blamed`).
-    ``smallest`` is SPEC 8's suggestion that does at the most of the marks. ``kind`` is the type of
-    error that is answered and ``key`` the comparison by which. ``known`` are all values that
-    somebody knows to be good. Where nothing can be suggested ``value``, ``direction`` and ``basis``
-    are None and ``reason`` says why.
-    """
-
-    parameter: str
-    current: Number | None
-    direction: Direction | None
-    value: Number | None
-    basis: Basis | None
-    text: str
-    reason: str | None
-    kind: MarkType | None
-    key: str | None
-    smallest: Suggestion | None
-    known: tuple[Known, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,13 +12,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import Literal, NamedTuple
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
 from pytpc.base.wording import Number, exact, show
 from pytpc.diagnosis.question import PLAIN, Question
+from pytpc.diagnosis.results.advice import Direction, Suggestion
 from pytpc.diagnosis.suggestion.case import (
     EQUALITIES,
     Case,
@@ -29,7 +30,6 @@ from pytpc.diagnosis.suggestion.case import (
     values_for,
 )
 from pytpc.diagnosis.suggestion.choice import WHOLE, Choice, choose, nearest_of
-from pytpc.diagnosis.suggestion.declared import Declared
 from pytpc.diagnosis.suggestion.suggestion_evidence import NoneBecauseError, evidence_of
 from pytpc.diagnosis.thresholds.intervals import (
     Interval,
@@ -42,40 +42,12 @@ from pytpc.diagnosis.thresholds.intervals import (
 )
 from pytpc.diagnosis.thresholds.outcomes import outcomes, thresholds_for, thresholds_for_one
 from pytpc.diagnosis.thresholds.units import NoUnitError
+from pytpc.recording.declaration import Declared
 from pytpc.recording.events import Bools, Floats
 from pytpc.recording.marks import MarkType
 from pytpc.recording.mission import Recording
 from pytpc.static.parameters import parameter_name
 from pytpc.static.static_info import Comparison, StaticInfo
-
-Direction = Literal["raise", "lower", "switch"]
-
-
-@dataclass(frozen=True, slots=True)
-class Suggestion:
-    """What to do with one parameter.
-
-    ``current`` and ``value`` are in the parameter's unit: a bool for a switch, an int for a
-    whole-number parameter. ``boundary`` is where the values begin that would do, and is one of them
-    where ``inclusive``. ``text`` is the sentence to show. Where nothing can be suggested
-    ``direction``, ``value`` and ``boundary`` are None and ``reason`` says why.
-
-    ``feasible`` are all values that would do, whatever is declared of the parameter (of equality
-    and of periodic arithmetic those near the present one); it may have some where nothing is
-    suggested: none that the parameter can take, or no way to choose. ``limited_by`` says what kept
-    ``value`` from the smallest change: a declared range, a step, a whole number, the sign.
-    """
-
-    parameter: str
-    current: Number | None
-    direction: Direction | None
-    value: Number | None
-    boundary: float | None
-    inclusive: bool
-    text: str
-    reason: str | None
-    feasible: Intervals = ()
-    limited_by: str = ""
 
 
 class At(NamedTuple):

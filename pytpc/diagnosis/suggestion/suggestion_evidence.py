@@ -103,9 +103,7 @@ def evidence_of(
 
 
 def _rows_up_to(events: Events, key: str, mark_ns: int) -> Int64s:
-    if key not in events.keys:
-        return np.zeros(0, dtype=np.int64)
-    rows = events.by_key.rows(events.keys.index(key))
+    rows = events.rows_of(key)
     return rows[: int(np.searchsorted(events.time_ns[rows], mark_ns, side="right"))]
 
 

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from pytpc.base.columns import Bools, Floats, Int64s
 from pytpc.base.wording import Number, exact, many
 from pytpc.diagnosis.question import PLAIN, Question
+from pytpc.diagnosis.results.advice import WhatIf
 from pytpc.diagnosis.thresholds.replay import Track, tracks_of
 from pytpc.recording.marks import Mark, MarkType
 from pytpc.recording.mission import Recording
@@ -24,32 +25,6 @@ CLOSED_LOOP = (
     "the robot would have gone on differently from the first decision that changes; what came after"
     " it is replayed as it was logged"
 )
-
-
-@dataclass(frozen=True, slots=True)
-class WhatIf:
-    """The recorded comparisons of one parameter, replayed with another value.
-
-    ``marks`` marks were looked at (those of the type that the question is about), ``answered`` of
-    them would have been answered: type I, the last flop before the mark would not have happened;
-    type II, an evaluation in the window would have gone the other way. ``evaluations`` of the
-    parameter's TPCs were replayed. ``flipped_near`` of them have another outcome within a window
-    before a mark, ``flipped_away`` elsewhere: the decisions that were right as far as anybody said.
-    ``text`` is the sentence to show, ``caveats`` what the replay could not know.
-
-    ``unsure`` is how many more may have another outcome: of summaries only the ends are known.
-    """
-
-    parameter: str
-    value: Number
-    marks: int
-    answered: int
-    evaluations: int
-    flipped_near: int
-    flipped_away: int
-    text: str
-    caveats: tuple[str, ...]
-    unsure: int = 0
 
 
 @dataclass(frozen=True, eq=False)

@@ -105,6 +105,14 @@ def tree_of(comparison: Comparison) -> Tree:
     return scaled if transform.offset == 0 else ("+", scaled, float(transform.offset))
 
 
+def threshold_of(comparison: Comparison, value: float) -> float:
+    """The threshold that a value of the parameter gives; NaN where that is not known."""
+    try:
+        return evaluate(tree_of(comparison), value)
+    except (ArithmeticError, ValueError, NoUnitError):
+        return math.nan
+
+
 def read_type(comparison: Comparison, unit: LinkUnit | None) -> str | None:
     """The C++ type of the read, where the link unit is known."""
     place = comparison.read_at

@@ -3,26 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from markupsafe import Markup
 
 from pytpc.base.wording import exact, show
-from pytpc.diagnosis.ranking.ranking import MarkRanking, Suspect
-from pytpc.diagnosis.suggestion.advise import Advice, alternatives
-from pytpc.diagnosis.suggestion.declared import Declared
-from pytpc.diagnosis.suggestion.remedy import Remedy
-from pytpc.diagnosis.suggestion.suggest import Suggestion
-from pytpc.diagnosis.suggestion.what_if import WhatIf
-from pytpc.present.page.mission import MissionReport
+from pytpc.diagnosis.results.advice import Advice, Suggestion, WhatIf
+from pytpc.diagnosis.results.mission import SuspectAnswer
+from pytpc.diagnosis.results.suspects import Suspect
+from pytpc.present.page.mission import ReportedMission
 from pytpc.present.page.payload import finite, series_of
 from pytpc.present.page.plots import EvidenceStyle, evidence_svg, span_of
-from pytpc.present.page.reasons import why
 from pytpc.present.page.series import Evidence, evidence
 from pytpc.present.page.source import LONGEST_LINE, Line, StepView, source_lines, way_of
+from pytpc.recording.declaration import Declared
 from pytpc.recording.marks import Mark
-from pytpc.static.arithmetic import evaluate
 from pytpc.static.static_info import Comparison
 from pytpc.values.origins import origin_for
 
@@ -112,7 +108,7 @@ class CardView:
 class Figures:
     """The figures of one mission, as the page's script draws them: cards, and series by TPC."""
 
-    def __init__(self, mission: MissionReport) -> None:
+    def __init__(self, mission: ReportedMission) -> None:
         """None yet."""
         self._mission = mission
         self._numbers: dict[str, int] = {}
@@ -127,7 +123,7 @@ class Figures:
         self.cards[ident] = {**card, "series": self._numbers[key]}
 
 
-def row_view(mission: MissionReport, advice: Advice, *, mixed: bool = False) -> SuspectView:
+def row_view(mission: ReportedMission, advice: Advice, *, mixed: bool = False) -> SuspectView:
     """The row of a suspect; ``mixed`` where the ranking has scores of both types."""
     suspect, suggestion = advice.suspect, advice.suggestion
     found = suspect.comparison
@@ -164,15 +160,15 @@ def row_view(mission: MissionReport, advice: Advice, *, mixed: bool = False) -> 
 
 
 def card_view(
-    mission: MissionReport, advice: Advice, ranking: MarkRanking, figures: Figures, ident: str
+    mission: ReportedMission, answer: SuspectAnswer, mark: Mark, figures: Figures, ident: str
 ) -> CardView:
     """The card of a suspect at a mark; its figure is added to ``figures``."""
-    mark = ranking.mark
+    advice = answer.advice
     suspect, declared = advice.suspect, advice.declared
     found, last = suspect.comparison, suspect.last
     unit = mission.static_info.unit_of(suspect.key)
     lines, note = source_lines(mission.static_info, found)
-    data, style = _evidence(mission, advice, mark)
+    data, style = _evidence(mission, answer, mark)
     label = (
         f"{suspect.parameter}: compared value and threshold around the mark at {style.mark:.1f} s;"
         f" {data.evaluations} evaluations, {data.flops.size} changes of the result"
@@ -182,7 +178,7 @@ def card_view(
         ident=ident,
         row=row_view(mission, advice),
         lead=_lead(advice),
-        why=why(mission, suspect, mark),
+        why=answer.why,
         compared=show(last.cmp),
         threshold=show(last.thresh),
         result="true" if last.result else "false",
@@ -203,18 +199,12 @@ def card_view(
         declared=_declared(declared) if declared is not None else "",
         declared_at=declared.place if declared is not None else "",
         what_if=advice.what_if if advice.tried is None else advice.tried,
-        alternatives=_alternatives(mission, ranking, suspect),
+        alternatives=_alternatives(answer.others),
     )
 
 
-def _told(advice: Advice) -> Suggestion | Remedy:
-    """The value to try, or the smallest change where there is none."""
-    tried = advice.remedy
-    return advice.suggestion if tried is None or tried.value is None else tried
-
-
 def _lead(advice: Advice) -> LeadView:
-    told, least = _told(advice), advice.suggestion
+    told, least = advice.told, advice.suggestion
     value = exact(told.value) if told.value is not None else ""
     why = told.text.partition(f" to {value} (")[2].removesuffix(")")
     return LeadView(
@@ -226,18 +216,19 @@ def _lead(advice: Advice) -> LeadView:
     )
 
 
-def _evidence(mission: MissionReport, advice: Advice, mark: Mark) -> tuple[Evidence, EvidenceStyle]:
-    recording, suspect = mission.recording, advice.suspect
-    found = suspect.comparison
+def _evidence(
+    mission: ReportedMission, answer: SuspectAnswer, mark: Mark
+) -> tuple[Evidence, EvidenceStyle]:
+    recording, suspect = mission.recording, answer.advice.suspect
     start, end = recording.start_ns, recording.end_ns
     at = mission.seconds(mark.time_ns)
     style = EvidenceStyle(
         mark=at,
         mark_type=mark.type,
-        window=at - mission.question.window_s if suspect.type == "II" else None,
-        suggested=_suggested_threshold(found, _told(advice)),
+        window=at - mission.answer.question.window_s if suspect.type == "II" else None,
+        suggested=answer.suggested,
         culprit=mission.is_changed(suspect.parameter),
-        feasible=_feasible_thresholds(found, advice.suggestion),
+        feasible=answer.feasible,
     )
     data = evidence(
         recording.events, suspect.key, mark.time_ns, start, end, summaries=recording.summaries
@@ -264,45 +255,6 @@ def _figure(data: Evidence, style: EvidenceStyle, suspect: Suspect) -> dict[str,
     }
 
 
-def _threshold_of(found: Comparison, value: float) -> float:
-    """The threshold that a value of the parameter gives; NaN where that is not known."""
-    how = found.transform
-    try:
-        if how is not None and how.tree is not None:
-            return evaluate(how.tree, value)
-        if how is None or how.scale is None or how.offset is None:
-            return value
-        return how.scale * value + how.offset
-    except (ArithmeticError, ValueError):
-        return math.nan
-
-
-def _suggested_threshold(found: Comparison, told: Suggestion | Remedy) -> float | None:
-    if told.value is None or told.direction == "switch":
-        return None
-    return _threshold_of(found, float(told.value))
-
-
-def _feasible_thresholds(
-    found: Comparison, suggestion: Suggestion
-) -> tuple[tuple[float, float], ...]:
-    """The values that would do, as thresholds; an end without a finite one lies beyond the plot."""
-    if found.relation == "flag":
-        return ()
-    spans = []
-    for interval in suggestion.feasible:
-        low, high = (_threshold_of(found, end) for end in (interval.low, interval.high))
-        if math.isnan(low) or math.isnan(high):
-            # Which end is open shows the side on which the suggested value lies.
-            end = high if math.isnan(low) else low
-            inside = _suggested_threshold(found, suggestion)
-            if inside is None or math.isnan(end) or math.isnan(inside):
-                continue
-            low, high = end, math.inf if inside > end else -math.inf
-        spans.append((min(low, high), max(low, high)))
-    return tuple(spans)
-
-
 def _bound(suggestion: Suggestion) -> str:
     """Which values would do: ``any value below 0.0527, or above 3``; empty for a switch."""
     if suggestion.direction == "switch" or not suggestion.feasible:
@@ -315,7 +267,7 @@ def _exposed(found: Comparison) -> str:
     return f"{found.topic} ({place})" if found.topic else place
 
 
-def _origin_view(mission: MissionReport, suspect: Suspect) -> OriginView | None:
+def _origin_view(mission: ReportedMission, suspect: Suspect) -> OriginView | None:
     default = suspect.comparison.default
     origin = origin_for(mission.origins, suspect.parameter, suspect.last.node, default)
     if origin is None:
@@ -336,17 +288,14 @@ def _short_path(place: str) -> str:
     return place if len(parts) <= _PARTS + 1 else "/".join(["…", *parts[-_PARTS:]])
 
 
-def _alternatives(
-    mission: MissionReport, ranking: MarkRanking, suspect: Suspect
-) -> list[tuple[str, str]]:
+def _alternatives(others: Sequence[Advice]) -> list[tuple[str, str]]:
     """What the parameter's other comparisons suggest: sentence and place."""
-    found = alternatives(mission.recording, mission.static_info, ranking, suspect, mission.question)
     return [
         (
             f"{advice.suggestion.text}{f': {advice.what_if.text}' if advice.what_if else ''}",
             f"{advice.suspect.comparison.file}:{advice.suspect.comparison.lineno}",
         )
-        for advice in found
+        for advice in others
     ]
 
 

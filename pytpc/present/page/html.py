@@ -19,17 +19,16 @@ from markupsafe import Markup
 
 from pytpc.base.atomic import write_atomic
 from pytpc.present.page.environment import environment
-from pytpc.present.page.view import CARDS, ROWS, MissionReport, figures, mission_view
-
-__all__ = ["CARDS", "MissionReport", "render", "write_report"]
+from pytpc.present.page.mission import ReportedMission
+from pytpc.present.page.view import ROWS, figures, mission_view
 
 Progress = Callable[[int, int], None]
 _OWN = ("report-figures.js", "report-timeline.js", "report.js")
 
 
-def write_report(
+def write_page(
     path: Path,
-    missions: Sequence[MissionReport],
+    missions: Sequence[ReportedMission],
     *,
     title: str = "Suspected parameters",
     on_progress: Progress | None = None,
@@ -49,7 +48,7 @@ def write_report(
 
 
 def render(
-    missions: Sequence[MissionReport], title: str, on_progress: Progress | None = None
+    missions: Sequence[ReportedMission], title: str, on_progress: Progress | None = None
 ) -> str:
     """The page as text. Whatever comes from the robot is escaped."""
     total = sum(figures(mission) for mission in missions)

@@ -1,42 +1,39 @@
-"""What the report page is made from: one mission, ranked."""
+"""What the report page is made from: one mission with its diagnosis."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from pytpc.diagnosis.question import Question
-from pytpc.diagnosis.ranking.ranking import MarkRanking
+from pytpc.diagnosis.results.mission import MissionAnswer
+from pytpc.diagnosis.results.suspects import MarkRanking
 from pytpc.recording.mission import Recording
 from pytpc.static.parameters import same_parameter
 from pytpc.static.static_info import StaticInfo
 from pytpc.values.origins import Origin
 
-CARDS = 3
-"""Suspects of a mark that are shown with their evidence."""
-
-CARDS_ALONE = Question(top=CARDS)
-"""What a page answers where nothing else is asked."""
-
 
 @dataclass(frozen=True)
-class MissionReport:
+class ReportedMission:
     """One mission for the page.
 
-    ``rankings`` are ``rank_marks``' answer for ``recording`` and ``static_info``. ``treatment``
-    says what was done to the robot, and ``changed_parameter`` which parameter was changed, where
-    that is known (in a study); it is shown in red. ``origins`` are where the values came from.
-    ``question`` is what the marks were ranked with; its ``top`` is how many suspects have a card.
+    ``treatment`` says what was done to the robot, and ``changed_parameter`` which parameter was
+    changed, where that is known (in a study); it is shown in red. ``origins`` are where the values
+    came from, and may be empty.
     """
 
     name: str
     recording: Recording
     static_info: StaticInfo
-    rankings: list[MarkRanking]
+    answer: MissionAnswer
     treatment: str = ""
     changed_parameter: str | None = None
     origins: Mapping[str, Origin] = field(default_factory=dict)
-    question: Question = CARDS_ALONE
+
+    @property
+    def rankings(self) -> list[MarkRanking]:
+        """The suspects at each mark."""
+        return [mark.ranking for mark in self.answer.marks]
 
     def is_changed(self, parameter: str) -> bool:
         """True where ``parameter``, as in the source, is the one that was changed."""

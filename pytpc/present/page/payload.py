@@ -16,9 +16,9 @@ import numpy.typing as npt
 from markupsafe import Markup
 
 from pytpc.base.columns import Floats
-from pytpc.diagnosis.scores.curves import RankCurves
+from pytpc.diagnosis.results.mission import RankCurves
 from pytpc.present.page.environment import seen
-from pytpc.present.page.series import gap_after, kept_of, lane, rows_of, runs, thin
+from pytpc.present.page.series import gap_after, kept_of, lane, runs, thin
 from pytpc.recording.marks import MarkType
 from pytpc.recording.mission import Recording
 
@@ -56,7 +56,7 @@ def series_of(recording: Recording, key: str) -> dict[str, object]:
         four columns of `kept_of`.
     """
     events, start_ns = recording.events, recording.start_ns
-    rows = rows_of(events, key)
+    rows = events.rows_of(key)
     spans = kept_of(recording.summaries, key, start_ns)
     seconds = (events.time_ns[rows] - start_ns) / 1e9
     kept = rows[thin(seconds, events.cmp[rows], KEPT)]

@@ -50,13 +50,6 @@ class Evidence:
     kept: Floats
 
 
-def rows_of(events: Events, key: str) -> Int64s:
-    """The rows of a TPC; none where the events do not know it, for all of it is in summaries."""
-    if key not in events.keys:
-        return np.empty(0, dtype=np.int64)
-    return events.by_key.rows(events.keys.index(key))
-
-
 def kept_of(summaries: Summaries, key: str, start_ns: int) -> Floats:
     """float64[4, k]: begin and end of each summary of a TPC, lowest and highest compared value.
 
@@ -86,7 +79,7 @@ def evidence(
 ) -> Evidence:
     """The evaluations from 20 s before a mark, or from the last flop if that is earlier, to 6 s
     after it, within the recording."""
-    rows = rows_of(events, key)
+    rows = events.rows_of(key)
     times = events.time_ns[rows]
     begin = mark_ns - round(_AROUND_S[0] * 1e9)
     flops = times[events.flop[rows]]
@@ -167,7 +160,7 @@ def lane(
     of its period.
     """
     states = np.zeros(bins, dtype=np.int8)
-    rows = rows_of(events, key)
+    rows = events.rows_of(key)
     times, result = events.time_ns[rows], events.result[rows]
     place = (times - start_ns) * bins // max(1, end_ns - start_ns)
     place = np.clip(place, 0, bins - 1)

@@ -15,8 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from pytpc.base.columns import Floats
-from pytpc.diagnosis.scores.curves import STEP_S, RankCurves, rank_curves
-from pytpc.present.page.mission import MissionReport
+from pytpc.present.page.mission import ReportedMission
 from pytpc.present.page.payload import curves_of, lane_of, lanes_of
 from pytpc.present.page.plots import COLOUR, MARK_LINES, drawing, short, svg_of
 from pytpc.present.page.series import BINS, BOTH, FALSE, TRUE, runs
@@ -26,9 +25,6 @@ _LANES = 8
 _HEIGHTS = {TRUE: 0.62, BOTH: 0.34, FALSE: 0.08}
 _DASHES = ((6, 2.5), (1.5, 2), (7, 2, 1.5, 2), (3, 3), (9, 2), (1.5, 4), (5, 1.5, 1.5, 1.5))
 _LANE_INCHES, _CURVE_INCHES = 0.25, 0.95
-# The most steps of the curves, and the most numbers that are worked out for them.
-_STEPS = 6000
-_NUMBERS = 10_000_000
 _STILL_STEPS = 600
 
 
@@ -51,7 +47,7 @@ class Curves:
     second: Floats
 
 
-def timeline(mission: MissionReport, ident: str) -> tuple[Markup, dict[str, object] | None]:
+def timeline(mission: ReportedMission, ident: str) -> tuple[Markup, dict[str, object] | None]:
     """The figure that stands still, and what the moving one shows; nothing where nobody is suspect.
 
     Its lanes are the parameters that come first at some mark, and the changed one.
@@ -68,7 +64,8 @@ def timeline(mission: MissionReport, ident: str) -> tuple[Markup, dict[str, obje
     changed = next((name for name in ranked if mission.is_changed(name)), None)
     if changed is not None and changed not in order:
         order[-1] = changed
-    if not order:
+    curves = mission.answer.curves
+    if not order or curves is None:
         return Markup(""), None
     start = recording.start_ns
     accent = order.index(changed) if changed is not None else 0
@@ -77,7 +74,6 @@ def timeline(mission: MissionReport, ident: str) -> tuple[Markup, dict[str, obje
         for row, name in enumerate(order)
     ]
     marks = [(mission.seconds(mark.time_ns), mark.type) for mark in recording.marks]
-    curves = _curves(mission)
     places = [curves.parameters.index(name) for name in order]
     every = max(1, curves.times_ns.size // _STILL_STEPS)
     still = Curves(
@@ -156,14 +152,6 @@ def timeline_svg(
         first.tick_params(axis="x", length=0, labelbottom=False)
         second.set_xlabel("seconds since the recording began")
         return svg_of(figure, ident, label)
-
-
-def _curves(mission: MissionReport) -> RankCurves:
-    """Both ranks over the mission, at 10 Hz or, where that were too much for a page, less often."""
-    static = mission.static_info
-    steps = min(_STEPS, _NUMBERS // max(1, len(static.thresholds)))
-    step_s = max(STEP_S, mission.recording.seconds / max(1, steps))
-    return rank_curves(mission.recording, static, mission.question, step_s=step_s)
 
 
 def _lanes(axes: Axes, lanes: Sequence[Lane], seconds: float) -> None:

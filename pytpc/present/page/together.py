@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from pytpc.base.wording import percent
-from pytpc.diagnosis.ranking.blame import blame
-from pytpc.diagnosis.suggestion.blamed import advise_blamed
-from pytpc.present.page.mission import MissionReport
+from pytpc.diagnosis.results.mission import MissionAnswer
 
 
 @dataclass(frozen=True)
@@ -26,21 +24,19 @@ class TogetherView:
     notes: list[str]
 
 
-def together(mission: MissionReport) -> TogetherView | None:
+def together(answer: MissionAnswer) -> TogetherView | None:
     """The verdict on a mission, None where it has no mark."""
-    if not mission.rankings:
+    found, first = answer.blame, answer.first
+    if found is None:
         return None
-    recording, static, question = mission.recording, mission.static_info, mission.question
-    found = blame(recording, static, question)
-    advice = advise_blamed(found, recording, static, replace(question, top=1))
     return TogetherView(
         title=found.title,
         text=found.text,
         sure=found.accused is not None,
-        remedy=next((one.remedy.text for one in advice if one.remedy.value is not None), ""),
+        remedy="" if first is None or first.remedy.value is None else first.remedy.text,
         others=[
             f"{one.parameter} ({percent(one.probability)})"
-            for one in found.suspects[1 : question.top]
+            for one in found.suspects[1 : answer.question.top]
         ],
         notes=list(found.notes),
     )

@@ -1,25 +1,22 @@
 """What the report page says, as plain texts and numbers, before any HTML.
 
-``mission_view`` turns a ``MissionReport`` into what the template prints. The figures are made here
-too, for they are the larger part of the time; ``on_figure`` is called after each.
+``mission_view`` turns a ``ReportedMission`` into what the template prints. It also draws the
+figures, which takes most of the time; ``on_figure`` is called after each.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 from markupsafe import Markup
 
 from pytpc.base.wording import many
 from pytpc.diagnosis.question import Types
-from pytpc.diagnosis.ranking.clocks import two_clocks
-from pytpc.diagnosis.ranking.complaints import complaints
-from pytpc.diagnosis.ranking.ranking import MarkRanking
-from pytpc.diagnosis.suggestion.advise import Advice, advise
-from pytpc.diagnosis.suggestion.joining import with_remedies
+from pytpc.diagnosis.results.mission import MarkAnswer
+from pytpc.diagnosis.results.suspects import MarkRanking
 from pytpc.present.page.answer import AnswerView, answers, spoken
 from pytpc.present.page.cards import (
     CardView,
@@ -28,13 +25,11 @@ from pytpc.present.page.cards import (
     card_view,
     row_view,
 )
-from pytpc.present.page.mission import CARDS, MissionReport
+from pytpc.present.page.mission import ReportedMission
 from pytpc.present.page.payload import embedded, marks_of
 from pytpc.present.page.timeline import timeline
 from pytpc.present.page.together import TogetherView, together
 from pytpc.recording.marks import MarkType
-
-__all__ = ["CARDS", "MissionReport", "MissionView", "figures", "mission_view"]
 
 ROWS = 8
 """Suspects of a mark that are listed at first; the others are when asked for."""
@@ -90,21 +85,23 @@ class MissionView:
     payload: Markup
 
 
-def figures(mission: MissionReport) -> int:
+def figures(mission: ReportedMission) -> int:
     """How many figures ``mission_view`` makes."""
-    cards = sum(min(mission.question.top, len(ranking.suspects)) for ranking in mission.rankings)
+    cards = sum(len(mark.first) for mark in mission.answer.marks)
     return 1 + cards
 
 
-def mission_view(mission: MissionReport, number: int, on_figure: Callable[[], None]) -> MissionView:
+def mission_view(
+    mission: ReportedMission, number: int, on_figure: Callable[[], None]
+) -> MissionView:
     """All that the page says about a mission; ``number`` keeps its ids apart from the others'."""
     ident = f"m{number}"
     recording = mission.recording
     kinds = [mark.type for mark in recording.marks]
     drawn = Figures(mission)
     marks = [
-        _mark_view(mission, advised, (ident, place), drawn, on_figure)
-        for place, advised in enumerate(_advised(mission), start=1)
+        _mark_view(mission, answer, (ident, place), drawn, on_figure)
+        for place, answer in enumerate(mission.answer.marks, start=1)
     ]
     still, moving = timeline(mission, ident)
     on_figure()
@@ -113,19 +110,19 @@ def mission_view(mission: MissionReport, number: int, on_figure: Callable[[], No
         name=mission.name,
         treatment=mission.treatment,
         seconds=f"{recording.seconds:.1f}",
-        window=f"{mission.question.window_s:g}",
+        window=f"{mission.answer.question.window_s:g}",
         reports=f"{len(recording.events):,}",
         marks_i=kinds.count("I"),
         marks_ii=kinds.count("II"),
         marks_untyped=kinds.count(None),
-        together=together(mission),
+        together=together(mission.answer),
         answers=answers([mark.cards for mark in marks], [mark.reason for mark in marks]),
         changed_parameter=mission.changed_parameter,
         changed_positions=_positions(mission),
         timeline=still,
         marks=marks,
         facts=_facts(mission),
-        warnings=[*complaints(recording, mission.static_info), *two_clocks(recording)],
+        warnings=list(mission.answer.warnings),
         payload=embedded(
             {
                 "seconds": recording.seconds,
@@ -140,31 +137,18 @@ def mission_view(mission: MissionReport, number: int, on_figure: Callable[[], No
     )
 
 
-def _advised(mission: MissionReport) -> Iterator[tuple[MarkRanking, list[Advice]]]:
-    """The advice at each mark; for the suspects that have cards with the value to try."""
-    recording, static, question = mission.recording, mission.static_info, mission.question
-    lists = [
-        advise(recording, static, ranking, replace(question, top=len(ranking.suspects)))
-        for ranking in mission.rankings
-    ]
-    first = [advice[: question.top] for advice in lists]
-    tried = with_remedies(recording, static, mission.rankings, first, question)
-    for ranking, own, rest in zip(mission.rankings, tried, lists, strict=True):
-        yield ranking, [*own, *rest[question.top :]]
-
-
 def _mark_view(
-    mission: MissionReport,
-    advised: tuple[MarkRanking, Sequence[Advice]],
+    mission: ReportedMission,
+    answer: MarkAnswer,
     at: tuple[str, int],
     drawn: Figures,
     on_figure: Callable[[], None],
 ) -> MarkView:
-    ranking, advice = advised
+    ranking = answer.ranking
     mark, ident = ranking.mark, f"{at[0]}-{at[1]}"
     cards = []
-    for place, one in enumerate(advice[: mission.question.top], start=1):
-        cards.append(card_view(mission, one, ranking, drawn, f"{ident}-{place}"))
+    for place, one in enumerate(answer.first, start=1):
+        cards.append(card_view(mission, one, mark, drawn, f"{ident}-{place}"))
         on_figure()
     changed = mission.changed_parameter
     mixed = len({suspect.type for suspect in ranking.suspects}) > 1
@@ -176,7 +160,10 @@ def _mark_view(
         what=WHAT[mark.type],
         observer=mark.observer,
         note=mark.note,
-        suspects=[row_view(mission, one, mixed=mixed) for one in advice],
+        suspects=[
+            row_view(mission, one, mixed=mixed)
+            for one in (*(one.advice for one in answer.first), *answer.rest)
+        ],
         cards=cards,
         more=max(0, len(ranking.suspects) - ROWS),
         parameters=ranking.parameters,
@@ -190,7 +177,7 @@ def _position(ranking: MarkRanking, parameter: str) -> str:
     return "not ranked" if position is None else str(position)
 
 
-def _positions(mission: MissionReport) -> str:
+def _positions(mission: ReportedMission) -> str:
     """The changed parameter's positions at the marks, in order, repetitions joined."""
     if mission.changed_parameter is None:
         return ""
@@ -205,7 +192,7 @@ _BELIEVED: dict[Types, str] = {
 }
 
 
-def _facts(mission: MissionReport) -> list[tuple[str, str]]:
+def _facts(mission: ReportedMission) -> list[tuple[str, str]]:
     recording, static = mission.recording, mission.static_info
     events, summaries = recording.events, recording.summaries
     tables = (events, summaries)
@@ -224,5 +211,5 @@ def _facts(mission: MissionReport) -> list[tuple[str, str]]:
         ("Changes of a result", f"{int(events.flop.sum()):,}"),
         ("Nodes that report", str(len(nodes))),
     ]
-    believed = _BELIEVED[mission.question.types]
+    believed = _BELIEVED[mission.answer.question.types]
     return [*facts, ("Types of the marks", believed)] if believed else facts

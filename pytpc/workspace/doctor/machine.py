@@ -205,9 +205,7 @@ def _environment(machine: Machine) -> Iterator[Finding]:
                 f"unset {name}",
             )
     if machine.environment.get("TPC_DISABLE", "").upper() not in ("", "0", "OFF", "NO", "FALSE"):
-        yield warning(
-            "the compiler wrappers are switched off", "TPC_DISABLE", "unset TPC_DISABLE"
-        )
+        yield warning("the compiler wrappers are switched off", "TPC_DISABLE", "unset TPC_DISABLE")
 
 
 def _space(machine: Machine) -> Iterator[Finding]:

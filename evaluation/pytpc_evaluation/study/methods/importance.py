@@ -19,8 +19,8 @@ from __future__ import annotations
 import numpy as np
 
 from pytpc.base.columns import Bools, Int64s
+from pytpc.diagnosis.question import WINDOW_S
 from pytpc.diagnosis.scores.score_tables import Tpcs
-from pytpc.diagnosis.scores.scores import WINDOW_S
 from pytpc_evaluation.study.case import Case, Verdict
 
 _DIGITS = 12

@@ -5,29 +5,26 @@ from __future__ import annotations
 import numpy as np
 
 from pytpc.base.wording import many, show
-from pytpc.diagnosis.ranking.ranking import Suspect
-from pytpc.present.page.mission import MissionReport
-from pytpc.present.page.series import rows_of
+from pytpc.diagnosis.results.suspects import Suspect
 from pytpc.recording.events import Floats
 from pytpc.recording.marks import Mark
+from pytpc.recording.mission import Recording
 
 
-def why(mission: MissionReport, suspect: Suspect, mark: Mark) -> str:
-    """What the suspect's comparison did before the mark; empty where nothing.
+def why(recording: Recording, suspect: Suspect, mark: Mark, window_s: float) -> str:
+    """What the suspect's comparison did before the mark; empty if it did nothing.
 
-    Type I: its last flop. Type II: its results in the window, and the evaluation that came nearest
-    to going the other way.
+    Type I: its last flop. Type II: its results in the window of ``window_s`` seconds, and the
+    evaluation that came nearest to the other outcome.
     """
-    return (
-        _last_flop(mission, suspect, mark)
-        if suspect.type == "I"
-        else _window(mission, suspect, mark)
-    )
+    if suspect.type == "I":
+        return _last_flop(recording, suspect, mark)
+    return _window(recording, suspect, mark, window_s)
 
 
-def _last_flop(mission: MissionReport, suspect: Suspect, mark: Mark) -> str:
-    events = mission.recording.events
-    rows = rows_of(events, suspect.key)
+def _last_flop(recording: Recording, suspect: Suspect, mark: Mark) -> str:
+    events = recording.events
+    rows = events.rows_of(suspect.key)
     flops = rows[events.flop[rows] & (events.time_ns[rows] <= mark.time_ns)]
     if not flops.size:
         return ""
@@ -41,15 +38,16 @@ def _last_flop(mission: MissionReport, suspect: Suspect, mark: Mark) -> str:
     return f"{text}, with {show(cmp)} against {show(thresh)}."
 
 
-def _window(mission: MissionReport, suspect: Suspect, mark: Mark) -> str:
-    begin_ns = mark.time_ns - round(mission.question.window_s * 1e9)
-    events = mission.recording.events
-    rows = rows_of(events, suspect.key)
+def _window(recording: Recording, suspect: Suspect, mark: Mark, window_s: float) -> str:
+    begin = f"In the {window_s:g} s before the mark it was"
+    begin_ns = mark.time_ns - round(window_s * 1e9)
+    events = recording.events
+    rows = events.rows_of(suspect.key)
     rows = rows[(events.time_ns[rows] >= begin_ns) & (events.time_ns[rows] <= mark.time_ns)]
     cmp, thresh = events.cmp[rows], events.thresh[rows]
     count, true = int(rows.size), int(events.result[rows].sum())
     one = true in (0, count)
-    summaries = mission.recording.summaries
+    summaries = recording.summaries
     if suspect.key in summaries.keys:
         # They count the events, too.
         own = summaries.take(summaries.key == summaries.keys.index(suspect.key))
@@ -61,18 +59,14 @@ def _window(mission: MissionReport, suspect: Suspect, mark: Mark) -> str:
             cmp = np.concatenate([own.thresh + own.diff_min, own.thresh + own.diff_max])
             thresh = np.tile(own.thresh, 2)
             if not one:
-                return f"{_begin(mission)} evaluated {many(count, 'time')}{_near(cmp, thresh)}"
+                return f"{begin} evaluated {many(count, 'time')}{_near(cmp, thresh)}"
     if not count:
         return ""
     each = f"each of {many(count, 'time')}" if count > 1 else "the one time it was evaluated"
     truth = f"{'true' if true else 'false'} {each}"
     counted = truth if one else f"true {true:,} of {many(count, 'time')}"
     flag = suspect.comparison.relation == "flag"
-    return f"{_begin(mission)} {counted}{'.' if flag else _near(cmp, thresh)}"
-
-
-def _begin(mission: MissionReport) -> str:
-    return f"In the {mission.question.window_s:g} s before the mark it was"
+    return f"{begin} {counted}{'.' if flag else _near(cmp, thresh)}"
 
 
 def _near(cmp: Floats, thresh: Floats) -> str:

@@ -1,19 +1,13 @@
-"""Type II of SPEC 7 where the policy ``edges`` kept summaries instead of every evaluation.
+"""The score of type II where the policy ``edges`` kept summaries instead of every evaluation.
 
 A summary says of all evaluations of one comparison, thread and period: how many, the smallest and
 largest cmp - thresh, the mean of its absolute value, the extremes of the values. The flops are
 events, so their number is exact. A summary that lies within the window, or outside of it, gives its
-part of D exactly. Of one that straddles an end of the window, or m, any number of its evaluations
-may be in the window; D then lies between the smallest and the largest mean that they allow:
+part of D exactly. One that straddles an end of the window is taken as spread evenly over its span:
+it counts with the share of the span that is in the window. The score is an estimate then; why no
+bounds are worked out is in docs/explanation/decisions.md.
 
-- |cmp - thresh| of each lies in [a, b], and n of them sum to A. The fewest that k of them can sum
-  to, and the most, is as if n - K of them were b and K were a, K = (n b - A) / (b - a): the
-  smallest sum takes those at a first, the largest those at b.
-- So the smallest mean over the window takes, from all straddling summaries, whatever lies below the
-  mean, and no more; likewise the largest. That is a fractional program; Dinkelbach's iteration
-  (Management Science 13, 1967) settles it in a few steps.
-- max_i - min_i is at least that of what is known to be up to m, and at most that with all
-  summaries that began before it.
+max_i and min_i are those of what had ended by m, or of what had begun where nothing had.
 """
 
 from __future__ import annotations
@@ -43,19 +37,7 @@ from pytpc.recording.summaries import Summaries
 # report is a flop or a first one, so that of others hardly any doubt is left.
 _FLOP_SLACK_NS = 100_000_000
 _SLACK_NS = 1_000_000
-
-
-class Bounds(NamedTuple):
-    """float64[marks, keys] each: ``low`` <= the exact score <= ``high``, up to rounding.
-
-    ``value`` is between them: evaluations of a straddling summary taken as spread evenly over it.
-    All three are the same number where the score is exact. Where there may be no score at all,
-    ``high`` is at least ``NONE``; where there is none, all three are ``NONE``.
-    """
-
-    low: Floats
-    value: Floats
-    high: Floats
+_TINY = 1e-200
 
 
 class Reports(NamedTuple):
@@ -70,12 +52,12 @@ class Reports(NamedTuple):
     before: Before | None = None
 
 
-def type2_bounds(
+def type2_of_summaries(
     reports: Reports,
     marks_ns: npt.ArrayLike,
     distance: npt.ArrayLike,
     formula: Formula = DEFAULT,
-) -> Bounds:
+) -> Floats:
     """Type II from first evaluations, flops and summaries; the arguments are those of ``type2``.
 
     Keys of ``summaries`` that are not among ``events.keys`` are left out. A key may have both
@@ -86,10 +68,9 @@ def type2_bounds(
     """
     events, summaries, before = reports
     earlier = before or Before.nothing(len(events.keys))
-    plain = type2(events, marks_ns, distance, formula, earlier)
+    scores = type2(events, marks_ns, distance, formula, earlier)
     marks, distances = checked(events, marks_ns, distance)
     begins = marks - round(formula.window_s * 1e9)
-    bounds = Bounds(plain, plain.copy(), plain.copy())
     nearness = distances / distances.max(initial=1.0)
     for code, key in enumerate(events.keys):
         if key not in summaries.keys:
@@ -99,10 +80,8 @@ def type2_bounds(
             # What is beyond a double is looked for where it matters, in ``scores``.
             with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
                 own = _Key(events, code, summaries, rows, earlier)
-                columns = own.scores(begins, marks, formula, float(nearness[code]))
-            for table, column in zip(bounds, columns, strict=True):
-                table[:, code] = column
-    return bounds
+                scores[:, code] = own.scores(begins, marks, formula, float(nearness[code]))
+    return scores
 
 
 class _Spread(NamedTuple):
@@ -148,43 +127,25 @@ class _Key:
         most = np.concatenate([summaries.diff_max[rows], diff])[order]
         self.low = np.concatenate([summaries.low[rows], low])[order]
         self.high = np.concatenate([summaries.high[rows], high])[order]
-        self.largest = np.maximum(np.abs(least), np.abs(most))
+        largest = np.maximum(np.abs(least), np.abs(most))
         nearest = np.minimum(np.abs(least), np.abs(most))
-        self.smallest = np.where((least <= 0) & (most >= 0), 0.0, nearest)
-        held = np.clip(mean, self.smallest, self.largest)
-        self.mean = np.where(np.isfinite(mean + self.largest), held, np.inf)
-        self.sum = self.mean * self.count
+        smallest = np.where((least <= 0) & (most >= 0), 0.0, nearest)
+        # The mean of equal differences is that difference, so that equal scores stay equal.
+        mean = np.where(np.isfinite(mean + largest), np.clip(mean, smallest, largest), np.inf)
+        self.sum = mean * self.count
 
-    def scores(
-        self, begins: Int64s, marks: Int64s, formula: Formula, nearness: float
-    ) -> tuple[Floats, Floats, Floats]:
-        """The least, likely and greatest score at each mark."""
+    def scores(self, begins: Int64s, marks: Int64s, formula: Formula, nearness: float) -> Floats:
+        """The score at each mark."""
         window = self._window(begins, marks)
         spread = self._spread(marks)
-        sure = window.number > 0
-        sure |= (count_within(self.times, begins, marks) > 0) & window.some
-        none = ~window.some | (spread.most <= 0)
-        low = window.least() / spread.most
-        high = window.most() / spread.least
-        value = window.likely() / np.where(spread.least > 0, spread.least, spread.most)
-        # Where something is beyond a double all that is known is that no difference exceeds the
-        # spread.
-        wild = ~(np.isfinite(low) & np.isfinite(spread.most))
-        low = np.where(wild, 0.0, low)
-        high = np.where(wild | ~(high <= 1.0), 1.0, high)
-        value = np.clip(np.where(np.isfinite(value), value, 1.0), low, high)
-        factor = np.maximum(1.0, count_within(self.flops, begins, marks)) ** formula.beta
-        factor = factor * nearness**formula.delta
-        far = [window.far**formula.gamma, window.far_likely() ** formula.gamma]
-        far.append(window.far_most() ** formula.gamma)
-        scores = [
-            beside_none(ratio**formula.alpha * factor * n)
-            for ratio, n in zip((low, value, high), far, strict=True)
-        ]
-        doubtful = ~sure | (spread.least <= 0)
-        scores[2] = np.where(doubtful, np.maximum(scores[2], NONE), scores[2])
-        first, likely, last = (np.where(none, NONE, column) for column in scores)
-        return first, likely, last
+        width = np.where(spread.least > 0, spread.least, spread.most)
+        ratio = window.total / window.number / width
+        # No difference exceeds the spread: all that is known of what is beyond a double.
+        ratio = np.clip(np.where(np.isfinite(ratio), ratio, 1.0), 0.0, 1.0)
+        flops = np.maximum(1.0, count_within(self.flops, begins, marks))
+        value = ratio**formula.alpha * flops**formula.beta * window.far**formula.gamma
+        none = (window.number <= 0) | (spread.most <= 0)
+        return np.where(none, NONE, beside_none(value * nearness**formula.delta))
 
     def _spread(self, marks: Int64s) -> _Spread:
         """From what had ended by each mark, and from all that had begun."""
@@ -204,9 +165,7 @@ class _Key:
         return _Spread(*found)
 
     def _window(self, begins: Int64s, marks: Int64s) -> _Window:
-        """What is in each window for sure, and what straddles its ends."""
-        first = np.searchsorted(self.end, begins, side="left")
-        last = np.searchsorted(self.end, marks, side="right")
+        """What is in each window."""
         # The few that are much longer than the others are looked at for every mark; any other that
         # straddles the beginning ends at most ``longest`` after it.
         span = self.end - self.begin
@@ -227,104 +186,27 @@ class _Key:
         mark, row = (np.concatenate(columns) for columns in zip(*pairs, strict=True))
         within = (self.end[row] >= begins[mark]) & (self.begin[row] <= marks[mark])
         mark, row = mark[within], row[within]
-        whole = (self.begin[row] >= begins[mark]) & (self.end[row] <= marks[mark])
-        sums = RangeSums(self.sum[short]).over(middle, outer)
+        # The share of each that is in the window. A window that has no more than an end of a span
+        # has its mean difference.
+        inside = np.minimum(self.end[row], marks[mark]) - np.maximum(self.begin[row], begins[mark])
+        share = np.where(span[row] > 0, np.maximum(inside / span[row], _TINY), 1.0)
+        between = RangeSums(self.sum[short]).over(middle, outer)
         counts = np.concatenate([[0], np.cumsum(self.count[short])])
         fars = np.concatenate([[0], np.cumsum(self.far[short])])
-        ours, theirs = (mark[whole], row[whole]), (mark[~whole], row[~whole])
-        beyond = np.where(np.isfinite(self.sum[theirs[1]]), 0.0, np.inf)
         return _Window(
-            total=sums
-            + _sum_by(ours[0], self.sum[ours[1]], marks.size)
-            + _sum_by(theirs[0], beyond, marks.size),
-            number=counts[outer]
-            - counts[middle]
-            + _sum_by(ours[0], self.count[ours[1]], marks.size),
-            far=fars[outer] - fars[middle] + _sum_by(ours[0], self.far[ours[1]], marks.size),
-            some=(last > first) | (np.bincount(theirs[0], minlength=marks.size) > 0),
-            mark=theirs[0],
-            parts=self._parts(theirs[1], begins[theirs[0]], marks[theirs[0]]),
+            between + _sum_by(mark, self.sum[row] * share, marks.size),
+            counts[outer] - counts[middle] + _sum_by(mark, self.count[row] * share, marks.size),
+            fars[outer] - fars[middle] + _sum_by(mark, self.far[row] * share, marks.size),
         )
-
-    def _parts(self, rows: Int64s, begins: Int64s, marks: Int64s) -> _Parts:
-        """What straddles, each as some evaluations at its smallest difference and at its largest;
-        ``share`` of it is likely in the window."""
-        smallest, largest = self.smallest[rows], self.largest[rows]
-        share = (largest - self.mean[rows]) / (largest - smallest)
-        small = np.clip(np.nan_to_num(share, nan=0.0), 0.0, 1.0) * self.count[rows]
-        inside = np.minimum(self.end[rows], marks) - np.maximum(self.begin[rows], begins)
-        share = inside / (self.end[rows] - self.begin[rows])
-        return _Parts(
-            length=np.concatenate([small, self.count[rows] - small]),
-            slope=np.concatenate([smallest, largest]),
-            total=self.sum[rows] * share,
-            number=self.count[rows] * share,
-            far=self.far[rows],
-            share=share,
-        )
-
-
-class _Parts(NamedTuple):
-    """Straddling summaries; ``length`` and ``slope`` have two for each."""
-
-    length: Floats
-    slope: Floats
-    total: Floats
-    number: Floats
-    far: Int64s
-    share: Floats
 
 
 class _Window(NamedTuple):
-    """The windows of all marks: what is inside, and ``parts`` that straddle, of ``mark`` each."""
+    """The evaluations in the windows of all marks: the sum of |cmp - thresh|, how many, and of how
+    many it is above ``EQUAL``."""
 
     total: Floats
     number: Floats
     far: Floats
-    some: Bools
-    mark: Int64s
-    parts: _Parts
-
-    def least(self) -> Floats:
-        """The smallest mean difference at each mark."""
-        return self._extreme(1.0)
-
-    def most(self) -> Floats:
-        """The largest."""
-        return -self._extreme(-1.0)
-
-    def likely(self) -> Floats:
-        """The mean if every straddling summary is evenly spread."""
-        total = self.total + _sum_by(self.mark, self.parts.total, self.total.size)
-        count = self.number + _sum_by(self.mark, self.parts.number, self.total.size)
-        return total / count
-
-    def far_likely(self) -> Floats:
-        """n_i likewise."""
-        return self.far + _sum_by(self.mark, self.parts.far * self.parts.share, self.far.size)
-
-    def far_most(self) -> Floats:
-        """n_i with all that may be in the window."""
-        return self.far + _sum_by(self.mark, self.parts.far, self.far.size)
-
-    def _extreme(self, sign: float) -> Floats:
-        """The smallest mean of ``sign`` times the differences, over any share of each part."""
-        mark = np.concatenate([self.mark, self.mark])
-        length, slope = self.parts.length, sign * self.parts.slope
-        taken = np.ones(mark.size, np.bool_)
-        while True:
-            weight = np.where(taken, length, 0.0)
-            gain = np.where(weight > 0, weight * slope, 0.0)
-            total = sign * self.total + _sum_by(mark, gain, self.total.size)
-            count = self.number + _sum_by(mark, weight, self.total.size)
-            mean = total / count
-            fewer = taken & (slope < mean[mark])
-            # The last part of a window that has nothing else is that mean itself.
-            left = self.number + _sum_by(mark, np.where(fewer, length, 0.0), self.total.size)
-            fewer |= taken & (left[mark] <= 0)
-            if np.array_equal(fewer, taken):
-                return mean
-            taken = fewer
 
 
 def covered(events: Events, rows: Int64s, summaries: Summaries, own: Int64s) -> Bools:

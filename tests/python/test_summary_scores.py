@@ -1,4 +1,4 @@
-"""Scores under `edges`: the same number for type I, bounds that hold it for type II."""
+"""Scores under `edges`: the same number for type I; for type II exact or evenly spread."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from mission_samples import events, key, ns
 
-from pytpc.diagnosis.scores.bounds import Reports, type2_bounds
 from pytpc.diagnosis.scores.scores import NONE, Formula, type1, type2
+from pytpc.diagnosis.scores.summary_scores import Reports, type2_of_summaries
 from pytpc.recording.events import EventBuilder, Events, Report
 from pytpc.recording.summaries import Summaries, Summary, SummaryBuilder
 
@@ -48,7 +48,7 @@ def every(run: Sequence[Evaluated]) -> Events:
 
 
 def edges(run: Sequence[Evaluated], period_ms: int) -> tuple[Events, Summaries]:
-    """The policy, as docs/running.md says it: one pass over the evaluations in order."""
+    """The policy, as docs/reference/runtime.md says it: one pass over the evaluations in order."""
     builder = EventBuilder()
     last: dict[tuple[str, str], bool] = {}
     periods = defaultdict(list)
@@ -155,17 +155,56 @@ def test_edges_gives_the_scores_of_every_evaluation(run, period_ms, marks_ms, wi
     assert np.array_equal(type1(whole, marks, distance), type1(some, marks, distance))
     exact = type2(whole, marks, distance, Formula(window_s=window_s, **powers))
     formula = Formula(window_s=window_s, **powers)
-    low, value, high = type2_bounds(Reports(some, summaries), marks, distance, formula)
-    assert (low <= value).all() and (value <= high).all()
-    assert (low <= exact * (1 + 1e-9)).all()
-    assert (exact <= high * (1 + 1e-9)).all()
+    found = type2_of_summaries(Reports(some, summaries), marks, distance, formula)
+    assert np.isfinite(found).all()
     largest = max((abs(v) for one in run for v in one[4:] if math.isfinite(v)), default=0.0)
+    if largest >= 1e300:
+        return
     for row, mark in enumerate(marks):
         begin = mark - round(window_s * 1e9)
         for code, name in enumerate(KEYS):
-            if largest < 1e300 and not straddled(summaries, name, begin, mark):
-                assert low[row, code] == high[row, code]
-                assert low[row, code] == pytest.approx(exact[row, code], rel=1e-9)
+            score = found[row, code]
+            if not straddled(summaries, name, begin, mark):
+                assert score == pytest.approx(exact[row, code], rel=1e-9)
+            ratio = evenly_spread(some, summaries, name, (begin, mark))
+            if ratio is None:
+                assert score == NONE
+            elif not powers:
+                flops = some.flop & (some.key == code)
+                flops &= (some.time_ns >= begin) & (some.time_ns <= mark)
+                assert score == pytest.approx(ratio * max(1, int(flops.sum())), rel=1e-9)
+
+
+def evenly_spread(
+    some: Events, summaries: Summaries, name: str, window: tuple[int, int]
+) -> float | None:
+    """D of the definition, summary by summary; None where there is nothing to tell it from."""
+    begin, mark = window
+    number = total = 0.0
+    ended, begun = set(), set()
+    for row in np.flatnonzero(some.key == KEYS.index(name)):
+        both = {float(some.cmp[row]), float(some.thresh[row])}
+        if some.time_ns[row] <= mark and all(map(math.isfinite, both)):
+            ended |= both
+    mine = [row for row in range(len(summaries)) if summaries.keys[summaries.key[row]] == name]
+    for row in mine:
+        count = int(summaries.count[row] - summaries.odd[row])
+        first, last = int(summaries.begin_ns[row]), int(summaries.end_ns[row])
+        if not count:
+            continue
+        values = {float(summaries.low[row]), float(summaries.high[row])}
+        begun |= values if first <= mark else set()
+        ended |= values if last <= mark else set()
+        if last < begin or first > mark:
+            continue
+        inside = min(last, mark) - max(first, begin)
+        share = 1.0 if first == last else max(inside / (last - first), 1e-200)
+        number += share * count
+        total += share * count * float(summaries.abs_mean[row])
+    begun |= ended
+    spread = max(ended) - min(ended) if ended else 0.0
+    spread = spread or (max(begun) - min(begun) if begun else 0.0)
+    return min(1.0, total / number / spread) if number and spread else None
 
 
 def by_hand(**changed: float) -> Summary:
@@ -205,50 +244,42 @@ def table(*summaries: Summary) -> Summaries:
     return builder.build()
 
 
-# The window [1, 3] holds LATER (2 evaluations, sum 2) and cuts the other one. Its three sum to 6
-# between 1 and 3, as if (3*3 - 6) / (3 - 1) = 1.5 were 1 and 1.5 were 3. The spread is 4.
-#   least:  the mean of LATER is 1, nothing of the other is below      -> 1 / 4
-#   most:   with 1.5 at 3: (2 + 4.5) / 3.5, the rest is below that      -> 6.5 / 3.5 / 4
-#   likely: half of its span is in the window: (2 + 3) / (2 + 1.5)      -> 5 / 3.5 / 4
-# and n_i is 2, at most 5, likely 3.5.
+# The window [1, 3] holds LATER (2 evaluations, sum 2) and cuts the other one, of which it has half
+# the span: half of 3 evaluations, which sum to half of 6. The spread is 4: (2 + 3) / (2 + 1.5) / 4,
+# and n_i is 2 + 1.5.
 def test_a_summary_that_the_window_cuts():
     first = events([(0.5, 0, 1, 2, 1)])
     both = table(by_hand(), LATER)
-    low, value, high = type2_bounds(Reports(first, both), [ns(3)], [1], Formula(2))
-    assert low[0, 0] == pytest.approx(0.25, rel=1e-12)
-    assert value[0, 0] == pytest.approx(5 / 14, rel=1e-12)
-    assert high[0, 0] == pytest.approx(6.5 / 14, rel=1e-12)
-    low, value, high = type2_bounds(
-        Reports(first, both), [ns(3)], [1], Formula(2, alpha=0, gamma=1)
-    )
-    assert [low[0, 0], value[0, 0], high[0, 0]] == pytest.approx([2, 3.5, 5])
+    (score,) = type2_of_summaries(Reports(first, both), [ns(3)], [1], Formula(2))
+    assert score == pytest.approx([5 / 14], rel=1e-12)
+    formula = Formula(2, alpha=0, gamma=1)
+    assert type2_of_summaries(Reports(first, both), [ns(3)], [1], formula) == pytest.approx(3.5)
 
 
 # w = 2.5: both are within [0.5, 3]: (6 + 2) / 5 / 4 = 0.4.
 def test_a_summary_within_the_window_is_exact():
-    scores = type2_bounds(
+    scores = type2_of_summaries(
         Reports(events([(0.5, 0, 1, 2, 1)]), table(by_hand(), LATER)), [ns(3)], [1], Formula(2.5)
     )
-    assert [column[0, 0] for column in scores] == pytest.approx([0.4] * 3, rel=1e-12)
-    assert scores.low[0, 0] == scores.high[0, 0]
+    assert scores == pytest.approx(0.4, rel=1e-12)
 
 
-# At 1 s the summary has begun; what is known is its first evaluation (2 - 1, spread 1), so there is
-# a score: the difference is between 1 and 3, the spread between 1 and 4.
+# At 1 s the summary has begun; what is known is its first evaluation (2 - 1, spread 1). The mean
+# difference is 2, and none can be more than the spread.
 def test_a_mark_within_a_period():
-    low, _, high = type2_bounds(
-        Reports(events([(0.5, 0, 1, 2, 1)]), table(by_hand())), [ns(1)], [1]
-    )
-    assert (low[0, 0], high[0, 0]) == (0.25, 1.0)
-    # Without that event it may be that none of its evaluations was before the mark.
-    low, _, high = type2_bounds(Reports(Events.empty([key(0)]), table(by_hand())), [ns(1)], [1])
-    assert (low[0, 0], high[0, 0]) == (0.25, NONE)
+    both = Reports(events([(0.5, 0, 1, 2, 1)]), table(by_hand()))
+    assert type2_of_summaries(both, [ns(1)], [1]) == 1.0
+    # Without that event nothing has ended: the spread is that of what has begun, 4.
+    alone = Reports(Events.empty([key(0)]), table(by_hand()))
+    assert type2_of_summaries(alone, [ns(1)], [1]) == 0.5
+    # At its very begin, none of the span is in the window: the mean stands for what is.
+    assert type2_of_summaries(alone, [ns(0.5)], [1]) == 0.5
 
 
 def test_without_summaries_it_is_type2():
     some = events([(0, 0, 1, 10, 4), (5, 0, 1, 6, 4), (8, 0, 1, 5, 4), (20, 0, 1, 4.5, 4)])
-    scores = type2_bounds(Reports(some, Summaries.empty()), [ns(20), ns(8)], [1])
-    assert [column[:, 0].tolist() for column in scores] == [[0.125, 0.5]] * 3
+    scores = type2_of_summaries(Reports(some, Summaries.empty()), [ns(20), ns(8)], [1])
+    assert scores[:, 0].tolist() == [0.125, 0.5]
 
 
 # The policy was `every` until 0.4 s: those two evaluations are in no summary and count by
@@ -256,14 +287,14 @@ def test_without_summaries_it_is_type2():
 # summary is in it, as on /rosout where a report has the time of its writing.
 def test_both_policies_in_one_recording():
     mixed = events([(0.1, 0, 1, 4, 1), (0.3, 0, 1, 4, 1), (0.48, 0, 0, 0, 1)])
-    low, _, high = type2_bounds(Reports(mixed, table(by_hand(), LATER)), [ns(3)], [1])
-    assert low[0, 0] == high[0, 0] == pytest.approx(14 / 7 / 4)
+    scores = type2_of_summaries(Reports(mixed, table(by_hand(), LATER)), [ns(3)], [1])
+    assert scores == pytest.approx(14 / 7 / 4)
 
 
 def test_a_node_without_summaries_beside_one_that_has_them():
     mixed = events([(0.5, 0, 1, 2, 1), (1, 0, 1, 4, 1, "/other"), (1.2, 0, 1, 4, 1, "/other")])
-    low, _, high = type2_bounds(Reports(mixed, table(by_hand(), LATER)), [ns(3)], [1])
-    assert low[0, 0] == high[0, 0] == pytest.approx((6 + 2 + 3 + 3) / 7 / 4)
+    scores = type2_of_summaries(Reports(mixed, table(by_hand(), LATER)), [ns(3)], [1])
+    assert scores == pytest.approx((6 + 2 + 3 + 3) / 7 / 4)
 
 
 # One summary in a hundred is as long as the mission (a clock that jumped): it is not overlooked.
@@ -272,8 +303,9 @@ def test_one_long_summary_among_many_short_ones():
         by_hand(begin_ns=ns(n), end_ns=ns(n + 0.5), abs_mean=1.0, diff_max=1.0) for n in range(300)
     ]
     long = by_hand(begin_ns=ns(0.2), end_ns=ns(400), count=2, diff_min=3, diff_max=3, abs_mean=3)
-    low, _, high = type2_bounds(
+    scores = type2_of_summaries(
         Reports(events([(0, 0, 1, 2, 1)]), table(long, *short)), [ns(100.8)], [1], Formula(1.0)
     )
-    # [99.8, 100.8] holds one short summary: 3 of 1; of the long one 0 to 2 of 3.
-    assert (low[0, 0], high[0, 0]) == pytest.approx((1 / 4, (3 + 6) / 5 / 4))
+    # [99.8, 100.8] holds one short summary, 3 of 1, and 1 s of the 399.8 s of the long one, 2 of 3.
+    share = 1 / 399.8
+    assert scores == pytest.approx((3 + 6 * share) / (3 + 2 * share) / 4, rel=1e-12)

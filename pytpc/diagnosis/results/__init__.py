@@ -1,0 +1,1 @@
+"""What a diagnosis answers: plain data, which every room below may show."""

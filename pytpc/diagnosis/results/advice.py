@@ -1,0 +1,178 @@
+"""What a diagnosis advises: a value for a suspected parameter, and what it would have changed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from pytpc.base.wording import Number
+from pytpc.diagnosis.question import Source
+from pytpc.diagnosis.results.suspects import Accused, Suspect
+from pytpc.diagnosis.thresholds.intervals import Intervals
+from pytpc.recording.declaration import Declared
+from pytpc.recording.marks import Mark, MarkType
+
+Direction = Literal["raise", "lower", "switch"]
+
+
+@dataclass(frozen=True, slots=True)
+class Suggestion:
+    """What to do with one parameter.
+
+    ``current`` and ``value`` are in the parameter's unit: a bool for a switch, an int for a
+    whole-number parameter. ``boundary`` is where the values begin that would do, and is one of them
+    where ``inclusive``. ``text`` is the sentence to show. Where nothing can be suggested
+    ``direction``, ``value`` and ``boundary`` are None and ``reason`` says why.
+
+    ``feasible`` are all values that would do, whatever is declared of the parameter (of equality
+    and of periodic arithmetic those near the present one); it may have some where nothing is
+    suggested: none that the parameter can take, or no way to choose. ``limited_by`` says what kept
+    ``value`` from the smallest change: a declared range, a step, a whole number, the sign.
+    """
+
+    parameter: str
+    current: Number | None
+    direction: Direction | None
+    value: Number | None
+    boundary: float | None
+    inclusive: bool
+    text: str
+    reason: str | None
+    feasible: Intervals = ()
+    limited_by: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Known:
+    """A value in the parameter's unit, and who says that it is good."""
+
+    source: Source
+    value: float
+
+
+Basis = Literal[
+    "reference", "default", "declared", "lasting", "growth", "between", "smallest", "before"
+]
+
+
+@dataclass(frozen=True, slots=True)
+class Remedy:
+    """What to try.
+
+    ``current`` and ``value`` are in the parameter's unit, as `Suggestion` has them; ``basis`` is
+    the evidence that decided: a known value, the lasting one, one that is stepped to because the
+    values ``growth`` bounds nothing, one ``between`` those that were flown, the ``smallest``
+    change, or the one of ``before`` it was changed (`pytpc.diagnosis.suggestion.blamed`).
+    ``smallest`` is SPEC 8's suggestion that does at the most of the marks. ``kind`` is the type of
+    error that is answered and ``key`` the comparison by which. ``known`` are all values that
+    somebody knows to be good. Where nothing can be suggested ``value``, ``direction`` and ``basis``
+    are None and ``reason`` says why.
+    """
+
+    parameter: str
+    current: Number | None
+    direction: Direction | None
+    value: Number | None
+    basis: Basis | None
+    text: str
+    reason: str | None
+    kind: MarkType | None
+    key: str | None
+    smallest: Suggestion | None
+    known: tuple[Known, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class WhatIf:
+    """The recorded comparisons of one parameter, replayed with another value.
+
+    ``marks`` marks were looked at (those of the type that the question is about), ``answered`` of
+    them would have been answered: type I, the last flop before the mark would not have happened;
+    type II, an evaluation in the window would have gone the other way. ``evaluations`` of the
+    parameter's TPCs were replayed. ``flipped_near`` of them have another outcome within a window
+    before a mark, ``flipped_away`` elsewhere: the decisions that were right as far as anybody said.
+    ``text`` is the sentence to show, ``caveats`` what the replay could not know.
+
+    ``unsure`` is how many more may have another outcome: of summaries only the ends are known.
+    """
+
+    parameter: str
+    value: Number
+    marks: int
+    answered: int
+    evaluations: int
+    flipped_near: int
+    flipped_away: int
+    text: str
+    caveats: tuple[str, ...]
+    unsure: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Suggested:
+    """A suspect with the smallest change that is suggested for it."""
+
+    suspect: Suspect
+    suggestion: Suggestion
+
+
+@dataclass(frozen=True, slots=True)
+class Advice:
+    """A suspect with what to do.
+
+    ``suggestion`` is SPEC 8's smallest change, and ``what_if`` what it would have changed, None
+    where nothing is suggested. ``remedy`` is the value to try, and ``tried`` what that would have
+    changed; `pytpc.diagnosis.suggestion.joining.with_remedies` fills them, for they need the other
+    marks.
+    """
+
+    suspect: Suspect
+    suggestion: Suggestion
+    what_if: WhatIf | None
+    declared: Declared | None
+    remedy: Remedy | None = None
+    tried: WhatIf | None = None
+
+    @property
+    def told(self) -> Suggestion | Remedy:
+        """The value to try, or the smallest change where there is none."""
+        return self.suggestion if self.remedy is None or self.remedy.value is None else self.remedy
+
+
+@dataclass(frozen=True, slots=True)
+class BlamedAdvice:
+    """One of them with the value to try; ``what_if`` is None where there is none."""
+
+    accused: Accused
+    remedy: Remedy
+    what_if: WhatIf | None
+
+
+@dataclass(frozen=True, slots=True)
+class JoinedAdvice:
+    """One parameter at the marks of a group, with the advice that does at the most of them.
+
+    It is a suspect at ``named`` of the marks, and the suggested value would do at ``agreed``.
+    ``remedy`` is the value to try, from all marks of the group together, and ``what_if`` what it
+    would have changed, None where there is none.
+    """
+
+    advice: Advice
+    named: int
+    agreed: int
+    remedy: Remedy
+    what_if: WhatIf | None
+
+
+@dataclass(frozen=True, slots=True)
+class MarkGroup:
+    """Marks of one type whose first suspect and the direction of its suggestion are the same.
+
+    ``suspects`` are ordered by their mean position. ``reasons`` say at which marks there is not
+    enough evidence, and why.
+    """
+
+    marks: tuple[Mark, ...]
+    type: MarkType | None
+    suspects: tuple[JoinedAdvice, ...]
+    reasons: tuple[str, ...]
