@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import signal
 
+import pytest
 from hypothesis import HealthCheck, settings
+
+from interpreters import tested_and_absent
 
 # Started in the background (`make test &`) everything ignores Ctrl-C, and so does what is started
 # here: the tests that interrupt a program would wait for ever.
@@ -14,3 +17,12 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 # A machine that is busy makes examples slowly; that says nothing about what is tested.
 settings.register_profile("busy", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("busy")
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """Say under which interpreters python_runtime was tested, if it was."""
+    passed = [report.nodeid for report in terminalreporter.getreports("passed")]
+    tested, absent = tested_and_absent(passed)
+    if tested:
+        lacking = f"; not on this machine: {', '.join(absent)}" if absent else ""
+        terminalreporter.line(f"python_runtime ran under Python {', '.join(tested)}{lacking}")

@@ -19,7 +19,7 @@ from pathlib import Path
 import grimp
 
 ROOT = Path(__file__).parents[1]
-PACKAGES = ("pytpc", "tpc_evaluation")
+PACKAGES = ("pytpc", "pytpc_evaluation")
 # tests/ros builds workspaces and starts graphs, minutes each: `make test` runs those.
 TEST_FOLDERS = ("tests/python", "tests/runtime")
 # Where an `import` in a test looks first (pytest's `pythonpath`, and the test's own folder).

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+import sys
 from pathlib import Path
 
 import pytest
@@ -10,8 +11,18 @@ from click.testing import CliRunner, Result
 from launch_samples import MISSION_PARAMS
 from study_samples import make_study
 
+from interpreters import interpreters
 from pytpc.cli.main import main
 from pytpc_evaluation.study.report.making import Made, make_report
+
+
+@pytest.fixture(
+    params=[pytest.param(path, id=f"python{version}") for version, path in interpreters().items()]
+)
+def python(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
+    """Each Python of this machine in turn, as the one that programs are started with."""
+    monkeypatch.setattr(sys, "executable", request.param)
+    return request.param
 
 
 @pytest.fixture

@@ -59,6 +59,7 @@ def rows(folder: Path) -> list[tuple[str, bool, float, float]]:
     return list(zip(keys, *columns, strict=True))
 
 
+@pytest.mark.usefixtures("python")
 def test_reports_are_read_by_ingest(tmp_path):
     done = run(
         tmp_path,
@@ -81,6 +82,7 @@ def test_reports_are_read_by_ingest(tmp_path):
     assert files(tmp_path)[0].stat().st_size == 4096 + 2 * 65536
 
 
+@pytest.mark.usefixtures("python")
 def test_nothing_is_lost_by_kill_9(tmp_path):
     done = run(
         tmp_path,
@@ -98,6 +100,7 @@ def test_nothing_is_lost_by_kill_9(tmp_path):
     assert sum(result for _, result, _, _ in found) == 2499
 
 
+@pytest.mark.usefixtures("python")
 def test_each_thread_has_its_reports_in_order(tmp_path):
     run(
         tmp_path,
@@ -118,6 +121,7 @@ def test_each_thread_has_its_reports_in_order(tmp_path):
         assert values == list(range(3000))
 
 
+@pytest.mark.usefixtures("python")
 def test_threads_that_follow_one_another_share_a_place(tmp_path):
     run(
         tmp_path,
@@ -133,6 +137,7 @@ def test_threads_that_follow_one_another_share_a_place(tmp_path):
     assert files(tmp_path)[0].stat().st_size <= 4096 + 4 * 65536
 
 
+@pytest.mark.usefixtures("python")
 def test_a_child_after_a_fork_has_a_file_of_its_own(tmp_path):
     run(
         tmp_path,
@@ -156,6 +161,7 @@ def test_a_child_after_a_fork_has_a_file_of_its_own(tmp_path):
     assert sorted(by_file) == [[1.0, 10.0, 11.0], [20.0]]
 
 
+@pytest.mark.usefixtures("python")
 def test_a_report_within_a_report_by_a_signal(tmp_path):
     done = run(
         tmp_path,
@@ -176,6 +182,7 @@ def test_a_report_within_a_report_by_a_signal(tmp_path):
     assert recording(tmp_path).malformed == 0
 
 
+@pytest.mark.usefixtures("python")
 def test_a_limit_stops_the_recording_and_not_the_program(tmp_path):
     # 1 MiB has room for 16 chunks; one is the system's, so 15 of 2046 reports fit.
     done = run(
@@ -196,6 +203,7 @@ def test_a_limit_stops_the_recording_and_not_the_program(tmp_path):
     assert [(drop.count, drop.why) for drop in found.dropped] == [(40000 - 15 * 2046, "stopped")]
 
 
+@pytest.mark.usefixtures("python")
 def test_a_folder_that_cannot_be_written(tmp_path):
     (tmp_path / "file").write_text("")
     done = run(tmp_path / "file" / "x", 'over(site("one"), 1, 0)\nprint("went on")')
@@ -203,6 +211,7 @@ def test_a_folder_that_cannot_be_written(tmp_path):
     assert "no reports are written" in done.stderr
 
 
+@pytest.mark.usefixtures("python")
 def test_edges_keeps_flops_and_summaries(tmp_path):
     run(
         tmp_path,
@@ -230,6 +239,7 @@ def test_edges_keeps_flops_and_summaries(tmp_path):
     assert (found.summaries.low.tolist(), found.summaries.high.tolist()) == ([1.0], [6.0])
 
 
+@pytest.mark.usefixtures("python")
 def test_edges_lose_nothing_by_kill_9(tmp_path):
     run(
         tmp_path,
@@ -247,6 +257,7 @@ def test_edges_lose_nothing_by_kill_9(tmp_path):
     assert found.summaries.flops.tolist() == [1]
 
 
+@pytest.mark.usefixtures("python")
 def test_edges_killed_in_the_middle_of_a_summary(tmp_path):
     run(
         tmp_path,
@@ -278,6 +289,7 @@ def test_edges_killed_in_the_middle_of_a_summary(tmp_path):
     assert found.summaries.diff_mean.tolist() == [-1.5]
 
 
+@pytest.mark.usefixtures("python")
 def test_caps_count_what_they_drop(tmp_path):
     run(
         tmp_path,
@@ -296,6 +308,7 @@ def test_caps_count_what_they_drop(tmp_path):
     assert [(d.key, d.count, d.flops, d.why) for d in found.dropped] == [("one", 3, 2, "site")]
 
 
+@pytest.mark.usefixtures("python")
 def test_a_wrong_setting_is_said_and_left_out(tmp_path):
     done = run(tmp_path, 'over(site("one"), 1, 0)', TPC_POLICY="sometimes")
     assert done.stderr == (
@@ -304,6 +317,7 @@ def test_a_wrong_setting_is_said_and_left_out(tmp_path):
     assert len(rows(tmp_path)) == 1
 
 
+@pytest.mark.usefixtures("python")
 def test_off_writes_nothing(tmp_path):
     done = run(tmp_path, 'print(over(site("one"), 1, 0))', TPC_SINK="off")
     assert done.stdout == "True\n"

@@ -8,8 +8,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-import pytest
-from test_pyhook_run import INTERPRETERS, comparison, unit
+from test_pyhook_run import comparison, unit
 
 ROOT = Path(__file__).parents[2]
 SCRIPT = """\
@@ -49,7 +48,6 @@ def outputs(folder: Path, begin: str, end: str = "", said: str = "", python: str
     return [one.stdout + one.stderr for one in done]
 
 
-@pytest.mark.parametrize("python", INTERPRETERS)
 def test_step_of_pdb(tmp_path, python):
     # It goes into f and through its loop.
     said = "step\n" * 14 + "p x\nup\ncontinue\n"
@@ -76,7 +74,6 @@ def test_a_profiler(tmp_path):
     assert "'f'" in plain
 
 
-@pytest.mark.parametrize("python", INTERPRETERS)
 def test_a_tracer_of_the_programs_own(tmp_path, python):
     begin = (
         "def trace(frame, event, _):\n"

@@ -31,7 +31,9 @@ def test_changed_recordings(reader: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("reader", sorted(EXTENSIONS))
 def test_the_samples_themselves_are_read(reader: str, tmp_path: Path) -> None:
-    for number, data in enumerate(samples(reader)):
+    every = list(samples(reader))
+    assert every
+    for number, data in enumerate(every):
         path = tmp_path / f"{number}{EXTENSIONS[reader]}"
         path.write_bytes(data)
         assert readers.read_input(path) > 0

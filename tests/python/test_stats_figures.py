@@ -176,6 +176,7 @@ def test_the_same_study_gives_the_same_bytes(tmp_path):
     missions = [StudyMission("a", recording(MARKS), treatment())]
     first = draw_study(missions, STATIC, tmp_path / "1", ("svg", "png", "pdf"))
     second = draw_study(missions, STATIC, tmp_path / "2", ("svg", "png", "pdf"))
+    assert {path.suffix for path in first} == {".svg", ".png", ".pdf"}
     for one, two in zip(first, second, strict=True):
         assert one.read_bytes() == two.read_bytes()
 

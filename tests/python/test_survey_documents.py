@@ -35,7 +35,9 @@ def test_of_one_number_there_is_no_deviation() -> None:
 
 
 def test_no_two_columns_of_a_csv_have_one_name() -> None:
-    for table in tables([result("arm", 1.0, 1.0)]):
+    every = tables([result("arm", 1.0, 1.0)])
+    assert every
+    for table in every:
         heading = as_csv(table).splitlines()[0].split(",")
         assert len(heading) == len(set(heading))
 

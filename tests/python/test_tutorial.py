@@ -71,7 +71,9 @@ def test_the_examples_of_diagnosing(command: str):
         timeout=60,
     )
     heading = f"## {'Ranking' if command.startswith('rank') else 'Suggestions'}\n"
-    section = (ROOT / "docs/how-to/diagnose.md").read_text().partition(heading)[2].partition("\n## ")[0]
+    section = (
+        (ROOT / "docs/how-to/diagnose.md").read_text().partition(heading)[2].partition("\n## ")[0]
+    )
     begin = section.index("    All 5 marks together")
     block = re.match(r"(?:    .*\n|\n(?=    ))+", section[begin:])
     assert block is not None
@@ -88,7 +90,9 @@ def _weightless(line: str) -> str:
 
 
 def test_pictures_and_pages_are_there():
-    for target in re.findall(r"\]\(([^)#:]+)\)", TUTORIAL.read_text()):
+    targets = re.findall(r"\]\(([^)#:]+)\)", TUTORIAL.read_text())
+    assert targets
+    for target in targets:
         assert (TUTORIAL.parent / target).exists(), target
 
 
