@@ -7,7 +7,10 @@
 #include "control/IfStatements.h"
 #include "control/Throws.h"
 #include "instrument/InstrumentBranches.h"
+#include "memory/Aliases.h"
 #include "memory/ClassObjectAccess.h"
+#include "memory/LocationTypes.h"
+#include "memory/PointsTo.h"
 #include "output/StaticInfo.h"
 #include "params/ParamCallFinder.h"
 #include "params/ParamUsageFinder.h"
@@ -15,6 +18,7 @@
 #include "slice/BackwardPropagate.h"
 #include "slice/ExternCallFinder.h"
 #include "support/Budget.h"
+#include "support/DebugTypes.h"
 #include "support/Guard.h"
 
 #include "llvm/IR/Module.h"
@@ -27,6 +31,10 @@ namespace tpc {
 void registerAnalyses(ModuleAnalysisManager &AM) {
   AM.registerPass([] { return RuleAnalysis(); });
   AM.registerPass([] { return SimpleCallGraph(); });
+  AM.registerPass([] { return DebugTypesAnalysis(); });
+  AM.registerPass([] { return LocationTypesAnalysis(); });
+  AM.registerPass([] { return AliasesAnalysis(); });
+  AM.registerPass([] { return PointsToAnalysis(); });
   AM.registerPass([] { return ClassObjectAccess(); });
   AM.registerPass([] { return Throws(); });
   AM.registerPass([] { return IfStatements(); });

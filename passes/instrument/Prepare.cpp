@@ -361,7 +361,7 @@ Value *AnalysedModule::original(Value *V) const {
 
 std::vector<std::string> namedByCalls(Module &M, ModuleAnalysisManager &AM) {
   const RuleMatches &Known = AM.getResult<RuleAnalysis>(M);
-  Texts Names(Known, AM.getResult<SimpleCallGraph>(M), nullptr);
+  Texts Names(Known, AM.getResult<SimpleCallGraph>(M), std::nullopt);
   forEachCall(M, Known, Rule::Read, [&](CallBase &Call, const Rule &Row) {
     Names.nameOf(Call, Row);
   });

@@ -16,18 +16,18 @@ namespace tpc {
 AnalysisKey ClassObjectAccess::Key;
 
 void AccessResult::Builder::addWrite(Instruction &I, const Location &L) {
-  R.filePart(R.WritesByObject, R.PartWrites.size(), L);
+  R.WritesByObject.add(R.PartWrites.size(), L);
   R.PartWrites.push_back({&I, L});
 }
 
 void AccessResult::Builder::addCopy(Instruction &I, Locations To,
                                     Locations From) {
   for (const Location &L : To) {
-    R.fileObject(R.CopiesTo, R.Copies.size(), L);
+    R.CopiesTo.add(R.Copies.size(), L);
     addWrite(I, L);
   }
   for (const Location &L : From)
-    R.fileObject(R.CopiesFrom, R.Copies.size(), L);
+    R.CopiesFrom.add(R.Copies.size(), L);
   R.Copies.push_back({&I, std::move(To), std::move(From)});
 }
 
@@ -36,13 +36,13 @@ void AccessResult::Builder::addCopy(Instruction &I, Locations To,
 void AccessResult::Builder::putInto(CallBase &Call) {
   const Value *Container = containerOf(Call);
   Locations To;
-  addElements(Container, To);
+  R.Pointers.addElements(Container, To);
   for (const Use &Arg : Call.args()) {
     if (Arg.get() == Container || !Arg->getType()->isPointerTy() ||
         (Call.hasStructRetAttr() && Arg.getOperandNo() == 0))
       continue;
-    Locations From = R.resolve(Arg, false);
-    addElements(Arg, From);
+    Locations From = R.Pointers.resolve(Arg, false);
+    R.Pointers.addElements(Arg, From);
     addCopy(Call, To, std::move(From));
   }
 }
@@ -84,15 +84,15 @@ static const Value *alwaysReplaced(const CallBase &Call, const Rule &Row) {
 /// Files that \p Call replaces what is at \p Pointer.
 void AccessResult::Builder::fileReplacing(CallBase &Call,
                                           const Value *Pointer) {
-  const Locations Where = R.handed(Pointer, /*IsOne=*/true);
+  const Locations Where = R.Pointers.handed(Pointer, /*IsOne=*/true);
   if (Where.empty())
     return;
-  Type *T = R.typeAt(Where.front());
+  Type *T = R.Types.typeAt(Where.front());
   if (!T || !T->isSized() ||
-      any_of(Where, [&](const Location &L) { return R.typeAt(L) != T; }))
+      any_of(Where, [&](const Location &L) { return R.Types.typeAt(L) != T; }))
     return;
   R.Flow->addReplacing(Call, Pointer,
-                       R.Layout->getTypeStoreSize(T).getKnownMinValue());
+                       R.Layout.getTypeStoreSize(T).getKnownMinValue());
   if (Where.size() == 1 && Where.front().isOne())
     R.Replaced[&Call] = Where.front();
 }
@@ -133,14 +133,14 @@ void AccessResult::Builder::fileCall(CallBase &Call) {
       R.PutIn.insert(&Call.getArgOperandUse(N));
       continue;
     }
-    for (const Location &L : R.handed(Arg, takesOne(Call, N, Row))) {
+    for (const Location &L : R.Pointers.handed(Arg, takesOne(Call, N, Row))) {
       const auto *Global = dyn_cast_or_null<GlobalVariable>(L.Root);
       if (Global && Global->isConstant())
         continue;
       addWrite(Call, L);
       if (!Opaque)
         continue;
-      R.file(R.HandedIndex, R.Handed.size(), L);
+      R.HandedIndex.add(R.Handed.size(), L);
       R.Handed.push_back({&Call, L});
     }
   }
@@ -151,7 +151,7 @@ void AccessResult::Builder::fileKept(const StoreInst &Store) {
   const Value *Kept = Store.getValueOperand();
   if (!Kept->getType()->isPointerTy() || isa<Constant>(Kept))
     return;
-  for (const Location &L : R.resolve(Kept, false))
+  for (const Location &L : R.Pointers.resolve(Kept, false))
     if (const auto *Local = dyn_cast_or_null<AllocaInst>(L.Root);
         Local && Local->getFunction() != Store.getFunction() && L.Path.empty())
       R.KeptElsewhere.insert(Local);
@@ -165,20 +165,20 @@ void AccessResult::Builder::fileAccesses() {
       if (Budget::isSpent())
         return;
       if (auto *Load = dyn_cast<LoadInst>(&I)) {
-        for (const Location &L : R.touched(*Load)) {
-          R.file(R.LoadIndex, R.Loads.size(), L);
+        for (const Location &L : R.Pointers.touched(*Load)) {
+          R.LoadIndex.add(R.Loads.size(), L);
           R.Loads.push_back({&I, L});
         }
       } else if (auto *Store = dyn_cast<StoreInst>(&I)) {
-        for (const Location &L : R.touched(*Store)) {
-          R.file(R.StoreIndex, R.Stores.size(), L);
+        for (const Location &L : R.Pointers.touched(*Store)) {
+          R.StoreIndex.add(R.Stores.size(), L);
           R.Stores.push_back({&I, L});
           addWrite(I, L);
         }
         fileKept(*Store);
       } else if (auto *Copy = dyn_cast<MemTransferInst>(&I)) {
-        addCopy(I, R.copied(*Copy, Copy->getRawDest()),
-                R.copied(*Copy, Copy->getRawSource()));
+        addCopy(I, R.Pointers.copied(*Copy, Copy->getRawDest()),
+                R.Pointers.copied(*Copy, Copy->getRawSource()));
       } else if (auto *Call = dyn_cast<CallBase>(&I);
                  Call && !isa<IntrinsicInst>(Call)) {
         fileCall(*Call);
@@ -188,22 +188,21 @@ void AccessResult::Builder::fileAccesses() {
 }
 
 AccessResult ClassObjectAccess::run(Module &M, ModuleAnalysisManager &AM) {
-  AccessResult R;
-  R.Layout = &M.getDataLayout();
-  R.Debug = std::make_unique<DebugTypes>(*R.Layout);
-  R.findClassesOfGlobals(M);
+  LocationTypes &Types = AM.getResult<LocationTypesAnalysis>(M);
+  AccessResult R(M.getDataLayout(), Types, AM.getResult<AliasesAnalysis>(M),
+                 AM.getResult<PointsToAnalysis>(M));
   const CallGraphResult &Calls = AM.getResult<SimpleCallGraph>(M);
-  R.Flow =
-      std::make_unique<Reaching>(M, Calls, AM.getResult<Throws>(M), *R.Debug);
-  AccessResult::Builder B(R, Calls, AM.getResult<RuleAnalysis>(M), M);
-  B.findTargets();
-  B.fileAccesses();
+  R.Flow = std::make_unique<Reaching>(M, Calls, AM.getResult<Throws>(M),
+                                      AM.getResult<DebugTypesAnalysis>(M));
+  AccessResult::Builder(R, Calls, AM.getResult<RuleAnalysis>(M), M)
+      .fileAccesses();
   return R;
 }
 
 PreservedAnalyses ClassObjectAccessPrinter::run(Module &M,
                                                 ModuleAnalysisManager &AM) {
   const AccessResult &R = AM.getResult<ClassObjectAccess>(M);
+  const LocationTypes &Types = AM.getResult<LocationTypesAnalysis>(M);
   OS << "accesses of " << M.getName() << '\n';
   auto PrintItem = [&](Nth Item) {
     if (Item.isNumber())
@@ -225,7 +224,7 @@ PreservedAnalyses ClassObjectAccessPrinter::run(Module &M,
           OS << ']';
           continue;
         }
-        const StructType *T = R.types().typeOf(S.Type);
+        const StructType *T = Types.classOf(S);
         OS << '[' << (T->hasName() ? T->getName() : "literal") << '.' << S.Index
            << ']';
         PrintItem(S.Item);

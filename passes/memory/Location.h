@@ -113,6 +113,13 @@ struct Location {
 
 using Locations = llvm::SmallVector<Location, 1>;
 
+/// More places than this for one pointer say nothing any more.
+inline constexpr unsigned MaxLocations = 64;
+
+/// Adds \p L to \p Out, to which it does not belong where it is not known, or
+/// there are too many; of too many elements of one array it becomes any.
+void addTo(Locations &Out, Location L);
+
 /// Orders locations, to tell apart what is not exactly the same.
 struct LocationOrder {
   static std::vector<uintptr_t> key(const Location &L) {

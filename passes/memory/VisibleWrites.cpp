@@ -62,9 +62,10 @@ AccessResult::handedTo(const AllocaInst &Local) const {
         Calls.push_back(I);
         // The result may be what was handed over.
         if (I->getType()->isPointerTy() &&
-            any_of(resolve(I, /*Scalar=*/false), [&](const Location &L) {
-              return L.Root == &Local && !L.isElement();
-            }))
+            any_of(Pointers.resolve(I, /*Scalar=*/false),
+                   [&](const Location &L) {
+                     return L.Root == &Local && !L.isElement();
+                   }))
           Names.insert(I);
       } else if (!keepsNothing(U)) {
         return std::nullopt;
@@ -125,16 +126,16 @@ AccessResult::historyOf(const Location &L, ArrayRef<Instruction *> W) const {
 /// element that is meant.
 bool AccessResult::isOneScalar(const Location &L,
                                const StoreInst &Store) const {
-  if (!L.isOne() || isa_and_nonnull<ArrayType>(typeAt(L)))
+  if (!L.isOne() || isa_and_nonnull<ArrayType>(Types.typeAt(L)))
     return false;
   bool InArray = L.RootItem.isNumber() || any_of(L.Path, [](const Step &S) {
                    return S.Item.isNumber();
                  });
-  if (InArray && none_of(touched(Store),
+  if (InArray && none_of(Pointers.touched(Store),
                          [&](const Location &Own) { return Own.isSame(L); }))
     return false;
   return Store.getValueOperand()->getType()->isAggregateType() ||
-         !isa_and_nonnull<StructType>(typeAt(L));
+         !isa_and_nonnull<StructType>(Types.typeAt(L));
 }
 
 /// True where \p Write, which writes \p L, a local variable, leaves nothing of
@@ -225,8 +226,8 @@ static bool isLocalOf(const Location &L, const Instruction &At) {
 /// \p I touches; null where that is a part of it.
 const Value *AccessResult::placeOf(const Instruction &I) const {
   auto [It, New] = Places.try_emplace(&I, nullptr);
-  if (New &&
-      none_of(partsOf(I), [](const ScalarPart &Part) { return Part.Size; }))
+  if (New && none_of(Pointers.partsOf(I),
+                     [](const ScalarPart &Part) { return Part.Size; }))
     It->second = getLoadStorePointerOperand(&I);
   return It->second;
 }
@@ -234,11 +235,11 @@ const Value *AccessResult::placeOf(const Instruction &I) const {
 /// The variable \p L at \p Pointer; none where that is null.
 std::optional<Reaching::Variable>
 AccessResult::variableAt(const Value *Pointer, const Location &L) const {
-  Type *T = elementOf(typeAt(L));
+  Type *T = elementOf(Types.typeAt(L));
   if (!Pointer || !T || !T->isSized())
     return std::nullopt;
   return Flow->variableAt(Pointer,
-                          Layout->getTypeStoreSize(T).getKnownMinValue());
+                          Layout.getTypeStoreSize(T).getKnownMinValue());
 }
 
 /// What \p Write, a write of \p L, writes; none where it may write less, or
@@ -318,7 +319,7 @@ AccessResult::definitionsOf(const LoadInst &Load) const {
   if (auto It = Definitions.find(&Load); It != Definitions.end())
     return *It->second;
   Writes All;
-  for (const Location &L : touched(Load))
+  for (const Location &L : Pointers.touched(Load))
     for (Instruction *Write : writesOf(L, Load, placeOf(Load)))
       All.insert(Write);
   auto &Known = Definitions[&Load];
@@ -329,8 +330,9 @@ AccessResult::definitionsOf(const LoadInst &Load) const {
 SmallVector<LoadInst *, 8> AccessResult::usesOf(const Instruction &Write,
                                                 const Value *Pointer) const {
   SmallSetVector<LoadInst *, 8> All;
-  for (const Location &L :
-       isa<StoreInst>(Write) ? touched(Write) : resolve(Pointer, true)) {
+  for (const Location &L : isa<StoreInst>(Write)
+                               ? Pointers.touched(Write)
+                               : Pointers.resolve(Pointer, true)) {
     SmallSetVector<LoadInst *, 8> Own, Copied;
     collectLoads(L, Own, Copied);
     std::optional<Reaching::Variable> Written =
@@ -372,8 +374,9 @@ AccessResult::replacedParts(const Location &L, const Instruction &At,
     if (It == Replaced.end() && !isa<StoreInst>(Write))
       continue;
     const Locations Own =
-        It == Replaced.end() ? touched(*Write) : Locations{It->second};
-    if (auto Way = Own.size() == 1 ? partOf(L, Own.front()) : std::nullopt;
+        It == Replaced.end() ? Pointers.touched(*Write) : Locations{It->second};
+    if (auto Way =
+            Own.size() == 1 ? Alias.partOf(L, Own.front()) : std::nullopt;
         Way && !Way->empty())
       Parts.push_back({std::move(*Way), *Flow->replacedBy(*Write)});
   }
@@ -384,7 +387,7 @@ SmallVector<Instruction *, 8>
 AccessResult::writesInto(const Location &L, const Instruction &At,
                          const Value *Pointer) const {
   Writes Out;
-  bool Local = isLocalOf(L, At) && !isReachable(L);
+  bool Local = isLocalOf(L, At) && !Alias.isReachable(L);
   std::map<Location, Writes, LocationOrder> Gone;
   SmallVector<Part, 4> Parts;
   if (!Local)
@@ -392,7 +395,7 @@ AccessResult::writesInto(const Location &L, const Instruction &At,
   // Part by part: the last write of it before \p At counts.
   auto Stays = [&](const Instruction &Write, const Location &Where) {
     if (!Local) {
-      auto Way = partOf(L, Where);
+      auto Way = Alias.partOf(L, Where);
       auto It = find_if(Parts, [&](const Part &P) {
         return Way && Location::areSame(P.Way, *Way);
       });

@@ -42,6 +42,7 @@ class Describer {
 public:
   Describer(Module &M, ModuleAnalysisManager &AM, const Options &Opts)
       : M(M), Opts(Opts), Access(AM.getResult<ClassObjectAccess>(M)),
+        Pointers(AM.getResult<PointsToAnalysis>(M)),
         Ifs(AM.getResult<IfStatements>(M)),
         Exposing(AM.getResult<ExternCallFinder>(M)),
         Reads(AM.getResult<ParamCallFinder>(M)),
@@ -49,7 +50,7 @@ public:
         Usage(AM.getResult<ParamUsageFinder>(M)),
         Slice(AM.getResult<BackwardPropagate>(M)),
         Gathered(AM.getResult<GatherResults>(M)),
-        Names(Access.types(), Access.debugTypes()), Explain(M, AM, Opts) {}
+        Names(AM.getResult<LocationTypesAnalysis>(M)), Explain(M, AM, Opts) {}
 
   json::Array parameters() const;
   json::Array exposing() const;
@@ -70,6 +71,7 @@ private:
   Module &M;
   const Options &Opts;
   const AccessResult &Access;
+  PointsTo &Pointers;
   const IfStatementsResult &Ifs;
   const ExternCallFinder::Result &Exposing;
   const ParamCallFinder::Result &Reads;
@@ -145,7 +147,7 @@ std::string Describer::variable(const Comparison &C) const {
   for (const Value *Pointer :
        {Load ? Load->getPointerOperand() : nullptr, Target})
     if (Pointer)
-      for (const Location &L : Access.resolve(Pointer, true))
+      for (const Location &L : Pointers.resolve(Pointer, true))
         if (std::string Name = Names.nameOf(L); !Name.empty())
           return Name;
   return "";

@@ -75,9 +75,9 @@ const Follower::Stored &Follower::stored(StoreInst &Store) {
   std::unique_ptr<Stored> &Known = Stores[&Store];
   if (!Known)
     Known = std::make_unique<Stored>(
-        Stored{Access.resolve(Store.getPointerOperand(), true).size(),
+        Stored{Pointers.resolve(Store.getPointerOperand(), true).size(),
                Access.usesOf(Store, Store.getPointerOperand()),
-               Access.partsOf(Store)});
+               Pointers.partsOf(Store)});
   return *Known;
 }
 
@@ -120,7 +120,7 @@ void Follower::load(const State &S, Instruction &Write,
     auto &Known = Parts[Load];
     if (!Known)
       Known =
-          std::make_unique<SmallVector<ScalarPart, 1>>(Access.partsOf(*Load));
+          std::make_unique<SmallVector<ScalarPart, 1>>(Pointers.partsOf(*Load));
     ArrayRef<ScalarPart> Read = *Known;
     bool IsWide = any_of(Read, [](const ScalarPart &P) { return P.Size; });
     if (!WasWide && !IsWide) {

@@ -31,9 +31,10 @@ class Follower {
 public:
   Follower(llvm::Module &M, llvm::ModuleAnalysisManager &AM)
       : Calls(AM.getResult<SimpleCallGraph>(M)),
+        Pointers(AM.getResult<PointsToAnalysis>(M)),
         Access(AM.getResult<ClassObjectAccess>(M)),
         Reads(AM.getResult<ParamCallFinder>(M)),
-        Rules(AM.getResult<RuleAnalysis>(M)), Texts(M, Access, Rules) {}
+        Rules(AM.getResult<RuleAnalysis>(M)), Texts(M, Pointers, Rules) {}
 
   ParameterUsage run();
 
@@ -110,6 +111,7 @@ private:
   std::optional<State> next();
 
   const CallGraphResult &Calls;
+  PointsTo &Pointers;
   const AccessResult &Access;
   const ParamCallFinder::Result &Reads;
   const RuleMatches &Rules;

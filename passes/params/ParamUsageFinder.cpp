@@ -266,11 +266,11 @@ void Follower::followRead(unsigned N) {
   if (R.Target) {
     SmallVector<LoadInst *, 8> Loads = Access.usesOf(*R.Call, R.Target);
     if (Loads.empty())
-      end(Access.resolve(R.Target, true).empty() ? ValueEnd::UnknownPointer
-                                                 : ValueEnd::Unread,
+      end(Pointers.resolve(R.Target, true).empty() ? ValueEnd::UnknownPointer
+                                                   : ValueEnd::Unread,
           R.Call);
     SmallVector<ScalarPart, 1> Written;
-    for (Location &L : Access.resolve(R.Target, true))
+    for (Location &L : Pointers.resolve(R.Target, true))
       Written.push_back({std::move(L)});
     load({R.Call, {}, nullptr, true}, *R.Call, Written, Loads);
   }

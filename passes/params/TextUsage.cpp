@@ -12,29 +12,28 @@ bool isText(StringRef Type) {
          Type.starts_with("std::__cxx11::basic_string<char,");
 }
 
-TextUsage::TextUsage(Module &M, const AccessResult &Access,
-                     const RuleMatches &Rules)
-    : Access(Access) {
+TextUsage::TextUsage(Module &M, PointsTo &Pointers, const RuleMatches &Rules)
+    : Pointers(Pointers) {
   forEachCall(M, Rules, Rule::Text, [&](CallBase &Call, const Rule &Row) {
     Use U{&Call, &Row, {}};
     for (unsigned N = 0; N < std::min(2U, Call.arg_size()); ++N)
       U.Operands.push_back(
           Call.getArgOperand(N)->getType()->isPointerTy()
-              ? Access.handed(Call.getArgOperand(N), /*IsOne=*/true)
+              ? Pointers.handed(Call.getArgOperand(N), /*IsOne=*/true)
               : Locations());
     Uses.push_back(std::move(U));
   });
   forEachCall(M, Rules, Rule::Held, [&](CallBase &Call, const Rule &Row) {
     if (Row.Relation == "outof")
       Numbers.push_back(
-          {&Call, Access.handed(objectOf(Call, Row), /*IsOne=*/true)});
+          {&Call, Pointers.handed(objectOf(Call, Row), /*IsOne=*/true)});
   });
 }
 
 SmallVector<CallBase *, 2> TextUsage::numbersFrom(const CallBase &Into,
                                                   const Rule &Row) const {
   SmallVector<CallBase *, 2> Found;
-  Locations Objects = Access.handed(objectOf(Into, Row), /*IsOne=*/true);
+  Locations Objects = Pointers.handed(objectOf(Into, Row), /*IsOne=*/true);
   for (const auto &[Call, From] : Numbers)
     if (any_of(From, [&](const Location &L) {
           return any_of(Objects, [&](const Location &O) { return L.mayBe(O); });
@@ -80,7 +79,7 @@ static StringRef turned(StringRef Relation) {
 
 TextUsage::Found TextUsage::comparisonsOf(const Value *Object) const {
   Found Out;
-  Locations Objects = Access.handed(Object, /*IsOne=*/true);
+  Locations Objects = Pointers.handed(Object, /*IsOne=*/true);
   SmallPtrSet<const CallBase *, 8> Seen;
   for (unsigned Next = 0; Next < Objects.size() && Next < 16; ++Next) {
     const Location Here = Objects[Next];

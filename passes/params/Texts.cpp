@@ -165,7 +165,7 @@ Texts::Known Texts::ofMember(const Location &L, Kind K) {
   Members.push_back({L, Known{"", false, true}});
   Known All{"", false, true};
   bool Cleared = false;
-  for (const Instruction *W : Access->writesInto(L)) {
+  for (const Instruction *W : Memory->Access.writesInto(L)) {
     const auto *Call = dyn_cast<CallBase>(W);
     if (!Call || isa<IntrinsicInst>(Call))
       continue;
@@ -174,7 +174,7 @@ Texts::Known Texts::ofMember(const Location &L, Kind K) {
       // What a function that is looked into does, its own calls tell.
       if (!Arg->getType()->isPointerTy() ||
           (Entered && !(N == 0 && Call->hasStructRetAttr())) ||
-          none_of(Access->resolve(Arg, false),
+          none_of(Memory->Pointers.resolve(Arg, false),
                   [&](const Location &O) { return O.mayBe(L); }))
         continue;
       std::optional<Effect> E = effect(*Call, N, K);
@@ -192,11 +192,11 @@ Texts::Known Texts::ofMember(const Location &L, Kind K) {
 }
 
 Texts::Known Texts::inMemory(const Value *Pointer, Kind K) {
-  if (!Access)
+  if (!Memory)
     return unknown(K);
   Known All{"", false, true};
   bool Any = false;
-  for (const Location &L : Access->resolve(Pointer, false)) {
+  for (const Location &L : Memory->Pointers.resolve(Pointer, false)) {
     Any = true;
     merge(All, ofMember(L, K));
   }
@@ -210,10 +210,10 @@ Texts::Known Texts::loaded(const LoadInst &Load, Kind K) {
     if (Constant *Folded = ConstantFoldLoadFromConstPtr(
             const_cast<Constant *>(C), Load.getType(), Layout))
       return find(Folded, Load, K);
-  if (!Access)
+  if (!Memory)
     return unknown(K);
   Known All{"", false, true};
-  for (const Instruction *W : Access->definitionsOf(Load)) {
+  for (const Instruction *W : Memory->Access.definitionsOf(Load)) {
     const auto *Store = dyn_cast<StoreInst>(W);
     merge(All, Store ? find(Store->getValueOperand(), *Store, K)
                      : Known{DynamicName});

@@ -29,10 +29,11 @@ public:
   /// \p Where gives a comparison's place in the user's own sources; null where
   /// it is not to be listed.
   ConstantFinder(
-      const CallGraphResult &Calls, const AccessResult &Access,
-      const SliceResult &Slice,
+      const CallGraphResult &Calls, const LocationTypes &Types,
+      PointsTo &Pointers, const AccessResult &Access, const SliceResult &Slice,
       llvm::function_ref<const llvm::DILocation *(const llvm::CmpInst &)> Where)
-      : Calls(Calls), Access(Access), Slice(Slice), Where(Where) {}
+      : Calls(Calls), Types(Types), Pointers(Pointers), Access(Access),
+        Slice(Slice), Where(Where) {}
 
   std::vector<Comparison> run(llvm::ArrayRef<llvm::Instruction *> Predicates);
 
@@ -47,6 +48,8 @@ private:
   std::string nameOf(const llvm::Value *V, bool Unsigned) const;
 
   const CallGraphResult &Calls;
+  const LocationTypes &Types;
+  PointsTo &Pointers;
   const AccessResult &Access;
   const SliceResult &Slice;
   llvm::function_ref<const llvm::DILocation *(const llvm::CmpInst &)> Where;

@@ -227,6 +227,7 @@ public:
         Reads(AM.getResult<ParamCallFinder>(M)),
         Slice(AM.getResult<BackwardPropagate>(M)), Own(Own),
         Both(Usage, Reads, AM.getResult<SimpleCallGraph>(M),
+             AM.getResult<PointsToAnalysis>(M),
              AM.getResult<ClassObjectAccess>(M),
              [&](const ParameterComparison &P) {
                Comparison Ignored{};
@@ -326,6 +327,8 @@ GatheredResults GatherResults::run(Module &M, ModuleAnalysisManager &AM) {
                : Own.of(Compare);
   };
   R.Constants = ConstantFinder(AM.getResult<SimpleCallGraph>(M),
+                               AM.getResult<LocationTypesAnalysis>(M),
+                               AM.getResult<PointsToAnalysis>(M),
                                AM.getResult<ClassObjectAccess>(M),
                                AM.getResult<BackwardPropagate>(M), PlaceOf)
                     .run(AM.getResult<IfStatements>(M).predicates());

@@ -14,9 +14,11 @@ namespace tpc {
 static constexpr unsigned MaxSources = 256;
 
 Sides::Sides(const ParameterUsage &Usage, const ParamCallFinder::Result &Reads,
-             const CallGraphResult &Calls, const AccessResult &Access,
+             const CallGraphResult &Calls, PointsTo &Pointers,
+             const AccessResult &Access,
              function_ref<bool(const ParameterComparison &)> IsExposed)
-    : Usage(Usage), Reads(Reads), Calls(Calls), Access(Access) {
+    : Usage(Usage), Reads(Reads), Calls(Calls), Pointers(Pointers),
+      Access(Access) {
   for (const ParameterRead &Read : Reads) {
     Parameters.insert(Read.Call);
     Parameters.insert(Read.Values.begin(), Read.Values.end());
@@ -33,7 +35,7 @@ bool Sides::isHanded(const Instruction &Call,
   const auto *To = dyn_cast<CallBase>(&Call);
   return !To || any_of(To->args(), [&](const Use &Arg) {
     return Arg->getType()->isPointerTy() &&
-           any_of(Access.resolve(Arg, false), [&](const Location &A) {
+           any_of(Pointers.resolve(Arg, false), [&](const Location &A) {
              return is_contained(Variables, A);
            });
   });
@@ -43,17 +45,17 @@ bool Sides::isHanded(const Instruction &Call,
 Locations Sides::writtenBy(const Instruction &Write) const {
   Locations All;
   if (const Value *Pointer = getLoadStorePointerOperand(&Write))
-    All = Access.resolve(Pointer, true);
+    All = Pointers.resolve(Pointer, true);
   for (const ParameterRead &Read : Reads)
     if (Read.Call == &Write && Read.Target)
-      append_range(All, Access.resolve(Read.Target, true));
+      append_range(All, Pointers.resolve(Read.Target, true));
   return All;
 }
 
 /// What \p Load can have found; false where that is not only what is stored by
 /// the program to the same variable.
 bool Sides::addStored(const LoadInst &Load, Sources &Out) const {
-  Locations From = Access.resolve(Load.getPointerOperand(), true);
+  Locations From = Pointers.resolve(Load.getPointerOperand(), true);
   if (From.empty())
     return false;
   ArrayRef<Instruction *> Writes = Access.definitionsOf(Load);

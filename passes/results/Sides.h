@@ -22,7 +22,8 @@ public:
   /// Of \p Usage only what \p IsExposed holds for is looked at: another side
   /// that is not reported makes this one no less of a threshold.
   Sides(const ParameterUsage &Usage, const ParamCallFinder::Result &Reads,
-        const CallGraphResult &Calls, const AccessResult &Access,
+        const CallGraphResult &Calls, PointsTo &Pointers,
+        const AccessResult &Access,
         llvm::function_ref<bool(const ParameterComparison &)> IsExposed);
 
   /// True where the other operand is the same parameter by a shorter way, and
@@ -50,6 +51,7 @@ private:
   const ParameterUsage &Usage;
   const ParamCallFinder::Result &Reads;
   const CallGraphResult &Calls;
+  PointsTo &Pointers;
   const AccessResult &Access;
   llvm::SmallPtrSet<const llvm::Value *, 16> Parameters;
   /// The comparisons of which both operands have a parameter's value.

@@ -43,6 +43,7 @@ class Slicer {
 public:
   Slicer(Module &M, ModuleAnalysisManager &AM)
       : Calls(AM.getResult<SimpleCallGraph>(M)),
+        Pointers(AM.getResult<PointsToAnalysis>(M)),
         Access(AM.getResult<ClassObjectAccess>(M)),
         Ifs(AM.getResult<IfStatements>(M)), Thrown(AM.getResult<Throws>(M)),
         Exposing(AM.getResult<ExternCallFinder>(M)),
@@ -91,6 +92,7 @@ private:
 
   LocationSet SeenWritten, SeenLoaded;
   const CallGraphResult &Calls;
+  PointsTo &Pointers;
   const AccessResult &Access;
   const IfStatementsResult &Ifs;
   const ThrowsResult &Thrown;
@@ -194,7 +196,7 @@ void Slicer::definePointer(const Value *V) {
 /// What is in memory at \p Pointer, a scalar or an array of them, matters where
 /// \p At reads it.
 void Slicer::defineMemory(const Value *Pointer, const Instruction &At) {
-  Locations Read = Access.resolve(Pointer, true);
+  Locations Read = Pointers.resolve(Pointer, true);
   for (Location &L : Read)
     L.widen();
   for (const Location &L : Read) {
@@ -345,7 +347,7 @@ void Slicer::reachable(CallBase &Call) {
     define(Arg);
     if (!Arg->getType()->isPointerTy())
       continue;
-    for (const Location &L : Access.resolve(Arg, false)) {
+    for (const Location &L : Pointers.resolve(Arg, false)) {
       for (Instruction *Write : Access.writesInto(L, Call, Arg))
         enter(Write,
               isa<CallBase>(Write) && !isa<IntrinsicInst>(Write) ? Touches
@@ -366,13 +368,13 @@ void Slicer::value(Instruction &I) {
   if (auto *Load = dyn_cast<LoadInst>(&I)) {
     // Most loads of a variable that is not local have the same writes.
     bool New = false;
-    for (const Location &L : Access.touched(*Load))
+    for (const Location &L : Pointers.touched(*Load))
       New |= !Access.isSharedBy(L, *Load, Load->getPointerOperand()) ||
              SeenLoaded.insert(L);
     if (!New)
       return definePointer(Load->getPointerOperand());
     // What is copied is among the definitions; that it is, matters too.
-    for (const Location &L : Access.touched(*Load))
+    for (const Location &L : Pointers.touched(*Load))
       for (Instruction *Copy : Access.copiesTo(L))
         enter(Copy, Runs, Why::Writes);
     for (Instruction *Write : Access.definitionsOf(*Load)) {
