@@ -7,10 +7,11 @@
 #include "control/IfStatements.h"
 #include "control/Throws.h"
 #include "instrument/InstrumentBranches.h"
+#include "memory/AccessIndex.h"
 #include "memory/Aliases.h"
-#include "memory/ClassObjectAccess.h"
 #include "memory/LocationTypes.h"
 #include "memory/PointsTo.h"
+#include "memory/VisibleWrites.h"
 #include "output/StaticInfo.h"
 #include "params/ParamCallFinder.h"
 #include "params/ParamUsageFinder.h"
@@ -36,6 +37,7 @@ void registerAnalyses(ModuleAnalysisManager &AM) {
   AM.registerPass([] { return AliasesAnalysis(); });
   AM.registerPass([] { return PointsToAnalysis(); });
   AM.registerPass([] { return ClassObjectAccess(); });
+  AM.registerPass([] { return VisibleWritesAnalysis(); });
   AM.registerPass([] { return Throws(); });
   AM.registerPass([] { return IfStatements(); });
   AM.registerPass([] { return ExternCallFinder(); });

@@ -1,4 +1,4 @@
-//===- AccessBuilder.h - Fills an AccessResult ----------------------------===//
+//===- AccessBuilder.h - Fills an AccessIndex -----------------------------===//
 //
 // Goes through the module once and files the loads, stores, copies and calls by
 // what their pointers lead to.
@@ -8,27 +8,30 @@
 #define TPC_ACCESSBUILDER_H
 
 #include "Rules.h"
-#include "memory/ClassObjectAccess.h"
+#include "memory/AccessIndex.h"
+#include "memory/PointsTo.h"
 
 namespace tpc {
 
-struct AccessResult::Builder {
-  Builder(AccessResult &R, const CallGraphResult &Calls,
-          const RuleMatches &Rules, llvm::Module &M)
-      : R(R), Calls(Calls), Rules(Rules), M(M) {}
+class AccessBuilder {
+public:
+  AccessBuilder(AccessIndex &R, PointsTo &Pointers,
+                const CallGraphResult &Calls, const RuleMatches &Rules,
+                llvm::Module &M)
+      : R(R), Pointers(Pointers), Calls(Calls), Rules(Rules), M(M) {}
 
   /// Files what reads and writes.
   void fileAccesses();
 
 private:
-  void fileKept(const llvm::StoreInst &Store);
   void addWrite(llvm::Instruction &I, const Location &L);
   void addCopy(llvm::Instruction &I, Locations To, Locations From);
   void putInto(llvm::CallBase &Call);
   void fileReplacing(llvm::CallBase &Call, const llvm::Value *Pointer);
   void fileCall(llvm::CallBase &Call);
 
-  AccessResult &R;
+  AccessIndex &R;
+  PointsTo &Pointers;
   const CallGraphResult &Calls;
   const RuleMatches &Rules;
   llvm::Module &M;

@@ -305,4 +305,30 @@ bool LocationTypes::contains(Type *Outer, unsigned Inner) {
                 [&](Type *Field) { return contains(Field, Inner); });
 }
 
+static void print(raw_ostream &OS, Nth Item) {
+  if (Item.isNumber())
+    OS << '[' << Item.Number << ']';
+  else if (Item.Number == Nth::Any)
+    OS << "[any]";
+}
+
+void LocationTypes::print(raw_ostream &OS, const Location &L) const {
+  if (L.Root)
+    L.Root->printAsOperand(OS, false);
+  tpc::print(OS, L.RootItem);
+  for (const Step &S : L.Path) {
+    if (!S.isField()) {
+      OS << (S.Type == Step::Element ? "[element" : "[byte ");
+      if (S.Type == Step::Bytes)
+        OS << S.Index;
+      OS << ']';
+      continue;
+    }
+    const StructType *T = classOf(S);
+    OS << '[' << (T->hasName() ? T->getName() : "literal") << '.' << S.Index
+       << ']';
+    tpc::print(OS, S.Item);
+  }
+}
+
 } // namespace tpc

@@ -81,6 +81,9 @@ public:
   bool addScalars(Location L, uint64_t Size,
                   llvm::SmallVectorImpl<ScalarPart> &Out);
 
+  /// Prints \p L for the dumps of the analyses: `@Global[struct.Outer.0][any]`.
+  void print(llvm::raw_ostream &OS, const Location &L) const;
+
 private:
   void findClassesOfGlobals(const llvm::Module &M);
   const llvm::DIType *debugTypeAt(const Location &L) const;

@@ -3,7 +3,9 @@
 
 #include "calls/SimpleCallGraph.h"
 #include "memory/PointsToSolver.h"
+#include "support/Functions.h"
 
+#include "llvm/IR/InstIterator.h"
 #include "llvm/IR/Instructions.h"
 #include "llvm/IR/Operator.h"
 #include "llvm/IR/PatternMatch.h"
@@ -250,6 +252,33 @@ PointsTo PointsToAnalysis::run(Module &M, ModuleAnalysisManager &AM) {
                  AM.getResult<RuleAnalysis>(M), M)
       .findTargets();
   return R;
+}
+
+PreservedAnalyses PointsToPrinter::run(Module &M, ModuleAnalysisManager &AM) {
+  PointsTo &R = AM.getResult<PointsToAnalysis>(M);
+  const LocationTypes &Types = AM.getResult<LocationTypesAnalysis>(M);
+  OS << "pointers of " << M.getName() << '\n';
+  auto Print = [&](const Value &V, const Function &F) {
+    if (!V.getType()->isPointerTy() || isa<AllocaInst>(V))
+      return;
+    OS << "  ";
+    V.printAsOperand(OS, false);
+    OS << " in " << F.getName();
+    const Locations Found = R.resolve(&V, /*Scalar=*/false);
+    OS << (Found.empty() ? " leads nowhere that is known" : " leads to");
+    for (const Location &L : Found) {
+      OS << ' ';
+      Types.print(OS, L);
+    }
+    OS << '\n';
+  };
+  for (const Function &F : definedFunctions(M)) {
+    for (const Argument &Arg : F.args())
+      Print(Arg, F);
+    for (const Instruction &I : instructions(F))
+      Print(I, F);
+  }
+  return PreservedAnalyses::all();
 }
 
 } // namespace tpc

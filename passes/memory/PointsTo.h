@@ -89,6 +89,17 @@ private:
   static llvm::AnalysisKey Key;
 };
 
+/// `print<tpc-points-to>`
+class PointsToPrinter : public llvm::PassInfoMixin<PointsToPrinter> {
+public:
+  explicit PointsToPrinter(llvm::raw_ostream &OS) : OS(OS) {}
+  llvm::PreservedAnalyses run(llvm::Module &M, llvm::ModuleAnalysisManager &AM);
+  static bool isRequired() { return true; }
+
+private:
+  llvm::raw_ostream &OS;
+};
+
 } // namespace tpc
 
 #endif // TPC_POINTSTO_H

@@ -3,8 +3,8 @@
 
 #include "calls/SimpleCallGraph.h"
 #include "control/IfStatements.h"
-#include "memory/ClassObjectAccess.h"
 #include "memory/Variables.h"
+#include "memory/VisibleWrites.h"
 #include "output/ExplainInfo.h"
 #include "params/ParamCallFinder.h"
 #include "params/Texts.h"
@@ -41,7 +41,7 @@ namespace {
 class Describer {
 public:
   Describer(Module &M, ModuleAnalysisManager &AM, const Options &Opts)
-      : M(M), Opts(Opts), Access(AM.getResult<ClassObjectAccess>(M)),
+      : M(M), Opts(Opts), Writes(AM.getResult<VisibleWritesAnalysis>(M)),
         Pointers(AM.getResult<PointsToAnalysis>(M)),
         Ifs(AM.getResult<IfStatements>(M)),
         Exposing(AM.getResult<ExternCallFinder>(M)),
@@ -70,7 +70,7 @@ private:
 
   Module &M;
   const Options &Opts;
-  const AccessResult &Access;
+  const VisibleWrites &Writes;
   PointsTo &Pointers;
   const IfStatementsResult &Ifs;
   const ExternCallFinder::Result &Exposing;
@@ -257,7 +257,7 @@ json::Object Describer::counts(ArrayRef<SourcePlace> Comparisons) const {
       {"without_debug_info", Gathered.WithoutDebugInfo},
       {"outside_sources", Gathered.OutsideSources},
       {"lost_values", Usage.lost()},
-      {"given_up", Access.givenUp()},
+      {"given_up", Writes.givenUp()},
       {"not_instrumented", 0}};
 }
 

@@ -76,7 +76,7 @@ const Follower::Stored &Follower::stored(StoreInst &Store) {
   if (!Known)
     Known = std::make_unique<Stored>(
         Stored{Pointers.resolve(Store.getPointerOperand(), true).size(),
-               Access.usesOf(Store, Store.getPointerOperand()),
+               Writes.usesOf(Store, Store.getPointerOperand()),
                Pointers.partsOf(Store)});
   return *Known;
 }
@@ -131,7 +131,7 @@ void Follower::load(const State &S, Instruction &Write,
     // The scalar that was written, wherever it stands in what is read.
     for (const ScalarPart &To : Read) {
       if (none_of(Written, [&](const ScalarPart &From) {
-            return Access.reaches(From.Where, To.Where);
+            return Accesses.reaches(From.Where, To.Where);
           }))
         continue;
       Next.In = S.In;

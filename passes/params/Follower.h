@@ -4,7 +4,7 @@
 
 #include "Rules.h"
 #include "calls/SimpleCallGraph.h"
-#include "memory/ClassObjectAccess.h"
+#include "memory/VisibleWrites.h"
 #include "params/ParamCallFinder.h"
 #include "params/ParamUsageFinder.h"
 #include "params/Registers.h"
@@ -32,7 +32,8 @@ public:
   Follower(llvm::Module &M, llvm::ModuleAnalysisManager &AM)
       : Calls(AM.getResult<SimpleCallGraph>(M)),
         Pointers(AM.getResult<PointsToAnalysis>(M)),
-        Access(AM.getResult<ClassObjectAccess>(M)),
+        Accesses(AM.getResult<ClassObjectAccess>(M)),
+        Writes(AM.getResult<VisibleWritesAnalysis>(M)),
         Reads(AM.getResult<ParamCallFinder>(M)),
         Rules(AM.getResult<RuleAnalysis>(M)), Texts(M, Pointers, Rules) {}
 
@@ -112,7 +113,8 @@ private:
 
   const CallGraphResult &Calls;
   PointsTo &Pointers;
-  const AccessResult &Access;
+  const AccessIndex &Accesses;
+  VisibleWrites &Writes;
   const ParamCallFinder::Result &Reads;
   const RuleMatches &Rules;
   const TextUsage Texts;

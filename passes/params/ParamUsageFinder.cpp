@@ -3,7 +3,6 @@
 
 #include "calls/SimpleCallGraph.h"
 #include "control/IfStatements.h"
-#include "memory/ClassObjectAccess.h"
 #include "params/Follower.h"
 #include "params/Idioms.h"
 #include "params/ParamCallFinder.h"
@@ -264,7 +263,7 @@ void Follower::followRead(unsigned N) {
   if (!R.Target && R.Values.empty())
     push({R.Call, {}, nullptr, true});
   if (R.Target) {
-    SmallVector<LoadInst *, 8> Loads = Access.usesOf(*R.Call, R.Target);
+    SmallVector<LoadInst *, 8> Loads = Writes.usesOf(*R.Call, R.Target);
     if (Loads.empty())
       end(Pointers.resolve(R.Target, true).empty() ? ValueEnd::UnknownPointer
                                                    : ValueEnd::Unread,

@@ -2,7 +2,8 @@
 #include "params/ParameterObjects.h"
 
 #include "Options.h"
-#include "memory/ClassObjectAccess.h"
+#include "memory/AccessIndex.h"
+#include "memory/PointsTo.h"
 #include "params/Texts.h"
 #include "support/Names.h"
 

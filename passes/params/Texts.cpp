@@ -165,7 +165,7 @@ Texts::Known Texts::ofMember(const Location &L, Kind K) {
   Members.push_back({L, Known{"", false, true}});
   Known All{"", false, true};
   bool Cleared = false;
-  for (const Instruction *W : Memory->Access.writesInto(L)) {
+  for (const Instruction *W : Memory->Accesses.writesInto(L)) {
     const auto *Call = dyn_cast<CallBase>(W);
     if (!Call || isa<IntrinsicInst>(Call))
       continue;
@@ -213,7 +213,7 @@ Texts::Known Texts::loaded(const LoadInst &Load, Kind K) {
   if (!Memory)
     return unknown(K);
   Known All{"", false, true};
-  for (const Instruction *W : Memory->Access.definitionsOf(Load)) {
+  for (const Instruction *W : Memory->Writes.definitionsOf(Load)) {
     const auto *Store = dyn_cast<StoreInst>(W);
     merge(All, Store ? find(Store->getValueOperand(), *Store, K)
                      : Known{DynamicName});

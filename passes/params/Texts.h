@@ -11,7 +11,7 @@
 #define TPC_TEXTS_H
 
 #include "Rules.h"
-#include "memory/ClassObjectAccess.h"
+#include "memory/VisibleWrites.h"
 
 #include "llvm/ADT/SetVector.h"
 
@@ -33,10 +33,12 @@ public:
   /// What is known of the module's memory.
   struct MemoryView {
     PointsTo &Pointers;
-    const AccessResult &Access;
+    const AccessIndex &Accesses;
+    VisibleWrites &Writes;
     static MemoryView of(llvm::Module &M, llvm::ModuleAnalysisManager &AM) {
       return {AM.getResult<PointsToAnalysis>(M),
-              AM.getResult<ClassObjectAccess>(M)};
+              AM.getResult<ClassObjectAccess>(M),
+              AM.getResult<VisibleWritesAnalysis>(M)};
     }
   };
 

@@ -80,7 +80,7 @@ const Constant *ConstantFinder::ofConstMember(const LoadInst &Load) const {
       }))
     return nullptr;
   const Constant *Only = nullptr;
-  for (const Instruction *Write : Access.definitionsOf(Load)) {
+  for (const Instruction *Write : Writes.definitionsOf(Load)) {
     const auto *Store = dyn_cast<StoreInst>(Write);
     const Constant *C = Store ? plainNumber(Store->getValueOperand()) : nullptr;
     if (!C || (Only && Only != C))

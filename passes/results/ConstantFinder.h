@@ -15,7 +15,7 @@
 #define TPC_CONSTANTFINDER_H
 
 #include "calls/SimpleCallGraph.h"
-#include "memory/ClassObjectAccess.h"
+#include "memory/VisibleWrites.h"
 #include "results/GatherResults.h"
 
 #include "llvm/ADT/DenseSet.h"
@@ -30,9 +30,9 @@ public:
   /// it is not to be listed.
   ConstantFinder(
       const CallGraphResult &Calls, const LocationTypes &Types,
-      PointsTo &Pointers, const AccessResult &Access, const SliceResult &Slice,
+      PointsTo &Pointers, VisibleWrites &Writes, const SliceResult &Slice,
       llvm::function_ref<const llvm::DILocation *(const llvm::CmpInst &)> Where)
-      : Calls(Calls), Types(Types), Pointers(Pointers), Access(Access),
+      : Calls(Calls), Types(Types), Pointers(Pointers), Writes(Writes),
         Slice(Slice), Where(Where) {}
 
   std::vector<Comparison> run(llvm::ArrayRef<llvm::Instruction *> Predicates);
@@ -50,7 +50,7 @@ private:
   const CallGraphResult &Calls;
   const LocationTypes &Types;
   PointsTo &Pointers;
-  const AccessResult &Access;
+  VisibleWrites &Writes;
   const SliceResult &Slice;
   llvm::function_ref<const llvm::DILocation *(const llvm::CmpInst &)> Where;
   llvm::MapVector<llvm::CmpInst *, Comparison> Found;

@@ -228,7 +228,7 @@ public:
         Slice(AM.getResult<BackwardPropagate>(M)), Own(Own),
         Both(Usage, Reads, AM.getResult<SimpleCallGraph>(M),
              AM.getResult<PointsToAnalysis>(M),
-             AM.getResult<ClassObjectAccess>(M),
+             AM.getResult<VisibleWritesAnalysis>(M),
              [&](const ParameterComparison &P) {
                Comparison Ignored{};
                return nearest(P, Slice, Ignored);
@@ -329,7 +329,7 @@ GatheredResults GatherResults::run(Module &M, ModuleAnalysisManager &AM) {
   R.Constants = ConstantFinder(AM.getResult<SimpleCallGraph>(M),
                                AM.getResult<LocationTypesAnalysis>(M),
                                AM.getResult<PointsToAnalysis>(M),
-                               AM.getResult<ClassObjectAccess>(M),
+                               AM.getResult<VisibleWritesAnalysis>(M),
                                AM.getResult<BackwardPropagate>(M), PlaceOf)
                     .run(AM.getResult<IfStatements>(M).predicates());
   countOthers(R);

@@ -15,10 +15,10 @@ static constexpr unsigned MaxSources = 256;
 
 Sides::Sides(const ParameterUsage &Usage, const ParamCallFinder::Result &Reads,
              const CallGraphResult &Calls, PointsTo &Pointers,
-             const AccessResult &Access,
+             VisibleWrites &Writes,
              function_ref<bool(const ParameterComparison &)> IsExposed)
     : Usage(Usage), Reads(Reads), Calls(Calls), Pointers(Pointers),
-      Access(Access) {
+      Writes(Writes) {
   for (const ParameterRead &Read : Reads) {
     Parameters.insert(Read.Call);
     Parameters.insert(Read.Values.begin(), Read.Values.end());
@@ -58,8 +58,8 @@ bool Sides::addStored(const LoadInst &Load, Sources &Out) const {
   Locations From = Pointers.resolve(Load.getPointerOperand(), true);
   if (From.empty())
     return false;
-  ArrayRef<Instruction *> Writes = Access.definitionsOf(Load);
-  for (const Instruction *Write : Writes) {
+  ArrayRef<Instruction *> Found = Writes.definitionsOf(Load);
+  for (const Instruction *Write : Found) {
     if (Parameters.contains(Write))
       continue;
     if (const auto *Store = dyn_cast<StoreInst>(Write))
@@ -70,7 +70,7 @@ bool Sides::addStored(const LoadInst &Load, Sources &Out) const {
   // What a callback is handed is taken for any object of its class, also for
   // one that is a part of a larger one. That is not meant.
   return all_of(From, [&](const Location &A) {
-    return any_of(Writes, [&](const Instruction *Write) {
+    return any_of(Found, [&](const Instruction *Write) {
       return any_of(writtenBy(*Write), [&](const Location &B) {
         return (!A.Root == !B.Root || A.Path.size() == B.Path.size()) &&
                A.mayBe(B);

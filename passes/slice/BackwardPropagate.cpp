@@ -6,7 +6,7 @@
 #include "calls/SimpleCallGraph.h"
 #include "control/IfStatements.h"
 #include "control/Throws.h"
-#include "memory/ClassObjectAccess.h"
+#include "memory/VisibleWrites.h"
 #include "slice/ExternCallFinder.h"
 #include "support/Budget.h"
 #include "support/Names.h"
@@ -44,7 +44,8 @@ public:
   Slicer(Module &M, ModuleAnalysisManager &AM)
       : Calls(AM.getResult<SimpleCallGraph>(M)),
         Pointers(AM.getResult<PointsToAnalysis>(M)),
-        Access(AM.getResult<ClassObjectAccess>(M)),
+        Accesses(AM.getResult<ClassObjectAccess>(M)),
+        Writes(AM.getResult<VisibleWritesAnalysis>(M)),
         Ifs(AM.getResult<IfStatements>(M)), Thrown(AM.getResult<Throws>(M)),
         Exposing(AM.getResult<ExternCallFinder>(M)),
         Rules(AM.getResult<RuleAnalysis>(M)), Opts(Options::fromCommandLine()),
@@ -93,7 +94,8 @@ private:
   LocationSet SeenWritten, SeenLoaded;
   const CallGraphResult &Calls;
   PointsTo &Pointers;
-  const AccessResult &Access;
+  const AccessIndex &Accesses;
+  VisibleWrites &Writes;
   const IfStatementsResult &Ifs;
   const ThrowsResult &Thrown;
   const ExternCallFinder::Result &Exposing;
@@ -200,13 +202,13 @@ void Slicer::defineMemory(const Value *Pointer, const Instruction &At) {
   for (Location &L : Read)
     L.widen();
   for (const Location &L : Read) {
-    if (Access.isSharedBy(L, At, Pointer) && !SeenWritten.insert(L))
+    if (Writes.isSharedBy(L, At, Pointer) && !SeenWritten.insert(L))
       continue;
     // What was copied there is among the writes; that it was copied matters,
     // too.
-    for (Instruction *Copy : Access.copiesTo(L))
+    for (Instruction *Copy : Accesses.copiesTo(L))
       enter(Copy, Runs, Why::Writes);
-    for (Instruction *Write : Access.writesOf(L, At, Pointer))
+    for (Instruction *Write : Writes.writesOf(L, At, Pointer))
       enter(Write, Gives, Why::Writes);
   }
 }
@@ -226,7 +228,7 @@ void Slicer::phi(const PHINode &Phi) {
 void Slicer::defineArguments(const CallBase &Call) {
   for (const Use &Arg : Call.args()) {
     define(Arg);
-    if (Arg->getType()->isPointerTy() && !Access.replaces(Call, Arg))
+    if (Arg->getType()->isPointerTy() && !Writes.replaces(Call, Arg))
       defineMemory(Arg, Call);
   }
 }
@@ -287,7 +289,7 @@ void Slicer::derivedPointer(const Value *Pointer) {
     return;
   for (const Use &U : Pointer->uses()) {
     auto *I = dyn_cast<Instruction>(U.getUser());
-    if (!I || Access.isPutIn(U))
+    if (!I || Accesses.isPutIn(U))
       continue;
     if (isa<GetElementPtrInst>(I))
       derivedPointer(I);
@@ -348,13 +350,13 @@ void Slicer::reachable(CallBase &Call) {
     if (!Arg->getType()->isPointerTy())
       continue;
     for (const Location &L : Pointers.resolve(Arg, false)) {
-      for (Instruction *Write : Access.writesInto(L, Call, Arg))
+      for (Instruction *Write : Writes.writesInto(L, Call, Arg))
         enter(Write,
               isa<CallBase>(Write) && !isa<IntrinsicInst>(Write) ? Touches
                                                                  : Gives,
               Why::Writes);
       // The others come too late, or are overwritten.
-      for (Instruction *Write : Access.writesInto(L))
+      for (Instruction *Write : Accesses.writesInto(L))
         Settled.insert(Write);
     }
     derivedPointer(Arg);
@@ -369,15 +371,15 @@ void Slicer::value(Instruction &I) {
     // Most loads of a variable that is not local have the same writes.
     bool New = false;
     for (const Location &L : Pointers.touched(*Load))
-      New |= !Access.isSharedBy(L, *Load, Load->getPointerOperand()) ||
+      New |= !Writes.isSharedBy(L, *Load, Load->getPointerOperand()) ||
              SeenLoaded.insert(L);
     if (!New)
       return definePointer(Load->getPointerOperand());
     // What is copied is among the definitions; that it is, matters too.
     for (const Location &L : Pointers.touched(*Load))
-      for (Instruction *Copy : Access.copiesTo(L))
+      for (Instruction *Copy : Accesses.copiesTo(L))
         enter(Copy, Runs, Why::Writes);
-    for (Instruction *Write : Access.definitionsOf(*Load)) {
+    for (Instruction *Write : Writes.definitionsOf(*Load)) {
       // What a library sets to a constant, it sets in its constructors.
       const auto *Store = dyn_cast<StoreInst>(Write);
       if (!Store || !isa<Constant>(Store->getValueOperand()) ||
