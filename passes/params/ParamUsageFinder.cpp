@@ -33,6 +33,18 @@ SmallVector<Hop, 16> ParameterUsage::pathTo(unsigned Last) const {
   return Path;
 }
 
+bool comparesValues(const CmpInst &Compare) {
+  switch (Compare.getPredicate()) {
+  case CmpInst::FCMP_FALSE:
+  case CmpInst::FCMP_TRUE:
+  case CmpInst::FCMP_ORD:
+  case CmpInst::FCMP_UNO:
+    return false;
+  default:
+    return true;
+  }
+}
+
 /// True for the operations that make one truth value of two.
 static bool isLogical(const Instruction &I) {
   return I.getOpcode() == Instruction::And ||
@@ -124,9 +136,7 @@ void Follower::compared(const State &S, CmpInst &Compare, unsigned Operand,
   if (Compare.getOperand(0) == Compare.getOperand(1) ||
       Compare.getOperand(0)->getType()->isPtrOrPtrVectorTy())
     return;
-  // Whether it is a number is a question of its own.
-  if (Compare.getPredicate() == CmpInst::FCMP_UNO ||
-      Compare.getPredicate() == CmpInst::FCMP_ORD)
+  if (!comparesValues(Compare))
     return end(ValueEnd::Mixed, &Compare);
   if (S.How.kind() == Transform::None && asksForNonZero(Compare, Operand)) {
     for (const Decision &D : followOutcome(&Compare, S.Path))

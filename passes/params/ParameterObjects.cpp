@@ -178,7 +178,7 @@ static std::map<unsigned, Field> fieldsOf(Module &M, StringRef Name,
                                           ModuleAnalysisManager &AM) {
   const RuleMatches &Rules = AM.getResult<RuleAnalysis>(M);
   const LocationTypes &Types = AM.getResult<LocationTypesAnalysis>(M);
-  const Options Opts = Options::fromCommandLine();
+  const Options &Opts = AM.getResult<OptionsAnalysis>(M);
   UserSources Sources(Opts);
   std::map<unsigned, Field> Fields;
   for (const auto &[I, Where] : AM.getResult<ClassObjectAccess>(M).loads()) {

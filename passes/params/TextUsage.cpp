@@ -2,6 +2,7 @@
 #include "params/TextUsage.h"
 
 #include "llvm/IR/Module.h"
+#include "llvm/Support/CommandLine.h"
 
 using namespace llvm;
 
@@ -11,6 +12,11 @@ bool isText(StringRef Type) {
   return Type == "std::string" ||
          Type.starts_with("std::__cxx11::basic_string<char,");
 }
+
+/// Each object is compared with all operands of text in the unit.
+static cl::opt<unsigned>
+    MaxObjects("tpc-max-text-copies", cl::Hidden, cl::init(16),
+               cl::desc("Objects that one text is copied to"));
 
 TextUsage::TextUsage(Module &M, PointsTo &Pointers, const RuleMatches &Rules)
     : Pointers(Pointers) {
@@ -81,7 +87,7 @@ TextUsage::Found TextUsage::comparisonsOf(const Value *Object) const {
   Found Out;
   Locations Objects = Pointers.handed(Object, /*IsOne=*/true);
   SmallPtrSet<const CallBase *, 8> Seen;
-  for (unsigned Next = 0; Next < Objects.size() && Next < 16; ++Next) {
+  for (unsigned Next = 0; Next < Objects.size() && Next < MaxObjects; ++Next) {
     const Location Here = Objects[Next];
     auto IsHere = [&](const Location &L) { return L.mayBe(Here); };
     for (const Use &U : Uses) {

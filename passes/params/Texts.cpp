@@ -8,15 +8,26 @@
 #include "llvm/IR/CFG.h"
 #include "llvm/IR/IntrinsicInst.h"
 #include "llvm/IR/Module.h"
+#include "llvm/Support/CommandLine.h"
 #include "llvm/Support/SaveAndRestore.h"
 
 using namespace llvm;
 
 namespace tpc {
 
-/// Steps from one object to another in a row and in all, and blocks of one
-/// function, beyond which a text is not followed.
-static constexpr unsigned MaxDepth = 64, MaxSteps = 5000, MaxBlocks = 2000;
+/// The search recurses; its stack is the linker's.
+static cl::opt<unsigned>
+    MaxDepth("tpc-max-text-depth", cl::Hidden, cl::init(64),
+             cl::desc("Objects in a row that a text is followed through"));
+/// Ways through calls and merges multiply.
+static cl::opt<unsigned>
+    MaxSteps("tpc-max-text-steps", cl::Hidden, cl::init(5000),
+             cl::desc("Objects in all that one text is followed through"));
+/// Each text walks the blocks of its function: generated functions have very
+/// many of both.
+static cl::opt<unsigned> MaxBlocks(
+    "tpc-max-text-blocks", cl::Hidden, cl::init(2000),
+    cl::desc("Basic blocks of a function in which a text is followed"));
 
 /// Adds \p New, by another way, to \p Into: what two ways give differently is
 /// not known.

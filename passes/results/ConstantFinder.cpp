@@ -147,7 +147,7 @@ void ConstantFinder::compared(CmpInst &Compare, Instruction &Predicate,
                                                             : 0;
   const Value *Other = Compare.getOperand(1 - Threshold);
   if (!numberOf(Compare.getOperand(Threshold)) || plainNumber(Other) ||
-      isTruth(Other) || asksForNonZero(Compare))
+      isTruth(Other) || asksForNonZero(Compare) || !comparesValues(Compare))
     return;
   auto Known = Found.find(&Compare);
   if (Known != Found.end() && Known->second.Slice.Distance <= E.Distance)

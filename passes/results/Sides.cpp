@@ -5,13 +5,17 @@
 #include "params/Texts.h"
 
 #include "llvm/IR/IntrinsicInst.h"
+#include "llvm/Support/CommandLine.h"
 
 using namespace llvm;
 
 namespace tpc {
 
-/// A value with more sources than this is taken for a measured one.
-static constexpr unsigned MaxSources = 256;
+/// A configured value has few sources. One with more is taken for a
+/// measurement.
+static cl::opt<unsigned> MaxSources(
+    "tpc-max-sources", cl::Hidden, cl::init(256),
+    cl::desc("Sources of an operand that are looked at to tell a threshold"));
 
 Sides::Sides(const ParameterUsage &Usage, const ParamCallFinder::Result &Reads,
              const CallGraphResult &Calls, PointsTo &Pointers,

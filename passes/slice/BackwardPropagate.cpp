@@ -48,8 +48,8 @@ public:
         Writes(AM.getResult<VisibleWritesAnalysis>(M)),
         Ifs(AM.getResult<IfStatements>(M)), Thrown(AM.getResult<Throws>(M)),
         Exposing(AM.getResult<ExternCallFinder>(M)),
-        Rules(AM.getResult<RuleAnalysis>(M)), Opts(Options::fromCommandLine()),
-        Sources(Opts) {}
+        Rules(AM.getResult<RuleAnalysis>(M)),
+        Sources(AM.getResult<OptionsAnalysis>(M)) {}
 
   SliceResult run();
 
@@ -100,7 +100,6 @@ private:
   const ThrowsResult &Thrown;
   const ExternCallFinder::Result &Exposing;
   const RuleMatches &Rules;
-  const Options Opts;
   UserSources Sources;
 
   SliceResult Result;
