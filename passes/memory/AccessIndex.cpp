@@ -15,8 +15,12 @@ static constexpr unsigned MaxCopied = 16;
 
 /// \p L and the variables that copies of whole objects put its value into, or
 /// with \p Backward took it from.
-Locations AccessIndex::throughCopies(const Location &L, bool Backward) const {
-  Locations All{L};
+const Locations &AccessIndex::throughCopies(const Location &L, bool Backward) {
+  auto [It, New] = (Backward ? this->Backward : Forward).try_emplace(L);
+  Locations &All = It->second;
+  if (!New)
+    return All;
+  All.push_back(L);
   const ObjectIndex &In = Backward ? CopiesTo : CopiesFrom;
   for (unsigned Next = 0; Next < All.size() && All.size() < MaxCopied; ++Next) {
     const Location Here = All[Next];
@@ -39,7 +43,7 @@ Locations AccessIndex::throughCopies(const Location &L, bool Backward) const {
   return All;
 }
 
-SmallVector<Instruction *, 4> AccessIndex::copiesTo(const Location &L) const {
+SmallVector<Instruction *, 4> AccessIndex::copiesTo(const Location &L) {
   SmallSetVector<Instruction *, 4> Found;
   for (const Location &Here : throughCopies(L, /*Backward=*/true)) {
     CopiesTo.eachAround(Here, [&](unsigned N) {
@@ -52,15 +56,15 @@ SmallVector<Instruction *, 4> AccessIndex::copiesTo(const Location &L) const {
   return {Found.begin(), Found.end()};
 }
 
-bool AccessIndex::reaches(const Location &From, const Location &To) const {
+bool AccessIndex::reaches(const Location &From, const Location &To) {
   return any_of(throughCopies(From, /*Backward=*/false),
                 [&](const Location &Here) { return Alias.mayBe(Here, To); });
 }
 
 AccessIndex::Found<AccessIndex::Writes>
-AccessIndex::writesOf(const Location &L) const {
+AccessIndex::writesOf(const Location &L) {
   Found<Writes> Out;
-  const Locations All = throughCopies(L, /*Backward=*/true);
+  const Locations &All = throughCopies(L, /*Backward=*/true);
   for (const Location &Here : All) {
     // Several fields that are read as one, in a register: any of them.
     if (isa_and_nonnull<StructType>(elementOf(Types.typeAt(Here))))
@@ -80,10 +84,9 @@ AccessIndex::writesOf(const Location &L) const {
   return Out;
 }
 
-AccessIndex::Found<AccessIndex::Reads>
-AccessIndex::readsOf(const Location &L) const {
+AccessIndex::Found<AccessIndex::Reads> AccessIndex::readsOf(const Location &L) {
   Found<Reads> Out;
-  const Locations All = throughCopies(L, /*Backward=*/false);
+  const Locations &All = throughCopies(L, /*Backward=*/false);
   for (const Location &Here : All) {
     Reads &To = &Here == All.begin() ? Out.Own : Out.Copied;
     LoadIndex.eachAt(Here, [&](unsigned N) {

@@ -55,16 +55,16 @@ public:
   };
   /// The writes that can give the variable at \p L its value: stores, and calls
   /// without a body that are handed the variable.
-  Found<Writes> writesOf(const Location &L) const;
+  Found<Writes> writesOf(const Location &L);
   /// The loads that can find the value of the variable at \p L.
-  Found<Reads> readsOf(const Location &L) const;
+  Found<Reads> readsOf(const Location &L);
 
   /// True where copies of whole objects can bring what is at \p From to \p To,
   /// or the two can be the same.
-  bool reaches(const Location &From, const Location &To) const;
+  bool reaches(const Location &From, const Location &To);
   /// The copies of whole objects by which \p L, or what is copied to it, gets
   /// its value.
-  llvm::SmallVector<llvm::Instruction *, 4> copiesTo(const Location &L) const;
+  llvm::SmallVector<llvm::Instruction *, 4> copiesTo(const Location &L);
 
   /// The writes of what is in the object at \p L, with what each writes: stores
   /// and copies, and calls that are handed the object or a part of it.
@@ -87,13 +87,15 @@ private:
     llvm::Instruction *I;
     Locations To, From;
   };
-  Locations throughCopies(const Location &L, bool Backward) const;
+  const Locations &throughCopies(const Location &L, bool Backward);
 
   const Aliases &Alias;
   LocationTypes &Types;
   llvm::SmallVector<Access, 0> Loads, Stores;
   llvm::SmallVector<Access, 0> Handed; ///< calls without a known body
   llvm::SmallVector<Copy, 0> Copies;
+  /// What was asked for before: where copies lead from and to a variable.
+  LocationMap<Locations> Backward, Forward;
   LocationIndex LoadIndex, StoreIndex, HandedIndex;
   ObjectIndex CopiesTo, CopiesFrom;
   /// Of all writes, numbered as they stand in PartWrites.

@@ -77,13 +77,16 @@ std::optional<SmallVector<Step, 4>> Aliases::partOf(const Location &Object,
       return std::nullopt;
     return SmallVector<Step, 4>(Path.drop_front(Object.Path.size()));
   }
-  for (size_t K = 1; K <= Path.size(); ++K) {
-    Location Front{L.Root, SmallVector<Step, 4>(Path.take_front(K)),
-                   L.RootItem};
-    if (mayBe(Front, Object))
+  // One with a root and one without can only meet where that is reachable.
+  if (!isReachable(Object.Root ? Object : L))
+    return std::nullopt;
+  for (size_t K = 1; K <= Path.size() && !Object.Path.empty(); ++K) {
+    ArrayRef<Step> Front = Path.take_front(K);
+    if ((!Object.Root && endsWith(Front, Object.Path)) ||
+        (!L.Root && endsWith(Object.Path, Front)))
       return SmallVector<Step, 4>(Path.drop_front(K));
   }
-  if (isReachable(Object) && !L.Root && !Path.empty() &&
+  if (!L.Root && !Path.empty() &&
       Types.contains(Types.typeAt(Object), Path[0].Type))
     return SmallVector<Step, 4>(Path);
   return std::nullopt;

@@ -1,12 +1,13 @@
 //===- Location.cpp -------------------------------------------------------===//
 #include "memory/Location.h"
 
+#include "llvm/ADT/Hashing.h"
+
 using namespace llvm;
 
 namespace tpc {
 
-/// True where \p Tail is the end of \p Path.
-static bool endsWith(ArrayRef<Step> Path, ArrayRef<Step> Tail) {
+bool endsWith(ArrayRef<Step> Path, ArrayRef<Step> Tail) {
   return Tail.size() <= Path.size() && equal(Tail, Path.take_back(Tail.size()));
 }
 
@@ -41,6 +42,21 @@ void addTo(Locations &Out, Location L) {
     }
   }
   Out.push_back(std::move(L));
+}
+
+size_t LocationHash::operator()(const Location &L) const {
+  hash_code Hash = hash_combine(L.Root, L.RootItem.Number);
+  for (const Step &S : L.Path)
+    Hash = hash_combine(Hash, S.Type, S.Index, S.Class, S.Item.Number);
+  return Hash;
+}
+
+bool LocationIdentity::operator()(const Location &A, const Location &B) const {
+  return A.Root == B.Root && A.RootItem.Number == B.RootItem.Number &&
+         equal(A.Path, B.Path, [](const Step &S, const Step &T) {
+           return S.Type == T.Type && S.Index == T.Index &&
+                  S.Class == T.Class && S.Item.Number == T.Item.Number;
+         });
 }
 
 } // namespace tpc

@@ -5,18 +5,20 @@ using namespace llvm;
 
 namespace tpc {
 
-LocationIndex::Slot LocationIndex::slotOf(const Location &L) {
-  if (L.Path.empty())
-    return {L.Root, ~0U};
+LocationIndex::Slot LocationIndex::slotOf(const Value *Root,
+                                          ArrayRef<Step> Path) {
+  if (Path.empty())
+    return {Root, ~0U};
   return {reinterpret_cast<const void *>(
-              static_cast<uintptr_t>(L.Path.back().Type) * 16 + 8),
-          L.Path.back().Index};
+              static_cast<uintptr_t>(Path.back().Type) * 16 + 8),
+          Path.back().Index};
 }
 
-void LocationIndex::add(unsigned N, const Location &L) {
-  Exact[{slotOf(L), L.Root}].push_back(N);
-  if (L.Root && !L.Path.empty() && Alias.isReachable(L))
-    Rooted[slotOf(L)].push_back(N);
+void LocationIndex::add(unsigned N, const Location &L, size_t Steps) {
+  Slot Here = slotOf(L.Root, ArrayRef(L.Path).take_front(Steps));
+  Exact[{Here, L.Root}].push_back(N);
+  if (L.Root && Steps && Alias.isReachable(L))
+    Rooted[Here].push_back(N);
 }
 
 void ObjectIndex::add(unsigned N, const Location &Object) {
@@ -30,11 +32,8 @@ void ObjectIndex::add(unsigned N, const Location &Object) {
 }
 
 void PartIndex::add(unsigned N, const Location &L) {
-  if (L.Root)
-    ByObject.add(N, {L.Root, {}});
-  for (size_t K = 1; K <= L.Path.size(); ++K)
-    ByObject.add(
-        N, {L.Root, SmallVector<Step, 4>(ArrayRef(L.Path).take_front(K))});
+  for (size_t Steps = L.Root ? 0 : 1; Steps <= L.Path.size(); ++Steps)
+    ByObject.add(N, L, Steps);
   if (!L.Root && !L.Path.empty())
     ByClass[L.Path[0].Type].push_back(N);
 }

@@ -23,9 +23,11 @@ public:
 
   /// The last step to a location, or its root where there is none.
   using Slot = std::pair<const void *, unsigned>;
-  static Slot slotOf(const Location &L);
+  static Slot slotOf(const Location &L) { return slotOf(L.Root, L.Path); }
 
-  void add(unsigned N, const Location &L);
+  void add(unsigned N, const Location &L) { add(N, L, L.Path.size()); }
+  /// The same for the object that the first \p Steps of \p L lead to.
+  void add(unsigned N, const Location &L, size_t Steps);
 
   /// Calls \p F with the numbers of what has the last step and the root of
   /// \p L, be that none.
@@ -33,12 +35,17 @@ public:
     visit(Exact, std::pair(slotOf(L), L.Root), F);
   }
   /// Calls \p F with the numbers of what can be \p L.
-  template <typename Fn> void eachAt(const Location &L, Fn F) const;
+  template <typename Fn> void eachAt(const Location &L, Fn F) const {
+    eachAt(L, L.Path.size(), F);
+  }
   /// Calls \p F with the numbers of what can be \p L or an object that its path
   /// leads through.
   template <typename Fn> void eachAround(const Location &L, Fn F) const;
 
 private:
+  static Slot slotOf(const llvm::Value *Root, llvm::ArrayRef<Step> Path);
+  template <typename Fn>
+  void eachAt(const Location &L, size_t Steps, Fn F) const;
   template <typename Map, typename Fn>
   static void visit(const Map &In, const typename Map::key_type &Key, Fn F) {
     if (auto It = In.find(Key); It != In.end())
@@ -104,23 +111,19 @@ private:
 };
 
 template <typename Fn>
-void LocationIndex::eachAt(const Location &L, Fn F) const {
-  Slot Here = slotOf(L);
+void LocationIndex::eachAt(const Location &L, size_t Steps, Fn F) const {
+  Slot Here = slotOf(L.Root, llvm::ArrayRef(L.Path).take_front(Steps));
   visit(Exact, std::pair(Here, L.Root), F);
   if (!L.Root)
     visit(Rooted, Here, F);
-  else if (!L.Path.empty() && Alias.isReachable(L))
+  else if (Steps && Alias.isReachable(L))
     visit(Exact, std::pair(Here, static_cast<const llvm::Value *>(nullptr)), F);
 }
 
 template <typename Fn>
 void LocationIndex::eachAround(const Location &L, Fn F) const {
-  if (L.Root)
-    eachAt({L.Root, {}}, F);
-  for (size_t K = 1; K <= L.Path.size(); ++K)
-    eachAt({L.Root,
-            llvm::SmallVector<Step, 4>(llvm::ArrayRef(L.Path).take_front(K))},
-           F);
+  for (size_t Steps = L.Root ? 0 : 1; Steps <= L.Path.size(); ++Steps)
+    eachAt(L, Steps, F);
 }
 
 } // namespace tpc

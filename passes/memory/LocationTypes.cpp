@@ -300,9 +300,13 @@ bool LocationTypes::contains(Type *Outer, unsigned Inner) {
   auto *T = dyn_cast_or_null<StructType>(elementOf(Outer));
   if (!T || T->isOpaque())
     return false;
-  return Numbers.numberOf(T) == Inner ||
-         any_of(T->elements(),
-                [&](Type *Field) { return contains(Field, Inner); });
+  if (auto It = Contained.find({T, Inner}); It != Contained.end())
+    return It->second;
+  bool Is = Numbers.numberOf(T) == Inner ||
+            any_of(T->elements(),
+                   [&](Type *Field) { return contains(Field, Inner); });
+  Contained[{T, Inner}] = Is;
+  return Is;
 }
 
 static void print(raw_ostream &OS, Nth Item) {

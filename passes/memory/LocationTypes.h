@@ -95,6 +95,7 @@ private:
   const llvm::DataLayout &Layout;
   DebugTypes &Debug;
   TypeNumbers Numbers;
+  llvm::DenseMap<std::pair<llvm::StructType *, unsigned>, bool> Contained;
   /// Of globals whose type is another for the sake of their initial value.
   llvm::DenseMap<const llvm::GlobalVariable *, llvm::StructType *>
       ClassOfGlobal;

@@ -117,20 +117,10 @@ bool PointsToSolver::isDue(const Node &N) const {
 
 /// The number of the content of \p L.
 unsigned PointsToSolver::contentAt(const Location &L, bool Unrooted) {
-  hash_code Hash = hash_combine(L.Root, L.RootItem.Number, Unrooted);
-  for (const Step &S : L.Path)
-    Hash = hash_combine(Hash, S.Type, S.Index, S.Class, S.Item.Number);
-  SmallVector<unsigned, 1> &Alike = ContentIndex[Hash];
-  for (unsigned N : Alike) {
-    const Content &C = Contents[N];
-    if (C.Unrooted == Unrooted && C.Where.isSame(L) &&
-        equal(C.Where.Path, L.Path,
-              [](const Step &A, const Step &B) { return A.Class == B.Class; }))
-      return N;
-  }
-  Alike.push_back(Contents.size());
-  Contents.push_back({L, Unrooted});
-  return Contents.size() - 1;
+  auto [It, New] = ContentIndex[Unrooted].try_emplace(L, Contents.size());
+  if (New)
+    Contents.push_back({L, Unrooted});
+  return It->second;
 }
 
 /// Adds to \p Out the pointers that are kept at a place by now.

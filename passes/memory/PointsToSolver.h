@@ -13,8 +13,6 @@
 #include "memory/LocationIndex.h"
 #include "memory/PointsTo.h"
 
-#include "llvm/ADT/Hashing.h"
-
 namespace tpc {
 
 class PointsToSolver {
@@ -84,7 +82,7 @@ private:
   llvm::SmallVector<PointerStore, 0> PointerStores;
   LocationIndex PointerStoreIndex;
   llvm::SmallVector<Content, 0> Contents;
-  llvm::DenseMap<llvm::hash_code, llvm::SmallVector<unsigned, 1>> ContentIndex;
+  LocationMap<unsigned> ContentIndex[2]; ///< of all, and of Unrooted
   llvm::DenseMap<const llvm::Function *, Returned> Results;
   /// Objects that hold pointers to a container's elements: iterators that are
   /// returned in memory, with the container.

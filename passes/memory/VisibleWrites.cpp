@@ -23,10 +23,10 @@ VisibleWrites::VisibleWrites(Module &M, ModuleAnalysisManager &AM)
              AM.getResult<DebugTypesAnalysis>(M), Accesses.replacements()) {}
 
 /// The writes of \p L: its own, and those that copies of whole objects bring.
-VisibleWrites::Writes VisibleWrites::allWrites(const Location &L) const {
-  auto [All, Copied] = Accesses.writesOf(L);
-  All.insert(Copied.begin(), Copied.end());
-  return All;
+VisibleWrites::Writes VisibleWrites::allWrites(const Location &L) {
+  AccessIndex::Found<Writes> Found = Accesses.writesOf(L);
+  Found.Own.insert(Found.Copied.begin(), Found.Copied.end());
+  return std::move(Found.Own);
 }
 
 /// More writes of one variable are not told apart by who sees them.
@@ -81,7 +81,7 @@ VisibleWrites::sharedWrites(const Location &L) {
   SharedWrites &All = It->second;
   if (!New)
     return All;
-  auto Found = Accesses.writesOf(L);
+  AccessIndex::Found<Writes> Found = Accesses.writesOf(L);
   // Who sees them is not asked; they are collected again where they are needed.
   All.TooMany = Found.Own.size() + Found.Copied.size() > MaxNarrowed;
   if (All.TooMany)
@@ -200,7 +200,7 @@ SmallVector<Instruction *, 8> VisibleWrites::writesInto(const Location &L,
                                                         const Value *Pointer) {
   Writes Out;
   bool Local = isLocalOf(L, At) && !Alias.isReachable(L);
-  std::map<Location, Writes, LocationOrder> Gone;
+  LocationMap<Writes> Gone;
   SmallVector<Part, 4> Parts;
   if (!Local)
     Parts = replacedParts(L, At, Pointer);

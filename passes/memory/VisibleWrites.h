@@ -12,8 +12,6 @@
 #include "memory/LocalWrites.h"
 #include "memory/Reaching.h"
 
-#include <map>
-
 namespace tpc {
 
 class VisibleWrites {
@@ -69,7 +67,7 @@ private:
     Reaching::Variable Variable;
   };
 
-  Writes allWrites(const Location &L) const;
+  Writes allWrites(const Location &L);
   const SharedWrites &sharedWrites(const Location &L);
   const llvm::Value *placeOf(const llvm::Instruction &I);
   std::optional<Reaching::Variable> variableAt(const llvm::Value *Pointer,
@@ -84,7 +82,7 @@ private:
   const LocationTypes &Types;
   const Aliases &Alias;
   PointsTo &Pointers;
-  const AccessIndex &Accesses;
+  AccessIndex &Accesses;
   LocalWrites Locals;
   Reaching Shared;
   /// What was asked for before.
@@ -92,7 +90,7 @@ private:
                  std::unique_ptr<llvm::SmallVector<llvm::Instruction *, 8>>>
       Definitions;
   llvm::DenseMap<const llvm::Instruction *, const llvm::Value *> Places;
-  std::map<Location, SharedWrites, LocationOrder> ByVariable;
+  LocationMap<SharedWrites> ByVariable;
 };
 
 class VisibleWritesAnalysis

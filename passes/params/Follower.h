@@ -113,7 +113,7 @@ private:
 
   const CallGraphResult &Calls;
   PointsTo &Pointers;
-  const AccessIndex &Accesses;
+  AccessIndex &Accesses;
   VisibleWrites &Writes;
   const ParamCallFinder::Result &Reads;
   const RuleMatches &Rules;

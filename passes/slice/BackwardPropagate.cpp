@@ -94,7 +94,7 @@ private:
   LocationSet SeenWritten, SeenLoaded;
   const CallGraphResult &Calls;
   PointsTo &Pointers;
-  const AccessIndex &Accesses;
+  AccessIndex &Accesses;
   VisibleWrites &Writes;
   const IfStatementsResult &Ifs;
   const ThrowsResult &Thrown;
@@ -201,7 +201,7 @@ void Slicer::defineMemory(const Value *Pointer, const Instruction &At) {
   for (Location &L : Read)
     L.widen();
   for (const Location &L : Read) {
-    if (Writes.isSharedBy(L, At, Pointer) && !SeenWritten.insert(L))
+    if (Writes.isSharedBy(L, At, Pointer) && !SeenWritten.insert(L).second)
       continue;
     // What was copied there is among the writes; that it was copied matters,
     // too.
@@ -371,7 +371,7 @@ void Slicer::value(Instruction &I) {
     bool New = false;
     for (const Location &L : Pointers.touched(*Load))
       New |= !Writes.isSharedBy(L, *Load, Load->getPointerOperand()) ||
-             SeenLoaded.insert(L);
+             SeenLoaded.insert(L).second;
     if (!New)
       return definePointer(Load->getPointerOperand());
     // What is copied is among the definitions; that it is, matters too.
