@@ -7,7 +7,11 @@
 #include "control/IfStatements.h"
 #include "control/Throws.h"
 #include "instrument/InstrumentBranches.h"
-#include "memory/ClassObjectAccess.h"
+#include "memory/AccessIndex.h"
+#include "memory/Aliases.h"
+#include "memory/LocationTypes.h"
+#include "memory/PointsTo.h"
+#include "memory/VisibleWrites.h"
 #include "output/StaticInfo.h"
 #include "params/ParamCallFinder.h"
 #include "params/ParamUsageFinder.h"
@@ -15,9 +19,11 @@
 #include "slice/BackwardPropagate.h"
 #include "slice/ExternCallFinder.h"
 #include "support/Budget.h"
+#include "support/DebugTypes.h"
 #include "support/Guard.h"
 
 #include "llvm/IR/Module.h"
+#include "llvm/Support/CommandLine.h"
 #include "llvm/Support/WithColor.h"
 
 using namespace llvm;
@@ -25,9 +31,16 @@ using namespace llvm;
 namespace tpc {
 
 void registerAnalyses(ModuleAnalysisManager &AM) {
+  AM.registerPass([] { return OptionsAnalysis(); });
+  AM.registerPass([] { return RuleTableAnalysis(); });
   AM.registerPass([] { return RuleAnalysis(); });
   AM.registerPass([] { return SimpleCallGraph(); });
+  AM.registerPass([] { return DebugTypesAnalysis(); });
+  AM.registerPass([] { return LocationTypesAnalysis(); });
+  AM.registerPass([] { return AliasesAnalysis(); });
+  AM.registerPass([] { return PointsToAnalysis(); });
   AM.registerPass([] { return ClassObjectAccess(); });
+  AM.registerPass([] { return VisibleWritesAnalysis(); });
   AM.registerPass([] { return Throws(); });
   AM.registerPass([] { return IfStatements(); });
   AM.registerPass([] { return ExternCallFinder(); });
@@ -47,10 +60,13 @@ struct Findings {
 };
 
 namespace {
-/// A manager of its own: what is analysed may be a copy that goes away again.
+/// A manager of its own for each copy that is analysed: the link's manager
+/// knows the user's module, which stays as it is, and outlives the copies.
 struct OwnAnalyses {
   ModuleAnalysisManager AM;
-  OwnAnalyses() {
+  OwnAnalyses(const Options &Opts, const RuleTables &Rules) {
+    AM.registerPass([&] { return OptionsAnalysis(Opts); });
+    AM.registerPass([&] { return RuleTableAnalysis(Rules); });
     PassBuilder().registerModuleAnalyses(AM);
     registerAnalyses(AM);
   }
@@ -58,8 +74,8 @@ struct OwnAnalyses {
 } // namespace
 
 /// Functions whose calls are to be told apart before the analysis says all.
-static std::vector<std::string> sharedFunctions(Module &Seen,
-                                                ModuleAnalysisManager &AM) {
+static std::vector<std::string> findSharedFunctions(Module &Seen,
+                                                    ModuleAnalysisManager &AM) {
   std::vector<std::string> Shared;
   for (const Function *F : AM.getResult<GatherResults>(Seen).Shared)
     Shared.push_back(F->getName().str());
@@ -68,8 +84,8 @@ static std::vector<std::string> sharedFunctions(Module &Seen,
 
 /// Plans the reports on what the analysis of \p Analysed found. Up to here the
 /// unit is as it was.
-static void plan(AnalysedModule &Analysed, ModuleAnalysisManager &AM,
-                 const Options &Opts, Findings &Out) {
+static void planReports(AnalysedModule &Analysed, ModuleAnalysisManager &AM,
+                        const Options &Opts, Findings &Out) {
   Module &Seen = Analysed.module();
   const GatheredResults &R = AM.getResult<GatherResults>(Seen);
   if (R.Comparisons.empty() && !(Opts.Constants && !R.Constants.empty()))
@@ -95,31 +111,37 @@ static void plan(AnalysedModule &Analysed, ModuleAnalysisManager &AM,
       Plan(C, /*IsUnsigned=*/false);
 }
 
-static std::vector<std::string> namedHelpers(Module &M) {
-  OwnAnalyses Own;
+static std::vector<std::string> findNamedHelpers(Module &M, const Options &Opts,
+                                                 const RuleTables &Rules) {
+  OwnAnalyses Own(Opts, Rules);
   return namedByCalls(M, Own.AM);
 }
 
-/// Functions in functions whose calls are told apart.
-static constexpr unsigned MaxSeparated = 3;
+/// Each round analyses the unit anew. Checks in checks are rarely nested
+/// deeper.
+static cl::opt<unsigned> MaxSeparated(
+    "tpc-max-separated", cl::Hidden, cl::init(3),
+    cl::desc("Nested functions whose calls are told apart by copies"));
 
 /// Runs the analysis so that a crash in it, and time or memory without end, is
 /// only a failure of it. \p M is changed only where reports are planned, and as
 /// they need it.
-static Findings analyseSafely(Module &M, const Options &Opts) {
+static Findings analyseSafely(Module &M, ModuleAnalysisManager &AM,
+                              const Options &Opts) {
   Budget Limits(Opts.MaxSeconds, Opts.MaxMemory);
   auto Out = std::make_unique<Findings>();
   bool Survived = runGuarded([&] {
-    AnalysedModule Analysed(M, Opts);
-    Analysed.separate(namedHelpers(Analysed.module()));
+    const RuleTables &Rules = AM.getResult<RuleTableAnalysis>(M);
+    Out->Failure = Rules.Error;
+    if (!Out->Failure.empty())
+      return;
+    AnalysedModule Analysed(M, Opts, Rules.Tables);
+    Analysed.separate(findNamedHelpers(Analysed.module(), Opts, Rules));
     for (unsigned Round = 0;; ++Round) {
       fail(Opts.InjectFailure);
-      OwnAnalyses Own;
+      OwnAnalyses Own(Opts, Rules);
       Module &Seen = Analysed.module();
-      Out->Failure = Own.AM.getResult<RuleAnalysis>(Seen).Error;
-      if (!Out->Failure.empty())
-        return;
-      std::vector<std::string> Shared = sharedFunctions(Seen, Own.AM);
+      std::vector<std::string> Shared = findSharedFunctions(Seen, Own.AM);
       // Where time or memory ran out, what was counted up to there is told.
       bool Spent = !Limits.why().empty();
       if (!Spent && Round < MaxSeparated &&
@@ -129,7 +151,7 @@ static Findings analyseSafely(Module &M, const Options &Opts) {
       Out->Failure = Limits.why();
       fail(Opts.InjectLateFailure);
       if (Out->Failure.empty() && Opts.Instrument)
-        plan(Analysed, Own.AM, Opts, *Out);
+        planReports(Analysed, Own.AM, Opts, *Out);
       return;
     }
   });
@@ -147,11 +169,11 @@ static void warn(const Options &Opts, const Twine &Text) {
   WithColor::warning(errs(), "tpc") << Opts.LinkUnit << ": " << Text << '\n';
 }
 
-PreservedAnalyses LinkUnitPass::run(Module &M, ModuleAnalysisManager &) {
-  const Options Opts = Options::fromCommandLine();
+PreservedAnalyses LinkUnitPass::run(Module &M, ModuleAnalysisManager &AM) {
+  const Options &Opts = AM.getResult<OptionsAnalysis>(M);
   if (!Opts.Analyse)
     return PreservedAnalyses::all();
-  Findings F = analyseSafely(M, Opts);
+  Findings F = analyseSafely(M, AM, Opts);
   if (F.Failure.empty() && Opts.Instrument)
     if (std::string Why = insertReports(M, F.Reports); !Why.empty())
       F.Failure = std::move(Why);
@@ -200,8 +222,9 @@ static OptimizationLevel levelOf(const Module &M) {
 }
 
 PreservedAnalyses PrelinkPass::run(Module &M, ModuleAnalysisManager &AM) {
-  if (!Options::fromCommandLine().Prelink)
+  if (!AM.getResult<OptionsAnalysis>(M).Prelink)
     return PreservedAnalyses::all();
+  // A pipeline in a pass: its level is known only once the module is.
   return PB.buildLTOPreLinkDefaultPipeline(levelOf(M)).run(M, AM);
 }
 

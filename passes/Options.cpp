@@ -33,30 +33,30 @@ static cl::list<std::string>
              cl::desc("A further file of rules (JSON); may be repeated"));
 static cl::list<std::string>
     ExcludeOpt("tpc-exclude", cl::cat(Category),
-               cl::desc("A folder whose code is reported on nowhere; may be "
-                        "repeated; /usr and /opt/ros always are"));
-static cl::opt<bool>
-    AnalyseOpt("tpc-analyse", cl::cat(Category), cl::init(true),
-               cl::desc("Analyse the unit; if not, it is only optimised as the "
-                        "compiler was told to leave it (default: yes)"));
+               cl::desc("A folder whose code is not reported on; may be "
+                        "repeated. /usr and /opt/ros are always excluded"));
+static cl::opt<bool> AnalyseOpt(
+    "tpc-analyse", cl::cat(Category), cl::init(true),
+    cl::desc("Analyse the link unit. If not, only run the "
+             "optimisation that was left to the link (default: yes)"));
 static cl::opt<bool>
     InstrumentOpt("tpc-instrument", cl::cat(Category), cl::init(true),
                   cl::desc("Insert the reports (default: yes)"));
 static cl::opt<bool>
     ConstantsOpt("tpc-constants", cl::cat(Category),
-                 cl::desc("Report comparisons with constants, too"));
+                 cl::desc("Also report comparisons with constants"));
 static cl::opt<bool>
     PrelinkOpt("tpc-prelink", cl::cat(Category), cl::init(true),
-               cl::desc("Run the optimisation that the compiler was told to "
-                        "leave out (default: yes)"));
+               cl::desc("Run the optimisation that was left to the link "
+                        "(default: yes)"));
 static cl::opt<unsigned> MaxSecondsOpt(
     "tpc-max-seconds", cl::cat(Category), cl::init(120),
-    cl::desc("Processor time that the analysis may take (default: 120; 0: as "
-             "much as it wants); beyond it the unit is left as it was"));
+    cl::desc("Limit of the analysis in seconds of processor time (default: "
+             "120; 0: no limit); beyond it the link unit is not changed"));
 static cl::opt<unsigned> MaxMemoryOpt(
     "tpc-max-memory", cl::cat(Category), cl::init(4096),
-    cl::desc("MiB that the analysis may take (default: 4096; 0: as much as it "
-             "wants); beyond it the unit is left as it was"));
+    cl::desc("Limit of the analysis in MiB of memory (default: 4096; 0: no "
+             "limit); beyond it the link unit is not changed"));
 static cl::ValuesClass failureKinds() {
   return cl::values(
       clEnumValN(Failure::Crash, "crash", "trap"),
@@ -69,16 +69,16 @@ static cl::ValuesClass failureKinds() {
 static cl::opt<Failure>
     InjectFailureOpt("tpc-inject-failure", cl::cat(Category), cl::Hidden,
                      cl::init(Failure::None),
-                     cl::desc("Fail inside the analysis (for tests)"),
+                     cl::desc("Fail while the analysis runs (for tests)"),
                      failureKinds());
 static cl::opt<Failure>
     InjectLateFailureOpt("tpc-inject-late-failure", cl::cat(Category),
                          cl::Hidden, cl::init(Failure::None),
-                         cl::desc("Fail at its end (for tests)"),
+                         cl::desc("Fail when the analysis ends (for tests)"),
                          failureKinds());
 
-/// The linker's `-o`, from the command line of this process: the module of a
-/// link is always called ld-temp.o, and a plugin is told no more.
+/// The linker's `-o`, from the command line of this process. The module of a
+/// link is always called ld-temp.o, and the linker tells a plugin nothing else.
 static std::string outputOfThisProcess() {
   auto Buffer = MemoryBuffer::getFileAsStream("/proc/self/cmdline");
   if (!Buffer)
@@ -91,7 +91,11 @@ static std::string outputOfThisProcess() {
   return "";
 }
 
-Options Options::fromCommandLine() {
+AnalysisKey OptionsAnalysis::Key;
+
+Options OptionsAnalysis::run(Module &, ModuleAnalysisManager &) {
+  if (Known)
+    return *Known;
   Options O;
   O.LinkUnit = LinkUnitOpt;
   if (O.LinkUnit.empty())

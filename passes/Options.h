@@ -8,14 +8,15 @@
 #include "llvm/ADT/DenseMap.h"
 #include "llvm/ADT/StringRef.h"
 #include "llvm/IR/DebugInfoMetadata.h"
+#include "llvm/IR/PassManager.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace tpc {
 
-/// The options of one link, read once from the command line (`-mllvm -tpc-*`)
-/// and, for the link unit's name, from the linker's own `-o`.
+/// The options of one link.
 struct Options {
   std::string LinkUnit;   ///< target's name; else the file name of `-o`
   std::string Package;    ///< name of the CMake project
@@ -33,15 +34,34 @@ struct Options {
   Failure InjectFailure = Failure::None;
   Failure InjectLateFailure = Failure::None;
 
-  /// The options of this process.
-  static Options fromCommandLine();
-
   /// True where \p Path (absolute) is one of the user's own sources: it is
   /// below none of the excluded folders, or the source root is nearer to it.
   bool isUserSource(llvm::StringRef Path) const;
 
   /// \p Path relative to SourceRoot where it is below it, else unchanged.
   std::string relative(llvm::StringRef Path) const;
+
+  /// No pass changes the options.
+  bool invalidate(llvm::Module &, const llvm::PreservedAnalyses &,
+                  llvm::ModuleAnalysisManager::Invalidator &) {
+    return false;
+  }
+};
+
+/// The options of this process: from its command line (`-mllvm -tpc-*`) and,
+/// for the link unit's name, from the linker's own `-o`. A manager for a copy
+/// of the module is given the options of the module that was copied.
+class OptionsAnalysis : public llvm::AnalysisInfoMixin<OptionsAnalysis> {
+public:
+  using Result = Options;
+  OptionsAnalysis() = default;
+  explicit OptionsAnalysis(Options Known) : Known(std::move(Known)) {}
+  Result run(llvm::Module &, llvm::ModuleAnalysisManager &);
+
+private:
+  friend llvm::AnalysisInfoMixin<OptionsAnalysis>;
+  static llvm::AnalysisKey Key;
+  std::optional<Options> Known;
 };
 
 /// Whose code something is, by the file that its debug information names.

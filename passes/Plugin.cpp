@@ -10,7 +10,9 @@
 #include "control/IfStatements.h"
 #include "instrument/InstrumentBranches.h"
 #include "instrument/Prepare.h"
-#include "memory/ClassObjectAccess.h"
+#include "memory/AccessIndex.h"
+#include "memory/PointsTo.h"
+#include "memory/VisibleWrites.h"
 #include "params/ParamCallFinder.h"
 #include "params/ParamUsageFinder.h"
 #include "results/GatherResults.h"
@@ -30,6 +32,8 @@ static bool addPass(StringRef Name, ModulePassManager &MPM,
   }
   PRINTER("tpc-callgraph", SimpleCallGraphPrinter)
   PRINTER("tpc-class-object-access", ClassObjectAccessPrinter)
+  PRINTER("tpc-points-to", PointsToPrinter)
+  PRINTER("tpc-visible-writes", VisibleWritesPrinter)
   PRINTER("tpc-if-statements", IfStatementsPrinter)
   PRINTER("tpc-extern-calls", ExternCallFinderPrinter)
   PRINTER("tpc-param-calls", ParamCallFinderPrinter)

@@ -15,6 +15,7 @@ using namespace llvm;
 
 namespace tpc {
 
+AnalysisKey RuleTableAnalysis::Key;
 AnalysisKey RuleAnalysis::Key;
 
 /// The number of IR operands before the first written argument.
@@ -82,22 +83,13 @@ bool Rules::isCounting(StringRef Name) const {
   return beginsWithOneOf(Name, CountingPrefixes);
 }
 
-const Rules &Rules::ofThisLink(std::string &Error) {
-  struct Tables {
-    Rules R;
-    std::string Error;
-  };
-  static const Tables Loaded = [] {
-    Tables T;
-    Expected<Rules> R = load(Options::fromCommandLine());
-    if (R)
-      T.R = std::move(*R);
-    else
-      T.Error = toString(R.takeError());
-    return T;
-  }();
-  Error = Loaded.Error;
-  return Loaded.R;
+RuleTables RuleTableAnalysis::run(Module &M, ModuleAnalysisManager &AM) {
+  if (Known)
+    return *Known;
+  Expected<Rules> R = Rules::load(AM.getResult<OptionsAnalysis>(M));
+  if (!R)
+    return {std::make_shared<Rules>(), toString(R.takeError())};
+  return {std::make_shared<Rules>(std::move(*R)), ""};
 }
 
 /// True where the written parameters of \p F are those that \p R names.
@@ -166,10 +158,11 @@ static bool isStaticMethod(const Function &F) {
   return Types.size() < 2 || !Types[1] || !Types[1]->isArtificial();
 }
 
-RuleMatches::RuleMatches(const Rules &Tables, Module &M) {
+RuleMatches::RuleMatches(std::shared_ptr<const Rules> All, Module &M)
+    : Tables(std::move(All)) {
   std::vector<std::string> Classes; // whose fields are parameters
   for (const Function &F : M) {
-    const Rules::Match &Found = Tables.match(F);
+    const Rules::Match &Found = Tables->match(F);
     if (Found.Row) {
       Rows[&F] = Found.Row;
       if (Found.Row->Kind == Rule::Config)
@@ -187,7 +180,7 @@ RuleMatches::RuleMatches(const Rules &Tables, Module &M) {
     return;
   for (const Function &F : M)
     if (any_of(Classes, [&](StringRef Class) {
-          StringRef Name = Tables.match(F).Name;
+          StringRef Name = Tables->match(F).Name;
           return Name.consume_front(Class) && !Class.empty() &&
                  (Name.starts_with("::") || Name.starts_with("Statics::"));
         }))
@@ -202,9 +195,8 @@ const Rule *RuleMatches::match(const CallBase &Call) const {
 const RuleMatches::Inlined &RuleMatches::inlined(const DISubprogram &F) const {
   auto [It, New] = InlinedFunctions.try_emplace(&F);
   if (New) {
-    std::string Unused, Name = qualifiedName(F.getLinkageName());
-    const Rules &Tables = Rules::ofThisLink(Unused);
-    It->second = {Tables.isTransparent(Name), Tables.isCounting(Name)};
+    std::string Name = qualifiedName(F.getLinkageName());
+    It->second = {Tables->isTransparent(Name), Tables->isCounting(Name)};
   }
   return It->second;
 }
@@ -252,15 +244,9 @@ void RuleMatches::closeContainers(const Options &Opts) {
       Opaque.insert(F);
 }
 
-RuleMatches RuleAnalysis::run(Module &M, ModuleAnalysisManager &) {
-  std::string Error;
-  const Rules &Tables = Rules::ofThisLink(Error);
-  RuleMatches Result;
-  if (Error.empty()) {
-    Result = RuleMatches(Tables, M);
-    Result.closeContainers(Options::fromCommandLine());
-  }
-  Result.Error = std::move(Error);
+RuleMatches RuleAnalysis::run(Module &M, ModuleAnalysisManager &AM) {
+  RuleMatches Result(AM.getResult<RuleTableAnalysis>(M).Tables, M);
+  Result.closeContainers(AM.getResult<OptionsAnalysis>(M));
   return Result;
 }
 

@@ -1,9 +1,9 @@
 //===- Rules.h - The tables that drive the analysis -----------------------===//
 //
-// SPEC 2: which calls read a parameter, which expose a node's state, which
-// give a publisher its topic and a node handle its namespace. Data, read from
-// JSON (RuleFile); the tables that come with TPC are built in (rules/*.json),
-// the user's are added to them.
+// Which calls read a parameter, which expose a node's state, which give a
+// publisher its topic and a node handle its namespace: see
+// docs/reference/analysis.md. The tables are JSON files (see RuleFile.h). Those
+// of TPC (rules/*.json) are compiled in; the user's are added to them.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_RULES_H
@@ -22,6 +22,7 @@
 #include "llvm/IR/PassManager.h"
 #include "llvm/Support/Error.h"
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -91,9 +92,6 @@ class Rules {
 public:
   /// The built-in tables and \p Opts' files, restricted to its profile.
   static llvm::Expected<Rules> load(const Options &Opts);
-  /// The tables of this process, which links one unit: read once, with why
-  /// they could not be read where that is so.
-  static const Rules &ofThisLink(std::string &Error);
 
   /// What the tables say of a function.
   struct Match {
@@ -127,11 +125,37 @@ private:
   mutable llvm::StringMap<Match> Known;
 };
 
+/// The tables of a link; empty ones, and why, where they cannot be read.
+struct RuleTables {
+  std::shared_ptr<const Rules> Tables;
+  std::string Error;
+
+  /// No pass changes the tables.
+  bool invalidate(llvm::Module &, const llvm::PreservedAnalyses &,
+                  llvm::ModuleAnalysisManager::Invalidator &) {
+    return false;
+  }
+};
+
+/// Reads the tables. A manager for a copy of the module is given those of the
+/// module that was copied: they are read, and names are demangled, once.
+class RuleTableAnalysis : public llvm::AnalysisInfoMixin<RuleTableAnalysis> {
+public:
+  using Result = RuleTables;
+  RuleTableAnalysis() = default;
+  explicit RuleTableAnalysis(RuleTables Known) : Known(std::move(Known)) {}
+  Result run(llvm::Module &M, llvm::ModuleAnalysisManager &AM);
+
+private:
+  friend llvm::AnalysisInfoMixin<RuleTableAnalysis>;
+  static llvm::AnalysisKey Key;
+  std::optional<RuleTables> Known;
+};
+
 /// The rules applied to the functions of a module.
 class RuleMatches {
 public:
-  RuleMatches() = default;
-  RuleMatches(const Rules &Tables, llvm::Module &M);
+  RuleMatches(std::shared_ptr<const Rules> Tables, llvm::Module &M);
   /// Makes opaque the methods of containers that call nothing of the user's.
   void closeContainers(const Options &Opts);
 
@@ -143,10 +167,7 @@ public:
     return Rows.contains(&F) || Opaque.contains(&F);
   }
   /// True where the class called \p Name is in one of the opaque namespaces.
-  bool isOpaque(llvm::StringRef Name) const {
-    std::string Unused;
-    return Rules::ofThisLink(Unused).isOpaque(Name);
-  }
+  bool isOpaque(llvm::StringRef Name) const { return Tables->isOpaque(Name); }
   /// See Rules::isTransparent; \p F may have been inlined.
   bool isTransparent(const llvm::DISubprogram &F) const {
     return inlined(F).Transparent;
@@ -164,7 +185,6 @@ public:
   /// True where \p F is looked into as a call of its own: it holds functions or
   /// what is bound to them.
   bool isKept(const llvm::Function &F) const { return Kept.contains(&F); }
-  std::string Error; ///< why the tables could not be read; else empty
 
 private:
   /// What the tables say of a function that may be there no more.
@@ -173,6 +193,7 @@ private:
   };
   const Inlined &inlined(const llvm::DISubprogram &F) const;
 
+  std::shared_ptr<const Rules> Tables;
   llvm::DenseMap<const llvm::Function *, const Rule *> Rows;
   llvm::DenseSet<const llvm::Function *> Opaque, Kept;
   llvm::MapVector<const llvm::Function *, ContainerMethod> Containers;
@@ -201,7 +222,7 @@ void forEachCall(llvm::Module &M, const RuleMatches &Rules, Rule::KindTy Kind,
 class RuleAnalysis : public llvm::AnalysisInfoMixin<RuleAnalysis> {
 public:
   using Result = RuleMatches;
-  Result run(llvm::Module &M, llvm::ModuleAnalysisManager &);
+  Result run(llvm::Module &M, llvm::ModuleAnalysisManager &AM);
 
 private:
   friend llvm::AnalysisInfoMixin<RuleAnalysis>;

@@ -8,15 +8,23 @@
 #include "llvm/IR/InstIterator.h"
 #include "llvm/IR/IntrinsicInst.h"
 #include "llvm/IR/Operator.h"
+#include "llvm/Support/CommandLine.h"
 
 using namespace llvm;
 
 namespace tpc {
 
-/// A search that meets more places than this says nothing.
-static constexpr unsigned MaxVisited = 20000;
-/// A pointer with more targets than this has no known ones.
-static constexpr unsigned MaxTargets = 64;
+/// One search per indirect call: without an end, units with many callbacks
+/// would take quadratic time. Beyond it the call counts as unresolved.
+static cl::opt<unsigned> MaxVisited(
+    "tpc-max-pointer-steps", cl::Hidden, cl::init(20000),
+    cl::desc(
+        "Places that the search for the targets of one indirect call meets"));
+/// More targets are all functions of a type, which says nothing; the call
+/// counts as unresolved.
+static cl::opt<unsigned>
+    MaxTargets("tpc-max-call-targets", cl::Hidden, cl::init(64),
+               cl::desc("Functions that one indirect call may enter"));
 
 /// The cell of the scalar at the beginning of what \p T describes at \p Where.
 static std::pair<const void *, unsigned>

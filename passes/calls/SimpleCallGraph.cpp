@@ -8,13 +8,20 @@
 #include "support/Functions.h"
 #include "support/Print.h"
 
+#include "llvm/ADT/Statistic.h"
 #include "llvm/IR/InstIterator.h"
 #include "llvm/IR/IntrinsicInst.h"
 #include "llvm/IR/Module.h"
+#include "llvm/Support/CommandLine.h"
+#include "llvm/Support/Debug.h"
 
 using namespace llvm;
 
 namespace tpc {
+
+#define DEBUG_TYPE "tpc-callgraph"
+STATISTIC(NumIndirect, "Indirect calls");
+STATISTIC(NumUnresolved, "Indirect calls whose targets are not known");
 
 AnalysisKey SimpleCallGraph::Key;
 
@@ -49,13 +56,18 @@ CallGraphResult::callees(const CallBase &Call) const {
   return Found;
 }
 
+/// Trampolines are shallow. Larger functions are not taken for one.
+static cl::opt<unsigned> MaxCallees(
+    "tpc-max-library-callees", cl::Hidden, cl::init(64),
+    cl::desc("Library functions that are searched for an indirect call"));
+
 /// True where \p F, a library's function, calls what only its data says: what
 /// boost::bind makes of a pointer to a member. All callbacks of a signature
 /// share it.
 static bool callsAnything(const Function &F, UserSources &Sources) {
   SmallSetVector<const Function *, 8> Work;
   Work.insert(&F);
-  for (unsigned N = 0; N < Work.size() && N < 64; ++N)
+  for (unsigned N = 0; N < Work.size() && N < MaxCallees; ++N)
     for (const Instruction &I : instructions(*Work[N])) {
       const auto *Call = dyn_cast<CallBase>(&I);
       if (!Call || Call->isInlineAsm())
@@ -71,7 +83,7 @@ static bool callsAnything(const Function &F, UserSources &Sources) {
 
 /// Calls \p Add with the instructions that use \p C, be it as a part of another
 /// constant.
-template <typename Fn> static void eachUser(Constant &C, Fn Add) {
+template <typename Fn> static void forEachUser(Constant &C, Fn Add) {
   SmallVector<Constant *, 4> Work{&C};
   while (!Work.empty())
     for (Use &U : Work.pop_back_val()->uses()) {
@@ -92,7 +104,7 @@ void CallGraphResult::findMentions(Module &M, const Options &Opts) {
     if (Rules->isOpaque(F) || !F.hasAddressTaken())
       continue;
     SmallSetVector<Instruction *, 4> Found;
-    eachUser(F, [&](Instruction &I, const Use &U) {
+    forEachUser(F, [&](Instruction &I, const Use &U) {
       auto *Call = dyn_cast<CallBase>(&I);
       if (I.getModule() == &M && !(Call && Call->isCallee(&U)))
         Found.insert(&I);
@@ -175,9 +187,13 @@ CallGraphResult SimpleCallGraph::run(Module &M, ModuleAnalysisManager &AM) {
       if (!R.Indirect.contains(Call))
         R.Unresolved.push_back(Call);
   }
-  for (const CallBase *Call : R.Unresolved)
+  for (const CallBase *Call : R.Unresolved) {
+    LLVM_DEBUG(dbgs() << "unresolved: " << *Call << '\n');
     R.UnresolvedTypes.insert(Call->getFunctionType());
-  const Options Opts = Options::fromCommandLine();
+  }
+  NumIndirect += R.Indirect.size() + R.Unresolved.size();
+  NumUnresolved += R.Unresolved.size();
+  const Options &Opts = AM.getResult<OptionsAnalysis>(M);
   R.forgetOpaqueCallers(Opts);
   R.findMentions(M, Opts);
   return R;

@@ -51,8 +51,8 @@ private:
   const RuleMatches *Rules = nullptr;
   llvm::DenseMap<const llvm::CallBase *, llvm::SmallVector<llvm::Function *, 2>>
       Indirect;
-  llvm::DenseMap<const llvm::Function *,
-                 llvm::SmallVector<llvm::Instruction *, 2>>
+  llvm::MapVector<const llvm::Function *,
+                  llvm::SmallVector<llvm::Instruction *, 2>>
       Mentions;
   /// Functions whose address an instruction hands on.
   llvm::DenseSet<const llvm::Function *> HandedOn;

@@ -295,13 +295,13 @@ void Flow::findEntered() {
         Plain[N].clear();
   }
   Entered.assign(Reached.begin(), Reached.begin() + Blocks.size());
-  DenseMap<unsigned, SmallVector<unsigned, 2>> Gone;
+  MapVector<unsigned, SmallVector<unsigned, 2>> Gone;
   for (const Copy &C : Copies)
     Gone[idOf(C.BB)].push_back(idOf(C.Next));
-  for (const auto &Of : Gone)
-    if (!Entered[Of.first])
-      erase_if(Plain[Of.first],
-               [&](unsigned S) { return !is_contained(Of.second, S); });
+  for (const auto &[From, Next] : Gone)
+    if (!Entered[From])
+      erase_if(Plain[From],
+               [&Next = Next](unsigned S) { return !is_contained(Next, S); });
 }
 
 } // namespace tpc

@@ -7,6 +7,7 @@
 
 #include "llvm/ADT/DenseMap.h"
 #include "llvm/ADT/DenseSet.h"
+#include "llvm/ADT/MapVector.h"
 #include "llvm/ADT/SmallVector.h"
 #include "llvm/IR/Instructions.h"
 
@@ -17,8 +18,8 @@ namespace tpc {
 class UserSources;
 
 /// Blocks that are not passed through: they can be left inside.
-using LeftInside = llvm::DenseMap<const llvm::BasicBlock *,
-                                  llvm::SmallVector<llvm::Instruction *, 1>>;
+using LeftInside = llvm::MapVector<const llvm::BasicBlock *,
+                                   llvm::SmallVector<llvm::Instruction *, 1>>;
 
 /// The flow graphs of a function, with the two nodes of Ferrante et al. behind
 /// the blocks: the entry, from which the function is either entered or not, and

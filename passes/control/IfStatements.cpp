@@ -95,7 +95,7 @@ IfStatementsResult::choosers(const BasicBlock *From,
 IfStatementsResult IfStatements::run(Module &M, ModuleAnalysisManager &AM) {
   IfStatementsResult R;
   const auto &Thrown = AM.getResult<Throws>(M);
-  const Options Opts = Options::fromCommandLine();
+  const Options &Opts = AM.getResult<OptionsAnalysis>(M);
   UserSources Sources(Opts);
   for (Function &F : definedFunctions(M)) {
     if (Budget::isSpent())

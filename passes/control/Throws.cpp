@@ -6,6 +6,7 @@
 
 #include "llvm/IR/Constants.h"
 #include "llvm/IR/InstIterator.h"
+#include "llvm/Support/CommandLine.h"
 
 using namespace llvm;
 
@@ -13,11 +14,16 @@ namespace tpc {
 
 AnalysisKey Throws::Key;
 
-/// Of more types than this at one call, none is told apart.
-static constexpr size_t MaxTypes = 4;
+/// Each type is carried through all callers. Beyond it the call throws
+/// anything.
+static cl::opt<unsigned>
+    MaxTypes("tpc-max-thrown-types", cl::Hidden, cl::init(4),
+             cl::desc("Types of exceptions that are told apart at one call"));
 
-/// Bases of bases that are gone through to compare two types.
-static constexpr unsigned MaxBases = 32;
+/// Classes of exceptions have few bases; a damaged table might have a cycle.
+static cl::opt<unsigned> MaxBases(
+    "tpc-max-exception-bases", cl::Hidden, cl::init(32),
+    cl::desc("Base classes of an exception that are compared with a handler"));
 
 //===----------------------------------------------------------------------===//
 // Which handler takes what
@@ -154,7 +160,7 @@ Throws::Result Throws::run(Module &M, ModuleAnalysisManager &AM) {
   if (!M.getFunction("__cxa_throw") && !M.getFunction("__cxa_rethrow"))
     return R;
   const auto &Calls = AM.getResult<SimpleCallGraph>(M);
-  const Options Opts = Options::fromCommandLine();
+  const Options &Opts = AM.getResult<OptionsAnalysis>(M);
   UserSources Sources(Opts);
   DenseMap<const Function *, ThrowsResult::Types> Out;
   SmallVector<std::pair<CallBase *, ThrownType>, 0> Work;

@@ -6,6 +6,7 @@
 #include "support/Guard.h"
 #include "support/Print.h"
 
+#include "llvm/ADT/Statistic.h"
 #include "llvm/IR/IRBuilder.h"
 #include "llvm/IR/Instructions.h"
 #include "llvm/IR/Verifier.h"
@@ -15,21 +16,23 @@ using namespace llvm;
 
 namespace tpc {
 
+#define DEBUG_TYPE "tpc-instrument-branches"
+STATISTIC(NumReports, "Reports inserted");
+
 /// `void log_one(char *key, bool result, double cmp, double thresh, bool res)`
 static constexpr StringLiteral LogName = "_Z7log_onePcbddb";
 
-/// The instruction that a report on \p V stands before; null where there is no
-/// place that V alone leads to.
-static Instruction *after(Value *V) {
-  auto *I = cast<Instruction>(V);
-  if (auto *Invoke = dyn_cast<InvokeInst>(I)) {
+/// The instruction that a report on the value of \p I stands before; null where
+/// no place is reached from \p I alone.
+static Instruction *insertionPointAfter(Instruction &I) {
+  if (auto *Invoke = dyn_cast<InvokeInst>(&I)) {
     BasicBlock *Next = Invoke->getNormalDest();
     return Next->getSinglePredecessor() ? &*Next->getFirstInsertionPt()
                                         : nullptr;
   }
   if (isa<PHINode>(I))
-    return &*I->getParent()->getFirstInsertionPt();
-  return I->getNextNode();
+    return &*I.getParent()->getFirstInsertionPt();
+  return I.getNextNode();
 }
 
 /// What \p V is the outcome of, without negations: clang itself turns the
@@ -60,9 +63,9 @@ static Value *outcomeOf(const Instruction &Predicate,
 }
 
 /// The truth value that \p V, another one, is joined into by itself alone: what
-/// its function goes on with. In the program that is instrumented, where the
-/// joined one has to be as well.
-static Value *joined(Value *V, const AnalysedModule &Analysed) {
+/// its function goes on with. It is that of the program that is instrumented;
+/// null where that has neither the joined one nor \p V.
+static Instruction *findJoined(Value *V, const AnalysedModule &Analysed) {
   SmallVector<Value *, 4> Chain{V};
   while (V->hasOneUse()) {
     auto *I = dyn_cast<Instruction>(*V->user_begin());
@@ -73,7 +76,8 @@ static Value *joined(Value *V, const AnalysedModule &Analysed) {
     Chain.push_back(V = I);
   }
   for (Value *Last : reverse(Chain))
-    if (Value *There = Analysed.original(withoutNegation(Last)))
+    if (auto *There = dyn_cast_or_null<Instruction>(
+            Analysed.original(withoutNegation(Last))))
       return There;
   return nullptr;
 }
@@ -93,8 +97,12 @@ static bool planFlag(const Comparison &C, bool IsUnsigned,
   R.Result = outcomeOf(*C.Predicate, Analysed);
   R.Switch = dyn_cast<SwitchInst>(Predicate);
   if (C.IsOperand || (IsText && !C.Direct)) {
-    R.Result = IsText ? joined(C.FlagValue, Analysed) : Flag;
-    R.Before = after(R.Result);
+    auto *Result = IsText ? findJoined(C.FlagValue, Analysed)
+                          : dyn_cast<Instruction>(Flag);
+    if (!Result)
+      return false;
+    R.Result = Result;
+    R.Before = insertionPointAfter(*Result);
     R.Switch = nullptr;
   }
   R.Outcome = IsText ? Flag : R.Result;
@@ -133,11 +141,16 @@ std::optional<Report> planReport(const Comparison &C, bool IsUnsigned,
                (IsUnsigned || any_of(Compare->operands(), [](const Use &U) {
                   return isa<ZExtInst>(U);
                 })));
-  R.Result = C.Direct ? outcomeOf(*C.Predicate, Analysed)
-                      : joined(C.Compare, Analysed);
-  R.Switch = C.Direct ? dyn_cast<SwitchInst>(Predicate) : nullptr;
-  R.Before = C.Direct ? Predicate : after(R.Result);
-  return R;
+  if (C.Direct) {
+    R.Result = outcomeOf(*C.Predicate, Analysed);
+    R.Switch = dyn_cast<SwitchInst>(Predicate);
+    R.Before = Predicate;
+    return R;
+  }
+  Instruction *Result = findJoined(C.Compare, Analysed);
+  R.Result = Result;
+  R.Before = Result ? insertionPointAfter(*Result) : nullptr;
+  return R.Before ? std::optional(R) : std::nullopt;
 }
 
 /// \p V as a double.
@@ -260,6 +273,8 @@ std::string insertReports(Module &M, ArrayRef<Report> Reports) {
     Above = Before = nullptr;
   };
   auto Insert = [&](const Report &R) {
+    assert(R.Before && R.Result && R.Compared && R.Threshold &&
+           "a report without a place or a value");
     GlobalVariable *&Key = Keys[R.Key];
     if (!Key) {
       Constant *Text = ConstantDataArray::getString(M.getContext(), R.Key);
@@ -280,8 +295,10 @@ std::string insertReports(Module &M, ArrayRef<Report> Reports) {
   std::string Why;
   raw_string_ostream OS(Why);
   if (runGuarded([&] { for_each(Reports, Insert); })) {
-    if (!verifyModule(M, &OS))
+    if (!verifyModule(M, &OS)) {
+      NumReports += Reports.size();
       return "";
+    }
     Why = "the instrumented module does not verify: " +
           StringRef(Why).split('\n').first.str();
   } else {

@@ -8,6 +8,7 @@
 #include "support/Names.h"
 
 #include "llvm/ADT/SmallPtrSet.h"
+#include "llvm/ADT/Statistic.h"
 #include "llvm/Analysis/InlineCost.h"
 #include "llvm/IR/DebugInfo.h"
 #include "llvm/IR/InlineAsm.h"
@@ -16,6 +17,8 @@
 #include "llvm/IR/IntrinsicInst.h"
 #include "llvm/IR/Operator.h"
 #include "llvm/Passes/PassBuilder.h"
+#include "llvm/Support/CommandLine.h"
+#include "llvm/Support/Debug.h"
 #include "llvm/Transforms/IPO/AlwaysInliner.h"
 #include "llvm/Transforms/Scalar/SROA.h"
 #include "llvm/Transforms/Utils/BasicBlockUtils.h"
@@ -24,10 +27,17 @@
 
 using namespace llvm;
 
+#define DEBUG_TYPE "tpc-prepare"
+STATISTIC(NumInlined, "Library functions that are inlined to be analysed");
+STATISTIC(NumCopied, "Copies of functions for single calls");
+
 namespace tpc {
 
-/// Functions of libraries with at most this many instructions are inlined.
-static constexpr unsigned MaxInlined = 100;
+/// Accessors, iterators and smart pointers are smaller at -O0; larger functions
+/// are no part of their caller's line.
+static cl::opt<unsigned>
+    MaxInlined("tpc-max-inlined", cl::Hidden, cl::init(100),
+               cl::desc("Instructions of a library function that is inlined"));
 
 /// The instructions of \p F without the marks that only some levels have.
 static unsigned sizeOf(const Function &F) {
@@ -39,14 +49,11 @@ static unsigned sizeOf(const Function &F) {
 
 /// Marks the small functions of libraries in \p M to be inlined; returns those
 /// that were not marked before. What the rules speak of stays a call.
-static SmallVector<WeakVH, 0> markSmallLibraryFunctions(Module &M,
-                                                        const Options &Opts) {
+static SmallVector<WeakVH, 0>
+markSmallLibraryFunctions(Module &M, const Options &Opts,
+                          std::shared_ptr<const Rules> Tables) {
   SmallVector<WeakVH, 0> Marked;
-  std::string Error;
-  const RuleMatches Known(Rules::ofThisLink(Error), M);
-  // The analysis meets the same error, and reports it.
-  if (!Error.empty())
-    return Marked;
+  const RuleMatches Known(std::move(Tables), M);
   UserSources Sources(Opts);
   for (Function &F : definedFunctions(M)) {
     if (!F.getSubprogram() || Sources.has(F) ||
@@ -57,11 +64,14 @@ static SmallVector<WeakVH, 0> markSmallLibraryFunctions(Module &M,
     F.addFnAttr(Attribute::AlwaysInline);
     Marked.emplace_back(&F);
   }
+  NumInlined += Marked.size();
   return Marked;
 }
 
 /// Inlines what is marked to be, and makes values of locals.
 static void inlineMarked(Module &M) {
+  // Managers of its own: the module is a copy that no other pass sees, and is
+  // changed before it is analysed.
   PassBuilder PB;
   LoopAnalysisManager LAM;
   FunctionAnalysisManager FAM;
@@ -100,13 +110,15 @@ static void takeAtomicsApart(Module &M) {
 }
 
 /// Makes \p M fit for the analysis.
-static void prepare(Module &M, const Options &Opts) {
+static void prepare(Module &M, const Options &Opts,
+                    std::shared_ptr<const Rules> Tables) {
   takeAtomicsApart(M);
   // Only there may a value be computed from itself, and following it back would
   // not end.
   for (Function &F : definedFunctions(M))
     EliminateUnreachableBlocks(F);
-  SmallVector<WeakVH, 0> Marked = markSmallLibraryFunctions(M, Opts);
+  SmallVector<WeakVH, 0> Marked =
+      markSmallLibraryFunctions(M, Opts, std::move(Tables));
   inlineMarked(M);
   for (const WeakVH &F : Marked)
     if (F)
@@ -174,9 +186,7 @@ static SmallVector<CallBase *, 8> callsOf(Function &F) {
 
 /// Inlines the functions whose comparisons are their callers' in \p M. True
 /// where there are some.
-static bool inlineTransparent(Module &M) {
-  std::string Error;
-  const Rules &Tables = Rules::ofThisLink(Error);
+static bool inlineTransparent(Module &M, const Rules &Tables) {
   bool Inlined = false;
   for (Function &F : definedFunctions(M)) {
     const DISubprogram *SP = F.getSubprogram();
@@ -194,8 +204,10 @@ static bool inlineTransparent(Module &M) {
   return Inlined;
 }
 
-/// Copies may add as many instructions to a link unit in one go.
-static constexpr unsigned MaxAdded = 50000;
+/// The copies stay in the program: they may not make it noticeably larger.
+static cl::opt<unsigned> MaxAdded(
+    "tpc-max-added", cl::Hidden, cl::init(50000),
+    cl::desc("Instructions that copies of functions may add in one round"));
 
 /// A name for a copy of \p F, after \p Number, the last one's. It depends on
 /// the names in the module alone; what LLVM would add to one that is taken
@@ -222,8 +234,10 @@ static bool separateCalls(Module &M, ArrayRef<std::string> Names) {
     if (Calls.size() < 2)
       continue;
     size_t More = (Calls.size() - 1) * sizeOf(*F);
-    if (Added + More > MaxAdded)
+    if (Added + More > MaxAdded) {
+      LLVM_DEBUG(dbgs() << "too large to be copied: " << Name << '\n');
       continue;
+    }
     Added += More;
     unsigned Number = 0;
     for (CallBase *Call : drop_begin(Calls)) {
@@ -235,6 +249,7 @@ static bool separateCalls(Module &M, ArrayRef<std::string> Names) {
       Copy->setComdat(nullptr);
       Call->setCalledFunction(Copy);
       Changed = true;
+      ++NumCopied;
     }
   }
   return Changed;
@@ -243,7 +258,7 @@ static bool separateCalls(Module &M, ArrayRef<std::string> Names) {
 Separation::Effect Separation::applyTo(Module &M) const {
   callByOwnName(M);
   Effect Done;
-  Done.Any = inlineTransparent(M);
+  Done.Any = inlineTransparent(M, Tables);
   for (const std::vector<std::string> &Names : Rounds) {
     Done.LastRound = separateCalls(M, Names);
     Done.Any |= Done.LastRound;
@@ -270,8 +285,9 @@ static void shareDebugInfo(const Module &M, ValueToValueMapTy &Map) {
   Share(Finder.scopes());
 }
 
-AnalysedModule::AnalysedModule(Module &M, const Options &Opts)
-    : M(M), Opts(Opts) {
+AnalysedModule::AnalysedModule(Module &M, const Options &Opts,
+                               std::shared_ptr<const Rules> All)
+    : M(M), Opts(Opts), Tables(std::move(All)), Calls(*Tables) {
   copy();
   prepareCopy();
 }
@@ -302,7 +318,7 @@ void AnalysedModule::prepareCopy() {
       Opcodes.push_back(I.getOpcode());
     }
   allowOptimisation(*Copy);
-  prepare(*Copy, Opts);
+  prepare(*Copy, Opts, Tables);
 }
 
 bool AnalysedModule::separate(std::vector<std::string> Names) {
@@ -361,7 +377,7 @@ Value *AnalysedModule::original(Value *V) const {
 
 std::vector<std::string> namedByCalls(Module &M, ModuleAnalysisManager &AM) {
   const RuleMatches &Known = AM.getResult<RuleAnalysis>(M);
-  Texts Names(Known, AM.getResult<SimpleCallGraph>(M), nullptr);
+  Texts Names(Known, AM.getResult<SimpleCallGraph>(M), std::nullopt);
   forEachCall(M, Known, Rule::Read, [&](CallBase &Call, const Rule &Row) {
     Names.nameOf(Call, Row);
   });
@@ -372,9 +388,12 @@ std::vector<std::string> namedByCalls(Module &M, ModuleAnalysisManager &AM) {
 }
 
 PreservedAnalyses PreparePass::run(Module &M, ModuleAnalysisManager &AM) {
+  const RuleTables &Rules = AM.getResult<RuleTableAnalysis>(M);
+  if (!Rules.Error.empty())
+    M.getContext().emitError("tpc: " + Rules.Error);
   allowOptimisation(M);
   callByOwnName(M);
-  prepare(M, Options::fromCommandLine());
+  prepare(M, AM.getResult<OptionsAnalysis>(M), Rules.Tables);
   separateCalls(M, namedByCalls(M, AM));
   return PreservedAnalyses::none();
 }

@@ -22,6 +22,7 @@
 namespace tpc {
 
 struct Options;
+class Rules;
 
 /// What is done to a program before reports can be put into it, because a
 /// report inside a function stands for all of its calls: functions whose
@@ -30,6 +31,8 @@ struct Options;
 /// it leaves two copies of one.
 class Separation {
 public:
+  /// \p Tables name the functions that are inlined.
+  explicit Separation(const Rules &Tables) : Tables(Tables) {}
   /// Has the calls of each function of \p Names told apart, after what was
   /// asked for before.
   void add(std::vector<std::string> Names) {
@@ -45,13 +48,15 @@ public:
   Effect applyTo(llvm::Module &M) const;
 
 private:
+  const Rules &Tables;
   std::vector<std::vector<std::string>> Rounds;
 };
 
 /// The module to analyse for a module to instrument, which stays as it is.
 class AnalysedModule {
 public:
-  AnalysedModule(llvm::Module &M, const Options &Opts);
+  AnalysedModule(llvm::Module &M, const Options &Opts,
+                 std::shared_ptr<const Rules> Tables);
 
   llvm::Module &module() { return *Copy; }
 
@@ -76,6 +81,7 @@ private:
 
   llvm::Module &M;
   const Options &Opts;
+  std::shared_ptr<const Rules> Tables;
   Separation Calls;
   std::unique_ptr<llvm::Module> Copy;
   bool IsSeparated = false;

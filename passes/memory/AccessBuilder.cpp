@@ -13,36 +13,33 @@ using namespace llvm;
 
 namespace tpc {
 
-AnalysisKey ClassObjectAccess::Key;
-
-void AccessResult::Builder::addWrite(Instruction &I, const Location &L) {
-  R.filePart(R.WritesByObject, R.PartWrites.size(), L);
+void AccessBuilder::addWrite(Instruction &I, const Location &L) {
+  R.WritesByObject.add(R.PartWrites.size(), L);
   R.PartWrites.push_back({&I, L});
 }
 
-void AccessResult::Builder::addCopy(Instruction &I, Locations To,
-                                    Locations From) {
+void AccessBuilder::addCopy(Instruction &I, Locations To, Locations From) {
   for (const Location &L : To) {
-    R.fileObject(R.CopiesTo, R.Copies.size(), L);
+    R.CopiesTo.add(R.Copies.size(), L);
     addWrite(I, L);
   }
   for (const Location &L : From)
-    R.fileObject(R.CopiesFrom, R.Copies.size(), L);
+    R.CopiesFrom.add(R.Copies.size(), L);
   R.Copies.push_back({&I, std::move(To), std::move(From)});
 }
 
 /// What \p Call, a container's method, is handed goes into the elements: the
 /// objects themselves, and the elements of other containers.
-void AccessResult::Builder::putInto(CallBase &Call) {
+void AccessBuilder::putInto(CallBase &Call) {
   const Value *Container = containerOf(Call);
   Locations To;
-  addElements(Container, To);
+  Pointers.addElements(Container, To);
   for (const Use &Arg : Call.args()) {
     if (Arg.get() == Container || !Arg->getType()->isPointerTy() ||
         (Call.hasStructRetAttr() && Arg.getOperandNo() == 0))
       continue;
-    Locations From = R.resolve(Arg, false);
-    addElements(Arg, From);
+    Locations From = Pointers.resolve(Arg, false);
+    Pointers.addElements(Arg, From);
     addCopy(Call, To, std::move(From));
   }
 }
@@ -82,17 +79,17 @@ static const Value *alwaysReplaced(const CallBase &Call, const Rule &Row) {
 }
 
 /// Files that \p Call replaces what is at \p Pointer.
-void AccessResult::Builder::fileReplacing(CallBase &Call,
-                                          const Value *Pointer) {
-  const Locations Where = R.handed(Pointer, /*IsOne=*/true);
+void AccessBuilder::fileReplacing(CallBase &Call, const Value *Pointer) {
+  const Locations Where = Pointers.handed(Pointer, /*IsOne=*/true);
   if (Where.empty())
     return;
-  Type *T = R.typeAt(Where.front());
+  Type *T = R.Types.typeAt(Where.front());
   if (!T || !T->isSized() ||
-      any_of(Where, [&](const Location &L) { return R.typeAt(L) != T; }))
+      any_of(Where, [&](const Location &L) { return R.Types.typeAt(L) != T; }))
     return;
-  R.Flow->addReplacing(Call, Pointer,
-                       R.Layout->getTypeStoreSize(T).getKnownMinValue());
+  R.Replacements.push_back(
+      {&Call, Pointer,
+       M.getDataLayout().getTypeStoreSize(T).getKnownMinValue()});
   if (Where.size() == 1 && Where.front().isOne())
     R.Replaced[&Call] = Where.front();
 }
@@ -109,7 +106,7 @@ static bool takesOne(const CallBase &Call, unsigned N, const Rule *Row) {
 }
 
 /// What \p Call can write to.
-void AccessResult::Builder::fileCall(CallBase &Call) {
+void AccessBuilder::fileCall(CallBase &Call) {
   // What is only asked about its text is not written.
   const Rule *Row = Rules.match(Call);
   if (Row && Row->Kind == Rule::Text && Row->Relation != "copy")
@@ -133,31 +130,20 @@ void AccessResult::Builder::fileCall(CallBase &Call) {
       R.PutIn.insert(&Call.getArgOperandUse(N));
       continue;
     }
-    for (const Location &L : R.handed(Arg, takesOne(Call, N, Row))) {
+    for (const Location &L : Pointers.handed(Arg, takesOne(Call, N, Row))) {
       const auto *Global = dyn_cast_or_null<GlobalVariable>(L.Root);
       if (Global && Global->isConstant())
         continue;
       addWrite(Call, L);
       if (!Opaque)
         continue;
-      R.file(R.HandedIndex, R.Handed.size(), L);
+      R.HandedIndex.add(R.Handed.size(), L);
       R.Handed.push_back({&Call, L});
     }
   }
 }
 
-/// Where \p Store keeps the address of another function's local, notes that.
-void AccessResult::Builder::fileKept(const StoreInst &Store) {
-  const Value *Kept = Store.getValueOperand();
-  if (!Kept->getType()->isPointerTy() || isa<Constant>(Kept))
-    return;
-  for (const Location &L : R.resolve(Kept, false))
-    if (const auto *Local = dyn_cast_or_null<AllocaInst>(L.Root);
-        Local && Local->getFunction() != Store.getFunction() && L.Path.empty())
-      R.KeptElsewhere.insert(Local);
-}
-
-void AccessResult::Builder::fileAccesses() {
+void AccessBuilder::fileAccesses() {
   for (Function &F : definedFunctions(M)) {
     if (Rules.isOpaque(F))
       continue;
@@ -165,77 +151,25 @@ void AccessResult::Builder::fileAccesses() {
       if (Budget::isSpent())
         return;
       if (auto *Load = dyn_cast<LoadInst>(&I)) {
-        for (const Location &L : R.touched(*Load)) {
-          R.file(R.LoadIndex, R.Loads.size(), L);
+        for (const Location &L : Pointers.touched(*Load)) {
+          R.LoadIndex.add(R.Loads.size(), L);
           R.Loads.push_back({&I, L});
         }
       } else if (auto *Store = dyn_cast<StoreInst>(&I)) {
-        for (const Location &L : R.touched(*Store)) {
-          R.file(R.StoreIndex, R.Stores.size(), L);
+        for (const Location &L : Pointers.touched(*Store)) {
+          R.StoreIndex.add(R.Stores.size(), L);
           R.Stores.push_back({&I, L});
           addWrite(I, L);
         }
-        fileKept(*Store);
       } else if (auto *Copy = dyn_cast<MemTransferInst>(&I)) {
-        addCopy(I, R.copied(*Copy, Copy->getRawDest()),
-                R.copied(*Copy, Copy->getRawSource()));
+        addCopy(I, Pointers.copied(*Copy, Copy->getRawDest()),
+                Pointers.copied(*Copy, Copy->getRawSource()));
       } else if (auto *Call = dyn_cast<CallBase>(&I);
                  Call && !isa<IntrinsicInst>(Call)) {
         fileCall(*Call);
       }
     }
   }
-}
-
-AccessResult ClassObjectAccess::run(Module &M, ModuleAnalysisManager &AM) {
-  AccessResult R;
-  R.Layout = &M.getDataLayout();
-  R.Debug = std::make_unique<DebugTypes>(*R.Layout);
-  R.findClassesOfGlobals(M);
-  const CallGraphResult &Calls = AM.getResult<SimpleCallGraph>(M);
-  R.Flow =
-      std::make_unique<Reaching>(M, Calls, AM.getResult<Throws>(M), *R.Debug);
-  AccessResult::Builder B(R, Calls, AM.getResult<RuleAnalysis>(M), M);
-  B.findTargets();
-  B.fileAccesses();
-  return R;
-}
-
-PreservedAnalyses ClassObjectAccessPrinter::run(Module &M,
-                                                ModuleAnalysisManager &AM) {
-  const AccessResult &R = AM.getResult<ClassObjectAccess>(M);
-  OS << "accesses of " << M.getName() << '\n';
-  auto PrintItem = [&](Nth Item) {
-    if (Item.isNumber())
-      OS << '[' << Item.Number << ']';
-    else if (Item.Number == Nth::Any)
-      OS << "[any]";
-  };
-  auto Print = [&](const char *What, ArrayRef<Access> List) {
-    for (const Access &A : List) {
-      OS << "  " << What << ' ';
-      if (A.Where.Root)
-        A.Where.Root->printAsOperand(OS, false);
-      PrintItem(A.Where.RootItem);
-      for (const Step &S : A.Where.Path) {
-        if (!S.isField()) {
-          OS << (S.Type == Step::Element ? "[element" : "[byte ");
-          if (S.Type == Step::Bytes)
-            OS << S.Index;
-          OS << ']';
-          continue;
-        }
-        const StructType *T = R.types().typeOf(S.Type);
-        OS << '[' << (T->hasName() ? T->getName() : "literal") << '.' << S.Index
-           << ']';
-        PrintItem(S.Item);
-      }
-      OS << " in " << A.I->getFunction()->getName() << place(*A.I) << '\n';
-    }
-  };
-  Print("load", R.loads());
-  Print("store", R.stores());
-  return PreservedAnalyses::all();
 }
 
 } // namespace tpc

@@ -8,8 +8,8 @@
 #include "llvm/ADT/SmallVector.h"
 #include "llvm/IR/Value.h"
 
-#include <set>
-#include <vector>
+#include <unordered_map>
+#include <unordered_set>
 
 namespace tpc {
 
@@ -111,40 +111,38 @@ struct Location {
   bool mayBe(const Location &O) const;
 };
 
+/// True where \p Tail can be the end of \p Path.
+bool endsWith(llvm::ArrayRef<Step> Path, llvm::ArrayRef<Step> Tail);
+
 using Locations = llvm::SmallVector<Location, 1>;
 
-/// Orders locations, to tell apart what is not exactly the same.
-struct LocationOrder {
-  static std::vector<uintptr_t> key(const Location &L) {
-    std::vector<uintptr_t> Key{reinterpret_cast<uintptr_t>(L.Root),
-                               L.RootItem.Number};
-    Key.reserve(2 + 4 * L.Path.size());
-    for (const Step &S : L.Path)
-      Key.insert(Key.end(), {S.Type, S.Index, S.Class, S.Item.Number});
-    return Key;
-  }
-  bool operator()(const Location &A, const Location &B) const {
-    return key(A) < key(B);
-  }
+/// More places than this for one pointer say nothing any more.
+inline constexpr unsigned MaxLocations = 64;
+
+/// Adds \p L to \p Out, to which it does not belong where it is not known, or
+/// there are too many; of too many elements of one array it becomes any.
+void addTo(Locations &Out, Location L);
+
+/// Tells apart what is not exactly the same. Nothing goes through such a table:
+/// the order in it depends on addresses.
+struct LocationHash {
+  size_t operator()(const Location &L) const;
 };
+struct LocationIdentity {
+  bool operator()(const Location &A, const Location &B) const;
+};
+/// What is known of exactly these locations; a reference into it stays valid.
+template <typename T>
+using LocationMap =
+    std::unordered_map<Location, T, LocationHash, LocationIdentity>;
+using LocationSet =
+    std::unordered_set<Location, LocationHash, LocationIdentity>;
 
 /// A scalar that a load or store touches, and the bits of the register that are
 /// it: an object of several scalars can be handed around as one number.
 struct ScalarPart {
   Location Where;
   unsigned Low = 0, Size = 0; ///< bits; no size where there is but one scalar
-};
-
-/// A set of exactly these locations.
-class LocationSet {
-public:
-  /// True where \p L was not in it.
-  bool insert(const Location &L) {
-    return Known.insert(LocationOrder::key(L)).second;
-  }
-
-private:
-  std::set<std::vector<uintptr_t>> Known;
 };
 
 } // namespace tpc

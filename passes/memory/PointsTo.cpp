@@ -1,399 +1,284 @@
-//===- PointsTo.cpp - What pointers lead to -------------------------------===//
-#include "memory/AccessBuilder.h"
+//===- PointsTo.cpp -------------------------------------------------------===//
+#include "memory/PointsTo.h"
 
-#include "support/Budget.h"
+#include "calls/SimpleCallGraph.h"
+#include "memory/PointsToSolver.h"
 #include "support/Functions.h"
 
-#include "llvm/ADT/SmallPtrSet.h"
 #include "llvm/IR/InstIterator.h"
-#include "llvm/IR/IntrinsicInst.h"
+#include "llvm/IR/Instructions.h"
 #include "llvm/IR/Operator.h"
-
-#include <utility>
+#include "llvm/IR/PatternMatch.h"
 
 using namespace llvm;
 
 namespace tpc {
 
-/// Rounds until the pointers lead nowhere new; more than a chain of pointers
-/// through memory that is as long is not followed.
-static constexpr unsigned MaxRounds = 32;
+AnalysisKey PointsToAnalysis::Key;
 
-/// A local escapes where its address is stored or returned, or goes into a
-/// function that is looked into.
-void AccessResult::Builder::findEscaped() {
-  for (Function &F : definedFunctions(M))
-    for (Instruction &I : instructions(F)) {
-      if (!isa<AllocaInst>(&I))
-        continue;
-      if (Budget::isSpent())
-        return;
-      SmallVector<const Value *, 8> Work{&I};
-      SmallPtrSet<const Value *, 8> Seen;
-      while (!Work.empty()) {
-        const Value *V = Work.pop_back_val();
-        if (!Seen.insert(V).second)
-          continue;
-        for (const Use &U : V->uses()) {
-          const auto *User = cast<Instruction>(U.getUser());
-          const auto *Call = dyn_cast<CallBase>(User);
-          // What is merged of pointers is followed like one of them.
-          if (isa<GEPOperator>(User) || isa<CastInst>(User) ||
-              isa<PHINode>(User) || isa<SelectInst>(User) ||
-              isa<FreezeInst>(User) || isa<InsertValueInst>(User) ||
-              isa<ExtractValueInst>(User))
-            Work.push_back(User);
-          else if (isa<ReturnInst>(User) ||
-                   (isa<StoreInst>(User) && U.getOperandNo() == 0) ||
-                   (Call && !Calls.callees(*Call).empty()))
-            R.Escaped.insert(&I);
-        }
-      }
-    }
-}
-
-const AccessResult::Builder::Returned &
-AccessResult::Builder::returnedBy(const Function &F) {
-  auto [It, New] = Results.try_emplace(&F);
-  if (!New)
-    return It->second;
-  SmallVector<const Value *, 4> Work;
-  for (const BasicBlock &BB : F)
-    if (const auto *Return = dyn_cast<ReturnInst>(BB.getTerminator()))
-      if (const Value *V = Return->getReturnValue())
-        Work.push_back(V);
-  SmallPtrSet<const Value *, 8> Seen;
-  while (!Work.empty()) {
-    const Value *V = Work.pop_back_val();
-    if (!Seen.insert(V).second)
-      continue;
-    if (const auto *Phi = dyn_cast<PHINode>(V))
-      append_range(Work, Phi->incoming_values());
-    else if (const auto *Arg = dyn_cast<Argument>(V))
-      It->second.Arguments.push_back(Arg->getArgNo());
-    else
-      It->second.Others.push_back(V);
-  }
-  return It->second;
-}
-
-/// A pointer that a function returned. Where it returns one of its arguments,
-/// that of this very call is meant: std::max(a, b) is a or b.
-void AccessResult::Builder::addReturned(const CallBase &Call, Node &N) {
-  for (const Function *Callee : Calls.callees(Call)) {
-    const Returned &Result = returnedBy(*Callee);
-    for (unsigned Arg : Result.Arguments)
-      N.Sources.push_back(Call.getArgOperand(Arg));
-    append_range(N.Sources, Result.Others);
-  }
-}
-
-void AccessResult::Builder::makeNode(Instruction &I) {
-  Node N{&I, {}};
-  const auto *Call = dyn_cast<CallBase>(&I);
-  if (const auto *Phi = dyn_cast<PHINode>(&I))
-    append_range(N.Sources, Phi->incoming_values());
-  else if (const auto *Select = dyn_cast<SelectInst>(&I))
-    N.Sources = {Select->getTrueValue(), Select->getFalseValue()};
-  else if (Call && Rules.container(*Call))
-    N.Container = containerOf(*Call);
-  else if (Call)
-    addReturned(*Call, N);
-  else if (const auto *Extract = dyn_cast<ExtractValueInst>(&I)) {
-    // An iterator and whether something was inserted.
-    const auto *Pair = dyn_cast<CallBase>(Extract->getAggregateOperand());
-    if (!Pair || !Rules.container(*Pair))
-      return;
-    N.Container = containerOf(*Pair);
-  } else if (!isa<LoadInst>(&I))
-    return;
-  Nodes.push_back(std::move(N));
-}
-
-void AccessResult::Builder::makeNodes() {
-  for (Function &F : definedFunctions(M)) {
-    for (const Argument &Arg : F.args()) {
-      if (!Arg.getType()->isPointerTy())
-        continue;
-      Node N{&Arg, {}};
-      for (const CallBase *Call : Calls.callers(&F))
-        if (Arg.getArgNo() < Call->arg_size())
-          N.Sources.push_back(Call->getArgOperand(Arg.getArgNo()));
-      Nodes.push_back(std::move(N));
-    }
-    for (Instruction &I : instructions(F)) {
-      if (Budget::isSpent())
-        return;
-      if (auto *Call = dyn_cast<CallBase>(&I);
-          Call && Call->hasStructRetAttr() && Rules.container(*Call))
-        Iterators[Call->getArgOperand(0)].push_back(containerOf(*Call));
-      if (const auto *Store = dyn_cast<StoreInst>(&I);
-          Store && Store->getValueOperand()->getType()->isPointerTy() &&
-          !isa<ConstantPointerNull>(Store->getValueOperand()))
-        PointerStores.push_back({Store});
-      if (I.getType()->isPointerTy())
-        makeNode(I);
-    }
-  }
-}
-
-/// The container that \p Call is a method of.
 const Value *containerOf(const CallBase &Call) {
   unsigned N = Call.hasStructRetAttr() ? 1 : 0;
   return N < Call.arg_size() ? Call.getArgOperand(N) : nullptr;
 }
 
-void AccessResult::Builder::addElements(const Value *Container,
-                                        Locations &Out) const {
-  for (Location L : R.resolve(Container, false)) {
-    L.Path.push_back({Step::Element, 0});
-    R.addTo(Out, std::move(L));
-  }
+/// True for the calls that allocate memory.
+static bool isAllocation(const Value *V) {
+  const auto *Call = dyn_cast<CallBase>(V);
+  const Function *Callee = Call ? Call->getCalledFunction() : nullptr;
+  static constexpr StringRef Names[] = {
+      "_Znwm",  "_Znam", "_ZnwmSt11align_val_t", "_ZnamSt11align_val_t",
+      "malloc", "calloc"};
+  return Callee && is_contained(Names, Callee->getName());
 }
 
-/// True where what \p N takes its targets from has grown.
-bool AccessResult::Builder::isDue(const Node &N) const {
-  if (!N.Done || (N.Container && hasGrown(N.Container, N.Done)) ||
-      any_of(N.Sources, [&](const Value *V) { return hasGrown(V, N.Done); }))
+/// Adds the place that \p Chain leads to in the allocation at \p L: its type is
+/// not known, but how far it is.
+void PointsTo::addAllocated(const Location &L,
+                            ArrayRef<const GEPOperator *> Chain,
+                            Locations &Out) {
+  int64_t Bytes = L.Path.empty() ? 0 : L.Path.back().Index;
+  for (const GEPOperator *GEP : Chain) {
+    APInt Offset(Layout.getIndexTypeSizeInBits(GEP->getType()), 0);
+    if (!GEP->accumulateConstantOffset(Layout, Offset))
+      return;
+    Bytes += Offset.getSExtValue();
+  }
+  if (Bytes < 0)
+    return;
+  Location Here{L.Root, {}};
+  if (Bytes)
+    Here.Path.push_back({Step::Bytes, static_cast<unsigned>(Bytes)});
+  addTo(Out, std::move(Here));
+}
+
+/// True where \p GEP leads into a class, or from one object to the next.
+static bool entersClass(const GEPOperator &GEP) {
+  Type *T = GEP.getSourceElementType();
+  if (T->isStructTy())
     return true;
-  const auto *Load = dyn_cast<LoadInst>(N.V);
-  return Load && (hasGrown(Load->getPointerOperand(), N.Done) ||
-                  any_of(N.Where, [&](const Location &L) {
-                    return SlotGrown.lookup(slot(L)) > N.Done;
-                  }));
-}
-
-/// The number of the content of \p L.
-unsigned AccessResult::Builder::contentAt(const Location &L, bool Unrooted) {
-  hash_code Hash = hash_combine(L.Root, L.RootItem.Number, Unrooted);
-  for (const Step &S : L.Path)
-    Hash = hash_combine(Hash, S.Type, S.Index, S.Class, S.Item.Number);
-  SmallVector<unsigned, 1> &Alike = ContentIndex[Hash];
-  for (unsigned N : Alike) {
-    const Content &C = Contents[N];
-    if (C.Unrooted == Unrooted && C.Where.isSame(L) &&
-        equal(C.Where.Path, L.Path,
-              [](const Step &A, const Step &B) { return A.Class == B.Class; }))
-      return N;
+  for (const Use &U : drop_begin(GEP.indices())) {
+    if (T->isStructTy())
+      return true;
+    T = GetElementPtrInst::getTypeAtIndex(T, U.get());
   }
-  Alike.push_back(Contents.size());
-  Contents.push_back({L, Unrooted});
-  return Contents.size() - 1;
+  return false;
 }
 
-/// Adds to \p Out the pointers that are kept at a place by now.
-void AccessResult::Builder::collect(unsigned Number, Locations &Out) {
-  const Location Where = Contents[Number].Where;
-  bool Unrooted = Contents[Number].Unrooted;
-  if (Where.Root && !Where.Path.empty() && R.isReachable(Where))
-    collect(contentAt({nullptr, Where.Path}, /*Unrooted=*/true), Out);
-  Content &C = Contents[Number];
-  if (C.Found.size() < MaxLocations &&
-      (!C.Done || SlotGrown.lookup(slot(Where)) > C.Done)) {
-    auto Add = [&](unsigned S) {
-      if (any_of(PointerStores[S].Where,
-                 [&](const Location &To) { return R.mayBe(To, Where); }))
-        R.addPointees(PointerStores[S].I->getValueOperand(), C.Found);
-    };
-    auto Visit = [&](const auto &Map, const auto &Key) {
-      if (auto It = Map.find(Key); It != Map.end())
-        for_each(It->second, Add);
-    };
-    Visit(PointerStoreIndex.Exact, std::pair(slot(Where), Where.Root));
-    if (!Where.Root && !Unrooted)
-      Visit(PointerStoreIndex.Rooted, slot(Where));
-    C.Done = Now;
-  }
-  for (const Location &L : C.Found)
-    R.addTo(Out, L);
-}
-
-/// Adds what \p N's sources lead to by now; true where that is more.
-bool AccessResult::Builder::update(Node &N) {
-  Locations Found = R.Targets.lookup(N.V);
-  size_t Before = Found.size();
-  if (Before >= MaxLocations) {
-    N.Done = Now;
-    return false;
-  }
-  for (const Value *Source : N.Sources)
-    R.addPointees(Source, Found);
-  if (N.Container)
-    addElements(N.Container, Found);
-  if (const auto *Load = dyn_cast<LoadInst>(N.V)) {
-    N.Where = R.resolve(Load->getPointerOperand(), true);
-    for (const Location &L : N.Where) {
-      // Elements lead to each other where they are kept in nodes.
-      if (L.isElement())
-        R.addTo(Found, L);
-      if (auto It = Iterators.find(L.Root); L.Root && It != Iterators.end())
-        for (const Value *Container : It->second)
-          addElements(Container, Found);
-      collect(contentAt(L, /*Unrooted=*/false), Found);
-    }
-  }
-  N.Done = Now;
-  if (Found.size() == Before)
-    return false;
-  R.Targets[N.V] = std::move(Found);
-  Grown[N.V] = ++Now;
-  return true;
-}
-
-/// Adds the places that \p S stores to by now, and tells those who load from
-/// there; true where there is something to tell.
-bool AccessResult::Builder::update(PointerStore &S, unsigned Number) {
-  bool More = false;
-  if (!S.Done || hasGrown(S.I->getPointerOperand(), S.Done))
-    for (const Location &L : R.resolve(S.I->getPointerOperand(), true))
-      if (none_of(S.Where, [&](const Location &K) { return K.isSame(L); })) {
-        S.Where.push_back(L);
-        R.file(PointerStoreIndex, Number, L);
-        More = true;
-      }
-  More |= hasGrown(S.I->getValueOperand(), S.Done);
-  S.Done = Now;
-  if (!More)
-    return false;
-  ++Now;
-  for (const Location &L : S.Where)
-    SlotGrown[slot(L)] = Now;
-  return true;
-}
-
-/// One round; true where something new was found.
-bool AccessResult::Builder::propagate() {
-  bool Changed = false;
-  for (Node &N : Nodes)
-    if (!Budget::isSpent() && isDue(N))
-      Changed |= update(N);
-  for (auto [Number, S] : enumerate(PointerStores))
-    if (!Budget::isSpent())
-      Changed |= update(S, Number);
-  return Changed && !Budget::isSpent();
-}
-
-/// True where the objects that \p V leads to are all known, given that those
-/// of the pointers in \p Complete are. A field is: of any object of its class.
-static bool isComplete(const Value *V,
-                       const DenseSet<const Value *> &Complete) {
+/// What is between a pointer and the pointer that it is computed from.
+static const Value *throughCasts(const Value *V) {
   while (true) {
-    if (const auto *GEP = dyn_cast<GEPOperator>(V)) {
-      const auto *Struct = dyn_cast<StructType>(GEP->getSourceElementType());
-      if (Struct && !Struct->isLiteral() && GEP->getNumIndices() > 1)
-        return true;
-      V = GEP->getPointerOperand();
-    } else if (const auto *Freeze = dyn_cast<FreezeInst>(V)) {
+    if (const auto *Cast = dyn_cast<CastInst>(V);
+        Cast && Cast->getOperand(0)->getType()->isPointerTy())
+      V = Cast->getOperand(0);
+    else if (const auto *Freeze = dyn_cast<FreezeInst>(V))
       V = Freeze->getOperand(0);
-    } else {
-      return isa<AllocaInst>(V) || isa<GlobalVariable>(V) ||
-             isa<ConstantPointerNull>(V) || isa<UndefValue>(V) ||
-             Complete.contains(V);
-    }
+    else
+      return V;
   }
 }
 
-/// Finds the locals that are copied to, or handed to what is not looked into.
-void AccessResult::Builder::findFilled() {
-  auto Add = [&](const Value *Pointer) {
-    for (const Location &L : R.resolve(Pointer, false))
-      if (isa_and_nonnull<AllocaInst>(L.Root))
-        Filled.insert(L.Root);
-  };
-  for (Function &F : definedFunctions(M))
-    for (const Instruction &I : instructions(F)) {
-      if (Budget::isSpent())
-        return;
-      const auto *Call = dyn_cast<CallBase>(&I);
-      if (const auto *Copy = dyn_cast<MemTransferInst>(&I))
-        Add(Copy->getRawDest());
-      else if (Call && !isa<IntrinsicInst>(Call) &&
-               Calls.callees(*Call).empty())
-        for (const Use &Arg : Call->args())
-          if (Arg->getType()->isPointerTy())
-            Add(Arg);
-    }
+/// The pointer that \p Pointer is computed from.
+const Value *PointsTo::baseOf(const Value *Pointer) {
+  const Value *Base = throughCasts(Pointer);
+  while (const auto *GEP = dyn_cast<GEPOperator>(Base))
+    Base = throughCasts(GEP->getPointerOperand());
+  return Base;
 }
 
-/// True where all pointers that a load finds in memory are complete: it reads
-/// fields and variables that the program stores such pointers to, and others
-/// do not know of.
-bool AccessResult::Builder::findsComplete(const Node &Load) const {
-  // It may turn out later what it reads.
-  if (Load.Where.empty())
-    return isComplete(cast<LoadInst>(Load.V)->getPointerOperand(), R.Complete);
-  bool Stored = false;
-  for (const Location &L : Load.Where) {
-    bool IsKnown = L.Root ? !isa<AllocaInst>(L.Root) || !Filled.contains(L.Root)
-                          : L.Path.back().isField();
-    if (!IsKnown)
-      return false;
-    bool Complete = true;
-    R.eachAt(L, PointerStoreIndex, [&](unsigned S) {
-      const PointerStore &Store = PointerStores[S];
-      if (!any_of(Store.Where,
-                  [&](const Location &To) { return R.mayBe(To, L); }))
-        return;
-      Stored = true;
-      Complete &= isComplete(Store.I->getValueOperand(), R.Complete);
-    });
-    if (!Complete)
-      return false;
+/// Adds the locations that \p Pointer can lead to, as far as it is known by
+/// now what the pointers that it is computed from lead to.
+void PointsTo::addPointees(const Value *Pointer, Locations &Out) {
+  SmallVector<const GEPOperator *, 4> Chain;
+  const Value *Base = throughCasts(Pointer);
+  while (const auto *GEP = dyn_cast<GEPOperator>(Base)) {
+    if (!GEP->hasAllZeroIndices() || GEP->getNumIndices() > 1)
+      Chain.push_back(GEP);
+    Base = throughCasts(GEP->getPointerOperand());
   }
-  return Stored;
+  Locations Objects;
+  bool Rooted = isa<GlobalVariable>(Base) || isa<AllocaInst>(Base);
+  if (Rooted || isAllocation(Base))
+    Objects.push_back({Base, {}});
+  else if (auto It = Targets.find(Base); It != Targets.end())
+    Objects = It->second;
+  // Besides the objects that are known there are those that are not: of them
+  // the path alone is known, from its first class on.
+  if (!Rooted && !Complete.contains(Base))
+    Objects.insert(Objects.begin(), Location());
+  // A pointer that is an element further each time it is computed.
+  bool Walks = !Rooted && !isa<Argument>(Base);
+  for (const Location &L : Objects)
+    followChain(L, Chain, Walks, Out);
 }
 
-/// Arguments lead to nothing but what the calls hand over where all calls are
-/// known, and so do merges; what was allocated is known by its class alone.
-/// True where something that was taken for complete is not.
-bool AccessResult::Builder::findComplete() {
-  bool First = !std::exchange(Assumed, true);
-  if (First) {
-    bool IsProgram = M.getFunction("main");
-    for (const Node &N : Nodes) {
-      bool Candidate =
-          isa<PHINode>(N.V) || isa<SelectInst>(N.V) || isa<LoadInst>(N.V);
-      if (const auto *Arg = dyn_cast<Argument>(N.V)) {
-        const Function *F = Arg->getParent();
-        Candidate = !N.Sources.empty() && Calls.allCallsKnown(*F) &&
-                    (F->hasLocalLinkage() || IsProgram);
-      }
-      if (Candidate)
-        R.Complete.insert(N.V);
-    }
+/// Adds the place that \p Chain, the nearest to \p L last, leads to from there.
+/// Where the pointer to it \p Walks, it can be many elements further.
+void PointsTo::followChain(Location L, ArrayRef<const GEPOperator *> Chain,
+                           bool Walks, Locations &Out) {
+  if (L.Root && isa<CallBase>(L.Root) &&
+      (L.Path.empty() || L.Path.back().Type == Step::Bytes)) {
+    // Where the way says which class it is, all objects of it are meant.
+    if (none_of(Chain, [](const GEPOperator *GEP) {
+          const auto *S = dyn_cast<StructType>(GEP->getSourceElementType());
+          return S && !S->isLiteral();
+        }))
+      addAllocated(L, Chain, Out);
+    return;
   }
-  findFilled();
-  // The largest set that holds itself up: what fails is taken out until
-  // nothing fails any more.
-  bool Fell = First;
-  for (bool Changed = true; Changed;) {
-    Changed = false;
-    for (Node &N : Nodes) {
-      if (Budget::isSpent())
-        return false;
-      if (!R.Complete.contains(N.V) ||
-          (R.Targets.lookup(N.V).size() < MaxLocations &&
-           (!isa<LoadInst>(N.V) || First || findsComplete(N)) &&
-           all_of(N.Sources, [&](const Value *Source) {
-             return isComplete(Source, R.Complete);
-           })))
+  bool Unknown = !L.isKnown();
+  size_t Length = L.Path.size();
+  int64_t Bytes = 0;
+  bool Valid = true;
+  for (const GEPOperator *GEP : reverse(Chain)) {
+    Type *Source = GEP->getSourceElementType();
+    Type *Element = elementOf(Source);
+    auto *Struct = dyn_cast<StructType>(Element);
+    // By bytes, or by the shape that the calling convention gives an object
+    // in registers: the way has to be found in the object itself.
+    if ((Struct && Struct->isLiteral()) || Source->isIntegerTy(8)) {
+      APInt Offset(Layout.getIndexTypeSizeInBits(GEP->getType()), 0);
+      if (GEP->accumulateConstantOffset(Layout, Offset))
+        Bytes += Offset.getSExtValue();
+      else if (Bytes || !Types.anyElement(L))
+        Valid = false;
+      continue;
+    }
+    if (L.isElement()) {
+      if (!Struct)
         continue;
-      R.Complete.erase(N.V);
-      Grown[N.V] = ++Now;
-      Changed = Fell = true;
+      Bytes = 0;
+      Valid = true;
+      Location Way;
+      Types.follow(Way, *GEP);
+      Types.extend(L, Way.Path);
+      continue;
     }
+    // A base class, or what a pointer of another type was made of.
+    Type *Declared = Types.declaredTypeAt(L);
+    if (L.isKnown() && (Bytes != 0 || elementOf(Declared) != Element ||
+                        (!Struct && !Declared->isArrayTy()))) {
+      Location Inner = L;
+      int64_t Rest = Bytes;
+      bool Found = Types.descend(Inner, Rest, Element);
+      // A number that is in no array is what it is, however far one goes; what
+      // it is a part of may be another element.
+      if (!Found && !entersClass(*GEP)) {
+        if (!GEP->hasAllZeroIndices()) {
+          Types.anyElement(L);
+          L.widenAll();
+        }
+        continue;
+      }
+      L = Found ? Inner : Location();
+    }
+    Bytes = 0;
+    Valid |= Struct != nullptr;
+    if (Walks && L.Path.size() <= Length &&
+        !match(GEP->idx_begin()->get(), PatternMatch::m_Zero()))
+      Types.anyElement(L);
+    Types.follow(L, *GEP);
   }
-  return Fell;
+  if (!Valid || !L.isKnown() || (Unknown && Chain.empty()))
+    return;
+  if (Bytes == 0 || L.isElement() || Types.descend(L, Bytes, nullptr))
+    addTo(Out, std::move(L));
 }
 
-void AccessResult::Builder::findTargets() {
-  findEscaped();
-  makeNodes();
-  // Where a pointer turns out to lead to too much, what depends on that is
-  // looked at again.
-  while (findComplete() && !Budget::isSpent())
-    for (unsigned Round = 0; Round < MaxRounds && propagate(); ++Round)
-      ;
+Locations PointsTo::resolve(const Value *Pointer, bool Scalar) {
+  Locations Found;
+  addPointees(Pointer, Found);
+  if (!Scalar)
+    return Found;
+  Locations Entered;
+  for (Location &L : Found) {
+    Types.enterScalar(L);
+    addTo(Entered, std::move(L));
+  }
+  return Entered;
+}
+
+Locations PointsTo::handed(const Value *Pointer, bool IsOne) {
+  Locations All;
+  for (Location &L : resolve(Pointer, false)) {
+    if (IsOne)
+      Types.enterElement(L);
+    else
+      L.widen();
+    addTo(All, std::move(L));
+  }
+  return All;
+}
+
+SmallVector<ScalarPart, 1> PointsTo::partsOf(const Instruction &I) {
+  Type *T = getLoadStoreType(const_cast<Instruction *>(&I));
+  SmallVector<ScalarPart, 1> Parts;
+  for (Location &L : resolve(getLoadStorePointerOperand(&I), true))
+    if (!(T->isAggregateType() || T->isIntegerTy() || T->isVectorTy()) ||
+        !Types.addScalars(L, Layout.getTypeStoreSize(T).getKnownMinValue(),
+                          Parts))
+      Parts.push_back({std::move(L)});
+  return Parts;
+}
+
+Locations PointsTo::touched(const Instruction &I) {
+  Locations All;
+  for (ScalarPart &Part : partsOf(I))
+    addTo(All, std::move(Part.Where));
+  return All;
+}
+
+Locations PointsTo::copied(const MemTransferInst &Copy, const Value *Pointer) {
+  const auto *Bytes = dyn_cast<ConstantInt>(Copy.getLength());
+  return handed(
+      Pointer, Bytes && all_of(resolve(Pointer, false), [&](const Location &L) {
+                 Type *T = elementOf(Types.typeAt(L));
+                 return T && T->isSized() &&
+                        Bytes->getValue().ule(
+                            Layout.getTypeAllocSize(T).getFixedValue());
+               }));
+}
+
+void PointsTo::addElements(const Value *Container, Locations &Out) {
+  for (Location L : resolve(Container, false)) {
+    L.Path.push_back({Step::Element, 0});
+    addTo(Out, std::move(L));
+  }
+}
+
+PointsTo PointsToAnalysis::run(Module &M, ModuleAnalysisManager &AM) {
+  PointsTo R(M.getDataLayout(), AM.getResult<LocationTypesAnalysis>(M));
+  PointsToSolver(R, AM.getResult<AliasesAnalysis>(M),
+                 AM.getResult<SimpleCallGraph>(M),
+                 AM.getResult<RuleAnalysis>(M), M)
+      .findTargets();
+  return R;
+}
+
+PreservedAnalyses PointsToPrinter::run(Module &M, ModuleAnalysisManager &AM) {
+  PointsTo &R = AM.getResult<PointsToAnalysis>(M);
+  const LocationTypes &Types = AM.getResult<LocationTypesAnalysis>(M);
+  OS << "pointers of " << M.getName() << '\n';
+  auto Print = [&](const Value &V, const Function &F) {
+    if (!V.getType()->isPointerTy() || isa<AllocaInst>(V))
+      return;
+    OS << "  ";
+    V.printAsOperand(OS, false);
+    OS << " in " << F.getName();
+    const Locations Found = R.resolve(&V, /*Scalar=*/false);
+    OS << (Found.empty() ? " leads nowhere that is known" : " leads to");
+    for (const Location &L : Found) {
+      OS << ' ';
+      Types.print(OS, L);
+    }
+    OS << '\n';
+  };
+  for (const Function &F : definedFunctions(M)) {
+    for (const Argument &Arg : F.args())
+      Print(Arg, F);
+    for (const Instruction &I : instructions(F))
+      Print(I, F);
+  }
+  return PreservedAnalyses::all();
 }
 
 } // namespace tpc

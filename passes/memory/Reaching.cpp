@@ -36,7 +36,8 @@ static bool letsOthersRun(const Function &F) {
 }
 
 Reaching::Reaching(Module &M, const CallGraphResult &Calls,
-                   const ThrowsResult &Thrown, DebugTypes &Debug)
+                   const ThrowsResult &Thrown, DebugTypes &Debug,
+                   ArrayRef<Replacement> ByCalls)
     : Layout(M.getDataLayout()), Calls(Calls), Thrown(Thrown),
       Unresolved(Calls.unresolved().begin(), Calls.unresolved().end()),
       Handed(M, Debug) {
@@ -46,6 +47,9 @@ Reaching::Reaching(Module &M, const CallGraphResult &Calls,
     if (!Calls.mentions(&F).empty())
       AllHandedOn.push_back(&F);
   }
+  for (const Replacement &R : ByCalls)
+    if (std::optional<Variable> V = variableAt(R.Pointer, R.Bytes))
+      Replacing.insert({R.Call, *V});
 }
 
 std::optional<Reaching::Variable> Reaching::variableAt(const Value *Pointer,
@@ -57,12 +61,6 @@ std::optional<Reaching::Variable> Reaching::variableAt(const Value *Pointer,
                  !isa<AllocaInst>(Base)))
     return std::nullopt;
   return Variable{{Base, Offset.getSExtValue()}, Bytes};
-}
-
-void Reaching::addReplacing(const CallBase &Call, const Value *Pointer,
-                            uint64_t Bytes) {
-  if (std::optional<Variable> V = variableAt(Pointer, Bytes))
-    Replacing.insert({&Call, *V});
 }
 
 std::optional<Reaching::Variable>
@@ -168,7 +166,7 @@ const Reaching::Running &Reaching::runBy(const Function &F) {
   return *Known;
 }
 
-bool Reaching::canRun(const Way &W, const Function &F) {
+bool Reaching::canRun(Way &W, const Function &F) {
   if (!W.Closure) {
     Running All;
     for (const Instruction *I : W.Runners)
@@ -219,8 +217,8 @@ static bool isExit(const BasicBlock &BB) {
   return !Last || !Last->doesNotThrow();
 }
 
-const Reaching::Way &Reaching::after(const Instruction &Write,
-                                     std::optional<Variable> V) {
+Reaching::Way &Reaching::after(const Instruction &Write,
+                               std::optional<Variable> V) {
   const auto *Store = dyn_cast<StoreInst>(&Write);
   if (!V || (Store && !Store->isSimple()))
     return Everywhere;
@@ -288,7 +286,7 @@ const Instruction *Reaching::walkUp(const BasicBlock &BB,
   return End;
 }
 
-const Reaching::Way &Reaching::before(const Instruction &At, Variable V) {
+Reaching::Way &Reaching::before(const Instruction &At, Variable V) {
   const auto Key = std::pair(std::pair(&At, V.Where), V.Bytes);
   if (auto It = Before.find(Key); It != Before.end())
     return *It->second;
@@ -352,8 +350,8 @@ bool Reaching::contains(const Way &Back, const Instruction &At,
 bool Reaching::reaches(const Instruction &Write,
                        std::optional<Variable> Written, const Instruction &At,
                        std::optional<Variable> Read) {
-  const Way &Down = after(Write, Written);
-  const Way &Up = Read ? before(At, *Read) : Everywhere;
+  Way &Down = after(Write, Written);
+  Way &Up = Read ? before(At, *Read) : Everywhere;
   const Function &F = *Write.getFunction(), &G = *At.getFunction();
   if (&F == &G && (&Up == &Everywhere || contains(Up, At, Write)))
     return true;

@@ -18,6 +18,7 @@
 
 #include "calls/SimpleCallGraph.h"
 #include "control/Throws.h"
+#include "memory/AccessIndex.h"
 #include "memory/CalledBack.h"
 
 #include "llvm/ADT/SetVector.h"
@@ -42,7 +43,8 @@ public:
   using Instructions = llvm::SmallVector<const llvm::Instruction *, 2>;
 
   Reaching(llvm::Module &M, const CallGraphResult &Calls,
-           const ThrowsResult &Thrown, DebugTypes &Debug);
+           const ThrowsResult &Thrown, DebugTypes &Debug,
+           llvm::ArrayRef<Replacement> ByCalls);
 
   /// None where \p Pointer is not the same place whenever it is computed.
   std::optional<Variable> variableAt(const llvm::Value *Pointer,
@@ -53,9 +55,6 @@ public:
     return {{&Local, -1}, 1};
   }
 
-  /// Says that \p Call always replaces the \p Bytes at \p Pointer.
-  void addReplacing(const llvm::CallBase &Call, const llvm::Value *Pointer,
-                    uint64_t Bytes);
   /// What \p Write, a store or call, always replaces.
   std::optional<Variable> replacedBy(const llvm::Instruction &Write) const;
   /// All such writes in \p F that name their variable by \p Base.
@@ -93,7 +92,7 @@ private:
     bool Open = true; ///< leads out of the function
     llvm::SmallVector<const llvm::Instruction *, 4> Runners;
     /// Of Runners, once it was asked for.
-    mutable std::unique_ptr<Running> Closure;
+    std::unique_ptr<Running> Closure;
     /// Of a way back: the blocks that it leads through and the write at which
     /// it ends in each, null where it goes through.
     llvm::DenseMap<const llvm::BasicBlock *, const llvm::Instruction *> Blocks;
@@ -113,11 +112,11 @@ private:
   };
   const Ends &endsOf(const llvm::Function &F, Variable V);
   bool isTooMuch();
-  const Way &after(const llvm::Instruction &Write, std::optional<Variable> V);
-  const Way &before(const llvm::Instruction &At, Variable V);
+  Way &after(const llvm::Instruction &Write, std::optional<Variable> V);
+  Way &before(const llvm::Instruction &At, Variable V);
   static bool contains(const Way &Back, const llvm::Instruction &At,
                        const llvm::Instruction &Write);
-  bool canRun(const Way &W, const llvm::Function &F);
+  bool canRun(Way &W, const llvm::Function &F);
   void addRunning(const llvm::Instruction &I, Running &Out);
   const Running &runBy(const llvm::Function &F);
   llvm::ArrayRef<const llvm::Instruction *>

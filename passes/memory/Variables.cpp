@@ -13,11 +13,8 @@ VariableNames::fieldOf(const Location &L) const {
   // The innermost field that the source names: what is inside a std::string,
   // say, is not the user's to know.
   for (const Step &S : reverse(L.Path))
-    if (const DICompositeType *Class = Debug.classOf(S.Class))
-      if (StringRef Name =
-              Debug.fieldName(Class, Types.typeOf(S.Type), S.Index);
-          !Name.empty())
-        return {Class, Name};
+    if (StringRef Name = Types.fieldName(S); !Name.empty())
+      return {Types.sourceClassOf(S), Name};
   return {nullptr, ""};
 }
 

@@ -2,15 +2,14 @@
 #ifndef TPC_VARIABLES_H
 #define TPC_VARIABLES_H
 
-#include "memory/ClassObjectAccess.h"
+#include "memory/LocationTypes.h"
 
 namespace tpc {
 
 /// Names the variables of a module as its source does.
 class VariableNames {
 public:
-  VariableNames(const TypeNumbers &Types, const DebugTypes &Debug)
-      : Types(Types), Debug(Debug) {}
+  explicit VariableNames(const LocationTypes &Types) : Types(Types) {}
 
   /// The field's, global's or local's own name; empty where it has none.
   std::string nameOf(const Location &L) const;
@@ -22,8 +21,7 @@ private:
   std::pair<const llvm::DICompositeType *, llvm::StringRef>
   fieldOf(const Location &L) const;
   std::string rootName(const llvm::Value *Root) const;
-  const TypeNumbers &Types;
-  const DebugTypes &Debug;
+  const LocationTypes &Types;
 };
 
 } // namespace tpc

@@ -4,6 +4,7 @@
 #include "support/Names.h"
 
 #include "llvm/ADT/DenseSet.h"
+#include "llvm/Support/CommandLine.h"
 
 #include <map>
 
@@ -11,9 +12,10 @@ using namespace llvm;
 
 namespace tpc {
 
-/// Blind spots, and comparisons that are not exposed, that are listed; all are
-/// counted.
-static constexpr size_t MaxListed = 200;
+/// Nobody reads more, and the file is read at every diagnosis. All are counted.
+static cl::opt<unsigned> MaxListed(
+    "tpc-max-listed", cl::Hidden, cl::init(200),
+    cl::desc("Blind spots and unexposed comparisons that are listed"));
 
 namespace {
 
@@ -120,7 +122,8 @@ ExplainInfo::ExplainInfo(Module &M, ModuleAnalysisManager &AM,
       Reads(AM.getResult<ParamCallFinder>(M)),
       Gathered(AM.getResult<GatherResults>(M)),
       Calls(AM.getResult<SimpleCallGraph>(M)),
-      Words(AM.getResult<ClassObjectAccess>(M),
+      Words(AM.getResult<LocationTypesAnalysis>(M),
+            AM.getResult<PointsToAnalysis>(M),
             AM.getResult<ExternCallFinder>(M), Opts),
       Explain(Usage, AM.getResult<BackwardPropagate>(M), Reads,
               AM.getResult<ExternCallFinder>(M), Calls, Words) {}

@@ -3,8 +3,8 @@
 
 #include "calls/SimpleCallGraph.h"
 #include "control/IfStatements.h"
-#include "memory/ClassObjectAccess.h"
 #include "memory/Variables.h"
+#include "memory/VisibleWrites.h"
 #include "output/ExplainInfo.h"
 #include "params/ParamCallFinder.h"
 #include "params/Texts.h"
@@ -41,7 +41,8 @@ namespace {
 class Describer {
 public:
   Describer(Module &M, ModuleAnalysisManager &AM, const Options &Opts)
-      : M(M), Opts(Opts), Access(AM.getResult<ClassObjectAccess>(M)),
+      : M(M), Opts(Opts), Writes(AM.getResult<VisibleWritesAnalysis>(M)),
+        Pointers(AM.getResult<PointsToAnalysis>(M)),
         Ifs(AM.getResult<IfStatements>(M)),
         Exposing(AM.getResult<ExternCallFinder>(M)),
         Reads(AM.getResult<ParamCallFinder>(M)),
@@ -49,7 +50,7 @@ public:
         Usage(AM.getResult<ParamUsageFinder>(M)),
         Slice(AM.getResult<BackwardPropagate>(M)),
         Gathered(AM.getResult<GatherResults>(M)),
-        Names(Access.types(), Access.debugTypes()), Explain(M, AM, Opts) {}
+        Names(AM.getResult<LocationTypesAnalysis>(M)), Explain(M, AM, Opts) {}
 
   json::Array parameters() const;
   json::Array exposing() const;
@@ -69,7 +70,8 @@ private:
 
   Module &M;
   const Options &Opts;
-  const AccessResult &Access;
+  const VisibleWrites &Writes;
+  PointsTo &Pointers;
   const IfStatementsResult &Ifs;
   const ExternCallFinder::Result &Exposing;
   const ParamCallFinder::Result &Reads;
@@ -145,7 +147,7 @@ std::string Describer::variable(const Comparison &C) const {
   for (const Value *Pointer :
        {Load ? Load->getPointerOperand() : nullptr, Target})
     if (Pointer)
-      for (const Location &L : Access.resolve(Pointer, true))
+      for (const Location &L : Pointers.resolve(Pointer, true))
         if (std::string Name = Names.nameOf(L); !Name.empty())
           return Name;
   return "";
@@ -255,7 +257,7 @@ json::Object Describer::counts(ArrayRef<SourcePlace> Comparisons) const {
       {"without_debug_info", Gathered.WithoutDebugInfo},
       {"outside_sources", Gathered.OutsideSources},
       {"lost_values", Usage.lost()},
-      {"given_up", Access.givenUp()},
+      {"given_up", Writes.givenUp()},
       {"not_instrumented", 0}};
 }
 

@@ -10,13 +10,17 @@
 #include "support/Budget.h"
 
 #include "llvm/IR/IntrinsicInst.h"
+#include "llvm/Support/CommandLine.h"
 
 using namespace llvm;
 
 namespace tpc {
 
-/// Calls inside calls that are told apart; deeper ones come out anywhere.
-static constexpr unsigned MaxCallDepth = 8;
+/// Each level multiplies the states by the calls of a function. Below this
+/// depth a value comes out of a function at every call of it.
+static cl::opt<unsigned> MaxCallDepth(
+    "tpc-max-call-depth", cl::Hidden, cl::init(8),
+    cl::desc("Nested calls that a value on its way forward is matched to"));
 
 const CallPath *Follower::into(const CallBase *Call, const CallPath *Outer) {
   if (Outer && Outer->Depth == MaxCallDepth)
@@ -26,8 +30,11 @@ const CallPath *Follower::into(const CallBase *Call, const CallPath *Outer) {
   return Paths.back().get();
 }
 
-/// Places of merged values that are told apart for one read.
-static constexpr unsigned MaxOrigins = 4096;
+/// Values times their origins: quadratic in generated code. Beyond it a flag is
+/// reported at its first origin alone.
+static cl::opt<unsigned> MaxOrigins(
+    "tpc-max-origins", cl::Hidden, cl::init(4096),
+    cl::desc("Origins of merged values that are told apart for one parameter"));
 
 /// \p Via is the instruction that brings the value to S.V; none where S.V
 /// computes it itself.
@@ -68,16 +75,20 @@ Transform throughChoice(Transform How, const Instruction &I) {
   return How;
 }
 
-/// More variables that a store may write to are more than anybody meant.
-static constexpr unsigned ManyTargets = 16;
+/// A store that may write to more variables than this is one that the points-to
+/// analysis lost; what is found behind it is reported as doubtful.
+static cl::opt<unsigned> MaxTargets(
+    "tpc-max-store-targets", cl::Hidden, cl::init(16),
+    cl::desc(
+        "Variables that one store may write to before it is a blind spot"));
 
 const Follower::Stored &Follower::stored(StoreInst &Store) {
   std::unique_ptr<Stored> &Known = Stores[&Store];
   if (!Known)
     Known = std::make_unique<Stored>(
-        Stored{Access.resolve(Store.getPointerOperand(), true).size(),
-               Access.usesOf(Store, Store.getPointerOperand()),
-               Access.partsOf(Store)});
+        Stored{Pointers.resolve(Store.getPointerOperand(), true).size(),
+               Writes.usesOf(Store, Store.getPointerOperand()),
+               Pointers.partsOf(Store)});
   return *Known;
 }
 
@@ -86,7 +97,7 @@ void Follower::store(const State &S, StoreInst &Store) {
   const Stored &To = stored(Store);
   if (To.Targets == 0)
     end(ValueEnd::UnknownPointer, &Store);
-  else if (To.Targets > ManyTargets)
+  else if (To.Targets > MaxTargets)
     end(ValueEnd::ManyTargets, &Store);
   else if (To.Loads.empty() && !IsOutcome)
     end(ValueEnd::Unread, &Store);
@@ -120,7 +131,7 @@ void Follower::load(const State &S, Instruction &Write,
     auto &Known = Parts[Load];
     if (!Known)
       Known =
-          std::make_unique<SmallVector<ScalarPart, 1>>(Access.partsOf(*Load));
+          std::make_unique<SmallVector<ScalarPart, 1>>(Pointers.partsOf(*Load));
     ArrayRef<ScalarPart> Read = *Known;
     bool IsWide = any_of(Read, [](const ScalarPart &P) { return P.Size; });
     if (!WasWide && !IsWide) {
@@ -131,7 +142,7 @@ void Follower::load(const State &S, Instruction &Write,
     // The scalar that was written, wherever it stands in what is read.
     for (const ScalarPart &To : Read) {
       if (none_of(Written, [&](const ScalarPart &From) {
-            return Access.reaches(From.Where, To.Where);
+            return Accesses.reaches(From.Where, To.Where);
           }))
         continue;
       Next.In = S.In;

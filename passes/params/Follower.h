@@ -4,7 +4,7 @@
 
 #include "Rules.h"
 #include "calls/SimpleCallGraph.h"
-#include "memory/ClassObjectAccess.h"
+#include "memory/VisibleWrites.h"
 #include "params/ParamCallFinder.h"
 #include "params/ParamUsageFinder.h"
 #include "params/Registers.h"
@@ -31,9 +31,11 @@ class Follower {
 public:
   Follower(llvm::Module &M, llvm::ModuleAnalysisManager &AM)
       : Calls(AM.getResult<SimpleCallGraph>(M)),
-        Access(AM.getResult<ClassObjectAccess>(M)),
+        Pointers(AM.getResult<PointsToAnalysis>(M)),
+        Accesses(AM.getResult<ClassObjectAccess>(M)),
+        Writes(AM.getResult<VisibleWritesAnalysis>(M)),
         Reads(AM.getResult<ParamCallFinder>(M)),
-        Rules(AM.getResult<RuleAnalysis>(M)), Texts(M, Access, Rules) {}
+        Rules(AM.getResult<RuleAnalysis>(M)), Texts(M, Pointers, Rules) {}
 
   ParameterUsage run();
 
@@ -110,7 +112,9 @@ private:
   std::optional<State> next();
 
   const CallGraphResult &Calls;
-  const AccessResult &Access;
+  PointsTo &Pointers;
+  AccessIndex &Accesses;
+  VisibleWrites &Writes;
   const ParamCallFinder::Result &Reads;
   const RuleMatches &Rules;
   const TextUsage Texts;

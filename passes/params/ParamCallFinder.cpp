@@ -1,7 +1,6 @@
 //===- ParamCallFinder.cpp ------------------------------------------------===//
 #include "params/ParamCallFinder.h"
 
-#include "memory/ClassObjectAccess.h"
 #include "params/ParameterObjects.h"
 #include "params/Texts.h"
 #include "support/Names.h"
@@ -69,8 +68,8 @@ static json::Value defaultOf(const CallBase &Call, const Rule &R,
 ParamCallFinder::Result ParamCallFinder::run(Module &M,
                                              ModuleAnalysisManager &AM) {
   const RuleMatches &Rules = AM.getResult<RuleAnalysis>(M);
-  const AccessResult &Access = AM.getResult<ClassObjectAccess>(M);
-  Texts Known(Rules, AM.getResult<SimpleCallGraph>(M), &Access);
+  Texts Known(Rules, AM.getResult<SimpleCallGraph>(M),
+              Texts::MemoryView::of(M, AM));
   Result R;
   forEachCall(M, Rules, Rule::Read, [&](CallBase &Call, const Rule &Row) {
     std::string Type = valueType(*Call.getCalledFunction(), Row);
@@ -78,8 +77,8 @@ ParamCallFinder::Result ParamCallFinder::run(Module &M,
     R.push_back({&Call, &Row, Known.nameOf(Call, Row), std::move(Type),
                  std::move(Default), argument(Call, Row, Row.Value)});
   });
-  findAccessors(M, Rules, Access, R);
-  findConfigs(M, Rules, Access, R);
+  findAccessors(M, AM, R);
+  findConfigs(M, AM, R);
   return R;
 }
 

@@ -3,7 +3,6 @@
 
 #include "calls/SimpleCallGraph.h"
 #include "control/IfStatements.h"
-#include "memory/ClassObjectAccess.h"
 #include "params/Follower.h"
 #include "params/Idioms.h"
 #include "params/ParamCallFinder.h"
@@ -32,6 +31,18 @@ SmallVector<Hop, 16> ParameterUsage::pathTo(unsigned Last) const {
     Path.push_back(Hops[N]);
   std::reverse(Path.begin(), Path.end());
   return Path;
+}
+
+bool comparesValues(const CmpInst &Compare) {
+  switch (Compare.getPredicate()) {
+  case CmpInst::FCMP_FALSE:
+  case CmpInst::FCMP_TRUE:
+  case CmpInst::FCMP_ORD:
+  case CmpInst::FCMP_UNO:
+    return false;
+  default:
+    return true;
+  }
 }
 
 /// True for the operations that make one truth value of two.
@@ -125,9 +136,7 @@ void Follower::compared(const State &S, CmpInst &Compare, unsigned Operand,
   if (Compare.getOperand(0) == Compare.getOperand(1) ||
       Compare.getOperand(0)->getType()->isPtrOrPtrVectorTy())
     return;
-  // Whether it is a number is a question of its own.
-  if (Compare.getPredicate() == CmpInst::FCMP_UNO ||
-      Compare.getPredicate() == CmpInst::FCMP_ORD)
+  if (!comparesValues(Compare))
     return end(ValueEnd::Mixed, &Compare);
   if (S.How.kind() == Transform::None && asksForNonZero(Compare, Operand)) {
     for (const Decision &D : followOutcome(&Compare, S.Path))
@@ -264,13 +273,13 @@ void Follower::followRead(unsigned N) {
   if (!R.Target && R.Values.empty())
     push({R.Call, {}, nullptr, true});
   if (R.Target) {
-    SmallVector<LoadInst *, 8> Loads = Access.usesOf(*R.Call, R.Target);
+    SmallVector<LoadInst *, 8> Loads = Writes.usesOf(*R.Call, R.Target);
     if (Loads.empty())
-      end(Access.resolve(R.Target, true).empty() ? ValueEnd::UnknownPointer
-                                                 : ValueEnd::Unread,
+      end(Pointers.resolve(R.Target, true).empty() ? ValueEnd::UnknownPointer
+                                                   : ValueEnd::Unread,
           R.Call);
     SmallVector<ScalarPart, 1> Written;
-    for (Location &L : Access.resolve(R.Target, true))
+    for (Location &L : Pointers.resolve(R.Target, true))
       Written.push_back({std::move(L)});
     load({R.Call, {}, nullptr, true}, *R.Call, Written, Loads);
   }

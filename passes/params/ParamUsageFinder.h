@@ -20,6 +20,10 @@
 
 namespace tpc {
 
+/// True where \p Compare asks how its operands compare. `isunordered(a, b)`
+/// asks whether they are numbers, and `fcmp true` asks nothing.
+bool comparesValues(const llvm::CmpInst &Compare);
+
 /// One step of a value's way forward.
 struct Hop {
   llvm::Value *To; ///< what holds the value now

@@ -2,7 +2,8 @@
 #include "params/ParameterObjects.h"
 
 #include "Options.h"
-#include "memory/ClassObjectAccess.h"
+#include "memory/AccessIndex.h"
+#include "memory/PointsTo.h"
 #include "params/Texts.h"
 #include "support/Names.h"
 
@@ -41,9 +42,8 @@ static Value *objectOf(const ParameterRead &Read,
 
 /// \p Made and the objects that it is copied to: a call that is handed another
 /// object and it, and no more, is an assignment or a copying constructor.
-static MadeObject madeBy(unsigned Read, Value *Made,
-                         const AccessResult &Access) {
-  MadeObject O{Read, {}, Access.resolve(Made, false)};
+static MadeObject madeBy(unsigned Read, Value *Made, PointsTo &Pointers) {
+  MadeObject O{Read, {}, Pointers.resolve(Made, false)};
   O.Pointers.insert(Made->stripPointerCasts());
   for (const User *U : Made->users()) {
     const auto *Assign = dyn_cast<CallBase>(U);
@@ -53,7 +53,7 @@ static MadeObject madeBy(unsigned Read, Value *Made,
     if (!To->getType()->isPointerTy())
       continue;
     O.Pointers.insert(To->stripPointerCasts());
-    append_range(O.Where, Access.resolve(To, false));
+    append_range(O.Where, Pointers.resolve(To, false));
   }
   return O;
 }
@@ -70,9 +70,10 @@ static SmallVector<Value *, 1> valuesOf(CallBase &Call) {
   return Loads;
 }
 
-void findAccessors(Module &M, const RuleMatches &Rules,
-                   const AccessResult &Access,
+void findAccessors(Module &M, ModuleAnalysisManager &AM,
                    std::vector<ParameterRead> &Reads) {
+  const RuleMatches &Rules = AM.getResult<RuleAnalysis>(M);
+  PointsTo &Pointers = AM.getResult<PointsToAnalysis>(M);
   struct Accessor {
     CallBase *Call;
     const Rule *Row;
@@ -88,7 +89,7 @@ void findAccessors(Module &M, const RuleMatches &Rules,
   SmallVector<MadeObject, 0> Objects;
   for (unsigned N = 0; N < Reads.size(); ++N)
     if (Value *Made = objectOf(Reads[N], Classes)) {
-      Objects.push_back(madeBy(N, Made, Access));
+      Objects.push_back(madeBy(N, Made, Pointers));
       Reads[N].Type = "";
       Reads[N].Target = nullptr;
     }
@@ -106,7 +107,7 @@ void findAccessors(Module &M, const RuleMatches &Rules,
     if (!Object || Values.empty())
       continue;
     Object = Object->stripPointerCasts();
-    Locations Where = Access.resolve(Object, false);
+    Locations Where = Pointers.resolve(Object, false);
     bool Found = false;
     for (const MadeObject &O : Objects) {
       if (!O.Pointers.contains(Object) && none_of(Where, [&](const auto &L) {
@@ -148,15 +149,10 @@ struct Field {
 
 /// Gives \p Fields of the class \p Name the defaults that the generated code
 /// sets: constants that go to a field of a variable `__default__`.
-static void findDefaults(Module &M, StringRef Name, const AccessResult &Access,
+static void findDefaults(Module &M, StringRef Name, ModuleAnalysisManager &AM,
                          std::map<unsigned, Field> &Fields) {
-  DebugTypes &Debug = Access.debugTypes();
-  auto FieldName = [&](const Step &S) {
-    const DICompositeType *Class = Debug.classOf(S.Class);
-    return Class
-               ? Debug.fieldName(Class, Access.types().typeOf(S.Type), S.Index)
-               : "";
-  };
+  const LocationTypes &Types = AM.getResult<LocationTypesAnalysis>(M);
+  PointsTo &Pointers = AM.getResult<PointsToAnalysis>(M);
   std::string Statics = (Name + "Statics::").str();
   for (Function &F : definedFunctions(M)) {
     if (!StringRef(qualifiedName(F.getName())).starts_with(Statics))
@@ -167,9 +163,10 @@ static void findDefaults(Module &M, StringRef Name, const AccessResult &Access,
           Store ? dyn_cast<Constant>(Store->getValueOperand()) : nullptr;
       if (!Value)
         continue;
-      for (const Location &L : Access.resolve(Store->getPointerOperand(), true))
+      for (const Location &L :
+           Pointers.resolve(Store->getPointerOperand(), true))
         if (L.Path.size() > 1 &&
-            FieldName(L.Path[L.Path.size() - 2]) == "__default__")
+            Types.fieldName(L.Path[L.Path.size() - 2]) == "__default__")
           if (auto It = Fields.find(L.Path.back().Index); It != Fields.end())
             It->second.Default = jsonOf(*Value, It->second.Type);
     }
@@ -177,24 +174,24 @@ static void findDefaults(Module &M, StringRef Name, const AccessResult &Access,
 }
 
 /// The fields of the class \p Name that the user's code reads, by position.
-static std::map<unsigned, Field>
-fieldsOf(StringRef Name, const RuleMatches &Rules, const AccessResult &Access) {
-  const Options Opts = Options::fromCommandLine();
+static std::map<unsigned, Field> fieldsOf(Module &M, StringRef Name,
+                                          ModuleAnalysisManager &AM) {
+  const RuleMatches &Rules = AM.getResult<RuleAnalysis>(M);
+  const LocationTypes &Types = AM.getResult<LocationTypesAnalysis>(M);
+  const Options &Opts = AM.getResult<OptionsAnalysis>(M);
   UserSources Sources(Opts);
-  DebugTypes &Debug = Access.debugTypes();
   std::map<unsigned, Field> Fields;
-  for (const auto &[I, Where] : Access.loads()) {
+  for (const auto &[I, Where] : AM.getResult<ClassObjectAccess>(M).loads()) {
     if (Where.Path.empty() || Rules.isOpaque(*I->getFunction()) ||
         !Sources.has(I->getDebugLoc()))
       continue;
     const Step &Last = Where.Path.back();
-    const DICompositeType *Class = Debug.classOf(Last.Class);
+    const DICompositeType *Class = Types.sourceClassOf(Last);
     if (!Class || nameWithScopes(*Class) != Name)
       continue;
-    StructType *Layout = Access.types().typeOf(Last.Type);
     Field &F = Fields[Last.Index];
-    F.Name = Debug.fieldName(Class, Layout, Last.Index);
-    if (const DIType *T = Debug.field(Class, Layout, Last.Index))
+    F.Name = Types.fieldName(Last);
+    if (const DIType *T = Types.sourceTypeOf(Last))
       F.Type = T->getName();
     if (!is_contained(F.Loads, I))
       F.Loads.push_back(I);
@@ -202,16 +199,16 @@ fieldsOf(StringRef Name, const RuleMatches &Rules, const AccessResult &Access) {
   return Fields;
 }
 
-void findConfigs(Module &M, const RuleMatches &Rules,
-                 const AccessResult &Access,
+void findConfigs(Module &M, ModuleAnalysisManager &AM,
                  std::vector<ParameterRead> &Reads) {
+  const RuleMatches &Rules = AM.getResult<RuleAnalysis>(M);
   StringSet<> Done;
   forEachCall(M, Rules, Rule::Config, [&](CallBase &Call, const Rule &Row) {
     std::string Class = classArgument(*Call.getCalledFunction());
     if (Class.empty() || !Done.insert(Class).second)
       return;
-    std::map<unsigned, Field> Fields = fieldsOf(Class, Rules, Access);
-    findDefaults(M, Class, Access, Fields);
+    std::map<unsigned, Field> Fields = fieldsOf(M, Class, AM);
+    findDefaults(M, Class, AM, Fields);
     for (auto &[Index, F] : Fields)
       Reads.push_back({&Call, &Row, F.Name.empty() ? DynamicName : F.Name,
                        F.Type, std::move(F.Default), nullptr,

@@ -13,19 +13,16 @@
 
 namespace tpc {
 
-class AccessResult;
-
 /// Gives each read of \p Reads that makes an object the values that are taken
 /// out of it. What is taken out of an object that no read made becomes a read
 /// of its own, whose name is not known.
-void findAccessors(llvm::Module &M, const RuleMatches &Rules,
-                   const AccessResult &Access,
+void findAccessors(llvm::Module &M, llvm::ModuleAnalysisManager &AM,
                    std::vector<ParameterRead> &Reads);
 
 /// Adds to \p Reads the fields of the classes that are handed to callbacks, as
 /// far as the user's code reads them.
-void findConfigs(llvm::Module &M, const RuleMatches &Rules,
-                 const AccessResult &Access, std::vector<ParameterRead> &Reads);
+void findConfigs(llvm::Module &M, llvm::ModuleAnalysisManager &AM,
+                 std::vector<ParameterRead> &Reads);
 
 } // namespace tpc
 

@@ -4,13 +4,17 @@
 
 #include "llvm/Demangle/Demangle.h"
 #include "llvm/IR/Module.h"
+#include "llvm/Support/CommandLine.h"
 
 using namespace llvm;
 
 namespace tpc {
 
-/// No name is longer.
-static constexpr size_t MaxLength = 256;
+/// Names of ROS are shorter. A loop that appends to a text would make one
+/// without end.
+static cl::opt<unsigned>
+    MaxLength("tpc-max-name-length", cl::Hidden, cl::init(256),
+              cl::desc("Characters of a name of a parameter or topic"));
 
 /// \p A and \p B in one; what is not known on both sides of the seam is one
 /// unknown part.

@@ -2,6 +2,7 @@
 #include "params/TextUsage.h"
 
 #include "llvm/IR/Module.h"
+#include "llvm/Support/CommandLine.h"
 
 using namespace llvm;
 
@@ -12,29 +13,33 @@ bool isText(StringRef Type) {
          Type.starts_with("std::__cxx11::basic_string<char,");
 }
 
-TextUsage::TextUsage(Module &M, const AccessResult &Access,
-                     const RuleMatches &Rules)
-    : Access(Access) {
+/// Each object is compared with all operands of text in the unit.
+static cl::opt<unsigned>
+    MaxObjects("tpc-max-text-copies", cl::Hidden, cl::init(16),
+               cl::desc("Objects that one text is copied to"));
+
+TextUsage::TextUsage(Module &M, PointsTo &Pointers, const RuleMatches &Rules)
+    : Pointers(Pointers) {
   forEachCall(M, Rules, Rule::Text, [&](CallBase &Call, const Rule &Row) {
     Use U{&Call, &Row, {}};
     for (unsigned N = 0; N < std::min(2U, Call.arg_size()); ++N)
       U.Operands.push_back(
           Call.getArgOperand(N)->getType()->isPointerTy()
-              ? Access.handed(Call.getArgOperand(N), /*IsOne=*/true)
+              ? Pointers.handed(Call.getArgOperand(N), /*IsOne=*/true)
               : Locations());
     Uses.push_back(std::move(U));
   });
   forEachCall(M, Rules, Rule::Held, [&](CallBase &Call, const Rule &Row) {
     if (Row.Relation == "outof")
       Numbers.push_back(
-          {&Call, Access.handed(objectOf(Call, Row), /*IsOne=*/true)});
+          {&Call, Pointers.handed(objectOf(Call, Row), /*IsOne=*/true)});
   });
 }
 
 SmallVector<CallBase *, 2> TextUsage::numbersFrom(const CallBase &Into,
                                                   const Rule &Row) const {
   SmallVector<CallBase *, 2> Found;
-  Locations Objects = Access.handed(objectOf(Into, Row), /*IsOne=*/true);
+  Locations Objects = Pointers.handed(objectOf(Into, Row), /*IsOne=*/true);
   for (const auto &[Call, From] : Numbers)
     if (any_of(From, [&](const Location &L) {
           return any_of(Objects, [&](const Location &O) { return L.mayBe(O); });
@@ -80,9 +85,9 @@ static StringRef turned(StringRef Relation) {
 
 TextUsage::Found TextUsage::comparisonsOf(const Value *Object) const {
   Found Out;
-  Locations Objects = Access.handed(Object, /*IsOne=*/true);
+  Locations Objects = Pointers.handed(Object, /*IsOne=*/true);
   SmallPtrSet<const CallBase *, 8> Seen;
-  for (unsigned Next = 0; Next < Objects.size() && Next < 16; ++Next) {
+  for (unsigned Next = 0; Next < Objects.size() && Next < MaxObjects; ++Next) {
     const Location Here = Objects[Next];
     auto IsHere = [&](const Location &L) { return L.mayBe(Here); };
     for (const Use &U : Uses) {

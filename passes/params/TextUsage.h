@@ -10,7 +10,7 @@
 #define TPC_TEXTUSAGE_H
 
 #include "Rules.h"
-#include "memory/ClassObjectAccess.h"
+#include "memory/PointsTo.h"
 
 namespace tpc {
 
@@ -22,8 +22,7 @@ struct TextComparison {
 
 class TextUsage {
 public:
-  TextUsage(llvm::Module &M, const AccessResult &Access,
-            const RuleMatches &Rules);
+  TextUsage(llvm::Module &M, PointsTo &Pointers, const RuleMatches &Rules);
 
   struct Found {
     llvm::SmallVector<TextComparison, 4> Comparisons;
@@ -43,7 +42,7 @@ private:
     const Rule *Row;
     llvm::SmallVector<Locations, 2> Operands; ///< of its first two
   };
-  const AccessResult &Access;
+  PointsTo &Pointers;
   std::vector<Use> Uses;
   std::vector<std::pair<llvm::CallBase *, Locations>> Numbers;
 };

@@ -8,15 +8,26 @@
 #include "llvm/IR/CFG.h"
 #include "llvm/IR/IntrinsicInst.h"
 #include "llvm/IR/Module.h"
+#include "llvm/Support/CommandLine.h"
 #include "llvm/Support/SaveAndRestore.h"
 
 using namespace llvm;
 
 namespace tpc {
 
-/// Steps from one object to another in a row and in all, and blocks of one
-/// function, beyond which a text is not followed.
-static constexpr unsigned MaxDepth = 64, MaxSteps = 5000, MaxBlocks = 2000;
+/// The search recurses; its stack is the linker's.
+static cl::opt<unsigned>
+    MaxDepth("tpc-max-text-depth", cl::Hidden, cl::init(64),
+             cl::desc("Objects in a row that a text is followed through"));
+/// Ways through calls and merges multiply.
+static cl::opt<unsigned>
+    MaxSteps("tpc-max-text-steps", cl::Hidden, cl::init(5000),
+             cl::desc("Objects in all that one text is followed through"));
+/// Each text walks the blocks of its function: generated functions have very
+/// many of both.
+static cl::opt<unsigned> MaxBlocks(
+    "tpc-max-text-blocks", cl::Hidden, cl::init(2000),
+    cl::desc("Basic blocks of a function in which a text is followed"));
 
 /// Adds \p New, by another way, to \p Into: what two ways give differently is
 /// not known.
@@ -165,7 +176,7 @@ Texts::Known Texts::ofMember(const Location &L, Kind K) {
   Members.push_back({L, Known{"", false, true}});
   Known All{"", false, true};
   bool Cleared = false;
-  for (const Instruction *W : Access->writesInto(L)) {
+  for (const Instruction *W : Memory->Accesses.writesInto(L)) {
     const auto *Call = dyn_cast<CallBase>(W);
     if (!Call || isa<IntrinsicInst>(Call))
       continue;
@@ -174,7 +185,7 @@ Texts::Known Texts::ofMember(const Location &L, Kind K) {
       // What a function that is looked into does, its own calls tell.
       if (!Arg->getType()->isPointerTy() ||
           (Entered && !(N == 0 && Call->hasStructRetAttr())) ||
-          none_of(Access->resolve(Arg, false),
+          none_of(Memory->Pointers.resolve(Arg, false),
                   [&](const Location &O) { return O.mayBe(L); }))
         continue;
       std::optional<Effect> E = effect(*Call, N, K);
@@ -192,11 +203,11 @@ Texts::Known Texts::ofMember(const Location &L, Kind K) {
 }
 
 Texts::Known Texts::inMemory(const Value *Pointer, Kind K) {
-  if (!Access)
+  if (!Memory)
     return unknown(K);
   Known All{"", false, true};
   bool Any = false;
-  for (const Location &L : Access->resolve(Pointer, false)) {
+  for (const Location &L : Memory->Pointers.resolve(Pointer, false)) {
     Any = true;
     merge(All, ofMember(L, K));
   }
@@ -210,10 +221,10 @@ Texts::Known Texts::loaded(const LoadInst &Load, Kind K) {
     if (Constant *Folded = ConstantFoldLoadFromConstPtr(
             const_cast<Constant *>(C), Load.getType(), Layout))
       return find(Folded, Load, K);
-  if (!Access)
+  if (!Memory)
     return unknown(K);
   Known All{"", false, true};
-  for (const Instruction *W : Access->definitionsOf(Load)) {
+  for (const Instruction *W : Memory->Writes.definitionsOf(Load)) {
     const auto *Store = dyn_cast<StoreInst>(W);
     merge(All, Store ? find(Store->getValueOperand(), *Store, K)
                      : Known{DynamicName});

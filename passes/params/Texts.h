@@ -11,7 +11,7 @@
 #define TPC_TEXTS_H
 
 #include "Rules.h"
-#include "memory/ClassObjectAccess.h"
+#include "memory/VisibleWrites.h"
 
 #include "llvm/ADT/SetVector.h"
 
@@ -30,10 +30,22 @@ std::string joinNames(llvm::StringRef In, llvm::StringRef Name);
 
 class Texts {
 public:
-  /// Without \p Access members are not looked into.
+  /// What is known of the module's memory.
+  struct MemoryView {
+    PointsTo &Pointers;
+    const AccessIndex &Accesses;
+    VisibleWrites &Writes;
+    static MemoryView of(llvm::Module &M, llvm::ModuleAnalysisManager &AM) {
+      return {AM.getResult<PointsToAnalysis>(M),
+              AM.getResult<ClassObjectAccess>(M),
+              AM.getResult<VisibleWritesAnalysis>(M)};
+    }
+  };
+
+  /// Without \p Known members are not looked into.
   Texts(const RuleMatches &Rules, const CallGraphResult &Calls,
-        const AccessResult *Access)
-      : Rules(Rules), Calls(Calls), Access(Access) {}
+        std::optional<MemoryView> Known)
+      : Rules(Rules), Calls(Calls), Memory(Known) {}
 
   /// The text of the std::string or the characters that \p Pointer leads to
   /// where \p At runs.
@@ -104,7 +116,7 @@ private:
 
   const RuleMatches &Rules;
   const CallGraphResult &Calls;
-  const AccessResult *Access;
+  std::optional<MemoryView> Memory;
   llvm::SmallSetVector<const llvm::Function *, 8> Shared;
   llvm::DenseMap<const llvm::Function *, std::unique_ptr<Callee>> Callees;
   /// Members, globals and arguments that are known by now, or being asked for.

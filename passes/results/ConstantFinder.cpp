@@ -73,17 +73,14 @@ const Constant *ConstantFinder::returnedBy(const CallBase &Call) const {
 /// The number that \p Load reads where that is a const member, which all
 /// constructors make the same; null elsewhere.
 const Constant *ConstantFinder::ofConstMember(const LoadInst &Load) const {
-  DebugTypes &Debug = Access.debugTypes();
-  Locations Where = Access.touched(Load);
+  Locations Where = Pointers.touched(Load);
   if (Where.empty() || !all_of(Where, [&](const Location &L) {
         return !L.Path.empty() && L.Path.back().isField() &&
-               Debug.isConst(Debug.classOf(L.Path.back().Class),
-                             Access.types().typeOf(L.Path.back().Type),
-                             L.Path.back().Index);
+               Types.isConst(L.Path.back());
       }))
     return nullptr;
   const Constant *Only = nullptr;
-  for (const Instruction *Write : Access.definitionsOf(Load)) {
+  for (const Instruction *Write : Writes.definitionsOf(Load)) {
     const auto *Store = dyn_cast<StoreInst>(Write);
     const Constant *C = Store ? plainNumber(Store->getValueOperand()) : nullptr;
     if (!C || (Only && Only != C))
@@ -114,8 +111,8 @@ std::string ConstantFinder::nameOf(const Value *V, bool Unsigned) const {
       Global->getDebugInfo(Infos);
     if (!Infos.empty())
       return Infos.front()->getVariable()->getName().str();
-    VariableNames Names(Access.types(), Access.debugTypes());
-    for (const Location &L : Access.touched(*Load))
+    VariableNames Names(Types);
+    for (const Location &L : Pointers.touched(*Load))
       if (std::string Name = Names.nameOf(L); !Name.empty())
         return Name;
   }
@@ -150,7 +147,7 @@ void ConstantFinder::compared(CmpInst &Compare, Instruction &Predicate,
                                                             : 0;
   const Value *Other = Compare.getOperand(1 - Threshold);
   if (!numberOf(Compare.getOperand(Threshold)) || plainNumber(Other) ||
-      isTruth(Other) || asksForNonZero(Compare))
+      isTruth(Other) || asksForNonZero(Compare) || !comparesValues(Compare))
     return;
   auto Known = Found.find(&Compare);
   if (Known != Found.end() && Known->second.Slice.Distance <= E.Distance)

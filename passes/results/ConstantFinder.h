@@ -15,7 +15,7 @@
 #define TPC_CONSTANTFINDER_H
 
 #include "calls/SimpleCallGraph.h"
-#include "memory/ClassObjectAccess.h"
+#include "memory/VisibleWrites.h"
 #include "results/GatherResults.h"
 
 #include "llvm/ADT/DenseSet.h"
@@ -29,10 +29,11 @@ public:
   /// \p Where gives a comparison's place in the user's own sources; null where
   /// it is not to be listed.
   ConstantFinder(
-      const CallGraphResult &Calls, const AccessResult &Access,
-      const SliceResult &Slice,
+      const CallGraphResult &Calls, const LocationTypes &Types,
+      PointsTo &Pointers, VisibleWrites &Writes, const SliceResult &Slice,
       llvm::function_ref<const llvm::DILocation *(const llvm::CmpInst &)> Where)
-      : Calls(Calls), Access(Access), Slice(Slice), Where(Where) {}
+      : Calls(Calls), Types(Types), Pointers(Pointers), Writes(Writes),
+        Slice(Slice), Where(Where) {}
 
   std::vector<Comparison> run(llvm::ArrayRef<llvm::Instruction *> Predicates);
 
@@ -47,7 +48,9 @@ private:
   std::string nameOf(const llvm::Value *V, bool Unsigned) const;
 
   const CallGraphResult &Calls;
-  const AccessResult &Access;
+  const LocationTypes &Types;
+  PointsTo &Pointers;
+  VisibleWrites &Writes;
   const SliceResult &Slice;
   llvm::function_ref<const llvm::DILocation *(const llvm::CmpInst &)> Where;
   llvm::MapVector<llvm::CmpInst *, Comparison> Found;

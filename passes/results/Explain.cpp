@@ -4,19 +4,29 @@
 #include "control/Throws.h"
 
 #include "llvm/IR/IntrinsicInst.h"
+#include "llvm/Support/CommandLine.h"
 
 using namespace llvm;
 
 namespace tpc {
 
-/// Steps before the predicate, and behind it, that are written down: so many,
-/// and in units with very many comparisons fewer, that all of them stay below
-/// the second number. Three are the first, the last and the gap.
-static constexpr size_t MaxSteps = 32, MaxStepsOfUnit = 10000, MinSteps = 3;
+/// People read the beginning and the end of a longer path.
+static cl::opt<unsigned>
+    MaxSteps("tpc-max-path-steps", cl::Hidden, cl::init(32),
+             cl::desc("Steps of a path that are written before the predicate, "
+                      "and behind it"));
+/// Bounds the file of a unit with very many comparisons: their paths are cut
+/// shorter.
+static cl::opt<unsigned> MaxStepsOfUnit(
+    "tpc-max-unit-path-steps", cl::Hidden, cl::init(10000),
+    cl::desc("Steps of all paths of a link unit that are written"));
+/// Of a path that is cut: the first step, the last, and the gap.
+static constexpr unsigned MinSteps = 3;
 
 size_t Explainer::stepsFor(size_t NumComparisons) {
   size_t Share = MaxStepsOfUnit / (2 * std::max<size_t>(NumComparisons, 1));
-  return std::clamp(Share, MinSteps, MaxSteps);
+  return std::clamp<size_t>(Share, MinSteps,
+                            std::max(MinSteps, MaxSteps.getValue()));
 }
 
 StringRef PathStep::kindName() const {

@@ -14,15 +14,23 @@
 
 #include "llvm/ADT/SetVector.h"
 #include "llvm/ADT/SmallPtrSet.h"
+#include "llvm/ADT/Statistic.h"
 #include "llvm/ADT/StringExtras.h"
 #include "llvm/Analysis/ValueTracking.h"
 #include "llvm/IR/Instructions.h"
 #include "llvm/IR/Module.h"
+#include "llvm/Support/Debug.h"
 #include "llvm/Support/SHA1.h"
 
 using namespace llvm;
 
 namespace tpc {
+
+#define DEBUG_TYPE "tpc-gather-results"
+STATISTIC(NumComparisons, "Threshold predicate comparisons");
+STATISTIC(NumConstants, "Comparisons with constants");
+STATISTIC(NumNotExposed, "Comparisons that no exposing statement depends on");
+STATISTIC(NumOutside, "Comparisons outside of the user's sources");
 
 AnalysisKey GatherResults::Key;
 
@@ -71,8 +79,13 @@ StringRef Comparison::relation() const {
   case CmpInst::FCMP_OLT:
   case CmpInst::FCMP_ULT:
     return "<";
-  default:
+  case CmpInst::ICMP_SLE:
+  case CmpInst::ICMP_ULE:
+  case CmpInst::FCMP_OLE:
+  case CmpInst::FCMP_ULE:
     return "<=";
+  default:
+    llvm_unreachable("see comparesValues()");
   }
 }
 
@@ -227,7 +240,8 @@ public:
         Reads(AM.getResult<ParamCallFinder>(M)),
         Slice(AM.getResult<BackwardPropagate>(M)), Own(Own),
         Both(Usage, Reads, AM.getResult<SimpleCallGraph>(M),
-             AM.getResult<ClassObjectAccess>(M),
+             AM.getResult<PointsToAnalysis>(M),
+             AM.getResult<VisibleWritesAnalysis>(M),
              [&](const ParameterComparison &P) {
                Comparison Ignored{};
                return nearest(P, Slice, Ignored);
@@ -237,8 +251,12 @@ public:
     for (const ParameterComparison &P : Usage.Comparisons) {
       if (Budget::isSpent())
         break;
-      if (std::optional<NotReported::WhyTy> Why = gather(P))
+      if (std::optional<NotReported::WhyTy> Why = gather(P)) {
+        LLVM_DEBUG(dbgs() << "not reported (" << *Why << "): " << P.place()
+                          << '\n');
+        NumNotExposed += *Why == NotReported::NotExposed;
         R.Others.push_back({&P, *Why});
+      }
     }
     return std::move(R);
   }
@@ -314,7 +332,7 @@ void Gatherer::add(Comparison C) {
 
 GatheredResults GatherResults::run(Module &M, ModuleAnalysisManager &AM) {
   const ParamCallFinder::Result &Reads = AM.getResult<ParamCallFinder>(M);
-  const Options Opts = Options::fromCommandLine();
+  const Options &Opts = AM.getResult<OptionsAnalysis>(M);
   const RuleMatches &Rules = AM.getResult<RuleAnalysis>(M);
   Places Own(Opts, Rules);
   Gatherer WithParameters(M, AM, Own);
@@ -326,9 +344,14 @@ GatheredResults GatherResults::run(Module &M, ModuleAnalysisManager &AM) {
                : Own.of(Compare);
   };
   R.Constants = ConstantFinder(AM.getResult<SimpleCallGraph>(M),
-                               AM.getResult<ClassObjectAccess>(M),
+                               AM.getResult<LocationTypesAnalysis>(M),
+                               AM.getResult<PointsToAnalysis>(M),
+                               AM.getResult<VisibleWritesAnalysis>(M),
                                AM.getResult<BackwardPropagate>(M), PlaceOf)
                     .run(AM.getResult<IfStatements>(M).predicates());
+  NumComparisons += R.Comparisons.size();
+  NumConstants += R.Constants.size();
+  NumOutside += R.OutsideSources;
   countOthers(R);
   Namer Keys(Opts);
   for (Comparison &C : R.Comparisons)

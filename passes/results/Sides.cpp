@@ -5,18 +5,24 @@
 #include "params/Texts.h"
 
 #include "llvm/IR/IntrinsicInst.h"
+#include "llvm/Support/CommandLine.h"
 
 using namespace llvm;
 
 namespace tpc {
 
-/// A value with more sources than this is taken for a measured one.
-static constexpr unsigned MaxSources = 256;
+/// A configured value has few sources. One with more is taken for a
+/// measurement.
+static cl::opt<unsigned> MaxSources(
+    "tpc-max-sources", cl::Hidden, cl::init(256),
+    cl::desc("Sources of an operand that are looked at to tell a threshold"));
 
 Sides::Sides(const ParameterUsage &Usage, const ParamCallFinder::Result &Reads,
-             const CallGraphResult &Calls, const AccessResult &Access,
+             const CallGraphResult &Calls, PointsTo &Pointers,
+             VisibleWrites &Writes,
              function_ref<bool(const ParameterComparison &)> IsExposed)
-    : Usage(Usage), Reads(Reads), Calls(Calls), Access(Access) {
+    : Usage(Usage), Reads(Reads), Calls(Calls), Pointers(Pointers),
+      Writes(Writes) {
   for (const ParameterRead &Read : Reads) {
     Parameters.insert(Read.Call);
     Parameters.insert(Read.Values.begin(), Read.Values.end());
@@ -33,7 +39,7 @@ bool Sides::isHanded(const Instruction &Call,
   const auto *To = dyn_cast<CallBase>(&Call);
   return !To || any_of(To->args(), [&](const Use &Arg) {
     return Arg->getType()->isPointerTy() &&
-           any_of(Access.resolve(Arg, false), [&](const Location &A) {
+           any_of(Pointers.resolve(Arg, false), [&](const Location &A) {
              return is_contained(Variables, A);
            });
   });
@@ -43,21 +49,21 @@ bool Sides::isHanded(const Instruction &Call,
 Locations Sides::writtenBy(const Instruction &Write) const {
   Locations All;
   if (const Value *Pointer = getLoadStorePointerOperand(&Write))
-    All = Access.resolve(Pointer, true);
+    All = Pointers.resolve(Pointer, true);
   for (const ParameterRead &Read : Reads)
     if (Read.Call == &Write && Read.Target)
-      append_range(All, Access.resolve(Read.Target, true));
+      append_range(All, Pointers.resolve(Read.Target, true));
   return All;
 }
 
 /// What \p Load can have found; false where that is not only what is stored by
 /// the program to the same variable.
 bool Sides::addStored(const LoadInst &Load, Sources &Out) const {
-  Locations From = Access.resolve(Load.getPointerOperand(), true);
+  Locations From = Pointers.resolve(Load.getPointerOperand(), true);
   if (From.empty())
     return false;
-  ArrayRef<Instruction *> Writes = Access.definitionsOf(Load);
-  for (const Instruction *Write : Writes) {
+  ArrayRef<Instruction *> Found = Writes.definitionsOf(Load);
+  for (const Instruction *Write : Found) {
     if (Parameters.contains(Write))
       continue;
     if (const auto *Store = dyn_cast<StoreInst>(Write))
@@ -68,7 +74,7 @@ bool Sides::addStored(const LoadInst &Load, Sources &Out) const {
   // What a callback is handed is taken for any object of its class, also for
   // one that is a part of a larger one. That is not meant.
   return all_of(From, [&](const Location &A) {
-    return any_of(Writes, [&](const Instruction *Write) {
+    return any_of(Found, [&](const Instruction *Write) {
       return any_of(writtenBy(*Write), [&](const Location &B) {
         return (!A.Root == !B.Root || A.Path.size() == B.Path.size()) &&
                A.mayBe(B);

@@ -9,7 +9,7 @@
 #ifndef TPC_SIDES_H
 #define TPC_SIDES_H
 
-#include "memory/ClassObjectAccess.h"
+#include "memory/VisibleWrites.h"
 #include "params/ParamCallFinder.h"
 #include "params/ParamUsageFinder.h"
 
@@ -22,7 +22,7 @@ public:
   /// Of \p Usage only what \p IsExposed holds for is looked at: another side
   /// that is not reported makes this one no less of a threshold.
   Sides(const ParameterUsage &Usage, const ParamCallFinder::Result &Reads,
-        const CallGraphResult &Calls, const AccessResult &Access,
+        const CallGraphResult &Calls, PointsTo &Pointers, VisibleWrites &Writes,
         llvm::function_ref<bool(const ParameterComparison &)> IsExposed);
 
   /// True where the other operand is the same parameter by a shorter way, and
@@ -50,7 +50,8 @@ private:
   const ParameterUsage &Usage;
   const ParamCallFinder::Result &Reads;
   const CallGraphResult &Calls;
-  const AccessResult &Access;
+  PointsTo &Pointers;
+  VisibleWrites &Writes;
   llvm::SmallPtrSet<const llvm::Value *, 16> Parameters;
   /// The comparisons of which both operands have a parameter's value.
   llvm::DenseMap<const llvm::CmpInst *,

@@ -11,10 +11,9 @@ using namespace llvm;
 
 namespace tpc {
 
-Wording::Wording(const AccessResult &Access,
+Wording::Wording(const LocationTypes &Types, PointsTo &Pointers,
                  const ExternCallFinder::Result &Exposing, const Options &Opts)
-    : Access(Access), Sources(Opts),
-      Names(Access.types(), Access.debugTypes()) {
+    : Pointers(Pointers), Sources(Opts), Names(Types) {
   for (const ExposingStatement &E : Exposing)
     this->Exposing[E.Call] = &E;
 }
@@ -59,7 +58,7 @@ std::string Wording::callee(const CallBase &Call) {
 }
 
 std::string Wording::nameOf(const Value *Pointer, bool Scalar) const {
-  for (const Location &L : Access.resolve(Pointer, Scalar))
+  for (const Location &L : Pointers.resolve(Pointer, Scalar))
     if (std::string Name = Names.fullNameOf(L); !Name.empty())
       return Name;
   return "";
@@ -118,7 +117,7 @@ std::string Wording::value(const Value *V) const {
     if (std::string Name = argument(*Reference); !Name.empty())
       return Name;
   if (Load)
-    for (const Location &L : Access.resolve(Load->getPointerOperand(), true))
+    for (const Location &L : Pointers.resolve(Load->getPointerOperand(), true))
       if (std::string Name = Names.nameOf(L); !Name.empty())
         return Name;
   const auto *Call = dyn_cast<CallBase>(V);

@@ -9,6 +9,7 @@
 #define TPC_WORDING_H
 
 #include "Options.h"
+#include "memory/PointsTo.h"
 #include "memory/Variables.h"
 #include "slice/ExternCallFinder.h"
 
@@ -20,8 +21,8 @@ bool isMultiplyAdd(const llvm::Instruction &I);
 
 class Wording {
 public:
-  Wording(const AccessResult &Access, const ExternCallFinder::Result &Exposing,
-          const Options &Opts);
+  Wording(const LocationTypes &Types, PointsTo &Pointers,
+          const ExternCallFinder::Result &Exposing, const Options &Opts);
 
   /// The user's line that \p I belongs to: its own or, where a library's
   /// function was inlined, that of the call. Null for library code.
@@ -49,7 +50,7 @@ public:
 private:
   std::string nameOf(const llvm::Value *Pointer, bool Scalar) const;
 
-  const AccessResult &Access;
+  PointsTo &Pointers;
   UserSources Sources;
   VariableNames Names;
   llvm::DenseMap<const llvm::Instruction *, const ExposingStatement *> Exposing;

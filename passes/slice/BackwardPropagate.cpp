@@ -6,7 +6,7 @@
 #include "calls/SimpleCallGraph.h"
 #include "control/IfStatements.h"
 #include "control/Throws.h"
-#include "memory/ClassObjectAccess.h"
+#include "memory/VisibleWrites.h"
 #include "slice/ExternCallFinder.h"
 #include "support/Budget.h"
 #include "support/Names.h"
@@ -43,11 +43,13 @@ class Slicer {
 public:
   Slicer(Module &M, ModuleAnalysisManager &AM)
       : Calls(AM.getResult<SimpleCallGraph>(M)),
-        Access(AM.getResult<ClassObjectAccess>(M)),
+        Pointers(AM.getResult<PointsToAnalysis>(M)),
+        Accesses(AM.getResult<ClassObjectAccess>(M)),
+        Writes(AM.getResult<VisibleWritesAnalysis>(M)),
         Ifs(AM.getResult<IfStatements>(M)), Thrown(AM.getResult<Throws>(M)),
         Exposing(AM.getResult<ExternCallFinder>(M)),
-        Rules(AM.getResult<RuleAnalysis>(M)), Opts(Options::fromCommandLine()),
-        Sources(Opts) {}
+        Rules(AM.getResult<RuleAnalysis>(M)),
+        Sources(AM.getResult<OptionsAnalysis>(M)) {}
 
   SliceResult run();
 
@@ -91,12 +93,13 @@ private:
 
   LocationSet SeenWritten, SeenLoaded;
   const CallGraphResult &Calls;
-  const AccessResult &Access;
+  PointsTo &Pointers;
+  AccessIndex &Accesses;
+  VisibleWrites &Writes;
   const IfStatementsResult &Ifs;
   const ThrowsResult &Thrown;
   const ExternCallFinder::Result &Exposing;
   const RuleMatches &Rules;
-  const Options Opts;
   UserSources Sources;
 
   SliceResult Result;
@@ -194,17 +197,17 @@ void Slicer::definePointer(const Value *V) {
 /// What is in memory at \p Pointer, a scalar or an array of them, matters where
 /// \p At reads it.
 void Slicer::defineMemory(const Value *Pointer, const Instruction &At) {
-  Locations Read = Access.resolve(Pointer, true);
+  Locations Read = Pointers.resolve(Pointer, true);
   for (Location &L : Read)
     L.widen();
   for (const Location &L : Read) {
-    if (Access.isSharedBy(L, At, Pointer) && !SeenWritten.insert(L))
+    if (Writes.isSharedBy(L, At, Pointer) && !SeenWritten.insert(L).second)
       continue;
     // What was copied there is among the writes; that it was copied matters,
     // too.
-    for (Instruction *Copy : Access.copiesTo(L))
+    for (Instruction *Copy : Accesses.copiesTo(L))
       enter(Copy, Runs, Why::Writes);
-    for (Instruction *Write : Access.writesOf(L, At, Pointer))
+    for (Instruction *Write : Writes.writesOf(L, At, Pointer))
       enter(Write, Gives, Why::Writes);
   }
 }
@@ -224,7 +227,7 @@ void Slicer::phi(const PHINode &Phi) {
 void Slicer::defineArguments(const CallBase &Call) {
   for (const Use &Arg : Call.args()) {
     define(Arg);
-    if (Arg->getType()->isPointerTy() && !Access.replaces(Call, Arg))
+    if (Arg->getType()->isPointerTy() && !Writes.replaces(Call, Arg))
       defineMemory(Arg, Call);
   }
 }
@@ -285,7 +288,7 @@ void Slicer::derivedPointer(const Value *Pointer) {
     return;
   for (const Use &U : Pointer->uses()) {
     auto *I = dyn_cast<Instruction>(U.getUser());
-    if (!I || Access.isPutIn(U))
+    if (!I || Accesses.isPutIn(U))
       continue;
     if (isa<GetElementPtrInst>(I))
       derivedPointer(I);
@@ -345,14 +348,14 @@ void Slicer::reachable(CallBase &Call) {
     define(Arg);
     if (!Arg->getType()->isPointerTy())
       continue;
-    for (const Location &L : Access.resolve(Arg, false)) {
-      for (Instruction *Write : Access.writesInto(L, Call, Arg))
+    for (const Location &L : Pointers.resolve(Arg, false)) {
+      for (Instruction *Write : Writes.writesInto(L, Call, Arg))
         enter(Write,
               isa<CallBase>(Write) && !isa<IntrinsicInst>(Write) ? Touches
                                                                  : Gives,
               Why::Writes);
       // The others come too late, or are overwritten.
-      for (Instruction *Write : Access.writesInto(L))
+      for (Instruction *Write : Accesses.writesInto(L))
         Settled.insert(Write);
     }
     derivedPointer(Arg);
@@ -366,16 +369,16 @@ void Slicer::value(Instruction &I) {
   if (auto *Load = dyn_cast<LoadInst>(&I)) {
     // Most loads of a variable that is not local have the same writes.
     bool New = false;
-    for (const Location &L : Access.touched(*Load))
-      New |= !Access.isSharedBy(L, *Load, Load->getPointerOperand()) ||
-             SeenLoaded.insert(L);
+    for (const Location &L : Pointers.touched(*Load))
+      New |= !Writes.isSharedBy(L, *Load, Load->getPointerOperand()) ||
+             SeenLoaded.insert(L).second;
     if (!New)
       return definePointer(Load->getPointerOperand());
     // What is copied is among the definitions; that it is, matters too.
-    for (const Location &L : Access.touched(*Load))
-      for (Instruction *Copy : Access.copiesTo(L))
+    for (const Location &L : Pointers.touched(*Load))
+      for (Instruction *Copy : Accesses.copiesTo(L))
         enter(Copy, Runs, Why::Writes);
-    for (Instruction *Write : Access.definitionsOf(*Load)) {
+    for (Instruction *Write : Writes.definitionsOf(*Load)) {
       // What a library sets to a constant, it sets in its constructors.
       const auto *Store = dyn_cast<StoreInst>(Write);
       if (!Store || !isa<Constant>(Store->getValueOperand()) ||

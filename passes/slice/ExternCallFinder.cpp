@@ -1,7 +1,7 @@
 //===- ExternCallFinder.cpp -----------------------------------------------===//
 #include "slice/ExternCallFinder.h"
 
-#include "memory/ClassObjectAccess.h"
+#include "memory/PointsTo.h"
 #include "params/Texts.h"
 #include "support/Print.h"
 
@@ -24,7 +24,7 @@ struct NamedObject {
 /// another object (the assignment) passes the name on.
 static SmallVector<NamedObject, 0> namedObjects(Module &M,
                                                 const RuleMatches &Rules,
-                                                const AccessResult &Access,
+                                                PointsTo &Pointers,
                                                 Texts &Known) {
   SmallVector<NamedObject, 0> Found;
   forEachCall(M, Rules, Rule::Topic, [&](CallBase &Call, const Rule &Row) {
@@ -32,7 +32,7 @@ static SmallVector<NamedObject, 0> namedObjects(Module &M,
     if (isDynamic(Topic) || !Call.hasStructRetAttr())
       return;
     Value *Made = Call.getArgOperand(0);
-    for (const Location &L : Access.resolve(Made, false))
+    for (const Location &L : Pointers.resolve(Made, false))
       Found.push_back({L, Topic});
     if (!isa<AllocaInst>(Made))
       return;
@@ -41,7 +41,8 @@ static SmallVector<NamedObject, 0> namedObjects(Module &M,
       if (!Assign || Assign->arg_size() != 2 ||
           Assign->getArgOperand(1) != Made)
         continue;
-      for (const Location &L : Access.resolve(Assign->getArgOperand(0), false))
+      for (const Location &L :
+           Pointers.resolve(Assign->getArgOperand(0), false))
         Found.push_back({L, Topic});
     }
   });
@@ -50,11 +51,11 @@ static SmallVector<NamedObject, 0> namedObjects(Module &M,
 
 /// The one topic of \p Object; empty where there is none or more than one.
 static std::string topicOf(const Value *Object, ArrayRef<NamedObject> Named,
-                           const AccessResult &Access) {
+                           PointsTo &Pointers) {
   std::string Topic;
   if (!Object)
     return Topic;
-  for (const Location &L : Access.resolve(Object, false))
+  for (const Location &L : Pointers.resolve(Object, false))
     for (const NamedObject &N : Named)
       if (L.mayBe(N.Where)) {
         if (!Topic.empty() && Topic != N.Topic)
@@ -67,13 +68,15 @@ static std::string topicOf(const Value *Object, ArrayRef<NamedObject> Named,
 ExternCallFinder::Result ExternCallFinder::run(Module &M,
                                                ModuleAnalysisManager &AM) {
   const RuleMatches &Rules = AM.getResult<RuleAnalysis>(M);
-  const AccessResult &Access = AM.getResult<ClassObjectAccess>(M);
-  Texts Known(Rules, AM.getResult<SimpleCallGraph>(M), &Access);
-  SmallVector<NamedObject, 0> Named = namedObjects(M, Rules, Access, Known);
+  PointsTo &Pointers = AM.getResult<PointsToAnalysis>(M);
+  Texts Known(Rules, AM.getResult<SimpleCallGraph>(M),
+              Texts::MemoryView::of(M, AM));
+  SmallVector<NamedObject, 0> Named = namedObjects(M, Rules, Pointers, Known);
   Result R;
   forEachCall(M, Rules, Rule::Exposing, [&](CallBase &Call, const Rule &Row) {
-    std::string Topic = Row.Name ? Known.nameOf(Call, Row)
-                                 : topicOf(objectOf(Call, Row), Named, Access);
+    std::string Topic = Row.Name
+                            ? Known.nameOf(Call, Row)
+                            : topicOf(objectOf(Call, Row), Named, Pointers);
     R.push_back({&Call, &Row, isDynamic(Topic) ? "" : std::move(Topic)});
   });
   return R;

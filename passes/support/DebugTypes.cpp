@@ -15,6 +15,12 @@ using namespace llvm;
 
 namespace tpc {
 
+AnalysisKey DebugTypesAnalysis::Key;
+
+DebugTypes DebugTypesAnalysis::run(Module &M, ModuleAnalysisManager &) {
+  return DebugTypes(M.getDataLayout());
+}
+
 const DIType *DebugTypes::plain(const DIType *T) {
   while (const auto *Derived = dyn_cast_or_null<DIDerivedType>(T)) {
     switch (Derived->getTag()) {

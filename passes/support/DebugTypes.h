@@ -14,6 +14,7 @@
 #include "llvm/IR/DerivedTypes.h"
 #include "llvm/IR/Instructions.h"
 #include "llvm/IR/Operator.h"
+#include "llvm/IR/PassManager.h"
 
 namespace tpc {
 
@@ -72,6 +73,16 @@ private:
   llvm::DenseMap<const llvm::DICompositeType *, unsigned> Numbers;
   llvm::StringMap<unsigned> ByName;
   llvm::SmallVector<const llvm::DICompositeType *, 0> Classes;
+};
+
+class DebugTypesAnalysis : public llvm::AnalysisInfoMixin<DebugTypesAnalysis> {
+public:
+  using Result = DebugTypes;
+  Result run(llvm::Module &M, llvm::ModuleAnalysisManager &AM);
+
+private:
+  friend llvm::AnalysisInfoMixin<DebugTypesAnalysis>;
+  static llvm::AnalysisKey Key;
 };
 
 } // namespace tpc

@@ -1,0 +1,154 @@
+//===- AccessIndex.cpp ----------------------------------------------------===//
+#include "memory/AccessIndex.h"
+
+#include "memory/AccessBuilder.h"
+#include "support/Print.h"
+
+using namespace llvm;
+
+namespace tpc {
+
+AnalysisKey ClassObjectAccess::Key;
+
+/// Variables that a value is followed to by copies of whole objects.
+static constexpr unsigned MaxCopied = 16;
+
+/// \p L and the variables that copies of whole objects put its value into, or
+/// with \p Backward took it from.
+const Locations &AccessIndex::throughCopies(const Location &L, bool Backward) {
+  auto [It, New] = (Backward ? this->Backward : Forward).try_emplace(L);
+  Locations &All = It->second;
+  if (!New)
+    return All;
+  All.push_back(L);
+  const ObjectIndex &In = Backward ? CopiesTo : CopiesFrom;
+  for (unsigned Next = 0; Next < All.size() && All.size() < MaxCopied; ++Next) {
+    const Location Here = All[Next];
+    auto Follow = [&](unsigned N) {
+      const Copy &C = Copies[N];
+      if (All.size() >= MaxCopied)
+        return;
+      for (const Location &Object : Backward ? C.To : C.From)
+        if (auto Rest = Alias.partOf(Object, Here))
+          for (Location Other : Backward ? C.From : C.To) {
+            Types.extend(Other, *Rest);
+            if (All.size() < MaxCopied && none_of(All, [&](const Location &K) {
+                  return K.isSame(Other);
+                }))
+              All.push_back(std::move(Other));
+          }
+    };
+    In.eachAround(Here, Follow);
+  }
+  return All;
+}
+
+SmallVector<Instruction *, 4> AccessIndex::copiesTo(const Location &L) {
+  SmallSetVector<Instruction *, 4> Found;
+  for (const Location &Here : throughCopies(L, /*Backward=*/true)) {
+    CopiesTo.eachAround(Here, [&](unsigned N) {
+      if (any_of(Copies[N].To, [&](const Location &Object) {
+            return Alias.partOf(Object, Here).has_value();
+          }))
+        Found.insert(Copies[N].I);
+    });
+  }
+  return {Found.begin(), Found.end()};
+}
+
+bool AccessIndex::reaches(const Location &From, const Location &To) {
+  return any_of(throughCopies(From, /*Backward=*/false),
+                [&](const Location &Here) { return Alias.mayBe(Here, To); });
+}
+
+AccessIndex::Found<AccessIndex::Writes>
+AccessIndex::writesOf(const Location &L) {
+  Found<Writes> Out;
+  const Locations &All = throughCopies(L, /*Backward=*/true);
+  for (const Location &Here : All) {
+    // Several fields that are read as one, in a register: any of them.
+    if (isa_and_nonnull<StructType>(elementOf(Types.typeAt(Here))))
+      for (Instruction *Write : writesInto(Here))
+        if (isa<StoreInst>(Write))
+          Out.Copied.insert(Write);
+    Writes &To = &Here == All.begin() ? Out.Own : Out.Copied;
+    StoreIndex.eachAt(Here, [&](unsigned N) {
+      if (Alias.mayBe(Stores[N].Where, Here))
+        To.insert(Stores[N].I);
+    });
+    HandedIndex.eachAround(Here, [&](unsigned N) {
+      if (Alias.partOf(Handed[N].Where, Here))
+        To.insert(Handed[N].I);
+    });
+  }
+  return Out;
+}
+
+AccessIndex::Found<AccessIndex::Reads> AccessIndex::readsOf(const Location &L) {
+  Found<Reads> Out;
+  const Locations &All = throughCopies(L, /*Backward=*/false);
+  for (const Location &Here : All) {
+    Reads &To = &Here == All.begin() ? Out.Own : Out.Copied;
+    LoadIndex.eachAt(Here, [&](unsigned N) {
+      if (Alias.mayBe(Loads[N].Where, Here))
+        To.insert(cast<LoadInst>(Loads[N].I));
+    });
+  }
+  return Out;
+}
+
+SmallVector<const Access *, 16>
+AccessIndex::partsOf(const Location &Object) const {
+  SmallSetVector<unsigned, 16> Numbers;
+  WritesByObject.eachIn(Object, [&](unsigned N) {
+    if (Alias.partOf(Object, PartWrites[N].Where))
+      Numbers.insert(N);
+  });
+  SmallVector<unsigned, 16> Ordered = Numbers.takeVector();
+  sort(Ordered);
+  SmallVector<const Access *, 16> Found;
+  for (unsigned N : Ordered)
+    Found.push_back(&PartWrites[N]);
+  return Found;
+}
+
+SmallVector<Instruction *, 8> AccessIndex::writesInto(const Location &L) const {
+  Writes Out;
+  for (const Access *Part : partsOf(L))
+    Out.insert(Part->I);
+  return Out.takeVector();
+}
+
+const Location *AccessIndex::replacedBy(const Instruction &Call) const {
+  auto It = Replaced.find(&Call);
+  return It == Replaced.end() ? nullptr : &It->second;
+}
+
+AccessIndex ClassObjectAccess::run(Module &M, ModuleAnalysisManager &AM) {
+  AccessIndex R(AM.getResult<AliasesAnalysis>(M),
+                AM.getResult<LocationTypesAnalysis>(M));
+  AccessBuilder(R, AM.getResult<PointsToAnalysis>(M),
+                AM.getResult<SimpleCallGraph>(M), AM.getResult<RuleAnalysis>(M),
+                M)
+      .fileAccesses();
+  return R;
+}
+
+PreservedAnalyses ClassObjectAccessPrinter::run(Module &M,
+                                                ModuleAnalysisManager &AM) {
+  const AccessIndex &R = AM.getResult<ClassObjectAccess>(M);
+  const LocationTypes &Types = AM.getResult<LocationTypesAnalysis>(M);
+  OS << "accesses of " << M.getName() << '\n';
+  auto Print = [&](const char *What, ArrayRef<Access> List) {
+    for (const Access &A : List) {
+      OS << "  " << What << ' ';
+      Types.print(OS, A.Where);
+      OS << " in " << A.I->getFunction()->getName() << place(*A.I) << '\n';
+    }
+  };
+  Print("load", R.loads());
+  Print("store", R.stores());
+  return PreservedAnalyses::all();
+}
+
+} // namespace tpc

@@ -1,0 +1,135 @@
+//===- AccessIndex.h - Which code reads and writes a variable -------------===//
+//
+// Thesis A.6: field -> its loads and stores. Here a variable is a Location: a
+// field of any object of its class, or a global or local variable or a part of
+// one. Copies of whole objects lead on to the variables that they are made of.
+//
+// All accesses of the module that can meet are told, whatever comes first; who
+// sees what is VisibleWrites.h.
+//
+//===----------------------------------------------------------------------===//
+#ifndef TPC_ACCESSINDEX_H
+#define TPC_ACCESSINDEX_H
+
+#include "memory/LocationIndex.h"
+
+#include "llvm/ADT/DenseMap.h"
+#include "llvm/ADT/DenseSet.h"
+#include "llvm/ADT/SetVector.h"
+#include "llvm/IR/Instructions.h"
+#include "llvm/IR/PassManager.h"
+
+namespace tpc {
+
+/// A load, a store, a copy of a whole object, or a call that gets a pointer to
+/// it and whose body is not known.
+struct Access {
+  llvm::Instruction *I;
+  Location Where;
+};
+
+/// A call that gives the \c Bytes at \c Pointer a new value, whatever was
+/// there.
+struct Replacement {
+  const llvm::CallBase *Call;
+  const llvm::Value *Pointer;
+  uint64_t Bytes;
+};
+
+class AccessIndex {
+public:
+  AccessIndex(const Aliases &Alias, LocationTypes &Types)
+      : Alias(Alias), Types(Types), LoadIndex(Alias), StoreIndex(Alias),
+        HandedIndex(Alias), CopiesTo(Alias, Types), CopiesFrom(Alias, Types),
+        WritesByObject(Alias, Types) {}
+
+  llvm::ArrayRef<Access> loads() const { return Loads; }
+  llvm::ArrayRef<Access> stores() const { return Stores; }
+
+  using Writes = llvm::SmallSetVector<llvm::Instruction *, 8>;
+  using Reads = llvm::SmallSetVector<llvm::LoadInst *, 8>;
+  /// Accesses of a variable itself, and of what copies of whole objects bring
+  /// there or take from there.
+  template <typename Set> struct Found {
+    Set Own, Copied;
+  };
+  /// The writes that can give the variable at \p L its value: stores, and calls
+  /// without a body that are handed the variable.
+  Found<Writes> writesOf(const Location &L);
+  /// The loads that can find the value of the variable at \p L.
+  Found<Reads> readsOf(const Location &L);
+
+  /// True where copies of whole objects can bring what is at \p From to \p To,
+  /// or the two can be the same.
+  bool reaches(const Location &From, const Location &To);
+  /// The copies of whole objects by which \p L, or what is copied to it, gets
+  /// its value.
+  llvm::SmallVector<llvm::Instruction *, 4> copiesTo(const Location &L);
+
+  /// The writes of what is in the object at \p L, with what each writes: stores
+  /// and copies, and calls that are handed the object or a part of it.
+  llvm::SmallVector<const Access *, 16> partsOf(const Location &L) const;
+  /// The same, each instruction once.
+  llvm::SmallVector<llvm::Instruction *, 8> writesInto(const Location &L) const;
+
+  /// The calls that replace a variable.
+  llvm::ArrayRef<Replacement> replacements() const { return Replacements; }
+  /// The one variable that \p Call replaces; null where it is none, or not
+  /// known which.
+  const Location *replacedBy(const llvm::Instruction &Call) const;
+
+  /// True where \p Arg is only put into a container.
+  bool isPutIn(const llvm::Use &Arg) const { return PutIn.contains(&Arg); }
+
+private:
+  friend class AccessBuilder;
+  struct Copy {
+    llvm::Instruction *I;
+    Locations To, From;
+  };
+  const Locations &throughCopies(const Location &L, bool Backward);
+
+  const Aliases &Alias;
+  LocationTypes &Types;
+  llvm::SmallVector<Access, 0> Loads, Stores;
+  llvm::SmallVector<Access, 0> Handed; ///< calls without a known body
+  llvm::SmallVector<Copy, 0> Copies;
+  /// What was asked for before: where copies lead from and to a variable.
+  LocationMap<Locations> Backward, Forward;
+  LocationIndex LoadIndex, StoreIndex, HandedIndex;
+  ObjectIndex CopiesTo, CopiesFrom;
+  /// Of all writes, numbered as they stand in PartWrites.
+  PartIndex WritesByObject;
+  llvm::SmallVector<Access, 0> PartWrites;
+  llvm::SmallVector<Replacement, 0> Replacements;
+  /// Calls that replace a whole variable, and which.
+  llvm::DenseMap<const llvm::Instruction *, Location> Replaced;
+  /// Arguments that go into a container.
+  llvm::DenseSet<const llvm::Use *> PutIn;
+};
+
+class ClassObjectAccess : public llvm::AnalysisInfoMixin<ClassObjectAccess> {
+public:
+  using Result = AccessIndex;
+  Result run(llvm::Module &M, llvm::ModuleAnalysisManager &AM);
+
+private:
+  friend llvm::AnalysisInfoMixin<ClassObjectAccess>;
+  static llvm::AnalysisKey Key;
+};
+
+/// `print<tpc-class-object-access>`
+class ClassObjectAccessPrinter
+    : public llvm::PassInfoMixin<ClassObjectAccessPrinter> {
+public:
+  explicit ClassObjectAccessPrinter(llvm::raw_ostream &OS) : OS(OS) {}
+  llvm::PreservedAnalyses run(llvm::Module &M, llvm::ModuleAnalysisManager &AM);
+  static bool isRequired() { return true; }
+
+private:
+  llvm::raw_ostream &OS;
+};
+
+} // namespace tpc
+
+#endif // TPC_ACCESSINDEX_H

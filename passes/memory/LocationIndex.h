@@ -1,0 +1,131 @@
+//===- LocationIndex.h - What is filed by location ------------------------===//
+//
+// Three ways to ask for what can be the same memory (see Aliases.h) without
+// going through all of it: at a location, around it, and in it. Each finds a
+// few numbers too many, since it looks at the ends of paths alone; the caller
+// asks Aliases about each. What is filed is found in the order of its numbers,
+// key by key.
+//
+//===----------------------------------------------------------------------===//
+#ifndef TPC_LOCATIONINDEX_H
+#define TPC_LOCATIONINDEX_H
+
+#include "memory/Aliases.h"
+
+#include "llvm/ADT/DenseMap.h"
+
+namespace tpc {
+
+/// Numbers by location.
+class LocationIndex {
+public:
+  explicit LocationIndex(const Aliases &Alias) : Alias(Alias) {}
+
+  /// The last step to a location, or its root where there is none.
+  using Slot = std::pair<const void *, unsigned>;
+  static Slot slotOf(const Location &L) { return slotOf(L.Root, L.Path); }
+
+  void add(unsigned N, const Location &L) { add(N, L, L.Path.size()); }
+  /// The same for the object that the first \p Steps of \p L lead to.
+  void add(unsigned N, const Location &L, size_t Steps);
+
+  /// Calls \p F with the numbers of what has the last step and the root of
+  /// \p L, be that none.
+  template <typename Fn> void eachWithRootOf(const Location &L, Fn F) const {
+    visit(Exact, std::pair(slotOf(L), L.Root), F);
+  }
+  /// Calls \p F with the numbers of what can be \p L.
+  template <typename Fn> void eachAt(const Location &L, Fn F) const {
+    eachAt(L, L.Path.size(), F);
+  }
+  /// Calls \p F with the numbers of what can be \p L or an object that its path
+  /// leads through.
+  template <typename Fn> void eachAround(const Location &L, Fn F) const;
+
+private:
+  static Slot slotOf(const llvm::Value *Root, llvm::ArrayRef<Step> Path);
+  template <typename Fn>
+  void eachAt(const Location &L, size_t Steps, Fn F) const;
+  template <typename Map, typename Fn>
+  static void visit(const Map &In, const typename Map::key_type &Key, Fn F) {
+    if (auto It = In.find(Key); It != In.end())
+      llvm::for_each(It->second, F);
+  }
+
+  const Aliases &Alias;
+  llvm::DenseMap<std::pair<Slot, const llvm::Value *>,
+                 llvm::SmallVector<unsigned, 2>>
+      Exact; ///< of a slot and a root, which may be null
+  /// Those with a root that pointers without a known one can lead to.
+  llvm::DenseMap<Slot, llvm::SmallVector<unsigned, 2>> Rooted;
+};
+
+/// Numbers of objects.
+class ObjectIndex {
+public:
+  ObjectIndex(const Aliases &Alias, LocationTypes &Types)
+      : Alias(Alias), Types(Types), ByLocation(Alias) {}
+
+  void add(unsigned N, const Location &Object);
+  /// Calls \p F with the numbers of the objects that \p L can be, or be in.
+  template <typename Fn> void eachAround(const Location &L, Fn F) const {
+    ByLocation.eachAround(L, F);
+    if (!L.Root && !L.Path.empty())
+      if (auto It = ByClass.find(L.Path[0].Type); It != ByClass.end())
+        llvm::for_each(It->second, F);
+  }
+
+private:
+  const Aliases &Alias;
+  LocationTypes &Types;
+  LocationIndex ByLocation;
+  /// By the classes that are in them.
+  llvm::DenseMap<unsigned, llvm::SmallVector<unsigned, 4>> ByClass;
+};
+
+/// Numbers of variables by all objects that they are inside of.
+class PartIndex {
+public:
+  PartIndex(const Aliases &Alias, LocationTypes &Types)
+      : Alias(Alias), Types(Types), ByObject(Alias) {}
+
+  void add(unsigned N, const Location &L);
+  /// Calls \p F with the numbers of what can be \p Object, or in it.
+  template <typename Fn> void eachIn(const Location &Object, Fn F) const {
+    ByObject.eachAt(Object, F);
+    if (!Alias.isReachable(Object))
+      return;
+    llvm::SmallSetVector<unsigned, 8> Classes;
+    Types.addClassesIn(Types.typeAt(Object), Classes);
+    for (unsigned Class : Classes)
+      if (auto It = ByClass.find(Class); It != ByClass.end())
+        llvm::for_each(It->second, F);
+  }
+
+private:
+  const Aliases &Alias;
+  LocationTypes &Types;
+  LocationIndex ByObject;
+  /// Without a root, by the class where the path begins.
+  llvm::DenseMap<unsigned, llvm::SmallVector<unsigned, 4>> ByClass;
+};
+
+template <typename Fn>
+void LocationIndex::eachAt(const Location &L, size_t Steps, Fn F) const {
+  Slot Here = slotOf(L.Root, llvm::ArrayRef(L.Path).take_front(Steps));
+  visit(Exact, std::pair(Here, L.Root), F);
+  if (!L.Root)
+    visit(Rooted, Here, F);
+  else if (Steps && Alias.isReachable(L))
+    visit(Exact, std::pair(Here, static_cast<const llvm::Value *>(nullptr)), F);
+}
+
+template <typename Fn>
+void LocationIndex::eachAround(const Location &L, Fn F) const {
+  for (size_t Steps = L.Root ? 0 : 1; Steps <= L.Path.size(); ++Steps)
+    eachAt(L, Steps, F);
+}
+
+} // namespace tpc
+
+#endif // TPC_LOCATIONINDEX_H

@@ -1,0 +1,337 @@
+//===- PointsToSolver.cpp -------------------------------------------------===//
+#include "memory/PointsToSolver.h"
+
+#include "support/Budget.h"
+#include "support/Functions.h"
+
+#include "llvm/ADT/SmallPtrSet.h"
+#include "llvm/IR/InstIterator.h"
+#include "llvm/IR/IntrinsicInst.h"
+#include "llvm/IR/Operator.h"
+
+#include <utility>
+
+using namespace llvm;
+
+namespace tpc {
+
+/// Rounds until the pointers lead nowhere new; more than a chain of pointers
+/// through memory that is as long is not followed.
+static constexpr unsigned MaxRounds = 32;
+
+const PointsToSolver::Returned &PointsToSolver::returnedBy(const Function &F) {
+  auto [It, New] = Results.try_emplace(&F);
+  if (!New)
+    return It->second;
+  SmallVector<const Value *, 4> Work;
+  for (const BasicBlock &BB : F)
+    if (const auto *Return = dyn_cast<ReturnInst>(BB.getTerminator()))
+      if (const Value *V = Return->getReturnValue())
+        Work.push_back(V);
+  SmallPtrSet<const Value *, 8> Seen;
+  while (!Work.empty()) {
+    const Value *V = Work.pop_back_val();
+    if (!Seen.insert(V).second)
+      continue;
+    if (const auto *Phi = dyn_cast<PHINode>(V))
+      append_range(Work, Phi->incoming_values());
+    else if (const auto *Arg = dyn_cast<Argument>(V))
+      It->second.Arguments.push_back(Arg->getArgNo());
+    else
+      It->second.Others.push_back(V);
+  }
+  return It->second;
+}
+
+/// A pointer that a function returned. Where it returns one of its arguments,
+/// that of this very call is meant: std::max(a, b) is a or b.
+void PointsToSolver::addReturned(const CallBase &Call, Node &N) {
+  for (const Function *Callee : Calls.callees(Call)) {
+    const Returned &Result = returnedBy(*Callee);
+    for (unsigned Arg : Result.Arguments)
+      N.Sources.push_back(Call.getArgOperand(Arg));
+    append_range(N.Sources, Result.Others);
+  }
+}
+
+void PointsToSolver::makeNode(Instruction &I) {
+  Node N{&I, {}};
+  const auto *Call = dyn_cast<CallBase>(&I);
+  if (const auto *Phi = dyn_cast<PHINode>(&I))
+    append_range(N.Sources, Phi->incoming_values());
+  else if (const auto *Select = dyn_cast<SelectInst>(&I))
+    N.Sources = {Select->getTrueValue(), Select->getFalseValue()};
+  else if (Call && Rules.container(*Call))
+    N.Container = containerOf(*Call);
+  else if (Call)
+    addReturned(*Call, N);
+  else if (const auto *Extract = dyn_cast<ExtractValueInst>(&I)) {
+    // An iterator and whether something was inserted.
+    const auto *Pair = dyn_cast<CallBase>(Extract->getAggregateOperand());
+    if (!Pair || !Rules.container(*Pair))
+      return;
+    N.Container = containerOf(*Pair);
+  } else if (!isa<LoadInst>(&I))
+    return;
+  Nodes.push_back(std::move(N));
+}
+
+void PointsToSolver::makeNodes() {
+  for (Function &F : definedFunctions(M)) {
+    for (const Argument &Arg : F.args()) {
+      if (!Arg.getType()->isPointerTy())
+        continue;
+      Node N{&Arg, {}};
+      for (const CallBase *Call : Calls.callers(&F))
+        if (Arg.getArgNo() < Call->arg_size())
+          N.Sources.push_back(Call->getArgOperand(Arg.getArgNo()));
+      Nodes.push_back(std::move(N));
+    }
+    for (Instruction &I : instructions(F)) {
+      if (Budget::isSpent())
+        return;
+      if (auto *Call = dyn_cast<CallBase>(&I);
+          Call && Call->hasStructRetAttr() && Rules.container(*Call))
+        Iterators[Call->getArgOperand(0)].push_back(containerOf(*Call));
+      if (const auto *Store = dyn_cast<StoreInst>(&I);
+          Store && Store->getValueOperand()->getType()->isPointerTy() &&
+          !isa<ConstantPointerNull>(Store->getValueOperand()))
+        PointerStores.push_back({Store});
+      if (I.getType()->isPointerTy())
+        makeNode(I);
+    }
+  }
+}
+
+/// True where what \p N takes its targets from has grown.
+bool PointsToSolver::isDue(const Node &N) const {
+  if (!N.Done || (N.Container && hasGrown(N.Container, N.Done)) ||
+      any_of(N.Sources, [&](const Value *V) { return hasGrown(V, N.Done); }))
+    return true;
+  const auto *Load = dyn_cast<LoadInst>(N.V);
+  return Load && (hasGrown(Load->getPointerOperand(), N.Done) ||
+                  any_of(N.Where, [&](const Location &L) {
+                    return SlotGrown.lookup(LocationIndex::slotOf(L)) > N.Done;
+                  }));
+}
+
+/// The number of the content of \p L.
+unsigned PointsToSolver::contentAt(const Location &L, bool Unrooted) {
+  auto [It, New] = ContentIndex[Unrooted].try_emplace(L, Contents.size());
+  if (New)
+    Contents.push_back({L, Unrooted});
+  return It->second;
+}
+
+/// Adds to \p Out the pointers that are kept at a place by now.
+void PointsToSolver::collect(unsigned Number, Locations &Out) {
+  const Location Where = Contents[Number].Where;
+  bool Unrooted = Contents[Number].Unrooted;
+  if (Where.Root && !Where.Path.empty() && Alias.isReachable(Where))
+    collect(contentAt({nullptr, Where.Path}, /*Unrooted=*/true), Out);
+  Content &C = Contents[Number];
+  if (C.Found.size() < MaxLocations &&
+      (!C.Done || SlotGrown.lookup(LocationIndex::slotOf(Where)) > C.Done)) {
+    auto Add = [&](unsigned S) {
+      if (any_of(PointerStores[S].Where,
+                 [&](const Location &To) { return Alias.mayBe(To, Where); }))
+        R.addPointees(PointerStores[S].I->getValueOperand(), C.Found);
+    };
+    if (Where.Root || Unrooted)
+      PointerStoreIndex.eachWithRootOf(Where, Add);
+    else
+      PointerStoreIndex.eachAt(Where, Add);
+    C.Done = Now;
+  }
+  for (const Location &L : C.Found)
+    addTo(Out, L);
+}
+
+/// Adds what \p N's sources lead to by now; true where that is more.
+bool PointsToSolver::update(Node &N) {
+  Locations Found = R.Targets.lookup(N.V);
+  size_t Before = Found.size();
+  if (Before >= MaxLocations) {
+    N.Done = Now;
+    return false;
+  }
+  for (const Value *Source : N.Sources)
+    R.addPointees(Source, Found);
+  if (N.Container)
+    R.addElements(N.Container, Found);
+  if (const auto *Load = dyn_cast<LoadInst>(N.V)) {
+    N.Where = R.resolve(Load->getPointerOperand(), true);
+    for (const Location &L : N.Where) {
+      // Elements lead to each other where they are kept in nodes.
+      if (L.isElement())
+        addTo(Found, L);
+      if (auto It = Iterators.find(L.Root); L.Root && It != Iterators.end())
+        for (const Value *Container : It->second)
+          R.addElements(Container, Found);
+      collect(contentAt(L, /*Unrooted=*/false), Found);
+    }
+  }
+  N.Done = Now;
+  if (Found.size() == Before)
+    return false;
+  R.Targets[N.V] = std::move(Found);
+  Grown[N.V] = ++Now;
+  return true;
+}
+
+/// Adds the places that \p S stores to by now, and tells those who load from
+/// there; true where there is something to tell.
+bool PointsToSolver::update(PointerStore &S, unsigned Number) {
+  bool More = false;
+  if (!S.Done || hasGrown(S.I->getPointerOperand(), S.Done))
+    for (const Location &L : R.resolve(S.I->getPointerOperand(), true))
+      if (none_of(S.Where, [&](const Location &K) { return K.isSame(L); })) {
+        S.Where.push_back(L);
+        PointerStoreIndex.add(Number, L);
+        More = true;
+      }
+  More |= hasGrown(S.I->getValueOperand(), S.Done);
+  S.Done = Now;
+  if (!More)
+    return false;
+  ++Now;
+  for (const Location &L : S.Where)
+    SlotGrown[LocationIndex::slotOf(L)] = Now;
+  return true;
+}
+
+/// One round; true where something new was found.
+bool PointsToSolver::propagate() {
+  bool Changed = false;
+  for (Node &N : Nodes)
+    if (!Budget::isSpent() && isDue(N))
+      Changed |= update(N);
+  for (auto [Number, S] : enumerate(PointerStores))
+    if (!Budget::isSpent())
+      Changed |= update(S, Number);
+  return Changed && !Budget::isSpent();
+}
+
+/// True where the objects that \p V leads to are all known, given that those
+/// of the pointers in \p Complete are. A field is: of any object of its class.
+static bool isComplete(const Value *V,
+                       const DenseSet<const Value *> &Complete) {
+  while (true) {
+    if (const auto *GEP = dyn_cast<GEPOperator>(V)) {
+      const auto *Struct = dyn_cast<StructType>(GEP->getSourceElementType());
+      if (Struct && !Struct->isLiteral() && GEP->getNumIndices() > 1)
+        return true;
+      V = GEP->getPointerOperand();
+    } else if (const auto *Freeze = dyn_cast<FreezeInst>(V)) {
+      V = Freeze->getOperand(0);
+    } else {
+      return isa<AllocaInst>(V) || isa<GlobalVariable>(V) ||
+             isa<ConstantPointerNull>(V) || isa<UndefValue>(V) ||
+             Complete.contains(V);
+    }
+  }
+}
+
+/// Finds the locals that are copied to, or handed to what is not looked into.
+void PointsToSolver::findFilled() {
+  auto Add = [&](const Value *Pointer) {
+    for (const Location &L : R.resolve(Pointer, false))
+      if (isa_and_nonnull<AllocaInst>(L.Root))
+        Filled.insert(L.Root);
+  };
+  for (Function &F : definedFunctions(M))
+    for (const Instruction &I : instructions(F)) {
+      if (Budget::isSpent())
+        return;
+      const auto *Call = dyn_cast<CallBase>(&I);
+      if (const auto *Copy = dyn_cast<MemTransferInst>(&I))
+        Add(Copy->getRawDest());
+      else if (Call && !isa<IntrinsicInst>(Call) &&
+               Calls.callees(*Call).empty())
+        for (const Use &Arg : Call->args())
+          if (Arg->getType()->isPointerTy())
+            Add(Arg);
+    }
+}
+
+/// True where all pointers that a load finds in memory are complete: it reads
+/// fields and variables that the program stores such pointers to, and others
+/// do not know of.
+bool PointsToSolver::findsComplete(const Node &Load) const {
+  // It may turn out later what it reads.
+  if (Load.Where.empty())
+    return isComplete(cast<LoadInst>(Load.V)->getPointerOperand(), R.Complete);
+  bool Stored = false;
+  for (const Location &L : Load.Where) {
+    bool IsKnown = L.Root ? !isa<AllocaInst>(L.Root) || !Filled.contains(L.Root)
+                          : L.Path.back().isField();
+    if (!IsKnown)
+      return false;
+    bool Complete = true;
+    PointerStoreIndex.eachAt(L, [&](unsigned S) {
+      const PointerStore &Store = PointerStores[S];
+      if (!any_of(Store.Where,
+                  [&](const Location &To) { return Alias.mayBe(To, L); }))
+        return;
+      Stored = true;
+      Complete &= isComplete(Store.I->getValueOperand(), R.Complete);
+    });
+    if (!Complete)
+      return false;
+  }
+  return Stored;
+}
+
+/// Arguments lead to nothing but what the calls hand over where all calls are
+/// known, and so do merges; what was allocated is known by its class alone.
+/// True where something that was taken for complete is not.
+bool PointsToSolver::findComplete() {
+  bool First = !std::exchange(Assumed, true);
+  if (First) {
+    bool IsProgram = M.getFunction("main");
+    for (const Node &N : Nodes) {
+      bool Candidate =
+          isa<PHINode>(N.V) || isa<SelectInst>(N.V) || isa<LoadInst>(N.V);
+      if (const auto *Arg = dyn_cast<Argument>(N.V)) {
+        const Function *F = Arg->getParent();
+        Candidate = !N.Sources.empty() && Calls.allCallsKnown(*F) &&
+                    (F->hasLocalLinkage() || IsProgram);
+      }
+      if (Candidate)
+        R.Complete.insert(N.V);
+    }
+  }
+  findFilled();
+  // The largest set that holds itself up: what fails is taken out until
+  // nothing fails any more.
+  bool Fell = First;
+  for (bool Changed = true; Changed;) {
+    Changed = false;
+    for (Node &N : Nodes) {
+      if (Budget::isSpent())
+        return false;
+      if (!R.Complete.contains(N.V) ||
+          (R.Targets.lookup(N.V).size() < MaxLocations &&
+           (!isa<LoadInst>(N.V) || First || findsComplete(N)) &&
+           all_of(N.Sources, [&](const Value *Source) {
+             return isComplete(Source, R.Complete);
+           })))
+        continue;
+      R.Complete.erase(N.V);
+      Grown[N.V] = ++Now;
+      Changed = Fell = true;
+    }
+  }
+  return Fell;
+}
+
+void PointsToSolver::findTargets() {
+  makeNodes();
+  // Where a pointer turns out to lead to too much, what depends on that is
+  // looked at again.
+  while (findComplete() && !Budget::isSpent())
+    for (unsigned Round = 0; Round < MaxRounds && propagate(); ++Round)
+      ;
+}
+
+} // namespace tpc

@@ -1,0 +1,122 @@
+//===- VisibleWrites.h - Which writes a read sees -------------------------===//
+//
+// Of the accesses that can meet (see AccessIndex.h) those that do, as far as
+// the order of the code says: of a local variable by LocalWrites.h, of what
+// functions share by Reaching.h. Writes that another one surely replaces on
+// every way to the read are left out.
+//
+//===----------------------------------------------------------------------===//
+#ifndef TPC_VISIBLEWRITES_H
+#define TPC_VISIBLEWRITES_H
+
+#include "memory/LocalWrites.h"
+#include "memory/Reaching.h"
+
+namespace tpc {
+
+class VisibleWrites {
+public:
+  VisibleWrites(llvm::Module &M, llvm::ModuleAnalysisManager &AM);
+
+  /// The writes that can give \p Load its value: stores, and calls without a
+  /// body that are handed the variable. Copies of whole objects are followed.
+  llvm::ArrayRef<llvm::Instruction *> definitionsOf(const llvm::LoadInst &Load);
+
+  /// The loads to which \p Write, a store or call that writes the scalar at
+  /// \p Pointer, can give the value.
+  llvm::SmallVector<llvm::LoadInst *, 8> usesOf(const llvm::Instruction &Write,
+                                                const llvm::Value *Pointer);
+
+  /// The writes of the scalar at \p L that \p At, which reads it at \p Pointer,
+  /// can see.
+  llvm::SmallVector<llvm::Instruction *, 8>
+  writesOf(const Location &L, const llvm::Instruction &At,
+           const llvm::Value *Pointer);
+  /// The writes of what is in the object at \p L that \p At, which is handed it
+  /// by \p Pointer, can see.
+  llvm::SmallVector<llvm::Instruction *, 8>
+  writesInto(const Location &L, const llvm::Instruction &At,
+             const llvm::Value *Pointer);
+
+  /// True where \p At, which reads \p L at \p Pointer, sees the same writes as
+  /// all that reads it elsewhere: it is no local variable of \p At's function,
+  /// and no write of it is replaced where others do not see it.
+  bool isSharedBy(const Location &L, const llvm::Instruction &At,
+                  const llvm::Value *Pointer);
+
+  /// True where \p Call gives what is at \p Pointer a new value, whatever was
+  /// there.
+  bool replaces(const llvm::CallBase &Call, const llvm::Value *Pointer) const;
+
+  /// How often it was not looked which reads see a write, for the unit is too
+  /// large: there, all do.
+  unsigned givenUp() const { return Locals.givenUp() + Shared.givenUp(); }
+
+private:
+  using Writes = AccessIndex::Writes;
+  /// The writes of a variable that is not local.
+  struct SharedWrites {
+    Writes Own;    ///< of itself
+    Writes Copied; ///< of what copies of whole objects put into it
+    bool TooMany = false;
+    bool Narrowed = false; ///< not all that read it see all of Own
+  };
+  /// A part of an object, and how a function names it.
+  struct Part {
+    llvm::SmallVector<Step, 4> Way;
+    Reaching::Variable Variable;
+  };
+
+  Writes allWrites(const Location &L);
+  const SharedWrites &sharedWrites(const Location &L);
+  const llvm::Value *placeOf(const llvm::Instruction &I);
+  std::optional<Reaching::Variable> variableAt(const llvm::Value *Pointer,
+                                               const Location &L) const;
+  std::optional<Reaching::Variable> writtenBy(const llvm::Instruction &Write,
+                                              const Location &L) const;
+  llvm::SmallVector<Part, 4> replacedParts(const Location &L,
+                                           const llvm::Instruction &At,
+                                           const llvm::Value *Pointer);
+
+  const llvm::DataLayout &Layout;
+  const LocationTypes &Types;
+  const Aliases &Alias;
+  PointsTo &Pointers;
+  AccessIndex &Accesses;
+  LocalWrites Locals;
+  Reaching Shared;
+  /// What was asked for before.
+  llvm::DenseMap<const llvm::LoadInst *,
+                 std::unique_ptr<llvm::SmallVector<llvm::Instruction *, 8>>>
+      Definitions;
+  llvm::DenseMap<const llvm::Instruction *, const llvm::Value *> Places;
+  LocationMap<SharedWrites> ByVariable;
+};
+
+class VisibleWritesAnalysis
+    : public llvm::AnalysisInfoMixin<VisibleWritesAnalysis> {
+public:
+  using Result = VisibleWrites;
+  Result run(llvm::Module &M, llvm::ModuleAnalysisManager &AM) {
+    return VisibleWrites(M, AM);
+  }
+
+private:
+  friend llvm::AnalysisInfoMixin<VisibleWritesAnalysis>;
+  static llvm::AnalysisKey Key;
+};
+
+/// `print<tpc-visible-writes>`
+class VisibleWritesPrinter : public llvm::PassInfoMixin<VisibleWritesPrinter> {
+public:
+  explicit VisibleWritesPrinter(llvm::raw_ostream &OS) : OS(OS) {}
+  llvm::PreservedAnalyses run(llvm::Module &M, llvm::ModuleAnalysisManager &AM);
+  static bool isRequired() { return true; }
+
+private:
+  llvm::raw_ostream &OS;
+};
+
+} // namespace tpc
+
+#endif // TPC_VISIBLEWRITES_H
