@@ -3,7 +3,7 @@
 
 #include "Clock.h"
 #include "Modes.h"
-#include "RosControl.h"
+#include "ros1/RosControl.h"
 
 #include <algorithm>
 #include <cmath>

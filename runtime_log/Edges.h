@@ -21,7 +21,8 @@ extern std::atomic<LogFile *> SlotsHome;
 /// The period that has begun last.
 extern std::atomic<uint32_t> NowPeriod;
 
-/// |compared - threshold| above which an evaluation is far (SPEC 7).
+/// |compared - threshold| above which an evaluation is far
+/// (docs/reference/runtime.md).
 constexpr double FarFrom = 1e-4;
 
 template <typename T> inline void setIf(bool Changes, T &To, T Value) {

@@ -1,9 +1,7 @@
 //===- LogFile.h - The binary file of reports -----------------------------===//
 //
-// Records are written straight into the mapped file: the kernel keeps them
-// whatever happens to the process. Space is allocated before it is mapped, so
-// that a full disk is an error and no signal, and its pages are touched ahead
-// by the helper thread, so that a report waits for none. Layout: Layout.h.
+// Records are written straight into the mapped file. Its layout is in Layout.h,
+// its space in Room.h, its name in NewFile.h.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_LOGFILE_H
@@ -13,13 +11,13 @@
 #include "Config.h"
 #include "Layout.h"
 #include "Report.h"
+#include "Room.h"
 #include "Sites.h"
 #include "Threads.h"
 
-#include <memory>
+#include <atomic>
+#include <mutex>
 #include <string>
-#include <sys/types.h>
-#include <vector>
 
 namespace tpc {
 
@@ -73,27 +71,18 @@ public:
   SlotPair *newPair(Thread &T);
 
   /// The helper thread's: makes room ahead, gives back what is full.
-  void lookAhead();
+  void lookAhead() { Space.lookAhead(); }
   void setNode(const char *Name);
   /// Whether it is stopped: disk full, or the limit reached.
-  bool isStopped() const { return Stopped.load(std::memory_order_relaxed); }
+  bool isStopped() const { return Space.isStopped(); }
   /// No more chunks are given out; what was not used is cut off.
-  void close();
+  void close() { Space.close(); }
 
-  const std::string &path() const { return Path; }
+  const std::string &path() const { return Space.path(); }
   uint64_t records() const { return Records.load(std::memory_order_relaxed); }
 
 private:
-  static constexpr uint32_t ExtentBytes = 1U << 20;
-  static constexpr uint32_t ChunksOfExtent = ExtentBytes / layout::ChunkBytes;
-
-  struct Extent {
-    char *Base;
-    uint32_t Done = 0; ///< chunks that nobody writes to any more
-    bool IsTouched = false;
-  };
-
-  LogFile(const Config &C, std::string Path, int Descriptor);
+  LogFile(const Config &C, const NewFile &File) : Space(C, File) {}
 
   template <typename Number>
   static void put(layout::Record &R, uint32_t What, uint32_t Site, int64_t Ns,
@@ -117,35 +106,14 @@ private:
   /// Room for \p Count records in a row in a system chunk; null where there is
   /// none. SystemLock is held.
   layout::Record *systemRecords(uint32_t Count);
-  char *newChunk(uint32_t Kind, uint32_t Thread, uint64_t First, uint64_t Tid);
-  void finished(const void *EndOfChunk);
-  bool isMine() const;
-  bool grow(std::string &Why);
-  void stop(const std::string &Why);
-  void touch();
 
-  const std::string Path;
-  const int Descriptor;
-  dev_t Device = 0;
-  ino_t Inode = 0;
-  const uint64_t LimitBytes, ReserveBytes;
-  layout::Header *Header = nullptr;
-
-  std::mutex Chunks; ///< of the next six
-  std::vector<Extent> Extents;
-  uint32_t Used = 0; ///< chunks given out
-  uint32_t Ahead = 1;
-  bool Starved = false;
-  bool IsClosed = false;
-  bool Asked = false;
-  std::mutex Growing;
+  Room Space;
 
   std::mutex SystemLock; ///< of the system's chunk and of pairs
   layout::Record *SystemNext = nullptr, *SystemEnd = nullptr;
   uint64_t SystemWritten = 0;
   char *LiveNext = nullptr, *LiveEnd = nullptr;
 
-  std::atomic<bool> Stopped{false};
   std::atomic<uint64_t> Records{0};
 };
 

@@ -1,7 +1,7 @@
 //===- LogOne.h - What instrumented code calls ----------------------------===//
 //
-// SPEC 5. The instrumentation inserts calls of log_one before predicates; this
-// library brings the reports to where they can be read.
+// The instrumentation inserts calls of log_one before predicates; this library
+// brings the reports to where they can be read.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_LOGONE_H

@@ -60,12 +60,12 @@ struct Dropped {
   DropReason Why;
 };
 
-/// `KEY,RESULT,cmp:C,thresh:T,res:R` (SPEC 5). Numbers are the shortest text
-/// that reads back as the same double.
+/// `KEY,RESULT,cmp:C,thresh:T,res:R` (docs/reference/formats.md). Numbers are
+/// the shortest text that reads back as the same double.
 std::string format(const Report &R);
 
 /// The same with `,count:N,flops:F,diff:MIN;MAX;MEAN,abs:MEAN,range:LOW;HIGH,
-/// far:N,odd:N,span:BEGIN;END` (docs/formats.md).
+/// far:N,odd:N,span:BEGIN;END` (docs/reference/formats.md).
 std::string format(const Summary &S);
 
 /// `KEY,count:N,flops:F,why:W`.

@@ -3,7 +3,7 @@
 
 #include "Edges.h"
 #include "Modes.h"
-#include "RosControl.h"
+#include "ros1/RosControl.h"
 
 #include <condition_variable>
 #include <cstdio>

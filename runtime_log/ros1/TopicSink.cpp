@@ -7,11 +7,11 @@
 //
 //===----------------------------------------------------------------------===//
 #include "Clock.h"
-#include "RosControl.h"
-#include "RosLife.h"
 #include "Runtime.h"
 #include "Sink.h"
 #include "TopicStore.h"
+#include "ros1/RosControl.h"
+#include "ros1/RosLife.h"
 
 #include <ros/advertise_options.h>
 #include <ros/init.h>

@@ -9,7 +9,7 @@
 #ifndef TPC_ROSLIFE_H
 #define TPC_ROSLIFE_H
 
-#include "RosControl.h"
+#include "ros1/RosControl.h"
 
 #include <ros/callback_queue.h>
 

@@ -1,7 +1,7 @@
 //===- RosoutSink.cpp -----------------------------------------------------===//
-#include "RosLife.h"
 #include "Runtime.h"
 #include "Sink.h"
+#include "ros1/RosLife.h"
 
 #include <ros/console.h>
 #include <ros/init.h>

@@ -1,7 +1,7 @@
 //===- RosControl.cpp -----------------------------------------------------===//
-#include "RosControl.h"
-#include "RosLife.h"
+#include "ros1/RosControl.h"
 #include "Runtime.h"
+#include "ros1/RosLife.h"
 
 #include <ros/advertise_service_options.h>
 #include <ros/init.h>

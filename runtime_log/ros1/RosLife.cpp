@@ -1,5 +1,5 @@
 //===- RosLife.cpp --------------------------------------------------------===//
-#include "RosLife.h"
+#include "ros1/RosLife.h"
 #include "Modes.h"
 #include "Runtime.h"
 

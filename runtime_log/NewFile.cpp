@@ -1,0 +1,110 @@
+//===- NewFile.cpp --------------------------------------------------------===//
+#include "NewFile.h"
+
+#include "Clock.h"
+#include "Layout.h"
+#include "ros1/RosControl.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace tpc {
+
+std::string errorText(int Error) {
+  char Buffer[128];
+  return strerror_r(Error, Buffer, sizeof(Buffer));
+}
+
+static std::string folderOf(const Config &C) {
+  if (!C.Folder.empty())
+    return C.Folder;
+  if (const char *Home = std::getenv("ROS_HOME"); Home && *Home)
+    return std::string(Home) + "/tpc";
+  const char *Home = std::getenv("HOME");
+  return std::string(Home ? Home : "/tmp") + "/.ros/tpc";
+}
+
+static bool makeFolder(const std::string &Folder) {
+  for (size_t End = 1; End != std::string::npos;) {
+    End = Folder.find('/', End + 1);
+    if (mkdir(Folder.substr(0, End).c_str(), 0777) && errno != EEXIST &&
+        errno != EISDIR)
+      return false;
+  }
+  return true;
+}
+
+std::string programPath() {
+  char Buffer[sizeof(layout::Header::Program)];
+  ssize_t Length = readlink("/proc/self/exe", Buffer, sizeof(Buffer) - 1);
+  return std::string(Buffer, std::max<ssize_t>(Length, 0));
+}
+
+/// What the file is called by: the node, else the program.
+static std::string nameOfProcess() {
+  std::string Name = rosNodeName();
+  if (Name.empty()) {
+    Name = programPath();
+    Name = Name.substr(Name.rfind('/') + 1);
+  }
+  while (!Name.empty() && Name.front() == '/')
+    Name.erase(0, 1);
+  for (char &C : Name)
+    if (!std::isalnum(static_cast<unsigned char>(C)) && C != '_' && C != '-')
+      C = '_';
+  return Name.empty() ? "process" : Name.substr(0, 100);
+}
+
+std::optional<NewFile> NewFile::create(const Config &C, std::string &Why) {
+  std::string Folder = folderOf(C);
+  if (!makeFolder(Folder)) {
+    Why = Folder + ": " + errorText(errno);
+    return std::nullopt;
+  }
+  std::string Stem = Folder + "/" + nameOfProcess() + "-" +
+                     std::to_string(getpid()) + "-" +
+                     std::to_string(Clock::real() / 1'000'000'000);
+  for (int Try = 1;; ++Try) {
+    std::string Path =
+        Stem + (Try > 1 ? "-" + std::to_string(Try) : "") + ".tpc";
+    // Processes in two containers can have the same number, and so the same
+    // path: whoever creates the temporary file first has it.
+    std::string New = Path + ".new";
+    int Descriptor =
+        open(New.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    bool IsTaken = Descriptor < 0 && errno == EEXIST;
+    if (Descriptor >= 0 && !access(Path.c_str(), F_OK)) {
+      IsTaken = true;
+      close(Descriptor);
+      unlink(New.c_str());
+    }
+    if (IsTaken && Try < 1000)
+      continue;
+    if (Descriptor < 0 || IsTaken) {
+      Why = Path + ": " + errorText(IsTaken ? EEXIST : errno);
+      return std::nullopt;
+    }
+    return NewFile{std::move(Path), Descriptor};
+  }
+}
+
+bool NewFile::publish(std::string &Why) const {
+  if (!rename((Path + ".new").c_str(), Path.c_str()))
+    return true;
+  Why = errorText(errno);
+  return false;
+}
+
+void NewFile::discard() const {
+  unlink((Path + ".new").c_str());
+  close(Descriptor);
+}
+
+} // namespace tpc
