@@ -24,7 +24,7 @@ https://example.org/WIDE
 .venv/bin/pytpc build ~/ws --package mission -- --cmake-args -DX=1   # WIDE
 pytpc suggest out --static ws --value=-1 && pytpc COMMAND --help
 eval "$(pytpc env ~/ws)"; make test -j2
-python -m pytpc.patch WS --restore
+python3 -m pytpc.python_runtime node.py --its-own-option
 ```
 
 ```console
