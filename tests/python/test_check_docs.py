@@ -60,6 +60,20 @@ def check(page: Path) -> list[str]:
     return [line.removeprefix(f"{page.name}:") for line in lines]
 
 
+def test_the_pages_that_are_opened_first_have_no_fault():
+    pages = ["README.md", "docs/README.md", "docs/reference/command-line.md"]
+    pages += ["docs/tutorial/diagnose-a-mission.md", "docs/explanation/architecture.md"]
+    done = subprocess.run(
+        [sys.executable, "tools/check_docs.py", *pages],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=60,
+    )
+    assert (done.stdout, done.returncode) == ("", 0)
+
+
 @pytest.fixture()
 def page(tmp_path: Path) -> Path:
     (tmp_path / "other.md").write_text(OTHER)
