@@ -1,4 +1,4 @@
-"""docs/tutorial/diagnose-a-mission.md: what is typed in it does what it says, in Python and on the command line."""
+"""The tutorial: what is typed in it does what it says, in Python and on the command line."""
 
 from __future__ import annotations
 
@@ -71,7 +71,8 @@ def test_the_examples_of_diagnosing(command: str):
         timeout=60,
     )
     heading = f"## {'Ranking' if command.startswith('rank') else 'Suggestions'}\n"
-    section = (ROOT / "docs/how-to/diagnose.md").read_text().partition(heading)[2].partition("\n## ")[0]
+    page = (ROOT / "docs/how-to/diagnose.md").read_text()
+    section = page.partition(heading)[2].partition("\n## ")[0]
     begin = section.index("    All 5 marks together")
     block = re.match(r"(?:    .*\n|\n(?=    ))+", section[begin:])
     assert block is not None
