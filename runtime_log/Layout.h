@@ -1,6 +1,7 @@
 //===- Layout.h - The binary file of reports, byte for byte ---------------===//
 //
-// docs/formats.md has it in words. Little endian; what was not written is zero.
+// docs/reference/formats.md has it in words. Little endian; what was not
+// written is zero.
 // `What` of a record is written last, so that a record that has one is whole
 // whenever the process ends.
 //

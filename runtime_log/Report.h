@@ -65,7 +65,7 @@ struct Dropped {
 std::string format(const Report &R);
 
 /// The same with `,count:N,flops:F,diff:MIN;MAX;MEAN,abs:MEAN,range:LOW;HIGH,
-/// far:N,odd:N,span:BEGIN;END` (docs/formats.md).
+/// far:N,odd:N,span:BEGIN;END` (docs/reference/formats.md).
 std::string format(const Summary &S);
 
 /// `KEY,count:N,flops:F,why:W`.

@@ -1,6 +1,7 @@
 //===- TopicStore.h - What waits to be sent on the topic ------------------===//
 //
-// No ROS in here: bytes in, text out. The lines are those of docs/formats.md.
+// No ROS in here: bytes in, text out. The lines are those of
+// docs/reference/formats.md.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_TOPICSTORE_H

@@ -24,7 +24,8 @@ def read_bag_into(path: Path, gathering: Gathering, on_progress: Progress | None
     """Read a ROS 1 bag.
 
     Reports come from /rosout, /rosout_agg and /threshold_information. Time is the message's own
-    stamp; where that is 0, the time at which the bag got it. Marks are docs/formats.md's topics.
+    stamp; where that is 0, the time at which the bag got it. The topics of marks
+    stand in docs/reference/formats.md.
 
     Args:
         path: the file.

@@ -1,4 +1,4 @@
-"""The binary file of reports, byte for byte (docs/formats.md has it in words)."""
+"""The binary file of reports, byte for byte (docs/reference/formats.md has it in words)."""
 
 from __future__ import annotations
 

@@ -143,7 +143,7 @@ class Outcome:
         return self.rest(Events.empty(), Summaries.empty())
 
     def save_csv(self, path: Path, told: Told | None = None) -> Recording:
-        """Write the events in the thesis's form (docs/formats.md), without nodes; see ``save``."""
+        """Write the events in the thesis's form (docs/reference/formats.md), without nodes."""
         total = max(1, len(self.gathering.events))
         with replacing(path) as staged, staged.open("w", encoding="ascii") as stream:
             for rows in self.event_blocks():

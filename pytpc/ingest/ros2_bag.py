@@ -35,7 +35,8 @@ _IN_A_URI = frozenset("?#%")
 def read_ros2_into(path: Path, gathering: Gathering, on_progress: Progress | None = None) -> None:
     """Read a .mcap or .db3 file, or a folder of rosbag2.
 
-    Reports come from /rosout and /threshold_information, marks from docs/formats.md's topics.
+    Reports come from /rosout and /threshold_information, marks from the topics of
+    docs/reference/formats.md.
 
     Raises:
         InputError: the file is truncated or damaged, or of ROS 1; one line.

@@ -124,7 +124,7 @@ def parse_stamped(text: str) -> StampedReport | Malformed:
 
 
 def parse_other(text: str, node: str) -> Summary | Drop | Malformed | None:
-    """Read ``threshold_summary:...`` or ``threshold_dropped:...`` (docs/formats.md).
+    """Read ``threshold_summary:...`` or ``threshold_dropped:...`` (docs/reference/formats.md).
 
     Returns:
         What it says; ``Malformed`` where the text only begins like one; None for anything else.

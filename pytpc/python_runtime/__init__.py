@@ -7,5 +7,5 @@ standard library alone. rospy is used where the program has imported it.
 that reports) -> ``loader``, ``script`` (how it comes to run); ``quiet`` (unseen by tracers) ->
 ``sites`` (what an evaluation calls) -> ``runtime`` (what is chosen) -> ``policies``, ``log_file``,
 ``ros_sinks`` (where reports go).
-docs/python-nodes.md has it in words.
+docs/reference/python-runtime.md has it in words.
 """

@@ -35,7 +35,7 @@ _NUMBERS = frozenset({int, float, bool})
 
 
 class Inside(NamedTuple):
-    """One comparison of a call: its key, its relation, and its operand as in docs/formats.md."""
+    """One comparison of a call: key, relation, and operand (docs/reference/formats.md)."""
 
     reported: Reported
     relation: str

@@ -1,7 +1,7 @@
 """What a process reports, and where to: the same settings as those of the C++ runtime.
 
-docs/running.md has them. A setting that is no value of it gets a warning and is left as it was: a
-node is never stopped for this.
+docs/reference/runtime.md has them. An invalid value logs a warning and the previous setting stays:
+a node is never stopped for this.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The binary file of reports (docs/formats.md), written straight into mapped memory.
+"""The binary file of reports (docs/reference/formats.md), written straight into mapped memory.
 
 The kernel keeps what was written whatever happens to the process. Space is allocated on the disk
 before it is mapped, so that a full disk is an error and no signal. Each thread has chunks of its

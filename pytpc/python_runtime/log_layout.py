@@ -1,6 +1,6 @@
 """The binary file of reports, byte for byte, and where a new one is made.
 
-docs/formats.md has the layout in words, runtime_log/Layout.h in C++.
+docs/reference/formats.md has the layout in words, runtime_log/Layout.h in C++.
 """
 
 from __future__ import annotations

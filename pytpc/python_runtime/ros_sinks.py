@@ -124,7 +124,7 @@ class _Waiting(NamedTuple):
 
 
 class TopicSink(Sink):
-    """Batches on /threshold_information, made by the helper thread (docs/formats.md)."""
+    """Batches on /threshold_information, made by the helper thread (docs/reference/formats.md)."""
 
     def __init__(self) -> None:
         """Nothing is advertised yet."""

@@ -1,4 +1,4 @@
-"""What a sink takes, and its lines of text (docs/formats.md, "Reports")."""
+"""What a sink takes, and its lines of text (docs/reference/formats.md, "Reports")."""
 
 from __future__ import annotations
 

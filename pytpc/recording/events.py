@@ -1,7 +1,8 @@
 """Evaluations of threshold predicate comparisons as columns: in numpy, Arrow and Parquet.
 
 ``Events`` is one table sorted by time; ``EventBuilder`` makes it from records one at a time,
-``read_parquet`` and ``write_parquet`` keep it on disk. The columns are those of docs/formats.md.
+``read_parquet`` and ``write_parquet`` keep it on disk. The columns are those of
+docs/reference/formats.md.
 """
 
 from __future__ import annotations

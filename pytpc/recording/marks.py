@@ -1,7 +1,7 @@
 """Marks: the times at which an observer says that the robot does wrong.
 
 On a graph they are messages (``topic_of_marks``), beside a bag a CSV file (``read_marks``). What
-the columns and topics are stands in docs/formats.md.
+the columns and topics are stands in docs/reference/formats.md.
 """
 
 from __future__ import annotations

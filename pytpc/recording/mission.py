@@ -1,7 +1,7 @@
 """A mission as it was recorded: its events, its marks, and what could not be read of it.
 
 On disk it is a folder with ``events.parquet``, ``marks.json`` and, where there are summaries,
-``summaries.parquet`` (docs/formats.md).
+``summaries.parquet`` (docs/reference/formats.md).
 """
 
 from __future__ import annotations

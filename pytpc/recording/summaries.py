@@ -1,7 +1,7 @@
 """Summaries of evaluations as columns: what the policy ``edges`` keeps of a site in a period.
 
 Under ``edges`` the events hold the first evaluation of each comparison and its flops; all
-evaluations, those too, are in the summaries. The columns are those of docs/formats.md.
+evaluations, those too, are in the summaries. The columns are those of docs/reference/formats.md.
 """
 
 from __future__ import annotations

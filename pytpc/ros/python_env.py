@@ -1,6 +1,6 @@
 """The environment in which Python nodes report without anything being changed for them.
 
-Three variables do it: docs/python-nodes.md, Running. Whoever starts nodes, or has them started,
+Three variables do it (docs/reference/python-runtime.md). Whoever starts nodes, or has them started,
 adds them: a mission, a user's shell.
 """
 

@@ -1,7 +1,7 @@
 """What a threshold is computed from its parameter by.
 
-The tree is that of docs/formats.md: a number, ``"x"`` (the parameter), or a tuple of an operator
-and its operands, one of which holds ``"x"``.
+The tree is that of docs/reference/formats.md: a number, ``"x"`` (the parameter), or a tuple of an
+operator and its operands, one of which holds ``"x"``.
 """
 
 from __future__ import annotations

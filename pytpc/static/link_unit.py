@@ -1,6 +1,6 @@
 """One link unit as the static analysis saw it: its file's contents as dataclasses, and back.
 
-Field names of the classes are the names in the JSON (docs/formats.md).
+Field names of the classes are the names in the JSON (docs/reference/formats.md).
 """
 
 from __future__ import annotations
@@ -131,7 +131,7 @@ class BlindSpot:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """One threshold predicate comparison; the fields are those of docs/formats.md.
+    """One threshold predicate comparison; the fields are those of docs/reference/formats.md.
 
     The last three are known of Python alone.
     """
@@ -161,7 +161,7 @@ class Comparison:
     operand: str | None = None
 
     def to_json(self) -> dict[str, Any]:
-        """The comparison as the JSON object of docs/formats.md."""
+        """The comparison as the JSON object of docs/reference/formats.md."""
         return _without_unknown(_fields(self))
 
 
@@ -234,7 +234,7 @@ class LinkUnit:
         return None if self.script is None else self.absolute(self.script)
 
     def to_json(self) -> dict[str, Any]:
-        """The unit as the JSON object of docs/formats.md."""
+        """The unit as the JSON object of docs/reference/formats.md."""
         return _without_unknown({"schema": SCHEMA_VERSION, **_fields(self)})
 
     def absolute(self, file: str) -> str:

@@ -57,7 +57,7 @@ class Tpc:
         return tuple(sorted({f"{each.package}/{each.link_unit}" for each in self.keys}))
 
     def to_json(self) -> dict[str, Any]:
-        """The JSON object of docs/formats.md."""
+        """The JSON object of docs/reference/formats.md."""
         return {**asdict(self), "keys": [asdict(each) for each in self.keys]}
 
 

@@ -1,7 +1,7 @@
 """What the static analysis found in a workspace: its link units, read, checked and merged.
 
-Every link unit has one JSON file (docs/formats.md). ``load_link_unit`` reads one, ``collect`` all
-of a build base, and ``StaticInfo`` is the merged document that the rest of pytpc works with.
+Every link unit has one JSON file (docs/reference/formats.md). ``load_link_unit`` reads one,
+``collect`` all of a build base. ``StaticInfo`` is the merged document that the rest of pytpc uses.
 """
 
 from __future__ import annotations
@@ -163,7 +163,7 @@ class StaticInfo:
         return Path(self._owners[key].source_root) / self.comparisons[key].file
 
     def to_json(self) -> dict[str, Any]:
-        """The document of docs/formats.md: the units, and the TPCs that follow from them."""
+        """The document of docs/reference/formats.md: the units, and the places in them."""
         return {
             "schema": SCHEMA_VERSION,
             "units": [unit.to_json() for unit in self.units],

@@ -52,7 +52,7 @@ def edit_param(
         force: change the type, or replace what roslaunch works out.
 
     Raises:
-        Refused: see docs/applying.md.
+        Refused: see docs/how-to/change-a-parameter.md.
     """
     tags = tags_of(data)
     found = [t for t in tags if t.name == "param" and _names(t, name)]
@@ -89,7 +89,7 @@ def edit_argument(
         force: change it all the same where there are others.
 
     Raises:
-        Refused: see docs/applying.md.
+        Refused: see docs/how-to/change-a-parameter.md.
     """
     tags = tags_of(data)
     found = [t for t in tags if t.name == "arg" and _attribute(t, "name") == name]
@@ -119,7 +119,7 @@ def edit_inline(
     ``lineno`` is that of the value, or 0: the only one that sets it is meant.
 
     Raises:
-        Refused: see docs/applying.md.
+        Refused: see docs/how-to/change-a-parameter.md.
     """
     encoding = encoding_of(data)
     spans = [

@@ -50,7 +50,7 @@ def edit_yaml(text: str, keys: Keys, given: str, *, force: bool = False) -> Edit
         force: change the type, or a value that other parameters have, too (an anchor).
 
     Raises:
-        Refused: see docs/applying.md; the message says what to do.
+        Refused: see docs/how-to/change-a-parameter.md; the message says what to do.
     """
     documents = all_settings(text)
     having = [document for document in documents if keys in document]

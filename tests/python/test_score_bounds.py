@@ -48,7 +48,7 @@ def every(run: Sequence[Evaluated]) -> Events:
 
 
 def edges(run: Sequence[Evaluated], period_ms: int) -> tuple[Events, Summaries]:
-    """The policy, as docs/running.md says it: one pass over the evaluations in order."""
+    """The policy, as docs/reference/runtime.md says it: one pass over the evaluations in order."""
     builder = EventBuilder()
     last: dict[tuple[str, str], bool] = {}
     periods = defaultdict(list)

@@ -54,7 +54,7 @@ def _flown(command: Command) -> Command:
 def study_group() -> None:
     """Fly the study: treated missions of the example robots, and people who look on.
 
-    Its folder, and how it is gone on with after an interruption: docs/study-data.md.
+    Its folder, and how it is gone on with after an interruption: docs/reference/study-data.md.
     """
 
 

@@ -61,7 +61,7 @@ def _text(data: bytes, at: int) -> tuple[bytes, int]:
 
 
 class BatchCounter:
-    """The same for numbered messages on /threshold_information (docs/formats.md)."""
+    """The same for numbered messages on /threshold_information (docs/reference/formats.md)."""
 
     def __init__(self, counter: LossCounter) -> None:
         """Losses are added to those of ``counter``."""
