@@ -126,6 +126,12 @@ def test_commands_in_blocks_are_found(page: Path, block: str, expected: list[str
     assert check(page) == expected
 
 
+def test_a_changelog_may_name_what_was(page: Path):
+    changelog = page.with_name("CHANGELOG.md")
+    changelog.write_text("`pytpc nonsense` was teh old name\n")
+    assert check(changelog) == ["1: teh ==> the"]
+
+
 def test_the_second_of_two_equal_headings_has_a_number(page: Path):
     page.write_text("[a](other.md#a-second-heading-1) [b](other.md#a-second-heading-2)\n")
     assert check(page) == ["1: link to other.md#a-second-heading-2: no such heading"]
