@@ -1,4 +1,4 @@
-"""The tutorial: what is typed in it does what it says, in Python and on the command line."""
+"""The tutorial does what it says, in Python and on the command line; so do examples elsewhere."""
 
 from __future__ import annotations
 
@@ -38,11 +38,15 @@ def test_the_python(tmp_path: Path):
     assert not failed, "".join(failed)
 
 
-COMMANDS = CONSOLE.findall(TUTORIAL.read_text())
+COMMANDS = [
+    command
+    for page in (TUTORIAL, ROOT / "docs/explanation/how-it-works.md")
+    for command in CONSOLE.findall(page.read_text())
+]
 
 
 def test_there_are_commands():
-    assert len(COMMANDS) == 2
+    assert len(COMMANDS) == 3
 
 
 @pytest.mark.parametrize(("command", "shown"), COMMANDS, ids=lambda text: text.split()[0])
