@@ -1,6 +1,7 @@
 //===- ExplainInfo.h - Paths and blind spots in the static information ----===//
 //
-// docs/formats.md: `path` of a comparison, `not_exposed`, `blind_spots`.
+// docs/reference/formats.md: `path` of a comparison, `not_exposed`,
+// `blind_spots`.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_EXPLAININFO_H

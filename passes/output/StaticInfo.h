@@ -1,6 +1,6 @@
 //===- StaticInfo.h - The static information of a link unit ---------------===//
 //
-// SPEC 4 and docs/formats.md: one JSON file per link unit.
+// docs/reference/formats.md: one JSON file per link unit.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_STATICINFO_H

@@ -45,14 +45,14 @@ struct Transform {
   /// True where nothing was done but to keep the value in fewer bits: it is
   /// meant to fit.
   bool isNarrowing() const;
-  /// The same for programs (docs/formats.md): a number, "x", or a list of an
-  /// operator and its operands.
+  /// The same for programs (docs/reference/formats.md): a number, "x", or a
+  /// list of an operator and its operands.
   llvm::json::Value tree() const;
 };
 
 /// One function of a transform.
 struct Application {
-  std::string Op; ///< see docs/formats.md
+  std::string Op; ///< see docs/reference/formats.md
   Transform Of;
   std::optional<double> Constant;
   bool First; ///< the constant stands before the transform

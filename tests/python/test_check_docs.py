@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from check_docs import dead_citations
 
 ROOT = Path(__file__).parents[2]
 
@@ -130,6 +131,22 @@ def test_a_changelog_may_name_what_was(page: Path):
     changelog = page.with_name("CHANGELOG.md")
     changelog.write_text("`pytpc nonsense` was teh old name\n")
     assert check(changelog) == ["1: teh ==> the"]
+
+
+@pytest.mark.parametrize(
+    ("line", "expected"),
+    [
+        ("# docs/reference/formats.md has it, docs/reference/formats.md#events, too.", None),
+        ("# ../docs/formats.md is another folder's.", None),
+        ("# See docs/nonsense.md.", "docs/nonsense.md: no such page"),
+        ("# docs/README.md#nonsense", "docs/README.md#nonsense: no such heading"),
+    ],
+)
+def test_pages_that_sources_cite_exist(tmp_path: Path, line: str, expected: str | None):
+    source = tmp_path / "source.py"
+    source.write_text(f"x = 1\n{line}\n")
+    found = [(fault.line, fault.text) for fault in dead_citations([str(source)])]
+    assert found == ([(2, expected)] if expected else [])
 
 
 def test_the_second_of_two_equal_headings_has_a_number(page: Path):
