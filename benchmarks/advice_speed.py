@@ -1,4 +1,4 @@
-"""How fast a mission is replayed with other values of a parameter (docs/diagnosing.md).
+"""How fast a mission is replayed with other values of a parameter (docs/reference/scores.md).
 
 A million evaluations of one comparison, and of 50 comparisons of one parameter, ten minutes long,
 with a mark each half minute. The target is a fifth of a second for one value.

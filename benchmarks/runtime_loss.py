@@ -50,7 +50,7 @@ def build(folder: Path) -> None:
 
 
 def in_file(folder: Path) -> int:
-    """The complete reports in the one file of a folder (the layout is docs/formats.md's)."""
+    """The complete reports in the one file of a folder (docs/reference/formats.md)."""
     (path,) = folder.glob("*.tpc")
     count = 0
     with path.open("rb") as stream:

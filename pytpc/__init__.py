@@ -1,6 +1,7 @@
 """TPC: finds the parameter that makes a robot misbehave.
 
-What a notebook needs is here, and documented in `pytpc.api.library` and docs/tutorial.md::
+What a notebook needs is here. It is documented in `pytpc.api.library` and shown in
+docs/tutorial/diagnose-a-mission.md::
 
     import pytpc
 

@@ -1,7 +1,7 @@
 """Check Markdown pages: line length, links, spelling, and the commands that they name.
 
 ``check_docs.py [FILE...]`` prints ``FILE:LINE: fault`` for each fault and exits with 1 if there is
-one. Without FILE it checks every page that git knows. Four rules:
+one. Without FILE it checks every page that git knows, and the pages that sources cite. The rules:
 
 - No line is longer than 120 characters. Exempt: rows of a table, lines of code, and a line that is
   a single word, such as an address.
@@ -9,6 +9,8 @@ one. Without FILE it checks every page that git knows. Four rules:
 - codespell finds nothing (``[tool.codespell]`` in pyproject.toml).
 - Each ``pytpc`` command and option, ``python -m pytpc.MODULE`` and ``make`` target in code
   exists. The command tree of click is asked, so that hidden commands and plugins count, too.
+  Exempt: CHANGELOG.md, which names what was.
+- A page below docs/ that a source cites exists, and so does its heading.
 """
 
 from __future__ import annotations
@@ -31,6 +33,8 @@ from markdown_it.token import Token
 
 ROOT = Path(__file__).resolve().parents[1]
 WIDEST = 120
+SOURCES = ["*.py", "*.cpp", "*.h", "*.json", "*.j2", "cmake", "tools", ":!tests/python"]
+CITATION = re.compile(r"(?<![\w/.-])(docs/[\w/-]+\.md)(?:#([\w-]+))?")
 SHELLS = {"", "sh", "bash", "console"}
 MARKDOWN = MarkdownIt("commonmark").enable("table")
 
@@ -148,6 +152,8 @@ def _anchors(path: Path) -> set[str]:
 
 def missing_commands(page: Page) -> Iterator[Fault]:
     """Yield the commands, options, modules and make targets that do not exist."""
+    if page.path.name == "CHANGELOG.md":
+        return
     for code in page.code():
         for words in simple_commands(code.text):
             for fault in faults_of(words):
@@ -250,6 +256,25 @@ def _option(context: click.Context, name: str) -> click.Option | None:
     return None
 
 
+def dead_citations(names: Iterable[str]) -> Iterator[Fault]:
+    """Yield the pages that sources cite and that do not exist; ``names`` are relative to ROOT."""
+    for name in names:
+        text = (ROOT / name).read_text(encoding="utf-8", errors="replace")
+        for number, line in enumerate(text.splitlines(), 1):
+            for page, anchor in CITATION.findall(line):
+                if not (ROOT / page).exists():
+                    yield Fault(Path(name), number, f"{page}: no such page")
+                elif anchor and anchor not in _anchors(ROOT / page):
+                    yield Fault(Path(name), number, f"{page}#{anchor}: no such heading")
+
+
+def _tracked(*patterns: str) -> list[str]:
+    """Return the files that git knows, relative to ROOT; links and what is deleted are left out."""
+    words = ["git", "ls-files", "-z", *patterns]
+    names = subprocess.check_output(words, cwd=ROOT, text=True).split("\0")
+    return [name for name in names if (ROOT / name).is_file() and not (ROOT / name).is_symlink()]
+
+
 def misspelled(pages: Iterable[Path]) -> Iterator[Fault]:
     """Yield what codespell finds."""
     command = [sys.executable, "-m", "codespell_lib", "--toml", str(ROOT / "pyproject.toml")]
@@ -274,10 +299,9 @@ def main() -> None:
     """Check the pages of the command line, else all that git knows."""
     sys.path.insert(0, str(ROOT))
     paths = [Path(word) for word in sys.argv[1:]]
+    found = check(paths or [Path(name) for name in _tracked("*.md")])
     if not paths:
-        names = subprocess.check_output(["git", "ls-files", "-z", "*.md"], cwd=ROOT, text=True)
-        paths = [Path(name) for name in names.split("\0") if name]
-    found = check(paths)
+        found += dead_citations(_tracked(*SOURCES))
     for fault in found:
         print(f"{fault.page}:{fault.line}: {fault.text}")
     sys.exit(1 if found else 0)

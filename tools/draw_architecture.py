@@ -24,7 +24,7 @@ WIDTH, EDGE, GAP = 960, 24, 14
 TITLE, TEXT = 15, 12.5
 LINE = 17
 ARROW = 20
-BESIDE = 150
+BESIDE = 165
 PLAIN = 'fill="#333333"'
 BOLD = 'font-weight="bold" fill="#1f3a5f"'
 CHARACTER = 6.1

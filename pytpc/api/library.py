@@ -3,7 +3,7 @@
 Every function takes what another one gave, or the path of it: ``rank("mission.bag", "my_ws")`` is
 ``rank(read("mission.bag"), load_static("my_ws"))``. What they give prints as a table, is one in a
 notebook (all texts from the robot escaped), and holds typed objects of the parts it came from.
-docs/tutorial.md shows each at work, and is run by the tests.
+docs/tutorial/diagnose-a-mission.md shows each at work, and is run by the tests.
 
 Errors are `pytpc.base.errors.TpcError`: one line that names the file.
 """

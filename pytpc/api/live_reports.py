@@ -1,7 +1,7 @@
 """Messages of a graph that runs become evaluations and summaries, each once.
 
-The forms are those of docs/formats.md: log messages on ``/rosout``, single lines and numbered
-batches on ``/threshold_information``.
+The forms are those of docs/reference/formats.md: log messages on ``/rosout``, single lines and
+numbered batches on ``/threshold_information``.
 """
 
 from __future__ import annotations

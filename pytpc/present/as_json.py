@@ -1,4 +1,4 @@
-"""Advice as JSON: what docs/diagnosing.md and docs/formats.md say of ``suggest`` and ``rank``."""
+"""Advice as JSON: the documents of ``suggest`` and ``rank`` (docs/reference/command-line.md)."""
 
 from __future__ import annotations
 

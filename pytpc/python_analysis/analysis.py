@@ -129,7 +129,7 @@ def _failed(program: Program, rules: Rules, why: str) -> LinkUnit:
 
 
 class Writer:
-    """Writes what was found in the terms of docs/formats.md."""
+    """Writes what was found in the terms of docs/reference/formats.md."""
 
     def __init__(self, analysed: Analysed) -> None:
         """Sources are at hand for the texts of lines."""

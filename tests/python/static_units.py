@@ -1,4 +1,4 @@
-"""Static information for tests: literal JSON objects, as docs/formats.md describes them."""
+"""Static information for tests: literal JSON objects (docs/reference/formats.md)."""
 
 from typing import Any
 

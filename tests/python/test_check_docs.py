@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from check_docs import dead_citations
 
 ROOT = Path(__file__).parents[2]
 
@@ -24,7 +25,7 @@ https://example.org/WIDE
 .venv/bin/pytpc build ~/ws --package mission -- --cmake-args -DX=1   # WIDE
 pytpc suggest out --static ws --value=-1 && pytpc COMMAND --help
 eval "$(pytpc env ~/ws)"; make test -j2
-python -m pytpc.patch WS --restore
+python3 -m pytpc.python_runtime node.py --its-own-option
 ```
 
 ```console
@@ -58,6 +59,20 @@ def check(page: Path) -> list[str]:
     assert done.returncode == (1 if lines else 0)
     assert all(line.startswith(f"{page.name}:") for line in lines)
     return [line.removeprefix(f"{page.name}:") for line in lines]
+
+
+def test_the_pages_that_are_opened_first_have_no_fault():
+    pages = ["README.md", "docs/README.md", "docs/reference/command-line.md"]
+    pages += ["docs/tutorial/diagnose-a-mission.md", "docs/explanation/architecture.md"]
+    done = subprocess.run(
+        [sys.executable, "tools/check_docs.py", *pages],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=60,
+    )
+    assert (done.stdout, done.returncode) == ("", 0)
 
 
 @pytest.fixture()
@@ -110,6 +125,28 @@ def test_each_fault_is_found_at_its_line(page: Path):
 def test_commands_in_blocks_are_found(page: Path, block: str, expected: list[str]):
     page.write_text(f"# Page\n\n{block}\n")
     assert check(page) == expected
+
+
+def test_a_changelog_may_name_what_was(page: Path):
+    changelog = page.with_name("CHANGELOG.md")
+    changelog.write_text("`pytpc nonsense` was teh old name\n")
+    assert check(changelog) == ["1: teh ==> the"]
+
+
+@pytest.mark.parametrize(
+    ("line", "expected"),
+    [
+        ("# docs/reference/formats.md has it, docs/reference/formats.md#events, too.", None),
+        ("# ../docs/reference/formats.md is another folder's.", None),
+        ("# See docs/nonsense.md.", "docs/nonsense.md: no such page"),
+        ("# docs/README.md#nonsense", "docs/README.md#nonsense: no such heading"),
+    ],
+)
+def test_pages_that_sources_cite_exist(tmp_path: Path, line: str, expected: str | None):
+    source = tmp_path / "source.py"
+    source.write_text(f"x = 1\n{line}\n")
+    found = [(fault.line, fault.text) for fault in dead_citations([str(source)])]
+    assert found == ([(2, expected)] if expected else [])
 
 
 def test_the_second_of_two_equal_headings_has_a_number(page: Path):

@@ -1,4 +1,4 @@
-"""The exit statuses of docs/reference/command-line.md, for every command and for what is wrong with input.
+"""The exit statuses of docs/reference/command-line.md, for every command and for wrong input.
 
 A command that is in the list of commands and not in the tables here makes a test fail.
 """

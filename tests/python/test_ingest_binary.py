@@ -1,4 +1,4 @@
-"""The binary file; what is expected here comes from docs/formats.md, byte by byte."""
+"""The binary file; what is expected here comes from docs/reference/formats.md, byte by byte."""
 
 from __future__ import annotations
 

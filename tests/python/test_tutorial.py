@@ -1,4 +1,4 @@
-"""docs/tutorial/diagnose-a-mission.md: what is typed in it does what it says, in Python and on the command line."""
+"""The tutorial does what it says, in Python and on the command line; so do examples elsewhere."""
 
 from __future__ import annotations
 
@@ -38,11 +38,15 @@ def test_the_python(tmp_path: Path):
     assert not failed, "".join(failed)
 
 
-COMMANDS = CONSOLE.findall(TUTORIAL.read_text())
+COMMANDS = [
+    command
+    for page in (TUTORIAL, ROOT / "docs/explanation/how-it-works.md")
+    for command in CONSOLE.findall(page.read_text())
+]
 
 
 def test_there_are_commands():
-    assert len(COMMANDS) == 2
+    assert len(COMMANDS) == 3
 
 
 @pytest.mark.parametrize(("command", "shown"), COMMANDS, ids=lambda text: text.split()[0])
@@ -71,9 +75,8 @@ def test_the_examples_of_diagnosing(command: str):
         timeout=60,
     )
     heading = f"## {'Ranking' if command.startswith('rank') else 'Suggestions'}\n"
-    section = (
-        (ROOT / "docs/how-to/diagnose.md").read_text().partition(heading)[2].partition("\n## ")[0]
-    )
+    page = (ROOT / "docs/how-to/diagnose.md").read_text()
+    section = page.partition(heading)[2].partition("\n## ")[0]
     begin = section.index("    All 5 marks together")
     block = re.match(r"(?:    .*\n|\n(?=    ))+", section[begin:])
     assert block is not None

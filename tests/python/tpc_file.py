@@ -1,4 +1,4 @@
-"""Writes the binary file of reports by hand, from docs/formats.md alone."""
+"""Writes the binary file of reports by hand, from docs/reference/formats.md alone."""
 
 from __future__ import annotations
 

@@ -69,7 +69,7 @@ def graph(tmp_path) -> Iterator[RosGraph]:
 
 @dataclass
 class Reader:
-    """All that came on the topic, taken apart as docs/formats.md says."""
+    """All that came on the topic, taken apart as docs/reference/formats.md says."""
 
     reports: Counter[str] = field(default_factory=Counter)
     values: dict[str, list[float]] = field(default_factory=dict)
@@ -483,7 +483,7 @@ def test_clock_that_jumps_back_is_written_as_it_is(tmp_path, nodes):
 
 
 def relay(graph: RosGraph) -> GraphProcess:
-    """The relay, started by a launch file as docs/running.md says."""
+    """The relay, started by a launch file as docs/how-to/record.md says."""
     launch = graph.folder / "relay.launch"
     launch.write_text(
         "<launch><node pkg='rosout' type='rosout' name='passer' output='screen'"

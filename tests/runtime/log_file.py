@@ -1,4 +1,4 @@
-"""The binary file read record by record, as docs/formats.md has it: no code of pytpc's.
+"""The binary file read record by record, as docs/reference/formats.md has it: no code of pytpc's.
 
 Slow and plain: what the log library writes is compared with this, and so is what pytpc reads.
 """

@@ -1,6 +1,6 @@
 """The files of the study's folder: what each mission leaves, and ``study.json`` about all.
 
-What lies where stands in docs/study-data.md.
+What lies where stands in docs/reference/study-data.md.
 """
 
 from __future__ import annotations

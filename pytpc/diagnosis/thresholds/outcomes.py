@@ -21,7 +21,7 @@ _OPPOSITE = {"<": ">=", ">=": "<", ">": "<=", "<=": ">", "==": "!=", "!=": "=="}
 
 
 def outcomes(relation: str, cmp: Floats, thresh: Floats | float) -> Bools:
-    """bool[n]: ``cmp relation thresh`` of docs/formats.md, the threshold on the right-hand side."""
+    """bool[n]: ``cmp relation thresh`` (docs/reference/formats.md, "A comparison")."""
     return np.asarray(_RELATIONS[relation](cmp, thresh), dtype=np.bool_)
 
 

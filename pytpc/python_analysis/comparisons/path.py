@@ -29,7 +29,7 @@ class _Event:
 def path_of(
     found: Found, within: Slice, source: Callable[[Instr, int], str | None]
 ) -> tuple[PathStep, ...]:
-    """The steps of docs/formats.md, one for each line.
+    """The steps of docs/reference/formats.md, one for each line.
 
     Args:
         found: a comparison with a parameter, that decides something exposed.

@@ -54,7 +54,7 @@ class How:
         return How(inner=Application(op, self, constant, first))
 
     def tree(self) -> Tree:
-        """The form of docs/formats.md."""
+        """The form of docs/reference/formats.md."""
         found: Tree = "x"
         if self.inner is not None:
             parts: list[Tree] = [self.inner.of.tree()]

@@ -23,7 +23,7 @@ class Inside:
     """A comparison of one argument, the threshold, with ``others``.
 
     ``relation`` has the threshold on the right-hand side. ``chooses``: the function gives one of
-    its arguments; else its result is the outcome. ``operand`` as in docs/formats.md.
+    its arguments; else its result is the outcome. ``operand`` as in docs/reference/formats.md.
     """
 
     relation: str

@@ -1,4 +1,4 @@
-"""The study's folder, read: its systems and their missions (docs/study-data.md).
+"""The study's folder, read: its systems and their missions (docs/reference/study-data.md).
 
 Whatever is missing or broken is said in a sentence and left out: a page of a part of the study is
 better than none.
