@@ -1,4 +1,4 @@
-"""SPEC 7 as somebody would write it with pandas in a notebook: what score_speed compares with."""
+"""The scores as somebody would write them with pandas: what score_speed compares with."""
 
 from __future__ import annotations
 

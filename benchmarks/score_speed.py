@@ -17,10 +17,10 @@ import numpy.typing as npt
 from figures import figure
 from score_by_pandas import frame_of, scores_at
 
-from pytpc.diagnosis.scores.summary_scores import Reports
 from pytpc.diagnosis.scores.live_scores import LiveScores
 from pytpc.diagnosis.scores.score_tables import Tpcs, parameter_tables, tpc_scores
 from pytpc.diagnosis.scores.scores import NONE, type1, type2
+from pytpc.diagnosis.scores.summary_scores import Reports
 from pytpc.recording.events import Events
 from pytpc.recording.summaries import Summaries
 

@@ -1,7 +1,7 @@
 //===- StringPublish.cpp - A std_msgs/String for each report
 //---------------===//
 //
-// What is written in an afternoon: the line of SPEC 5 on a topic. The numbers
+// What is written in an afternoon: the line of a report (docs/reference/formats.md) on a topic. The numbers
 // are made into text as fast as the standard library can.
 //
 //===----------------------------------------------------------------------===//

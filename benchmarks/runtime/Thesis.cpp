@@ -1,7 +1,7 @@
 //===- Thesis.cpp - A report as the thesis makes it
 //------------------------===//
 //
-// SPEC 5: a stream for the line, and ROS_INFO for the stream.
+// As in the thesis (docs/reference/runtime.md): a stream for the line, and ROS_INFO for the stream.
 //
 //===----------------------------------------------------------------------===//
 #include "ByHand.h"

@@ -1,8 +1,8 @@
 """Tables of figures, and the one place that writes them: terminal, CSV, Markdown, LaTeX, JSON.
 
 What a table holds is worked out elsewhere (``pytpc_evaluation.stats``,
-``pytpc_evaluation.survey.static_tables``). Terminal, Markdown and LaTeX round as a person reads; CSV
-and JSON have the numbers in full.
+``pytpc_evaluation.survey.static_tables``). Terminal, Markdown and LaTeX round as a person reads;
+CSV and JSON have the numbers in full.
 """
 
 from __future__ import annotations

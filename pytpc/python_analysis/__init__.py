@@ -1,1 +1,1 @@
-"""Python nodes: from the source of a script and its modules to static information (SPEC 10)."""
+"""Python nodes: from the source of a script and its modules to a link unit."""

@@ -1,1 +1,1 @@
-"""An independent check of the passes: SPEC 3 a second time, slow and simple, on random programs."""
+"""Checks the passes by a second, slow and simple analysis of random programs."""

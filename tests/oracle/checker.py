@@ -1,4 +1,4 @@
-"""SPEC 1 to 3 a second time: which comparisons of a module are threshold predicate comparisons."""
+"""Which comparisons of a module are TPCs, by docs/reference/analysis.md alone."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class State:
 
 
 class Rules:
-    """The rows of SPEC 2 that the test header ros/ros.h has, by mangled name."""
+    """The rules that the test header ros/ros.h has, by mangled name."""
 
     READ = re.compile(r"_ZNK3ros10NodeHandle(5param|8getParam)")
     EXPOSING = re.compile(r"_ZNK?3ros(9Publisher7publish|13ServiceClient4call)")

@@ -664,7 +664,7 @@ def test_table_has_a_row_for_each_mark(tmp_path):
     rows = [line.split("│") for line in console.export_text().splitlines() if "│" in line]
     cells = [[cell.strip() for cell in row[1:-1]] for row in rows]
     assert cells[0][:3] == ["clean", "-", "none"]
-    # The suggestion of SPEC 8: with a limit of 4 the last flop, 4 > limit, would not have been.
+    # The smallest change: with a limit of 4 the last flop, 4 > limit, would not have been.
     first = ["low", "limit 20 -> 3", "10.0 s", "I", "1 of 5", "1.00"]
     assert cells[1][:6] == first
     assert "raise limit from 3 to 4" in cells[1][6]

@@ -10,14 +10,14 @@ from pytpc.base.errors import InputError
 from pytpc.static.rules import check_rules
 
 TABLES = Path(__file__).parents[2] / "passes/rules"
-# What the thesis looks at (SPEC 2): the reads by param() with a variable, and three statements.
+# What the thesis looks at: the reads by param() with a variable, and three statements.
 THESIS = {
     "ros::NodeHandle::param",
     "ros::Publisher::publish",
     "ros::ServiceClient::call",
     "ros::service::call",
 }
-# SPEC 2, row by row; what is not of ROS 1 is in the other table.
+# docs/reference/analysis.md, row by row; what is not of ROS 1 is in the other table.
 READS = {
     "ros1": {
         "ros::NodeHandle::param",

@@ -1,4 +1,4 @@
-"""SPEC 7 worked by hand, from scores to rankings: to be read from top to bottom.
+"""docs/reference/scores.md by hand, from scores to rankings: to be read from top to bottom.
 
 A robot has five comparisons of four parameters. Each test has a log of rows (seconds, comparison,
 result, cmp, thresh[, node]) and above it the arithmetic. S1 and S2 are the scores of types I and

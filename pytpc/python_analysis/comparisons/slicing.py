@@ -1,8 +1,8 @@
 """Backward: from the exposing statements over data and control dependence, by rounds.
 
-The thesis's algorithm 3 (SPEC 3). Round 1 holds the exposing statements. What an expression
-computes in passing belongs to the round of its statement; stores, arguments, results and branches
-are a round each.
+The thesis's algorithm 3 (docs/reference/analysis.md#the-slice). Round 1 holds the exposing
+statements. What an expression computes in passing belongs to the round of its statement; stores,
+arguments, results and branches are a round each.
 """
 
 from __future__ import annotations
