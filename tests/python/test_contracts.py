@@ -20,6 +20,10 @@ BREAKS = {
     "inside-a-node": ("pytpc/python_runtime/words.py", "from pytpc.base import errors"),
     "pure-diagnosis": ("pytpc/diagnosis/ranking/ranking.py", "from pytpc.ingest import reading"),
     "no-files-in-diagnosis": ("pytpc/diagnosis/scores/scores.py", "import pathlib"),
+    "no-diagnosis-in-present": (
+        "pytpc/present/rankings.py",
+        "from pytpc.diagnosis.ranking import blame",
+    ),
 }
 
 
