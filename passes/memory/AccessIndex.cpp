@@ -1,6 +1,8 @@
 //===- AccessIndex.cpp ----------------------------------------------------===//
 #include "memory/AccessIndex.h"
 
+#include "llvm/Support/CommandLine.h"
+
 #include "memory/AccessBuilder.h"
 #include "support/Print.h"
 
@@ -10,8 +12,11 @@ namespace tpc {
 
 AnalysisKey ClassObjectAccess::Key;
 
-/// Variables that a value is followed to by copies of whole objects.
-static constexpr unsigned MaxCopied = 16;
+/// Messages are copied from queue to queue; each copy is searched for accesses.
+static cl::opt<unsigned> MaxCopied(
+    "tpc-max-object-copies", cl::Hidden, cl::init(16),
+    cl::desc(
+        "Variables that a value is followed to by copies of whole objects"));
 
 /// \p L and the variables that copies of whole objects put its value into, or
 /// with \p Backward took it from.

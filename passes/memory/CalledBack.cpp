@@ -6,14 +6,18 @@
 #include "llvm/ADT/PointerIntPair.h"
 #include "llvm/BinaryFormat/Dwarf.h"
 #include "llvm/IR/Module.h"
+#include "llvm/Support/CommandLine.h"
 
 using namespace llvm;
 
 namespace tpc {
 
-/// Classes in an object that are looked at; one with more in it can call
-/// anything.
-static constexpr unsigned MaxParts = 256;
+/// Bounds the walk through a class of classes. An object with more in it can
+/// call anything.
+static cl::opt<unsigned> MaxParts(
+    "tpc-max-object-parts", cl::Hidden, cl::init(256),
+    cl::desc(
+        "Classes in an object that are searched for functions to call back"));
 
 /// True for the functions that only free or copy what they are handed, or are a
 /// part of the language.

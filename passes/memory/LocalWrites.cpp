@@ -8,6 +8,7 @@
 #include "llvm/IR/CFG.h"
 #include "llvm/IR/InstIterator.h"
 #include "llvm/IR/Operator.h"
+#include "llvm/Support/CommandLine.h"
 
 using namespace llvm;
 
@@ -162,9 +163,11 @@ bool LocalWrites::replaces(const Instruction &Write, const Location &L) {
                            ArrayRef(L.Path).take_front(Whole->Path.size()));
 }
 
-/// Blocks that are walked through for the loads of a module; after that all
-/// writes of a local variable are taken to reach all its loads.
-static constexpr unsigned MaxWalked = 20'000'000;
+/// Each load walks back through its function: quadratic in generated ones.
+/// Beyond it all writes of a local variable reach all its loads.
+static cl::opt<unsigned> MaxWalked(
+    "tpc-max-local-blocks", cl::Hidden, cl::init(20'000'000),
+    cl::desc("Basic blocks that are walked for the loads of local variables"));
 
 void LocalWrites::keepReaching(const Instruction &At, const Location &L,
                                AccessIndex::Writes &W) {

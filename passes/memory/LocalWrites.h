@@ -15,6 +15,7 @@
 #include "memory/AccessIndex.h"
 #include "memory/PointsTo.h"
 
+#include "llvm/ADT/MapVector.h"
 #include "llvm/ADT/SmallPtrSet.h"
 
 #include <memory>
@@ -42,8 +43,8 @@ private:
   struct History {
     bool Known = false; ///< else others may do anything to it anywhere
     llvm::SmallPtrSet<const llvm::Instruction *, 8> Writes;
-    llvm::DenseMap<const llvm::BasicBlock *,
-                   llvm::SmallVector<const llvm::Instruction *, 2>>
+    llvm::MapVector<const llvm::BasicBlock *,
+                    llvm::SmallVector<const llvm::Instruction *, 2>>
         Events;
   };
 

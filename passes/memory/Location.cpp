@@ -2,18 +2,20 @@
 #include "memory/Location.h"
 
 #include "llvm/ADT/Hashing.h"
+#include "llvm/Support/CommandLine.h"
 
 using namespace llvm;
 
 namespace tpc {
 
 bool endsWith(ArrayRef<Step> Path, ArrayRef<Step> Tail) {
-  return Tail.size() <= Path.size() && equal(Tail, Path.take_back(Tail.size()));
+  return Tail.size() <= Path.size() &&
+         Location::mayEqual(Tail, Path.take_back(Tail.size()));
 }
 
 bool Location::mayBe(const Location &O) const {
   if (Root && O.Root)
-    return *this == O;
+    return mayEqual(O);
   if (Path.empty() || O.Path.empty())
     return false;
   if (Root)
@@ -23,8 +25,11 @@ bool Location::mayBe(const Location &O) const {
   return endsWith(Path, O.Path) || endsWith(O.Path, Path);
 }
 
-/// More elements of one array are any of them for a pointer.
-static constexpr unsigned MaxItems = 8;
+/// Each element is a location that is followed by itself. A pointer to more of
+/// one array is taken to lead to any of them.
+static cl::opt<unsigned>
+    MaxItems("tpc-max-items", cl::Hidden, cl::init(8),
+             cl::desc("Elements of one array that a pointer leads to"));
 
 void addTo(Locations &Out, Location L) {
   auto IsIn = [&](const Location &Other) {
@@ -35,7 +40,9 @@ void addTo(Locations &Out, Location L) {
   if (L.item().isNumber() && Out.size() >= MaxItems) {
     Location Any = L;
     Any.widen();
-    if (static_cast<unsigned>(count(Out, Any)) >= MaxItems) {
+    if (static_cast<unsigned>(count_if(Out, [&](const Location &K) {
+          return K.mayEqual(Any);
+        })) >= MaxItems) {
       if (!IsIn(Any))
         Out.push_back(std::move(Any));
       return;
@@ -49,14 +56,6 @@ size_t LocationHash::operator()(const Location &L) const {
   for (const Step &S : L.Path)
     Hash = hash_combine(Hash, S.Type, S.Index, S.Class, S.Item.Number);
   return Hash;
-}
-
-bool LocationIdentity::operator()(const Location &A, const Location &B) const {
-  return A.Root == B.Root && A.RootItem.Number == B.RootItem.Number &&
-         equal(A.Path, B.Path, [](const Step &S, const Step &T) {
-           return S.Type == T.Type && S.Index == T.Index &&
-                  S.Class == T.Class && S.Item.Number == T.Item.Number;
-         });
 }
 
 } // namespace tpc

@@ -1,5 +1,4 @@
-//===- Location.h - A variable, by the way to it
-//---------------------------===//
+//===- Location.h - A variable, by the way to it --------------------------===//
 #ifndef TPC_LOCATION_H
 #define TPC_LOCATION_H
 
@@ -23,6 +22,7 @@ struct Nth {
   static constexpr unsigned Most = 64;
 
   unsigned Number = Whole;
+  bool operator==(Nth O) const { return Number == O.Number; }
   bool isNumber() const { return Number < Any; }
   bool mayBe(Nth O) const {
     return Number == O.Number || !isNumber() || !O.isNumber();
@@ -47,15 +47,18 @@ struct Step {
   unsigned Index;
   unsigned Class = 0;
   Nth Item = {};
-  /// True where the two can be the same step.
   bool operator==(const Step &O) const {
+    return Type == O.Type && Index == O.Index && Class == O.Class &&
+           Item == O.Item;
+  }
+  /// True where the two can be the same step: of one the class may be unknown,
+  /// or the element.
+  bool mayEqual(const Step &O) const {
     return Type == O.Type && Index == O.Index &&
            (Class == O.Class || !Class || !O.Class) && Item.mayBe(O.Item);
   }
-  /// The same, and of an array as much is meant.
-  bool isSame(const Step &O) const {
-    return *this == O && Item.Number == O.Item.Number;
-  }
+  /// mayEqual(), and of an array as much is meant.
+  bool isSame(const Step &O) const { return mayEqual(O) && Item == O.Item; }
   bool isField() const { return Type < Bytes; }
 };
 
@@ -96,18 +99,27 @@ struct Location {
     return !Path.empty() && Path.back().Type == Step::Element;
   }
   bool operator==(const Location &O) const {
-    return Root == O.Root && RootItem.mayBe(O.RootItem) && Path == O.Path;
+    return Root == O.Root && RootItem == O.RootItem && Path == O.Path;
   }
-  /// The same, and of arrays as much is meant.
+  /// True where the two can be the same path from the same root.
+  bool mayEqual(const Location &O) const {
+    return Root == O.Root && RootItem.mayBe(O.RootItem) &&
+           mayEqual(Path, O.Path);
+  }
+  static bool mayEqual(llvm::ArrayRef<Step> A, llvm::ArrayRef<Step> B) {
+    return llvm::equal(
+        A, B, [](const Step &S, const Step &T) { return S.mayEqual(T); });
+  }
+  /// mayEqual(), and of arrays as much is meant.
   bool isSame(const Location &O) const {
-    return Root == O.Root && RootItem.Number == O.RootItem.Number &&
-           areSame(Path, O.Path);
+    return Root == O.Root && RootItem == O.RootItem && areSame(Path, O.Path);
   }
   static bool areSame(llvm::ArrayRef<Step> A, llvm::ArrayRef<Step> B) {
     return llvm::equal(
         A, B, [](const Step &S, const Step &T) { return S.isSame(T); });
   }
-  /// True where the two can be the same variable.
+  /// True where the two can be the same variable: without a root, a path can be
+  /// the end of a longer one.
   bool mayBe(const Location &O) const;
 };
 
@@ -123,20 +135,14 @@ inline constexpr unsigned MaxLocations = 64;
 /// there are too many; of too many elements of one array it becomes any.
 void addTo(Locations &Out, Location L);
 
-/// Tells apart what is not exactly the same. Nothing goes through such a table:
-/// the order in it depends on addresses.
+/// Nothing iterates over a table by this hash: its order depends on addresses.
 struct LocationHash {
   size_t operator()(const Location &L) const;
 };
-struct LocationIdentity {
-  bool operator()(const Location &A, const Location &B) const;
-};
 /// What is known of exactly these locations; a reference into it stays valid.
 template <typename T>
-using LocationMap =
-    std::unordered_map<Location, T, LocationHash, LocationIdentity>;
-using LocationSet =
-    std::unordered_set<Location, LocationHash, LocationIdentity>;
+using LocationMap = std::unordered_map<Location, T, LocationHash>;
+using LocationSet = std::unordered_set<Location, LocationHash>;
 
 /// A scalar that a load or store touches, and the bits of the register that are
 /// it: an object of several scalars can be handed around as one number.

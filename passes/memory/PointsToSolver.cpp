@@ -8,6 +8,7 @@
 #include "llvm/IR/InstIterator.h"
 #include "llvm/IR/IntrinsicInst.h"
 #include "llvm/IR/Operator.h"
+#include "llvm/Support/CommandLine.h"
 
 #include <utility>
 
@@ -15,9 +16,11 @@ using namespace llvm;
 
 namespace tpc {
 
-/// Rounds until the pointers lead nowhere new; more than a chain of pointers
-/// through memory that is as long is not followed.
-static constexpr unsigned MaxRounds = 32;
+/// Each round follows pointers through memory one step further. Lists that are
+/// linked by allocations would never end.
+static cl::opt<unsigned>
+    MaxRounds("tpc-max-points-to-rounds", cl::Hidden, cl::init(32),
+              cl::desc("Rounds of the points-to analysis"));
 
 const PointsToSolver::Returned &PointsToSolver::returnedBy(const Function &F) {
   auto [It, New] = Results.try_emplace(&F);

@@ -8,17 +8,23 @@
 #include "llvm/IR/CFG.h"
 #include "llvm/IR/InstIterator.h"
 #include "llvm/IR/IntrinsicInst.h"
+#include "llvm/Support/CommandLine.h"
 
 using namespace llvm;
 
 namespace tpc {
 
-/// Blocks and functions that are walked through for a module; after that every
-/// write is taken to be seen by every read.
-static constexpr unsigned MaxWalked = 5'000'000;
+/// Walks go through the callers and callees of a write. Beyond it every read
+/// sees every write.
+static cl::opt<unsigned> MaxWalked(
+    "tpc-max-shared-blocks", cl::Hidden, cl::init(5'000'000),
+    cl::desc(
+        "Basic blocks and functions that are walked for shared variables"));
 
-/// Where calls can run more functions than this, they can run all.
-static constexpr unsigned MaxRun = 256;
+/// The lists are kept for each call. A call that can run more can run all.
+static cl::opt<unsigned>
+    MaxRun("tpc-max-run", cl::Hidden, cl::init(256),
+           cl::desc("Functions that are listed as run by one call"));
 
 /// True for the functions without a body in which other threads, or callbacks,
 /// have their turn.

@@ -6,6 +6,7 @@
 
 #include "llvm/Analysis/ValueTracking.h"
 #include "llvm/IR/InstIterator.h"
+#include "llvm/Support/CommandLine.h"
 
 using namespace llvm;
 
@@ -29,8 +30,11 @@ VisibleWrites::Writes VisibleWrites::allWrites(const Location &L) {
   return std::move(Found.Own);
 }
 
-/// More writes of one variable are not told apart by who sees them.
-static constexpr unsigned MaxNarrowed = 64;
+/// Each write is held against each read. A variable with more writes is a
+/// buffer or a counter; all its writes are seen.
+static cl::opt<unsigned> MaxNarrowed(
+    "tpc-max-narrowed-writes", cl::Hidden, cl::init(64),
+    cl::desc("Writes of one variable that are told apart by who sees them"));
 
 static bool isLocalOf(const Location &L, const Instruction &At) {
   const auto *Local = dyn_cast_or_null<AllocaInst>(L.Root);
@@ -63,7 +67,7 @@ std::optional<Reaching::Variable>
 VisibleWrites::writtenBy(const Instruction &Write, const Location &L) const {
   if (!isa<StoreInst>(Write)) {
     const Location *Whole = Accesses.replacedBy(Write);
-    if (!Whole || !(*Whole == L))
+    if (!Whole || !Whole->mayEqual(L))
       return std::nullopt;
   }
   return Shared.replacedBy(Write);

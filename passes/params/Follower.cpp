@@ -22,7 +22,8 @@ static cl::opt<unsigned> MaxCallDepth(
     "tpc-max-call-depth", cl::Hidden, cl::init(8),
     cl::desc("Nested calls that a value on its way forward is matched to"));
 
-const CallPath *Follower::into(const CallBase *Call, const CallPath *Outer) {
+const CallPath *Follower::enterCall(const CallBase *Call,
+                                    const CallPath *Outer) {
   if (Outer && Outer->Depth == MaxCallDepth)
     Outer = nullptr;
   Paths.push_back(std::make_unique<CallPath>(
@@ -56,12 +57,12 @@ void Follower::push(State S, Instruction *Via) {
   Work.push(std::move(S));
 }
 
-void Follower::end(ValueEnd::KindTy Kind, Instruction *At) {
+void Follower::stopAt(ValueEnd::KindTy Kind, Instruction *At) {
   Usage.Ends.push_back({Kind, ReadAtHand, At});
 }
 
 /// The state to go on from; one that was come to more simply is done with.
-std::optional<Follower::State> Follower::next() {
+std::optional<Follower::State> Follower::takeNext() {
   while (std::optional<State> S = Work.pop())
     if ((S->IsAnotherOrigin || Seen.lookup(placeOf(*S)) >= S->How.kind()) &&
         !Budget::isSpent())
@@ -82,7 +83,7 @@ static cl::opt<unsigned> MaxTargets(
     cl::desc(
         "Variables that one store may write to before it is a blind spot"));
 
-const Follower::Stored &Follower::stored(StoreInst &Store) {
+const Follower::Stored &Follower::describeStore(StoreInst &Store) {
   std::unique_ptr<Stored> &Known = Stores[&Store];
   if (!Known)
     Known = std::make_unique<Stored>(
@@ -94,13 +95,13 @@ const Follower::Stored &Follower::stored(StoreInst &Store) {
 
 /// A value goes on to the loads of the variable that it is stored to.
 void Follower::store(const State &S, StoreInst &Store) {
-  const Stored &To = stored(Store);
+  const Stored &To = describeStore(Store);
   if (To.Targets == 0)
-    end(ValueEnd::UnknownPointer, &Store);
+    stopAt(ValueEnd::UnknownPointer, &Store);
   else if (To.Targets > MaxTargets)
-    end(ValueEnd::ManyTargets, &Store);
+    stopAt(ValueEnd::ManyTargets, &Store);
   else if (To.Loads.empty() && !IsOutcome)
-    end(ValueEnd::Unread, &Store);
+    stopAt(ValueEnd::Unread, &Store);
   if (To.Loads.empty() && !S.In)
     return;
   State Next{S.V, S.How, nullptr, false, S.In};
@@ -110,7 +111,7 @@ void Follower::store(const State &S, StoreInst &Store) {
       return S.In->Low < P.Low || S.In->Low + S.In->Size > P.Low + P.Size;
     });
     if (Written.empty())
-      return end(ValueEnd::Mixed, &Store);
+      return stopAt(ValueEnd::Mixed, &Store);
     // The whole scalar, or a bit field in it.
     ScalarPart Own = Written.front();
     Next.In.reset();
@@ -173,7 +174,7 @@ static bool isCopy(const Instruction &I, const Use &U) {
 
 /// Carries what is at \p U on where the user only moves it in a register. False
 /// where it does something else, or would lose it.
-bool Follower::repacked(const State &S, Use &U) {
+bool Follower::followRepacked(const State &S, Use &U) {
   Repacked R = repack(U, S.In);
   if (R.Kind == Repacked::None)
     return false;
@@ -212,7 +213,7 @@ bool Follower::carry(const State &S, Use &U) {
     for (Function *Callee : Callees)
       if (Call->getArgOperandNo(&U) < Callee->arg_size())
         push({Callee->getArg(Call->getArgOperandNo(&U)), S.How,
-              into(Call, S.Path), false, S.In},
+              enterCall(Call, S.Path), false, S.In},
              Call);
     return true;
   }

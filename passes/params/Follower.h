@@ -75,17 +75,17 @@ private:
   };
 
   void followRead(unsigned N);
-  void decided(const State &S, llvm::Instruction &Predicate, unsigned Read);
-  void useOfMerged(const State &S, llvm::Use &U, unsigned Read);
-  void useOfValue(const State &S, llvm::Use &U, unsigned Read);
-  void compared(const State &S, llvm::CmpInst &Compare, unsigned Operand,
-                unsigned Read);
-  void flag(const State &S, llvm::Value *V, Decision D, unsigned Read,
-            bool IsOperand = false);
+  void addDecision(const State &S, llvm::Instruction &Predicate, unsigned Read);
+  void followUseOfMerged(const State &S, llvm::Use &U, unsigned Read);
+  void followUse(const State &S, llvm::Use &U, unsigned Read);
+  void addComparison(const State &S, llvm::CmpInst &Compare, unsigned Operand,
+                     unsigned Read);
+  void addFlag(const State &S, llvm::Value *V, Decision D, unsigned Read,
+               bool IsOperand = false);
   void followText(unsigned N);
   llvm::SmallVector<Decision, 2> followOutcome(llvm::Value *Outcome,
                                                const CallPath *Path);
-  bool repacked(const State &S, llvm::Use &U);
+  bool followRepacked(const State &S, llvm::Use &U);
   bool carry(const State &S, llvm::Use &U);
   void load(const State &S, llvm::Instruction &Write,
             llvm::ArrayRef<ScalarPart> Written,
@@ -96,20 +96,20 @@ private:
     llvm::SmallVector<llvm::LoadInst *, 8> Loads;
     llvm::SmallVector<ScalarPart, 1> Written;
   };
-  const Stored &stored(llvm::StoreInst &Store);
+  const Stored &describeStore(llvm::StoreInst &Store);
   void store(const State &S, llvm::StoreInst &Store);
-  void end(ValueEnd::KindTy Kind, llvm::Instruction *At);
+  void stopAt(ValueEnd::KindTy Kind, llvm::Instruction *At);
   /// Nobody asks for the way of a value that is compared nowhere.
   void forgetHops(size_t From) {
     Usage.Hops.erase(Usage.Hops.begin() + From, Usage.Hops.end());
   }
   void push(State S, llvm::Instruction *Via = nullptr);
-  const CallPath *into(const llvm::CallBase *Call, const CallPath *Outer);
+  const CallPath *enterCall(const llvm::CallBase *Call, const CallPath *Outer);
   static std::pair<const llvm::Value *, const llvm::CallBase *>
   placeOf(const State &S) {
     return {S.V, S.Path ? S.Path->Call : nullptr};
   }
-  std::optional<State> next();
+  std::optional<State> takeNext();
 
   const CallGraphResult &Calls;
   PointsTo &Pointers;

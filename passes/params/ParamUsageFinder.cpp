@@ -68,7 +68,7 @@ SmallVector<Decision, 2> Follower::followOutcome(Value *Outcome,
   size_t HopsBefore = Usage.Hops.size();
   SmallVector<Decision, 2> Found;
   push({Outcome, {}, Path, true});
-  while (std::optional<State> At = next()) {
+  while (std::optional<State> At = takeNext()) {
     const State &S = *At;
     Here = S.Way;
     for (Use &U : S.V->uses()) {
@@ -77,16 +77,16 @@ SmallVector<Decision, 2> Follower::followOutcome(Value *Outcome,
         continue;
       if (!S.In && decidesBy(*I, U))
         Found.push_back({I, S.Direct, S.Way});
-      else if (repacked(S, U))
+      else if (followRepacked(S, U))
         continue;
       else if (S.In && !carry(S, U))
-        end(ValueEnd::Outcome, I);
+        stopAt(ValueEnd::Outcome, I);
       else if (S.In)
         continue;
       else if (isLogical(*I) || isa<ICmpInst>(I))
         push({I, {}, S.Path, S.Direct});
       else if (!carry(S, U))
-        end(ValueEnd::Outcome, I);
+        stopAt(ValueEnd::Outcome, I);
     }
   }
   Work = std::move(OuterWork);
@@ -99,8 +99,8 @@ SmallVector<Decision, 2> Follower::followOutcome(Value *Outcome,
 }
 
 /// \p V, made of what \p S follows, decides \p D by itself.
-void Follower::flag(const State &S, Value *V, Decision D, unsigned Read,
-                    bool IsOperand) {
+void Follower::addFlag(const State &S, Value *V, Decision D, unsigned Read,
+                       bool IsOperand) {
   ParameterComparison C;
   // An argument has no place of its own: there the flag stands at the branch.
   C.IsOperand = IsOperand && isa<Instruction>(V);
@@ -131,16 +131,16 @@ static bool asksForNonZero(const CmpInst &Compare, unsigned Operand) {
           Compare.getPredicate() == CmpInst::FCMP_UNE);
 }
 
-void Follower::compared(const State &S, CmpInst &Compare, unsigned Operand,
-                        unsigned Read) {
+void Follower::addComparison(const State &S, CmpInst &Compare, unsigned Operand,
+                             unsigned Read) {
   if (Compare.getOperand(0) == Compare.getOperand(1) ||
       Compare.getOperand(0)->getType()->isPtrOrPtrVectorTy())
     return;
   if (!comparesValues(Compare))
-    return end(ValueEnd::Mixed, &Compare);
+    return stopAt(ValueEnd::Mixed, &Compare);
   if (S.How.kind() == Transform::None && asksForNonZero(Compare, Operand)) {
     for (const Decision &D : followOutcome(&Compare, S.Path))
-      flag(S, &Compare, D, Read, /*IsOperand=*/!D.Direct);
+      addFlag(S, &Compare, D, Read, /*IsOperand=*/!D.Direct);
     return;
   }
   ParameterComparison C;
@@ -154,20 +154,21 @@ void Follower::compared(const State &S, CmpInst &Compare, unsigned Operand,
 }
 
 /// The value itself decides \p Predicate.
-void Follower::decided(const State &S, Instruction &Predicate, unsigned Read) {
+void Follower::addDecision(const State &S, Instruction &Predicate,
+                           unsigned Read) {
   if (S.How.kind() == Transform::None || isa<SwitchInst>(Predicate))
-    flag(S, S.Origin ? S.Origin : S.V, {&Predicate, !S.Origin, S.Way}, Read,
-         /*IsOperand=*/S.Origin != nullptr);
+    addFlag(S, S.Origin ? S.Origin : S.V, {&Predicate, !S.Origin, S.Way}, Read,
+            /*IsOperand=*/S.Origin != nullptr);
 }
 
 /// Of a merged value that was followed from another of its origins already
 /// only what it decides is asked.
-void Follower::useOfMerged(const State &S, Use &U, unsigned Read) {
+void Follower::followUseOfMerged(const State &S, Use &U, unsigned Read) {
   auto *I = dyn_cast<Instruction>(U.getUser());
   if (!I || S.In)
     return;
   if (decidesBy(*I, U))
-    decided(S, *I, Read);
+    addDecision(S, *I, Read);
   else if (const auto *Cast = dyn_cast<CastInst>(I))
     push({I, applyCast(S.How, *Cast), S.Path, S.Direct, S.In, S.Origin});
   else if ((isa<PHINode>(I) && !isShortCircuit(*I, U)) || isa<SelectInst>(I) ||
@@ -175,32 +176,32 @@ void Follower::useOfMerged(const State &S, Use &U, unsigned Read) {
     carry(S, U);
 }
 
-void Follower::useOfValue(const State &S, Use &U, unsigned Read) {
+void Follower::followUse(const State &S, Use &U, unsigned Read) {
   auto *I = dyn_cast<Instruction>(U.getUser());
   if (!I)
     return;
   if (S.IsAnotherOrigin)
-    return useOfMerged(S, U, Read);
-  if (repacked(S, U))
+    return followUseOfMerged(S, U, Read);
+  if (followRepacked(S, U))
     return;
   if (S.In) {
     if (!carry(S, U))
-      end(ValueEnd::Mixed, I);
+      stopAt(ValueEnd::Mixed, I);
     return;
   }
   if (auto *Compare = dyn_cast<CmpInst>(I))
-    return compared(S, *Compare, U.getOperandNo(), Read);
+    return addComparison(S, *Compare, U.getOperandNo(), Read);
   if (decidesBy(*I, U))
-    return decided(S, *I, Read);
+    return addDecision(S, *I, Read);
   if (isLogical(*I) && S.V->getType()->isIntegerTy(1)) {
     for (Decision D : followOutcome(I, S.Path))
-      flag(S, S.V, D, Read, /*IsOperand=*/!D.Direct);
+      addFlag(S, S.V, D, Read, /*IsOperand=*/!D.Direct);
     return;
   }
   if (isShortCircuit(*I, U) && S.How.kind() == Transform::None &&
       isa<Instruction>(S.V)) {
     for (Decision D : followOutcome(I, S.Path))
-      flag(S, S.V, {D.Predicate, false, D.Way}, Read, /*IsOperand=*/true);
+      addFlag(S, S.V, {D.Predicate, false, D.Way}, Read, /*IsOperand=*/true);
     return;
   }
   if (const auto *Cast = dyn_cast<CastInst>(I))
@@ -220,7 +221,7 @@ void Follower::useOfValue(const State &S, Use &U, unsigned Read) {
   if (std::optional<Transform> T = apply(S.How, *I, S.V, squareOf(*I)))
     push({I, std::move(*T), S.Path, S.Direct});
   else if (!isa<IntrinsicInst>(I) || !I->getType()->isVoidTy())
-    end(ValueEnd::Mixed, I);
+    stopAt(ValueEnd::Mixed, I);
 }
 
 /// True for the types whose values are compared as numbers.
@@ -240,11 +241,11 @@ void Follower::followText(unsigned N) {
   if (!Object && Read.Call->hasStructRetAttr())
     Object = Read.Call->getArgOperand(0);
   if (!Object)
-    return end(ValueEnd::NoNumber, Read.Call);
+    return stopAt(ValueEnd::NoNumber, Read.Call);
   Seen.clear();
   TextUsage::Found Found = Texts.comparisonsOf(Object);
   for (unsigned Lost = 0; Lost < Found.Lost; ++Lost)
-    end(ValueEnd::Mixed, Read.Call);
+    stopAt(ValueEnd::Mixed, Read.Call);
   for (const TextComparison &T : Found.Comparisons) {
     ParameterComparison C;
     C.Read = N;
@@ -265,7 +266,7 @@ void Follower::followRead(unsigned N) {
   if (isText(R.Type))
     return followText(N);
   if (!isNumber(R.Type))
-    return end(ValueEnd::NoNumber, R.Call);
+    return stopAt(ValueEnd::NoNumber, R.Call);
   Seen.clear();
   SeenOrigins.clear();
   for (Value *V : R.Values)
@@ -275,19 +276,19 @@ void Follower::followRead(unsigned N) {
   if (R.Target) {
     SmallVector<LoadInst *, 8> Loads = Writes.usesOf(*R.Call, R.Target);
     if (Loads.empty())
-      end(Pointers.resolve(R.Target, true).empty() ? ValueEnd::UnknownPointer
-                                                   : ValueEnd::Unread,
-          R.Call);
+      stopAt(Pointers.resolve(R.Target, true).empty() ? ValueEnd::UnknownPointer
+                                                      : ValueEnd::Unread,
+             R.Call);
     SmallVector<ScalarPart, 1> Written;
     for (Location &L : Pointers.resolve(R.Target, true))
       Written.push_back({std::move(L)});
     load({R.Call, {}, nullptr, true}, *R.Call, Written, Loads);
   }
-  while (std::optional<State> At = next()) {
+  while (std::optional<State> At = takeNext()) {
     const State &S = *At;
     Here = S.Way;
     for (Use &U : S.V->uses())
-      useOfValue(S, U, N);
+      followUse(S, U, N);
   }
   if (Usage.Comparisons.size() == Before)
     forgetHops(HopsBefore);

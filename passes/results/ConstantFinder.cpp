@@ -138,8 +138,8 @@ static bool asksForNonZero(const CmpInst &Compare) {
           Compare.getPredicate() == CmpInst::FCMP_UNE);
 }
 
-void ConstantFinder::compared(CmpInst &Compare, Instruction &Predicate,
-                              const SliceEntry &E, bool Direct) {
+void ConstantFinder::addComparison(CmpInst &Compare, Instruction &Predicate,
+                                   const SliceEntry &E, bool Direct) {
   // A plain number before one that has to be looked for.
   unsigned Threshold = plainNumber(Compare.getOperand(1))   ? 1
                        : plainNumber(Compare.getOperand(0)) ? 0
@@ -168,7 +168,7 @@ void ConstantFinder::compared(CmpInst &Compare, Instruction &Predicate,
 }
 
 /// Goes back from what \p Predicate decides by.
-void ConstantFinder::decide(Instruction &Predicate, const SliceEntry &E) {
+void ConstantFinder::searchBack(Instruction &Predicate, const SliceEntry &E) {
   struct Item {
     Value *V;
     bool Direct;
@@ -181,7 +181,7 @@ void ConstantFinder::decide(Instruction &Predicate, const SliceEntry &E) {
     if (!I || !Seen.insert(I).second)
       continue;
     if (auto *Compare = dyn_cast<CmpInst>(I)) {
-      compared(*Compare, Predicate, E, It.Direct);
+      addComparison(*Compare, Predicate, E, It.Direct);
       // Of truth values the comparisons that they came from.
       for (Value *Operand : Compare->operands())
         if (isTruth(Operand))
@@ -211,7 +211,7 @@ std::vector<Comparison>
 ConstantFinder::run(ArrayRef<Instruction *> Predicates) {
   for (Instruction *Predicate : Predicates)
     if (std::optional<SliceEntry> E = Slice.lookup(Predicate))
-      decide(*Predicate, *E);
+      searchBack(*Predicate, *E);
   std::vector<Comparison> All;
   for (auto &[Compare, C] : Found)
     All.push_back(std::move(C));

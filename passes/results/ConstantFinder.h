@@ -38,9 +38,9 @@ public:
   std::vector<Comparison> run(llvm::ArrayRef<llvm::Instruction *> Predicates);
 
 private:
-  void decide(llvm::Instruction &Predicate, const SliceEntry &E);
-  void compared(llvm::CmpInst &Compare, llvm::Instruction &Predicate,
-                const SliceEntry &E, bool Direct);
+  void searchBack(llvm::Instruction &Predicate, const SliceEntry &E);
+  void addComparison(llvm::CmpInst &Compare, llvm::Instruction &Predicate,
+                     const SliceEntry &E, bool Direct);
 
   const llvm::Constant *numberOf(const llvm::Value *V) const;
   const llvm::Constant *returnedBy(const llvm::CallBase &Call) const;

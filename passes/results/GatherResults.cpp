@@ -91,8 +91,8 @@ StringRef Comparison::relation() const {
 
 /// The nearest of the predicates that \p C decides and that an exposing
 /// statement depends on; of several equally near ones the first.
-static bool nearest(const ParameterComparison &C, const SliceResult &Slice,
-                    Comparison &Out) {
+static bool findNearest(const ParameterComparison &C, const SliceResult &Slice,
+                        Comparison &Out) {
   bool Found = false;
   for (const Decision &D : C.Decisions) {
     std::optional<SliceEntry> E = Slice.lookup(D.Predicate);
@@ -244,7 +244,7 @@ public:
              AM.getResult<VisibleWritesAnalysis>(M),
              [&](const ParameterComparison &P) {
                Comparison Ignored{};
-               return nearest(P, Slice, Ignored);
+               return findNearest(P, Slice, Ignored);
              }) {}
 
   GatheredResults run() {
@@ -286,7 +286,7 @@ private:
 std::optional<NotReported::WhyTy>
 Gatherer::gather(const ParameterComparison &P) {
   Comparison C = comparisonOf(P);
-  if (!nearest(P, Slice, C))
+  if (!findNearest(P, Slice, C))
     return NotReported::NotExposed;
   WithParameter.insert(P.Compare);
   if (P.Flag)

@@ -72,24 +72,24 @@ private:
 
   unsigned addStep(Instruction *I, Why Because);
   void enter(Instruction *I, unsigned char Reasons, Why Because);
-  void decides(Instruction *Predicate, Why Because);
+  void enterDecider(Instruction *Predicate, Why Because);
   void process(const Item &It);
-  void control(const Instruction &I);
-  void value(Instruction &I);
-  void define(const Value *V);
-  void definePointer(const Value *V);
-  void defineMemory(const Value *Pointer, const Instruction &At);
-  void phi(const PHINode &Phi);
-  void defineArguments(const CallBase &Call);
-  void callResult(CallBase &Call);
+  void enterControllers(const Instruction &I);
+  void enterOperands(Instruction &I);
+  void enterValue(const Value *V);
+  void enterPointer(const Value *V);
+  void enterMemory(const Value *Pointer, const Instruction &At);
+  void enterMerge(const PHINode &Phi);
+  void enterArguments(const CallBase &Call);
+  void enterResult(CallBase &Call);
   bool isSeenThrough(const CallBase &Call);
   bool isCounting(const Instruction &I);
-  void touchingCall(CallBase &Call);
-  void virtualCall(const CallBase &Call);
-  void throwingCall(CallBase &Call);
-  void derivedPointer(const Value *Pointer);
-  void publisher(const Value *Object);
-  void reachable(CallBase &Call);
+  void enterTouched(CallBase &Call);
+  void enterVirtualCall(const CallBase &Call);
+  void enterThrowers(CallBase &Call);
+  void enterDerived(const Value *Pointer);
+  void enterPublisher(const Value *Object);
+  void enterReachable(CallBase &Call);
 
   LocationSet SeenWritten, SeenLoaded;
   const CallGraphResult &Calls;
@@ -130,7 +130,7 @@ void Slicer::enter(Instruction *I, unsigned char Reasons, Why Because) {
 
 /// \p Predicate, or a call that may throw, controls what is at hand: this round
 /// is its distance.
-void Slicer::decides(Instruction *Predicate, Why Because) {
+void Slicer::enterDecider(Instruction *Predicate, Why Because) {
   if (!isPredicate(*Predicate))
     return enter(Predicate, Throwing, Because);
   auto [It, New] = Result.Predicates.try_emplace(Predicate);
@@ -149,9 +149,9 @@ bool Slicer::isCounting(const Instruction &I) {
   return F && !Sources.has(Loc) && Rules.isCounting(*F);
 }
 
-void Slicer::control(const Instruction &I) {
+void Slicer::enterControllers(const Instruction &I) {
   for (Instruction *Predicate : Ifs.controllers(I))
-    decides(Predicate, Why::Controls);
+    enterDecider(Predicate, Why::Controls);
   if (Ifs.isControlledByEntry(I)) {
     for (CallBase *Call : Calls.callers(I.getFunction()))
       enter(Call, Runs, Why::Calls);
@@ -163,9 +163,9 @@ void Slicer::control(const Instruction &I) {
 }
 
 /// The value of \p V matters: what gives it enters the next round.
-void Slicer::define(const Value *V) {
+void Slicer::enterValue(const Value *V) {
   if (V->getType()->isPointerTy())
-    return definePointer(V);
+    return enterPointer(V);
   if (const auto *I = dyn_cast<Instruction>(V))
     return enter(const_cast<Instruction *>(I), Gives, Why::Gives);
   const auto *Arg = dyn_cast<Argument>(V);
@@ -175,19 +175,19 @@ void Slicer::define(const Value *V) {
   for (CallBase *Call : Calls.callers(Arg->getParent()))
     if (Arg->getArgNo() < Call->arg_size()) {
       Here = addStep(Call, Why::Passes);
-      define(Call->getArgOperand(Arg->getArgNo()));
+      enterValue(Call->getArgOperand(Arg->getArgNo()));
       Here = Inside;
     }
 }
 
 /// Which object a pointer leads to matters where the program chooses it: by
 /// an index, a condition, a call or a pointer in memory.
-void Slicer::definePointer(const Value *V) {
+void Slicer::enterPointer(const Value *V) {
   if (const auto *GEP = dyn_cast<GetElementPtrInst>(V)) {
     for (const Use &Index : GEP->indices())
       if (!isa<Constant>(Index))
-        define(Index);
-    return definePointer(GEP->getPointerOperand());
+        enterValue(Index);
+    return enterPointer(GEP->getPointerOperand());
   }
   if (isa<PHINode>(V) || isa<SelectInst>(V) || isa<LoadInst>(V) ||
       isa<CallBase>(V))
@@ -196,7 +196,7 @@ void Slicer::definePointer(const Value *V) {
 
 /// What is in memory at \p Pointer, a scalar or an array of them, matters where
 /// \p At reads it.
-void Slicer::defineMemory(const Value *Pointer, const Instruction &At) {
+void Slicer::enterMemory(const Value *Pointer, const Instruction &At) {
   Locations Read = Pointers.resolve(Pointer, true);
   for (Location &L : Read)
     L.widen();
@@ -214,25 +214,25 @@ void Slicer::defineMemory(const Value *Pointer, const Instruction &At) {
 
 /// A value that control flow merges: the predicates that choose between the
 /// ways matter as if they controlled this instruction.
-void Slicer::phi(const PHINode &Phi) {
+void Slicer::enterMerge(const PHINode &Phi) {
   for (unsigned N = 0; N < Phi.getNumIncomingValues(); ++N) {
-    define(Phi.getIncomingValue(N));
+    enterValue(Phi.getIncomingValue(N));
     for (Instruction *Predicate :
          Ifs.choosers(Phi.getIncomingBlock(N), Phi.getParent()))
-      decides(Predicate, Why::Chooses);
+      enterDecider(Predicate, Why::Chooses);
   }
 }
 
 /// What \p Call is handed matters.
-void Slicer::defineArguments(const CallBase &Call) {
+void Slicer::enterArguments(const CallBase &Call) {
   for (const Use &Arg : Call.args()) {
-    define(Arg);
+    enterValue(Arg);
     if (Arg->getType()->isPointerTy() && !Writes.replaces(Call, Arg))
-      defineMemory(Arg, Call);
+      enterMemory(Arg, Call);
   }
 }
 
-void Slicer::callResult(CallBase &Call) {
+void Slicer::enterResult(CallBase &Call) {
   SmallVector<Function *, 1> Callees = Calls.callees(Call);
   if (!Callees.empty()) {
     for (Function *Callee : Callees)
@@ -241,7 +241,7 @@ void Slicer::callResult(CallBase &Call) {
           enter(BB.getTerminator(), Gives, Why::Returns);
     return;
   }
-  defineArguments(Call);
+  enterArguments(Call);
 }
 
 /// True where \p Call only enters functions whose writes are seen by their
@@ -256,34 +256,34 @@ bool Slicer::isSeenThrough(const CallBase &Call) {
 
 /// \p Call is handed an object that matters: it may put its other arguments
 /// into it, and what is written through a pointer that it returns is in it.
-void Slicer::touchingCall(CallBase &Call) {
+void Slicer::enterTouched(CallBase &Call) {
   // What an exposing statement shows is in the slice from the beginning; the
   // publisher that does it is not among it.
   if (Seen.lookup(&Call) & Exposes)
     return;
   if (!isSeenThrough(Call))
-    defineArguments(Call);
+    enterArguments(Call);
   if (Call.getType()->isPointerTy())
-    derivedPointer(&Call);
+    enterDerived(&Call);
 }
 
 /// Which object a virtual function of the user's is called on decides what
 /// runs.
-void Slicer::virtualCall(const CallBase &Call) {
+void Slicer::enterVirtualCall(const CallBase &Call) {
   auto How = ClassHierarchy::match(Call);
   if (How && any_of(Calls.callees(Call),
                     [&](const Function *F) { return Sources.has(*F); }))
-    definePointer(How->Object);
+    enterPointer(How->Object);
 }
 
 /// Whether \p Call throws matters: what throws in the functions that it calls.
-void Slicer::throwingCall(CallBase &Call) {
+void Slicer::enterThrowers(CallBase &Call) {
   for (const Function *Callee : Calls.callees(Call))
     for (CallBase *Inner : Thrown.leaving(Callee))
       enter(Inner, isThrow(*Inner) ? Runs : Throwing, Why::Throws);
 }
 
-void Slicer::derivedPointer(const Value *Pointer) {
+void Slicer::enterDerived(const Value *Pointer) {
   if (!SeenPointers.insert(Pointer).second)
     return;
   for (const Use &U : Pointer->uses()) {
@@ -291,7 +291,7 @@ void Slicer::derivedPointer(const Value *Pointer) {
     if (!I || Accesses.isPutIn(U))
       continue;
     if (isa<GetElementPtrInst>(I))
-      derivedPointer(I);
+      enterDerived(I);
     else if (auto *Store = dyn_cast<StoreInst>(I);
              Store && Store->getPointerOperand() == Pointer &&
              // What is stored into a local object is known by its place.
@@ -309,7 +309,7 @@ void Slicer::derivedPointer(const Value *Pointer) {
 /// What is in the publisher at \p Object is not shown; which one it is decides
 /// where: what chooses it, the pointer to it that was stored, and what the
 /// user's functions return. Of an object that it is in only what chooses that.
-void Slicer::publisher(const Value *Object) {
+void Slicer::enterPublisher(const Value *Object) {
   SmallVector<std::pair<const Value *, bool>, 4> Work{{Object, true}};
   SmallPtrSet<const Value *, 8> Known;
   while (!Work.empty()) {
@@ -318,7 +318,7 @@ void Slicer::publisher(const Value *Object) {
       continue;
     if (const auto *GEP = dyn_cast<GetElementPtrInst>(V)) {
       for (const Use &Index : GEP->indices())
-        define(Index);
+        enterValue(Index);
       Work.push_back({GEP->getPointerOperand(), false});
     } else if (const auto *Arg = dyn_cast<Argument>(V)) {
       for (const CallBase *Call : Calls.callers(Arg->getParent()))
@@ -331,21 +331,21 @@ void Slicer::publisher(const Value *Object) {
                          [&](const Function *F) { return Sources.has(*F); });
       if (isa<PHINode, SelectInst>(V) ||
           (IsItself && (isa<LoadInst>(V) || Returned)))
-        definePointer(V);
+        enterPointer(V);
     }
   }
 }
 
 /// All that an exposing statement shows: what is in its arguments.
-void Slicer::reachable(CallBase &Call) {
+void Slicer::enterReachable(CallBase &Call) {
   const Rule *Row = Rules.match(Call);
   const Value *Object = Row ? objectOf(Call, *Row) : nullptr;
   for (const Use &Arg : Call.args()) {
     if (Arg.get() == Object) {
-      publisher(Object);
+      enterPublisher(Object);
       continue;
     }
-    define(Arg);
+    enterValue(Arg);
     if (!Arg->getType()->isPointerTy())
       continue;
     for (const Location &L : Pointers.resolve(Arg, false)) {
@@ -358,14 +358,14 @@ void Slicer::reachable(CallBase &Call) {
       for (Instruction *Write : Accesses.writesInto(L))
         Settled.insert(Write);
     }
-    derivedPointer(Arg);
+    enterDerived(Arg);
     Settled.clear();
   }
 }
 
-void Slicer::value(Instruction &I) {
+void Slicer::enterOperands(Instruction &I) {
   if (auto *Phi = dyn_cast<PHINode>(&I))
-    return phi(*Phi);
+    return enterMerge(*Phi);
   if (auto *Load = dyn_cast<LoadInst>(&I)) {
     // Most loads of a variable that is not local have the same writes.
     bool New = false;
@@ -373,7 +373,7 @@ void Slicer::value(Instruction &I) {
       New |= !Writes.isSharedBy(L, *Load, Load->getPointerOperand()) ||
              SeenLoaded.insert(L).second;
     if (!New)
-      return definePointer(Load->getPointerOperand());
+      return enterPointer(Load->getPointerOperand());
     // What is copied is among the definitions; that it is, matters too.
     for (const Location &L : Pointers.touched(*Load))
       for (Instruction *Copy : Accesses.copiesTo(L))
@@ -385,38 +385,38 @@ void Slicer::value(Instruction &I) {
           Sources.has(*Write->getFunction()))
         enter(Write, Gives, Why::Writes);
     }
-    return definePointer(Load->getPointerOperand());
+    return enterPointer(Load->getPointerOperand());
   }
   if (auto *Copy = dyn_cast<MemTransferInst>(&I))
-    return defineMemory(Copy->getRawSource(), I);
+    return enterMemory(Copy->getRawSource(), I);
   if (auto *Call = dyn_cast<CallBase>(&I); Call && !isa<IntrinsicInst>(&I))
-    return callResult(*Call);
+    return enterResult(*Call);
   if (auto *Store = dyn_cast<StoreInst>(&I)) {
-    define(Store->getValueOperand());
-    return definePointer(Store->getPointerOperand());
+    enterValue(Store->getValueOperand());
+    return enterPointer(Store->getPointerOperand());
   }
   if (isa<SelectInst>(I))
-    decides(&I, Why::Chooses);
+    enterDecider(&I, Why::Chooses);
   for (const Use &Operand : I.operands())
     if (!isa<BasicBlock>(Operand))
-      define(Operand);
+      enterValue(Operand);
 }
 
 void Slicer::process(const Item &It) {
   Current = It.Exposing;
   Here = It.Step;
   if (It.Reasons & Runs)
-    control(*It.I);
+    enterControllers(*It.I);
   if (const auto *Call = dyn_cast<CallBase>(It.I))
-    virtualCall(*Call);
+    enterVirtualCall(*Call);
   if (It.Reasons & Gives)
-    value(*It.I);
+    enterOperands(*It.I);
   if (It.Reasons & Touches)
-    touchingCall(*cast<CallBase>(It.I));
+    enterTouched(*cast<CallBase>(It.I));
   if (It.Reasons & Throwing)
-    throwingCall(*cast<CallBase>(It.I));
+    enterThrowers(*cast<CallBase>(It.I));
   if (It.Reasons & Exposes)
-    reachable(*cast<CallBase>(It.I));
+    enterReachable(*cast<CallBase>(It.I));
 }
 
 SliceResult Slicer::run() {

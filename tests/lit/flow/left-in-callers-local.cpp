@@ -3,7 +3,7 @@
 //
 // What a function leaves in a variable of its caller is taken to be there when
 // it is called again, although that is another run's variable. This is a limit
-// (docs/reference/analysis.md): 'slow' is compared where it is stored alone.
+// (docs/reference/analysis-limits.md): 'slow' is compared where it is stored alone.
 #include <ros/ros.h>
 
 #include <algorithm>
