@@ -318,5 +318,5 @@ def test_a_mission_that_was_marked_anew_is_asked_about_anew(out):
 
 def test_files_that_are_broken(out):
     (out / "study.json").write_text("{}")
-    with pytest.raises(InputError, match="not about a study"):
+    with pytest.raises(InputError, match="not a study's file"):
         next_round(out)

@@ -151,9 +151,10 @@ def _write(
     contents: Contents, full: Mapping[str, Table], judged: Sequence[Judging], target: Path
 ) -> Made:
     """Write the page and what stands beside it, but its figures, which are drawn already."""
+    figures = [one.to_json() for one in contents.headlines]
     numbers = {
         "schema": _SCHEMA,
-        "figures": [one.to_json() for one in contents.headlines],
+        "figures": figures,
         "tables": {label: as_json(table) for label, table in contents.tables.items()},
         "missing": list(contents.troubles),
     }
@@ -164,7 +165,7 @@ def _write(
         write_atomic(written[-1], as_csv(table).encode())
     for name, text in (
         (RESULTS_FILE, json_text(numbers)),
-        (FIGURES_FILE, _listed(numbers["figures"])),
+        (FIGURES_FILE, _listed(figures)),
         (JUDGED_FILE.name, _listed([asdict(one) for one in judged])),
         (_TABLES_PAGE, tables_page(contents)),
     ):
