@@ -17,7 +17,7 @@ from typing import Any
 from figures import figure
 
 from pytpc_evaluation.study.judge import POSITIONS_FILE
-from pytpc_evaluation.study.report.making import FIGURES_FILE, make_report
+from pytpc_evaluation.study.report.making import FIGURES_FILE, ReportOptions, make_report
 from pytpc_evaluation.study.report.parts import SECOND_ROUND
 
 TOPIC = "study"
@@ -51,7 +51,7 @@ def main(words: Sequence[str] | None = None) -> None:
 def _figures_of(study: Path) -> list[dict[str, Any]]:
     """The figures of a study, whose page is not kept."""
     with tempfile.TemporaryDirectory() as folder:
-        made = make_report(study, Path(folder) / "study.md", [HALF], draw=False)
+        made = make_report(study, Path(folder) / "study.md", ReportOptions([HALF], draw=False))
     figures: list[dict[str, Any]] = made.numbers["figures"]
     return figures
 

@@ -157,7 +157,7 @@ def test_a_bag_alone_has_no_treatment(study):
     result = stats(study, missions="alone.bag")
     assert result.exit_code == 0, result.output
     assert result.stdout.count("No mission has anything for it.") == 3
-    assert "alone: its treatment is not known" in result.stderr
+    assert "alone: its treatment is unknown" in result.stderr
     assert "alone: 1 broken report left out" in result.stderr
 
 
@@ -165,7 +165,7 @@ def test_errors_are_one_line(study, tmp_path):
     static_info(comparison(7, "~else")).save(tmp_path / "else.json")
     (tmp_path / "blocked").write_text("")
     for arguments, said in (
-        (["--static", tmp_path / "else.json"], "other build"),
+        (["--static", tmp_path / "else.json"], "it is of another build"),
         (["--treatments", tmp_path / "none"], "none: no such folder of treatments"),
         (["-o", tmp_path / "blocked" / "out"], "cannot be written"),
         (["--table", "6.13", "--figures", tmp_path / "blocked"], "cannot be written"),
@@ -183,7 +183,7 @@ def test_broken_missions_are_one_line_each(study):
     mission = study / "missions" / "m1"
     for name, data, said in (
         ("treatment.json", b"{", "treatment.json:1: not JSON"),
-        ("run.json", b"[]", "run.json: not about a run"),
+        ("run.json", b"[]", "run.json: not a run's file"),
         ("mission.bag", (mission / "mission.bag").read_bytes()[:3000], "mission.bag: "),
     ):
         before = (mission / name).read_bytes() if (mission / name).exists() else None

@@ -19,6 +19,7 @@ from pytpc.recording.marks import Mark
 from pytpc_evaluation.stats.bars import runtime_bars
 from pytpc_evaluation.stats.curves import NAMED, mission_figure
 from pytpc_evaluation.stats.drawing import COLOURS, CULPRIT, save, style
+from pytpc_evaluation.stats.figure_choice import Figures
 from pytpc_evaluation.stats.figures import draw_study
 from pytpc_evaluation.stats.missions import StudyMission
 from pytpc_evaluation.stats.runtime import RuntimeRow, RuntimeStatistics
@@ -157,7 +158,7 @@ def test_all_files_of_a_study(tmp_path):
         StudyMission("runtime", Recording("e", Events.empty(), (), 7, 7)),
         StudyMission("-", replace(recording(), marks=tuple(MARKS))),
     ]
-    drawn = draw_study(missions, STATIC, tmp_path, ("svg", "png", "pdf"))
+    drawn = draw_study(missions, STATIC, Figures(tmp_path, ("svg", "png", "pdf")))
     assert sorted(path.relative_to(tmp_path).name for path in drawn) == sorted(
         f"{name}.{form}"
         for name in ("runtime", "low-trial-1", "b-x-2-i", "runtime-2", "mission")
@@ -174,8 +175,8 @@ def test_all_files_of_a_study(tmp_path):
 
 def test_the_same_study_gives_the_same_bytes(tmp_path):
     missions = [StudyMission("a", recording(MARKS), treatment())]
-    first = draw_study(missions, STATIC, tmp_path / "1", ("svg", "png", "pdf"))
-    second = draw_study(missions, STATIC, tmp_path / "2", ("svg", "png", "pdf"))
+    first = draw_study(missions, STATIC, Figures(tmp_path / "1", ("svg", "png", "pdf")))
+    second = draw_study(missions, STATIC, Figures(tmp_path / "2", ("svg", "png", "pdf")))
     assert {path.suffix for path in first} == {".svg", ".png", ".pdf"}
     for one, two in zip(first, second, strict=True):
         assert one.read_bytes() == two.read_bytes()
@@ -184,9 +185,9 @@ def test_the_same_study_gives_the_same_bytes(tmp_path):
 # A user's own matplotlibrc changes nothing, and ours is not left behind.
 def test_settings_are_ours_alone(tmp_path):
     missions = [StudyMission("a", recording(MARKS), treatment())]
-    (one, _) = draw_study(missions, STATIC, tmp_path / "1")
+    (one, _) = draw_study(missions, STATIC, Figures(tmp_path / "1"))
     with mpl.rc_context({"lines.linewidth": 9.0, "axes.facecolor": "black"}):
-        (two, _) = draw_study(missions, STATIC, tmp_path / "2")
+        (two, _) = draw_study(missions, STATIC, Figures(tmp_path / "2"))
         assert mpl.rcParams["axes.facecolor"] == "black"
     assert one.read_bytes() == two.read_bytes()
 
@@ -208,8 +209,7 @@ def test_troubles_are_told_and_the_ranks_are_drawn_all_the_same(tmp_path):
     drawn = draw_study(
         missions,
         STATIC,
-        tmp_path,
-        states=["/odom.x"],
+        Figures(tmp_path, states=["/odom.x"]),
         on_progress=lambda done, total: steps.append((done, total)),
         on_trouble=told.append,
     )

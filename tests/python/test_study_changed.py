@@ -13,7 +13,7 @@ from study_samples import EVENTS, STATIC
 from pytpc.recording.mission import Recording
 from pytpc.values.changes import Change
 from pytpc_evaluation.study.report.changed import turned
-from pytpc_evaluation.study.report.making import make_report
+from pytpc_evaluation.study.report.making import ReportOptions, make_report
 
 RECORDING = Recording("m", EVENTS, (), 0, ns(20))
 NODE = EVENTS.nodes[0]
@@ -51,7 +51,7 @@ def test_the_changes_on_the_page(own_study, tmp_path):
         (folder / "changes.json").write_text(json.dumps(changes))
         treatment = json.loads((folder / "treatment.json").read_text())
         (folder / "treatment.json").write_text(json.dumps({**treatment, "node": NODE}))
-    made = make_report(own_study, tmp_path / "study.md", draw=False)
+    made = make_report(own_study, tmp_path / "study.md", ReportOptions(draw=False))
     text = re.sub(r"\n +", " ", made.page.read_text())
     assert row_of(text, "How large changes are", "alpha") == [
         "2", "0.69", "2", "33", "1", "0.47", "1.6", "100"
@@ -70,5 +70,5 @@ def test_without_harmless_changes_the_page_says_so(study_text):
 
 def test_a_history_that_cannot_be_read_leaves_its_mission_out(own_study, tmp_path):
     (own_study / "missions/alpha/clean/seed-1/changes.json").write_text("{}")
-    made = make_report(own_study, tmp_path / "study.md", draw=False)
+    made = make_report(own_study, tmp_path / "study.md", ReportOptions(draw=False))
     assert any("not a history of changes" in trouble for trouble in made.troubles)

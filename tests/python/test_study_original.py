@@ -10,7 +10,7 @@ from study_pages import row_of
 
 from pytpc.base.errors import InputError
 from pytpc_evaluation.stats.states import seen_state
-from pytpc_evaluation.study.report.making import make_report
+from pytpc_evaluation.study.report.making import ReportOptions, make_report
 
 
 # Seven missions of 20 s. ~low and ~high: 20 a mission, 1 a second, in 19 of 20 seconds (at 20 s one
@@ -73,7 +73,7 @@ def test_table_6_16(study_text):
 
 def test_a_figure_without_sights_is_drawn_all_the_same(own_study, tmp_path):
     (own_study / "missions/alpha/type1_low/seed-1/sights.parquet").write_text("x")
-    made = make_report(own_study, tmp_path / "study.md", ["tuning"])
+    made = make_report(own_study, tmp_path / "study.md", ReportOptions(["tuning"]))
     assert any(trouble.startswith("alpha, type I, seed 1: ") for trouble in made.troubles)
     assert str(own_study) not in made.page.read_text()
     assert (tmp_path / "images/study/alpha-type1.png").exists()

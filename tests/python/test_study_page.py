@@ -17,7 +17,7 @@ from pytpc.base.tables import Column, Table
 from pytpc_evaluation.study.report.conclusion import conclusion
 from pytpc_evaluation.study.report.confidence import Accusations, calibration, false_accusations
 from pytpc_evaluation.study.report.drawings import draw_results
-from pytpc_evaluation.study.report.making import make_report
+from pytpc_evaluation.study.report.making import ReportOptions, make_report
 from pytpc_evaluation.study.report.page import wrapped
 from pytpc_evaluation.study.report.parts import Part
 from pytpc_evaluation.study.report.positions import Position, read_positions
@@ -199,7 +199,7 @@ def test_without_a_second_round_there_is_no_part_of_it(own_study, tmp_path):
     treatment = json.loads(path.read_text())
     del treatment["round"]
     path.write_text(json.dumps(treatment))
-    made = make_report(own_study, tmp_path / "study.md", draw=False)
+    made = make_report(own_study, tmp_path / "study.md", ReportOptions(draw=False))
     assert "second round alone" not in made.page.read_text()
     assert not any("second-round" in one["name"] for one in made.numbers["figures"])
 
@@ -340,7 +340,7 @@ def test_twice_the_same(study, made_study, tmp_path):
 
 
 def test_one_half_alone(study, tmp_path):
-    made = make_report(study, tmp_path / "study.md", ["tuning"])
+    made = make_report(study, tmp_path / "study.md", ReportOptions(["tuning"]))
     text = made.page.read_text()
     assert "Only the tuning half of the results is shown." in text
     assert "The held-back half" not in text

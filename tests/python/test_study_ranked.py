@@ -23,7 +23,7 @@ from pytpc_evaluation.study.methods import METHODS
 from pytpc_evaluation.study.report import judging
 from pytpc_evaluation.study.report.judged import JUDGED_FILE, load_judgings, told_judgings
 from pytpc_evaluation.study.report.judging import rank_missions
-from pytpc_evaluation.study.report.making import make_report
+from pytpc_evaluation.study.report.making import ReportOptions, make_report
 from pytpc_evaluation.study.report.positions import Position, read_positions
 from pytpc_evaluation.study.resume import alone_with_results
 from pytpc_evaluation.study.verdict_digest import method_digest, modules_used
@@ -239,11 +239,15 @@ def test_each_judging_of_what_is_held_back_is_written_down(own, tmp_path, monkey
     assert times == sorted(times)
     assert {time.utcoffset() for time in times} == {timedelta(0)}
     text = re.sub(
-        r"\n +", " ", make_report(own, tmp_path / "study.md", draw=False).page.read_text()
+        r"\n +",
+        " ",
+        make_report(own, tmp_path / "study.md", ReportOptions(draw=False)).page.read_text(),
     )
     said = f"judged 3 times, from {found[0].time} to {found[2].time}, by 2 states of the methods."
     assert said in text.replace("\\", "")
-    tuning = make_report(own, tmp_path / "study.md", ["tuning"], draw=False).page.read_text()
+    tuning = make_report(
+        own, tmp_path / "study.md", ReportOptions(["tuning"], draw=False)
+    ).page.read_text()
     assert "was judged 3 times" not in tuning
 
 
@@ -262,7 +266,7 @@ def test_an_interrupted_judging_counts(own):
 
 def test_judgings_that_cannot_be_read_are_said(own, tmp_path):
     (own / JUDGED_FILE).write_text('[{"time": 1}]')
-    made = make_report(own, tmp_path / "study.md", draw=False)
+    made = make_report(own, tmp_path / "study.md", ReportOptions(draw=False))
     assert any(one.startswith("judged.json is left out: not a list") for one in made.troubles)
 
 
@@ -328,7 +332,9 @@ def test_the_rankings_of_users_are_the_code_of_the_methods():
 def test_what_cannot_be_ranked_is_said(own_study, tmp_path):
     shutil.rmtree(own_study / "results")
     (own_study / "missions/alpha/type1_low/seed-1/marks.parquet").write_text("x")
-    made = make_report(own_study, tmp_path / "study.md", ["tuning"], rank="missing", draw=False)
+    made = make_report(
+        own_study, tmp_path / "study.md", ReportOptions(["tuning"], rank="missing", draw=False)
+    )
     said = "Not all missions are ranked: missions/alpha/type1_low/seed-1/marks.parquet: not a file"
     assert any(trouble.startswith(said) for trouble in made.troubles), made.troubles
 

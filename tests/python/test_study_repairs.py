@@ -9,7 +9,7 @@ from study_pages import row_of, rows_of
 from study_samples import suggestions, write_rows
 
 from pytpc_evaluation.study.report.folder import load_study
-from pytpc_evaluation.study.report.making import make_report
+from pytpc_evaluation.study.report.making import ReportOptions, make_report
 from pytpc_evaluation.study.report.parts import Part
 from pytpc_evaluation.study.report.repairs import gone, read_repairs
 
@@ -42,7 +42,7 @@ def test_where_the_first_error_is_another_one_it_is_told_apart(own_study, tmp_pa
     for seed, causes in ((1, [other, right]), (2, [other])):
         path = own_study / f"missions/alpha/type2_high/seed-{seed}/causes.json"
         path.write_text(json.dumps(causes))
-    made = make_report(own_study, tmp_path / "study.md", draw=False)
+    made = make_report(own_study, tmp_path / "study.md", ReportOptions(draw=False))
     rows = [row for row in made.numbers["tables"]["repairs"]["rows"] if row["part"] == "held-back"]
     assert [(row["treatments of"], row["treatments"], row["error gone %"]) for row in rows] == [
         ("all", 2, "25 [0, 50]"),
@@ -76,7 +76,7 @@ def test_suggestions_by_variant(study_text):
 
 
 def test_suggestions_by_variant_of_one_half(study, tmp_path):
-    made = make_report(study, tmp_path / "study.md", ["tuning"], draw=False)
+    made = make_report(study, tmp_path / "study.md", ReportOptions(["tuning"], draw=False))
     assert {row["part"] for row in made.numbers["tables"]["tries"]["rows"]} == {"tuning"}
 
 
@@ -88,7 +88,7 @@ def test_what_is_ranked_first_is_told_apart(own_study, tmp_path):
     ranked = {**first["tries"][0], "gone": False, "new_error": False}
     chains += [{**first, "variant": "ranked", "tries": [ranked]}, {**first, "variant": "another"}]
     path.write_text(json.dumps(chains))
-    made = make_report(own_study, tmp_path / "study.md", draw=False)
+    made = make_report(own_study, tmp_path / "study.md", ReportOptions(draw=False))
     rows = [r for r in made.numbers["tables"]["tries"]["rows"] if r["part"] == "held-back"]
     assert [(r["variant"], r["tries"], r["error gone %"]) for r in rows] == [
         ("smallest", 1, "100 [2, 100]"),
@@ -107,7 +107,7 @@ def test_what_is_ranked_first_is_told_apart(own_study, tmp_path):
 
 def test_broken_chains_are_said(own_study, tmp_path):
     (own_study / "results/suggestion-chains.json").write_text('[{"tries": 1}]')
-    made = make_report(own_study, tmp_path / "study.md", draw=False)
+    made = make_report(own_study, tmp_path / "study.md", ReportOptions(draw=False))
     assert any("suggestion-chains.json is left out" in trouble for trouble in made.troubles)
 
 

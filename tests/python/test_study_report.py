@@ -14,7 +14,7 @@ from study_samples import fly, plan, write_rows
 
 from pytpc.base.errors import InputError
 from pytpc_evaluation.commands.study_commands import study_group
-from pytpc_evaluation.study.report.making import make_report
+from pytpc_evaluation.study.report.making import ReportOptions, make_report
 
 ROOT = Path(__file__).parents[2]
 
@@ -77,7 +77,7 @@ def test_the_figures_of_the_benchmark(study, made_study, tmp_path, capsys, monke
 
 def test_without_results_the_rest_is_there(own_study, tmp_path):
     shutil.rmtree(own_study / "results")
-    made = make_report(own_study, tmp_path / "study.md", draw=False)
+    made = make_report(own_study, tmp_path / "study.md", ReportOptions(draw=False))
     text = made.page.read_text()
     assert "Nothing has been ranked yet." in made.troubles
     assert "Nothing has been flown again as suggested yet." in made.troubles
@@ -114,7 +114,7 @@ def test_without_results_the_rest_is_there(own_study, tmp_path):
 )
 def test_what_is_missing_is_said(own_study, tmp_path, spoil, said):
     spoil(own_study)
-    made = make_report(own_study, tmp_path / "study.md", draw=False)
+    made = make_report(own_study, tmp_path / "study.md", ReportOptions(draw=False))
     assert any(trouble.startswith(said) for trouble in made.troubles), made.troubles
     assert str(own_study) not in made.page.read_text()
 
@@ -129,7 +129,7 @@ def test_missions_that_failed_or_went_wrong_are_on_the_page(own_study, tmp_path)
     document["missions"][0]["remarks"] = ["the observer saw nothing"]
     document["systems"] = [{"name": "alpha"}, {"name": "omega"}]
     (own_study / "study.json").write_text(json.dumps(document))
-    made = make_report(own_study, tmp_path / "study.md", draw=False)
+    made = make_report(own_study, tmp_path / "study.md", ReportOptions(draw=False))
     assert "missions/alpha/type1_x/seed-1 failed: the node died." in made.troubles
     assert "Still to be flown: 1 mission of alpha." in made.troubles
     assert "No mission of omega has been flown." in made.troubles
@@ -140,7 +140,7 @@ def test_missions_that_failed_or_went_wrong_are_on_the_page(own_study, tmp_path)
 def test_a_mission_that_is_not_planned_is_in_no_half(own_study, tmp_path):
     treatment = {"type": "type1", "parameter": "~low", "node": "/node", "old": 8, "new": 5}
     fly(own_study, ("alpha", "type1_new", 1), treatment, [])
-    made = make_report(own_study, tmp_path / "study.md", draw=False)
+    made = make_report(own_study, tmp_path / "study.md", ReportOptions(draw=False))
     tables = (tmp_path / "study/tables.md").read_text()
     assert row_of(tables, "The treatments", "alpha", "type1_new")[1] == "unknown"
     assert "type1_new" not in json.dumps(made.numbers["tables"]["repairs-all"])

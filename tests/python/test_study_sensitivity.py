@@ -21,7 +21,7 @@ from pytpc_evaluation.study.judge import POSITIONS_FILE
 from pytpc_evaluation.study.people import look_on
 from pytpc_evaluation.study.report import sensitivity
 from pytpc_evaluation.study.report.judging import rank_missions
-from pytpc_evaluation.study.report.making import make_report
+from pytpc_evaluation.study.report.making import ReportOptions, make_report
 from pytpc_evaluation.study.report.positions import Position, read_positions
 from pytpc_evaluation.study.report.sensitivity import (
     CROWDS,
@@ -179,7 +179,7 @@ def test_the_page_shows_them(own_study, tmp_path):
         Row("alpha", "clean", "clean", "held-back", 1, "typed", None, 0.2, who="fast", marks=50),
     ]
     write_rows(own_study / SENSITIVITY_FILE, [asdict(row) for row in rows])
-    made = make_report(own_study, tmp_path / "study.md", ["held-back"], draw=False)
+    made = make_report(own_study, tmp_path / "study.md", ReportOptions(["held-back"], draw=False))
     tables = made.numbers["tables"]
     assert "others-tuning" not in tables
     text = made.page.read_text().replace("Second round alone, top 3", "# Others again\n")
@@ -195,7 +195,9 @@ def test_the_page_shows_them(own_study, tmp_path):
 
 
 def troubles_of(study: Path, target: Path) -> list[str]:
-    made = make_report(study, target / "study.md", ["tuning", "held-back"], draw=False)
+    made = make_report(
+        study, target / "study.md", ReportOptions(["tuning", "held-back"], draw=False)
+    )
     return [trouble for trouble in made.troubles if "other people" in trouble]
 
 

@@ -19,7 +19,7 @@ from pytpc_evaluation.study.case import Verdict
 from pytpc_evaluation.study.dataset import save_done
 from pytpc_evaluation.study.suggested import FAILED_FILE, TRIED_FILE
 from pytpc_evaluation.study.suggestion_chains import Chain, Try, shares
-from pytpc_evaluation.study.suggestions import HEADLINE_FILE, next_round
+from pytpc_evaluation.study.suggestions import HEADLINE_FILE, Asked, next_round
 
 MISSION = "robot/type1_limit/seed-1"
 OTHER = "~other"
@@ -131,7 +131,7 @@ def test_rounds(out):
 # I is about it; the third is the counter. Its value is that of the chain `lasting`: one flight.
 def test_suspects_are_tried_in_turn(out):
     method = lambda _: Verdict(("<dynamic> at a.cpp:1", OTHER, "~limit"))  # noqa: E731
-    chains = next_round(out, method=method)
+    chains = next_round(out, Asked(method=method))
     tries = next(chain.tries for chain in chains if chain.variant == "suspects")
     assert [one.reason for one in tries] == [
         "only the running node knows its name",
@@ -149,7 +149,7 @@ def test_suspects_are_tried_in_turn(out):
 def test_the_ranking_may_say_that_it_is_none_of_them(out):
     quiet = Recording("m", log(25, range(10)).events, (), 0, ns(100))
     save(out / "missions" / MISSION, quiet)
-    (chain,) = next_round(out, variants=["ranked"])
+    (chain,) = next_round(out, Asked(variants=["ranked"]))
     (only,) = chain.tries
     assert (only.parameter, only.value) == ("", None)
     assert only.reason.startswith("none of the parameters comes first: ")
@@ -163,7 +163,7 @@ def test_who_is_told_nothing(out):
     path = out / "missions" / MISSION / "treatment.json"
     told = {**json.loads(path.read_text()), "parameter": OTHER, "node": "/pump", "type": "type2"}
     path.write_text(json.dumps(told))
-    chains = next_round(out, variants=["ranked", "ranked-reference"])
+    chains = next_round(out, Asked(variants=["ranked", "ranked-reference"]))
     found = [(one.tries[0].parameter, one.tries[0].node, one.tries[0].value) for one in chains]
     assert found == [("~limit", "/brain", 10), ("~limit", "/brain", 25)]
     assert wanted(out)[0]["value"] == 10
@@ -171,11 +171,11 @@ def test_who_is_told_nothing(out):
 
 # 10 was flown for the other chain, 51 after it. The values are still those; nothing is flown.
 def test_asked_anew(out):
-    next_round(out, variants=["lasting", "ranked"])
+    next_round(out, Asked(variants=["lasting", "ranked"]))
     fly(out, 10, gone=False)
     next_round(out)
     fly(out, 51, gone=True)
-    chains = next_round(out, variants=["ranked"], again=True)
+    chains = next_round(out, Asked(variants=["ranked"], again=True))
     ranked = next(chain for chain in chains if chain.variant == "ranked")
     assert [(one.value, one.gone) for one in ranked.tries] == [(10, False)]
 
@@ -183,11 +183,11 @@ def test_asked_anew(out):
 # The second value of `lasting` comes from the log of the first one's flight. What was flown of it
 # for another chain is no longer there.
 def test_a_flight_whose_log_is_wanted_is_flown_again(out):
-    next_round(out, variants=["ranked"])
+    next_round(out, Asked(variants=["ranked"]))
     fly(out, 10, gone=False)
-    next_round(out, variants=["ranked"])
+    next_round(out, Asked(variants=["ranked"]))
     fly(out, 99, gone=False)
-    chains = next_round(out, variants=["lasting"])
+    chains = next_round(out, Asked(variants=["lasting"]))
     assert [chain.is_over for chain in chains] == [False, True]
     assert wanted(out)[0]["value"] == 10
 
@@ -200,12 +200,12 @@ def failed(out, times):
 
 
 def test_a_flight_that_always_fails_is_given_up(out):
-    next_round(out, variants=["lasting", "ranked"])
+    next_round(out, Asked(variants=["lasting", "ranked"]))
     failed(out, 1)
-    chains = next_round(out, variants=["lasting", "ranked"])
+    chains = next_round(out, Asked(variants=["lasting", "ranked"]))
     assert not any(chain.is_over for chain in chains)
     failed(out, 2)
-    chains = next_round(out, variants=["lasting", "ranked"])
+    chains = next_round(out, Asked(variants=["lasting", "ranked"]))
     assert all(chain.is_over for chain in chains)
     assert wanted(out) == []
     told = {(one.gone, one.new_error, one.failed, one.reason) for c in chains for one in c.tries}
@@ -222,20 +222,20 @@ def test_a_flight_that_always_fails_is_given_up(out):
 # The next suspect needs no log of a flight.
 def test_the_next_suspect_is_tried_where_a_flight_fails(out):
     method = lambda _: Verdict(("~limit", OTHER))  # noqa: E731
-    next_round(out, method=method, variants=["suspects"])
+    next_round(out, Asked(method=method, variants=["suspects"]))
     failed(out, 2)
-    (chain,) = next_round(out, method=method, variants=["suspects"])
+    (chain,) = next_round(out, Asked(method=method, variants=["suspects"]))
     assert [one.parameter for one in chain.tries] == ["~limit", OTHER, ""]
 
 
 def test_a_half_that_is_not_asked_about_is_not_looked_at(out):
-    assert next_round(out, ["held-back"]) == []
+    assert next_round(out, Asked(["held-back"])) == []
     assert wanted(out) == []
 
 
 # Without the smallest change the first flight is that of the value to try.
 def test_one_variant(out):
-    (chain,) = next_round(out, variants=["lasting"])
+    (chain,) = next_round(out, Asked(variants=["lasting"]))
     assert (chain.variant, wanted(out)[0]["value"]) == ("lasting", 10)
 
 
@@ -318,5 +318,5 @@ def test_a_mission_that_was_marked_anew_is_asked_about_anew(out):
 
 def test_files_that_are_broken(out):
     (out / "study.json").write_text("{}")
-    with pytest.raises(InputError, match="not about a study"):
+    with pytest.raises(InputError, match="not a study's file"):
         next_round(out)

@@ -13,7 +13,7 @@ from mixed_workspace import BROKEN_TEXT, make_mixed
 from pytpc.base.errors import RunError, WorkspaceError
 from pytpc.workspace.colcon import Bases
 from pytpc_evaluation.survey import surveying
-from pytpc_evaluation.survey.measured_build import Measured, read_tree, underlaid
+from pytpc_evaluation.survey.measured_build import BuildWay, Measured, read_tree, underlaid
 from pytpc_evaluation.survey.surveying import Options, Step, survey
 from pytpc_evaluation.survey.trees import Tree
 
@@ -41,12 +41,12 @@ def built(prefix: Path, below: Below, monkeypatch: pytest.MonkeyPatch) -> Log:
     """What was built: tree and way; each leaves an install base."""
     log: Log = []
 
-    def measure(tree: Tree, bases: Bases, environment: dict[str, str], **_: object) -> Measured:
+    def measure(tree: Tree, bases: Bases, way: BuildWay, _on_output: object) -> Measured:
         log.append((tree.name, bases.root.name))
         bases.install.mkdir(parents=True, exist_ok=True)
         setup = bases.install / "local_setup.bash"
         setup.write_text(f'export BELOW="$BELOW {tree.name}/{bases.root.name}"\n', encoding="utf-8")
-        below[log[-1]] = environment.get("BELOW", "")
+        below[log[-1]] = way.environment.get("BELOW", "")
         return Measured(build(2.0))
 
     monkeypatch.setattr(surveying, "measure", measure)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import click
@@ -20,6 +19,7 @@ from pytpc.cli.console import console, progress, warn
 from pytpc.cli.options import JSON, PATH, STATIC, WINDOW, recording_of
 from pytpc.cli.sources import static_of
 from pytpc.static.static_info import StaticInfo
+from pytpc_evaluation.stats.figure_choice import Figures
 from pytpc_evaluation.stats.missions import StudyMission, load_missions
 from pytpc_evaluation.stats.thesis_tables import NUMBERS, study_complaints, thesis_tables
 
@@ -116,7 +116,7 @@ def stats_command(  # noqa: PLR0917
     else:
         _write(tables, form, output, folder=folder)
     if figures is not None:
-        _draw(missions, static, _Figures(figures, figure_formats, states, window_s))
+        _draw(missions, static, Figures(figures, figure_formats, states, window_s))
 
 
 COMMANDS: list[click.Command] = [stats_command]
@@ -189,17 +189,7 @@ def _show(out: Console, table: Table) -> None:
     out.print()
 
 
-@dataclass(frozen=True, slots=True)
-class _Figures:
-    """What is to be drawn, where and how."""
-
-    folder: Path
-    formats: Sequence[str]
-    states: Sequence[str]
-    window_s: float
-
-
-def _draw(missions: Sequence[StudyMission], static: StaticInfo, wanted: _Figures) -> None:
+def _draw(missions: Sequence[StudyMission], static: StaticInfo, wanted: Figures) -> None:
     # matplotlib takes half a second to import, which tables alone need not wait for.
     from pytpc_evaluation.stats.figures import draw_study  # noqa: PLC0415
 
@@ -207,10 +197,7 @@ def _draw(missions: Sequence[StudyMission], static: StaticInfo, wanted: _Figures
         drawn = draw_study(
             missions,
             static,
-            wanted.folder,
-            wanted.formats,
-            states=wanted.states,
-            window_s=wanted.window_s,
+            wanted,
             on_progress=advance,
             on_trouble=lambda text: warn(plain(text)),
         )

@@ -42,16 +42,18 @@ def report_command(
     as the method itself may have. The page says what is missing in the folder.
     """
     # matplotlib takes half a second to import, which other commands need not wait for.
-    from pytpc_evaluation.study.report.making import json_text, make_report  # noqa: PLC0415
+    from pytpc_evaluation.study.report.making import (  # noqa: PLC0415
+        ReportOptions,
+        json_text,
+        make_report,
+    )
 
     with ExitStack() as stack:
         made = make_report(
             out,
             docs,
-            CHOSEN[half],
+            ReportOptions(CHOSEN[half], rank="again" if again else "missing", jobs=jobs),
             lambda what: stack.enter_context(progress(what)),
-            rank="again" if again else "missing",
-            jobs=jobs,
         )
     for trouble in made.troubles:
         warn(plain(trouble))

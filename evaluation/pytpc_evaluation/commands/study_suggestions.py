@@ -18,7 +18,7 @@ from pytpc_evaluation.study.methods import METHODS
 from pytpc_evaluation.study.resume import alone_with_results
 from pytpc_evaluation.study.suggested import WANTED_FILE
 from pytpc_evaluation.study.suggestion_chains import VARIANTS, Chain, shares
-from pytpc_evaluation.study.suggestions import next_round
+from pytpc_evaluation.study.suggestions import Asked, next_round
 
 
 @click.command("suggestions")
@@ -57,9 +57,8 @@ def suggestions_command(
     """
     ranking = None if method is None else METHODS[method]
     with alone_with_results(out), progress("working out suggestions") as advance:
-        chains = next_round(
-            out, CHOSEN[half], ranking, variants or tuple(VARIANTS), advance, again=again
-        )
+        asked = Asked(CHOSEN[half], ranking, variants or tuple(VARIANTS), again)
+        chains = next_round(out, asked, advance)
     mine = [chain for chain in chains if chain.half in CHOSEN[half]]
     for chain in mine:
         for one in chain.tries:

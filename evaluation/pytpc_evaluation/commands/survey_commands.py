@@ -4,29 +4,27 @@ from __future__ import annotations
 
 import os
 import re
-import sys
 import time
 from pathlib import Path
 
 import click
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
-from rich.table import Table as ScreenTable
 from rich.text import Text
 
 from pytpc.base.atomic import write_atomic
 from pytpc.base.checked_json import dump_json
 from pytpc.base.errors import WorkspaceError
-from pytpc.base.tables import Table
+from pytpc.base.tables import as_rich
 from pytpc.base.wording import many, plain
+from pytpc.cli.console import console, warn
 from pytpc_evaluation.survey.static_tables import tables
-from pytpc_evaluation.survey.survey_documents import FORMATS, documents, faults, shown
+from pytpc_evaluation.survey.survey_documents import FORMATS, documents, faults
 from pytpc_evaluation.survey.surveying import Options, Step, survey
 from pytpc_evaluation.survey.trees import TreeResult
 
 _FOLDER = click.Path(path_type=Path, file_okay=True)
 _JOB_LINE = re.compile(r"^(Starting >>>|Finished <<<|Failed +<<<|Aborted +<<<) (?P<name>\S+)")
-_PIPED_WIDTH = 200
 _SILENT_S = 2.0
 
 
@@ -181,25 +179,14 @@ class _Progress:
 
 
 def _print(results: list[TreeResult]) -> None:
-    console = Console(width=None if sys.stdout.isatty() else _PIPED_WIDTH)
+    out = console()
     for table in tables(results):
-        console.print(_on_screen(table), highlight=False)
-
-
-def _on_screen(table: Table) -> ScreenTable:
-    screen = ScreenTable(title=Text(table.title), title_justify="left")
-    screen.add_column("Name", overflow="fold")
-    for column in table.columns:
-        screen.add_column(column.heading, justify="right")
-    for name, cells in table.rows:
-        screen.add_row(*(Text(plain(text)) for text in (name, *shown(table, cells))))
-    screen.add_section()
-    for name, cells in table.summary:
-        screen.add_row(*(Text(text) for text in (name, *shown(table, cells, statistic=True))))
-    return screen
+        out.print(Text(table.title, style="bold"))
+        for part in as_rich(table, out.width):
+            out.print(part, highlight=False)
 
 
 def _warn(results: list[TreeResult]) -> None:
     for tree, what, name, reason in faults(results):
         about = f"{tree}: {name} {what}" if name else f"{tree}: {what}"
-        click.echo(f"pytpc: warning: {plain(f'{about}: {reason}')}", err=True)
+        warn(plain(f"{about}: {reason}"))

@@ -15,6 +15,7 @@ from pytpc.static.static_info import StaticInfo
 from pytpc_evaluation.stats.bars import runtime_bars
 from pytpc_evaluation.stats.curves import mission_figure
 from pytpc_evaluation.stats.drawing import save, style
+from pytpc_evaluation.stats.figure_choice import Figures
 from pytpc_evaluation.stats.missions import StudyMission, Trial, in_order
 from pytpc_evaluation.stats.runtime import runtime_statistics
 from pytpc_evaluation.stats.states import RobotState, robot_state, seen_state
@@ -26,11 +27,7 @@ _POINTS = 1500
 def draw_study(
     missions: Sequence[StudyMission],
     static_info: StaticInfo,
-    folder: Path,
-    formats: Sequence[str] = ("png",),
-    *,
-    states: Sequence[str] = (),
-    window_s: float = WINDOW_S,
+    wanted: Figures,
     on_progress: Callable[[int, int], None] | None = None,
     on_trouble: Callable[[str], None] | None = None,
 ) -> list[Path]:
@@ -39,10 +36,7 @@ def draw_study(
     Args:
         missions: in any order.
         static_info: of the build that flew them.
-        folder: for the files.
-        formats: of `pytpc_evaluation.stats.drawing.FORMATS`.
-        states: what of the robot is drawn, see `pytpc_evaluation.stats.states`.
-        window_s: the window of type II.
+        wanted: what is drawn, where and how.
         on_progress: called with (figures drawn, figures in all).
         on_trouble: called with a sentence where something of a mission cannot be drawn.
 
@@ -58,16 +52,16 @@ def draw_study(
     with style():
         found = runtime_statistics([trial.mission.recording for trial in trials], static_info)
         figure = runtime_bars(found, _changed(missions))
-        for form in formats:
-            written.append(folder / f"runtime.{form}")
+        for form in wanted.formats:
+            written.append(wanted.folder / f"runtime.{form}")
             save(figure, written[-1], form)
         for number, (trial, name) in enumerate(zip(trials, names, strict=True), start=1):
             if on_progress is not None:
                 on_progress(number, len(trials) + 1)
-            state = state_of(trial, states, on_trouble)
-            figure = trial_figure(trial, static_info, state, window_s)
-            for form in formats:
-                written.append(folder / f"{name}.{form}")
+            state = state_of(trial, wanted.states, on_trouble)
+            figure = trial_figure(trial, static_info, state, wanted.window_s)
+            for form in wanted.formats:
+                written.append(wanted.folder / f"{name}.{form}")
                 save(figure, written[-1], form)
     return written
 

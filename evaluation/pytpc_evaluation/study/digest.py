@@ -5,7 +5,6 @@ No folder's name is in it, so that a study may be moved, and gone on with from a
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable
 from hashlib import sha256
 from pathlib import Path
@@ -15,6 +14,7 @@ from pytpc.base.paths import cmake_file, defer_plugin, log_library, plugin, proj
 from pytpc.static.static_info import StaticInfo
 from pytpc_evaluation.demo.demo_examples import SHARED_PACKAGE, Example
 from pytpc_evaluation.study.plan import Flight
+from pytpc_evaluation.study.verdict_digest import digest_of
 
 VERSION = 2
 """Counts what the study itself does to a mission: another number has all flown again."""
@@ -36,7 +36,7 @@ def sources_digest(example: Example) -> str:
     own = [path for path in _files(example.folder) if path.name != "demo.py"]
     files = _files(SHARED_PACKAGE)
     shared = [path for path in files if path in EYES or not path.is_relative_to(_PEOPLE)]
-    return _of([_contents(own, example.folder), _contents(shared, SHARED_PACKAGE)])
+    return digest_of([_contents(own, example.folder), _contents(shared, SHARED_PACKAGE)])
 
 
 def tools_digest() -> str:
@@ -50,7 +50,7 @@ def tools_digest() -> str:
     """
     halves = [cmake_file(), plugin(), defer_plugin(), log_library()]
     python = _contents(_files(_ANALYSIS), _ANALYSIS)
-    return _of([[sha256(_read(path)).hexdigest() for path in halves], python])
+    return digest_of([[sha256(_read(path)).hexdigest() for path in halves], python])
 
 
 def build_digest(example: Example, static: StaticInfo) -> str:
@@ -59,7 +59,7 @@ def build_digest(example: Example, static: StaticInfo) -> str:
     Raises:
         InputError: a file cannot be read.
     """
-    return _of([sources_digest(example), sorted(static.thresholds)])
+    return digest_of([sources_digest(example), sorted(static.thresholds)])
 
 
 def people_digest() -> str:
@@ -68,7 +68,7 @@ def people_digest() -> str:
     Raises:
         InputError: a file cannot be read.
     """
-    return _of(_contents([path for path in _files(_PEOPLE) if path not in EYES], _PEOPLE))
+    return digest_of(_contents([path for path in _files(_PEOPLE) if path not in EYES], _PEOPLE))
 
 
 def flight_digest(flight: Flight, build: str, rate: float, settle_s: float) -> str:
@@ -78,7 +78,7 @@ def flight_digest(flight: Flight, build: str, rate: float, settle_s: float) -> s
         InputError: a file of the treatment cannot be read.
     """
     treatment = flight.treatment
-    return _of(
+    return digest_of(
         [
             VERSION,
             build,
@@ -95,7 +95,7 @@ def flight_digest(flight: Flight, build: str, rate: float, settle_s: float) -> s
 
 def marks_digest(flight: Flight, people: str) -> str:
     """Of what was made of a flight: the people, and their seed."""
-    return _of([VERSION, people, flight.people])
+    return digest_of([VERSION, people, flight.people])
 
 
 def _files(folder: Path) -> list[Path]:
@@ -117,7 +117,3 @@ def _read(path: Path) -> bytes:
         return path.read_bytes()
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror}", path) from error
-
-
-def _of(document: object) -> str:
-    return sha256(json.dumps(document).encode()).hexdigest()

@@ -24,7 +24,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import asdict, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -82,25 +82,37 @@ _TRIES = pa.schema(
 )
 
 
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """Which suggestions are asked for.
+
+    ``halves`` are those whose missions are asked about; chains of others stay as they are.
+    ``method`` is for the chains ``suspects``, of which there are none without it. There are new
+    chains for ``variants``. ``again``: their chains in ``halves`` begin anew, because the ranking
+    or the advice has changed. What was flown for them is not forgotten.
+    """
+
+    halves: Sequence[Half] = ("tuning",)
+    method: Method | None = None
+    variants: Sequence[str] = tuple(VARIANTS)
+    again: bool = False
+
+    def renews(self, chain: Chain) -> bool:
+        """Whether a chain begins anew."""
+        return self.again and chain.variant in self.variants and chain.half in self.halves
+
+
 def next_round(
     out: Path,
-    halves: Sequence[Half] = ("tuning",),
-    method: Method | None = None,
-    variants: Sequence[str] = tuple(VARIANTS),
+    asked: Asked | None = None,
     on_progress: Callable[[int, int], None] | None = None,
-    *,
-    again: bool = False,
 ) -> list[Chain]:
     """Take in what was flown, and write what is to be flown next.
 
     Args:
         out: the study's folder.
-        halves: the halves whose missions are asked about; chains of others stay as they are.
-        method: for the chains ``suspects``, of which there are none without it.
-        variants: for which there are new chains.
+        asked: what is asked for; by default all variants of the tuning half.
         on_progress: called with (chains done, chains in all).
-        again: whether the chains of ``variants`` in ``halves`` begin anew, for the ranking or the
-            advice has changed. What was flown for them is not forgotten.
 
     Returns:
         All chains, in the order of the missions and variants.
@@ -109,12 +121,12 @@ def next_round(
         InputError: a file of the study is missing or broken.
         TpcError: a file cannot be written.
     """
+    wanted = asked or Asked()
     before = load_chains(out / CHAINS_FILE)
     failed = load_failed(out)
     for chain in before:
         _take_in(chain, out, failed)
-    kept = [one for one in before if not (again and one.variant in variants and one.half in halves)]
-    chains = _chains(kept, out, halves, method, variants)
+    chains = _chains([one for one in before if not wanted.renews(one)], out, wanted)
     for number, chain in enumerate(chains, start=1):
         while not chain.is_over:
             if not (chain.tries and chain.tries[-1].is_open):
@@ -161,17 +173,11 @@ def _came(one: Try, flown: Try) -> Try:
     )
 
 
-def _chains(
-    before: Sequence[Chain],
-    out: Path,
-    halves: Sequence[Half],
-    method: Method | None,
-    variants: Sequence[str],
-) -> list[Chain]:
-    """Those of before, and new ones of ``variants`` for what was flown or marked since."""
+def _chains(before: Sequence[Chain], out: Path, asked: Asked) -> list[Chain]:
+    """Those of before, and new ones for what was flown or marked since."""
     known = {(one.mission, one.variant): one for one in before}
     for row in _missions(out):
-        if row["half"] not in halves:
+        if row["half"] not in asked.halves:
             continue
         done = load_done(out / "missions" / _name(row))
         digest = "" if done is None else done.digest
@@ -180,20 +186,21 @@ def _chains(
             for place, one in known.items()
             if one.digest == digest or one.mission != _name(row)
         }
-        for variant in variants:
+        for variant in asked.variants:
             chain = Chain(
                 row["system"], row["treatment"], row["type"], row["half"],
                 int(row["seed"]), variant, float(row["old"]), float(row["new"]), digest=digest,
             )  # fmt: skip
             place = (chain.mission, variant)
-            if place in known or (variant == SUSPECTS and method is None):
+            if place in known or (variant == SUSPECTS and asked.method is None):
                 continue
-            if method is not None and variant == SUSPECTS:
+            if asked.method is not None and variant == SUSPECTS:
                 mission = load_mission(out, out / "missions" / chain.mission, row["half"])
-                chain.order = method(mission.case("typed")).order[: MOST_TRIES[SUSPECTS]]
+                order = asked.method(mission.case("typed")).order
+                chain.order = order[: MOST_TRIES[SUSPECTS]]
             known[place] = chain
-    order = list(VARIANTS)
-    return sorted(known.values(), key=lambda one: (one.mission, order.index(one.variant)))
+    place_of = list(VARIANTS).index
+    return sorted(known.values(), key=lambda one: (one.mission, place_of(one.variant)))
 
 
 def _missions(out: Path) -> Iterator[Mapping[str, Any]]:

@@ -125,14 +125,25 @@ def underlaid(setups: Sequence[Path], jobs: int) -> dict[str, str]:
     return _for_builds({name: value for name, _, value in pairs if name != "_"}, jobs)
 
 
+@dataclass(frozen=True, slots=True)
+class BuildWay:
+    """How a tree is built.
+
+    ``environment`` is that of the build (see ``underlaid``). ``instrumented`` is with tpc.cmake,
+    else the same compilers are used and nothing else. ``jobs`` packages, and compilers in each, run
+    at a time. ``cmake_args`` are further arguments for each package's CMake.
+    """
+
+    environment: Mapping[str, str]
+    instrumented: bool
+    jobs: int
+    cmake_args: tuple[str, ...] = ()
+
+
 def measure(
     tree: Tree,
     bases: Bases,
-    environment: Mapping[str, str],
-    *,
-    instrumented: bool,
-    jobs: int,
-    cmake_args: Sequence[str] = (),
+    way: BuildWay,
     on_output: Callable[[str], None] | None = None,
 ) -> Measured:
     """Build a tree from nothing, with TPC or without, and measure it.
@@ -140,10 +151,7 @@ def measure(
     Args:
         tree: its packages that can be built; one that fails does not stop the others.
         bases: where everything is put; what is there is removed before.
-        environment: of the build; see ``underlaid``.
-        instrumented: with ``tpc.cmake``; else with the same compilers and nothing else.
-        jobs: packages, and compilers in each, that run at a time.
-        cmake_args: further arguments for each package's CMake.
+        way: how it is built.
         on_output: called with each line that colcon writes.
 
     Raises:
@@ -158,7 +166,7 @@ def measure(
         if bases.root.exists():
             shutil.rmtree(bases.root)
         launcher = _write_launcher(bases.root)
-        toolchain = cmake_file() if instrumented else _write_plain_toolchain(bases.root)
+        toolchain = cmake_file() if way.instrumented else _write_plain_toolchain(bases.root)
         for package in packages:
             if package.cmakelists.is_file():
                 ask_for_targets(bases.build / package.name)
@@ -170,13 +178,13 @@ def measure(
         packages,
         toolchain,
         build_type=BUILD_TYPE,
-        cmake_args=[*(f"-DCMAKE_{kind}_LAUNCHER={launcher}" for kind in kinds), *cmake_args],
-        colcon_args=["--continue-on-error", "--parallel-workers", str(jobs)],
+        cmake_args=[*(f"-DCMAKE_{kind}_LAUNCHER={launcher}" for kind in kinds), *way.cmake_args],
+        colcon_args=["--continue-on-error", "--parallel-workers", str(way.jobs)],
     )
-    wall, processor, last = _run(command, tree.path, environment, on_output)
+    wall, processor, last = _run(command, tree.path, way.environment, on_output)
     faults = (*tree.unreadable, *_not_built(packages, bases.log / "latest_build", last))
     build = Build(wall, processor, _noted(launcher.with_name("seconds")), faults)
-    if not instrumented:
+    if not way.instrumented:
         return Measured(build)
     return _static_information(build, packages, bases)
 

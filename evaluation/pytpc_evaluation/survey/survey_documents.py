@@ -10,16 +10,12 @@ from pytpc.base.tables import (
     as_latex,
     as_markdown,
     csv_text,
-    latex,
     markdown,
     markdown_row,
-    shown,
 )
 from pytpc.base.wording import many
 from pytpc_evaluation.survey.static_tables import tables
 from pytpc_evaluation.survey.trees import TreeResult
-
-__all__ = ["FORMATS", "as_csv", "as_latex", "as_markdown", "documents", "faults", "latex", "shown"]
 
 FORMATS = ("csv", "markdown", "latex")
 

@@ -18,7 +18,7 @@ from pytpc.base.paths import cmake_file, defer_plugin, log_library, plugin, pref
 from pytpc.build.python_units import PythonUnits, analyse_scripts, analysis_files, scripts_at
 from pytpc.python_analysis.rules_file import load_rules
 from pytpc.workspace.colcon import Bases
-from pytpc_evaluation.survey.measured_build import Measured, measure, read_tree, underlaid
+from pytpc_evaluation.survey.measured_build import BuildWay, Measured, measure, read_tree, underlaid
 from pytpc_evaluation.survey.source_lines import count_lines, source_files
 from pytpc_evaluation.survey.trees import (
     RESULT_VERSION,
@@ -129,7 +129,7 @@ def _survey(
         if result is None:
             # Its builds go first: what is interrupted now must not pass for what was there.
             _result_file(tree, options).unlink(missing_ok=True)
-            result = _measure_both(tree, options, key=key, number=number, before=before, say=say)
+            result = _measure_both(tree, options, key=key, before=before, say=say)
             write_atomic(_result_file(tree, options), dump_json(result.to_json()))
         else:
             say("already known")
@@ -170,13 +170,12 @@ def _measure_both(
     options: Options,
     *,
     key: str,
-    number: int,
     before: Sequence[Path],
     say: _Say,
 ) -> TreeResult:
     """Build a tree both ways; every second one begins with TPC: neither has the advantage."""
     ways = [PLAIN, TPC] if options.plain else [TPC]
-    if number % 2 == 0:
+    if say.number % 2 == 0:
         ways.reverse()
     say("counting lines")
     lines = count_lines(tree.path)
@@ -191,11 +190,8 @@ def _measure_both(
         measured[way] = measure(
             tree,
             Bases(_builds(tree, options) / way),
-            environment,
-            instrumented=way == TPC,
-            jobs=options.jobs,
-            cmake_args=options.cmake_args,
-            on_output=partial(say, what),
+            BuildWay(environment, way == TPC, options.jobs, options.cmake_args),
+            partial(say, what),
         )
     with_tpc = measured[TPC]
     nodes = _python(tree, say)

@@ -47,6 +47,54 @@ class Ranking:
     judge: Callable[[Mission, Path, Mapping[str, Method]], Iterable[Judged]]
     save: Callable[[Iterable[Judged], Path], None]
 
+    def complete(
+        self,
+        folder: Path,
+        halves: Sequence[Half],
+        on_progress: Progress | None = None,
+        *,
+        again: bool = False,
+        jobs: int = 1,
+    ) -> None:
+        """Complete a table by the verdicts on ``halves`` that it does not have.
+
+        A method ranks a mission again where it, or anything that it is given, has changed. What was
+        ranked when this is interrupted is kept. The table is the same for any number of jobs. Each
+        time missions were judged that are held back, ``results/judged.json`` gets another row.
+
+        Args:
+            folder: the study's.
+            halves: nothing is read of other missions; what stands about them stays.
+            on_progress: called with (missions ranked, missions to rank).
+            again: rank all of ``halves``.
+            jobs: how many processes rank.
+
+        Raises:
+            InputError: a mission or the table cannot be read; all others are ranked.
+            RunError: another command is at work on the results, or a process died.
+            TpcError: the table cannot be written.
+        """
+        if _Plan.of(self, folder, halves, again=again).is_done:
+            return
+        errors: list[TpcError] = []
+        with alone_with_results(folder), signals_end():
+            # Another one may have been at work until now.
+            plan = _Plan.of(self, folder, halves, again=again)
+            try:
+                with closing(_ranked(plan.tasks, jobs)) as results:
+                    for done, (task, found) in enumerate(results, start=1):
+                        if isinstance(found, TpcError):
+                            errors.append(found)
+                        else:
+                            plan.take_in(task, found)
+                        if on_progress is not None:
+                            on_progress(done, len(plan.tasks))
+            finally:
+                self.save(plan.rows(), folder)
+                plan.save_judging(folder)
+        if errors:
+            raise min(errors, key=str)
+
 
 @dataclass(frozen=True)
 class _Task:
@@ -67,65 +115,15 @@ def rank_missions(
     again: bool = False,
     jobs: int = 1,
 ) -> None:
-    """Complete ``results/positions.parquet``, see ``complete``."""
+    """Complete ``results/positions.parquet``, see `Ranking.complete`."""
     positions = Ranking(POSITIONS_FILE, METHODS, mission_digest, _by_own_marks, save_positions)
-    complete(positions, folder, halves, on_progress, again=again, jobs=jobs)
+    positions.complete(folder, halves, on_progress, again=again, jobs=jobs)
 
 
 def _by_own_marks(
     mission: Mission, _folder: Path, methods: Mapping[str, Method]
 ) -> Iterable[Judged]:
     return judge(mission, methods)
-
-
-def complete(
-    ranking: Ranking,
-    folder: Path,
-    halves: Sequence[Half],
-    on_progress: Progress | None = None,
-    *,
-    again: bool = False,
-    jobs: int = 1,
-) -> None:
-    """Complete a table by the verdicts on ``halves`` that it does not have.
-
-    A method ranks a mission again where it, or anything that it is given, is not as it was. What
-    was ranked when this is interrupted is kept. The table is the same however many jobs there are.
-    Each time missions were judged that are held back, ``results/judged.json`` has a row more.
-
-    Args:
-        ranking: what the table has.
-        folder: the study's.
-        halves: nothing is read of other missions; what stands about them stays.
-        on_progress: called with (missions ranked, missions to rank).
-        again: rank all of ``halves``.
-        jobs: how many processes rank.
-
-    Raises:
-        InputError: a mission or the table cannot be read; all others are ranked.
-        RunError: another command is at work on the results, or a process died.
-        TpcError: the table cannot be written.
-    """
-    if _Plan.of(ranking, folder, halves, again=again).is_done:
-        return
-    errors: list[TpcError] = []
-    with alone_with_results(folder), signals_end():
-        # Another one may have been at work until now.
-        plan = _Plan.of(ranking, folder, halves, again=again)
-        try:
-            with closing(_ranked(plan.tasks, jobs)) as results:
-                for done, (task, found) in enumerate(results, start=1):
-                    if isinstance(found, TpcError):
-                        errors.append(found)
-                    else:
-                        plan.take_in(task, found)
-                    if on_progress is not None:
-                        on_progress(done, len(plan.tasks))
-        finally:
-            ranking.save(plan.rows(), folder)
-            plan.save_judging(folder)
-    if errors:
-        raise min(errors, key=str)
 
 
 def is_complete(ranking: Ranking, folder: Path, halves: Sequence[Half]) -> bool:

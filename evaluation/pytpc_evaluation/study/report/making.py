@@ -80,15 +80,26 @@ class Made:
     troubles: tuple[str, ...]
 
 
+@dataclass(frozen=True, slots=True)
+class ReportOptions:
+    """What is reported, and how.
+
+    ``halves`` are those whose results are shown; others are not even ranked. ``rank`` lets the
+    methods rank the missions that are not ranked yet, or all of ``halves`` again, in ``jobs``
+    processes. ``draw``: draw the figures, which takes most of the time.
+    """
+
+    halves: Sequence[Half] = HALVES
+    rank: Literal["missing", "again"] | None = None
+    jobs: int = 1
+    draw: bool = True
+
+
 def make_report(
     folder: Path,
     target: Path,
-    halves: Sequence[Half] = HALVES,
+    options: ReportOptions | None = None,
     on_progress: Callable[[str], Advance] | None = None,
-    *,
-    rank: Literal["missing", "again"] | None = None,
-    jobs: int = 1,
-    draw: bool = True,
 ) -> Made:
     """Write the page, with its figures and tables beside it.
 
@@ -96,22 +107,22 @@ def make_report(
         folder: the study's.
         target: the page. Its figures go to ``images/study`` beside it, its tables and the numbers
             to ``study``.
-        halves: the halves whose results are shown; others are not even ranked.
+        options: what is reported, and how.
         on_progress: called with what begins, gives what is called with (done, all).
-        rank: let the methods rank the missions that are not ranked yet, or all of ``halves`` again.
-        jobs: how many processes rank.
-        draw: draw the figures, which takes most of the time.
 
     Raises:
         InputError: the folder is none of a study.
         TpcError: a file cannot be written.
     """
+    asked = options or ReportOptions()
+    halves = asked.halves
     progress = on_progress or (lambda _: lambda _done, _total: None)
     study = load_study(folder, progress("reading missions"))
     troubles = list(study.troubles)
-    if rank is not None:
+    if asked.rank is not None:
         try:
-            rank_missions(folder, halves, progress("ranking"), again=rank == "again", jobs=jobs)
+            again = asked.rank == "again"
+            rank_missions(folder, halves, progress("ranking"), again=again, jobs=asked.jobs)
         except InputError as error:
             troubles.append(f"Not all missions are ranked: {told(error, folder)}.")
     results = _read_results(folder, study, halves, troubles)
@@ -122,7 +133,7 @@ def make_report(
         advance(number, len(study.systems))
     images = target.parent / IMAGES
     drawn: list[Drawing] = []
-    if draw:
+    if asked.draw:
         drawn, undrawn = draw_systems(originals, study.systems, images, halves, progress("drawing"))
         drawn = [*draw_results(results.positions, images, results.parts), *drawn]
         # Where the folder happens to be is nobody's business on the page.
@@ -151,9 +162,10 @@ def _write(
     contents: Contents, full: Mapping[str, Table], judged: Sequence[Judging], target: Path
 ) -> Made:
     """Write the page and what stands beside it, but its figures, which are drawn already."""
+    figures = [one.to_json() for one in contents.headlines]
     numbers = {
         "schema": _SCHEMA,
-        "figures": [one.to_json() for one in contents.headlines],
+        "figures": figures,
         "tables": {label: as_json(table) for label, table in contents.tables.items()},
         "missing": list(contents.troubles),
     }
@@ -164,7 +176,7 @@ def _write(
         write_atomic(written[-1], as_csv(table).encode())
     for name, text in (
         (RESULTS_FILE, json_text(numbers)),
-        (FIGURES_FILE, _listed(numbers["figures"])),
+        (FIGURES_FILE, _listed(figures)),
         (JUDGED_FILE.name, _listed([asdict(one) for one in judged])),
         (_TABLES_PAGE, tables_page(contents)),
     ):

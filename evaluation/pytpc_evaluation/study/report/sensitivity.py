@@ -28,7 +28,7 @@ from pytpc_evaluation.study.methods import METHODS
 from pytpc_evaluation.study.people import look_on
 from pytpc_evaluation.study.plan import Half
 from pytpc_evaluation.study.report.folder import Progress
-from pytpc_evaluation.study.report.judging import Ranking, complete, is_complete
+from pytpc_evaluation.study.report.judging import Ranking, is_complete
 from pytpc_evaluation.study.verdict_digest import contents, digest_of, mission_digest
 
 SENSITIVITY_FILE = Path("results") / "sensitivity.parquet"
@@ -47,8 +47,8 @@ def rank_by_others(
     again: bool = False,
     jobs: int = 1,
 ) -> None:
-    """Complete ``results/sensitivity.parquet``; arguments and errors as of ``complete``."""
-    complete(_others(), folder, halves, on_progress, again=again, jobs=jobs)
+    """Complete ``results/sensitivity.parquet``; arguments and errors as of `Ranking.complete`."""
+    _others().complete(folder, halves, on_progress, again=again, jobs=jobs)
 
 
 def is_up_to_date(folder: Path, halves: Sequence[Half]) -> bool:
