@@ -126,6 +126,9 @@ def gather(
     seen: set[Path] = set()
     for path in paths:
         found = sources(path)
+        if path not in found and path.resolve() not in seen:
+            seen.add(path.resolve())
+            gathering.marks += _beside(path)
         for source in found:
             # The same file by two names is read once.
             real = source.resolve()

@@ -192,6 +192,17 @@ def test_marks_beside_a_bag_are_read_with_it(bag: Path, tmp_path: Path):
     assert read_bag(bag).marks == (IN_BAG, late)
 
 
+def test_marks_beside_a_folder_of_recordings(bag: Path, tmp_path: Path):
+    # What `pytpc record -o FOLDER` leaves, and `pytpc marks FOLDER --add` then marks.
+    folder = tmp_path / "mission"
+    folder.mkdir()
+    bag.rename(folder / bag.name)
+    added = Mark(ns(130), "II", "ben")
+    write_marks([added], marks_beside(folder))
+    assert read(folder).marks == (IN_BAG, added)
+    assert read([folder, folder]).marks == read(folder).marks
+
+
 def test_marks_beside_an_ingested_folder(bag: Path, tmp_path: Path):
     folder = tmp_path / "out"
     save_recording(read(bag), folder)
