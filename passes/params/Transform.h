@@ -1,9 +1,10 @@
 //===- Transform.h - Arithmetic that a parameter went through -------------===//
 //
-// A threshold that was computed from a parameter and constants (`derived` in
-// docs/reference/analysis.md). The arithmetic is kept, so that a suggestion can
-// be given in the parameter's own unit: affine steps are folded into a scale
-// and an offset, all others become an expression over x, the parameter.
+// A threshold that was computed from a parameter and constants (type `derived`,
+// docs/reference/glossary.md#derived-comparison). The arithmetic is kept, so
+// that a suggestion can be given in the parameter's own unit: affine steps are
+// folded into a scale and an offset, all others become an expression over x,
+// the parameter.
 //
 // Real numbers stand for the program's: rounding, and integers that overflow,
 // are not modelled, but where a conversion itself cuts something off.

@@ -1,7 +1,7 @@
 """The messages of a ROS 1 bag in the order of the file, with little memory and little per message.
 
 rosbags' reader keeps an object for each message of a bag in memory and parses each record's header
-in full; a mission has millions of them (docs/explanation/choices.md#bags). Here the connections are
+in full; a mission has millions of them (docs/explanation/decisions.md). Here the connections are
 read from the index, as there, but the messages chunk by chunk, all of a chunk at once.
 Format: http://wiki.ros.org/Bags/Format/2.0
 """

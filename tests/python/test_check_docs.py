@@ -138,6 +138,7 @@ def test_a_changelog_may_name_what_was(page: Path):
     [
         ("# docs/reference/formats.md has it, docs/reference/formats.md#events, too.", None),
         ("# ../docs/reference/formats.md is another folder's.", None),
+        ("# docs/study/tables.md is written by a program.", None),
         ("# See docs/nonsense.md.", "docs/nonsense.md: no such page"),
         ("# docs/README.md#nonsense", "docs/README.md#nonsense: no such heading"),
     ],
