@@ -17,6 +17,7 @@ from click.testing import CliRunner, Result
 
 from pytpc.base.errors import MissingToolError
 from pytpc.cli.main import main
+from pytpc.ros.mission_run import RecordOptions
 from pytpc.ros.ros1.graph import RosGraph
 from pytpc.ros.ros1.live_values import Robot
 from pytpc.ros.ros1.record_graph import record_graph
@@ -220,7 +221,7 @@ def test_a_graph_that_runs_already(graph: RosGraph, tmp_path: Path, known: bool)
     threading.Timer(1.0, stop.set).start()
     env = {**graph.env, "PATH": "/usr/bin:/bin"}
     given = launch if known else None
-    record_graph(tmp_path / "out", stop=stop, env=env, launch=given)
+    record_graph(RecordOptions(tmp_path / "out", given), stop=stop, env=env)
     origins = read_origins(tmp_path / "out")
     gain = origins["/plain/gain"]
     assert gain.value == 2
