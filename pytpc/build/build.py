@@ -28,7 +28,7 @@ from pytpc.base.paths import (
 )
 from pytpc.build.collect import find_copies
 from pytpc.build.fallback import LeftAlone
-from pytpc.build.python_nodes import Scripts, python_of_build
+from pytpc.build.python_nodes import PythonBuild, python_of_build
 from pytpc.build.python_units import names_of
 from pytpc.build.reconcile import left_out_units, stale_files
 from pytpc.python_analysis.rules_file import Rules, load_rules
@@ -122,7 +122,7 @@ def build_workspace(
     build = _Build(workspace, bases, found, toolchain, options)
     if build.with_ours:
         _require_toolchain(bases, chosen, toolchain)
-    scripts = Scripts(
+    scripts = PythonBuild(
         workspace,
         bases.build,
         found,
@@ -305,7 +305,7 @@ def _ask(bases: Bases, packages: Sequence[Package]) -> None:
 
 
 def _gather(
-    scripts: Scripts,
+    scripts: PythonBuild,
     left_alone: Mapping[str, str],
     on_scripts: Callable[[int, int], None] | None,
 ) -> StaticInfo:

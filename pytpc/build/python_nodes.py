@@ -26,7 +26,7 @@ from pytpc.workspace.packages import Package
 
 
 @dataclass(frozen=True, slots=True)
-class Scripts:
+class PythonBuild:
     """Which scripts of a workspace are analysed.
 
     Attributes:
@@ -47,7 +47,7 @@ class Scripts:
 
 
 def python_of_build(
-    asked: Scripts, taken: Iterable[Name], on_progress: Callable[[int, int], None] | None = None
+    asked: PythonBuild, taken: Iterable[Name], on_progress: Callable[[int, int], None] | None = None
 ) -> PythonUnits:
     """Analyse the scripts of ``chosen``; of the other packages take what was written before.
 

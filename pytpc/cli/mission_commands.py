@@ -22,7 +22,7 @@ from pytpc.api.record import (
 )
 from pytpc.base.errors import InputError
 from pytpc.base.wording import many
-from pytpc.cli.options import as_object
+from pytpc.cli.arguments import as_object
 from pytpc.diagnosis.ranking.complaints import complaints
 from pytpc.ingest.reading import opened
 from pytpc.recording.mission import REPORTS_FOLDER

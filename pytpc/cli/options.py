@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from functools import wraps
 from pathlib import Path
 from typing import TypeVar
 
@@ -20,23 +19,7 @@ from pytpc.ingest import Recording, read
 from pytpc.static.static_info import StaticInfo
 
 PATH = click.Path(path_type=Path)
-Arguments = TypeVar("Arguments")
 Command = TypeVar("Command", bound=Callable[..., object])
-
-
-def as_object(
-    kind: type[Arguments],
-) -> Callable[[Callable[[Arguments], None]], Callable[..., None]]:
-    """Hand a command its arguments and options as one object of the dataclass ``kind``."""
-
-    def decorated(command: Callable[[Arguments], None]) -> Callable[..., None]:
-        @wraps(command)
-        def with_object(**given: object) -> None:
-            command(kind(**given))
-
-        return with_object
-
-    return decorated
 
 
 class Seconds(click.FloatRange):

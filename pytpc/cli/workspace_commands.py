@@ -12,8 +12,8 @@ from rich.console import Console
 from rich.text import Text
 
 from pytpc.api.building import BuildOptions, BuildResult, build
+from pytpc.cli.arguments import as_object
 from pytpc.cli.console import Advance, found_text, progress, show_units, warn
-from pytpc.cli.options import as_object
 from pytpc.workspace import patch
 from pytpc.workspace.colcon import Bases, BuildError
 
