@@ -9,9 +9,10 @@ from pathlib import Path
 
 import click
 
-from pytpc.base.wording import many
-from pytpc.cli.console import progress
-from pytpc.cli.options import PATH, warn_about
+from pytpc.base.wording import many, plain
+from pytpc.cli.console import progress, warn
+from pytpc.cli.options import PATH
+from pytpc.diagnosis.ranking.complaints import complaints
 from pytpc.ingest import Recording
 from pytpc.ingest.duplicates import TOLERANCE_NS
 from pytpc.ingest.outcome import Merged
@@ -58,7 +59,8 @@ def convert_command(
                 recording = outcome.save_csv(output, written)
             else:
                 recording = outcome.save(output, written)
-    warn_about(recording, None)
+    for complaint in complaints(recording):
+        warn(f"{plain(recording.name)}: {plain(complaint)}")
     kinds = [mark.type for mark in recording.marks]
     if as_json:
         click.echo(json.dumps(_summary_of(recording, outcome, output), ensure_ascii=False))

@@ -30,7 +30,7 @@ SUMMARIES = {
     "ingest": ("event_commands", "The same as convert (its older name)."),
     "list": ("static_commands", "List the comparisons that were found."),
     "mark": ("mark_commands", "Mark by one key each when the robot does wrong."),
-    "marks": ("rank_commands", "List the marks of a recording; add or remove some."),
+    "marks": ("mark_commands", "List the marks of a recording; add or remove some."),
     "origin": ("value_commands", "Say where the values of parameters came from."),
     "patch": ("workspace_commands", "Put TPC's three lines into each CMakeLists.txt."),
     "rank": ("rank_commands", "Name the suspected parameters, from all marks."),
@@ -40,7 +40,7 @@ SUMMARIES = {
     "run": ("run_commands", "Run a Python node whose comparisons report."),
     "show": ("static_commands", "Show all that is known about a comparison."),
     "sink": ("graph_commands", "Show and change where running nodes report to."),
-    "suggest": ("advice_commands", "Say what to do with the suspects, and what it would change."),
+    "suggest": ("suggest_commands", "Say what to do with the suspects, and what it would change."),
     "toolchain": ("machine_commands", "Print what to type to build with TPC by another tool."),
     "watch": ("watch_commands", "Show the suspected parameters while the robot runs; mark."),
 }

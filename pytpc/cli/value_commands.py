@@ -249,7 +249,7 @@ def _list(journal: Journal, as_json: bool) -> None:
         click.echo(json.dumps([_entry_json(entry) for entry in entries], indent=1))
         return
     table = Table()
-    table.add_column("FileChange", justify="right")
+    table.add_column("Change", justify="right")
     for heading in ("Time", "Parameter", "Old", "New", "Where"):
         table.add_column(heading, overflow="fold")
     for entry in entries:

@@ -146,7 +146,7 @@ def test_without_a_terminal_it_says_so(bag: Path, tmp_path: Path):
     )
     assert done.returncode == 1
     assert done.stderr.splitlines()[-1] == (
-        "pytpc: error: the keys are read from a terminal, and standard input is none"
+        "pytpc: error: standard input is not a terminal, so no keys can be read"
     )
 
 

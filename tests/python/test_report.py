@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from mission_samples import comparison, events, key, ns, static_info
 from report_samples import NASTY, Page, mission, written
 
-from pytpc.api.report import MissionReport, write_report
+from pytpc.api.report import MissionReport, write_missions
 from pytpc.base.errors import TpcError
 from pytpc.base.wording import percent
 from pytpc.diagnosis.question import Question
@@ -293,7 +293,7 @@ def test_a_page_that_cannot_be_written_leaves_the_old_one(tmp_path, monkeypatch)
 
     monkeypatch.setattr("os.fsync", full)
     with pytest.raises(TpcError, match=r"report\.html: cannot be written: No space left"):
-        write_report(path, [])
+        write_missions(path, [])
     assert path.read_text() == "old"
     assert [p.name for p in tmp_path.iterdir()] == ["report.html"]
 
