@@ -1,6 +1,7 @@
 """TPC: finds the parameter that makes a robot misbehave.
 
-What a notebook needs is here; `pytpc.api` has it all, and docs/tutorial/diagnose-a-mission.md shows it at work::
+What a notebook needs is here. `pytpc.api` has everything, and
+docs/tutorial/diagnose-a-mission.md shows it at work::
 
     import pytpc
 
@@ -13,6 +14,7 @@ It is imported when it is asked for, so that ``import pytpc`` costs nothing.
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -46,9 +48,7 @@ def __getattr__(name: str) -> object:
     """What ``__all__`` names, from `pytpc.api`."""
     if name not in __all__:
         raise AttributeError(f"module 'pytpc' has no attribute {name!r}")
-    from pytpc import api
-
-    found: object = getattr(api, name)
+    found: object = getattr(import_module("pytpc.api"), name)
     globals()[name] = found
     return found
 

@@ -13,7 +13,7 @@ from pytpc.ros.live_change import set_live, take_back_live
 from pytpc.ros.ros1.live_values import LiveChange, Robot
 from pytpc.ros.ros1.master import uri_of
 from pytpc.values.apply import FileChange, apply_change
-from pytpc.values.journal import JournalEntry, Journal, folder_of
+from pytpc.values.journal import Journal, JournalEntry, folder_of
 from pytpc.values.origins import Origin
 from pytpc.values.target import (
     Target,
@@ -26,7 +26,7 @@ from pytpc.values.target import (
 )
 from pytpc.values.undo import entry_of, take_back_file
 
-__all__ = ["FileChange", "JournalEntry", "Journal", "LiveChange", "LiveSetting", "Origin", "Place"]
+__all__ = ["FileChange", "Journal", "JournalEntry", "LiveChange", "LiveSetting", "Origin", "Place"]
 __all__ += ["apply", "apply_live", "is_yaml", "journal", "origins", "plan", "undo"]
 
 

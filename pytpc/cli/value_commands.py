@@ -13,7 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from pytpc.api import values
-from pytpc.api.values import FileChange, JournalEntry, Journal, LiveChange, Origin, Place
+from pytpc.api.values import FileChange, Journal, JournalEntry, LiveChange, Origin, Place
 from pytpc.base.wording import plain
 from pytpc.cli.arguments import as_object
 from pytpc.cli.console import console, progress, warn

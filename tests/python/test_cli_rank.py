@@ -347,7 +347,7 @@ def test_unknown_keys_are_named_and_the_rest_is_ranked(files, tmp_path):
         "only coverage had been compared up to the mark",
     )
     static_info(comparison(7, "x")).save(other)
-    one_line(run("rank", bag, "--static", other), "m.bag: none of its reports is in the static information")
+    one_line(run("rank", bag, "--static", other), "m.bag: none of its reports is in the static")
 
 
 def test_the_most_frequent_unknown_keys_are_named(tmp_path):
