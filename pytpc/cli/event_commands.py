@@ -1,9 +1,8 @@
-"""The command about what was recorded: ``convert``, which was called ``ingest``."""
+"""The command about what was recorded: ``convert``."""
 
 from __future__ import annotations
 
 import json
-from copy import copy
 from dataclasses import asdict
 from pathlib import Path
 
@@ -28,7 +27,7 @@ from pytpc.recording.marks import MARK_TYPES
     type=PATH,
     required=True,
     metavar="OUT",
-    help="A folder, or a file: .parquet (the events), .csv (the events in the thesis's form).",
+    help="Folder to write, or a file: .parquet (the events) or .csv (the thesis's form).",
 )
 @click.option(
     "--tolerance",
@@ -37,17 +36,18 @@ from pytpc.recording.marks import MARK_TYPES
     default=TOLERANCE_NS / 1e9,
     show_default=True,
     metavar="SECONDS",
-    help="How far apart in time one report may be in two inputs.",
+    help="Take reports in two inputs for the same one if they are at most this far apart.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print the summary as JSON.")
 def convert_command(
     inputs: tuple[Path, ...], output: Path, tolerance_s: float, as_json: bool
 ) -> None:
-    """Read recordings of one mission into a folder of Parquet, each report once.
+    """Convert the recordings of one mission to a folder of Parquet files, with each report once.
 
     An INPUT is a bag (ROS 1, .mcap, .db3), a binary file (.tpc), a log, console output, CSV, a
-    folder of such files, or a folder that this command wrote; what it is, its content tells. Memory
-    stays small however long the mission is; the folder above OUT needs room for 35 bytes a report.
+    folder of such files, or a folder that this command wrote. Its kind is recognised by its
+    content. Memory use stays small however long the mission is; the disk of OUT needs 35 bytes of
+    temporary space per report.
     """
     suffix = output.suffix if not output.is_dir() else ""
     with progress(f"reading {inputs[0].name}") as advance:
@@ -75,12 +75,7 @@ def convert_command(
     )
 
 
-# Its name from when it read bags of ROS 1 alone.
-ingest_command = copy(convert_command)
-ingest_command.name = "ingest"
-
-
-COMMANDS: list[click.Command] = [convert_command, ingest_command]
+COMMANDS: list[click.Command] = [convert_command]
 
 
 def _standing(path: Path) -> Path:

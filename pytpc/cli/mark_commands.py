@@ -40,19 +40,24 @@ _NAMESPACE = re.compile(r"[A-Za-z]\w*(/[A-Za-z]\w*)*", re.ASCII)
 """What ROS takes where ROS_MASTER_URI is not set."""
 
 OBSERVER = click.option(
-    "--observer", default="", metavar="NAME", help="Whose marks: a namespace of topics."
+    "--observer",
+    default="",
+    metavar="NAME",
+    help="Name of the observer, used as a topic namespace.",
 )
 
 
 @click.command("mark")
 @click.argument("bag", type=_PATH, required=False)
 @OBSERVER
-@click.option("-o", "--output", type=_PATH, help="CSV of the marks; BAG.marks.csv beside a bag.")
+@click.option(
+    "-o", "--output", type=_PATH, help="Write the marks to this CSV file. [default: BAG.marks.csv]"
+)
 def mark_command(*, bag: Path | None, observer: str, output: Path | None) -> None:
-    """Mark by one key each when the robot does wrong.
+    """Mark errors of the robot by pressing a key when you see one.
 
-    On the live graph of ROS_MASTER_URI the marks are published, too; a bag that is replayed with
-    `rosbag play --clock` is one. With BAG, a clock goes through the recording.
+    On the live graph at ROS_MASTER_URI the marks are published, too; a bag replayed with `rosbag
+    play --clock` counts as live. With BAG, a clock runs through the recording instead.
     """
     check_observer(observer)
     path = marks_path(bag, observer, output)
@@ -73,7 +78,7 @@ def check_observer(observer: str) -> None:
         BadParameter: it is no namespace of ROS.
     """
     if observer and not _NAMESPACE.fullmatch(observer):
-        raise click.BadParameter(f"{observer!r} is no namespace of ROS", param_hint="--observer")
+        raise click.BadParameter(f"{observer!r} is not a ROS namespace", param_hint="--observer")
 
 
 def marks_path(bag: Path | None, observer: str, output: Path | None) -> Path:

@@ -187,7 +187,7 @@ def test_a_namespace_that_ros_has_not(tmp_path: Path):
         cwd=tmp_path,
     )
     assert done.returncode == 2
-    assert "'no good' is no namespace of ROS" in done.stderr
+    assert "'no good' is not a ROS namespace" in done.stderr
 
 
 def test_marks_of_others_stay_in_the_file(bag: Path, tmp_path: Path):
