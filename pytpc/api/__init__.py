@@ -14,7 +14,8 @@ notebook (all texts from the robot escaped), and hold typed objects.
 ``build``, ``analyse``,    static information
 ``collect``
 ``record_launch``,         a mission
-``record_running``
+``record_running``,
+``convert``
 ``origins``, ``plan``,     where values came from, and changes of them
 ``apply``, ``undo``
 ========================  ==================================================
@@ -34,6 +35,7 @@ _PLACES = {
     "suggesting": ("suggest", "what_if"),
     "report": ("write_report",),
     "building": ("BuildOptions", "analyse", "build", "collect"),
+    "converting": ("convert",),
     "record": ("RecordOptions", "record_launch", "record_running"),
     "values": ("apply", "apply_live", "origins", "plan", "undo"),
 }

@@ -89,8 +89,12 @@ def check_reports(recording: Recording, static_info: StaticInfo, source: Path) -
 
 
 def faults_of(recording: Recording, static_info: StaticInfo | None) -> list[str]:
-    """A line for each thing that is wrong with a recording, and for what was left out of it."""
-    return [*complaints(recording, static_info), *two_clocks(recording)]
+    """A line for each thing that is wrong with a recording, and for what was left out of it.
+
+    Two clocks in it matter where it is diagnosed, by the static information.
+    """
+    clocks = [] if static_info is None else two_clocks(recording)
+    return [*complaints(recording, static_info), *clocks]
 
 
 def find_declared(

@@ -8,14 +8,10 @@ from pathlib import Path
 
 import click
 
-from pytpc.base.wording import many, plain
-from pytpc.cli.console import progress, warn
-from pytpc.cli.options import PATH
-from pytpc.diagnosis.ranking.complaints import complaints
-from pytpc.ingest import Recording
-from pytpc.ingest.duplicates import TOLERANCE_NS
-from pytpc.ingest.outcome import Merged
-from pytpc.ingest.reading import opened
+from pytpc.api.converting import TOLERANCE_NS, Converted, convert
+from pytpc.base.wording import many
+from pytpc.cli.console import progress
+from pytpc.cli.options import PATH, warn_about
 from pytpc.recording.marks import MARK_TYPES
 
 
@@ -49,21 +45,22 @@ def convert_command(
     content. Memory use stays small however long the mission is; the disk of OUT needs 35 bytes of
     temporary space per report.
     """
-    suffix = output.suffix if not output.is_dir() else ""
-    with progress(f"reading {inputs[0].name}") as advance:
-        exits = opened(inputs, _standing(output), advance, tolerance_ns=round(tolerance_s * 1e9))
-        with exits as outcome, progress(f"writing {output.name}") as written:
-            if suffix == ".parquet":
-                recording = outcome.save_parquet(output, written)
-            elif suffix == ".csv":
-                recording = outcome.save_csv(output, written)
-            else:
-                recording = outcome.save(output, written)
-    for complaint in complaints(recording):
-        warn(f"{plain(recording.name)}: {plain(complaint)}")
+    with (
+        progress(f"reading {inputs[0].name}") as advance,
+        progress(f"writing {output.name}") as written,
+    ):
+        outcome = convert(
+            inputs,
+            output,
+            tolerance_ns=round(tolerance_s * 1e9),
+            on_read=advance,
+            on_written=written,
+        )
+    recording = outcome.recording
+    warn_about(recording, None)
     kinds = [mark.type for mark in recording.marks]
     if as_json:
-        click.echo(json.dumps(_summary_of(recording, outcome, output), ensure_ascii=False))
+        click.echo(json.dumps(_summary_of(outcome, output), ensure_ascii=False))
         return
     marks = ", ".join(f"{kinds.count(kind)} of type {kind}" for kind in MARK_TYPES)
     if None in kinds:
@@ -78,12 +75,8 @@ def convert_command(
 COMMANDS: list[click.Command] = [convert_command]
 
 
-def _standing(path: Path) -> Path:
-    """The nearest folder above ``path`` that is there."""
-    return next((folder for folder in path.absolute().parents if folder.is_dir()), Path("/"))
-
-
-def _summary_of(recording: Recording, outcome: Merged, output: Path) -> dict[str, object]:
+def _summary_of(outcome: Converted, output: Path) -> dict[str, object]:
+    recording = outcome.recording
     return {
         "output": str(output),
         "name": recording.name,

@@ -19,7 +19,6 @@ from pytpc.base.wording import many, plain
 from pytpc.cli.arguments import as_object
 from pytpc.cli.console import console, warn
 from pytpc.cli.options import JSON, PATH, recording_of
-from pytpc.ingest import Recording
 from pytpc.present.marking_terminal import Mission, Paint, RecordedMission, paint_marks, run
 from pytpc.recording.marking_session import MarkChange, Session
 from pytpc.recording.marks import (
@@ -32,6 +31,7 @@ from pytpc.recording.marks import (
     read_marks,
 )
 from pytpc.recording.marks_file import MarksFile
+from pytpc.recording.mission import Recording
 from pytpc.ros.marking import GraphMarks
 from pytpc.ros.ros1.master import uri_of
 

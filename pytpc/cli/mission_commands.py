@@ -12,6 +12,8 @@ from pathlib import Path
 import click
 from rich.console import Console
 
+from pytpc.api.converting import convert
+from pytpc.api.missions import faults_of
 from pytpc.api.record import (
     DEFAULT_TOPICS,
     MissionRun,
@@ -23,8 +25,6 @@ from pytpc.api.record import (
 from pytpc.base.errors import InputError
 from pytpc.base.wording import many
 from pytpc.cli.arguments import as_object
-from pytpc.diagnosis.ranking.complaints import complaints
-from pytpc.ingest.reading import opened
 from pytpc.recording.mission import REPORTS_FOLDER
 from pytpc.ros.ros1.master import uri_of
 from pytpc.ros.ros1.record_graph import stop_on_signals
@@ -125,10 +125,9 @@ def record_command(given: _RecordArguments) -> None:
     _show_run(run, given)
     if given.parquet:
         output = given.output
-        with opened([output], output) as outcome:
-            recording = outcome.save(output)
-        for complaint in complaints(recording):
-            click.echo(f"warning: {complaint}", err=True)
+        outcome = convert([output], output)
+        for fault in faults_of(outcome.recording, None):
+            click.echo(f"warning: {fault}", err=True)
         click.echo(f"{many(outcome.events, 'report')} in Parquet: {output}")
 
 

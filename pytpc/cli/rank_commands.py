@@ -11,6 +11,7 @@ from typing import Literal
 import click
 
 from pytpc.api.diagnosing import changed, changes_since, diagnose, is_compared
+from pytpc.api.missions import find_declared
 from pytpc.api.ranking import Rankings
 from pytpc.api.suggesting import smallest_changes
 from pytpc.base.errors import InputError
@@ -40,7 +41,7 @@ from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
 from pytpc.static.static_info import StaticInfo
 from pytpc.values.changes import Change, read_changes
-from pytpc.values.declared_files import declared_in, read_declared
+from pytpc.values.declared_files import read_declared
 
 
 @dataclass(frozen=True)
@@ -150,7 +151,7 @@ def rank_command(given: _RankArguments) -> None:
         given.top,
         reference=reference_of(given.reference, static),
         changes=_known(given.changes_file, static),
-        declared=declared_in(static, (), warn_plainly),
+        declared=find_declared(static, None, warn_plainly),
     )
     items: list[dict[str, object]] = []
     unmarked: list[Path] = []

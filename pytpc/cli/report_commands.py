@@ -9,6 +9,7 @@ from pathlib import Path
 
 import click
 
+from pytpc.api.missions import find_declared
 from pytpc.api.ranking import Rankings
 from pytpc.api.report import CARDS, MissionReport, report_of, write_missions
 from pytpc.base.errors import TpcError
@@ -28,7 +29,6 @@ from pytpc.cli.options import (
 from pytpc.cli.sources import static_of
 from pytpc.diagnosis.question import Question, Types
 from pytpc.static.static_info import StaticInfo
-from pytpc.values.declared_files import declared_in
 
 
 @dataclass(frozen=True)
@@ -96,7 +96,7 @@ def _mission(source: Path, static: StaticInfo, given: _ReportArguments) -> Missi
     check(recording, static, source)
     question = Question(given.types, given.window_s, given.top)
     rankings = Rankings.of(recording, static, question, source)
-    declared = declared_in(static, [source], warn_plainly)
+    declared = find_declared(static, source, warn_plainly)
     return report_of(rankings, top=given.top, declared=declared)
 
 

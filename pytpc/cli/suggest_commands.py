@@ -8,6 +8,7 @@ from pathlib import Path
 
 import click
 
+from pytpc.api.missions import find_declared
 from pytpc.api.ranking import Rankings
 from pytpc.api.suggesting import suggest_together, what_if_by_type
 from pytpc.base.errors import InputError
@@ -32,7 +33,6 @@ from pytpc.present.as_json import blame_json, group_json, what_if_json
 from pytpc.present.suggestions import group_text, together_text
 from pytpc.recording.mission import Recording
 from pytpc.static.static_info import StaticInfo
-from pytpc.values.declared_files import declared_in
 
 _TRUTHS = {"true": True, "false": False}
 _LONGEST = 40
@@ -141,7 +141,7 @@ def _show_suggestions(recording: Recording, static: StaticInfo, given: _SuggestA
         given.window_s,
         given.top,
         reference=reference_of(given.reference, static),
-        declared=declared_in(static, [given.recording], warn_plainly),
+        declared=find_declared(static, given.recording, warn_plainly),
         flown=given.flown,
     )
     with progress("replaying the mission") as advance:

@@ -12,7 +12,15 @@ from pathlib import Path
 import click
 from rich.console import Console
 
-from pytpc.api.live_mission import Feed, GraphFeed, RecordedFeed, WatchedMission
+from pytpc.api.live_mission import (
+    KINDS,
+    Feed,
+    GraphFeed,
+    RecordedFeed,
+    WatchedMission,
+    Watching,
+    fresh_watching,
+)
 from pytpc.base.errors import InputError, RunError
 from pytpc.base.signals import signals_end
 from pytpc.cli.arguments import as_object
@@ -35,13 +43,11 @@ from pytpc.cli.options import (
 )
 from pytpc.cli.sources import static_of
 from pytpc.diagnosis.question import Question, Types
-from pytpc.diagnosis.ranking.watching import KINDS, Watching
 from pytpc.diagnosis.results.live import LiveRow, Look
-from pytpc.diagnosis.scores.live_scores import LiveRanking
-from pytpc.ingest import Recording
 from pytpc.present.marking_terminal import Mission
 from pytpc.present.watch_screen import LAYOUTS, Options, Status, table
 from pytpc.recording.marking_session import clock_text
+from pytpc.recording.mission import Recording
 from pytpc.ros.marking import GraphMarks
 from pytpc.ros.ros1.master import uri_of
 from pytpc.static.static_info import StaticInfo
@@ -100,12 +106,7 @@ def watch_command(given: _WatchArguments) -> None:
     static = static_of([given.static_source])
     if not static.thresholds:
         raise InputError("it has no comparison with a parameter", given.static_source)
-    # Where types are ignored, the tables of both are there to be chosen all the same.
-    engine = LiveRanking(
-        static,
-        Question(types="doubt" if given.types == "doubt" else "believe", window_s=given.window_s),
-    )
-    fresh = Watching(engine, static, given.window_s)
+    fresh = fresh_watching(static, Question(given.types, given.window_s))
     layout = (None,) if given.types == "ignore" else LAYOUTS[0]
     options = Options(layout=layout, top=given.top)
     if given.once or given.as_json:
