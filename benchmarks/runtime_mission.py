@@ -23,7 +23,7 @@ from pathlib import Path
 from figures import figure
 
 from pytpc.build.build import build_workspace, workspace_env
-from pytpc.ros.mission_run import MissionRun, Progress
+from pytpc.ros.mission_run import MISSION_DONE, MissionRun, Progress, RecordOptions
 from pytpc.ros.ros1.graph import GRAPH_WORD
 from pytpc.ros.ros1.launch_mission import run_mission
 from pytpc_evaluation.demo.demo_examples import IMAGE_CAPTURE, link_package
@@ -103,15 +103,16 @@ def fly(env: dict[str, str], name: str, out: Path, topics: list[str]) -> tuple[M
     """One mission with a setting, with `topics` recorded as well."""
     cpu = Cpu(str(out.absolute() / "ros" / "home"))
     settings = {**env, "TPC_FOLDER": str(out / "files"), **SETTINGS[name]}
-    run = run_mission(
-        settings,
+    options = RecordOptions(
+        out,
         IMAGE_CAPTURE.launch,
         {"seed": "1"},
-        out,
         TIMEOUT_S,
+        until=MISSION_DONE,
         topics=topics,
         on_progress=cpu.look,
     )
+    run = run_mission(settings, options)
     if run.ended != "done":
         raise SystemExit(f"{name}: the mission ended by {run.ended}")
     return run, cpu

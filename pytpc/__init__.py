@@ -1,7 +1,7 @@
 """TPC: finds the parameter that makes a robot misbehave.
 
-What a notebook needs is here. It is documented in `pytpc.api.library` and shown in
-docs/tutorial/diagnose-a-mission.md::
+What a notebook needs is here. `pytpc.api` has everything, and
+docs/tutorial/diagnose-a-mission.md shows it at work::
 
     import pytpc
 
@@ -18,25 +18,20 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from pytpc.api.library import (
-        Advices,
-        Change,
-        Diagnosed,
-        Rankings,
-        curves,
-        diagnose,
-        load_static,
-        rank,
-        read,
-        suggest,
-        what_if,
-        write_report,
-    )
+    from pytpc.api.diagnosing import diagnose
+    from pytpc.api.missions import load_static, read
+    from pytpc.api.ranking import Rankings, curves, rank
+    from pytpc.api.report import write_report
+    from pytpc.api.suggesting import suggest, what_if
+    from pytpc.diagnosis.question import Question
+    from pytpc.present.answers import Advices, Diagnosed
+    from pytpc.values.changes import Change
 
 __all__ = [
     "Advices",
     "Change",
     "Diagnosed",
+    "Question",
     "Rankings",
     "curves",
     "diagnose",
@@ -50,10 +45,10 @@ __all__ = [
 
 
 def __getattr__(name: str) -> object:
-    """What ``__all__`` names, from `pytpc.api.library`."""
+    """What ``__all__`` names, from `pytpc.api`."""
     if name not in __all__:
         raise AttributeError(f"module 'pytpc' has no attribute {name!r}")
-    found: object = getattr(import_module("pytpc.api.library"), name)
+    found: object = getattr(import_module("pytpc.api"), name)
     globals()[name] = found
     return found
 

@@ -11,6 +11,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Protocol
 
 import numpy as np
@@ -18,8 +19,10 @@ from rich.text import Text
 
 from pytpc.api.live_reports import Item, Reports
 from pytpc.base.errors import RunError
-from pytpc.diagnosis.ranking.watching import KeptRankings, Watching
+from pytpc.diagnosis.question import Question, Types
+from pytpc.diagnosis.ranking.watching import KINDS, KeptRankings, Watching
 from pytpc.diagnosis.results.live import Look, Seen
+from pytpc.diagnosis.scores.live_scores import LiveRanking
 from pytpc.present.marking_terminal import Mission
 from pytpc.present.watch_screen import LAYOUTS, Options, Panel, Status, watch_screen
 from pytpc.recording.marking_session import MarkChange, Session, View
@@ -28,6 +31,10 @@ from pytpc.recording.summaries import Summary
 from pytpc.ros.ros1.master import Master, own_host
 from pytpc.ros.ros1.relay import ROSOUT, TOPIC
 from pytpc.ros.ros1.subscriber import RawSubscriber
+from pytpc.static.static_info import StaticInfo
+
+__all__ = ["KINDS", "Feed", "GraphFeed", "RecordedFeed", "WatchedMission", "Watching"]
+__all__ += ["fresh_watching"]
 
 _LOOK_S = 1.0
 _POLL_S = 0.2
@@ -39,6 +46,16 @@ _SNAPSHOT_NS = 30 * 10**9
 _BACK_NS = 5 * 10**9
 # While the graph has no time; older ones go.
 _MOST_WAITING = 200_000
+
+
+def fresh_watching(static_info: StaticInfo, question: Question) -> Watching:
+    """The ranking of a mission that nothing was reported of yet.
+
+    Where types are ignored, the tables of both are there to be chosen all the same.
+    """
+    types: Types = "doubt" if question.types == "doubt" else "believe"
+    engine = LiveRanking(static_info, replace(question, types=types))
+    return Watching(engine, static_info, question.window_s)
 
 
 class Feed(Protocol):

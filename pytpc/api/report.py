@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from pytpc.api.missions import Source
+from pytpc.api.ranking import Rankings
 from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.results.suspects import MarkRanking
 from pytpc.diagnosis.suggestion.whole_mission import answer_mission
 from pytpc.present.page.html import Progress, write_page
 from pytpc.present.page.mission import ReportedMission
+from pytpc.recording.declaration import Declared
+from pytpc.recording.known_change import read_known_change
 from pytpc.recording.mission import Recording
 from pytpc.static.static_info import StaticInfo
-from pytpc.values.origins import Origin
+from pytpc.values.origins import Origin, read_origins
 
+TITLE = "Suspected parameters"
 CARDS = 3
 """Suspects of a mark that are shown with their evidence."""
 
@@ -54,11 +59,58 @@ class MissionReport:
         )
 
 
-def write_report(
+def report_of(
+    rankings: Rankings, *, top: int = CARDS, declared: Sequence[Declared] | None = None
+) -> MissionReport:
+    """A ranked mission for the page, with what its folder says of it.
+
+    That is where values came from (origins.json), and what had been done to the robot
+    (treatment.json). ``declared`` are the declared ranges of parameters; None: they are looked for
+    in the sources.
+    """
+    source, recording = rankings.source, rankings.recording
+    about = rankings.declared if declared is None else declared
+    given = MissionReport(
+        recording.name,
+        recording,
+        rankings.static_info,
+        rankings.rankings,
+        question=replace(rankings.question, top=top, declared=about),
+    )
+    if source is None:
+        return given
+    # The bags of all missions may have the same name, their folders have not.
+    name = source.absolute().name if source.is_dir() else recording.name
+    done = read_known_change(source)
+    return replace(
+        given,
+        name=name,
+        origins=read_origins(source),
+        treatment=done.effect,
+        changed_parameter=done.parameter,
+    )
+
+
+def write_report(path: Source, *rankings: Rankings, title: str = TITLE) -> Path:
+    """Write the report page of one or several missions: one HTML file that opens offline.
+
+    A mission that was ranked by its path is shown with what else is in its folder.
+
+    Returns:
+        Its path.
+
+    Raises:
+        TpcError: it cannot be written.
+    """
+    write_missions(Path(path), [report_of(one) for one in rankings], title=title)
+    return Path(path)
+
+
+def write_missions(
     path: Path,
     missions: Sequence[MissionReport],
     *,
-    title: str = "Suspected parameters",
+    title: str = TITLE,
     on_progress: Progress | None = None,
 ) -> None:
     """Diagnose the missions and write the page, atomically; see `write_page`.

@@ -28,7 +28,7 @@ from pytpc.base.paths import (
 )
 from pytpc.build.collect import find_copies
 from pytpc.build.fallback import LeftAlone
-from pytpc.build.python_nodes import python_of_build
+from pytpc.build.python_nodes import PythonBuild, python_of_build
 from pytpc.build.python_units import names_of
 from pytpc.build.reconcile import left_out_units, stale_files
 from pytpc.python_analysis.rules_file import Rules, load_rules
@@ -42,7 +42,14 @@ from pytpc.static.static_info import (
     unit_files,
 )
 from pytpc.workspace.cmake_targets import ask_for_targets
-from pytpc.workspace.colcon import Bases, BuildError, colcon_command, run_colcon
+from pytpc.workspace.colcon import (
+    PLAIN_BUILD,
+    Bases,
+    BuildError,
+    BuildOptions,
+    colcon_command,
+    run_colcon,
+)
 from pytpc.workspace.packages import (
     Package,
     find_packages,
@@ -75,40 +82,18 @@ class BuildResult:
 
 def build_workspace(
     workspace: Path,
+    options: BuildOptions = PLAIN_BUILD,
     *,
-    packages: Sequence[str] = (),
-    build_type: str = "RelWithDebInfo",
-    rules: Path | None = None,
-    cmake_args: Sequence[str] = (),
-    colcon_args: Sequence[str] = (),
-    constants: bool = False,
-    tests: bool = False,
-    fallback: bool = True,
-    retry: bool = False,
-    python: bool = True,
-    python_rules: Path | None = None,
-    bases: Bases | None = None,
     on_output: Callable[[str], None] | None = None,
     on_scripts: Callable[[int, int], None] | None = None,
 ) -> BuildResult:
     """Build a workspace with analysis and instrumentation, and read what the analysis found.
 
-    The Python nodes are analysed when the packages are built; nothing is done to them.
+    The Python nodes are analysed when the packages are built; their files stay as they are.
 
     Args:
         workspace: folder with packages; no file of theirs is changed.
-        packages: names; these and what they need are built, or all where empty.
-        build_type: CMAKE_BUILD_TYPE.
-        rules: the user's own rules, beside those that come with TPC.
-        cmake_args: further arguments for each package's CMake.
-        colcon_args: further arguments for colcon.
-        constants: have comparisons with constants reported, too.
-        tests: have test programs analysed and reporting, too; and scripts in folders of tests.
-        fallback: build a package that does not build with TPC without it.
-        retry: try the packages again that earlier builds left alone.
-        python: analyse Python nodes; without, those of an earlier build are forgotten.
-        python_rules: the user's own rules for Python.
-        bases: where everything is put; ``.tpc`` in the workspace by default.
+        options: how it is to be built.
         on_output: called with each line that colcon writes.
         on_scripts: called with (scripts analysed, scripts in all).
 
@@ -126,62 +111,82 @@ def build_workspace(
         workspace = workspace.resolve()
     found = find_packages(workspace)
     refuse_cycles(found, workspace)
-    chosen = select_packages(found, packages)
+    chosen = select_packages(found, options.packages)
     for package in chosen:
         read_cmakelists(package)
-    if rules is not None:
-        check_rules(rules)
-    for_python = _python_rules(python_rules, (*cmake_args, *colcon_args), constants=constants)
+    if options.rules is not None:
+        check_rules(options.rules)
+    rules = _python_rules(options)
     toolchain = _require_all(found)
-    place = bases if bases is not None else Bases.of(workspace)
-    with_ours = not any("CMAKE_TOOLCHAIN_FILE" in one for one in (*cmake_args, *colcon_args))
-    if with_ours:
-        _require_toolchain(place, chosen, toolchain)
-    with _alone_in(place):
-        alone = _prepare(place, found, retry=retry)
+    bases = options.bases if options.bases is not None else Bases.of(workspace)
+    build = _Build(workspace, bases, found, toolchain, options)
+    if build.with_ours:
+        _require_toolchain(bases, chosen, toolchain)
+    scripts = PythonBuild(
+        workspace,
+        bases.build,
+        found,
+        chosen=packages_up_to(found, options.packages),
+        rules=rules if options.python else None,
+        tests=options.tests,
+    )
+    with _alone_in(bases):
+        alone = build.run(on_output)
+        static = _gather(scripts, alone.reasons, on_scripts)
+        static.save(bases.static_info)
+    seconds = time.monotonic() - began
+    return BuildResult(bases, tuple(chosen), static, alone.reasons, seconds)
+
+
+@dataclass(frozen=True, slots=True)
+class _Build:
+    """One build: colcon is run until all packages are built, with TPC or without."""
+
+    workspace: Path
+    bases: Bases
+    packages: Sequence[Package]
+    toolchain: Path
+    options: BuildOptions
+
+    @property
+    def with_ours(self) -> bool:
+        """Whether the user did not choose another toolchain."""
+        given = (*self.options.cmake_args, *self.options.colcon_args)
+        return not any("CMAKE_TOOLCHAIN_FILE" in one for one in given)
+
+    def run(self, on_output: Callable[[str], None] | None) -> LeftAlone:
+        """Build the packages; returns those that are left alone.
+
+        Raises:
+            BuildError: a package builds neither with TPC nor without.
+        """
+        alone = _prepare(self.bases, self.packages, retry=self.options.retry)
         while True:
-            command = colcon_command(
-                place,
-                found,
-                toolchain,
-                only=packages,
-                build_type=build_type,
-                rules=rules,
-                # Said both ways: a build folder keeps what it was told last.
-                cmake_args=(
-                    f"-DTPC_CONSTANTS={'ON' if constants else 'OFF'}",
-                    f"-DTPC_TESTS={'ON' if tests else 'OFF'}",
-                    f"-DTPC_LEFT_ALONE={';'.join(map(str, alone.folders))}",
-                    *cmake_args,
-                ),
-                colcon_args=colcon_args,
-            )
             try:
-                run_colcon(command, workspace, place, on_output)
+                run_colcon(self._command(alone), self.workspace, self.bases, on_output)
             except BuildError as error:
-                if not (fallback and with_ours and alone.can_try(error)):
+                if not (self.options.fallback and self.with_ours and alone.can_try(error)):
                     alone.give_up(error)
                     raise
                 if on_output is not None:
                     on_output(f"{error.package} does not build with TPC; building it without")
                 alone.begin(error)
-                _ask(place, found)
+                _ask(self.bases, self.packages)
             else:
                 alone.keep()
-                break
-        static = _gather(
-            workspace,
-            place,
-            found,
-            alone.reasons,
-            chosen=packages_up_to(found, packages),
-            rules=for_python if python else None,
-            tests=tests,
-            on_scripts=on_scripts,
+                return alone
+
+    def _command(self, alone: LeftAlone) -> list[str]:
+        options = self.options
+        # Said both ways: a build folder keeps what it was told last.
+        for_cmake = (
+            f"-DTPC_CONSTANTS={'ON' if options.constants else 'OFF'}",
+            f"-DTPC_TESTS={'ON' if options.tests else 'OFF'}",
+            f"-DTPC_LEFT_ALONE={';'.join(map(str, alone.folders))}",
+            *options.cmake_args,
         )
-        static.save(place.static_info)
-    seconds = time.monotonic() - began
-    return BuildResult(place, tuple(chosen), static, alone.reasons, seconds)
+        asked = replace(options, cmake_args=for_cmake)
+        return colcon_command(self.bases, self.packages, self.toolchain, asked)
 
 
 def installed(workspace: Path) -> Path:
@@ -300,36 +305,22 @@ def _ask(bases: Bases, packages: Sequence[Package]) -> None:
 
 
 def _gather(
-    workspace: Path,
-    bases: Bases,
-    packages: Sequence[Package],
+    scripts: PythonBuild,
     left_alone: Mapping[str, str],
-    *,
-    chosen: Sequence[Package],
-    rules: Rules | None,
-    tests: bool,
     on_scripts: Callable[[int, int], None] | None,
 ) -> StaticInfo:
     """What the linker left of all packages, and the Python of those that were built."""
+    base = scripts.build_base
     folders = [
-        folder for folder in (bases.build / each.name for each in packages) if folder.is_dir()
+        folder for folder in (base / each.name for each in scripts.packages) if folder.is_dir()
     ]
     _drop_stale(folders)
     units = [load_link_unit(path) for folder in folders for path in _compiled(folder)]
     left_out = [*_left_out(folders, left_alone)]
-    nodes = python_of_build(
-        workspace,
-        bases.build,
-        packages,
-        {*names_of(units), *names_of(left_out)},
-        chosen=chosen,
-        rules=rules,
-        tests=tests,
-        on_progress=on_scripts,
-    )
+    nodes = python_of_build(scripts, {*names_of(units), *names_of(left_out)}, on_scripts)
     units += nodes.units
     found = (*left_out, *nodes.left_out)
-    return StaticInfo.of(units, bases.build, find_copies(units), found)
+    return StaticInfo.of(units, base, find_copies(units), found)
 
 
 def _drop_stale(folders: Iterable[Path]) -> None:
@@ -343,10 +334,11 @@ def _compiled(folder: Path) -> list[Path]:
     return [path for path in unit_files(folder) if not is_python_file(path)]
 
 
-def _python_rules(own: Path | None, arguments: Sequence[str], *, constants: bool) -> Rules:
+def _python_rules(options: BuildOptions) -> Rules:
     """The rules for Python: constants and profile are those that C++ is analysed with."""
-    profile = "thesis" if "-DTPC_PROFILE=thesis" in arguments else "default"
-    return replace(load_rules(profile, own), constants=constants)
+    given = (*options.cmake_args, *options.colcon_args)
+    profile = "thesis" if "-DTPC_PROFILE=thesis" in given else "default"
+    return replace(load_rules(profile, options.python_rules), constants=options.constants)
 
 
 def _left_out(folders: Iterable[Path], left_alone: Mapping[str, str]) -> Iterator[LeftOut]:

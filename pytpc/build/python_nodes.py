@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from pytpc.build.python_kept import KEPT_FILE, digest_of, load_kept, save_kept
@@ -24,16 +25,29 @@ from pytpc.static.static_info import is_python_file, load_link_unit, python_unit
 from pytpc.workspace.packages import Package
 
 
+@dataclass(frozen=True, slots=True)
+class PythonBuild:
+    """Which scripts of a workspace are analysed.
+
+    Attributes:
+        workspace: the folder with all packages.
+        build_base: with a build folder for each package.
+        packages: all of the workspace.
+        chosen: the packages that were built.
+        rules: None to analyse nothing, and to forget what was written of ``chosen``.
+        tests: take scripts in folders of tests, too.
+    """
+
+    workspace: Path
+    build_base: Path
+    packages: Sequence[Package]
+    chosen: Sequence[Package]
+    rules: Rules | None
+    tests: bool = False
+
+
 def python_of_build(
-    workspace: Path,
-    build_base: Path,
-    packages: Sequence[Package],
-    taken: Iterable[Name],
-    *,
-    chosen: Sequence[Package],
-    rules: Rules | None,
-    tests: bool = False,
-    on_progress: Callable[[int, int], None] | None = None,
+    asked: PythonBuild, taken: Iterable[Name], on_progress: Callable[[int, int], None] | None = None
 ) -> PythonUnits:
     """Analyse the scripts of ``chosen``; of the other packages take what was written before.
 
@@ -41,19 +55,15 @@ def python_of_build(
     written to its file below ``build_base``, and files of scripts that are no more are removed.
 
     Args:
-        workspace: the folder with all packages.
-        build_base: with a build folder for each package.
-        packages: all of the workspace.
+        asked: which scripts.
         taken: package and name of the link units that are no scripts.
-        chosen: the packages that were built.
-        rules: None to analyse nothing, and to forget what was written of ``chosen``.
-        tests: take scripts in folders of tests, too.
         on_progress: called with (scripts done, scripts in all).
 
     Raises:
         InputError: a file of an earlier build is broken.
         TpcError: a file cannot be written.
     """
+    build_base, chosen, rules = asked.build_base, asked.chosen, asked.rules
     kept_file = build_base.parent / KEPT_FILE
     if rules is None:
         kept_file.unlink(missing_ok=True)
@@ -61,14 +71,14 @@ def python_of_build(
     else:
         names = set(taken).union(*(target_names(build_base / package.name) for package in chosen))
         chosen_names = [package.name for package in chosen]
-        asked = (str(build_base), str(tests), str(chosen_names), str(sorted(names)))
-        digest = digest_of([package.path for package in packages], rules, asked)
+        inputs = (str(build_base), str(asked.tests), str(chosen_names), str(sorted(names)))
+        digest = digest_of([package.path for package in asked.packages], rules, inputs)
         kept = load_kept(kept_file, build_base, digest)
         if kept is not None:
             found = kept
         else:
             roots = [package.path for package in chosen]
-            scripts = scripts_of(workspace, roots, rules, tests=tests)
+            scripts = scripts_of(asked.workspace, roots, rules, tests=asked.tests)
             fresh = analyse_scripts(scripts, rules, on_progress)
             units = write_units(build_base, named_beside(fresh.units, names))
             found = PythonUnits(tuple(units), fresh.left_out)
@@ -77,7 +87,7 @@ def python_of_build(
                 kept_file.unlink(missing_ok=True)
             else:
                 save_kept(kept_file, build_base, digest, found)
-    others = _others(build_base, packages, chosen, found)
+    others = _others(build_base, asked.packages, chosen, found)
     return PythonUnits((*found.units, *others), found.left_out)
 
 

@@ -27,7 +27,7 @@ _NAMES_A_PARAMETER = {"parameter", "parameters", "question", "words"}
 @click.command("completion")
 @click.argument("shell", type=click.Choice(_SHELLS))
 def completion_command(shell: str) -> None:
-    """Print what makes a shell complete pytpc's commands, options, files and parameters.
+    """Print a script that makes SHELL complete pytpc's commands, options, files and parameters.
 
     \b
     bash:  eval "$(pytpc completion bash)"   in ~/.bashrc

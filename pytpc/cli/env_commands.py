@@ -19,28 +19,28 @@ from pytpc.ros.python_env import has_python, with_python, without_python
 
 @click.command("env")
 @click.argument("source", type=PATH, required=False)
-@click.option("--off", is_flag=True, help="Print what undoes it; no SOURCE is needed.")
-@click.option("--setup", is_flag=True, help="With what the workspace's own setup.bash sets.")
+@click.option("--off", is_flag=True, help="Print the commands that undo it; needs no SOURCE.")
+@click.option("--setup", is_flag=True, help="Include what the workspace's setup.bash sets.")
 @click.option(
     "--shell",
     type=click.Choice(SHELLS),
     default=SHELLS[0],
     show_default=True,
-    help="sh stands for bash, zsh and all that are like it.",
+    help="Shell to print for; sh is for bash, zsh and the like.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print a JSON object.")
 def env_command(*, source: Path | None, off: bool, setup: bool, shell: str, as_json: bool) -> None:
-    """Print what lets the Python nodes report that are started from this shell.
+    """Print shell commands; Python nodes started from this shell will report.
 
     \b
     eval "$(pytpc env WORKSPACE)"; roslaunch ...      bash, zsh
     pytpc env WORKSPACE --shell fish | source         fish
 
-    SOURCE is a workspace, or its static.json; without it static.json in this folder, else the
-    workspace that this folder is. However the workspace was built, nothing is built anew.
+    SOURCE is a workspace or its static.json. Without SOURCE, static.json in this folder is used, or
+    else this folder as a workspace. Any build of the workspace will do; nothing is rebuilt.
     """
     if off and setup:
-        raise click.UsageError("--off undoes what env sets, and not what setup.bash does")
+        raise click.UsageError("--off cannot be used with --setup: it does not undo setup.bash")
     before = dict(os.environ)
     after = without_python(before) if off else _on(source, before, setup=setup)
     change = EnvChange.between(before, after)
@@ -53,7 +53,7 @@ def _on(source: Path | None, before: dict[str, str], *, setup: bool) -> dict[str
     if setup:
         after = {**before, **workspace_env(installed(source or Path()), before)}
     if not has_python(static):
-        warn(f"{static}: no comparisons in Python, so that there is nothing to set")
+        warn(f"{static}: no comparisons in Python, so there is nothing to set")
         return after
     return with_python(after, static)
 
@@ -75,9 +75,8 @@ def static_file(source: Path | None) -> Path:
     static = source / OWN_FOLDER / MERGED_FILE
     if not static.is_file():
         raise WorkspaceError(
-            f"no {OWN_FOLDER}/{MERGED_FILE} here; build with `pytpc build`, or make it of what"
-            f" another build left: pytpc collect {shlex.quote(str(source))} -o"
-            f" {shlex.quote(str(static))}",
+            f"no {OWN_FOLDER}/{MERGED_FILE} here; build with `pytpc build`, or take it from another"
+            f" build: pytpc collect {shlex.quote(str(source))} -o {shlex.quote(str(static))}",
             source,
         )
     return static

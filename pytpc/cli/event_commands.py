@@ -1,21 +1,17 @@
-"""The command about what was recorded: ``convert``, which was called ``ingest``."""
+"""The command about what was recorded: ``convert``."""
 
 from __future__ import annotations
 
 import json
-from copy import copy
 from dataclasses import asdict
 from pathlib import Path
 
 import click
 
+from pytpc.api.converting import TOLERANCE_NS, Converted, convert
 from pytpc.base.wording import many
 from pytpc.cli.console import progress
 from pytpc.cli.options import PATH, warn_about
-from pytpc.ingest import Recording
-from pytpc.ingest.duplicates import TOLERANCE_NS
-from pytpc.ingest.outcome import Merged
-from pytpc.ingest.reading import opened
 from pytpc.recording.marks import MARK_TYPES
 
 
@@ -27,7 +23,7 @@ from pytpc.recording.marks import MARK_TYPES
     type=PATH,
     required=True,
     metavar="OUT",
-    help="A folder, or a file: .parquet (the events), .csv (the events in the thesis's form).",
+    help="Folder to write, or a file: .parquet (the events) or .csv (the thesis's form).",
 )
 @click.option(
     "--tolerance",
@@ -36,32 +32,35 @@ from pytpc.recording.marks import MARK_TYPES
     default=TOLERANCE_NS / 1e9,
     show_default=True,
     metavar="SECONDS",
-    help="How far apart in time one report may be in two inputs.",
+    help="Take reports in two inputs for the same one if they are at most this far apart.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print the summary as JSON.")
 def convert_command(
     inputs: tuple[Path, ...], output: Path, tolerance_s: float, as_json: bool
 ) -> None:
-    """Read recordings of one mission into a folder of Parquet, each report once.
+    """Convert the recordings of one mission to a folder of Parquet files, with each report once.
 
     An INPUT is a bag (ROS 1, .mcap, .db3), a binary file (.tpc), a log, console output, CSV, a
-    folder of such files, or a folder that this command wrote; what it is, its content tells. Memory
-    stays small however long the mission is; the folder above OUT needs room for 35 bytes a report.
+    folder of such files, or a folder that this command wrote. Its kind is recognised by its
+    content. Memory use stays small however long the mission is; the disk of OUT needs 35 bytes of
+    temporary space per report.
     """
-    suffix = output.suffix if not output.is_dir() else ""
-    with progress(f"reading {inputs[0].name}") as advance:
-        exits = opened(inputs, _standing(output), advance, tolerance_ns=round(tolerance_s * 1e9))
-        with exits as outcome, progress(f"writing {output.name}") as written:
-            if suffix == ".parquet":
-                recording = outcome.save_parquet(output, written)
-            elif suffix == ".csv":
-                recording = outcome.save_csv(output, written)
-            else:
-                recording = outcome.save(output, written)
+    with (
+        progress(f"reading {inputs[0].name}") as advance,
+        progress(f"writing {output.name}") as written,
+    ):
+        outcome = convert(
+            inputs,
+            output,
+            tolerance_ns=round(tolerance_s * 1e9),
+            on_read=advance,
+            on_written=written,
+        )
+    recording = outcome.recording
     warn_about(recording, None)
     kinds = [mark.type for mark in recording.marks]
     if as_json:
-        click.echo(json.dumps(_summary_of(recording, outcome, output), ensure_ascii=False))
+        click.echo(json.dumps(_summary_of(outcome, output), ensure_ascii=False))
         return
     marks = ", ".join(f"{kinds.count(kind)} of type {kind}" for kind in MARK_TYPES)
     if None in kinds:
@@ -73,20 +72,11 @@ def convert_command(
     )
 
 
-# Its name from when it read bags of ROS 1 alone.
-ingest_command = copy(convert_command)
-ingest_command.name = "ingest"
+COMMANDS: list[click.Command] = [convert_command]
 
 
-COMMANDS: list[click.Command] = [convert_command, ingest_command]
-
-
-def _standing(path: Path) -> Path:
-    """The nearest folder above ``path`` that is there."""
-    return next((folder for folder in path.absolute().parents if folder.is_dir()), Path("/"))
-
-
-def _summary_of(recording: Recording, outcome: Merged, output: Path) -> dict[str, object]:
+def _summary_of(outcome: Converted, output: Path) -> dict[str, object]:
+    recording = outcome.recording
     return {
         "output": str(output),
         "name": recording.name,

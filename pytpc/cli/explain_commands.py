@@ -42,16 +42,16 @@ _KINDS = {
 @click.command("explain")
 @SOURCES
 @click.argument("question", metavar="KEY|PARAMETER|FILE:LINE")
-@click.option("--all", "show_all", is_flag=True, help="The way of every comparison that fits.")
+@click.option("--all", "show_all", is_flag=True, help="Show the path of every matching comparison.")
 @click.option("--json", "as_json", is_flag=True, help="Print a JSON object.")
 def explain_command(
     sources: tuple[Path, ...], question: str, show_all: bool, as_json: bool
 ) -> None:
-    """Show the way from a parameter's read over the comparison to what is exposed.
+    """Show the path from where a parameter is read, through the comparison, to what is exposed.
 
-    SOURCE is a static.json, a build base or a workspace; without it, what is in this folder.
-    Without --all the comparison nearest to
-    an exposing statement is shown with its way, and the others in a line each.
+    SOURCE is a static.json, a build base or a workspace; without it, this folder is used. Without
+    --all, the path is shown for the comparison nearest to an exposing statement; the others get one
+    line each.
     """
     explanation = look_up(static_of(sources), question)
     if as_json:
@@ -63,7 +63,7 @@ def explain_command(
         _print_way(out, found)
     rest = explanation.comparisons[len(shown) :]
     if rest:
-        out.print(Text(f"{many(len(rest), 'more comparison')} (--all shows the ways):"))
+        out.print(Text(f"{many(len(rest), 'more comparison')} (use --all to show their paths):"))
         for found in rest:
             out.print(Padding(_heading(found), (0, 0, 0, 2), expand=False))
     if not explanation.comparisons:
@@ -74,7 +74,7 @@ def explain_command(
 @SOURCES
 @click.option("--json", "as_json", is_flag=True, help="Print a JSON list.")
 def blind_spots_command(sources: tuple[Path, ...], as_json: bool) -> None:
-    """List the places in SOURCE behind which the analysis does not see."""
+    """List the places in SOURCE that the analysis cannot see past."""
     static = static_of(sources)
     if as_json:
         spots = [
@@ -112,7 +112,7 @@ def _print_way(console: Console, found: FoundComparison) -> None:
     path = found.comparison.path
     if not path:
         console.print(
-            Padding(Text("this static information has no ways in it"), (0, 0, 1, 2), expand=False)
+            Padding(Text("this static information contains no paths"), (0, 0, 1, 2), expand=False)
         )
         return
     table = _plain_table(3)

@@ -24,32 +24,40 @@ _COUNT = click.IntRange(min=0, max=(1 << 31) - 1)
 
 @click.command("sink")
 @click.argument("nodes", nargs=-1, metavar="[NODE]...")
-@click.option("--sink", type=click.Choice(SINKS), help="Where reports go.")
+@click.option("--sink", type=click.Choice(SINKS), help="Send reports there.")
 @click.option(
-    "--policy", type=click.Choice(POLICIES), help="Each evaluation, or flops and summaries."
+    "--policy",
+    type=click.Choice(POLICIES),
+    help="Report every evaluation, or only changes and summaries.",
 )
 @click.option(
-    "--period", type=click.FloatRange(0.001, 3600.0), help="Seconds of a summary (--policy edges)."
+    "--period",
+    type=click.FloatRange(0.001, 3600.0),
+    help="Seconds covered by a summary (--policy edges).",
 )
-@click.option("--site-cap", type=_COUNT, help="Reports a second of one comparison; 0: no cap.")
-@click.option("--process-cap", type=_COUNT, help="Reports a second of one process; 0: no cap.")
+@click.option(
+    "--site-cap", type=_COUNT, help="Most reports per second of one comparison; 0: no limit."
+)
+@click.option(
+    "--process-cap", type=_COUNT, help="Most reports per second of one process; 0: no limit."
+)
 @click.option(
     "--folder",
     type=click.Path(path_type=Path),
-    help="Folder of the files (--sink file), on the node's machine.",
+    help="Folder for the files of --sink file, on the node's machine.",
 )
-@click.option("--file-limit", type=_COUNT, help="MiB that a file may have; 0: no limit.")
-@click.option("--file-reserve", type=_COUNT, help="MiB that are left free on the disk.")
-@click.option("--clear", is_flag=True, help="First forget what was set so before.")
+@click.option("--file-limit", type=_COUNT, help="Largest size of a file in MiB; 0: no limit.")
+@click.option("--file-reserve", type=_COUNT, help="MiB to leave free on the disk.")
+@click.option("--clear", is_flag=True, help="Forget earlier settings first.")
 @click.option("--json", "as_json", is_flag=True, help="Print a JSON list.")
 def sink_command(
     *, nodes: tuple[str, ...], folder: Path | None, clear: bool, as_json: bool, **options: Value
 ) -> None:
-    """Show what instrumented NODEs report and where to, and change it while they run.
+    """Show or change what instrumented NODEs report, and where to, while they run.
 
-    Without a NODE: of all that run, and of those that are started later. Settings become ROS
-    parameters (NODE/tpc/sink, or /tpc/sink for all), so they hold until the master ends; one of a
-    node goes before one for all.
+    Without a NODE, it applies to all running nodes and to those started later. Settings are stored
+    as ROS parameters (NODE/tpc/sink, or /tpc/sink for all), so they last until the master ends. The
+    setting of a node overrides the one for all.
     """
     settings = {name: value for name, value in options.items() if value is not None}
     if folder is not None:
@@ -73,16 +81,16 @@ def sink_command(
     for status in failed:
         warn(f"{status.node}: {plain(status.message)}")
     if failed:
-        raise RunError(f"{many(len(failed), 'node')} did not take over what is set")
+        raise RunError(f"{many(len(failed), 'node')} did not accept the settings")
 
 
 @click.command("relay", context_settings={"ignore_unknown_options": True})
 @click.argument("ros_arguments", nargs=-1, metavar="[NAME:=VALUE]...")
 def relay_command(*, ros_arguments: tuple[str, ...]) -> None:
-    """Pass reports on from /rosout to /threshold_information, as a ROS node, until it is ended.
+    """Forward reports from /rosout to /threshold_information, as a ROS node, until stopped.
 
-    One message for each report, in the form TIME,KEY,RESULT,cmp:C,thresh:T,res:R. In a launch
-    file: <node pkg="rosout" type="rosout" name="tpc_relay" launch-prefix="pytpc relay"/>.
+    Each report becomes one message TIME,KEY,RESULT,cmp:C,thresh:T,res:R. In a launch file:
+    <node pkg="rosout" type="rosout" name="tpc_relay" launch-prefix="pytpc relay"/>.
     """
     relay.run(ros_arguments, lambda text: click.echo(f"pytpc relay: {plain(text)}", err=True))
 

@@ -32,17 +32,17 @@ _PIPED_WIDTH = 160
     "--rules",
     type=click.Path(path_type=Path),
     metavar="FILE",
-    help="Your own rules (JSON): what else reads a parameter or exposes.",
+    help="JSON file with your own rules: more functions that read a parameter or expose.",
 )
-@click.option("--profile", type=click.Choice(["default", "thesis"]), help="Profile of the rules.")
+@click.option("--profile", type=click.Choice(["default", "thesis"]), help="Rules to analyse with.")
 @click.option("--constants", is_flag=True, help="Report comparisons with constants, too.")
 @click.option("--json", "as_json", is_flag=True, help="Print a JSON list.")
 def toolchain_command(
     *, tool: str | None, rules: Path | None, profile: str | None, constants: bool, as_json: bool
 ) -> None:
-    """Print what to type to build with TPC by TOOL, or by each of them.
+    """Print the commands that build with TPC by TOOL, or by each supported tool.
 
-    Nothing is run and no file is changed; the commands can be pasted into a shell.
+    Nothing is run and no file is changed; paste the commands into a shell.
     """
     cmake_file()
     if rules is not None:
@@ -62,12 +62,11 @@ def toolchain_command(
 @click.option("--json", "as_json", is_flag=True, help="Print a JSON list.")
 @click.pass_context
 def doctor_command(ctx: click.Context, *, workspace: Path | None, as_json: bool) -> None:
-    """Say what is wrong with this machine, and with WORKSPACE, before a build.
+    """Check this machine and WORKSPACE, and print the command that fixes each problem.
 
-    Each finding comes with the command that mends it. The exit status is 1 where one of them
-    keeps a build from working. Nothing is changed.
+    The exit status is 1 if a problem keeps a build from working. Nothing is changed.
     """
-    with Console(stderr=True).status("looking"):
+    with Console(stderr=True).status("checking"):
         seen = None if workspace is None else look_at_workspace(workspace)
         findings = check_machine(look_at_machine(workspace or Path()))
         if workspace is not None and seen is not None:
@@ -84,10 +83,10 @@ def doctor_command(ctx: click.Context, *, workspace: Path | None, as_json: bool)
 
 def _show_findings(findings: list[Finding]) -> None:
     if not findings:
-        click.echo("nothing is wrong")
+        click.echo("no problems found")
         return
     table = Table()
-    for heading in ("", "What is wrong", "Where", "Mend it with"):
+    for heading in ("", "Problem", "Where", "Fix it with"):
         table.add_column(heading, overflow="fold")
     for found in findings:
         cells = (found.what, found.where or "", found.mend or "")

@@ -17,33 +17,34 @@ INTERRUPTED = 130
 # takes a second to import, which asking for help, or another command, must not wait for.
 SUMMARIES = {
     "analyse": ("python_commands", "Find the comparisons of Python nodes."),
-    "apply": ("value_commands", "Write a value into the file that set it, or onto the robot."),
-    "blind-spots": ("explain_commands", "List the places behind which the analysis does not see."),
+    "apply": ("value_commands", "Change a value in the file that set it, or on the robot."),
+    "blind-spots": ("explain_commands", "List the places that the analysis cannot see past."),
     "build": ("workspace_commands", "Build a workspace with analysis and instrumentation."),
     "collect": ("static_commands", "Merge the static information of link units into one file."),
-    "completion": ("completion_commands", "Print what makes bash, zsh or fish complete pytpc."),
-    "convert": ("event_commands", "Read bags, binary files, logs or CSV into Parquet."),
-    "doctor": ("machine_commands", "Say what is wrong with this machine, or with a workspace."),
-    "env": ("env_commands", "Print what lets Python nodes report that a shell starts."),
-    "explain": ("explain_commands", "Show the way from a parameter to what is exposed."),
-    "export": ("static_commands", "Write what was found as SARIF or as an HTML page."),
-    "ingest": ("event_commands", "The same as convert (its older name)."),
+    "completion": ("completion_commands", "Print the shell's completion script for pytpc."),
+    "convert": ("event_commands", "Convert bags, binary files, logs or CSV to Parquet."),
+    "doctor": ("machine_commands", "Check your setup and print the fix for each problem."),
+    "env": ("env_commands", "Print shell commands that make Python nodes report."),
+    "explain": ("explain_commands", "Show how a parameter reaches what the robot exposes."),
+    "export": ("static_commands", "Write the comparisons as SARIF or as an HTML page."),
     "list": ("static_commands", "List the comparisons that were found."),
-    "mark": ("mark_commands", "Mark by one key each when the robot does wrong."),
-    "marks": ("rank_commands", "List the marks of a recording; add or remove some."),
-    "origin": ("value_commands", "Say where the values of parameters came from."),
-    "patch": ("workspace_commands", "Put TPC's three lines into each CMakeLists.txt."),
-    "rank": ("rank_commands", "Name the suspected parameters, from all marks."),
-    "record": ("mission_commands", "Record the running graph, or a launch file's mission."),
-    "relay": ("graph_commands", "Pass reports on from /rosout to /threshold_information."),
+    "mark": ("mark_commands", "Mark errors of the robot by pressing a key."),
+    "marks": ("mark_commands", "List the marks of a recording, or add and remove some."),
+    "origin": ("value_commands", "Show where the values of parameters came from."),
+    "patch": ("workspace_commands", "Add TPC's three lines to each CMakeLists.txt."),
+    "rank": ("rank_commands", "Rank the suspected parameters, from all marks."),
+    "record": ("mission_commands", "Record the running graph, or the mission of a launch file."),
+    "relay": ("graph_commands", "Forward reports from /rosout to /threshold_information."),
     "report": ("report_commands", "Write a page with the suspects at each mark, and why."),
-    "run": ("run_commands", "Run a Python node whose comparisons report."),
-    "show": ("static_commands", "Show all that is known about a comparison."),
-    "sink": ("graph_commands", "Show and change where running nodes report to."),
-    "suggest": ("advice_commands", "Say what to do with the suspects, and what it would change."),
-    "toolchain": ("machine_commands", "Print what to type to build with TPC by another tool."),
+    "run": ("run_commands", "Run a Python node with reports."),
+    "show": ("static_commands", "Show everything known about a comparison."),
+    "sink": ("graph_commands", "Show or change where running nodes report to."),
+    "suggest": ("suggest_commands", "Suggest a value to try, and show what it would change."),
+    "toolchain": ("machine_commands", "Print how to build with TPC by another tool."),
     "watch": ("watch_commands", "Show the suspected parameters while the robot runs; mark."),
 }
+RENAMED = {"ingest": "convert"}
+"""Commands that were called otherwise."""
 
 _EVALUATION = frozenset({"stats", "study", "survey"})
 
@@ -71,6 +72,8 @@ class _Commands(click.Group):
         return list(summaries())
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name in RENAMED and not ctx.resilient_parsing:
+            ctx.fail(f"{cmd_name} is now called {RENAMED[cmd_name]}: pytpc {RENAMED[cmd_name]}")
         if cmd_name in SUMMARIES:
             # Asking what is installed takes longer than many a command.
             module = f"pytpc.cli.{SUMMARIES[cmd_name][0]}"

@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 from typing import TypeVar
 
 import click
 
-from pytpc.base.errors import InputError
+from pytpc.api.missions import check_reports, faults_of, read_named
 from pytpc.base.wording import plain
 from pytpc.cli.console import progress, warn
 from pytpc.diagnosis.question import WINDOW_S
-from pytpc.diagnosis.ranking.complaints import complaints
-from pytpc.ingest import Recording, read
+from pytpc.recording.mission import Recording
 from pytpc.static.static_info import StaticInfo
 
 PATH = click.Path(path_type=Path)
@@ -43,7 +41,7 @@ STATIC = click.option(
     type=PATH,
     required=True,
     metavar="FILE_OR_FOLDER",
-    help="static.json, a build base or a built workspace.",
+    help="Static information: a static.json, a build base or a built workspace.",
 )
 TOP = click.option(
     "--top",
@@ -51,7 +49,7 @@ TOP = click.option(
     default=5,
     show_default=True,
     metavar="N",
-    help="How many suspects are shown.",
+    help="Show this many suspects.",
 )
 JSON = click.option("--json", "as_json", is_flag=True, help="Print JSON, for programs.")
 WINDOW = click.option(
@@ -61,7 +59,7 @@ WINDOW = click.option(
     default=WINDOW_S,
     show_default=True,
     metavar="SECONDS",
-    help="How far before a mark type II looks.",
+    help="Length of the window before a mark in which type II looks.",
 )
 
 _UNTYPED = "pytpc.untyped"
@@ -81,7 +79,7 @@ _BELIEVED = click.option(
     default="believe",
     show_default=True,
     callback=_types,
-    help="How far the marks' types are believed.",
+    help="How far to believe the types of the marks.",
 )
 # What `--types ignore` was called first.
 _OLDER = click.option(
@@ -100,41 +98,44 @@ def TYPES(command: Command) -> Command:
 
 
 def recording_of(source: Path) -> Recording:
-    """Read a recording, with its progress shown; what is in a folder is called after the folder.
-
-    The bags of all missions have the same name, their folders have not.
+    """Read a recording, with its progress shown.
 
     Raises:
         InputError: it cannot be read.
     """
     with progress(f"reading {source.name}") as advance:
-        found = read(source, advance)
-    return replace(found, name=source.absolute().name) if source.is_dir() else found
+        return read_named(source, advance)
 
 
-def check_reports(recording: Recording, static: StaticInfo, source: Path) -> None:
-    """See that the recording has a report that the static information knows.
-
-    Without, it would be ranked as if nothing were suspicious.
+def check(recording: Recording, static: StaticInfo, source: Path) -> None:
+    """See that a recording is of this build, and warn of what is wrong with it.
 
     Raises:
-        InputError: it has none.
+        InputError: it is of another build, or has no report.
     """
-    reported = {*recording.events.keys, *recording.summaries.keys}
-    if not reported:
-        raise InputError(
-            "no threshold reports: was /rosout recorded, and the workspace built with TPC? "
-            " Files of the sink `file` have to be in the same folder, or in its tpc",
-            source,
-        )
-    if reported.isdisjoint(static.comparisons):
-        raise InputError(
-            "none of its reports is known to the static information: it is of another build",
-            source,
-        )
+    check_reports(recording, static, source)
+    warn_about(recording, static)
 
 
 def warn_about(recording: Recording, static: StaticInfo | None) -> None:
     """A line for each thing that is wrong with a recording, and for what was left out of it."""
-    for complaint in complaints(recording, static):
-        warn(f"{plain(recording.name)}: {plain(complaint)}")
+    for fault in faults_of(recording, static):
+        warn(f"{plain(recording.name)}: {plain(fault)}")
+
+
+def reference_of(source: Path | None, static: StaticInfo) -> Recording | None:
+    """A mission that went right.
+
+    Raises:
+        InputError: it cannot be read, or is of another build.
+    """
+    if source is None:
+        return None
+    found = recording_of(source)
+    check_reports(found, static, source)
+    return found
+
+
+def warn_plainly(line: str) -> None:
+    """Warn in a line that may have any text in it."""
+    warn(plain(line))

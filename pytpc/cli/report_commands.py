@@ -4,33 +4,43 @@ from __future__ import annotations
 
 import json
 import webbrowser
-from dataclasses import replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import click
 
-from pytpc.api.report import CARDS, MissionReport, write_report
+from pytpc.api.missions import find_declared
+from pytpc.api.ranking import Rankings
+from pytpc.api.report import CARDS, MissionReport, report_of, write_missions
 from pytpc.base.errors import TpcError
-from pytpc.base.wording import many, plain
-from pytpc.cli.console import progress, warn
+from pytpc.base.wording import many
+from pytpc.cli.arguments import as_object
+from pytpc.cli.console import progress
 from pytpc.cli.options import (
     JSON,
     PATH,
     STATIC,
     TYPES,
     WINDOW,
-    check_reports,
+    check,
     recording_of,
-    warn_about,
+    warn_plainly,
 )
 from pytpc.cli.sources import static_of
 from pytpc.diagnosis.question import Question, Types
-from pytpc.diagnosis.ranking.clocks import two_clocks
-from pytpc.diagnosis.ranking.ranking import rank_marks
-from pytpc.recording.known_change import read_known_change
 from pytpc.static.static_info import StaticInfo
-from pytpc.values.declared_files import declared_in
-from pytpc.values.origins import read_origins
+
+
+@dataclass(frozen=True)
+class _ReportArguments:
+    recordings: tuple[Path, ...]
+    static_source: Path
+    output: Path
+    types: Types
+    window_s: float
+    top: int
+    open_it: bool
+    as_json: bool
 
 
 @click.command("report")
@@ -43,7 +53,7 @@ from pytpc.values.origins import read_origins
     default=Path("report.html"),
     show_default=True,
     metavar="FILE",
-    help="The page, one file that needs no other.",
+    help="Write the page to this file; it needs no other file.",
 )
 @TYPES
 @WINDOW
@@ -53,63 +63,41 @@ from pytpc.values.origins import read_origins
     default=CARDS,
     show_default=True,
     metavar="N",
-    help="How many suspects of a mark are shown with their evidence.",
+    help="Show the evidence for this many suspects per mark.",
 )
-@click.option("--open", "open_it", is_flag=True, help="Show the page in the browser.")
+@click.option("--open", "open_it", is_flag=True, help="Open the page in the browser.")
 @JSON
-def report_command(
-    *,
-    recordings: tuple[Path, ...],
-    static_source: Path,
-    output: Path,
-    types: Types,
-    window_s: float,
-    top: int,
-    open_it: bool,
-    as_json: bool,
-) -> None:
+@as_object(_ReportArguments)
+def report_command(given: _ReportArguments) -> None:
     """Write a page with the suspects at each mark of each RECORDING, and the evidence.
 
-    A RECORDING is any INPUT of `convert`. Where the folder of a mission also has origins.json or
-    treatment.json, the page says where values came from, and what was done to the robot.
+    A RECORDING is any INPUT of `convert`. If the folder of a mission contains origins.json or
+    treatment.json, the page also says where values came from, and what was done to the robot.
     """
-    static = static_of([static_source])
-    question = Question(types, window_s, top)
-    missions = [_mission(source, static, question) for source in recordings]
+    static = static_of([given.static_source])
+    missions = [_mission(source, static, given) for source in given.recordings]
+    output = given.output
     with progress("drawing") as advance:
-        write_report(output, missions, on_progress=advance)
-    if as_json:
+        write_missions(output, missions, on_progress=advance)
+    if given.as_json:
         click.echo(json.dumps(_json_of(output, missions), indent=1, ensure_ascii=False))
     else:
         marks = sum(len(mission.rankings) for mission in missions)
         click.echo(f"{many(len(missions), 'mission')} with {many(marks, 'mark')}: {output}")
-    if open_it and not webbrowser.open(output.absolute().as_uri()):
-        raise TpcError("no browser was found to show it in", output)
+    if given.open_it and not webbrowser.open(output.absolute().as_uri()):
+        raise TpcError("no browser was found to open it", output)
 
 
 COMMANDS: list[click.Command] = [report_command]
 
 
-def _mission(source: Path, static: StaticInfo, question: Question) -> MissionReport:
+def _mission(source: Path, static: StaticInfo, given: _ReportArguments) -> MissionReport:
     recording = recording_of(source)
-    check_reports(recording, static, source)
-    warn_about(recording, static)
-    for clock in two_clocks(recording):
-        warn(f"{plain(recording.name)}: {plain(clock)}")
-    done = read_known_change(source)
-    return MissionReport(
-        # The bags of all missions have the same name, their folders have not.
-        source.absolute().name if source.is_dir() else recording.name,
-        recording,
-        static,
-        rank_marks(recording, static, question),
-        treatment=done.effect,
-        changed_parameter=done.parameter,
-        origins=read_origins(source),
-        question=replace(
-            question, declared=declared_in(static, [source], lambda line: warn(plain(line)))
-        ),
-    )
+    check(recording, static, source)
+    question = Question(given.types, given.window_s, given.top)
+    rankings = Rankings.of(recording, static, question, source)
+    declared = find_declared(static, source, warn_plainly)
+    return report_of(rankings, top=given.top, declared=declared)
 
 
 def _json_of(output: Path, missions: list[MissionReport]) -> dict[str, object]:

@@ -19,19 +19,23 @@ from pytpc.ros.node_program import command_of
     type=PATH,
     multiple=True,
     metavar="PATH",
-    help="Static information, or a folder that has some. [default: TPC_STATIC, else that of the"
-    " workspace that NODE, or this folder, lies in]",
+    help="Static information, or a folder that contains it; may be repeated. [default: TPC_STATIC,"
+    " or else that of the workspace of NODE or of this folder]",
 )
-@click.option("--verbose", is_flag=True, help="Say what reports, and by which static information.")
+@click.option(
+    "--verbose",
+    is_flag=True,
+    help="Print which comparisons report, and the static information used.",
+)
 @click.argument("node", type=PATH)
 @click.argument("arguments", nargs=-1, type=click.UNPROCESSED, metavar="[ARGUMENT]...")
 def run_command(
     *, static: tuple[Path, ...], verbose: bool, node: Path, arguments: tuple[str, ...]
 ) -> None:
-    """Run the Python script NODE; the comparisons that analyse found report.
+    """Run the Python script NODE so that the comparisons found by `analyse` report.
 
-    It runs under its own interpreter, in the place of this process. What is no Python script is run
-    as it is, so that a whole launch file may have launch-prefix="pytpc run".
+    It runs under its own interpreter and replaces this process. Anything that is not a Python
+    script runs unchanged, so launch-prefix="pytpc run" can be used in a whole launch file.
     """
     command = command_of(node, arguments, static, verbose=verbose)
     sys.stdout.flush()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import wraps
 from pathlib import Path
 
@@ -14,11 +14,11 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
+from pytpc.api.building import collect
 from pytpc.base.atomic import write_atomic
 from pytpc.base.checked_json import dump_json
 from pytpc.base.wording import many, plain
-from pytpc.build.collect import collect_sources
-from pytpc.build.python_units import PythonUnits, analyse_workspaces
+from pytpc.cli.arguments import as_object
 from pytpc.cli.console import (
     console,
     found_text,
@@ -45,35 +45,44 @@ _TYPES = ("parameter", "flag", "derived", "constant")
 def _selecting(command: Callable[..., None]) -> Callable[..., None]:
     """Add the options that say which comparisons are meant; the command gets a ``Selection``."""
 
+    names = ("packages", "parameters", "types", "files", "constants")
+
     @wraps(command)
-    def with_selection(
-        *,
-        packages: tuple[str, ...],
-        parameters: tuple[str, ...],
-        types: tuple[str, ...],
-        files: tuple[str, ...],
-        constants: bool,
-        **others: object,
-    ) -> None:
-        wanted = Selection(packages, parameters, types, files, constants)
-        command(wanted=wanted, **others)
+    def with_selection(**given: object) -> None:
+        made: Callable[..., Selection] = Selection
+        wanted = made(**{name: given.pop(name) for name in names})
+        command(wanted=wanted, **given)
 
     options = (
-        click.option("--package", "packages", multiple=True, metavar="NAME", help="Only of it."),
+        click.option(
+            "--package",
+            "packages",
+            multiple=True,
+            metavar="NAME",
+            help="Show only this package; may be repeated.",
+        ),
         click.option(
             "--parameter",
             "parameters",
             multiple=True,
             metavar="GLOB",
-            help="Only these, as 'max_*'; the namespace may be left out.",
+            help="Show only parameters like this, as in 'max_*'; the namespace may be left out.",
         ),
         click.option(
-            "--type", "types", multiple=True, type=click.Choice(_TYPES), help="Only of this type."
+            "--type",
+            "types",
+            multiple=True,
+            type=click.Choice(_TYPES),
+            help="Show only comparisons of this type; may be repeated.",
         ),
         click.option(
-            "--file", "files", multiple=True, metavar="FILE", help="Only in it; or a pattern."
+            "--file",
+            "files",
+            multiple=True,
+            metavar="FILE",
+            help="Show only this source file, or files like this pattern.",
         ),
-        click.option("--constants", is_flag=True, help="Those with constants, too."),
+        click.option("--constants", is_flag=True, help="Show comparisons with constants, too."),
     )
     for option in reversed(options):
         with_selection = option(with_selection)
@@ -82,10 +91,24 @@ def _selecting(command: Callable[..., None]) -> Callable[..., None]:
 
 @click.command("collect")
 @click.argument("sources", type=PATH, nargs=-1, required=True, metavar="SOURCE...")
-@click.option("-o", "--output", type=PATH, default=Path("static.json"), show_default=True)
-@click.option("--no-python", is_flag=True, help="Only what builds have left.")
-@click.option("--python-rules", type=PATH, metavar="FILE", help="Your own rules for Python (JSON).")
-@click.option("--constants", is_flag=True, help="In Python, comparisons with constants, too.")
+@click.option(
+    "-o",
+    "--output",
+    type=PATH,
+    default=Path("static.json"),
+    show_default=True,
+    help="Write the static information to this file.",
+)
+@click.option("--no-python", is_flag=True, help="Do not analyse Python nodes.")
+@click.option(
+    "--python-rules",
+    type=PATH,
+    metavar="FILE",
+    help="JSON file with your own rules for Python nodes.",
+)
+@click.option(
+    "--constants", is_flag=True, help="Report comparisons with constants in Python nodes, too."
+)
 def collect_command(
     sources: tuple[Path, ...],
     *,
@@ -96,16 +119,17 @@ def collect_command(
 ) -> None:
     """Merge the static information of all link units below each SOURCE into one file.
 
-    SOURCE is a workspace, a build base, a build folder or such a file. What is no longer built is
-    left out. The Python nodes of a workspace are analysed.
+    SOURCE is a workspace, a build base, a build folder or a file of static information. Link units
+    that are no longer built are left out. The Python nodes of workspaces are analysed.
     """
     rules = replace(load_rules(own=python_rules), constants=constants)
-    python: PythonUnits | None = None
-    if not no_python:
-        with progress("analysing Python scripts") as advance:
-            python = analyse_workspaces(sources, rules, advance)
-    with progress("reading static information") as advance:
-        collected = collect_sources(sources, advance, python)
+    with (
+        progress("analysing Python scripts") as told,
+        progress("reading static information") as read,
+    ):
+        collected = collect(
+            sources, None if no_python else rules, on_scripts=told, on_progress=read
+        )
     collected.static.save(output)
     show_units(collected.static)
     tell_dropped(collected.dropped)
@@ -117,15 +141,20 @@ def collect_command(
 @click.option("--json", "as_json", is_flag=True, help="Print a JSON list.")
 @_selecting
 @click.option(
-    "--sort", "order", type=click.Choice(list(ORDERS)), default="place", show_default=True
+    "--sort",
+    "order",
+    type=click.Choice(list(ORDERS)),
+    default="place",
+    show_default=True,
+    help="Sort the rows by this.",
 )
 def list_command(
     sources: tuple[Path, ...], *, as_json: bool, order: str, wanted: Selection
 ) -> None:
     """List the comparisons in SOURCE: a static.json, a build base or a workspace.
 
-    A place in the source is one row, however many link units hold it. Without SOURCE: static.json
-    in this folder, else what `pytpc build` left below it.
+    Each place in the source is one row, however many link units contain it. Without SOURCE,
+    static.json in this folder is read, or else what `pytpc build` left below it.
     """
     static = static_of(sources)
     found = select(static, replace(wanted, order=order))
@@ -147,10 +176,10 @@ def list_command(
 @click.argument("question", metavar="KEY|PARAMETER|FILE:LINE")
 @click.option("--json", "as_json", is_flag=True, help="Print a JSON object.")
 def show_command(sources: tuple[Path, ...], question: str, as_json: bool) -> None:
-    """Show all that is known about a comparison: a key's beginning, a parameter, or a line.
+    """Show everything known about a comparison, found by KEY, PARAMETER or FILE:LINE.
 
-    SOURCE is as for `list`. The whole condition is read from the source as it is compiled, which
-    takes some seconds for each file the first time.
+    The beginning of a KEY is enough. SOURCE is as for `list`. The whole condition is read from the
+    source as it is compiled, which takes some seconds per file the first time.
     """
     static = static_of(sources)
     explanation = look_up(static, question)
@@ -168,37 +197,46 @@ def show_command(sources: tuple[Path, ...], question: str, as_json: bool) -> Non
     _print_all(console(), found, explanation)
 
 
+@dataclass(frozen=True)
+class _ExportArguments:
+    sources: tuple[Path, ...]
+    sarif: Path | None
+    html: Path | None
+    title: str
+    srcroot: Path | None
+    wanted: Selection
+
+
 @click.command("export")
 @SOURCES
-@click.option("--sarif", type=PATH, metavar="FILE", help="SARIF 2.1.0, for code review tools.")
-@click.option("--html", type=PATH, metavar="FILE", help="A page that needs no network.")
-@click.option("--title", default="Threshold comparisons", show_default=True, help="Of the page.")
+@click.option(
+    "--sarif", type=PATH, metavar="FILE", help="Write SARIF 2.1.0, for code review tools."
+)
+@click.option("--html", type=PATH, metavar="FILE", help="Write an HTML page, which opens offline.")
+@click.option(
+    "--title", default="Threshold comparisons", show_default=True, help="Title of the page."
+)
 @click.option(
     "--srcroot",
     type=click.Path(path_type=Path, exists=True, file_okay=False),
-    help="Folder that SARIF's paths are relative to; what all packages have in common by default.",
+    help="Folder that SARIF's paths are relative to. [default: what all packages share]",
 )
 @_selecting
+@as_object(_ExportArguments)
 def export_command(
-    sources: tuple[Path, ...],
-    *,
-    sarif: Path | None,
-    html: Path | None,
-    title: str,
-    srcroot: Path | None,
-    wanted: Selection,
+    given: _ExportArguments,
 ) -> None:
-    """Write what was found in SOURCE for other tools and people: SARIF, HTML."""
-    if sarif is None and html is None:
-        raise click.UsageError("say what to write: --sarif FILE, --html FILE or both")
-    static = static_of(sources)
-    found = _details(static, select(static, wanted))
-    if sarif is not None:
-        write_atomic(sarif, dump_json(sarif_log(static, found, srcroot)))
-        click.echo(f"{many(len(found), 'comparison')}: {sarif}")
-    if html is not None:
-        write_catalogue(html, static, found, title)
-        click.echo(f"{many(len(found), 'comparison')}: {html}")
+    """Write the comparisons in SOURCE as SARIF or as an HTML page."""
+    if given.sarif is None and given.html is None:
+        raise click.UsageError("give --sarif FILE, --html FILE or both")
+    static = static_of(given.sources)
+    found = _details(static, select(static, given.wanted))
+    if given.sarif is not None:
+        write_atomic(given.sarif, dump_json(sarif_log(static, found, given.srcroot)))
+        click.echo(f"{many(len(found), 'comparison')}: {given.sarif}")
+    if given.html is not None:
+        write_catalogue(given.html, static, found, given.title)
+        click.echo(f"{many(len(found), 'comparison')}: {given.html}")
     warn_of_failed(static)
 
 

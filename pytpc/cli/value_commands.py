@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import json
-import os
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,26 +12,13 @@ import click
 from rich.table import Table
 from rich.text import Text
 
-from pytpc.base.errors import InputError
+from pytpc.api import values
+from pytpc.api.values import FileChange, Journal, JournalEntry, LiveChange, Origin, Place
 from pytpc.base.wording import plain
-from pytpc.build.build import installed, workspace_env
+from pytpc.cli.arguments import as_object
 from pytpc.cli.console import console, progress, warn
-from pytpc.ros.live_change import set_live, take_back_live
-from pytpc.ros.ros1.live_values import LiveChange, Robot
-from pytpc.ros.ros1.master import uri_of
-from pytpc.values.apply import FileChange, apply_change, change_as_json, diff_of, shown
-from pytpc.values.journal import Journal, JournalEntry, folder_of
-from pytpc.values.origins import Origin, as_json, to_json
-from pytpc.values.target import (
-    Target,
-    chosen,
-    is_yaml,
-    plan_addition,
-    plan_origin,
-    plan_yaml,
-    read_target,
-)
-from pytpc.values.undo import entry_of, take_back_file
+from pytpc.values.apply import change_as_json, diff_of, shown
+from pytpc.values.origins import as_json, to_json
 
 _LONGEST = 60
 _PATH = click.Path(path_type=Path)
@@ -40,16 +26,21 @@ _ARGUMENT = re.compile(r"[A-Za-z_]\w*:=.*", re.DOTALL)
 _WORKSPACE = click.option(
     "--workspace",
     type=_PATH,
-    help="Built workspace in which $(find ...) is looked up. [default: what is sourced]",
+    help="Look up $(find ...) in this built workspace. [default: what is sourced]",
 )
 _JSON = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 
 
-@dataclass(frozen=True, slots=True)
-class _Options:
+@dataclass(frozen=True)
+class _ApplyArguments:
+    words: tuple[str, ...]
     dry_run: bool
+    undo: bool
+    listing: bool
+    live: bool
     add: bool
     force: bool
+    workspace: Path | None
     as_json: bool
 
 
@@ -61,16 +52,17 @@ class _Options:
 def origin_command(
     target: Path, words: tuple[str, ...], workspace: Path | None, as_json: bool
 ) -> None:
-    """Say where the values of parameters came from.
+    """Show where the values of parameters came from.
 
-    TARGET is a mission's folder (or its bag), or a launch file, which is read with NAME:=VALUE as
-    roslaunch would; nothing is started.
+    TARGET is a mission's folder, its bag, or a launch file. A launch file is read with NAME:=VALUE
+    as roslaunch would read it; nothing is started.
     """
     names = [word for word in words if _ARGUMENT.fullmatch(word) is None]
     if len(names) > 1:
         raise click.UsageError("give one PARAMETER, or none")
-    found = _target(target, words, workspace)
-    origins = [chosen(found, names[0])] if names else list(found.origins.values())
+    with progress(f"reading {target.name}"):
+        place = Place(target, _arguments(words), workspace)
+        origins = values.origins(place, names[0] if names else None)
     if as_json:
         click.echo(json.dumps({o.name: as_json_of(o) for o in origins}, indent=1))
     elif names:
@@ -81,34 +73,30 @@ def origin_command(
 
 @click.command("apply", context_settings={"ignore_unknown_options": True})
 @click.argument("words", nargs=-1, metavar="[TARGET] [PARAMETER VALUE] [NAME:=VALUE]...")
-@click.option("--dry-run", is_flag=True, help="Show the change and write nothing.")
-@click.option("--undo", is_flag=True, help="Take back the last change (of FILE, or number N).")
-@click.option("--list", "listing", is_flag=True, help="List the changes that can be taken back.")
-@click.option("--live", is_flag=True, help="Set it on the running robot (with TARGET: too).")
-@click.option("--add", is_flag=True, help="Where no file sets it, add it to the launch file.")
+@click.option("--dry-run", is_flag=True, help="Show the change without writing it.")
 @click.option(
-    "--force", is_flag=True, help="Change its type, and what other parameters share with it."
+    "--undo", is_flag=True, help="Take back the last change, or the last of FILE, or number N."
+)
+@click.option("--list", "listing", is_flag=True, help="List the changes that can be taken back.")
+@click.option(
+    "--live", is_flag=True, help="Set the value on the running robot (with TARGET: there, too)."
+)
+@click.option("--add", is_flag=True, help="Add it to the launch file if no file sets it.")
+@click.option(
+    "--force",
+    is_flag=True,
+    help="Allow another type, and changes that affect other parameters, too.",
 )
 @_WORKSPACE
 @_JSON
-def apply_command(
-    *,
-    words: tuple[str, ...],
-    dry_run: bool,
-    undo: bool,
-    listing: bool,
-    live: bool,
-    add: bool,
-    force: bool,
-    workspace: Path | None,
-    as_json: bool,
-) -> None:
+@as_object(_ApplyArguments)
+def apply_command(given: _ApplyArguments) -> None:
     """Write VALUE into the YAML or launch file that set PARAMETER.
 
-    TARGET is a mission's folder, a launch file or a YAML file. All else in the file stays as it is,
-    byte for byte; the change is shown, and noted for --undo. With --live the value is set on the
-    robot at ROS_MASTER_URI: on its parameter server, and by dynamic_reconfigure where the node has
-    it.
+    TARGET is a mission's folder, a launch file or a YAML file. The rest of the file stays the same,
+    byte for byte. The change is shown, and can be taken back with --undo. With --live the value is
+    set on the robot at ROS_MASTER_URI: on its parameter server, and by dynamic_reconfigure if the
+    node supports it.
 
     \b
     pytpc apply mission/ /mission/min_coverage_limit 0.035
@@ -116,79 +104,61 @@ def apply_command(
     pytpc apply --live /mission/min_coverage_limit 0.035
     pytpc apply --undo
     """
-    journal = Journal(folder_of(os.environ))
-    options = _Options(dry_run, add, force, as_json)
-    if listing or undo:
+    journal = values.journal()
+    if given.listing or given.undo:
         for error in journal.broken():
             warn(plain(str(error)))
-    if listing:
-        _list(journal, as_json)
-    elif undo:
-        _undo(journal, words, options)
+    if given.listing:
+        _list(journal, given.as_json)
+    elif given.undo:
+        _undo(journal, given)
     else:
-        needed = 2 if live and len(words) == 2 else 3
-        if len(words) < needed:
-            raise click.UsageError("give TARGET PARAMETER VALUE, or --live PARAMETER VALUE")
-        parameter, value = words[needed - 2], words[needed - 1]
-        name, answer = parameter, dict[str, object]()
-        if needed == 3:
-            change = _plan(Path(words[0]), words[3:], (parameter, value), workspace, options)
-            name = change.parameter
-            answer["file"] = _write(change, journal, options)
-        if live:
-            answer["live"] = _set_live(journal, name, value, options)
-        if as_json:
-            click.echo(json.dumps(answer, indent=1))
+        _set(journal, given)
+
+
+def _set(journal: Journal, given: _ApplyArguments) -> None:
+    words = given.words
+    needed = 2 if given.live and len(words) == 2 else 3
+    if len(words) < needed:
+        raise click.UsageError("give TARGET PARAMETER VALUE, or --live PARAMETER VALUE")
+    parameter, value = words[needed - 2], words[needed - 1]
+    name, answer = parameter, dict[str, object]()
+    if needed == 3:
+        change = _plan(given)
+        name = change.parameter
+        answer["file"] = _write(change, journal, given)
+    if given.live:
+        answer["live"] = _set_live(journal, name, value, given)
+    if given.as_json:
+        click.echo(json.dumps(answer, indent=1))
 
 
 def as_json_of(origin: Origin) -> dict[str, object]:
-    """An origin for a program that reads it."""
+    """An origin as JSON."""
     return {"name": origin.name, "words": origin.words(), **as_json(origin)}
 
 
-def _target(path: Path, words: Sequence[str], workspace: Path | None) -> Target:
-    args = {
-        name: value
-        for name, separator, value in (word.partition(":=") for word in words)
-        if separator
-    }
-    env: Mapping[str, str] = os.environ
-    if workspace is not None:
-        env = workspace_env(installed(workspace))
-    if is_yaml(path):
-        raise InputError("a YAML file says nothing of where else values come from", path)
-    with progress(f"reading {path.name}"):
-        return read_target(path, args, env)
+def _arguments(words: Sequence[str]) -> dict[str, str]:
+    """The launch arguments NAME:=VALUE among words."""
+    pairs = (word.partition(":=") for word in words)
+    return {name: value for name, separator, value in pairs if separator}
 
 
-def _plan(
-    path: Path,
-    args: Sequence[str],
-    setting: tuple[str, str],
-    workspace: Path | None,
-    options: _Options,
-) -> FileChange:
-    parameter, value = setting
+def _plan(given: _ApplyArguments) -> FileChange:
+    target, parameter, value, *args = given.words
     for word in args:
         if _ARGUMENT.fullmatch(word) is None:
             raise click.UsageError(f"{word!r} is not NAME:=VALUE")
-    if is_yaml(path):
-        if options.add:
-            raise click.UsageError("--add is for launch files and missions")
-        return plan_yaml(path, parameter, value, force=options.force)
-    target = _target(path, args, workspace)
-    origin = chosen(target, parameter)
-    if options.add and origin.kind in ("default", "runtime"):
-        return plan_addition(origin, target, value)
-    return plan_origin(origin, value, force=options.force, files=target.files)
+    if given.add and values.is_yaml(Path(target)):
+        raise click.UsageError("--add is for launch files and missions")
+    place = Place(Path(target), _arguments(args), given.workspace)
+    with progress(f"reading {place.path.name}"):
+        return values.plan(place, parameter, value, add=given.add, force=given.force)
 
 
-def _write(change: FileChange, journal: Journal, options: _Options) -> dict[str, object]:
-    entry: JournalEntry | None = None
-    same = change.before == change.after
-    if not options.dry_run and not same:
-        entry = apply_change(change, journal)
-    if options.as_json:
+def _write(change: FileChange, journal: Journal, given: _ApplyArguments) -> dict[str, object]:
+    entry = None if given.dry_run else values.apply(change, journal)
+    if given.as_json:
         number = None if entry is None else entry.number
         return {
             **change_as_json(change),
@@ -202,7 +172,7 @@ def _write(change: FileChange, journal: Journal, options: _Options) -> dict[str,
     what = f"{change.parameter} {shown(change.old)} -> {shown(change.new)}"
     for note in change.notes:
         warn(plain(note))
-    if same:
+    if change.before == change.after:
         click.echo(plain(f"{place}: {change.parameter} is {shown(change.new)} already"))
     elif entry is None:
         click.echo(plain(f"{place}: {what} (not written: --dry-run)"))
@@ -212,83 +182,65 @@ def _write(change: FileChange, journal: Journal, options: _Options) -> dict[str,
     return {}
 
 
-def _set_live(journal: Journal, parameter: str, value: str, options: _Options) -> dict[str, object]:
-    robot = Robot(uri_of(os.environ))
-    name = _full_name(robot, parameter)
-    change = robot.plan(name, value, force=options.force)
-    if options.dry_run:
-        entry, holds, taken = None, change.new, False
-    else:
-        entry, holds, taken = set_live(robot, change, journal)
-    told = _told(change, holds, taken)
-    if options.dry_run and change.service:
+def _set_live(
+    journal: Journal, parameter: str, value: str, given: _ApplyArguments
+) -> dict[str, object]:
+    done = values.apply_live(parameter, value, journal, dry_run=given.dry_run, force=given.force)
+    change, entry = done.change, done.entry
+    told = _told(change, done.holds, done.taken)
+    if given.dry_run and change.service:
         told = "the node would take it at once (dynamic_reconfigure)"
-    if options.as_json:
+    if given.as_json:
         return {
-            "parameter": name,
+            "parameter": done.name,
             "master": change.master,
             "old": to_json(change.old),
             "new": to_json(change.new),
-            "holds": to_json(holds),
+            "holds": to_json(done.holds),
             "service": change.service or None,
             "nodes": list(change.nodes),
-            "taken_at_once": taken,
+            "taken_at_once": done.taken,
             "note": told,
             "written": entry is not None,
             "undo": None if entry is None else entry.number,
         }
-    done = " (not set: --dry-run)" if options.dry_run else ""
-    click.echo(plain(f"{change.master}: {name} {shown(change.old)} -> {shown(holds)}{done}"))
+    dry = " (not set: --dry-run)" if given.dry_run else ""
+    what = f"{done.name} {shown(change.old)} -> {shown(done.holds)}{dry}"
+    click.echo(plain(f"{change.master}: {what}"))
     click.echo(plain(told), err=True)
     if entry is not None:
         click.echo(f"to take it back: pytpc apply --undo {entry.number}", err=True)
     return {}
 
 
-def _full_name(robot: Robot, parameter: str) -> str:
-    if parameter.startswith("/"):
-        return parameter
-    wanted = parameter.lstrip("~/")
-    meant = [name for name in robot.parameters() if name.endswith(f"/{wanted}")]
-    if len(meant) != 1:
-        names = ", ".join(meant[:8]) or "none"
-        raise InputError(f"give the full name: the robot has {names} with {parameter} at its end")
-    return meant[0]
-
-
 def _told(change: LiveChange, holds: object, taken: bool) -> str:
-    """Whether the node has the new value, too."""
+    """Whether the node uses the new value already."""
     if taken:
         if repr(holds) != repr(change.new):
-            return f"the node has made {shown(holds)} of it (dynamic_reconfigure): its own limits"
-        return "the node has taken it (dynamic_reconfigure); it goes on without a restart"
+            return f"the node limited it to {shown(holds)} (dynamic_reconfigure)"
+        return "the node uses it now (dynamic_reconfigure), without a restart"
     if not change.nodes:
-        return "no node of this namespace runs; one that is started will read it"
+        return "no node of this namespace is running; one that is started will read it"
     nodes = ", ".join(change.nodes)
     return (
-        f"{nodes} reads it when it asks again, mostly when it starts: it has no dynamic_reconfigure"
-        " for it. Start it again unless it reads its parameters as it runs"
+        f"{nodes} does not offer it by dynamic_reconfigure and most likely reads it at its start:"
+        " restart it, unless it reads its parameters while it runs"
     )
 
 
-def _undo(journal: Journal, words: Sequence[str], options: _Options) -> None:
-    if len(words) > 1:
+def _undo(journal: Journal, given: _ApplyArguments) -> None:
+    if len(given.words) > 1:
         raise click.UsageError("give one FILE or number, or nothing")
-    entry = entry_of(journal, words[0] if words else "")
-    change = None
-    if entry.path is not None:
-        change = take_back_file(entry, journal, dry_run=options.dry_run)
-    else:
-        take_back_live(entry, journal, dry_run=options.dry_run, force=options.force)
-    if options.as_json:
-        answer = {"undone": entry.number, "written": not options.dry_run, **_entry_json(entry)}
+    what = given.words[0] if given.words else ""
+    entry, change = values.undo(journal, what, dry_run=given.dry_run, force=given.force)
+    if given.as_json:
+        answer = {"undone": entry.number, "written": not given.dry_run, **_entry_json(entry)}
         click.echo(json.dumps(answer, indent=1))
         return
     if change is not None:
         _show_diff(change)
-    done = " (not written: --dry-run)" if options.dry_run else ""
-    what = f"{entry.parameter} {entry.new} -> {entry.old}"
-    click.echo(plain(f"{entry.place}: {what}{done}"))
+    done = " (not written: --dry-run)" if given.dry_run else ""
+    click.echo(plain(f"{entry.place}: {entry.parameter} {entry.new} -> {entry.old}{done}"))
 
 
 def _list(journal: Journal, as_json: bool) -> None:
@@ -306,7 +258,7 @@ def _list(journal: Journal, as_json: bool) -> None:
     if entries:
         console().print(table, highlight=False)
     else:
-        click.echo("no changes are noted", err=True)
+        click.echo("no changes to take back", err=True)
 
 
 def _entry_json(entry: JournalEntry) -> dict[str, object]:
@@ -349,7 +301,7 @@ def _origins_table(origins: Sequence[Origin]) -> Table:
 
 
 def _short(text: str) -> str:
-    """A robot's description is a parameter, too, of half a megabyte."""
+    """Cut a long value: a robot's description is a parameter of half a megabyte."""
     return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}..."
 
 

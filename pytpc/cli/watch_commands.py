@@ -6,15 +6,24 @@ import json
 import os
 import sys
 import time
+from dataclasses import dataclass
 from pathlib import Path
 
 import click
 from rich.console import Console
 
-from pytpc.api.live_mission import Feed, GraphFeed, RecordedFeed, WatchedMission
+from pytpc.api.live_mission import (
+    KINDS,
+    Feed,
+    GraphFeed,
+    RecordedFeed,
+    WatchedMission,
+    Watching,
+    fresh_watching,
+)
 from pytpc.base.errors import InputError, RunError
 from pytpc.base.signals import signals_end
-from pytpc.base.wording import plain
+from pytpc.cli.arguments import as_object
 from pytpc.cli.console import warn
 from pytpc.cli.mark_commands import (
     OBSERVER,
@@ -29,20 +38,16 @@ from pytpc.cli.options import (
     STATIC,
     TYPES,
     WINDOW,
-    check_reports,
+    check,
     recording_of,
-    warn_about,
 )
 from pytpc.cli.sources import static_of
 from pytpc.diagnosis.question import Question, Types
-from pytpc.diagnosis.ranking.clocks import two_clocks
-from pytpc.diagnosis.ranking.watching import KINDS, Watching
 from pytpc.diagnosis.results.live import LiveRow, Look
-from pytpc.diagnosis.scores.live_scores import LiveRanking
-from pytpc.ingest import Recording
 from pytpc.present.marking_terminal import Mission
 from pytpc.present.watch_screen import LAYOUTS, Options, Status, table
 from pytpc.recording.marking_session import clock_text
+from pytpc.recording.mission import Recording
 from pytpc.ros.marking import GraphMarks
 from pytpc.ros.ros1.master import uri_of
 from pytpc.static.static_info import StaticInfo
@@ -51,11 +56,25 @@ _ONCE_S = 5.0
 _TURN_S = 0.1
 
 
+@dataclass(frozen=True)
+class _WatchArguments:
+    recording: Path | None
+    static_source: Path
+    observer: str
+    output: Path | None
+    window_s: float
+    top: int
+    types: Types
+    once: bool
+    seconds: float | None
+    as_json: bool
+
+
 @click.command("watch")
 @click.argument("recording", type=PATH, required=False)
 @STATIC
 @OBSERVER
-@click.option("-o", "--output", type=PATH, help="CSV of the marks, as with `mark`.")
+@click.option("-o", "--output", type=PATH, help="Write the marks to this CSV file, as `mark` does.")
 @WINDOW
 @click.option(
     "--top",
@@ -63,57 +82,42 @@ _TURN_S = 0.1
     default=10,
     show_default=True,
     metavar="N",
-    help="How many suspects are shown, where there is room.",
+    help="Show this many suspects, if there is room.",
 )
 @TYPES
-@click.option("--once", is_flag=True, help="Print one table, without keys, and end.")
+@click.option("--once", is_flag=True, help="Print one table without reading keys, and exit.")
 @click.option(
     "--seconds",
     type=click.FloatRange(min=0.0, max=86400.0),
     metavar="N",
-    help="With --once: how long to listen (5), or how far into RECORDING (to its end).",
+    help="With --once: listen this long (5), or go this far into RECORDING (to its end).",
 )
 @JSON
-def watch_command(
-    *,
-    recording: Path | None,
-    static_source: Path,
-    observer: str,
-    output: Path | None,
-    window_s: float,
-    top: int,
-    types: Types,
-    once: bool,
-    seconds: float | None,
-    as_json: bool,
-) -> None:
+@as_object(_WatchArguments)
+def watch_command(given: _WatchArguments) -> None:
     """Show the suspected parameters while the robot runs, and mark.
 
-    The reports are those of the graph of ROS_MASTER_URI; ROS itself is not needed on this machine.
-    With RECORDING, a clock goes through it. The keys are those of `mark`; the ranking at each mark
-    is kept. All marks together are judged afterwards, by `rank`. --json prints what --once prints,
-    for programs.
+    The reports come from the graph at ROS_MASTER_URI; ROS need not be installed on this machine.
+    With RECORDING, a clock runs through the recording instead. The keys are those of `mark`, and
+    the ranking at each mark is kept. Use `rank` afterwards to judge by all marks together. --json
+    prints what --once shows, for programs.
     """
-    check_observer(observer)
-    static = static_of([static_source])
+    check_observer(given.observer)
+    static = static_of([given.static_source])
     if not static.thresholds:
-        raise InputError("no comparison with a parameter was found there", static_source)
-    # Where types are ignored, the tables of both are there to be chosen all the same.
-    engine = LiveRanking(
-        static, Question(types="doubt" if types == "doubt" else "believe", window_s=window_s)
-    )
-    fresh = Watching(engine, static, window_s)
-    layout = (None,) if types == "ignore" else LAYOUTS[0]
-    options = Options(layout=layout, top=top)
-    if once or as_json:
-        _once(recording, fresh, options, seconds, as_json=as_json)
+        raise InputError("it has no comparison with a parameter", given.static_source)
+    fresh = fresh_watching(static, Question(given.types, given.window_s))
+    layout = (None,) if given.types == "ignore" else LAYOUTS[0]
+    options = Options(layout=layout, top=given.top)
+    if given.once or given.as_json:
+        _once(given.recording, fresh, options, given.seconds, as_json=given.as_json)
         return
     if not sys.stdin.isatty():
-        raise RunError("the keys are read from a terminal, and standard input is none; see --once")
-    path = marks_path(recording, observer, output)
-    mission, feed = _opened(recording, observer, fresh)
-    watched = WatchedMission(mission, feed, options, believe=types != "ignore")
-    mark_in_terminal(watched, observer, path, paint=watched.paint, full=True)
+        raise RunError("standard input is not a terminal, so no keys can be read; see --once")
+    path = marks_path(given.recording, given.observer, given.output)
+    mission, feed = _opened(given.recording, given.observer, fresh)
+    watched = WatchedMission(mission, feed, options, believe=given.types != "ignore")
+    mark_in_terminal(watched, given.observer, path, paint=watched.paint, full=True)
 
 
 def _opened(recording: Path | None, observer: str, fresh: Watching) -> tuple[Mission, Feed]:
@@ -128,10 +132,7 @@ def _opened(recording: Path | None, observer: str, fresh: Watching) -> tuple[Mis
 def _read(source: Path, static: StaticInfo) -> Recording:
     """A recording, with what is wrong with it said."""
     recording = recording_of(source)
-    check_reports(recording, static, source)
-    warn_about(recording, static)
-    for clocks in two_clocks(recording):
-        warn(f"{plain(recording.name)}: {plain(clocks)}")
+    check(recording, static, source)
     return recording
 
 
@@ -164,7 +165,7 @@ def _once(
     if recording is None and not status.reports:
         if status.fault:
             raise RunError(status.fault)
-        warn("no report came: is a node built with TPC running?")
+        warn("no reports arrived: is a node that was built with TPC running?")
     if as_json:
         document = _json_of(look, status, now_ns - start_ns if recording is not None else None)
         click.echo(json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False))

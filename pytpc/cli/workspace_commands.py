@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import re
 from contextlib import ExitStack
+from dataclasses import dataclass
 from pathlib import Path
 
 import click
 from rich.console import Console
 from rich.text import Text
 
-from pytpc.build.build import BuildResult, build_workspace
+from pytpc.api.building import BuildOptions, BuildResult, build
+from pytpc.cli.arguments import as_object
 from pytpc.cli.console import Advance, found_text, progress, show_units, warn
 from pytpc.workspace import patch
 from pytpc.workspace.colcon import Bases, BuildError
@@ -21,73 +23,103 @@ _JOB_LINE = re.compile(r"^(Starting >>>|Finished <<<|Failed +<<<|Aborted +<<<) (
 
 @click.command("patch")
 @click.argument("workspace", type=_FOLDER)
-@click.option("--restore", is_flag=True, help="Take the lines out again.")
-@click.option("--dry-run", is_flag=True, help="Only show the difference.")
-@click.option("--package", "packages", multiple=True, metavar="NAME", help="Only this one.")
+@click.option("--restore", is_flag=True, help="Remove the lines again.")
+@click.option("--dry-run", is_flag=True, help="Show the changes without writing them.")
+@click.option(
+    "--package",
+    "packages",
+    multiple=True,
+    metavar="NAME",
+    help="Change only this package; may be repeated.",
+)
 def patch_command(workspace: Path, restore: bool, dry_run: bool, packages: tuple[str, ...]) -> None:
-    """Put TPC's three lines at the top of each CMakeLists.txt, for builds of your own."""
+    """Add TPC's three lines to the top of each CMakeLists.txt, so that your own builds use TPC."""
     patch.run(workspace, restore=restore, dry_run=dry_run, packages=packages)
+
+
+@dataclass(frozen=True)
+class _BuildArguments:
+    workspace: Path
+    packages: tuple[str, ...]
+    build_type: str
+    base: Path | None
+    rules: Path | None
+    no_python: bool
+    python_rules: Path | None
+    constants: bool
+    tests: bool
+    no_fallback: bool
+    retry: bool
+    colcon_args: tuple[str, ...]
+
+    def options(self) -> BuildOptions:
+        return BuildOptions(
+            packages=self.packages,
+            build_type=self.build_type,
+            rules=self.rules,
+            colcon_args=self.colcon_args,
+            constants=self.constants,
+            tests=self.tests,
+            fallback=not self.no_fallback,
+            retry=self.retry,
+            python=not self.no_python,
+            python_rules=self.python_rules,
+            bases=None if self.base is None else Bases(self.base.absolute()),
+        )
 
 
 @click.command("build")
 @click.argument("workspace", type=_FOLDER)
-@click.option("--package", "packages", multiple=True, metavar="NAME", help="It and what it needs.")
-@click.option("--build-type", default="RelWithDebInfo", show_default=True)
-@click.option("--base", type=_FOLDER, help="Where to build; WORKSPACE/.tpc by default.")
+@click.option(
+    "--package",
+    "packages",
+    multiple=True,
+    metavar="NAME",
+    help="Build only this package and what it depends on; may be repeated.",
+)
+@click.option(
+    "--build-type",
+    default="RelWithDebInfo",
+    show_default=True,
+    help="CMAKE_BUILD_TYPE of all packages.",
+)
+@click.option("--base", type=_FOLDER, help="Build in this folder. [default: WORKSPACE/.tpc]")
 @click.option(
     "--rules",
     type=click.Path(path_type=Path),
     metavar="FILE",
-    help="Your own rules (JSON): what else reads a parameter or exposes.",
+    help="JSON file with your own rules: more functions that read a parameter or expose.",
 )
-@click.option("--no-python", is_flag=True, help="Leave Python nodes out.")
+@click.option("--no-python", is_flag=True, help="Do not analyse Python nodes.")
 @click.option(
     "--python-rules",
     type=click.Path(path_type=Path),
     metavar="FILE",
-    help="Your own rules for Python (JSON).",
+    help="JSON file with your own rules for Python nodes.",
 )
 @click.option("--constants", is_flag=True, help="Report comparisons with constants, too.")
-@click.option("--tests", is_flag=True, help="Have test programs report, too.")
-@click.option("--no-fallback", is_flag=True, help="End where a package does not build with TPC.")
-@click.option("--retry", is_flag=True, help="Try packages that were built without TPC again.")
+@click.option("--tests", is_flag=True, help="Instrument test programs, too.")
+@click.option(
+    "--no-fallback",
+    is_flag=True,
+    help="Stop if a package does not build with TPC, instead of building it without.",
+)
+@click.option(
+    "--retry", is_flag=True, help="Try TPC again on packages that an earlier build left without it."
+)
 @click.argument("colcon_args", nargs=-1, type=click.UNPROCESSED, metavar="[-- COLCON_ARGS]...")
-def build_command(
-    *,
-    workspace: Path,
-    packages: tuple[str, ...],
-    build_type: str,
-    base: Path | None,
-    rules: Path | None,
-    colcon_args: tuple[str, ...],
-    constants: bool,
-    tests: bool,
-    no_fallback: bool,
-    retry: bool,
-    no_python: bool,
-    python_rules: Path | None,
-) -> None:
-    """Build a workspace with analysis and instrumentation; its files stay as they are.
+@as_object(_BuildArguments)
+def build_command(given: _BuildArguments) -> None:
+    """Build WORKSPACE with analysis and instrumentation, without changing its files.
 
-    Its Python nodes are analysed, too; they report when `pytpc record` starts them, or a shell that
-    did what `pytpc env` prints.
+    Python nodes are analysed, too. They report when `pytpc record` starts them, or when they are
+    started from a shell in which you evaluated the output of `pytpc env`.
     """
-    bases = Bases(base.absolute()) if base is not None else None
     try:
         with _Progress() as shown:
-            result = build_workspace(
-                workspace,
-                packages=packages,
-                build_type=build_type,
-                rules=rules,
-                colcon_args=colcon_args,
-                constants=constants,
-                tests=tests,
-                fallback=not no_fallback,
-                retry=retry,
-                python=not no_python,
-                python_rules=python_rules,
-                bases=bases,
+            result = build(
+                given.workspace,
+                given.options(),
                 on_output=shown.show,
                 on_scripts=shown.show_scripts,
             )
@@ -150,9 +182,9 @@ class _Progress:
 def _show_build(result: BuildResult) -> None:
     show_units(result.static)
     for package, why in result.left_alone.items():
-        warn(f"package {package} is built without TPC, with which it does not build: {why}")
+        warn(f"package {package} was built without TPC, because it does not build with it: {why}")
     if result.left_alone:
-        click.echo("pytpc build --retry tries again with TPC", err=True)
+        click.echo("run `pytpc build --retry` to try TPC again", err=True)
     click.echo(
         f"{found_text(result.static)}, built in {result.seconds:.1f} s: {result.bases.static_info}"
     )

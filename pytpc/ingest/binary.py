@@ -27,6 +27,7 @@ from pytpc.base.wording import many
 from pytpc.ingest.binary_clock import Clock
 from pytpc.ingest.binary_layout import CHUNK, RECORD, FileHeader, whole_bytes
 from pytpc.ingest.binary_system import (
+    SummaryOrigin,
     SystemRecords,
     open_summaries,
     read_system,
@@ -411,15 +412,8 @@ class _TpcReader:
             self._hand_in_summaries(unwritten)
 
     def _hand_in_summaries(self, kept: Rows) -> None:
-        rows = summary_rows(
-            kept,
-            clock=self._clock,
-            last_ns=self._last_ns,
-            key_of_site=self._key_of_site,
-            node=self._node_code,
-            channel=self._channel.code,
-            skip=self._skip,
-        )
+        origin = SummaryOrigin(self._clock, self._last_ns, self._node_code, self._channel.code)
+        rows = summary_rows(kept, origin, self._key_of_site, self._skip)
         self._gathering.add_summary_rows(rows)
 
     def _complaints(self) -> None:

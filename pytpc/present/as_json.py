@@ -12,13 +12,15 @@ from pytpc.diagnosis.results.advice import (
     JoinedAdvice,
     MarkGroup,
     Remedy,
+    Suggested,
     Suggestion,
     WhatIf,
 )
-from pytpc.diagnosis.results.suspects import Blame
+from pytpc.diagnosis.results.suspects import Blame, MarkRanking
 from pytpc.diagnosis.thresholds.intervals import Intervals
 from pytpc.recording.declaration import Declared
 from pytpc.recording.marks import Mark
+from pytpc.recording.mission import Recording
 
 Json = dict[str, object]
 
@@ -120,6 +122,48 @@ def advice_json(found: Advice) -> Json:
         "suggestion": suggestion_json(found.suggestion),
         "what_if": None if found.what_if is None else what_if_json(found.what_if),
         "declared": None if found.declared is None else declared_json(found.declared),
+    }
+
+
+def ranking_json(ranking: MarkRanking, recording: Recording, rows: Sequence[Suggested]) -> Json:
+    """The ranking at a mark, with the smallest change for each of ``rows``."""
+    mark = ranking.mark
+    return {
+        "mission": recording.name,
+        "time_ns": mark.time_ns,
+        "seconds": (mark.time_ns - recording.start_ns) / 1e9,
+        "type": mark.type,
+        "observer": mark.observer,
+        "parameters": ranking.parameters,
+        "enough": ranking.enough,
+        "reason": ranking.reason,
+        "suspects": [_suspected(row) for row in rows],
+    }
+
+
+def _suspected(row: Suggested) -> Json:
+    suspect, advice = row.suspect, row.suggestion
+    return {
+        "position": suspect.position,
+        "tied": suspect.tied,
+        "parameter": suspect.parameter,
+        "key": suspect.key,
+        "score": suspect.score,
+        "rank": suspect.rank,
+        "rank1": suspect.rank1,
+        "rank2": suspect.rank2,
+        "score_type": suspect.type,
+        "current": finite(advice.current),
+        "direction": advice.direction,
+        "value": finite(advice.value),
+        "boundary": finite(advice.boundary),
+        "inclusive": advice.inclusive,
+        "suggestion": advice.text,
+        "file": suspect.comparison.file,
+        "lineno": suspect.comparison.lineno,
+        "source_code": suspect.comparison.source_code,
+        "topic": suspect.comparison.topic,
+        "node": suspect.last.node,
     }
 
 

@@ -150,7 +150,7 @@ def run(
         SystemExit: SIGTERM or SIGHUP.
     """
     if not sys.stdin.isatty():
-        raise RunError("the keys are read from a terminal, and standard input is none")
+        raise RunError("standard input is not a terminal, so no keys can be read")
     console = Console()
     try:
         with signals_end(), _keys() as read, _shown(console, paint, full=full) as show:

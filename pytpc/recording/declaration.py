@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from pytpc.base.wording import Number
 
@@ -31,17 +32,16 @@ class Declared:
     package: str = ""
 
 
-def make_declared(
-    name: str,
-    type_: str,
-    *,
-    low: object,
-    high: object,
-    default: object,
-    constants: object,
-    description: object,
-    place: str,
-) -> Declared:
+class Said(NamedTuple):
+    """What a declaration says of a parameter, of any type."""
+
+    low: object
+    high: object
+    default: object
+    description: object
+
+
+def make_declared(name: str, type_: str, said: Said, *, constants: object, place: str) -> Declared:
     """A declaration of dynamic_reconfigure; None for one that makes no sense.
 
     ``constants`` are those of the enumeration, each with a ``name`` and a ``value``.
@@ -54,6 +54,7 @@ def make_declared(
         and "name" in one
         and isinstance(one.get("value"), int | float | str)
     ]
+    low, high, default, description = said
     known = default if isinstance(default, int | float | str) else None
     return Declared(
         name,

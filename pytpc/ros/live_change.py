@@ -30,7 +30,7 @@ def set_live(
         "old": to_json(change.old),
         "new": to_json(change.new),
     }
-    entry = journal.add(change.name, (shown(change.old), shown(change.new)), live=live)
+    entry = journal.add_live(change.name, (shown(change.old), shown(change.new)), live)
     try:
         holds, taken = robot.put(change)
     except BaseException:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import contextlib
 import json
 import shutil
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
@@ -26,6 +26,8 @@ from pytpc.recording.mission import (
 from pytpc.values.origins import ORIGINS_FILE, START_FILE
 
 BAG_FILE = "mission.bag"
+MISSION_DONE = "/mission/done"
+"""On this topic the simulated missions say that they are done."""
 PARAMS_FILE = "params.yaml"
 MARK_TOPICS = ("/mark_action", "/mark_no_action")
 DEFAULT_TOPICS = ("/rosout", "/threshold_information", *MARK_TOPICS)
@@ -64,6 +66,30 @@ class Progress:
     wall_s: float
     reports: int
     marks: int
+
+
+@dataclass(frozen=True, slots=True)
+class RecordOptions:
+    """What of a mission is recorded, where to, and until when.
+
+    Attributes:
+        out_dir: the folder of the results.
+        launch: the launch file; where the graph runs already, the one that it was started with,
+            without which the origins of its values are not known.
+        args: the arguments of the launch file.
+        timeout_s: wall time after which the mission is ended; None: it is not.
+        until: a topic of type std_msgs/Bool; when it says true the mission is done.
+        topics: recorded besides ``DEFAULT_TOPICS`` and ``until``.
+        on_progress: called several times a second.
+    """
+
+    out_dir: Path
+    launch: Path | None = None
+    args: Mapping[str, str] = field(default_factory=dict)
+    timeout_s: float | None = None
+    until: str | None = None
+    topics: Sequence[str] = ()
+    on_progress: Callable[[Progress], None] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,21 +163,22 @@ def clear_earlier(out_dir: Path) -> None:
         marks.replace(marks.with_name(f"{marks.name}.old"))
 
 
-def save_run(run: MissionRun, launch: Path | None, args: Mapping[str, str], path: Path) -> None:
+def save_run(run: MissionRun, options: RecordOptions) -> None:
     """Write run.json: the fields of ``run``, the launch file, if any, and its arguments.
 
     Raises:
         TpcError: the file cannot be written.
     """
+    launch = options.launch
     document = {
         "schema": 1,
         "launch": None if launch is None else str(launch.absolute()),
-        "args": dict(sorted(args.items())),
+        "args": dict(sorted(options.args.items())),
         **asdict(run),
         "bag": run.bag.name,
         "params": run.params.name,
     }
-    write_atomic(path, json.dumps(document, indent=1).encode() + b"\n")
+    write_atomic(options.out_dir / RUN_FILE, json.dumps(document, indent=1).encode() + b"\n")
 
 
 def read_status(path: Path) -> RecorderStatus | None:

@@ -87,13 +87,8 @@ def apply_change(change: FileChange, journal: Journal) -> JournalEntry:
 def _apply_change(change: FileChange, journal: Journal) -> JournalEntry:
     if read_file(change.path) != change.before:
         raise TpcError("the file has changed meanwhile; run the command again", change.path)
-    entry = journal.add(
-        change.parameter,
-        (shown(change.old), shown(change.new)),
-        path=change.path,
-        before=change.before,
-        after=change.after,
-    )
+    values = shown(change.old), shown(change.new)
+    entry = journal.add_file(change.parameter, values, change.path, change.before, change.after)
     try:
         replace_file(change.path, change.after)
     except BaseException:

@@ -15,7 +15,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from pytpc.recording.declaration import Declared, make_declared
+from pytpc.recording.declaration import Declared, Said, make_declared
 
 _TYPES = {"str_t": "str", "bool_t": "bool", "int_t": "int", "double_t": "double"}
 _ADD = ("name", "paramtype", "level", "description", "default", "min", "max", "edit_method")
@@ -264,11 +264,8 @@ class _CfgReader:
             make_declared(
                 name,
                 str(type_),
-                low=given.get("min"),
-                high=given.get("max"),
-                default=given.get("default"),
+                Said(*(given.get(what) for what in ("min", "max", "default", "description"))),
                 constants=given.get("edit_method"),
-                description=given.get("description"),
                 place=f"{self._path}:{call.lineno}",
             )
         )

@@ -115,31 +115,39 @@ class Journal:
                 errors.append(error)
         return sorted(entries, key=lambda entry: entry.number), errors
 
-    def add(
-        self,
-        parameter: str,
-        values: tuple[str, str],
-        *,
-        path: Path | None = None,
-        before: bytes | None = None,
-        after: bytes = b"",
-        live: Mapping[str, Any] | None = None,
+    def add_file(
+        self, parameter: str, values: tuple[str, str], path: Path, before: bytes, after: bytes
     ) -> JournalEntry:
-        """Write down a change that is about to be made.
+        """Write down a change of a file that is about to be made.
 
         Raises:
             TpcError: it cannot be written; then nothing should be changed.
         """
+        content = {
+            "path": str(path),
+            "before": base64.b64encode(before).decode("ascii"),
+            "after": digest(after),
+            "live": {},
+        }
+        return self._add(parameter, values, content)
+
+    def add_live(
+        self, parameter: str, values: tuple[str, str], live: Mapping[str, Any]
+    ) -> JournalEntry:
+        """Write down a change of a running robot, as ``add_file`` does."""
+        content = {"path": None, "before": None, "after": digest(b""), "live": dict(live)}
+        return self._add(parameter, values, content)
+
+    def _add(
+        self, parameter: str, values: tuple[str, str], content: Mapping[str, Any]
+    ) -> JournalEntry:
         document = {
             "schema": SCHEMA,
             "time": datetime.now().astimezone().isoformat(timespec="seconds"),
             "parameter": parameter,
             "old": values[0],
             "new": values[1],
-            "path": None if path is None else str(path),
-            "before": None if before is None else base64.b64encode(before).decode("ascii"),
-            "after": digest(after),
-            "live": dict(live or {}),
+            **content,
         }
         data = json.dumps(document, indent=1).encode() + b"\n"
         try:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from pytpc.values.launch_value import launch_text, launch_value
 from pytpc.values.launch_xml import Attribute, Tag, encoding_of, inner_text, read_tags, written
@@ -39,6 +40,17 @@ def tags_of(data: bytes) -> list[Tag]:
         raise Refused(str(error)) from error
 
 
+class NewText(NamedTuple):
+    """A new value as typed, and the ``type`` of the parameter's tag.
+
+    ``force`` changes the type, replaces what roslaunch works out, and changes other uses with it.
+    """
+
+    text: str
+    kind: str = "auto"
+    force: bool = False
+
+
 def edit_param(
     data: bytes, name: str, lineno: int, given: str, *, force: bool = False
 ) -> LaunchEdit:
@@ -64,18 +76,15 @@ def edit_param(
     if value is None:
         raise Refused("its value is the text of a file, or the output of a command", tag.lineno)
     kind = _attribute(tag, "type", "auto").lower().strip()
-    return _edit_attribute(data, tag, value, kind=kind, given=given, force=force)
+    return _edit_attribute(data, tag, value, NewText(given, kind, force))
 
 
 def edit_argument(
     data: bytes,
     name: str,
     lineno: int,
-    given: str,
-    *,
-    kind: str,
+    given: NewText,
     via: Sequence[int] = (),
-    force: bool = False,
 ) -> LaunchEdit:
     """Put a value into the ``<arg>`` whose value a parameter has.
 
@@ -83,10 +92,8 @@ def edit_argument(
         data: the launch file.
         name: of the argument.
         lineno: of its tag.
-        given: the new value as typed.
-        kind: the ``type`` of the parameter's tag.
-        via: lines in this file through which the parameter gets it; other uses change with it.
-        force: change it all the same where there are others.
+        given: the new value; ``force`` changes other uses with it.
+        via: lines in this file through which the parameter gets it.
 
     Raises:
         Refused: see docs/how-to/change-a-parameter.md.
@@ -104,10 +111,10 @@ def edit_argument(
     notes = []
     if others:
         lines = ", ".join(map(str, others[:_LISTED]))
-        if not force:
+        if not given.force:
             raise Refused(f"<arg> {name} is used in line {lines}, too; --force changes all")
         notes = [f"line {lines} uses <arg> {name}, too, and changes with it"]
-    edit = _edit_attribute(data, tag, value, kind=kind, given=given, force=force)
+    edit = _edit_attribute(data, tag, value, given)
     return LaunchEdit(edit.data, edit.old, edit.new, edit.lineno, (*edit.notes, *notes))
 
 
@@ -192,9 +199,8 @@ def add_param(data: bytes, offset: int | None, name: str, value: object, given: 
     return LaunchEdit(result, None, value, _line_at(result, len(head)) + 1)
 
 
-def _edit_attribute(
-    data: bytes, tag: Tag, attribute: Attribute, *, kind: str, given: str, force: bool
-) -> LaunchEdit:
+def _edit_attribute(data: bytes, tag: Tag, attribute: Attribute, given: NewText) -> LaunchEdit:
+    text, kind, force = given
     old_text = attribute.value
     notes = []
     if "$(" in old_text:
@@ -204,17 +210,17 @@ def _edit_attribute(
             )
         notes.append(f"{old_text} is replaced by a value")
         old: object = old_text
-        new = _typed(given, kind)
+        new = _typed(text, kind)
     else:
         try:
             old = launch_value(old_text, kind)
         except ValueError as error:
             raise Refused(str(error), tag.lineno) from error
-        new = read_value(given, type_of(old), force=force)
-    text = launch_text(new, given, kind, old_text)
-    piece = _encoded(written(text, attribute.quote), encoding_of(data))
+        new = read_value(text, type_of(old), force=force)
+    put = launch_text(new, text, kind, old_text)
+    piece = _encoded(written(put, attribute.quote), encoding_of(data))
     result = data[: attribute.start] + piece + data[attribute.end :]
-    _check(data, result, (tag.offset, attribute.name), text)
+    _check(data, result, (tag.offset, attribute.name), put)
     return LaunchEdit(result, old, new, _line_at(data, attribute.start), tuple(notes))
 
 

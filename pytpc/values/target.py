@@ -11,7 +11,14 @@ from pytpc.static.parameters import same_parameter
 from pytpc.values.apply import FileChange, decoded, read_file
 from pytpc.values.installed import is_installed, of_the_system, source_of
 from pytpc.values.journal import digest
-from pytpc.values.launch_edit import LaunchEdit, add_param, edit_argument, edit_inline, edit_param
+from pytpc.values.launch_edit import (
+    LaunchEdit,
+    NewText,
+    add_param,
+    edit_argument,
+    edit_inline,
+    edit_param,
+)
 from pytpc.values.launch_xml import read_tags
 from pytpc.values.new_value import Refused, guessed, read_value
 from pytpc.values.origin_places import IN_ARGS
@@ -226,10 +233,8 @@ def _edit_launch(
             data,
             origin.argument,
             lineno,
-            given,
-            kind=origin.param_type or "auto",
-            via=via,
-            force=force,
+            NewText(given, origin.param_type or "auto", force),
+            via,
         )
     if origin.param_type:
         return edit_param(data, origin.name, lineno, given, force=force)

@@ -11,7 +11,7 @@ import re
 import shutil
 import signal
 import subprocess
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from glob import escape
 from pathlib import Path
@@ -66,6 +66,43 @@ class Bases:
         return self.root / MERGED_FILE
 
 
+@dataclass(frozen=True, slots=True)
+class BuildOptions:
+    """How a workspace is to be built.
+
+    Attributes:
+        packages: names; these and what they need are built, or all where empty.
+        build_type: CMAKE_BUILD_TYPE.
+        rules: the user's own rules, in addition to those of TPC.
+        cmake_args: further arguments for each package's CMake.
+        colcon_args: further arguments for colcon.
+        constants: report comparisons with constants, too.
+        tests: analyse test programs and scripts in folders of tests, and have them report.
+        fallback: build a package without TPC if it does not build with TPC.
+        retry: try the packages again that earlier builds left alone.
+        python: analyse Python nodes; without, those of an earlier build are forgotten.
+        python_rules: the user's own rules for Python.
+        bases: where everything is put; None: ``.tpc`` in the workspace.
+    """
+
+    packages: Sequence[str] = ()
+    build_type: str = "RelWithDebInfo"
+    rules: Path | None = None
+    cmake_args: Sequence[str] = ()
+    colcon_args: Sequence[str] = ()
+    constants: bool = False
+    tests: bool = False
+    fallback: bool = True
+    retry: bool = False
+    python: bool = True
+    python_rules: Path | None = None
+    bases: Bases | None = None
+
+
+PLAIN_BUILD = BuildOptions()
+"""All settings as they are where nobody says otherwise."""
+
+
 class BuildError(RunError):
     """A package did not build.
 
@@ -92,12 +129,7 @@ def colcon_command(
     bases: Bases,
     packages: Sequence[Package],
     toolchain: Path,
-    *,
-    only: Iterable[str] = (),
-    build_type: str = "RelWithDebInfo",
-    rules: Path | None = None,
-    cmake_args: Sequence[str] = (),
-    colcon_args: Sequence[str] = (),
+    options: BuildOptions = PLAIN_BUILD,
 ) -> list[str]:
     """The command that builds packages with TPC.
 
@@ -105,32 +137,30 @@ def colcon_command(
         bases: where everything is put.
         packages: the packages of the workspace; colcon is told their folders and searches none.
         toolchain: tpc.cmake.
-        only: names; these and what they need are built, or all where empty.
-        build_type: CMAKE_BUILD_TYPE.
-        rules: the user's own rules.
-        cmake_args: further arguments for each package's CMake.
-        colcon_args: further arguments for colcon; a ``--cmake-args`` in them adds to ours.
+        options: its ``packages``, ``build_type``, ``rules``, ``cmake_args`` and ``colcon_args``; a
+            ``--cmake-args`` in the latter adds to ours.
 
     Raises:
         WorkspaceError: ``colcon_args`` has an option that TPC sets itself.
     """
+    rules, colcon_args = options.rules, options.colcon_args
     for argument in colcon_args:
         if argument.partition("=")[0] in _OWN_OPTIONS:
             raise WorkspaceError(f"{argument.partition('=')[0]} cannot be given: TPC sets it")
     for_cmake = [
         "--cmake-args",
         f"-DCMAKE_TOOLCHAIN_FILE={toolchain}",
-        f"-DCMAKE_BUILD_TYPE={build_type}",
+        f"-DCMAKE_BUILD_TYPE={options.build_type}",
         # Empty, so that those of an earlier build do not stay in CMake's cache.
         f"-DTPC_RULES={rules.absolute() if rules is not None else ''}",
         "-DPYTHON_EXECUTABLE=/usr/bin/python3",
-        *cmake_args,
+        *options.cmake_args,
     ]
     # Of several --cmake-args the last one counts, so each of the user's has to begin with ours.
     further: list[str] = []
     for argument in colcon_args:
         further += for_cmake if argument == "--cmake-args" else [argument]
-    names = list(only)
+    names = list(options.packages)
     if "--cmake-args" not in colcon_args:
         further += for_cmake
     # Colcon takes an option that it does not know for a value of the option before it, so what

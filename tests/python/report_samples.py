@@ -9,7 +9,7 @@ from html.parser import HTMLParser
 
 from mission_samples import comparison, events, ns, static_info
 
-from pytpc.api.report import MissionReport, write_report
+from pytpc.api.report import MissionReport, write_missions
 from pytpc.diagnosis.ranking.ranking import rank_marks
 from pytpc.ingest import Recording
 from pytpc.recording.marks import Mark
@@ -120,5 +120,5 @@ class Page(HTMLParser):
 
 def written(tmp_path, *missions, **options):
     path = tmp_path / "report.html"
-    write_report(path, missions, **options)
+    write_missions(path, missions, **options)
     return path.read_text(encoding="utf-8")

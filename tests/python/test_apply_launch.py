@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from pytpc.values.launch_edit import add_param, edit_argument, edit_inline, edit_param
+from pytpc.values.launch_edit import NewText, add_param, edit_argument, edit_inline, edit_param
 from pytpc.values.launch_value import launch_value
 from pytpc.values.launch_xml import meaning, read_tags
 from pytpc.values.new_value import Refused
@@ -112,7 +112,7 @@ ARGUMENTS = b"""<launch>
 
 
 def test_an_argument() -> None:
-    edit = edit_argument(ARGUMENTS, "rate", 2, "2", kind="auto", via=[4])
+    edit = edit_argument(ARGUMENTS, "rate", 2, NewText("2"), via=[4])
     # The parameter has no type: without a dot it would be an int.
     assert edit.data == ARGUMENTS.replace(b'"4.0"', b'"2.0"')
     assert (edit.old, edit.new, edit.lineno) == (4.0, 2.0, 2)
@@ -123,16 +123,16 @@ def test_an_argument_that_is_passed_on_with_all_others() -> None:
         b"</launch>", b'  <include file="b.launch" pass_all_args="true"/>\n</launch>'
     )
     with pytest.raises(Refused, match="<arg> rate is used in line 7, too; --force changes all"):
-        edit_argument(before, "rate", 2, "2", kind="auto", via=[4])
+        edit_argument(before, "rate", 2, NewText("2"), via=[4])
     # The parameter gets it through that very include.
-    edit = edit_argument(before, "rate", 2, "2", kind="auto", via=[4, 7])
+    edit = edit_argument(before, "rate", 2, NewText("2"), via=[4, 7])
     assert edit.data == before.replace(b'"4.0"', b'"2.0"')
 
 
 def test_an_argument_that_is_used_elsewhere() -> None:
     with pytest.raises(Refused, match="<arg> seed is used in line 6, too; --force changes all"):
-        edit_argument(ARGUMENTS, "seed", 3, "2", kind="auto", via=[5])
-    edit = edit_argument(ARGUMENTS, "seed", 3, "2", kind="auto", via=[5], force=True)
+        edit_argument(ARGUMENTS, "seed", 3, NewText("2"), via=[5])
+    edit = edit_argument(ARGUMENTS, "seed", 3, NewText("2", force=True), via=[5])
     assert edit.data == ARGUMENTS.replace(b'"1"', b'"2"')
     assert edit.notes == ("line 6 uses <arg> seed, too, and changes with it",)
 

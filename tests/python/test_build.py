@@ -27,6 +27,7 @@ from pytpc.static.static_info import LeftOut, StaticInfo
 from pytpc.workspace.colcon import (
     Bases,
     BuildError,
+    BuildOptions,
     build_environment,
     colcon_command,
     ended_jobs,
@@ -77,13 +78,15 @@ def test_the_whole_command() -> None:
 
 
 def test_chosen_packages_are_built_with_what_they_need() -> None:
-    command = colcon_command(BASES, PACKAGES, TOOLCHAIN, only=["arm"], build_type="Debug")
+    command = colcon_command(
+        BASES, PACKAGES, TOOLCHAIN, BuildOptions(packages=["arm"], build_type="Debug")
+    )
     assert values(command, "--packages-up-to") == ["arm"]
     assert "-DCMAKE_BUILD_TYPE=Debug" in values(command, "--cmake-args")
 
 
 def test_the_users_rules_go_to_cmake_by_their_absolute_path() -> None:
-    command = colcon_command(BASES, PACKAGES, TOOLCHAIN, rules=Path("own.json"))
+    command = colcon_command(BASES, PACKAGES, TOOLCHAIN, BuildOptions(rules=Path("own.json")))
     assert f"-DTPC_RULES={Path.cwd()}/own.json" in values(command, "--cmake-args")
 
 
@@ -92,7 +95,7 @@ def test_broken_rules_end_a_build_before_it_begins(tmp_path: Path) -> None:
     rules = tmp_path / "own.json"
     rules.write_text('{"reeds": []}')
     with pytest.raises(InputError, match=r"own\.json: /: .*'reeds'"):
-        build_workspace(tmp_path, rules=rules)
+        build_workspace(tmp_path, BuildOptions(rules=rules))
     assert not (tmp_path / ".tpc").exists()
 
 
@@ -101,15 +104,17 @@ def test_the_users_cmake_arguments_add_to_ours() -> None:
         BASES,
         PACKAGES,
         TOOLCHAIN,
-        cmake_args=["-DFAULT=ON"],
-        colcon_args=[
-            "--merge-install",
-            "--cmake-args",
-            "-DX=1",
-            "-Wno-dev",
-            "--parallel-workers",
-            "1",
-        ],
+        BuildOptions(
+            cmake_args=["-DFAULT=ON"],
+            colcon_args=[
+                "--merge-install",
+                "--cmake-args",
+                "-DX=1",
+                "-Wno-dev",
+                "--parallel-workers",
+                "1",
+            ],
+        ),
     )
     assert values(command, "--cmake-args") == [
         f"-DCMAKE_TOOLCHAIN_FILE={TOOLCHAIN}",
@@ -128,7 +133,7 @@ def test_the_users_cmake_arguments_add_to_ours() -> None:
 @pytest.mark.parametrize("option", ["--build-base", "--install-base=x", "--log-base", "--paths"])
 def test_the_bases_are_not_the_users_to_choose(option: str) -> None:
     with pytest.raises(WorkspaceError, match="cannot be given: TPC sets it"):
-        colcon_command(BASES, PACKAGES, TOOLCHAIN, colcon_args=[option, "y"])
+        colcon_command(BASES, PACKAGES, TOOLCHAIN, BuildOptions(colcon_args=[option, "y"]))
 
 
 def test_the_environment_is_free_of_the_callers_python_and_make(
@@ -180,11 +185,13 @@ class FakeColcon:
         self.lines: list[str] = []
         monkeypatch.setattr(build, "colcon_command", self._command)
 
-    def _command(self, bases: Bases, *_: object, **options: object) -> list[str]:
+    def _command(
+        self, bases: Bases, packages: object, toolchain: object, options: BuildOptions
+    ) -> list[str]:
         head = [
             "import os, sys, time",
             "from pathlib import Path",
-            f"cmake_args = {options['cmake_args']!r}",
+            f"cmake_args = {options.cmake_args!r}",
             f"base = Path({str(bases.root)!r})",
         ]
         return [sys.executable, "-c", "\n".join([*head, *self.lines])]
@@ -280,9 +287,9 @@ def test_python_nodes_are_analysed_behind_the_build(workspace: Path, colcon: Fak
     assert told == [(1, 4), (2, 4), (3, 4), (4, 4)]
     assert [found.link_unit for found in result.static.left_out] == ["scripts/broken.py"]
     assert StaticInfo.load(result.bases.static_info) == result.static
-    constants = build_workspace(workspace, packages=["face"], constants=True).static
+    constants = build_workspace(workspace, BuildOptions(packages=["face"], constants=True)).static
     assert len(constants.comparisons) == len(result.static.comparisons) + 1
-    without = build_workspace(workspace, python=False)
+    without = build_workspace(workspace, BuildOptions(python=False))
     assert [found.link_unit for found in without.units] == ["mission"]
 
 
@@ -303,14 +310,16 @@ def test_broken_rules_for_python_end_a_build_before_it_begins(workspace: Path) -
     rules = workspace / "python.json"
     rules.write_text('{"reeds": []}', encoding="utf-8")
     with pytest.raises(InputError, match=r"python\.json: /.*reeds"):
-        build_workspace(workspace, python_rules=rules)
+        build_workspace(workspace, BuildOptions(python_rules=rules))
     assert not (workspace / ".tpc").exists()
 
 
 def test_the_profile_of_cmake_is_that_of_python(workspace: Path, colcon: FakeColcon) -> None:
     make_mixed(workspace)
     colcon.logs(OK_EVENTS)
-    result = build_workspace(workspace, colcon_args=["--cmake-args", "-DTPC_PROFILE=thesis"])
+    result = build_workspace(
+        workspace, BuildOptions(colcon_args=["--cmake-args", "-DTPC_PROFILE=thesis"])
+    )
     assert {found.tool.profile for found in result.units} == {"thesis"}
 
 
@@ -321,7 +330,7 @@ def test_the_sources_are_not_touched(workspace: Path, colcon: FakeColcon, tmp_pa
 
     before = sources()
     colcon.logs(OK_EVENTS)
-    result = build_workspace(workspace, bases=Bases(tmp_path / "own"))
+    result = build_workspace(workspace, BuildOptions(bases=Bases(tmp_path / "own")))
     assert sources() == before
     assert sorted(path.name for path in workspace.iterdir()) == ["src"]
     assert result.bases.static_info == tmp_path / "own/static.json"
@@ -334,7 +343,7 @@ def test_a_package_that_fails_is_named_with_the_end_of_its_errors(
     colcon.writes("log/build_1/face/stderr.log", "".join(f"error {n}\n" for n in range(100)))
     colcon.lines.append("sys.exit(1)")
     with pytest.raises(BuildError) as caught:
-        build_workspace(workspace, fallback=False)
+        build_workspace(workspace, BuildOptions(fallback=False))
     assert caught.value.package == "face"
     assert caught.value.tail == tuple(f"error {n}" for n in range(75, 100))
     log = workspace / ".tpc/log/build_1/face/stdout_stderr.log"
@@ -511,7 +520,7 @@ def test_another_try_begins_without_the_old_folder(workspace: Path, colcon: Fake
     fails_with_tpc(colcon)
     build_workspace(workspace)
     colcon.lines = ["assert not (base / 'build/face/made').exists()"]
-    assert build_workspace(workspace, retry=True).left_alone == {}
+    assert build_workspace(workspace, BuildOptions(retry=True)).left_alone == {}
     assert not (workspace / ".tpc/left-alone.json").exists()
 
 

@@ -126,7 +126,7 @@ def test_without_marks(tmp_path, files):
             writer.log(t, "/uav", line(1, 0, 0.3, 0.6))
     result = run("suggest", bag, "--static", static)
     assert result.exit_code == 1
-    assert "no marks: mark it with `pytpc mark`, or ask for a --value" in result.stderr
+    assert "no marks: add some with `pytpc mark`, or ask for a --value" in result.stderr
     value = run("suggest", bag, "cover", "--static", static, "--value", "0.1")
     assert (
         "0.1 is replayed without a mark; away from marks it turns 8 of 8 decisions" in value.stdout

@@ -1,4 +1,4 @@
-"""The commands ingest, rank and report: what they print, and one line for each error."""
+"""The commands convert, rank and report: what they print, and one line for each error."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ def run(*arguments):
     return CliRunner().invoke(main, [str(argument) for argument in arguments])
 
 
-def test_ingest_then_rank_and_report(files, tmp_path):
+def test_convert_then_rank_and_report(files, tmp_path):
     bag, static = files
     folder = tmp_path / "in" / "m"
-    result = run("ingest", bag, "-o", folder)
+    result = run("convert", bag, "-o", folder)
     assert result.stdout == (
         f"600 reports of 2 comparisons, 2 marks (1 of type I, 1 of type II) in 19.9 s: {folder}\n"
     )
@@ -62,14 +62,14 @@ def test_errors_are_one_line(files, tmp_path):
     cut = tmp_path / "cut.bag"
     cut.write_bytes(bag.read_bytes()[:-100])
     out = tmp_path / "out"
-    one_line(run("ingest", cut, "-o", out), "cut.bag: truncated")
+    one_line(run("convert", cut, "-o", out), "cut.bag: truncated")
     assert not out.exists()
     page = tmp_path / "page.html"
     one_line(run("report", bag, cut, "--static", static, "-o", page), "cut.bag: truncated")
     assert not page.exists()
     other = tmp_path / "other.json"
     static_info(comparison(7, "x")).save(other)
-    one_line(run("rank", bag, "--static", other), "none of its reports is known")
+    one_line(run("rank", bag, "--static", other), "none of its reports is in")
     quiet = tmp_path / "quiet.bag"
     with BagFile(quiet) as writer:
         writer.log(1, "/uav", line(0, 1, 2, 3))
@@ -93,3 +93,10 @@ def test_a_log_cannot_steer_the_terminal(tmp_path):
     assert "[bold]\N{REPLACEMENT CHARACTER}[2Jname" in result.stdout
     assert "\x1b" not in result.output
     assert "\x07" not in result.output
+
+
+# It was the name of `convert` when that read bags of ROS 1 alone.
+def test_the_old_name_of_convert_names_the_new_one(tmp_path):
+    result = run("ingest", "a.bag", "-o", tmp_path)
+    assert result.exit_code == 2
+    assert "ingest is now called convert: pytpc convert" in result.stderr

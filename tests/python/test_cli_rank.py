@@ -165,7 +165,7 @@ def test_what_differs_from_a_clean_run_is_likelier(files, tmp_path):
         writer.log(1, "/uav", line(7, 0, 1, 2))
     one_line(
         run("rank", bag, "--static", static, "--reference", other),
-        "other.bag: none of its reports is known",
+        "other.bag: none of its reports is in the static information",
     )
 
 
@@ -179,7 +179,7 @@ def test_what_is_known_beside_the_log_and_does_not_fit(files, tmp_path):
     assert "known: no parameter that is compared anywhere was changed" in (
         run(*words, "--changes", file).stderr
     )
-    one_line(run(*words, "--before", file), "m.bag: no params.yaml beside it")
+    one_line(run(*words, "--before", file), "m.bag: has no params.yaml beside it")
     one_line(run(*words, "--changes", tmp_path / "none"), "none: cannot be read")
     for more in (
         ("--changes", file, "--before", file),
@@ -347,7 +347,7 @@ def test_unknown_keys_are_named_and_the_rest_is_ranked(files, tmp_path):
         "only coverage had been compared up to the mark",
     )
     static_info(comparison(7, "x")).save(other)
-    one_line(run("rank", bag, "--static", other), "m.bag: none of its reports is known")
+    one_line(run("rank", bag, "--static", other), "m.bag: none of its reports is in the static")
 
 
 def test_the_most_frequent_unknown_keys_are_named(tmp_path):
@@ -466,8 +466,8 @@ def test_what_cannot_be_added_or_removed(files):
         (["--add", "-1", "I"], "outside of the mission"),
         (["--add", "nan", "I"], "outside of the mission"),
         (["--add", "1", "III"], "'III' is not one of"),
-        (["--add", "1", "I", "--remove", "1"], "one of --add and --remove"),
-        (["--note", "x"], "about a mark to --add"),
+        (["--add", "1", "I", "--remove", "1"], "give --add or --remove"),
+        (["--note", "x"], "--note and --observer need --add"),
     ):
         result = run("marks", bag, *arguments)
         assert (result.exit_code, result.stdout) == (2, "")

@@ -331,7 +331,7 @@ def test_export_writes_both(shared: Path, tmp_path: Path) -> None:
 def test_export_of_nothing_is_a_usage_error(shared: Path) -> None:
     result = run("export", shared)
     assert result.exit_code == 2
-    assert "say what to write" in result.stderr
+    assert "give --sarif FILE, --html FILE or both" in result.stderr
 
 
 def test_every_command_has_help() -> None:

@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,7 @@ from pytpc.build.build import BuildResult
 from pytpc.cli import workspace_commands
 from pytpc.cli.main import main
 from pytpc.static.static_info import LeftOut, LinkUnit, StaticInfo
-from pytpc.workspace.colcon import Bases, BuildError
+from pytpc.workspace.colcon import Bases, BuildError, BuildOptions
 
 VERSION = (Path(__file__).parents[2] / "VERSION").read_text().strip()
 
@@ -50,19 +51,19 @@ def test_build_hands_over_its_options_and_shows_the_result(
 ) -> None:
     given: dict[str, Any] = {}
 
-    def fake(workspace: Path, **options: Any) -> BuildResult:
-        given.update(options, workspace=workspace)
-        options["on_output"]("Starting >>> face")
-        options["on_output"]("[ 50%] Building CXX object")
+    def fake(workspace: Path, options: BuildOptions, **callbacks: Any) -> BuildResult:
+        given.update(asdict(options), bases=options.bases, workspace=workspace)
+        callbacks["on_output"]("Starting >>> face")
+        callbacks["on_output"]("[ 50%] Building CXX object")
         static = StaticInfo.of(
             [LinkUnit.from_json(data, tmp_path) for data in (unit(), failed_unit())],
             left_out=[LeftOut("face", "thin", "it is a test")],
         )
         alone = {"leg": "a.cpp:1: error: no"}
-        options["on_scripts"](1, 2)
-        return BuildResult(options["bases"], (), static, alone, 12.34)
+        callbacks["on_scripts"](1, 2)
+        return BuildResult(options.bases, (), static, alone, 12.34)
 
-    monkeypatch.setattr(workspace_commands, "build_workspace", fake)
+    monkeypatch.setattr(workspace_commands, "build", fake)
     result = run(
         *("build", tmp_path, "--package", "face", "--package", "arm", "--build-type", "Debug"),
         *("--constants", "--base", tmp_path / "own", "--tests", "--no-fallback", "--retry"),
@@ -86,9 +87,9 @@ def test_build_hands_over_its_options_and_shows_the_result(
         "pytpc: warning: broken of package face was left as it was and reports nothing:"
         " the instrumented module does not verify",
         "face/thin reports nothing: it is a test",
-        "pytpc: warning: package leg is built without TPC, with which it does not build:"
+        "pytpc: warning: package leg was built without TPC, because it does not build with it:"
         " a.cpp:1: error: no",
-        "pytpc build --retry tries again with TPC",
+        "run `pytpc build --retry` to try TPC again",
     ]
 
 
@@ -98,7 +99,7 @@ def test_build_shows_the_tail_and_then_one_line(
     def fake(*_: object, **__: object) -> BuildResult:
         raise BuildError("does not build", tmp_path / "log", "face", ["a.cpp:1: [b] error", "stop"])
 
-    monkeypatch.setattr(workspace_commands, "build_workspace", fake)
+    monkeypatch.setattr(workspace_commands, "build", fake)
     result = run("build", tmp_path)
     assert result.exit_code == 1
     assert result.stderr == (

@@ -277,8 +277,8 @@ def run(*arguments: object) -> tuple[int, str, str]:
 
 
 def test_all_is_well(workspace: Path, sound: None) -> None:
-    assert run(workspace) == (0, "nothing is wrong\n", "")
-    assert run() == (0, "nothing is wrong\n", "")
+    assert run(workspace) == (0, "no problems found\n", "")
+    assert run() == (0, "no problems found\n", "")
     assert run(workspace, "--json") == (0, "[]\n", "")
 
 

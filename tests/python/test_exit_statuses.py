@@ -31,7 +31,6 @@ STATIC = EXAMPLE / "static.json"
 INPUT = "INPUT"
 RECORDINGS: Mapping[str, Sequence[str]] = {
     "convert": (INPUT, "-o", "out"),
-    "ingest": (INPUT, "-o", "out"),
     "mark": (INPUT,),
     "marks": (INPUT,),
     "rank": (INPUT, "--static", str(STATIC)),

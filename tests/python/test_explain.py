@@ -169,7 +169,7 @@ def test_explain_shows_the_nearest_and_with_all_the_others_too(file: Path) -> No
         run("explain", file, "min_coverage_limit", "--all"),
     )
     assert "compared: [red] x" in one.stdout
-    assert "1 more comparison (--all shows the ways):" in one.stdout
+    assert "1 more comparison (use --all to show their paths):" in one.stdout
     assert "published on capture" not in one.stdout
     assert "published on capture" in every.stdout
     assert "--all" not in every.stdout
@@ -193,7 +193,7 @@ def test_explain_of_an_older_file_says_that_it_has_no_way(tmp_path: Path) -> Non
     path.write_text(json.dumps(data), encoding="utf-8")
     result = run("explain", path, "min_coverage_limit")
     assert result.exit_code == 0
-    assert "this static information has no ways in it" in result.stdout
+    assert "this static information contains no paths" in result.stdout
 
 
 def test_explain_as_json_has_all_of_it(file: Path) -> None:

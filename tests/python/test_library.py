@@ -12,7 +12,7 @@ from mission_samples import comparison, events, ns, static_info
 
 import pytpc
 import pytpc_evaluation
-from pytpc.api import library
+from pytpc import api
 from pytpc.base.errors import InputError
 from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.suggestion.joining import join_advice
@@ -42,15 +42,15 @@ def test_advice_looks_at_the_window_that_ranked():
 
 
 def test_import_is_lazy():
-    code = "import sys, pytpc; print('numpy' in sys.modules, 'pytpc.api.library' in sys.modules)"
+    code = "import sys, pytpc; print('numpy' in sys.modules, 'pytpc.api.ranking' in sys.modules)"
     said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert said.stdout.split() == ["False", "False"]
 
 
 def test_all_names_are_there_and_documented():
-    assert set(pytpc.__all__) == set(library.__all__)
+    assert set(pytpc.__all__) <= set(dir(api))
     for name in pytpc.__all__:
-        assert getattr(pytpc, name) is getattr(library, name)
+        assert getattr(pytpc, name) is getattr(api, name)
         assert getattr(pytpc, name).__doc__
         assert name in dir(pytpc)
     for name in pytpc_evaluation.__all__:
@@ -62,9 +62,27 @@ def test_all_names_are_there_and_documented():
 
 # A folder of the package must not stand in the way of a function of the same name.
 def test_no_name_is_that_of_a_module():
-    folder = Path(library.__file__).parent
+    folder = Path(api.__file__).parent
     modules = {path.stem for path in folder.iterdir()}
     assert not modules & set(pytpc.__all__)
+    assert not modules & set(api._MODULES)
+
+
+@pytest.mark.parametrize("name", sorted(api._MODULES))
+def test_the_one_door_has_every_verb(name):
+    assert getattr(api, name).__doc__
+
+
+# The same settings, one by one and as one object; both at once are a slip.
+def test_a_question_has_all_settings():
+    asked = Question(types="ignore", window_s=8, top=1)
+    single = pytpc.rank(MISSION, STATIC, types="ignore", window_s=8)
+    assert pytpc.rank(MISSION, STATIC, question=asked).rankings == single.rankings
+    asked = Question(types="ignore", top=1)
+    found = pytpc.diagnose(MISSION, STATIC, asked)
+    assert found == pytpc.diagnose(MISSION, STATIC, types="ignore", top=1)
+    with pytest.raises(TypeError, match="not both"):
+        pytpc.diagnose(MISSION, STATIC, asked, top=1)
 
 
 def test_a_ranking_as_rows_and_as_text():

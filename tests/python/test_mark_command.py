@@ -146,7 +146,7 @@ def test_without_a_terminal_it_says_so(bag: Path, tmp_path: Path):
     )
     assert done.returncode == 1
     assert done.stderr.splitlines()[-1] == (
-        "pytpc: error: the keys are read from a terminal, and standard input is none"
+        "pytpc: error: standard input is not a terminal, so no keys can be read"
     )
 
 
@@ -187,7 +187,7 @@ def test_a_namespace_that_ros_has_not(tmp_path: Path):
         cwd=tmp_path,
     )
     assert done.returncode == 2
-    assert "'no good' is no namespace of ROS" in done.stderr
+    assert "'no good' is not a ROS namespace" in done.stderr
 
 
 def test_marks_of_others_stay_in_the_file(bag: Path, tmp_path: Path):

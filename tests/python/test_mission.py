@@ -19,14 +19,16 @@ from mission_samples import comparison, events, ns, static_info
 from rich.console import Console
 from rosbags.highlevel import AnyReader
 
+from pytpc.api.record import sink_settings
 from pytpc.base.errors import InputError, RunError
-from pytpc.cli.mission_commands import record_command, sink_settings
+from pytpc.cli.mission_commands import record_command
 from pytpc.diagnosis.ranking.ranking import rank_marks
 from pytpc.ingest import Recording
 from pytpc.recording.marks import Mark
 from pytpc.ros.mission_run import (
     MissionRun,
     RecorderStatus,
+    RecordOptions,
     clear_earlier,
     read_status,
     save_run,
@@ -353,13 +355,13 @@ def test_launch_command_has_its_arguments_in_order(tmp_path):
 
 def test_missing_launch_file_is_said_before_anything_starts(tmp_path):
     with pytest.raises(RunError, match=r"no\.launch: no such launch file"):
-        run_mission({}, tmp_path / "no.launch", {}, tmp_path / "out", 5.0)
+        run_mission({}, RecordOptions(tmp_path / "out", tmp_path / "no.launch", {}, 5.0))
     assert not (tmp_path / "out").exists()
 
 
 def test_run_json_says_how_it_went(tmp_path):
     run = mission_run(tmp_path)
-    save_run(run, tmp_path / "a.launch", {"seed": "1"}, tmp_path / "run.json")
+    save_run(run, RecordOptions(tmp_path, tmp_path / "a.launch", {"seed": "1"}))
     document = json.loads((tmp_path / "run.json").read_text())
     assert document["args"] == {"seed": "1"}
     assert document["bag"] == "mission.bag"
@@ -396,7 +398,11 @@ def test_an_earlier_mission_is_cleared_and_its_marks_are_kept(tmp_path):
 def test_a_recording_of_a_robot_is_not_replaced(tmp_path, name):
     (tmp_path / name).write_text("the only one")
     with pytest.raises(RunError, match="another folder"):
-        record_graph(tmp_path, stop=threading.Event(), env={"ROS_MASTER_URI": "http://[::1]:1"})
+        record_graph(
+            RecordOptions(tmp_path),
+            stop=threading.Event(),
+            env={"ROS_MASTER_URI": "http://[::1]:1"},
+        )
     assert (tmp_path / name).read_text() == "the only one"
 
 

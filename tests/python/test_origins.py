@@ -12,6 +12,7 @@ from launch_samples import environment, make_package, needs_roslaunch
 
 from pytpc.base.errors import InputError
 from pytpc.cli.main import main
+from pytpc.ros.mission_run import RecordOptions
 from pytpc.ros.ros1 import record_graph, recorder
 from pytpc.ros.ros1.master import Master
 from pytpc.values import recording
@@ -222,7 +223,7 @@ def test_the_launch_file_of_a_graph_that_runs(tmp_path):
     assert f"{tmp_path}/none.launch: no such launch file" in done.output
     twice = CliRunner().invoke(main, ["record", "ws", "a.launch", *out])
     assert twice.exit_code == 2
-    assert "--launch is for a graph that runs" in twice.output
+    assert "--launch is only for a running graph" in twice.output
 
 
 def test_a_mission_that_was_recorded_without(tmp_path):
@@ -307,6 +308,7 @@ def test_recording_goes_on_while_the_launch_file_is_read(tmp_path, monkeypatch):
     monkeypatch.setattr(record_graph, "dump_params", dump)
     env = {"ROS_MASTER_URI": "http://localhost:1"}
     launch = tmp_path / "a.launch"
-    record_graph.record_graph(tmp_path / "out", stop=stop, env=env, launch=launch, timeout_s=8.0)
+    options = RecordOptions(tmp_path / "out", launch, timeout_s=8.0)
+    record_graph.record_graph(options, stop=stop, env=env)
     document = json.loads((tmp_path / "out" / ORIGINS_FILE).read_text())
     assert document["reason"] == "read meanwhile"

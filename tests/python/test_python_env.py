@@ -11,10 +11,10 @@ import pytest
 from click.testing import CliRunner
 
 import pytpc
+from pytpc.api import record
 from pytpc.base.errors import InputError
 from pytpc.base.shell_words import EnvChange
 from pytpc.build.build import installed
-from pytpc.cli import mission_commands
 from pytpc.cli.main import main
 from pytpc.ros.python_env import has_python, mission_env, with_python, without_python
 
@@ -199,7 +199,7 @@ def test_record_has_python_nodes_report_unless_it_is_told_not_to(
         seen.update(env)
         raise InputError("it is not run here")
 
-    monkeypatch.setattr(mission_commands, "run_mission", run_mission)
+    monkeypatch.setattr(record, "run_mission", run_mission)
     (workspace / ".tpc/install").mkdir()
     (workspace / ".tpc/install/setup.bash").write_text("export ROS_PACKAGE_PATH=/ws/share\n")
     launch = str(tmp_path / "x.launch")

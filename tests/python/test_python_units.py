@@ -16,7 +16,7 @@ from static_units import unit
 from mixed_workspace import BROKEN_TEXT, CAMERA, PUMP_PY, make_mixed
 from pytpc.build import python_units
 from pytpc.build.collect import collect_sources
-from pytpc.build.python_nodes import python_of_build
+from pytpc.build.python_nodes import PythonBuild, python_of_build
 from pytpc.build.python_units import PythonUnits, analyse_workspaces, named_beside
 from pytpc.cli.main import main
 from pytpc.python_analysis.analysis import analyse_entry
@@ -44,15 +44,15 @@ def built(
 ) -> PythonUnits:
     """What a build makes of the Python; ``only`` these packages and what they need."""
     packages = find_packages(workspace)
-    return python_of_build(
+    asked = PythonBuild(
         workspace,
         workspace / ".tpc/build",
         packages,
-        taken,
         chosen=packages_up_to(packages, only),
         rules=RULES if python else None,
         tests=tests,
     )
+    return python_of_build(asked, taken)
 
 
 def names(found: PythonUnits | StaticInfo) -> list[str]:

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from mission_samples import comparison, events, key, ns, static_info
 from report_samples import NASTY, Page, mission, written
 
-from pytpc.api.report import MissionReport, write_report
+from pytpc.api.report import MissionReport, write_missions
 from pytpc.base.errors import TpcError
 from pytpc.base.wording import percent
 from pytpc.diagnosis.question import Question
@@ -29,6 +29,7 @@ from pytpc.present.page.series import (
     FALSE,
     NOTHING,
     TRUE,
+    Span,
     evidence,
     lane,
     runs,
@@ -101,17 +102,17 @@ def test_lane_and_runs():
             (60, 0, 1, 1, 0),
         ]
     )
-    states = lane(table, key(0), 0, ns(60))
+    states = lane(table, key(0), Span(0, ns(60)))
     assert (states[0], states[1], states[59], states[BINS - 1]) == (TRUE, FALSE, BOTH, TRUE)
     assert states[2] == NOTHING
-    assert lane(table, key(1), 0, ns(60))[1] == TRUE
+    assert lane(table, key(1), Span(0, ns(60)))[1] == TRUE
     assert runs(states) == [(TRUE, 0, 1), (FALSE, 1, 1), (BOTH, 59, 1), (TRUE, BINS - 1, 1)]
 
 
 # Every second over 60 s, 10 columns each: F at 0 s holds up to the T at 1 s; after 10 s a pause.
 def test_a_result_holds_until_the_next_one():
     table = events([(t, 0, t % 2, t % 2, 0) for t in (*range(11), *range(50, 60))])
-    states = lane(table, key(0), 0, ns(60))
+    states = lane(table, key(0), Span(0, ns(60)))
     assert states[:20].tolist() == [FALSE] * 10 + [TRUE] * 10
     assert states[100:102].tolist() == [FALSE, NOTHING]
     assert set(states[101:500].tolist()) == {NOTHING}
@@ -121,12 +122,12 @@ def test_a_result_holds_until_the_next_one():
 # to the mark at 25 s: from 21 s. The later flop at 51 s is shown, but moves nothing.
 def test_evidence_reaches_back_to_the_last_flop():
     rows = [(t, 0, 1, 5, 3) for t in range(10, 53)]
-    calm = evidence(events(rows), key(0), ns(50), ns(10), ns(52))
+    calm = evidence(events(rows), key(0), ns(50), Span(ns(10), ns(52)))
     assert (calm.begin, calm.end, calm.evaluations) == (20, 42, 23)
     assert (calm.steps.tolist(), calm.outcome.tolist()) == ([20], [True])
     rows[:15] = [(t, 0, 0, 1, 3) for t in range(10, 25)]
     rows[-2:] = [(t, 0, 0, 1, 3) for t in (51, 52)]
-    changed = evidence(events(rows), key(0), ns(50), ns(10), ns(52))
+    changed = evidence(events(rows), key(0), ns(50), Span(ns(10), ns(52)))
     assert (changed.begin, changed.flops.tolist()) == (11, [15, 41])
     assert changed.steps.tolist() == [11, 15, 41]
     assert changed.outcome.tolist() == [False, True, False]
@@ -293,7 +294,7 @@ def test_a_page_that_cannot_be_written_leaves_the_old_one(tmp_path, monkeypatch)
 
     monkeypatch.setattr("os.fsync", full)
     with pytest.raises(TpcError, match=r"report\.html: cannot be written: No space left"):
-        write_report(path, [])
+        write_missions(path, [])
     assert path.read_text() == "old"
     assert [p.name for p in tmp_path.iterdir()] == ["report.html"]
 

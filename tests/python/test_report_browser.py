@@ -17,7 +17,7 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import WebDriverWait
 
-from pytpc.api.report import MissionReport, write_report
+from pytpc.api.report import MissionReport, write_missions
 from pytpc.diagnosis.ranking.ranking import rank_marks
 from pytpc.ingest import Recording
 from pytpc.recording.marks import Mark
@@ -95,7 +95,7 @@ def opened(browser, tmp_path):
     path = tmp_path / "report.html"
 
     def of(*missions, script=True):
-        write_report(path, missions)
+        write_missions(path, missions)
         browser.execute_cdp_cmd("Emulation.setScriptExecutionDisabled", {"value": not script})
         browser.get("about:blank")
         browser.get_log("browser"), browser.get_log("performance")

@@ -76,9 +76,10 @@ class Rig:
         self.ended = "done"
         self.done_ns = 30 * 10**9
 
-    def run_mission(self, env, launch, args, folder, timeout_s, **_):
+    def run_mission(self, env, options, **_):
         assert env["TPC_SINK"] == "file"
-        self.calls.append(dict(args))
+        self.calls.append(dict(options.args))
+        folder = options.out_dir
         bag, params = folder / "mission.bag", folder / "params.yaml"
         bag.write_bytes(b"#ROSBAG")
         params.write_text("pump: {b: 0.5}\n")

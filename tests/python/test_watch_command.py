@@ -203,7 +203,7 @@ def test_what_is_wrong_is_said_in_one_line(mission: Path, tmp_path: Path):
     done = once(mission)
     assert done.returncode == 1
     assert done.stderr.count("\n") == 1
-    assert "standard input is none; see --once" in done.stderr
+    assert "so no keys can be read; see --once" in done.stderr
     done = once(tmp_path / "gone.bag", "--once")
     assert (done.returncode, done.stderr.count("\n")) == (1, 1)
     done = once(mission, "--observer", "a b", "--once")

@@ -10,6 +10,7 @@ import pytest
 from rich.console import Console
 
 from pytpc.build.build import BuildResult, build_workspace
+from pytpc.workspace.colcon import BuildOptions
 from pytpc_evaluation.demo.demo_examples import IMAGE_CAPTURE, WATER_SAMPLER, link_package
 from pytpc_evaluation.demo.demo_show import Built, build
 from pytpc_evaluation.study.system import system_folder
@@ -18,7 +19,7 @@ from pytpc_evaluation.study.system import system_folder
 def build_example(folder: Path, build_type: str = "RelWithDebInfo") -> BuildResult:
     """The example built in a workspace of its own."""
     link_package(IMAGE_CAPTURE, folder)
-    return build_workspace(folder, build_type=build_type)
+    return build_workspace(folder, BuildOptions(build_type=build_type))
 
 
 @pytest.fixture(scope="session")

@@ -17,6 +17,7 @@ from click.testing import CliRunner, Result
 
 from pytpc.base.errors import MissingToolError
 from pytpc.cli.main import main
+from pytpc.ros.mission_run import RecordOptions
 from pytpc.ros.ros1.graph import RosGraph
 from pytpc.ros.ros1.live_values import Robot
 from pytpc.ros.ros1.record_graph import record_graph
@@ -137,7 +138,7 @@ def test_what_the_node_makes_of_it_is_said(apply, graph: RosGraph) -> None:
 def test_a_node_without_it_has_to_ask_again(apply, graph: RosGraph) -> None:
     done = apply("--live", "/plain/gain", "3")
     assert done.exit_code == 0, done.output
-    assert "/plain reads it when it asks again" in done.output
+    assert "/plain does not offer it by dynamic_reconfigure" in done.output
     assert graph.call("getParam", "/plain/gain") == 3
     # Somebody else sets it meanwhile: that is not overwritten.
     graph.call("setParam", "/plain/gain", 4)
@@ -175,7 +176,7 @@ def test_beside_what_the_node_sets(apply, graph: RosGraph) -> None:
     graph.call("setParam", "/tuned/extra", 1.5)
     done = apply("--live", "/tuned/extra", "2.5")
     assert done.exit_code == 0, done.output
-    assert "/tuned reads it when it asks again" in done.output
+    assert "/tuned does not offer it by dynamic_reconfigure" in done.output
     assert graph.call("getParam", "/tuned/extra") == 2.5
     assert apply("--undo").exit_code == 0
     assert graph.call("getParam", "/tuned/extra") == 1.5
@@ -220,7 +221,7 @@ def test_a_graph_that_runs_already(graph: RosGraph, tmp_path: Path, known: bool)
     threading.Timer(1.0, stop.set).start()
     env = {**graph.env, "PATH": "/usr/bin:/bin"}
     given = launch if known else None
-    record_graph(tmp_path / "out", stop=stop, env=env, launch=given)
+    record_graph(RecordOptions(tmp_path / "out", given), stop=stop, env=env)
     origins = read_origins(tmp_path / "out")
     gain = origins["/plain/gain"]
     assert gain.value == 2

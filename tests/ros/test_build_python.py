@@ -15,7 +15,7 @@ from pytpc.cli.main import main
 from pytpc.python_runtime.listed import read_table
 from pytpc.static.static_info import StaticInfo
 from pytpc.workspace import patch
-from pytpc.workspace.colcon import BuildError, build_environment
+from pytpc.workspace.colcon import BuildError, BuildOptions, build_environment
 
 try:
     for half in (cmake_file, plugin, log_library):
@@ -116,7 +116,7 @@ def test_python_of_a_package_that_is_left_alone(tmp_path: Path) -> None:
     no_clang = "#ifdef __clang__\n#error no\n#endif\n"
     cpp.write_text(no_clang + cpp.read_text("utf-8"), "utf-8")
     with pytest.raises(BuildError):
-        build_workspace(workspace, fallback=False)
+        build_workspace(workspace, BuildOptions(fallback=False))
     result = build_workspace(workspace)
     assert list(result.left_alone) == ["mission"]
     # The target is there, so the script is called as it is beside it.

@@ -16,7 +16,7 @@ from pytpc.base.paths import cmake_file, log_library, plugin
 from pytpc.build.build import build_workspace, workspace_env
 from pytpc.static.static_info import collect
 from pytpc.workspace import patch
-from pytpc.workspace.colcon import BuildError, build_environment
+from pytpc.workspace.colcon import BuildError, BuildOptions, build_environment
 
 try:
     for half in (cmake_file, plugin, log_library):
@@ -214,7 +214,7 @@ def test_a_package_that_clang_does_not_take_is_built_without_tpc(tmp_path: Path)
         (other / name).write_text(text.replace("src/node.cpp", "src/node.cpp src/nested.c"))
     (other / "src/nested.c").write_text(NESTED, encoding="utf-8")
     with pytest.raises(BuildError) as caught:
-        build_workspace(tmp_path, fallback=False)
+        build_workspace(tmp_path, BuildOptions(fallback=False))
     assert caught.value.package == "nested"
     result = build_workspace(tmp_path)
     assert list(result.left_alone) == ["nested"]
@@ -228,7 +228,7 @@ def test_a_package_that_clang_does_not_take_is_built_without_tpc(tmp_path: Path)
     # Mended, it is built with TPC again when asked to.
     (other / "src/nested.c").write_text("int twice;\n", encoding="utf-8")
     assert list(build_workspace(tmp_path).left_alone) == ["nested"]
-    again = build_workspace(tmp_path, retry=True)
+    again = build_workspace(tmp_path, BuildOptions(retry=True))
     assert (again.left_alone, again.static.left_out) == ({}, ())
     assert [unit.package for unit in again.units] == ["nested", "tiny"]
 

@@ -20,7 +20,7 @@ from pytpc.base.paths import cmake_file, log_library, plugin
 from pytpc.build.build import BuildResult, workspace_env
 from pytpc.diagnosis.ranking.ranking import unknown_keys
 from pytpc.ingest import read_bag
-from pytpc.ros.mission_run import Progress
+from pytpc.ros.mission_run import MISSION_DONE, Progress, RecordOptions
 from pytpc.ros.ros1.graph import GRAPH_WORD, RosGraph
 from pytpc.ros.ros1.launch_mission import run_mission
 from pytpc_evaluation.demo.demo import FIRST, TreatedMission, failures, run_treatment
@@ -171,7 +171,10 @@ def test_node_that_dies_ends_the_mission_with_one_line(env, tmp_path):
                     killed.append(pid)
 
     with pytest.raises(RunError) as caught:
-        run_mission(env, LAUNCH, {"seed": "1"}, tmp_path, 60.0, on_progress=kill_mission)
+        options = RecordOptions(
+            tmp_path, LAUNCH, {"seed": "1"}, 60.0, until=MISSION_DONE, on_progress=kill_mission
+        )
+        run_mission(env, options)
     assert len(killed) == 1
     text = str(caught.value)
     assert "\n" not in text
@@ -185,7 +188,7 @@ def test_broken_launch_file_is_one_line(env, tmp_path):
     launch = tmp_path / "broken.launch"
     launch.write_text("<launch>\n  <node pkg='image_capture' type='none' name='n'>\n</launch>\n")
     with pytest.raises(RunError, match=r"roslaunch ended with status 1: .*Invalid roslaunch XML"):
-        run_mission(env, launch, {}, tmp_path / "out", 60.0)
+        run_mission(env, RecordOptions(tmp_path / "out", launch, {}, 60.0, until=MISSION_DONE))
 
 
 def test_graph_is_one_of_its_own_and_ends_what_it_started(env, tmp_path):

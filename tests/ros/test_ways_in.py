@@ -19,7 +19,7 @@ from pytpc.build.collect import collect_sources
 from pytpc.ros.ros1.graph import RosGraph
 from pytpc.static.static_info import LeftOut, StaticInfo
 from pytpc.workspace import patch
-from pytpc.workspace.colcon import Bases, build_environment
+from pytpc.workspace.colcon import Bases, BuildOptions, build_environment
 
 try:
     for half in (cmake_file, compiler_wrapper, plugin, log_library):
@@ -141,7 +141,7 @@ def by_colcon(
     with pytest.MonkeyPatch.context() as patched:
         for name, value in variables.items():
             patched.setenv(name, value)
-        result = build_workspace(sources.parent, bases=Bases(base))
+        result = build_workspace(sources.parent, BuildOptions(bases=Bases(base)))
     assert contents(sources) == before
     assert sorted(path.name for path in sources.parent.iterdir()) == ["src"]
     assert (left_out(result.static.left_out), result.left_alone) == (LEFT_OUT, {})
@@ -279,7 +279,7 @@ def test_a_second_workspace_lies_over_the_first(
     shutil.copytree(sources / "dozen_user", tmp_path / "src/dozen_user")
     for place in (WORKSPACES / "others/src").iterdir():
         (tmp_path / "src" / place.name).symlink_to(place)
-    result = build_workspace(tmp_path, colcon_args=["--merge-install"])
+    result = build_workspace(tmp_path, BuildOptions(colcon_args=["--merge-install"]))
     # From below come the counter's header and the gate's static library.
     below = {("counter.h", 13, "count/every"), ("gate.cpp", 9, "gate/level")}
     own = expected(tmp_path / "src/dozen_user") | expected(WORKSPACES / "others/src")

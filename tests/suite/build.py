@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pytpc.build.build import BuildResult, build_workspace
-from pytpc.workspace.colcon import build_environment
+from pytpc.workspace.colcon import BuildOptions, build_environment
 from suite.expectations import PACKAGE
 
 _XLINKER = "-Xlinker"
@@ -43,7 +43,7 @@ def build_suite(
     """
     (folder / "src").mkdir(parents=True)
     (folder / "src" / PACKAGE.name).symlink_to(PACKAGE)
-    result = build_workspace(folder, build_type=build_type, cmake_args=cmake_args)
+    result = build_workspace(folder, BuildOptions(build_type=build_type, cmake_args=cmake_args))
     return Suite(result, folder)
 
 

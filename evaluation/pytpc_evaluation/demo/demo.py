@@ -22,7 +22,7 @@ from pytpc.diagnosis.suggestion.suggest import At, suggest
 from pytpc.ingest import Recording, read_bag, save_recording
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import EVENTS_FILE, MARKS_FILE
-from pytpc.ros.mission_run import MissionRun, Progress
+from pytpc.ros.mission_run import MISSION_DONE, MissionRun, Progress, RecordOptions
 from pytpc.ros.ros1.launch_mission import run_mission
 from pytpc.static.static_info import StaticInfo
 from pytpc_evaluation.demo.demo_examples import Example
@@ -98,15 +98,16 @@ def run_treatment(
         **treatment.launch,
         **(launch_args or {}),
     }
-    run = run_mission(
-        install_env,
+    options = RecordOptions(
+        out_dir,
         example.launch,
         args,
-        out_dir,
         timeout_s,
+        until=MISSION_DONE,
         topics=example.watched,
         on_progress=on_progress,
     )
+    run = run_mission(install_env, options)
     save_treatment(treatment, out_dir)
     recording = read_bag(run.bag)
     if not len(recording.events):

@@ -15,7 +15,7 @@ from pathlib import Path
 import click
 from rich.console import Console
 
-from pytpc.api.report import write_report
+from pytpc.api.report import write_missions
 from pytpc.base.errors import TpcError
 from pytpc.base.wording import many
 from pytpc.build.build import build_workspace, workspace_env
@@ -100,7 +100,7 @@ def run_demo(
     with step(console, "Write the report"), progress("drawing") as advance:
         reports = [mission.report(built.static) for mission in missions]
         title = f"{example.title}: suspected parameters"
-        write_report(page, reports, title=title, on_progress=advance)
+        write_missions(page, reports, title=title, on_progress=advance)
     console.print()
     console.print(result_table(missions, built.static), highlight=False)
     console.print(f"Report: {page}", highlight=False, soft_wrap=True)

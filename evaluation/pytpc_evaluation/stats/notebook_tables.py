@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from pytpc.api.library import Source, load_static
+from pytpc.api.missions import Source, load_static
 from pytpc.base import tables
 from pytpc.present.notebook import Table
 from pytpc.static.static_info import StaticInfo

@@ -21,7 +21,7 @@ from pytpc.recording.mission import (
     save_recording,
     write_marks,
 )
-from pytpc.ros.mission_run import Progress
+from pytpc.ros.mission_run import MISSION_DONE, Progress, RecordOptions
 from pytpc.ros.ros1.launch_mission import run_mission
 from pytpc_evaluation.study.changes import CHANGES_FILE, save_changes
 from pytpc_evaluation.study.dataset import (
@@ -128,16 +128,16 @@ class Flier:
     ) -> Done:
         example = flight.example
         _clear(folder)
-        run = run_mission(
-            self.system.env,
+        options = RecordOptions(
+            folder,
             example.launch,
             self._arguments(flight, folder),
-            folder,
             self.timeout_s,
+            until=MISSION_DONE,
             topics=example.watched,
-            settle_s=SETTLE_S,
             on_progress=on_progress,
         )
+        run = run_mission(self.system.env, options, settle_s=SETTLE_S)
         if run.ended != "done" or run.done_ns is None:
             what = {"timeout": "was not over", "ended": "ended before it was done"}
             raise RunError(

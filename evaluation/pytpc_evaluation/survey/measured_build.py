@@ -25,7 +25,14 @@ from pytpc.build.faults import first_error, missing_names
 from pytpc.static.static_info import LinkUnit, load_link_unit, unit_files
 from pytpc.workspace.cmake_syntax import find_fault
 from pytpc.workspace.cmake_targets import ask_for_targets, link_targets
-from pytpc.workspace.colcon import Bases, build_environment, colcon_command, ended_jobs, run_lines
+from pytpc.workspace.colcon import (
+    Bases,
+    BuildOptions,
+    build_environment,
+    colcon_command,
+    ended_jobs,
+    run_lines,
+)
 from pytpc.workspace.packages import MANIFEST, Package, package_folders, read_manifest
 from pytpc_evaluation.survey.trees import Build, NotBuilt, Tree, TreePackage
 
@@ -177,9 +184,14 @@ def measure(
         bases,
         packages,
         toolchain,
-        build_type=BUILD_TYPE,
-        cmake_args=[*(f"-DCMAKE_{kind}_LAUNCHER={launcher}" for kind in kinds), *way.cmake_args],
-        colcon_args=["--continue-on-error", "--parallel-workers", str(way.jobs)],
+        BuildOptions(
+            build_type=BUILD_TYPE,
+            cmake_args=[
+                *(f"-DCMAKE_{kind}_LAUNCHER={launcher}" for kind in kinds),
+                *way.cmake_args,
+            ],
+            colcon_args=["--continue-on-error", "--parallel-workers", str(way.jobs)],
+        ),
     )
     wall, processor, last = _run(command, tree.path, way.environment, on_output)
     faults = (*tree.unreadable, *_not_built(packages, bases.log / "latest_build", last))

@@ -15,7 +15,7 @@ from pytpc.diagnosis.results.suspects import Suspect
 from pytpc.present.page.mission import ReportedMission
 from pytpc.present.page.payload import finite, series_of
 from pytpc.present.page.plots import EvidenceStyle, evidence_svg, span_of
-from pytpc.present.page.series import Evidence, evidence
+from pytpc.present.page.series import Evidence, Span, evidence
 from pytpc.present.page.source import LONGEST_LINE, Line, StepView, source_lines, way_of
 from pytpc.recording.declaration import Declared
 from pytpc.recording.marks import Mark
@@ -231,7 +231,7 @@ def _evidence(
         feasible=answer.feasible,
     )
     data = evidence(
-        recording.events, suspect.key, mark.time_ns, start, end, summaries=recording.summaries
+        recording.events, suspect.key, mark.time_ns, Span(start, end), recording.summaries
     )
     return data, style
 

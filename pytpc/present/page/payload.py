@@ -18,7 +18,7 @@ from markupsafe import Markup
 from pytpc.base.columns import Floats
 from pytpc.diagnosis.results.mission import RankCurves
 from pytpc.present.page.environment import seen
-from pytpc.present.page.series import gap_after, kept_of, lane, runs, thin
+from pytpc.present.page.series import Span, gap_after, kept_of, lane, runs, thin
 from pytpc.recording.marks import MarkType
 from pytpc.recording.mission import Recording
 
@@ -91,8 +91,7 @@ def lane_of(recording: Recording, key: str, bins: int) -> npt.NDArray[np.int8]:
     return lane(
         recording.events,
         key,
-        recording.start_ns,
-        recording.end_ns,
+        Span(recording.start_ns, recording.end_ns),
         bins=bins,
         summaries=recording.summaries,
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -68,17 +69,23 @@ def kept_of(summaries: Summaries, key: str, start_ns: int) -> Floats:
     return found[:, np.isfinite(found).all(axis=0)]
 
 
+class Span(NamedTuple):
+    """The begin and the end of a mission."""
+
+    start_ns: int
+    end_ns: int
+
+
 def evidence(
     events: Events,
     key: str,
     mark_ns: int,
-    start_ns: int,
-    end_ns: int,
-    *,
+    span: Span,
     summaries: Summaries | None = None,
 ) -> Evidence:
     """The evaluations from 20 s before a mark, or from the last flop if that is earlier, to 6 s
     after it, within the recording."""
+    start_ns, end_ns = span
     rows = events.rows_of(key)
     times = events.time_ns[rows]
     begin = mark_ns - round(_AROUND_S[0] * 1e9)
@@ -147,8 +154,7 @@ def gap_after(time: Floats) -> float:
 def lane(
     events: Events,
     key: str,
-    start_ns: int,
-    end_ns: int,
+    span: Span,
     *,
     bins: int = BINS,
     summaries: Summaries | None = None,
@@ -159,6 +165,7 @@ def lane(
     a slow one is not a row of dots, and a pause stays a pause. A summary with flops is both in all
     of its period.
     """
+    start_ns, end_ns = span
     states = np.zeros(bins, dtype=np.int8)
     rows = events.rows_of(key)
     times, result = events.time_ns[rows], events.result[rows]

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -87,8 +88,7 @@ def timeline(mission: ReportedMission, ident: str) -> tuple[Markup, dict[str, ob
         still,
         marks,
         seconds=recording.seconds,
-        ident=f"{ident}-t",
-        label=f"{label} {len(marks)} marks",
+        name=FigureName(f"{ident}-t", f"{label} {len(marks)} marks"),
     )
     moving = lanes_of(recording, [(name, best[name][1]) for name in order])
     moving["curves"] = curves_of(curves, order, start)
@@ -97,14 +97,20 @@ def timeline(mission: ReportedMission, ident: str) -> tuple[Markup, dict[str, ob
     return Markup(svg), moving
 
 
+class FigureName(NamedTuple):
+    """The prefix of a figure's ids, unlike that of any other, and what it shows, in words."""
+
+    ident: str
+    label: str
+
+
 def timeline_svg(
     lanes: Sequence[Lane],
     curves: Curves,
     marks: Sequence[tuple[float, MarkType | None]],
     *,
     seconds: float,
-    ident: str,
-    label: str,
+    name: FigureName,
 ) -> str:
     """Every suspect's results and ranks over the whole mission, and the marks, numbered from 1.
 
@@ -113,12 +119,12 @@ def timeline_svg(
         curves: their ranks.
         marks: time in seconds since the recording began, and type, in the order of time.
         seconds: length of the recording.
-        ident: prefix of all ids, unlike that of any other figure of the page.
-        label: what the figure shows, for those who do not see it.
+        name: of the figure.
 
     Returns:
         An ``<svg>`` element.
     """
+    ident, label = name
     seconds = max(seconds, 1e-3)
     heights = [0.25 + _LANE_INCHES * len(lanes), _CURVE_INCHES, _CURVE_INCHES]
     with drawing(8.8):

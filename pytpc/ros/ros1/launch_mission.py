@@ -12,12 +12,12 @@ import contextlib
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from pytpc.base.errors import RunError
 from pytpc.base.paths import project_root
-from pytpc.recording.mission import REPORTS_FOLDER, RUN_FILE
+from pytpc.recording.mission import REPORTS_FOLDER
 from pytpc.ros.mission_run import (
     BAG_FILE,
     DEFAULT_TOPICS,
@@ -25,6 +25,7 @@ from pytpc.ros.mission_run import (
     MissionRun,
     Progress,
     RecorderStatus,
+    RecordOptions,
     clear_earlier,
     marks_of,
     read_status,
@@ -59,38 +60,29 @@ def launch_command(launch: Path, args: Mapping[str, str]) -> list[str]:
 
 def run_mission(
     install_env: Mapping[str, str],
-    launch: Path,
-    args: Mapping[str, str],
-    out_dir: Path,
-    timeout_s: float,
+    options: RecordOptions,
     *,
-    until: str | None = "/mission/done",
-    topics: Sequence[str] = (),
     settle_s: float = 6.0,
     use_sim_time: bool = True,
-    on_progress: Callable[[Progress], None] | None = None,
 ) -> MissionRun:
     """Run a launch file on a graph of its own and record it.
 
     Args:
         install_env: environment of the installed workspace (``pytpc.build.build.workspace_env``).
-        launch: the launch file.
-        args: its arguments.
-        out_dir: where the results are put; results of an earlier run there are replaced.
-        timeout_s: wall time after which the mission is ended.
-        until: a topic of type std_msgs/Bool; when it says true the mission has ended. None: the
-            mission runs for ``timeout_s``.
-        topics: recorded besides ``DEFAULT_TOPICS`` and ``until``.
+        options: with the launch file and ``timeout_s``; results of an earlier run in its folder
+            are replaced.
         settle_s: seconds of the graph's clock for which recording goes on after the end, because
             people press keys late.
         use_sim_time: the graph's clock is the topic /clock.
-        on_progress: called about ten times a second.
 
     Raises:
         RunError: the launch file is not there or not right, a node died, the recorder failed, or
             there was no /clock for 30 s; one line, with the output's file.
         MissingToolError: roslaunch or the master is not installed.
     """
+    out_dir, launch, args = options.out_dir, options.launch, options.args
+    if launch is None or options.timeout_s is None:
+        raise ValueError("a launch file and a timeout are needed")
     command = launch_command(launch, args)
     out_dir.mkdir(parents=True, exist_ok=True)
     clear_earlier(out_dir)
@@ -100,16 +92,16 @@ def run_mission(
     with RosGraph(
         {**reports_to, **install_env}, out_dir / "ros", use_sim_time=use_sim_time
     ) as graph:
-        recording = _start_recorder(graph, out_dir, (*DEFAULT_TOPICS, *topics), until)
+        recording = _start_recorder(graph, options)
         started = graph.start("roslaunch", command, patience_s=_LAUNCH_PATIENCE_S, may_end=True)
-        watch = _Watch(graph, started, out_dir, began, on_progress)
+        watch = _Watch(graph, started, out_dir, began, options.on_progress)
         watch.wait_for_parameters(trace)
         # Without it less is known of where values came from, and that is all.
         with contextlib.suppress(RunError):
             dump_params(graph.env, out_dir / START_FILE)
         if use_sim_time:
             watch.wait_for_clock()
-        ended = watch.wait_for_end(timeout_s, settle_s if use_sim_time else 0.0)
+        ended = watch.wait_for_end(options.timeout_s, settle_s if use_sim_time else 0.0)
         dump_params(graph.env, out_dir / PARAMS_FILE)
         graph.stop(started)
         graph.stop(recording)
@@ -118,7 +110,7 @@ def run_mission(
         said = "; ".join(recording.tail()) or "it says nothing"
         raise RunError(f"the recorder did not finish: {said}", recording.log)
     run = MissionRun.of(status, out_dir, ended, time.monotonic() - began)
-    save_run(run, launch, args, out_dir / RUN_FILE)
+    save_run(run, options)
     save_origins(out_dir, out_dir / PARAMS_FILE, trace, reason, install_env)
     return run
 
@@ -127,20 +119,18 @@ def _status_file(out_dir: Path) -> Path:
     return out_dir / "ros" / "recorder.json"
 
 
-def _start_recorder(
-    graph: RosGraph, out_dir: Path, topics: Sequence[str], until: str | None
-) -> GraphProcess:
-    status = _status_file(out_dir).absolute()
+def _start_recorder(graph: RosGraph, options: RecordOptions) -> GraphProcess:
+    status = _status_file(options.out_dir).absolute()
     status.unlink(missing_ok=True)
-    bag = (out_dir / BAG_FILE).absolute()
+    bag = (options.out_dir / BAG_FILE).absolute()
     command = [sys.executable, "-m", recorder.__name__, "--bag", str(bag)]
     command += ["--status", str(status)]
-    if until is not None:
-        command += ["--until", until]
+    if options.until is not None:
+        command += ["--until", options.until]
     path = [str(project_root()), graph.env.get("PYTHONPATH", "")]
     process = graph.start(
         "recorder",
-        [*command, *dict.fromkeys(topics)],
+        [*command, *dict.fromkeys((*DEFAULT_TOPICS, *options.topics))],
         env={"PYTHONPATH": ":".join(part for part in path if part)},
         patience_s=_RECORDER_PATIENCE_S,
     )

@@ -6,23 +6,23 @@ import os
 import signal
 import threading
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 
 from pytpc.base.errors import MissingToolError, RunError
-from pytpc.recording.mission import RUN_FILE
 from pytpc.ros.mission_run import (
     BAG_FILE,
     DEFAULT_TOPICS,
     PARAMS_FILE,
     MissionRun,
     Progress,
+    RecordOptions,
     marks_of,
     save_run,
 )
 from pytpc.ros.ros1.launch_mission import dump_params
 from pytpc.ros.ros1.master import Master, own_host, uri_of
-from pytpc.ros.ros1.recorder import NODE_NAME, GraphRecorder
+from pytpc.ros.ros1.recorder import NODE_NAME, GraphRecorder, Wanted
 from pytpc.values.origins import START_FILE
 from pytpc.values.recording import MISSION_PATIENCE_S, NO_LAUNCH, save_origins, try_trace
 from pytpc.values.trace import Trace
@@ -31,38 +31,25 @@ _TOLD_S = 0.2
 
 
 def record_graph(
-    out_dir: Path,
-    *,
-    stop: threading.Event,
-    env: Mapping[str, str] | None = None,
-    until: str | None = None,
-    timeout_s: float | None = None,
-    topics: Sequence[str] = (),
-    launch: Path | None = None,
-    args: Mapping[str, str] | None = None,
-    on_progress: Callable[[Progress], None] | None = None,
+    options: RecordOptions, *, stop: threading.Event, env: Mapping[str, str] | None = None
 ) -> MissionRun:
-    """Record /rosout, /threshold_information, all observers' marks and ``topics``.
+    """Record /rosout, /threshold_information, all observers' marks and the topics asked for.
+
+    The folder gets mission.bag, run.json and, where rosparam is there, params_start.yaml,
+    params.yaml and origins.json.
 
     Args:
-        out_dir: gets mission.bag, run.json and, where rosparam is there, params_start.yaml,
-            params.yaml and origins.json.
+        options: the folder, and when the recording ends beside ``stop``.
         stop: ends the recording.
         env: says where the master is and what this machine is called; None: that of this process.
-        until: a topic of type std_msgs/Bool; when it says true the recording ends.
-        timeout_s: the longest that it lasts; None: until ``stop``.
-        topics: recorded besides.
-        launch: the launch file that the graph was started with; without it the origins of its
-            values are not known.
-        args: the arguments that it was started with.
-        on_progress: called about five times a second.
 
     Raises:
-        RunError: the master does not answer, or ``out_dir`` has a recording: a robot's mission
+        RunError: the master does not answer, or the folder has a recording: a robot's mission
             cannot be flown again, as a simulated one can.
         OSError: the bag cannot be written; what was recorded is in ``mission.bag.active``.
     """
     env = os.environ if env is None else env
+    out_dir, on_progress = options.out_dir, options.on_progress
     _refuse_earlier(out_dir)
     out_dir.mkdir(parents=True, exist_ok=True)
     began = time.monotonic()
@@ -70,12 +57,11 @@ def record_graph(
     recorder = GraphRecorder(
         Master(uri, f"{NODE_NAME}_{os.getpid()}"),
         own_host(env, uri),
-        [*DEFAULT_TOPICS, *topics],
+        Wanted([*DEFAULT_TOPICS, *options.topics], options.until or None),
         out_dir / BAG_FILE,
-        until or None,
         strict=False,
     )
-    beginning = _Beginning(env, out_dir, launch, args or {})
+    beginning = _Beginning(env, options)
     try:
         beginning.start()
         ended, told = "", 0.0
@@ -90,7 +76,7 @@ def record_graph(
                 ended = "interrupted"
             elif status.done:
                 ended = "done"
-            elif timeout_s is not None and wall_s > timeout_s:
+            elif options.timeout_s is not None and wall_s > options.timeout_s:
                 ended = "timeout"
     except BaseException:
         recorder.leave()
@@ -99,7 +85,7 @@ def record_graph(
     trace, reason = beginning.ended()
     _try_dump(env, out_dir / PARAMS_FILE)
     run = MissionRun.of(status, out_dir, ended, time.monotonic() - began)
-    save_run(run, launch, args or {}, out_dir / RUN_FILE)
+    save_run(run, options)
     save_origins(out_dir, out_dir / PARAMS_FILE, trace, reason, env)
     return run
 
@@ -110,11 +96,10 @@ class _Beginning(threading.Thread):
     Both may take many seconds, in which the robot goes on.
     """
 
-    def __init__(
-        self, env: Mapping[str, str], out_dir: Path, launch: Path | None, args: Mapping[str, str]
-    ) -> None:
+    def __init__(self, env: Mapping[str, str], options: RecordOptions) -> None:
         super().__init__(name="beginning", daemon=True)
-        self._env, self._out_dir, self._launch, self._args = env, out_dir, launch, args
+        self._env, self._out_dir = env, options.out_dir
+        self._launch, self._args = options.launch, options.args
         self._found: tuple[Trace | None, str] | None = None
 
     def run(self) -> None:

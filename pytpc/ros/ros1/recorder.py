@@ -18,6 +18,7 @@ import threading
 import time
 from collections.abc import Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 from pytpc.base.errors import RunError
 from pytpc.recording.marks import MarkMessages
@@ -152,15 +153,21 @@ class Discovery:
             return
 
 
+class Wanted(NamedTuple):
+    """Topics to record, and the one of type std_msgs/Bool that says when the mission is done."""
+
+    topics: Sequence[str]
+    until: str | None = None
+
+
 class GraphRecorder:
     """Records topics of a running graph into a bag.
 
     Args:
         master: the ROS master; its caller is the node that this is.
         host: the address at which the graph reaches this machine.
-        topics: what is recorded; topics of observers are added as they appear.
+        wanted: what is recorded; topics of observers are added as they appear.
         bag: the file.
-        until: a topic of type std_msgs/Bool that says when the mission is done.
         strict: a message that is not of the type of its topic is an error; otherwise it is in the
             bag, and whoever reads that says so.
 
@@ -173,13 +180,13 @@ class GraphRecorder:
         self,
         master: Master,
         host: str,
-        topics: Sequence[str],
+        wanted: Wanted,
         bag: Path,
-        until: str | None,
         *,
         strict: bool = True,
     ) -> None:
         """See the class; on return all topics are registered."""
+        topics, until = wanted
         recorded = list(dict.fromkeys([*topics, *([until] if until is not None else [])]))
         subscribed = list(dict.fromkeys([*recorded, _CLOCK]))
         self._tolerated = () if strict else (ValueError,)
@@ -242,7 +249,7 @@ def record(bag: Path, status: Path, topics: Sequence[str], until: str | None) ->
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: stop.set())
     master = Master(os.environ["ROS_MASTER_URI"], NODE_NAME)
-    graph = GraphRecorder(master, os.environ.get("ROS_IP", "127.0.0.1"), topics, bag, until)
+    graph = GraphRecorder(master, os.environ.get("ROS_IP", "127.0.0.1"), Wanted(topics, until), bag)
     told = 0.0
     while not stop.is_set():
         account = graph.step()

@@ -1,0 +1,81 @@
+"""Static information: built, analysed or collected."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from pytpc.base.errors import InputError
+from pytpc.base.wording import many
+from pytpc.build.build import BuildResult
+from pytpc.build.build import build_workspace as build
+from pytpc.build.collect import Collected, collect_sources
+from pytpc.build.python_units import (
+    PythonUnits,
+    analyse_scripts,
+    analyse_workspaces,
+    joined,
+    named_beside,
+    scripts_at,
+)
+from pytpc.python_analysis.budget import SECONDS
+from pytpc.python_analysis.rules_file import Rules
+from pytpc.static.static_info import StaticInfo
+from pytpc.workspace.colcon import BuildOptions
+
+__all__ = ["BuildOptions", "BuildResult", "Collected", "analyse", "build", "collect"]
+
+Progress = Callable[[int, int], None]
+
+
+def analyse(
+    sources: Sequence[Path],
+    rules: Rules,
+    *,
+    max_seconds: float = SECONDS,
+    on_progress: Progress | None = None,
+) -> StaticInfo:
+    """Find the comparisons of Python nodes; nothing is run, and ROS is not needed.
+
+    Args:
+        sources: scripts, packages or workspaces.
+        rules: what reads a parameter, and what exposes.
+        max_seconds: what the analysis of one script may take; 0 is no limit.
+        on_progress: called with (scripts done, scripts in all).
+
+    Raises:
+        InputError: there is no Python node, or none that can be analysed.
+    """
+    scripts = joined(scripts_at(source, rules, sources) for source in sources)
+    if not scripts.entries and not scripts.left_out:
+        raise InputError("no Python node here: a script with a shebang, or a __main__", sources[0])
+    analysed = analyse_scripts(scripts, rules, on_progress, max_seconds)
+    if not analysed.units:
+        others = len(analysed.left_out) - 1
+        also = f" (and {many(others, 'other script')} that cannot be analysed)" if others else ""
+        raise InputError(f"{analysed.left_out[0].reason}{also}")
+    return StaticInfo.of(named_beside(analysed.units, ()), left_out=analysed.left_out)
+
+
+def collect(
+    sources: Sequence[Path],
+    rules: Rules | None = None,
+    *,
+    on_scripts: Progress | None = None,
+    on_progress: Progress | None = None,
+) -> Collected:
+    """Merge the static information of all link units below each source.
+
+    Args:
+        sources: workspaces, build bases, build folders or files of static information.
+        rules: those by which the Python nodes of workspaces are analysed; None: they are not.
+        on_scripts: called with (scripts analysed, scripts in all).
+        on_progress: called with (files read, files in all).
+
+    Raises:
+        InputError: a source cannot be read.
+    """
+    python: PythonUnits | None = None
+    if rules is not None:
+        python = analyse_workspaces(sources, rules, on_scripts)
+    return collect_sources(sources, on_progress, python)

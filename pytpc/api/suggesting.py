@@ -1,0 +1,160 @@
+"""Which value to try, and what it would have changed in the recorded run."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TypedDict, Unpack
+
+from pytpc.api.missions import Source, load_static, read
+from pytpc.api.ranking import Rankings
+from pytpc.base.wording import Number
+from pytpc.diagnosis.question import PLAIN, Question
+from pytpc.diagnosis.ranking.blame import blame
+from pytpc.diagnosis.results.advice import BlamedAdvice, MarkGroup, Suggested, WhatIf
+from pytpc.diagnosis.results.suspects import Blame
+from pytpc.diagnosis.suggestion.advise import advise, suggest_each
+from pytpc.diagnosis.suggestion.blamed import advise_blamed
+from pytpc.diagnosis.suggestion.joining import join_advice, with_remedies
+from pytpc.diagnosis.suggestion.what_if import what_if as replay
+from pytpc.ingest import Recording
+from pytpc.present.answers import Advices
+from pytpc.recording.declaration import Declared
+from pytpc.recording.marks import MARK_TYPES, Mark, MarkType
+from pytpc.static.static_info import StaticInfo
+
+
+class ReplaySettings(TypedDict, total=False):
+    """The settings of ``what_if`` as keywords."""
+
+    kind: MarkType | None
+    marks: Sequence[Mark] | None
+    window_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Suggestions:
+    """What to try by all marks of a mission, and by those that say the same.
+
+    ``first`` is what all marks say of the first suspect, or of the one parameter that was asked
+    about; it is empty where that is not suspected.
+    """
+
+    together: Blame
+    first: tuple[BlamedAdvice, ...]
+    groups: tuple[MarkGroup, ...]
+
+    @property
+    def is_one_answer(self) -> bool:
+        """Whether all marks together say what each of them says."""
+        if len(self.groups) != 1 or not self.groups[0].suspects or not self.first:
+            return False
+        joined, first = self.groups[0].suspects[0], self.first[0]
+        same = joined.advice.suspect.parameter == first.accused.parameter
+        return same and joined.remedy.value == first.remedy.value
+
+
+def suggest(
+    rankings: Rankings,
+    mark: int = 1,
+    *,
+    top: int = PLAIN.top,
+    declared: Sequence[Declared] | None = None,
+) -> Advices:
+    """What to do with suspects at a mark, and what it would have changed in the recorded run.
+
+    Of each it has ``remedy``, the value to try by all marks that say the same (as `pytpc suggest`),
+    and ``suggestion``, the smallest change at this mark.
+
+    Args:
+        rankings: what ``rank`` gave.
+        mark: which of them, counted from 1.
+        top: how many suspects.
+        declared: the declared ranges of parameters; None: they are looked for in the sources of the
+            static information, and in the mission where it was ranked by its path.
+
+    Raises:
+        IndexError: there is no such mark.
+    """
+    if not 1 <= mark <= len(rankings):
+        raise IndexError(f"mark {mark} of {len(rankings)}")
+    recording, static = rankings.recording, rankings.static_info
+    about = rankings.declared if declared is None else declared
+    question = replace(rankings.question, top=top, declared=about)
+    lists = [advise(recording, static, ranking, question) for ranking in rankings]
+    found = with_remedies(recording, static, list(rankings), lists, question)
+    return Advices(tuple(found[mark - 1]), rankings[mark - 1])
+
+
+def smallest_changes(rankings: Rankings) -> list[list[Suggested]]:
+    """The first suspects at each mark with the smallest change of each."""
+    recording, static, question = rankings.recording, rankings.static_info, rankings.question
+    return [suggest_each(recording, static, ranking, question) for ranking in rankings]
+
+
+def suggest_together(rankings: Rankings, parameter: str | None = None) -> Suggestions:
+    """What to try by all marks, and by each group of marks that say the same.
+
+    Args:
+        rankings: what ``rank`` gave; its question says for how many suspects, and what is known.
+        parameter: the one that is asked about; None: the first suspects.
+
+    Raises:
+        InputError: no comparison with the parameter is known.
+    """
+    asked = rankings if parameter is None else rankings.only(parameter)
+    recording, static, question = rankings.recording, rankings.static_info, rankings.question
+    together = blame(recording, static, question)
+    suspected = together if parameter is None else together.only(parameter)
+    first = advise_blamed(suspected, recording, static, replace(question, top=1))
+    groups = join_advice(recording, static, list(asked), question)
+    return Suggestions(together, tuple(first), tuple(groups))
+
+
+def what_if(
+    mission: Recording | Source,
+    static_info: StaticInfo | Source,
+    parameter: str,
+    value: Number,
+    **settings: Unpack[ReplaySettings],
+) -> WhatIf:
+    """What another value of a parameter would have changed in a recorded run.
+
+    Args:
+        mission: the run.
+        static_info: what the analysis found.
+        parameter: its name as in the source, or as a user gives it.
+        value: in the parameter's own unit.
+        **settings: ``kind``: the type of error that the question is about; None: of each mark its
+            own. ``marks``: those to answer; None: the mission's, of that type or without one.
+            ``window_s``: how long before a mark counts as near to it, in seconds.
+
+    Raises:
+        InputError: no comparison is with that parameter, or something cannot be read.
+    """
+    question = Question(**settings)
+    return replay(read(mission), load_static(static_info), parameter, value, question)
+
+
+def what_if_by_type(
+    recording: Recording,
+    static_info: StaticInfo,
+    parameter: str,
+    value: Number,
+    question: Question = PLAIN,
+) -> list[tuple[MarkType | None, WhatIf]]:
+    """What another value would have changed, for each type of mark that the mission has.
+
+    Raises:
+        InputError: no comparison is with that parameter.
+    """
+    present = {mark.type for mark in recording.marks}
+    kinds: list[MarkType | None] = [kind for kind in MARK_TYPES if kind in present]
+    if None in present or not kinds:
+        kinds = [None] if len(present) <= 1 else [*kinds, None]
+    answers = []
+    for kind in kinds:
+        marks = [mark for mark in recording.marks if mark.type == kind]
+        asked = question.replayed(kind, marks)
+        answers.append((kind, replay(recording, static_info, parameter, value, asked)))
+    return answers
