@@ -29,9 +29,8 @@ from pytpc.present.page.series import (
     FALSE,
     NOTHING,
     TRUE,
-    Span,
-    evidence,
     lane,
+    plot_data,
     runs,
     thin,
     with_gaps,
@@ -122,12 +121,12 @@ def test_a_result_holds_until_the_next_one():
 # to the mark at 25 s: from 21 s. The later flop at 51 s is shown, but moves nothing.
 def test_evidence_reaches_back_to_the_last_flop():
     rows = [(t, 0, 1, 5, 3) for t in range(10, 53)]
-    calm = evidence(events(rows), key(0), ns(50), Span(ns(10), ns(52)))
+    calm = plot_data(events(rows), key(0), ns(50), ns(10), ns(52))
     assert (calm.begin, calm.end, calm.evaluations) == (20, 42, 23)
     assert (calm.steps.tolist(), calm.outcome.tolist()) == ([20], [True])
     rows[:15] = [(t, 0, 0, 1, 3) for t in range(10, 25)]
     rows[-2:] = [(t, 0, 0, 1, 3) for t in (51, 52)]
-    changed = evidence(events(rows), key(0), ns(50), Span(ns(10), ns(52)))
+    changed = plot_data(events(rows), key(0), ns(50), ns(10), ns(52))
     assert (changed.begin, changed.flops.tolist()) == (11, [15, 41])
     assert changed.steps.tolist() == [11, 15, 41]
     assert changed.outcome.tolist() == [False, True, False]

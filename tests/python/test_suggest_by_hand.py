@@ -1,4 +1,4 @@
-"""Suggestions worked out by hand: every relation, both types, thresholds computed in five ways.
+"""The smallest change by hand: every relation, both types, thresholds computed in five ways.
 
 The threshold is 25 and the compared values are 4 and 100. What would do is one of four sets of
 thresholds T, whatever the relation:

@@ -28,7 +28,7 @@ _HOLD_PERIODS = 3.0
 
 
 @dataclass(frozen=True, slots=True)
-class Evidence:
+class PlotData:
     """The evaluations of one TPC around a mark; times are seconds since the recording began.
 
     ``time``, ``cmp`` and ``thresh`` are float64[n], n at most ``POINTS`` and the gaps: where the
@@ -69,20 +69,13 @@ def kept_of(summaries: Summaries, key: str, start_ns: int) -> Floats:
     return found[:, np.isfinite(found).all(axis=0)]
 
 
-class Span(NamedTuple):
-    """The begin and the end of a mission."""
-
-    start_ns: int
-    end_ns: int
-
-
-def evidence(
+def plot_data(
     events: Events,
     key: str,
     mark_ns: int,
     span: Span,
     summaries: Summaries | None = None,
-) -> Evidence:
+) -> PlotData:
     """The evaluations from 20 s before a mark, or from the last flop if that is earlier, to 6 s
     after it, within the recording."""
     start_ns, end_ns = span
@@ -106,7 +99,7 @@ def evidence(
     kept_spans = kept_of(summaries if summaries is not None else Summaries.empty(), key, start_ns)
     from_to = (begin - start_ns) / 1e9, (end - start_ns) / 1e9
     touching = (kept_spans[1] >= from_to[0]) & (kept_spans[0] <= from_to[1])
-    return Evidence(
+    return PlotData(
         time=lines[0],
         cmp=lines[1],
         thresh=lines[2],

@@ -15,7 +15,7 @@ from markupsafe import Markup
 
 from pytpc.base.wording import many
 from pytpc.diagnosis.question import Types
-from pytpc.diagnosis.results.mission import MarkAnswer
+from pytpc.diagnosis.results.mission_answer import MarkAnswer
 from pytpc.diagnosis.results.suspects import MarkRanking
 from pytpc.present.page.answer import AnswerView, answers, spoken
 from pytpc.present.page.cards import (
@@ -26,7 +26,7 @@ from pytpc.present.page.cards import (
     row_view,
 )
 from pytpc.present.page.mission import ReportedMission
-from pytpc.present.page.payload import embedded, marks_of
+from pytpc.present.page.payload import embedded, marks_json
 from pytpc.present.page.timeline import timeline
 from pytpc.present.page.together import TogetherView, together
 from pytpc.recording.marks import MarkType
@@ -126,7 +126,7 @@ def mission_view(
         payload=embedded(
             {
                 "seconds": recording.seconds,
-                "marks": marks_of(
+                "marks": marks_json(
                     [(mission.seconds(mark.time_ns), mark.type) for mark in recording.marks]
                 ),
                 "series": drawn.series,
