@@ -97,7 +97,7 @@ class LiveScores:
         self._summaries: dict[str, dict[str, SummaryStream]] = {key: {} for key in keys}
 
     # One argument for each column of an event: this is called thousands of times a second.
-    def add(  # noqa: PLR0917
+    def add(  # noqa: PLR0913, PLR0917
         self,
         time_ns: int,
         key: str,

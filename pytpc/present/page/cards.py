@@ -220,7 +220,6 @@ def _evidence(
     mission: ReportedMission, answer: SuspectAnswer, mark: Mark
 ) -> tuple[PlotData, EvidenceStyle]:
     recording, suspect = mission.recording, answer.advice.suspect
-    start, end = recording.start_ns, recording.end_ns
     at = mission.seconds(mark.time_ns)
     style = EvidenceStyle(
         mark=at,
@@ -230,9 +229,7 @@ def _evidence(
         culprit=mission.is_changed(suspect.parameter),
         feasible=answer.feasible,
     )
-    data = plot_data(
-        recording.events, suspect.key, mark.time_ns, start, end, summaries=recording.summaries
-    )
+    data = plot_data(recording, suspect.key, mark.time_ns)
     return data, style
 
 

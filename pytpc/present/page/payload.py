@@ -78,23 +78,12 @@ def series_of(recording: Recording, key: str) -> dict[str, object]:
 
 def lanes_of(recording: Recording, lanes: Sequence[tuple[str, str]]) -> dict[str, object]:
     """The lanes of the timeline, from pairs of (label, key)."""
-    found = [lane_of(recording, key, FINE) for _, key in lanes]
+    found = [lane(recording, key, FINE) for _, key in lanes]
     return {
         "labels": [calm(label) for label, _ in lanes],
         "columns": FINE,
         "runs": [base64_of(np.array(runs(states), dtype=np.int32).reshape(-1)) for states in found],
     }
-
-
-def lane_of(recording: Recording, key: str, bins: int) -> npt.NDArray[np.int8]:
-    """int8[bins]: the states of one lane, see `pytpc.present.page.series.lane`."""
-    return lane(
-        recording.events,
-        key,
-        Span(recording.start_ns, recording.end_ns),
-        bins=bins,
-        summaries=recording.summaries,
-    )
 
 
 def curves_of(curves: RankCurves, names: Sequence[str], start_ns: int) -> dict[str, object]:

@@ -187,7 +187,7 @@ def _positions(mission: ReportedMission) -> str:
 
 _BELIEVED: dict[Types, str] = {
     "believe": "",
-    "doubt": "doubted: the suspects of the other type stay rivals",
+    "doubt": "doubted: suspects of the other type still compete",
     "ignore": "ignored: ranked by both scores combined",
 }
 
@@ -208,8 +208,8 @@ def _facts(mission: ReportedMission) -> list[tuple[str, str]]:
         ("Length", f"{recording.seconds:.1f} s"),
         ("Reports", reports),
         ("Comparisons seen", f"{seen} of {len(static.thresholds)} found in the source"),
-        ("Changes of a result", f"{int(events.flop.sum()):,}"),
-        ("Nodes that report", str(len(nodes))),
+        ("Result changes", f"{int(events.flop.sum()):,}"),
+        ("Reporting nodes", str(len(nodes))),
     ]
     believed = _BELIEVED[mission.answer.question.types]
     return [*facts, ("Types of the marks", believed)] if believed else facts
