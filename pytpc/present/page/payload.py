@@ -18,7 +18,7 @@ from markupsafe import Markup
 from pytpc.base.columns import Floats
 from pytpc.diagnosis.results.mission_answer import RankCurves
 from pytpc.present.page.environment import seen
-from pytpc.present.page.series import Span, gap_after, kept_of, lane, runs, thin
+from pytpc.present.page.series import gap_after, kept_of, lane, runs, thin
 from pytpc.recording.marks import MarkType
 from pytpc.recording.mission import Recording
 

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -88,13 +87,6 @@ def timeline(mission: ReportedMission, ident: str) -> tuple[Markup, dict[str, ob
     moving["accent"] = accent
     moving["culprit"] = changed is not None
     return Markup(svg), moving
-
-
-class FigureName(NamedTuple):
-    """The prefix of a figure's ids, unlike that of any other, and what it shows, in words."""
-
-    ident: str
-    label: str
 
 
 def timeline_svg(
