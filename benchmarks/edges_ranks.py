@@ -15,7 +15,7 @@ import numpy as np
 from pytpc.base.columns import Floats
 from pytpc.diagnosis.scores.score_tables import Tpcs, parameter_tables, tpc_scores
 from pytpc.diagnosis.scores.scores import NONE
-from pytpc.diagnosis.scores.summary_scores import Reports
+from pytpc.diagnosis.scores.summary_scores import LogTables
 from pytpc.ingest import read
 from pytpc.recording.events import Events
 from pytpc.recording.summaries import Summaries, Summary, SummaryBuilder
@@ -69,7 +69,7 @@ def main(mission: Path) -> None:
     times = np.concatenate([times, [mark.time_ns for mark in recording.marks]])
 
     def ranked(some: Events, summaries: Summaries) -> tuple[Floats, Floats]:
-        scores = tpc_scores(tpcs, Reports(some.with_keys(tpcs.keys), summaries), times)
+        scores = tpc_scores(tpcs, LogTables(some.with_keys(tpcs.keys), summaries), times)
         return scores.second, parameter_tables(tpcs, scores).second.ranks
 
     exact, ranks = ranked(events, Summaries.empty())

@@ -20,7 +20,7 @@ from score_by_pandas import frame_of, scores_at
 from pytpc.diagnosis.scores.live_scores import LiveScores
 from pytpc.diagnosis.scores.score_tables import Tpcs, parameter_tables, tpc_scores
 from pytpc.diagnosis.scores.scores import NONE, type1, type2
-from pytpc.diagnosis.scores.summary_scores import Reports
+from pytpc.diagnosis.scores.summary_scores import LogTables
 from pytpc.recording.events import Events
 from pytpc.recording.summaries import Summaries
 
@@ -110,7 +110,7 @@ def speed() -> None:
     tpcs = Tpcs(events.keys, np.ones(KEYS), tuple(f"p{code // 2}" for code in range(KEYS)))
     none = Summaries.empty()
     ranked = seconds_of(
-        lambda: parameter_tables(tpcs, tpc_scores(tpcs, Reports(events, none), times))
+        lambda: parameter_tables(tpcs, tpc_scores(tpcs, LogTables(events, none), times))
     )
     figure(TOPIC, "the_same_with_ranks", ranked, unit="s", target="<1", hit=ranked < 1)
     # The middles of as many parts of the grid: pandas is slower the more has been before.

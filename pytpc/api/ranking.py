@@ -12,7 +12,7 @@ from pytpc.base.errors import InputError
 from pytpc.base.wording import plain
 from pytpc.diagnosis.question import PLAIN, WINDOW_S, Question, Types
 from pytpc.diagnosis.ranking.ranking import rank_marks
-from pytpc.diagnosis.results.mission import RankCurves
+from pytpc.diagnosis.results.mission_answer import RankCurves
 from pytpc.diagnosis.results.suspects import MarkRanking
 from pytpc.diagnosis.scores.curves import STEP_S, rank_curves
 from pytpc.ingest import Recording

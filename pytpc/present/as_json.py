@@ -1,4 +1,4 @@
-"""Advice as JSON: the documents of ``suggest`` and ``rank`` (docs/reference/command-line.md)."""
+"""Advice as JSON: the output of ``suggest --json`` and ``rank --json``."""
 
 from __future__ import annotations
 

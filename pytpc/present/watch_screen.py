@@ -14,7 +14,7 @@ from rich.cells import cell_len
 from rich.text import Text
 
 from pytpc.base.wording import exact, many, plain
-from pytpc.diagnosis.results.live import Kept, LiveRow, Look, Part
+from pytpc.diagnosis.results.live import Kept, LiveRow, Look, TrendPart
 from pytpc.recording.marking_session import Session, View, clock_text, cut, folded
 from pytpc.recording.marks import Mark, MarkType
 
@@ -312,10 +312,11 @@ def ago(seconds: float | None) -> str:
     return f"{minutes} m" if minutes < 1000 else f"{minutes // 60} h"
 
 
-def bars(parts: Sequence[Part], utf8: bool) -> str:
+def bars(parts: Sequence[TrendPart], utf8: bool) -> str:
     """How far the value was from its threshold: low bars are near, a cross is a flop.
 
-    >>> bars([Part(0.0, False), Part(1.0, False), Part(0.3, True), Part(math.nan, False)], True)
+    >>> parts = [(0.0, False), (1.0, False), (0.3, True), (math.nan, False)]
+    >>> bars([TrendPart(*part) for part in parts], True)
     '▁█x '
     """
     levels = _BARS[utf8]

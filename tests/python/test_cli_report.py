@@ -131,7 +131,7 @@ def test_types_and_window_are_those_of_rank(files, tmp_path):
     text = text_of(page)
     assert "2 s window" in text
     # At mark 1 both scores count, so that also what never flopped is ranked.
-    assert text.count("2 have a score. Ranked among 2 parameters.") == 2
+    assert text.count("2 of 2 parameters have a score.") == 2
 
 
 def test_several_missions_have_a_table(files, tmp_path):
@@ -154,7 +154,7 @@ def test_without_marks_it_says_what_to_do(files, tmp_path):
         writer.log(2, "/uav", line(1, 0, 0.3, 0.6))
     page = tmp_path / "r.html"
     assert run("report", bag, "--static", static, "-o", page).exit_code == 0
-    assert "The observer marked nothing; `pytpc mark` does it afterwards, too." in text_of(page)
+    assert "This recording has no marks. Add some with `pytpc mark`." in text_of(page)
 
 
 def test_open_shows_the_page(files, tmp_path, monkeypatch):

@@ -14,8 +14,8 @@ from pytpc.diagnosis.ranking.mark_evidence import (
     REACTION_SIGMA,
     SHARE,
     STRAY,
-    Evidence,
-    evidence,
+    MarkEvidence,
+    mark_evidence,
     marked,
     reaction,
 )
@@ -25,14 +25,14 @@ from pytpc.diagnosis.ranking.posterior import (
     REPEAT,
     Said,
     Weights,
-    diagnose,
+    diagnose_log,
     mixture,
     ranked,
     softmax,
     type_odds,
 )
 from pytpc.diagnosis.ranking.priors import UNCHANGED, of_change, of_changes, of_reference
-from pytpc.diagnosis.ranking.result_streams import Streams
+from pytpc.diagnosis.ranking.result_streams import ResultStreams
 from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.ingest import Recording
 from pytpc.recording.events import Events
@@ -86,19 +86,19 @@ def first(found):
 
 
 def test_the_change_before_the_mark_is_suspected():
-    found = diagnose(recording(gate_case(), marks(33, kind="I")), STATIC)
+    found = diagnose_log(recording(gate_case(), marks(33, kind="I")), STATIC)
     assert first(found) == "~gate"
     assert "~never" not in [found.names[n] for n in found.order]
 
 
 def test_what_stands_near_its_threshold_in_the_wait_is_suspected():
     for kind in ("II", None):
-        found = diagnose(recording(wait_case(), marks(30, 37, 44, 51, kind=kind)), STATIC)
+        found = diagnose_log(recording(wait_case(), marks(30, 37, 44, 51, kind=kind)), STATIC)
         assert first(found) == "~gate", kind
 
 
 def test_the_posterior_is_one_with_none_of_them():
-    found = diagnose(recording(gate_case(), marks(33, kind="I")), STATIC)
+    found = diagnose_log(recording(gate_case(), marks(33, kind="I")), STATIC)
     assert found.posterior.sum() + found.none == pytest.approx(1.0)
     assert found.posterior[found.names.index("~never")] == 0.0
 
@@ -118,7 +118,7 @@ def test_the_posterior_of_two_by_hand():
 # way round by the better of both.
 def test_the_witnesses_are_mixed_by_hand():
     zero = np.zeros(3)
-    found = Evidence(
+    found = MarkEvidence(
         acted=np.array([0.0, 2.0, -1.0]),
         waited=np.array([1.0, 0.0, -1.0]),
         since=zero,
@@ -223,8 +223,8 @@ def test_what_an_observer_says_first_counts_most():
 # below 33 s, where z = (log 33 - 1.946) / 1.17 = 1.3252 and, of t with four degrees of freedom,
 # F = 1/2 + 3/8 z/sqrt(1 + z^2/4) (1 - z^2/(12 + 3 z^2)) = 0.8721.
 def test_acted_by_hand():
-    streams = Streams.of(events(gate_case()), Tpcs.of(STATIC))
-    found = evidence(streams, marked(np.array([ns(33)]), ("",), streams))
+    streams = ResultStreams.of(events(gate_case()), Tpcs.of(STATIC))
+    found = mark_evidence(streams, marked(np.array([ns(33)]), ("",), streams))
     f = STRAY + (1 - STRAY) * 79.53 * reaction(np.array([3.0, 33.0]))
     chance = STRAY + (1 - STRAY) * 79.53 / 33 * 0.8721
     expected = math.log((0.3 * f[0] + 0.015 * f[1]) / 0.615) - math.log(chance)
@@ -241,8 +241,8 @@ def test_what_is_evaluated_once_may_have_passed_at_once():
     weighed = []
     for length in (0.1, 1.0):
         own = [(30 + t * length / 5, 0, 1, 1, 2) for t in range(6)]
-        streams = Streams.of(events(rows + own), Tpcs.of(STATIC))
-        found = evidence(streams, marked(np.array([ns(33)]), ("",), streams))
+        streams = ResultStreams.of(events(rows + own), Tpcs.of(STATIC))
+        found = mark_evidence(streams, marked(np.array([ns(33)]), ("",), streams))
         weighed.append(math.exp(found.acted[0]))
     assert weighed[0] / weighed[1] == pytest.approx((0.32 / 0.62) / (0.04 / 0.34))
     chance = STRAY + (1 - STRAY) * 79.5 / 33 * 0.8721
@@ -251,9 +251,9 @@ def test_what_is_evaluated_once_may_have_passed_at_once():
 
 def test_a_comparison_that_changes_all_the_time_is_as_good_as_chance():
     rows = [(t / 2, 0, t % 4 < 2, t % 4, 2) for t in range(160)]
-    streams = Streams.of(events(rows), Tpcs.of(STATIC))
+    streams = ResultStreams.of(events(rows), Tpcs.of(STATIC))
     own = marked(np.array([ns(40), ns(42), ns(45)]), ("a", "b", "c"), streams)
-    assert abs(evidence(streams, own).acted[0]) < 0.3
+    assert abs(mark_evidence(streams, own).acted[0]) < 0.3
 
 
 # The wait is [22, 30]: gate stands at 1.1 and 1.11 with a threshold of 1, false, for 8.5 s of 8.
@@ -261,8 +261,8 @@ def test_a_comparison_that_changes_all_the_time_is_as_good_as_chance():
 # to 0.11 + 0.05 * 4 = 0.31: elsewhere from 18.5 s, where the value is 1.3, to 21.5 s, and from 30.5
 # to 79.5 s: 7 + 99 evaluations of half a second.
 def test_waited_by_hand():
-    streams = Streams.of(events(wait_case()), Tpcs.of(STATIC))
-    found = evidence(streams, marked(np.array([ns(30)]), ("",), streams))
+    streams = ResultStreams.of(events(wait_case()), Tpcs.of(STATIC))
+    found = mark_evidence(streams, marked(np.array([ns(30)]), ("",), streams))
     elsewhere = 106 * 0.5 / (79.53 - 8)
     assert found.held[0] == 1.0
     assert found.waited[0] == pytest.approx(math.log((1 + SHARE) / (elsewhere + SHARE)), abs=1e-3)
@@ -280,9 +280,9 @@ def test_a_break_ends_a_wait_and_a_short_one_does_not():
     rows = [(t / 10, 0, 0, 1, 2) for t in range(460)] + [
         (t / 10, 0, 0, 1, 2) for t in range(490, 800)
     ]
-    streams = Streams.of(events(rows), Tpcs.of(STATIC))
+    streams = ResultStreams.of(events(rows), Tpcs.of(STATIC))
     found = [
-        evidence(streams, marked(np.array([ns(m)]), ("",), streams)).since[0]
+        mark_evidence(streams, marked(np.array([ns(m)]), ("",), streams)).since[0]
         for m in (50, 48.5, 47)
     ]
     fits = 79.9 * reaction(np.array([1.0, 47.0]), PATIENCE_LOG, PATIENCE_SIGMA)
@@ -292,7 +292,7 @@ def test_a_break_ends_a_wait_and_a_short_one_does_not():
 
 
 def test_only_the_first_mark_of_an_observer_tells_when_it_began():
-    streams = Streams.of(events(gate_case()), Tpcs.of(STATIC))
+    streams = ResultStreams.of(events(gate_case()), Tpcs.of(STATIC))
     found = marked(np.array([ns(40), ns(33), ns(50)]), ("a", "a", "b"), streams)
     assert found.times.tolist() == [40, 33, 50]
     assert found.firsts.tolist() == [33, 50]
@@ -318,10 +318,10 @@ def test_a_clean_run_tells_which_threshold_is_another():
 def test_a_prior_moves_the_order():
     names = Tpcs.of(STATIC).names
     prior = np.where([name == "~safe" for name in names], 20.0, 0.0)
-    found = diagnose(recording(gate_case(), marks(33)), STATIC, prior=prior)
+    found = diagnose_log(recording(gate_case(), marks(33)), STATIC, prior=prior)
     assert first(found) == "~safe"
     with pytest.raises(ValueError, match="one prior for each parameter"):
-        diagnose(recording(gate_case(), marks(33)), STATIC, prior=np.zeros(2))
+        diagnose_log(recording(gate_case(), marks(33)), STATIC, prior=np.zeros(2))
 
 
 CASES = [(gate_case, marks(33, 35)), (wait_case, marks(30, 37, 44))]
@@ -329,32 +329,33 @@ CASES = [(gate_case, marks(33, 35)), (wait_case, marks(30, 37, 44))]
 
 @pytest.mark.parametrize(("rows", "own"), CASES)
 def test_the_clock_does_not_matter(rows, own):
-    plain = diagnose(recording(rows(), own), STATIC)
+    plain = diagnose_log(recording(rows(), own), STATIC)
     late = [(row[0] + 2**20, *row[1:]) for row in rows()]
     moved = [replace(mark, time_ns=mark.time_ns + ns(2**20)) for mark in own]
-    assert diagnose(recording(late, moved), STATIC).scores == pytest.approx(plain.scores, rel=1e-9)
+    found = diagnose_log(recording(late, moved), STATIC)
+    assert found.scores == pytest.approx(plain.scores, rel=1e-9)
 
 
 @pytest.mark.parametrize(("rows", "own"), CASES)
 def test_the_order_of_recording_does_not_matter(rows, own):
-    plain = diagnose(recording(rows(), own), STATIC)
+    plain = diagnose_log(recording(rows(), own), STATIC)
     shuffled = [rows()[n] for n in np.random.default_rng(1).permutation(len(rows()))]
-    turned = diagnose(recording(shuffled, own[::-1]), STATIC)
+    turned = diagnose_log(recording(shuffled, own[::-1]), STATIC)
     assert turned.scores.tolist() == plain.scores.tolist()
 
 
 @pytest.mark.parametrize(("rows", "own"), CASES)
 def test_units_do_not_matter(rows, own):
-    plain = diagnose(recording(rows(), own), STATIC)
+    plain = diagnose_log(recording(rows(), own), STATIC)
     larger = [(t, n, r, cmp * 1024, thresh * 1024) for t, n, r, cmp, thresh in rows()]
-    assert diagnose(recording(larger, own), STATIC).scores.tolist() == plain.scores.tolist()
+    assert diagnose_log(recording(larger, own), STATIC).scores.tolist() == plain.scores.tolist()
 
 
 @pytest.mark.parametrize(("rows", "own"), CASES)
 def test_names_do_not_matter(rows, own):
-    plain = diagnose(recording(rows(), own), STATIC)
+    plain = diagnose_log(recording(rows(), own), STATIC)
     other = static_info(*(comparison(n, f"~z{9 - n}") for n in range(5)))
-    found = diagnose(recording(rows(), own), other)
+    found = diagnose_log(recording(rows(), own), other)
     by_name = dict(zip(found.names, found.scores, strict=True))
     names = ["~gate", "~noisy", "~safe", "~never", "~enable"]
     for number, name in enumerate(names):
@@ -364,9 +365,9 @@ def test_names_do_not_matter(rows, own):
 
 @pytest.mark.parametrize(("rows", "own"), CASES)
 def test_what_is_never_evaluated_changes_nothing(rows, own):
-    plain = diagnose(recording(rows(), own), STATIC)
+    plain = diagnose_log(recording(rows(), own), STATIC)
     more = static_info(*STATIC.comparisons.values(), comparison(7, "~more"))
-    found = diagnose(recording(rows(), own), more)
+    found = diagnose_log(recording(rows(), own), more)
     kept = [found.names.index(name) for name in plain.names]
     assert found.posterior[kept].tolist() == plain.posterior.tolist()
     assert found.posterior[found.names.index("~more")] == 0.0
@@ -374,13 +375,13 @@ def test_what_is_never_evaluated_changes_nothing(rows, own):
 
 def test_no_marks_and_no_log_are_nobodys_fault():
     for one in (recording(gate_case(), []), recording([], marks(3))):
-        found = diagnose(one, STATIC)
+        found = diagnose_log(one, STATIC)
         assert (found.order, found.none) == ([], 1.0)
 
 
 def test_marks_outside_of_the_log_are_borne():
     for own in (marks(-500), marks(10_000), [Mark(2**62, "I"), Mark(-(2**62), "II")]):
-        found = diagnose(recording(gate_case(), own), STATIC)
+        found = diagnose_log(recording(gate_case(), own), STATIC)
         assert np.isfinite(found.posterior).all()
         assert found.posterior.sum() + found.none == pytest.approx(1.0)
 
@@ -389,14 +390,14 @@ def test_marks_outside_of_the_log_are_borne():
 def test_values_that_are_no_numbers_are_borne(odd):
     rows = wait_case() + [(t + 0.1, 3, t % 2, odd, -odd) for t in range(80)]
     rows += [(t + 0.2, 2, 0, odd, 9) for t in range(80)]
-    found = diagnose(recording(rows, marks(30, 37, 44)), STATIC)
+    found = diagnose_log(recording(rows, marks(30, 37, 44)), STATIC)
     assert np.isfinite(found.posterior).all()
     assert first(found) == "~gate"
 
 
 def test_one_evaluation_and_equal_times_are_borne():
     rows = [(5, 0, 1, 1, 2)] + [(6, 1, n % 2, n, 2) for n in range(5)]
-    found = diagnose(recording(rows, marks(7)), STATIC)
+    found = diagnose_log(recording(rows, marks(7)), STATIC)
     assert {found.names[n] for n in found.order} == {"~gate", "~noisy"}
     assert np.isfinite(found.scores[found.order]).all()
 
@@ -405,7 +406,7 @@ def test_the_same_code_in_two_nodes_is_two_streams():
     rows = [(t, 0, 0, 1, 2, "/one") for t in range(80)] + [
         (t, 0, 1, 3, 2, "/two") for t in range(80)
     ]
-    streams = Streams.of(events(rows), Tpcs.of(STATIC))
+    streams = ResultStreams.of(events(rows), Tpcs.of(STATIC))
     assert len(streams.streams) == 2
     assert [stream.changes.size for stream in streams.streams] == [0, 0]
 
@@ -413,7 +414,7 @@ def test_the_same_code_in_two_nodes_is_two_streams():
 def test_bursts_are_one_change():
     rows = [(t, 0, 0, 1, 2) for t in range(10)]
     rows += [(10.1, 0, 1, 3, 2), (10.2, 0, 0, 1, 2), (10.3, 0, 1, 3, 2), (15, 0, 0, 1, 2)]
-    streams = Streams.of(events(rows), Tpcs.of(STATIC))
+    streams = ResultStreams.of(events(rows), Tpcs.of(STATIC))
     (stream,) = streams.streams
     assert stream.changes.tolist() == pytest.approx([10.1, 15.0])
 
@@ -421,6 +422,6 @@ def test_bursts_are_one_change():
 def test_streams_are_worked_out_once_for_a_table():
     table: Events = events(gate_case())
     tpcs = Tpcs.of(STATIC)
-    assert Streams.of(table, tpcs) is Streams.of(table, Tpcs.of(STATIC))
+    assert ResultStreams.of(table, tpcs) is ResultStreams.of(table, Tpcs.of(STATIC))
     fewer = Tpcs.of(static_info(comparison(0, "~gate")))
-    assert len(Streams.of(table, fewer).streams) == 1
+    assert len(ResultStreams.of(table, fewer).streams) == 1

@@ -15,7 +15,7 @@ from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.ranking import rank_marks
 from pytpc.diagnosis.scores.live_scores import LiveRanking, LiveScores, TooOldError
 from pytpc.diagnosis.scores.scores import NONE, Before, Formula, type1, type2
-from pytpc.diagnosis.scores.summary_scores import Reports, type2_of_summaries
+from pytpc.diagnosis.scores.summary_scores import LogTables, type2_of_summaries
 from pytpc.ingest import Recording
 from pytpc.recording.events import EventBuilder, Report
 from pytpc.recording.marks import Mark
@@ -236,7 +236,7 @@ def test_live_is_offline_with_summaries(periods, window):
             first, second = live.scores_at(ns(mark))
             events = table(rows)
             expected = type2_of_summaries(
-                Reports(events, builder.build()), ns(mark), DISTANCE, Formula(window)
+                LogTables(events, builder.build()), ns(mark), DISTANCE, Formula(window)
             )
             assert first.tolist() == type1(events, ns(mark), DISTANCE)[0].tolist()
             assert second == pytest.approx(expected[0], rel=1e-9)

@@ -15,7 +15,7 @@ from pytpc.diagnosis.ranking.other_values import (
     turns,
 )
 from pytpc.diagnosis.ranking.priors import UNCHANGED
-from pytpc.diagnosis.ranking.result_streams import Streams
+from pytpc.diagnosis.ranking.result_streams import ResultStreams
 from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.ingest import Recording
 from pytpc.recording.marks import Mark
@@ -42,7 +42,7 @@ def turned_spans(values, thresh, other, step=1.0):
     """The turns of ``value > thresh`` at these values, ``step`` apart, and of a log of 30 s."""
     rows = [(n * step, 0, v > thresh, v, thresh) for n, v in enumerate(values)]
     rows.append((30.0, 1, 0, 0, 1))
-    stream = Streams.of(events(rows), Tpcs.of(STATIC)).streams[0]
+    stream = ResultStreams.of(events(rows), Tpcs.of(STATIC)).streams[0]
     turned = (stream.cmp > thresh) != (stream.cmp > other)
     begins, lengths = turns(stream, turned, other)
     return list(zip(begins.tolist(), lengths.tolist(), strict=True))

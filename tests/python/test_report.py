@@ -29,9 +29,8 @@ from pytpc.present.page.series import (
     FALSE,
     NOTHING,
     TRUE,
-    Span,
-    evidence,
     lane,
+    plot_data,
     runs,
     thin,
     with_gaps,
@@ -89,6 +88,11 @@ def test_gaps_are_not_bridged():
     assert np.isnan(parts[1]).tolist() == [False] * 3 + [True] + [False] * 2
 
 
+def recorded(table):
+    """A mission of 60 s."""
+    return Recording("m", table, (), 0, ns(60))
+
+
 # 600 columns over 60 s, 0.1 s each: key 0 is True at 0 s, False at 0.15 s and both in column 59 at
 # 5.9 s; key 1 is nobody's business. The last moment belongs to the last column.
 def test_lane_and_runs():
@@ -102,17 +106,17 @@ def test_lane_and_runs():
             (60, 0, 1, 1, 0),
         ]
     )
-    states = lane(table, key(0), Span(0, ns(60)))
+    states = lane(recorded(table), key(0))
     assert (states[0], states[1], states[59], states[BINS - 1]) == (TRUE, FALSE, BOTH, TRUE)
     assert states[2] == NOTHING
-    assert lane(table, key(1), Span(0, ns(60)))[1] == TRUE
+    assert lane(recorded(table), key(1))[1] == TRUE
     assert runs(states) == [(TRUE, 0, 1), (FALSE, 1, 1), (BOTH, 59, 1), (TRUE, BINS - 1, 1)]
 
 
 # Every second over 60 s, 10 columns each: F at 0 s holds up to the T at 1 s; after 10 s a pause.
 def test_a_result_holds_until_the_next_one():
     table = events([(t, 0, t % 2, t % 2, 0) for t in (*range(11), *range(50, 60))])
-    states = lane(table, key(0), Span(0, ns(60)))
+    states = lane(recorded(table), key(0))
     assert states[:20].tolist() == [FALSE] * 10 + [TRUE] * 10
     assert states[100:102].tolist() == [FALSE, NOTHING]
     assert set(states[101:500].tolist()) == {NOTHING}
@@ -122,12 +126,12 @@ def test_a_result_holds_until_the_next_one():
 # to the mark at 25 s: from 21 s. The later flop at 51 s is shown, but moves nothing.
 def test_evidence_reaches_back_to_the_last_flop():
     rows = [(t, 0, 1, 5, 3) for t in range(10, 53)]
-    calm = evidence(events(rows), key(0), ns(50), Span(ns(10), ns(52)))
+    calm = plot_data(Recording("m", events(rows), (), ns(10), ns(52)), key(0), ns(50))
     assert (calm.begin, calm.end, calm.evaluations) == (20, 42, 23)
     assert (calm.steps.tolist(), calm.outcome.tolist()) == ([20], [True])
     rows[:15] = [(t, 0, 0, 1, 3) for t in range(10, 25)]
     rows[-2:] = [(t, 0, 0, 1, 3) for t in (51, 52)]
-    changed = evidence(events(rows), key(0), ns(50), Span(ns(10), ns(52)))
+    changed = plot_data(Recording("m", events(rows), (), ns(10), ns(52)), key(0), ns(50))
     assert (changed.begin, changed.flops.tolist()) == (11, [15, 41])
     assert changed.steps.tolist() == [11, 15, 41]
     assert changed.outcome.tolist() == [False, True, False]
@@ -198,13 +202,13 @@ def test_what_it_says(page_text):
     # middle, at 29 s, is 29/60 = 0.48333.
     assert "At mark 2 of 3: ▼ Lower coverage changed from 0.6 to 0.483" in text
     assert "Smallest changelower coverage from 0.6 to 0.499 (below 0.5)" in text
-    assert "In the 12 s before the mark it was false each of 121 times" in text
+    assert "In the 12 s before the mark it was false all 121 times" in text
     assert (
-        "the compared value came as near as 0.5 to 0.6. Any value below 0.5 would do at least once."
-        in text
+        "the compared value came closest at 0.5, against 0.6."
+        " Any value below 0.5 would do at least once." in text
     )
     assert "4 >= 3 was true, 0.00 s before the mark" in text
-    assert "Ranked among 4 parameters." in text
+    assert "of 4 parameters have a score." in text
     assert re.search("Comparisons seen *3 of 4 found in the source", text)
     assert "coverage changed" in text
     assert "seconds since the recording began" in text
@@ -272,9 +276,9 @@ def test_missions_without_marks_or_reports(tmp_path):
         "empty", nothing, plain.static_info, rank_marks(nothing, silent.static_info)
     )
     text = "".join(Page(written(tmp_path, silent, empty)).text)
-    assert "The observer marked nothing; `pytpc mark` does it afterwards, too." in text
+    assert "This recording has no marks. Add some with `pytpc mark`." in text
     assert "Not enough evidence: no" in text
-    assert "At no mark has any parameter a score." in text
+    assert "No parameter has a score at any mark." in text
     assert "No missions." in "".join(Page(written(tmp_path)).text)
 
 
@@ -379,7 +383,9 @@ def test_marks_without_enough_evidence_do_not_make_the_answer(tmp_path):
     early = replace(recording, marks=marks[:3])
     report = replace(report, recording=early, rankings=rank_marks(early, static))
     text = " ".join("".join(Page(written(tmp_path, report)).text).split())
-    why = "Not enough evidence to go by this: only alone had been compared up to the mark. ▼ Lower"
+    why = (
+        "Not enough evidence for this answer: only alone had been compared up to the mark. ▼ Lower"
+    )
     assert why in text
 
 
@@ -412,7 +418,7 @@ def test_all_marks_together_come_first(tmp_path):
     report = MissionReport("m", recording, static, rank_marks(recording, static))
     text = " ".join("".join(Page(written(tmp_path, report)).text).split())
     found = blame(recording, static)
-    said = f"All 2 marks together: 2 of type I. {found.text}. To try: "
+    said = f"All 2 marks together: 2 of type I. {found.text[0].upper()}{found.text[1:]}. To try: "
     assert said in text
     others = ", ".join(f"{s.parameter} ({percent(s.probability)})" for s in found.suspects[1:])
     assert f"Next: {others}." in text
@@ -421,8 +427,8 @@ def test_all_marks_together_come_first(tmp_path):
     report = MissionReport("m", late, static, rank_marks(late, static))
     text = " ".join("".join(Page(written(tmp_path, report)).text).split())
     assert (
-        "The one mark: 1 of type I. not enough evidence to suspect anybody. "
-        "mark 1: the last report up to the mark is 43.1 s before it." in text
+        "The one mark: 1 of type I. Not enough evidence to suspect anybody. "
+        "Mark 1: the last report up to the mark is 43.1 s before it." in text
     )
     assert "To try: " not in text
     report = replace(report, recording=replace(late, marks=()), rankings=[])
@@ -448,7 +454,7 @@ def test_summaries_count_among_the_facts(tmp_path):
     text = " ".join("".join(Page(written(tmp_path, report)).text).split())
     assert re.search(r"Reports *0 \(0 per second\), and summaries of 300 evaluations", text)
     assert re.search("Comparisons seen *1 of 2 found in the source", text)
-    assert re.search("Nodes that report *1 ", text)
+    assert re.search("Reporting nodes *1 ", text)
 
 
 # By both scores the first is faces, by type I, the second the one by type II.
@@ -459,6 +465,6 @@ def test_scores_of_both_types_say_which(tmp_path):
     own = [set(re.findall('</span>|<span class="muted">(I+)</span></td>', one)) for one in tables]
     assert [{kind for kind in kinds if kind} for kinds in own] == [set(), set(), {"I", "II"}]
     assert "Types of the marks" not in page
-    assert "doubted: the suspects of the other" in written(
+    assert "doubted: suspects of the other" in written(
         tmp_path, replace(report, question=Question(types="doubt"))
     )

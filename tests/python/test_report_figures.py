@@ -188,8 +188,8 @@ def test_summaries_are_drawn_as_spans(tmp_path):
         [FALSE, 4000, 1001],
     ]
     shown = " ".join("".join(Page(text).text).split())
-    said = "In the 12 s before the mark it was false each of 100 times; the compared value came as"
-    assert f"{said} near as 2.5 to 3." in shown
+    said = "In the 12 s before the mark it was false all 100 times; the compared value came"
+    assert f"{said} closest at 2.5, against 3." in shown
     # The window of type II is painted first: it must not hide what lies in it.
     still = text[text.index('aria-label="a: compared value') :]
     assert 0 < still.index("var(--span)") < still.index("PolyCollection") < still.index("</svg>")

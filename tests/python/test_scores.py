@@ -1,4 +1,4 @@
-"""Scores by hand, and against a slow implementation that follows docs/reference/scores.md."""
+"""The scores by hand, and against a slow implementation of docs/reference/scores.md."""
 
 from __future__ import annotations
 
@@ -232,7 +232,7 @@ def slow_type2(rows, number, m, w, nearness):
     spread = Fraction(max(values)) - Fraction(min(values))
     differences = [abs(Fraction(cmp) - Fraction(thresh)) for cmp, thresh in window]
     flops = [t for t in slow_flops(rows, number) if m - w <= t <= m]
-    # A difference of doubles, as a reader of docs/reference/scores.md would write it.
+    # A difference of doubles, as a reader of the page would write it.
     unequal = sum(abs(cmp - thresh) > 1e-4 for cmp, thresh in window)
     mean = sum(differences) / spread / len(window)
     return float(mean * max(1, len(flops)) * unequal * Fraction(nearness) ** 2)

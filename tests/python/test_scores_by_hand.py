@@ -1,4 +1,4 @@
-"""docs/reference/scores.md by hand, from scores to rankings: to be read from top to bottom.
+"""The scores worked by hand, from scores to rankings: to be read from top to bottom.
 
 A robot has five comparisons of four parameters. Each test has a log of rows (seconds, comparison,
 result, cmp, thresh[, node]) and above it the arithmetic. S1 and S2 are the scores of types I and
@@ -24,7 +24,7 @@ from pytpc.diagnosis.ranking.ranking import rank_marks
 from pytpc.diagnosis.scores.curves import rank_curves
 from pytpc.diagnosis.scores.score_tables import Tpcs, parameter_tables, tpc_scores
 from pytpc.diagnosis.scores.scores import NONE
-from pytpc.diagnosis.scores.summary_scores import Reports
+from pytpc.diagnosis.scores.summary_scores import LogTables
 from pytpc.ingest import Recording
 from pytpc.recording.marks import Mark
 from pytpc.recording.summaries import Summaries
@@ -44,7 +44,7 @@ def scores(rows, *seconds, window_s=12.0):
     """S1 and S2 of all five comparisons at each time."""
     table = events(rows).with_keys(TPCS.keys)
     marks = [ns(second) for second in seconds]
-    return tpc_scores(TPCS, Reports(table, Summaries.empty()), marks, window_s)
+    return tpc_scores(TPCS, LogTables(table, Summaries.empty()), marks, window_s)
 
 
 def of(found, number):

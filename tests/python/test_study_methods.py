@@ -10,7 +10,7 @@ import pytest
 from mission_samples import comparison, events, ns, static_info
 
 from pytpc.base.errors import InputError
-from pytpc.diagnosis.ranking.posterior import REASONED, diagnose
+from pytpc.diagnosis.ranking.posterior import REASONED, diagnose_log
 from pytpc.ingest import Recording, save_recording
 from pytpc.recording.marks import Mark
 from pytpc.values.changes import Change
@@ -267,5 +267,5 @@ def test_the_loss_is_that_of_the_posterior():
     marks = (UserMark(ns(50), "user1", 0, "I", "I"),)
     (sample, *_) = samples(mission(marks))
     case = mission(marks).case("typed")
-    found = diagnose(case.recording, STATIC, weights=REASONED)
+    found = diagnose_log(case.recording, STATIC, weights=REASONED)
     assert Batch.of([sample]).loss(REASONED) == pytest.approx(-math.log(found.posterior[0]))

@@ -1,4 +1,4 @@
-"""Every suggestion is checked by evaluating the comparisons again with it."""
+"""The smallest change: every suggestion is checked by evaluating the comparisons again with it."""
 
 from __future__ import annotations
 
@@ -335,7 +335,7 @@ def check(cmps, thresh, relation, unit, kind, *, default):
 
 
 def does(cmps, thresh, relation, unit, kind, *, value):
-    """Whether a value of the parameter does what docs/reference/scores.md wants of it."""
+    """Whether a value of the parameter does what the smallest change has to."""
     compare = OPERATORS[relation]
     now = [compare(cmp, thresh) for cmp in cmps]
     then = [compare(cmp, unit[0] * value + unit[1]) for cmp in cmps]

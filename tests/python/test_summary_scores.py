@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from mission_samples import events, key, ns
 
 from pytpc.diagnosis.scores.scores import NONE, Formula, type1, type2
-from pytpc.diagnosis.scores.summary_scores import Reports, type2_of_summaries
+from pytpc.diagnosis.scores.summary_scores import LogTables, type2_of_summaries
 from pytpc.recording.events import EventBuilder, Events, Report
 from pytpc.recording.summaries import Summaries, Summary, SummaryBuilder
 
@@ -155,7 +155,7 @@ def test_edges_gives_the_scores_of_every_evaluation(run, period_ms, marks_ms, wi
     assert np.array_equal(type1(whole, marks, distance), type1(some, marks, distance))
     exact = type2(whole, marks, distance, Formula(window_s=window_s, **powers))
     formula = Formula(window_s=window_s, **powers)
-    found = type2_of_summaries(Reports(some, summaries), marks, distance, formula)
+    found = type2_of_summaries(LogTables(some, summaries), marks, distance, formula)
     assert np.isfinite(found).all()
     largest = max((abs(v) for one in run for v in one[4:] if math.isfinite(v)), default=0.0)
     if largest >= 1e300:
@@ -250,16 +250,16 @@ def table(*summaries: Summary) -> Summaries:
 def test_a_summary_that_the_window_cuts():
     first = events([(0.5, 0, 1, 2, 1)])
     both = table(by_hand(), LATER)
-    (score,) = type2_of_summaries(Reports(first, both), [ns(3)], [1], Formula(2))
+    (score,) = type2_of_summaries(LogTables(first, both), [ns(3)], [1], Formula(2))
     assert score == pytest.approx([5 / 14], rel=1e-12)
     formula = Formula(2, alpha=0, gamma=1)
-    assert type2_of_summaries(Reports(first, both), [ns(3)], [1], formula) == pytest.approx(3.5)
+    assert type2_of_summaries(LogTables(first, both), [ns(3)], [1], formula) == pytest.approx(3.5)
 
 
 # w = 2.5: both are within [0.5, 3]: (6 + 2) / 5 / 4 = 0.4.
 def test_a_summary_within_the_window_is_exact():
     scores = type2_of_summaries(
-        Reports(events([(0.5, 0, 1, 2, 1)]), table(by_hand(), LATER)), [ns(3)], [1], Formula(2.5)
+        LogTables(events([(0.5, 0, 1, 2, 1)]), table(by_hand(), LATER)), [ns(3)], [1], Formula(2.5)
     )
     assert scores == pytest.approx(0.4, rel=1e-12)
 
@@ -267,10 +267,10 @@ def test_a_summary_within_the_window_is_exact():
 # At 1 s the summary has begun; what is known is its first evaluation (2 - 1, spread 1). The mean
 # difference is 2, and none can be more than the spread.
 def test_a_mark_within_a_period():
-    both = Reports(events([(0.5, 0, 1, 2, 1)]), table(by_hand()))
+    both = LogTables(events([(0.5, 0, 1, 2, 1)]), table(by_hand()))
     assert type2_of_summaries(both, [ns(1)], [1]) == 1.0
     # Without that event nothing has ended: the spread is that of what has begun, 4.
-    alone = Reports(Events.empty([key(0)]), table(by_hand()))
+    alone = LogTables(Events.empty([key(0)]), table(by_hand()))
     assert type2_of_summaries(alone, [ns(1)], [1]) == 0.5
     # At its very begin, none of the span is in the window: the mean stands for what is.
     assert type2_of_summaries(alone, [ns(0.5)], [1]) == 0.5
@@ -278,7 +278,7 @@ def test_a_mark_within_a_period():
 
 def test_without_summaries_it_is_type2():
     some = events([(0, 0, 1, 10, 4), (5, 0, 1, 6, 4), (8, 0, 1, 5, 4), (20, 0, 1, 4.5, 4)])
-    scores = type2_of_summaries(Reports(some, Summaries.empty()), [ns(20), ns(8)], [1])
+    scores = type2_of_summaries(LogTables(some, Summaries.empty()), [ns(20), ns(8)], [1])
     assert scores[:, 0].tolist() == [0.125, 0.5]
 
 
@@ -287,13 +287,13 @@ def test_without_summaries_it_is_type2():
 # summary is in it, as on /rosout where a report has the time of its writing.
 def test_both_policies_in_one_recording():
     mixed = events([(0.1, 0, 1, 4, 1), (0.3, 0, 1, 4, 1), (0.48, 0, 0, 0, 1)])
-    scores = type2_of_summaries(Reports(mixed, table(by_hand(), LATER)), [ns(3)], [1])
+    scores = type2_of_summaries(LogTables(mixed, table(by_hand(), LATER)), [ns(3)], [1])
     assert scores == pytest.approx(14 / 7 / 4)
 
 
 def test_a_node_without_summaries_beside_one_that_has_them():
     mixed = events([(0.5, 0, 1, 2, 1), (1, 0, 1, 4, 1, "/other"), (1.2, 0, 1, 4, 1, "/other")])
-    scores = type2_of_summaries(Reports(mixed, table(by_hand(), LATER)), [ns(3)], [1])
+    scores = type2_of_summaries(LogTables(mixed, table(by_hand(), LATER)), [ns(3)], [1])
     assert scores == pytest.approx((6 + 2 + 3 + 3) / 7 / 4)
 
 
@@ -304,7 +304,7 @@ def test_one_long_summary_among_many_short_ones():
     ]
     long = by_hand(begin_ns=ns(0.2), end_ns=ns(400), count=2, diff_min=3, diff_max=3, abs_mean=3)
     scores = type2_of_summaries(
-        Reports(events([(0, 0, 1, 2, 1)]), table(long, *short)), [ns(100.8)], [1], Formula(1.0)
+        LogTables(events([(0, 0, 1, 2, 1)]), table(long, *short)), [ns(100.8)], [1], Formula(1.0)
     )
     # [99.8, 100.8] holds one short summary, 3 of 1, and 1 s of the 399.8 s of the long one, 2 of 3.
     share = 1 / 399.8

@@ -19,9 +19,9 @@ import numpy as np
 
 from pytpc.base.columns import Bools, Floats, Int64s
 from pytpc.base.errors import TpcError
-from pytpc.diagnosis.ranking.mark_evidence import Evidence, evidence, marked
+from pytpc.diagnosis.ranking.mark_evidence import MarkEvidence, mark_evidence, marked
 from pytpc.diagnosis.ranking.posterior import REASONED, Said, Weights, mixture, ranked, type_odds
-from pytpc.diagnosis.ranking.result_streams import Streams
+from pytpc.diagnosis.ranking.result_streams import ResultStreams
 from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.static.parameters import same_parameter
 from pytpc_evaluation.study.data import ALL, LABELS, Mission, missions
@@ -45,7 +45,7 @@ class Sample:
 
     system: str
     treatment: str
-    found: Evidence
+    found: MarkEvidence
     columns: Int64s
     ranked: Floats
     odds: float
@@ -71,7 +71,7 @@ class Batch:
     ``share`` float64[samples] sums to 1.
     """
 
-    found: Evidence
+    found: MarkEvidence
     said: Said
     right: Bools
     share: Floats
@@ -90,10 +90,10 @@ class Batch:
             baseline[:, row, : sample.parameters] = sample.ranked[:, 0]
         columns = [
             np.concatenate([getattr(sample.found, field.name) for sample in parts])
-            for field in fields(Evidence)
+            for field in fields(MarkEvidence)
         ]
         return cls(
-            Evidence(*columns),
+            MarkEvidence(*columns),
             Said(
                 np.concatenate([sample.columns + row * width for row, sample in enumerate(parts)]),
                 baseline,
@@ -112,7 +112,7 @@ class Batch:
 def samples(mission: Mission) -> list[Sample]:
     """Those of a mission: the marks of all users, and of each alone, with all labels."""
     tpcs = Tpcs.of(mission.static_info)
-    streams = Streams.of(mission.recording.events, tpcs)
+    streams = ResultStreams.of(mission.recording.events, tpcs)
     columns = np.array([stream.column for stream in streams.streams], np.int64)
     right = tuple(
         column
@@ -125,7 +125,7 @@ def samples(mission: Mission) -> list[Sample]:
         own = [mark for mark in mission.marks if who in {ALL, mark.observer}]
         times = np.array([mark.time_ns for mark in own], np.int64)
         observed = marked(times, tuple(m.observer for m in own), streams)
-        found = evidence(streams, observed)
+        found = mark_evidence(streams, observed)
         baseline = ranked(mission.recording, tpcs, times)
         share = (1.0 if who == ALL else ALONE / len(users)) / len(LABELS)
         made += [

@@ -17,7 +17,7 @@ from pytpc.diagnosis.ranking.diagnosing import diagnose_beside
 from pytpc.diagnosis.ranking.posterior import Decisive, Diagnosis
 from pytpc.diagnosis.ranking.ranking import outside
 from pytpc.diagnosis.results.suspects import Accused, Blame, Evaluation
-from pytpc.diagnosis.scores.log_evidence import Log
+from pytpc.diagnosis.scores.evaluations import LoggedEvaluations
 from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark
@@ -43,7 +43,7 @@ def blame(recording: Recording, static_info: StaticInfo, question: Question = PL
         recording = replace(recording, marks=untyped)
     tpcs = Tpcs.of(static_info)
     events = recording.events.with_keys(tpcs.keys)
-    log = Log(events, recording.summaries)
+    log = LoggedEvaluations(events, recording.summaries)
     beyond = [outside(mark, log, question.window_s) for mark in recording.marks]
     notes = _notes(recording, beyond)
     if not recording.marks or all(beyond) or not len(events):

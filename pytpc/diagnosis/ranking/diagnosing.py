@@ -8,7 +8,7 @@ import numpy as np
 
 from pytpc.diagnosis.question import Changed
 from pytpc.diagnosis.ranking.other_values import before_changes, diagnose_replayed, of_clean_run
-from pytpc.diagnosis.ranking.posterior import Diagnosis, diagnose
+from pytpc.diagnosis.ranking.posterior import Diagnosis, diagnose_log
 from pytpc.diagnosis.ranking.priors import of_changes, of_reference
 from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.recording.mission import Recording
@@ -45,5 +45,5 @@ def diagnose_beside(
         oldest_last = [(name, old) for name, old, _ in reversed(changes)]
         others.update(before_changes(static_info, oldest_last))
     if not priors:
-        return diagnose(recording, static_info)
+        return diagnose_log(recording, static_info)
     return diagnose_replayed(recording, static_info, np.min(priors, axis=0), others)

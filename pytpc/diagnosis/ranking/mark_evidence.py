@@ -34,7 +34,7 @@ from typing import NamedTuple
 import numpy as np
 
 from pytpc.base.columns import Bools, Floats, Int64s
-from pytpc.diagnosis.ranking.result_streams import CASCADE_S, Stream, Streams
+from pytpc.diagnosis.ranking.result_streams import CASCADE_S, ResultStream, ResultStreams
 
 REACTION_LOG = 1.946
 """Mean of the logarithms of table 6.14's seven delays of type I: a median of 7 s."""
@@ -106,7 +106,7 @@ class Marked(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Evidence:
+class MarkEvidence:
     """float64[streams] each.
 
     ``acted``, ``waited`` and ``since`` see above; ``held`` the share of the wait with one result;
@@ -122,7 +122,7 @@ class Evidence:
     flat: Floats
 
 
-def marked(times_ns: Int64s, observers: Sequence[str], streams: Streams) -> Marked:
+def marked(times_ns: Int64s, observers: Sequence[str], streams: ResultStreams) -> Marked:
     """The marks on the clock of the streams."""
     times = (times_ns - streams.begin_ns) / 1e9
     firsts: dict[str, float] = {}
@@ -131,12 +131,12 @@ def marked(times_ns: Int64s, observers: Sequence[str], streams: Streams) -> Mark
     return Marked(times, np.sort(np.array([*firsts.values()], np.float64)))
 
 
-def evidence(streams: Streams, marks: Marked) -> Evidence:
+def mark_evidence(streams: ResultStreams, marks: Marked) -> MarkEvidence:
     """The evidence of all streams; there is at least one mark."""
     wait = Wait.before(marks, streams.seconds)
     chance = any_time(streams.seconds, marks)
     rows = [(_acted(s, streams, marks) - chance, *_waited(s, wait, marks)) for s in streams.streams]
-    return Evidence(*np.array(rows, np.float64).reshape(len(rows), len(fields(Evidence))).T)
+    return MarkEvidence(*np.array(rows, np.float64).reshape(len(rows), len(fields(MarkEvidence))).T)
 
 
 def reaction(delays: Floats, mean: float = REACTION_LOG, sigma: float = REACTION_SIGMA) -> Floats:
@@ -152,7 +152,7 @@ def reaction(delays: Floats, mean: float = REACTION_LOG, sigma: float = REACTION
     return density
 
 
-def _acted(stream: Stream, streams: Streams, marks: Marked) -> float:
+def _acted(stream: ResultStream, streams: ResultStreams, marks: Marked) -> float:
     last = float(marks.firsts.max(initial=0.0))
     turns = np.concatenate([stream.changes, stream.starts])
     once = stream.stops - stream.starts <= ONCE_S
@@ -236,7 +236,7 @@ class Wait(NamedTuple):
         return max(float(np.sum(np.maximum(ends - np.maximum(self.begins, 0.0), 0.0))), 1.0)
 
 
-def _waited(stream: Stream, wait: Wait, marks: Marked) -> _Waited:
+def _waited(stream: ResultStream, wait: Wait, marks: Marked) -> _Waited:
     inside = wait.holds(stream.times)
     if not inside.any():
         nothing = float(np.log(STRAY)) * marks.firsts.size

@@ -29,9 +29,9 @@ import numpy as np
 
 from pytpc.base.columns import Bools, Floats
 from pytpc.diagnosis.ranking.mark_evidence import SHARE, Marked, Wait, any_time, caused, marked
-from pytpc.diagnosis.ranking.posterior import Diagnosis, diagnose, softmax, type_odds
+from pytpc.diagnosis.ranking.posterior import Diagnosis, diagnose_log, softmax, type_odds
 from pytpc.diagnosis.ranking.priors import thresholds_of
-from pytpc.diagnosis.ranking.result_streams import Stream, Streams
+from pytpc.diagnosis.ranking.result_streams import ResultStream, ResultStreams
 from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.diagnosis.thresholds.inverse import kept_as
 from pytpc.diagnosis.thresholds.outcomes import outcomes
@@ -78,7 +78,7 @@ def diagnose_replayed(
         prior: float64[p], see `pytpc.diagnosis.ranking.priors`.
         others: the other threshold of each comparison of which one is known, by its key.
     """
-    alone = diagnose(recording, static_info)
+    alone = diagnose_log(recording, static_info)
     if not np.isfinite(alone.scores).any():
         return alone
     found = replayed(recording, static_info, others)
@@ -136,7 +136,7 @@ def replayed(
         By the parameter's name; the worst of its comparisons counts.
     """
     tpcs = Tpcs.of(static_info)
-    streams = Streams.of(recording.events, tpcs)
+    streams = ResultStreams.of(recording.events, tpcs)
     times = np.array([mark.time_ns for mark in recording.marks], np.int64)
     marks = marked(times, tuple(mark.observer for mark in recording.marks), streams)
     odds = type_odds(recording.marks)
@@ -166,7 +166,7 @@ def turned_by_clean_run(
     tpcs = Tpcs.of(static_info)
     others = of_clean_run(tpcs, recording.events, reference.events)
     found: dict[str, int] = {}
-    for stream in Streams.of(recording.events, tpcs).streams:
+    for stream in ResultStreams.of(recording.events, tpcs).streams:
         key, name = tpcs.keys[stream.code], tpcs.names[stream.column]
         if key in others:
             turned = _turned(static_info.thresholds[key].relation, stream, others[key])
@@ -174,7 +174,7 @@ def turned_by_clean_run(
     return found
 
 
-def _turned(relation: str, stream: Stream, other: float) -> Bools:
+def _turned(relation: str, stream: ResultStream, other: float) -> Bools:
     """bool[n]: whether the outcome would be another one."""
     if relation == "flag":
         return np.asarray((stream.thresh != 0) != (other != 0))
@@ -183,7 +183,7 @@ def _turned(relation: str, stream: Stream, other: float) -> Bools:
 
 
 def _charge(
-    stream: Stream, turned: Bools, other: float, evidence: tuple[Marked, Wait], odds: float
+    stream: ResultStream, turned: Bools, other: float, evidence: tuple[Marked, Wait], odds: float
 ) -> float:
     marks, wait = evidence
     begins, lengths = turns(stream, turned, other)
@@ -201,7 +201,7 @@ def _charge(
     return float(np.logaddexp(acted - np.logaddexp(0.0, odds), latched - np.logaddexp(0.0, -odds)))
 
 
-def turns(stream: Stream, turned: Bools, other: float) -> tuple[Floats, Floats]:
+def turns(stream: ResultStream, turned: Bools, other: float) -> tuple[Floats, Floats]:
     """The spans in which the outcome would be another one.
 
     Args:
@@ -225,7 +225,7 @@ def turns(stream: Stream, turned: Bools, other: float) -> tuple[Floats, Floats]:
     return stream.times[begins], np.array(lengths, np.float64) - stream.times[begins]
 
 
-def _until_alike(stream: Stream, place: int, other: float) -> float:
+def _until_alike(stream: ResultStream, place: int, other: float) -> float:
     """The seconds after an evaluation until its value is past the other threshold, on a line.
 
     The line is through what led there: the evaluations of the last ``SLOPE_S`` since the value

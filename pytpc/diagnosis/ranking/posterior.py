@@ -1,7 +1,7 @@
-"""Who is to blame: a posterior over the parameters, and over none of them, from all marks at once.
+"""How likely each parameter is to be the cause, and none of them, from all marks at once.
 
-``diagnose`` is the entrance. What it is made of is a mixture of witnesses, each of whom gives all
-parameters (and "none of them") probabilities of its own:
+``diagnose_log`` is the entrance. It mixes witnesses, each of which gives every parameter, and "none
+of them", a probability (docs/reference/scores.md#how-it-is-joined):
 
     P(p) = P(I) D(p) + P(II) ((1 - l) W(p) + l D(p))
     D = (acted + baseline of type I) / 2,    W = (waited + baseline of either type) / 2
@@ -9,10 +9,10 @@ parameters (and "none of them") probabilities of its own:
 P(I) and P(II) are how likely either type is from what the marks say (``type_odds``); l is the share
 of latches in type II: a change that cannot be undone. *acted* and *waited* are conditional logits
 (McFadden 1974) of the evidence of `pytpc.diagnosis.ranking.mark_evidence`, of each parameter's best
-comparison. The *baseline* is the order by the thesis's ranks (SPEC 7), joined over the marks: at
-place k a probability of 1/k to a power; of "none of them" it says nothing. So who is first for one
-witness is high for all; a product would ask that all of them agree. A few weights are fitted on the
-tuning half of the study (`pytpc_evaluation.study.fit`).
+comparison. The *baseline* is the order by the thesis's ranks, joined over the marks: place k has a
+probability of 1/k to a power; it says nothing of "none of them". A parameter that one witness puts
+first is high in the mixture; a product would need all witnesses to agree. A few weights are fitted
+on the tuning half of the study (`pytpc_evaluation.study.fit`).
 """
 
 from __future__ import annotations
@@ -25,10 +25,10 @@ from typing import NamedTuple
 import numpy as np
 
 from pytpc.base.columns import Floats, Int64s
-from pytpc.diagnosis.ranking.mark_evidence import SHARE, Evidence, evidence, marked
-from pytpc.diagnosis.ranking.result_streams import Streams
+from pytpc.diagnosis.ranking.mark_evidence import SHARE, MarkEvidence, mark_evidence, marked
+from pytpc.diagnosis.ranking.result_streams import ResultStreams
 from pytpc.diagnosis.scores.score_tables import Tpcs, parameter_tables, tpc_scores
-from pytpc.diagnosis.scores.summary_scores import Reports
+from pytpc.diagnosis.scores.summary_scores import LogTables
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
 from pytpc.static.static_info import StaticInfo
@@ -119,7 +119,7 @@ class Diagnosis:
         return [int(n) for n in known[np.argsort(-self.scores[known], kind="stable")]]
 
 
-def diagnose(
+def diagnose_log(
     recording: Recording,
     static_info: StaticInfo,
     *,
@@ -141,7 +141,7 @@ def diagnose(
     extra = np.zeros(len(tpcs.names)) if prior is None else np.asarray(prior, np.float64)
     if extra.shape != (len(tpcs.names),):
         raise ValueError("one prior for each parameter is needed")
-    streams = Streams.of(recording.events, tpcs)
+    streams = ResultStreams.of(recording.events, tpcs)
     marks = recording.marks
     if not marks or not streams.streams:
         nobody = np.full(len(tpcs.names), -np.inf)
@@ -149,7 +149,7 @@ def diagnose(
         return Diagnosis(tpcs.names, nobody, np.zeros(len(tpcs.names)), 1.0, 0.5, nothing)
     times = np.array([mark.time_ns for mark in marks], np.int64)
     observed = marked(times, tuple(mark.observer for mark in marks), streams)
-    found = evidence(streams, observed)
+    found = mark_evidence(streams, observed)
     places = np.array([stream.column for stream in streams.streams])
     said = Said(places, ranked(recording, tpcs, times), np.array([type_odds(marks)]))
     mixed = mixture(found, said, weights)
@@ -161,7 +161,7 @@ def diagnose(
     return Diagnosis(tpcs.names, scores, posterior, rest, type1, by)
 
 
-def _decisive(streams: Streams, tpcs: Tpcs, mixed: Mixture) -> tuple[Decisive | None, ...]:
+def _decisive(streams: ResultStreams, tpcs: Tpcs, mixed: Mixture) -> tuple[Decisive | None, ...]:
     """For each parameter the best stream by its likelier type, the first of equal ones."""
     best: list[Decisive | None] = [None] * len(tpcs.names)
     for turned in (False, True):
@@ -182,7 +182,7 @@ def ranked(recording: Recording, tpcs: Tpcs, times_ns: Int64s) -> Floats:
     """
     events = recording.events.with_keys(tpcs.keys)
     tables = parameter_tables(
-        tpcs, tpc_scores(tpcs, Reports(events, recording.summaries), times_ns)
+        tpcs, tpc_scores(tpcs, LogTables(events, recording.summaries), times_ns)
     )
     compared = {tpcs.parameters[code] for code in np.unique(events.key).tolist()}
     known = np.array([name in compared for name in tpcs.names], np.bool_)
@@ -247,7 +247,7 @@ class Mixture(NamedTuple):
     turned: Floats
 
 
-def mixture(found: Evidence, said: Said, weights: Weights) -> Mixture:
+def mixture(found: MarkEvidence, said: Said, weights: Weights) -> Mixture:
     """What all witnesses say together, see the head of this file."""
     acted = weights.acted * found.acted
     waited = (

@@ -17,7 +17,7 @@ How far the observer's type is believed (``Types``):
   ``believe``, with 1 ``ignore``.
 
 Equal better ranks are ordered by the other rank. A mark without a type is ranked by both. These are
-baselines (SPEC 7).
+baselines (docs/reference/scores.md#when-the-type-may-be-wrong).
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ import numpy as np
 
 from pytpc.diagnosis.question import PLAIN, WINDOW_S, Question
 from pytpc.diagnosis.results.suspects import MarkRanking, Suspect
-from pytpc.diagnosis.scores.log_evidence import Evidence, Log
+from pytpc.diagnosis.scores.evaluations import Evaluations, LoggedEvaluations
 from pytpc.diagnosis.scores.score_tables import Tables, Tpcs, parameter_tables, tpc_scores
 from pytpc.diagnosis.scores.scores import NONE, combined
-from pytpc.diagnosis.scores.summary_scores import Reports
+from pytpc.diagnosis.scores.summary_scores import LogTables
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark, MarkType
 from pytpc.recording.mission import Recording
@@ -67,9 +67,9 @@ def rank_marks(
     tpcs = Tpcs.of(static_info)
     events = recording.events.with_keys(tpcs.keys)
     marks_ns = np.array([mark.time_ns for mark in recording.marks], dtype=np.int64)
-    reports = Reports(events, recording.summaries)
+    reports = LogTables(events, recording.summaries)
     scores = tpc_scores(tpcs, reports, marks_ns, question.window_s)
-    ranker = Ranker(static_info, tpcs, Log(events, recording.summaries), question)
+    ranker = Ranker(static_info, tpcs, LoggedEvaluations(events, recording.summaries), question)
     tables = parameter_tables(tpcs, scores)
     return [ranker.ranking(mark, tables, row) for row, mark in enumerate(recording.marks)]
 
@@ -87,7 +87,7 @@ def unknown_keys(events: Events, static_info: StaticInfo) -> dict[str, int]:
     }
 
 
-class _Place(NamedTuple):
+class _Ordered(NamedTuple):
     """A parameter in the order: its column, and what it is ordered by."""
 
     column: int
@@ -102,7 +102,7 @@ class Ranker:
 
     static_info: StaticInfo
     tpcs: Tpcs
-    evidence: Evidence
+    evidence: Evaluations
     question: Question = PLAIN
 
     def ranking(self, mark: Mark, tables: Tables, row: int) -> MarkRanking:
@@ -119,7 +119,7 @@ class Ranker:
         reason = self._reason(mark, suspects)
         return MarkRanking(mark, tuple(suspects), len(self.tpcs.names), not reason, reason)
 
-    def _places(self, mark: Mark, tables: Tables, row: int) -> list[_Place]:
+    def _places(self, mark: Mark, tables: Tables, row: int) -> list[_Ordered]:
         """The parameters with a score, in order; ties by distance and name."""
         given = None if self.question.types == "ignore" else mark.type
         kind: MarkType = given or "I"
@@ -129,7 +129,7 @@ class Ranker:
         if given is not None and self.question.types == "believe":
             scores = own.scores[row]
             places = [
-                _Place(n, kind, float(ranks[n]), (float(scores[n]),))
+                _Ordered(n, kind, float(ranks[n]), (float(scores[n]),))
                 for n in np.flatnonzero(scores != NONE).tolist()
             ]
             distance = own.distance[row]
@@ -138,7 +138,7 @@ class Ranker:
             better = combined(ranks, others, weight)
             both = ranks + weight * others
             places = [
-                _Place(
+                _Ordered(
                     n,
                     kind if ranks[n] >= weight * others[n] else other,
                     float(better[n]),
@@ -150,7 +150,7 @@ class Ranker:
         # The columns are in the order of the names.
         return sorted(places, key=lambda place: (place.order, distance[place.column], place.column))
 
-    def _suspect(self, mark: Mark, tables: Tables, row: int, place: _Place) -> Suspect:
+    def _suspect(self, mark: Mark, tables: Tables, row: int, place: _Ordered) -> Suspect:
         """The suspect at a place of the order, as if it were the first."""
         table, column = tables.of(place.type), place.column
         key = self.tpcs.keys[int(table.best[row, column])]
@@ -200,7 +200,7 @@ class Ranker:
         return change if mark.type == "I" else f"{near} before the mark"
 
 
-def outside(mark: Mark, evidence: Evidence, window_s: float = WINDOW_S) -> str:
+def outside(mark: Mark, evidence: Evaluations, window_s: float = WINDOW_S) -> str:
     """What is wrong with the time of a mark; empty where nothing is."""
     first = evidence.first_ns
     if not first:

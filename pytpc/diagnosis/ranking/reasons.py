@@ -62,7 +62,7 @@ def _window(recording: Recording, suspect: Suspect, mark: Mark, window_s: float)
                 return f"{begin} evaluated {many(count, 'time')}{_near(cmp, thresh)}"
     if not count:
         return ""
-    each = f"each of {many(count, 'time')}" if count > 1 else "the one time it was evaluated"
+    each = f"all {many(count, 'time')}" if count > 1 else "the one time it was evaluated"
     truth = f"{'true' if true else 'false'} {each}"
     counted = truth if one else f"true {true:,} of {many(count, 'time')}"
     flag = suspect.comparison.relation == "flag"
@@ -77,4 +77,4 @@ def _near(cmp: Floats, thresh: Floats) -> str:
         return "."
     nearest = int(np.nanargmin(away))
     values = show(float(cmp[nearest])), show(float(thresh[nearest]))
-    return f"; the compared value came as near as {values[0]} to {values[1]}."
+    return f"; the compared value came closest at {values[0]}, against {values[1]}."

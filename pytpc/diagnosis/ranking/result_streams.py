@@ -36,7 +36,7 @@ and a robot's mission runs at a few Hz."""
 
 
 @dataclass(frozen=True, eq=False)
-class Stream:
+class ResultStream:
     """n evaluations of one comparison in one node.
 
     ``times`` float64[n], sorted; ``weight`` float64[n], the seconds for which each was the last
@@ -64,15 +64,15 @@ class Stream:
 
 
 @dataclass(frozen=True, eq=False)
-class Streams:
+class ResultStreams:
     """All streams of a recording. ``seconds`` is how long the log is."""
 
-    streams: tuple[Stream, ...]
+    streams: tuple[ResultStream, ...]
     begin_ns: int
     seconds: float
 
     @classmethod
-    def of(cls, events: Events, tpcs: Tpcs) -> Streams:
+    def of(cls, events: Events, tpcs: Tpcs) -> ResultStreams:
         """The streams of a table; kept for as long as the table is."""
         known = _KEPT.get(events)
         if known is not None and known[0] == tpcs.keys:
@@ -82,7 +82,7 @@ class Streams:
         return made
 
     @classmethod
-    def _of(cls, events: Events, tpcs: Tpcs) -> Streams:
+    def _of(cls, events: Events, tpcs: Tpcs) -> ResultStreams:
         if not len(events):
             return cls((), 0, 0.0)
         begin = int(events.time_ns[0])
@@ -117,10 +117,10 @@ class Streams:
         return np.sort(np.concatenate([np.zeros(0), *times]))
 
 
-_KEPT: WeakKeyDictionary[Events, tuple[tuple[str, ...], Streams]] = WeakKeyDictionary()
+_KEPT: WeakKeyDictionary[Events, tuple[tuple[str, ...], ResultStreams]] = WeakKeyDictionary()
 
 
-def _stream(events: Events, rows: Int64s, begin_ns: int, places: tuple[int, int]) -> Stream:
+def _stream(events: Events, rows: Int64s, begin_ns: int, places: tuple[int, int]) -> ResultStream:
     times = (events.time_ns[rows] - begin_ns) / 1e9
     cmp, thresh, res = events.cmp[rows], events.thresh[rows], events.res[rows]
     gaps = np.diff(times)
@@ -134,7 +134,7 @@ def _stream(events: Events, rows: Int64s, begin_ns: int, places: tuple[int, int]
         spread = float(values.max() - values.min()) if values.size else 0.0
     changed = np.flatnonzero(res[1:] != res[:-1]) + 1
     paused = np.flatnonzero(gaps > pause)
-    return Stream(
+    return ResultStream(
         code=places[0],
         column=places[1],
         times=times,

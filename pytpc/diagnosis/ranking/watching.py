@@ -14,7 +14,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from pytpc.diagnosis.question import WINDOW_S
-from pytpc.diagnosis.results.live import Kept, LiveRow, Look, Part, Seen
+from pytpc.diagnosis.results.live import Kept, LiveRow, Look, Seen, TrendPart
 from pytpc.diagnosis.results.suspects import MarkRanking, Suspect
 from pytpc.diagnosis.scores.live_scores import LiveRanking
 from pytpc.recording.marking_session import MarkChange
@@ -174,7 +174,7 @@ class Watching:
             part = track.bins.get(number, _Bin())
             known = part.count > 0 and spread > 0
             mean = part.total / part.count / spread if known else math.nan
-            parts.append(Part(min(1.0, mean) if known else math.nan, part.flops > 0))
+            parts.append(TrendPart(min(1.0, mean) if known else math.nan, part.flops > 0))
         return LiveRow(suspect, track.last, flop_s, tuple(parts))
 
 

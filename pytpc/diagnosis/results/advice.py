@@ -43,7 +43,7 @@ class Suggestion:
 
 
 @dataclass(frozen=True, slots=True)
-class Known:
+class KnownValue:
     """A value in the parameter's unit, and who says that it is good."""
 
     source: Source
@@ -63,7 +63,7 @@ class Remedy:
     the evidence that decided: a known value, the lasting one, one that is stepped to because the
     values ``growth`` bounds nothing, one ``between`` those that were flown, the ``smallest``
     change, or the one of ``before`` it was changed (`pytpc.diagnosis.suggestion.blamed`).
-    ``smallest`` is SPEC 8's suggestion that does at the most of the marks. ``kind`` is the type of
+    ``smallest`` is the smallest change that does at the most of the marks. ``kind`` is the type of
     error that is answered and ``key`` the comparison by which. ``known`` are all values that
     somebody knows to be good. Where nothing can be suggested ``value``, ``direction`` and ``basis``
     are None and ``reason`` says why.
@@ -79,7 +79,7 @@ class Remedy:
     kind: MarkType | None
     key: str | None
     smallest: Suggestion | None
-    known: tuple[Known, ...] = ()
+    known: tuple[KnownValue, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,7 +120,7 @@ class Suggested:
 class Advice:
     """A suspect with what to do.
 
-    ``suggestion`` is SPEC 8's smallest change, and ``what_if`` what it would have changed, None
+    ``suggestion`` is the smallest change, and ``what_if`` what it would have changed, None
     where nothing is suggested. ``remedy`` is the value to try, and ``tried`` what that would have
     changed; `pytpc.diagnosis.suggestion.joining.with_remedies` fills them, for they need the other
     marks.

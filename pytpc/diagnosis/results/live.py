@@ -24,11 +24,11 @@ class Seen(NamedTuple):
     res: bool
 
 
-class Part(NamedTuple):
+class TrendPart(NamedTuple):
     """What a comparison did in one part of the window.
 
-    ``distance`` is the mean of |cmp - thresh| over max - min (0 is on the threshold, as in D of
-    SPEC 7), NaN where it was not evaluated; ``flopped`` says whether the result changed.
+    ``distance`` is the mean of |cmp - thresh| over max - min (0 is on the threshold, as D of the
+    score of type II), NaN where it was not evaluated; ``flopped`` says whether the result changed.
     """
 
     distance: float
@@ -44,7 +44,7 @@ class LiveRow:
     suspect: Suspect
     last: Seen | None
     flop_s: float | None
-    parts: tuple[Part, ...]
+    parts: tuple[TrendPart, ...]
 
 
 @dataclass(frozen=True, slots=True)

@@ -28,7 +28,7 @@ class Suspect:
 
     ``position`` counts from 1; parameters between which nothing decides are ``tied`` and have the
     same one. ``key`` and ``comparison`` are its most suspicious TPC, ``score`` that one's score by
-    the formula of ``type`` (SPEC 7). ``rank`` is what they are ordered by: the parameter's rank
+    the formula of ``type``. ``rank`` is what they are ordered by: the parameter's rank
     among all parameters, or what is made of both where the type is not believed. ``keys`` are all
     TPCs of the parameter that the log has. ``last`` is the TPC's last evaluation up to the mark.
     ``rank1`` and ``rank2`` are the parameter's ranks by type I and by type II, 0 where it has no

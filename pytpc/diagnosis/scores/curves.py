@@ -6,9 +6,9 @@ import numpy as np
 
 from pytpc.base.errors import TpcError
 from pytpc.diagnosis.question import PLAIN, Question
-from pytpc.diagnosis.results.mission import RankCurves
+from pytpc.diagnosis.results.mission_answer import RankCurves
 from pytpc.diagnosis.scores.score_tables import Tpcs, parameter_tables, tpc_scores
-from pytpc.diagnosis.scores.summary_scores import Reports
+from pytpc.diagnosis.scores.summary_scores import LogTables
 from pytpc.recording.mission import Recording
 from pytpc.static.static_info import StaticInfo
 
@@ -46,7 +46,7 @@ def rank_curves(
         )
     times = recording.start_ns + step_ns * np.arange(steps, dtype=np.int64)
     events = recording.events.with_keys(tpcs.keys)
-    scores = tpc_scores(tpcs, Reports(events, recording.summaries), times, question.window_s)
+    scores = tpc_scores(tpcs, LogTables(events, recording.summaries), times, question.window_s)
     tables = parameter_tables(tpcs, scores)
     return RankCurves(
         times_ns=times,

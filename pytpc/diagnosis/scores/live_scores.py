@@ -1,4 +1,4 @@
-"""The scores of SPEC 7 while a mission runs: the same numbers as offline, at every instant.
+"""The scores of the thesis while a mission runs: the same numbers as offline, at every instant.
 
 What is kept are the evaluations of the window and of some seconds more, of each comparison in each
 node (a stream); what is older is counted: flops, the last of them, and the extremes of the values.
@@ -6,7 +6,7 @@ So memory is bounded by the window, whatever the length of the mission. The scor
 the very functions of `pytpc.diagnosis.scores.scores` and `pytpc.diagnosis.scores.summary_scores`,
 from what is kept and what was counted (`pytpc.diagnosis.scores.scores.Before`).
 
-Reports may come in any order between nodes: every stream has its own newest time. Within a stream
+LogTables may come in any order between nodes: every stream has its own newest time. Within a stream
 one may come up to ``LATE_S`` after a newer one, and is put where it belongs. What is older still
 than all that is kept cannot be put anywhere any more: it is left out, and counted in ``late``. A
 clock that was put back (a simulation that began again) makes everything late: begin with a new
@@ -27,10 +27,10 @@ import numpy.typing as npt
 from pytpc.diagnosis.question import PLAIN, WINDOW_S, Question
 from pytpc.diagnosis.ranking.ranking import Ranker
 from pytpc.diagnosis.results.suspects import Evaluation, MarkRanking
-from pytpc.diagnosis.scores.live_streams import AGAIN, Rows, Stream, SummaryStream, end_of
+from pytpc.diagnosis.scores.live_streams import AGAIN, EventStream, Rows, SummaryStream, end_of
 from pytpc.diagnosis.scores.score_tables import Tpcs, TpcScores, parameter_tables, tpc_scores
 from pytpc.diagnosis.scores.scores import NEVER, Before, not_negative
-from pytpc.diagnosis.scores.summary_scores import Reports
+from pytpc.diagnosis.scores.summary_scores import LogTables
 from pytpc.recording.events import Events, Floats
 from pytpc.recording.marks import Mark
 from pytpc.recording.summaries import Summaries, Summary, SummaryBuilder
@@ -93,10 +93,10 @@ class LiveScores:
         self._again_ns = round(self._keep_ns * AGAIN)
         self._number = 0
         # By key and node.
-        self._streams: dict[str, dict[str, Stream]] = {key: {} for key in keys}
+        self._streams: dict[str, dict[str, EventStream]] = {key: {} for key in keys}
         self._summaries: dict[str, dict[str, SummaryStream]] = {key: {} for key in keys}
 
-    # The columns of SPEC 6, in a call that is made thousands of times a second.
+    # One argument for each column of an event: this is called thousands of times a second.
     def add(  # noqa: PLR0913, PLR0917
         self,
         time_ns: int,
@@ -114,7 +114,7 @@ class LiveScores:
             return
         stream = streams.get(node)
         if stream is None:
-            stream = streams[node] = Stream()
+            stream = streams[node] = EventStream()
             stream.look_ns = time_ns + self._keep_ns + self._again_ns
         self._number += 1
         times = stream.times
@@ -157,7 +157,7 @@ class LiveScores:
         before = Before.nothing(len(self.tpcs.keys))
         events = self._events(mark_ns, before)
         summaries = self._kept_summaries(mark_ns, before)
-        reports = Reports(events, summaries, before)
+        reports = LogTables(events, summaries, before)
         scores = tpc_scores(self.tpcs, reports, mark_ns, self.window_s)
         return scores.first[0], scores.second[0]
 
@@ -266,7 +266,7 @@ def _table(parts: list[Rows], words: list[tuple[int, str]], keys: Sequence[str])
     )
 
 
-def _evaluation(stream: Stream, place: int, node: str) -> Evaluation:
+def _evaluation(stream: EventStream, place: int, node: str) -> Evaluation:
     return Evaluation(
         stream.times[place],
         bool(stream.results[place]),

@@ -57,7 +57,7 @@ class Counted:
         self.lowest = min(self.lowest, float(values.min(initial=np.inf)))
 
 
-class Stream:
+class EventStream:
     """The evaluations of one comparison in one node.
 
     Where some are not kept, the first of the kept is the last of these: it is counted already, and

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from pytpc.diagnosis.question import WINDOW_S
 from pytpc.diagnosis.scores.scores import Formula, by_parameter, combined, ranks, type1
-from pytpc.diagnosis.scores.summary_scores import Reports, type2_of_summaries
+from pytpc.diagnosis.scores.summary_scores import LogTables, type2_of_summaries
 from pytpc.recording.events import Floats, Int64s
 from pytpc.recording.marks import MarkType
 from pytpc.static.parameters import parameter_name
@@ -92,7 +92,7 @@ class Tables(NamedTuple):
 
 
 def tpc_scores(
-    tpcs: Tpcs, reports: Reports, times_ns: npt.ArrayLike, window_s: float = WINDOW_S
+    tpcs: Tpcs, reports: LogTables, times_ns: npt.ArrayLike, window_s: float = WINDOW_S
 ) -> TpcScores:
     """Both scores of every TPC at all times.
 

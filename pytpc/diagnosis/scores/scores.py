@@ -1,4 +1,4 @@
-"""Scores and ranks of SPEC 7, for all TPCs at many times at once.
+"""Scores and ranks of docs/reference/scores.md, for all TPCs at many times at once.
 
 ``type1`` and ``type2`` give a table float64[marks, keys] of scores: lower is more suspicious,
 ``NONE`` where there is none. ``ranks`` turns it into ranks in [0, 1], ``by_parameter`` joins the

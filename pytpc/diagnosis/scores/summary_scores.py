@@ -40,7 +40,7 @@ _SLACK_NS = 1_000_000
 _TINY = 1e-200
 
 
-class Reports(NamedTuple):
+class LogTables(NamedTuple):
     """What scores are worked out from.
 
     ``before`` is what was before the first of ``events`` and ``summaries``, the extremes of earlier
@@ -53,7 +53,7 @@ class Reports(NamedTuple):
 
 
 def type2_of_summaries(
-    reports: Reports,
+    reports: LogTables,
     marks_ns: npt.ArrayLike,
     distance: npt.ArrayLike,
     formula: Formula = DEFAULT,
@@ -79,7 +79,7 @@ def type2_of_summaries(
         if rows.size:
             # What is beyond a double is looked for where it matters, in ``scores``.
             with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-                own = _Key(events, code, summaries, rows, earlier)
+                own = _KeySummaries(events, code, summaries, rows, earlier)
                 scores[:, code] = own.scores(begins, marks, formula, float(nearness[code]))
     return scores
 
@@ -91,7 +91,7 @@ class _Spread(NamedTuple):
     most: Floats
 
 
-class _Key:
+class _KeySummaries:
     """The summaries of one key, and its evaluations that are in none, each as one of its own."""
 
     def __init__(
@@ -164,7 +164,7 @@ class _Key:
             found.append(np.where(np.isfinite(highest), highest + lowest, 0.0))
         return _Spread(*found)
 
-    def _window(self, begins: Int64s, marks: Int64s) -> _Window:
+    def _window(self, begins: Int64s, marks: Int64s) -> _SummedWindow:
         """What is in each window."""
         # The few that are much longer than the others are looked at for every mark; any other that
         # straddles the beginning ends at most ``longest`` after it.
@@ -193,14 +193,14 @@ class _Key:
         between = RangeSums(self.sum[short]).over(middle, outer)
         counts = np.concatenate([[0], np.cumsum(self.count[short])])
         fars = np.concatenate([[0], np.cumsum(self.far[short])])
-        return _Window(
+        return _SummedWindow(
             between + _sum_by(mark, self.sum[row] * share, marks.size),
             counts[outer] - counts[middle] + _sum_by(mark, self.count[row] * share, marks.size),
             fars[outer] - fars[middle] + _sum_by(mark, self.far[row] * share, marks.size),
         )
 
 
-class _Window(NamedTuple):
+class _SummedWindow(NamedTuple):
     """The evaluations in the windows of all marks: the sum of |cmp - thresh|, how many, and of how
     many it is above ``EQUAL``."""
 

@@ -27,7 +27,7 @@ class _Agreed:
 
 
 @dataclass
-class _Open:
+class _OpenGroup:
     marks: list[Mark] = field(default_factory=list)
     lists: list[list[Advice]] = field(default_factory=list)
     reasons: list[str] = field(default_factory=list)
@@ -44,10 +44,10 @@ def join_advice(
     The arguments are those of `pytpc.diagnosis.suggestion.advise.advise`, with the rankings of
     several marks.
     """
-    groups: dict[tuple[object, ...], _Open] = {}
+    groups: dict[tuple[object, ...], _OpenGroup] = {}
     for ranking in rankings:
         advice = advise(recording, static_info, ranking, question)
-        group = groups.setdefault(_says(ranking.mark, advice), _Open())
+        group = groups.setdefault(_says(ranking.mark, advice), _OpenGroup())
         group.marks.append(ranking.mark)
         group.lists.append(advice)
         if ranking.reason and ranking.reason not in group.reasons:

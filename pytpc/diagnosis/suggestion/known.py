@@ -7,9 +7,9 @@ import numpy as np
 from pytpc.base.errors import InputError
 from pytpc.base.wording import Number
 from pytpc.diagnosis.question import Source
-from pytpc.diagnosis.results.advice import Known
-from pytpc.diagnosis.suggestion.case import Case, case_of, shown_current
-from pytpc.diagnosis.suggestion.suggestion_evidence import Evidence, NoneBecauseError
+from pytpc.diagnosis.results.advice import KnownValue
+from pytpc.diagnosis.suggestion.suggestion_case import SuggestionCase, case_of, shown_current
+from pytpc.diagnosis.suggestion.suggestion_evidence import NoneBecauseError, SuggestionEvidence
 from pytpc.diagnosis.thresholds.replay import tracks_of
 from pytpc.diagnosis.thresholds.units import NoUnitError
 from pytpc.recording.mission import Recording
@@ -24,8 +24,8 @@ NAMES: dict[Source, str] = {
 
 
 def known_values(
-    case: Case, static_info: StaticInfo, parameter: str, reference: Recording | None
-) -> list[Known]:
+    case: SuggestionCase, static_info: StaticInfo, parameter: str, reference: Recording | None
+) -> list[KnownValue]:
     """Those that there are, the strongest evidence first.
 
     A clean run has shown that its value does; a default is what its author thought would; one that
@@ -37,10 +37,10 @@ def known_values(
         parameter: its name in the source.
         reference: a clean run.
     """
-    found: list[Known] = []
+    found: list[KnownValue] = []
     flown = None if reference is None else value_in(reference, static_info, parameter)
     if flown is not None:
-        found.append(Known("reference", float(flown)))
+        found.append(KnownValue("reference", float(flown)))
     declared = case.possible.declared
     defaults: list[tuple[Source, Default]] = [
         ("default", case.comparison.default),
@@ -48,7 +48,7 @@ def known_values(
     ]
     for source, value in defaults:
         if value is not None and not isinstance(value, str):
-            found.append(Known(source, float(value)))
+            found.append(KnownValue(source, float(value)))
     return found
 
 
@@ -64,7 +64,9 @@ def value_in(recording: Recording, static_info: StaticInfo, parameter: str) -> N
         if not seen.size:
             continue
         found, nothing = track.comparison, np.zeros(0)
-        evidence = Evidence(nothing, nothing, float(seen[-1]), seen, bool(len(track.kept)))
+        evidence = SuggestionEvidence(
+            nothing, nothing, float(seen[-1]), seen, bool(len(track.kept))
+        )
         try:
             return shown_current(case_of(found, static_info.unit_of(found.key), evidence, None))
         except (NoneBecauseError, NoUnitError):

@@ -30,7 +30,7 @@ from typing import Literal
 import numpy as np
 
 from pytpc.base.columns import Bools, Floats, Int64s
-from pytpc.diagnosis.suggestion.case import EQUALITIES
+from pytpc.diagnosis.suggestion.suggestion_case import EQUALITIES
 from pytpc.diagnosis.thresholds.outcomes import outcomes, thresholds_for
 from pytpc.diagnosis.thresholds.replay import Track
 from pytpc.recording.marks import MarkType

@@ -1,6 +1,6 @@
 """The value to try: one with which the error should stay away, not only its last occurrence.
 
-SPEC 8's suggestion is the smallest change; a counter reaches the next number, too, and noise the
+The smallest change is often not enough; a counter reaches the next number, too, and noise the
 next bit. Here all marks of a mission are asked at once, and the evidence counts in this order:
 
 1. a value of a clean run, whichever way it is: it was flown, and nothing went wrong, while the way
@@ -29,13 +29,19 @@ import numpy as np
 from pytpc.base.columns import Floats
 from pytpc.base.wording import Number, exact, many, show
 from pytpc.diagnosis.question import PLAIN, Question
-from pytpc.diagnosis.results.advice import Basis, Direction, Known, Remedy, Suggestion
-from pytpc.diagnosis.suggestion.case import Case, case_of, refuse, shown_current, values_for
+from pytpc.diagnosis.results.advice import Basis, Direction, KnownValue, Remedy, Suggestion
 from pytpc.diagnosis.suggestion.choice import choose
 from pytpc.diagnosis.suggestion.known import NAMES, known_values, value_in
 from pytpc.diagnosis.suggestion.lasting import Lasting, lasting
 from pytpc.diagnosis.suggestion.suggest import At, suggest_for_most
-from pytpc.diagnosis.suggestion.suggestion_evidence import Evidence, NoneBecauseError
+from pytpc.diagnosis.suggestion.suggestion_case import (
+    SuggestionCase,
+    case_of,
+    refuse,
+    shown_current,
+    values_for,
+)
+from pytpc.diagnosis.suggestion.suggestion_evidence import NoneBecauseError, SuggestionEvidence
 from pytpc.diagnosis.thresholds.intervals import Interval, Intervals, holds, intersection, words
 from pytpc.diagnosis.thresholds.outcomes import thresholds_for
 from pytpc.diagnosis.thresholds.replay import Track, tracks_of
@@ -51,7 +57,7 @@ class _Wanted:
     """A comparison with what is wanted of it: values of the parameter that last, and the least."""
 
     track: Track
-    case: Case
+    case: SuggestionCase
     found: Lasting
     lasting: Intervals
     least: Intervals
@@ -203,7 +209,7 @@ def _wanted(
     refuse(comparison, unit)
     seen = _thresholds(track, end_ns)
     nothing = np.zeros(0)
-    evidence = Evidence(nothing, nothing, float(seen[-1]), seen, bool(len(track.kept)))
+    evidence = SuggestionEvidence(nothing, nothing, float(seen[-1]), seen, bool(len(track.kept)))
     case = case_of(comparison, unit, evidence, declared)
     edges = [
         values_for(case, thresholds_for(comparison.relation, edge, found.outcome))
@@ -221,7 +227,7 @@ def _thresholds(track: Track, end_ns: int) -> Floats:
 
 
 def _chosen(
-    name: str, wanted: Sequence[_Wanted], known: Sequence[Known], flown: Sequence[float]
+    name: str, wanted: Sequence[_Wanted], known: Sequence[KnownValue], flown: Sequence[float]
 ) -> Remedy | None:
     """By the nearest comparison, and the others as far as they want the same direction."""
     first = wanted[0]
@@ -260,7 +266,9 @@ def _bounds(present: float, rises: bool, flown: Sequence[float]) -> Interval:
     return Interval(max(beyond, default=-math.inf), present)
 
 
-def _value(wanted: _Wanted, known: Sequence[Known], within: Interval) -> tuple[float | None, Basis]:
+def _value(
+    wanted: _Wanted, known: Sequence[KnownValue], within: Interval
+) -> tuple[float | None, Basis]:
     """The value inside of ``within`` that evidence is for, and which; None where there is none."""
     case, found, lasts, least = wanted.case, wanted.found, wanted.lasting, wanted.least
     possible = case.possible

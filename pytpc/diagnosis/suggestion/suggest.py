@@ -1,4 +1,4 @@
-"""Suggestions of SPEC 8: raise or lower a parameter, and to which value.
+"""The smallest change of a parameter (docs/reference/scores.md#the-smallest-change).
 
 Type I: the smallest change of the threshold with which the last flop up to the mark would not have
 happened: the evaluation that flopped and the one before it would both have had the earlier outcome.
@@ -20,16 +20,16 @@ import numpy as np
 from pytpc.base.wording import Number, exact, show
 from pytpc.diagnosis.question import PLAIN, Question
 from pytpc.diagnosis.results.advice import Direction, Suggestion
-from pytpc.diagnosis.suggestion.case import (
+from pytpc.diagnosis.suggestion.choice import WHOLE, Choice, choose, nearest_of
+from pytpc.diagnosis.suggestion.suggestion_case import (
     EQUALITIES,
-    Case,
+    SuggestionCase,
     case_of,
     is_truth,
     refuse,
     shown_current,
     values_for,
 )
-from pytpc.diagnosis.suggestion.choice import WHOLE, Choice, choose, nearest_of
 from pytpc.diagnosis.suggestion.suggestion_evidence import NoneBecauseError, evidence_of
 from pytpc.diagnosis.thresholds.intervals import (
     Interval,
@@ -126,7 +126,7 @@ def suggest_for_most(
     return best
 
 
-def _first_type(case: Case) -> Intervals:
+def _first_type(case: SuggestionCase) -> Intervals:
     """The thresholds with which both evaluations of the flop have the outcome of the earlier."""
     evidence = case.evidence
     before, after = outcomes(case.relation, evidence.cmp, evidence.thresh).tolist()
@@ -145,7 +145,7 @@ def _first_type(case: Case) -> Intervals:
     return both
 
 
-def _second_type(case: Case) -> Intervals:
+def _second_type(case: SuggestionCase) -> Intervals:
     """The thresholds with which one evaluation of the window has its other outcome."""
     went, cmps = _still(case)
     if case.evidence.summed and case.relation in EQUALITIES:
@@ -159,7 +159,7 @@ def _second_type(case: Case) -> Intervals:
     )
 
 
-def _still(case: Case) -> tuple[Bools, Floats]:
+def _still(case: SuggestionCase) -> tuple[Bools, Floats]:
     """Outcomes and compared values of those that the present threshold would let go as they did."""
     evidence = case.evidence
     finite = np.isfinite(evidence.cmp)
@@ -173,7 +173,7 @@ def _still(case: Case) -> tuple[Bools, Floats]:
     return went[same], cmps[same]
 
 
-def _chosen(case: Case, feasible: Intervals, kind: MarkType) -> Suggestion:
+def _chosen(case: SuggestionCase, feasible: Intervals, kind: MarkType) -> Suggestion:
     declared = case.possible.declared
     if declared is not None and declared.choices:
         return _choice_of(case, feasible, declared)
@@ -189,13 +189,13 @@ def _chosen(case: Case, feasible: Intervals, kind: MarkType) -> Suggestion:
     return _sentence(case, found)
 
 
-def _is_everything_else(feasible: Intervals, case: Case) -> bool:
+def _is_everything_else(feasible: Intervals, case: SuggestionCase) -> bool:
     """Whether the values on both sides of the present one would do."""
     gaps = [math.nextafter(case.present, end) for end in (-math.inf, math.inf)]
     return all(holds(feasible, gap) for gap in gaps)
 
 
-def _turns_upwards(case: Case) -> bool:
+def _turns_upwards(case: SuggestionCase) -> bool:
     """Whether higher values of the parameter turn the last outcome of the window."""
     went, cmps = _still(case)
     last = thresholds_for(case.relation, float(cmps[-1]), not bool(went[-1]))
@@ -203,7 +203,7 @@ def _turns_upwards(case: Case) -> bool:
     return any(part.first() > case.present for part in values)
 
 
-def _choice_of(case: Case, feasible: Intervals, declared: Declared) -> Suggestion:
+def _choice_of(case: SuggestionCase, feasible: Intervals, declared: Declared) -> Suggestion:
     """One of the values of an enumeration."""
     numbers = {
         value: name
@@ -240,7 +240,7 @@ def _names(declared: Declared, values: tuple[Number | str, ...]) -> str:
     )
 
 
-def _switch(case: Case, kind: MarkType) -> Suggestion:
+def _switch(case: SuggestionCase, kind: MarkType) -> Suggestion:
     """A flag: the value before it changed (type I), or the other one (type II).
 
     A number is one in a condition of its own, or in a switch, of which any two values may differ.
@@ -267,14 +267,14 @@ def _switch(case: Case, kind: MarkType) -> Suggestion:
     return _switched(case, case.number(value))
 
 
-def _switched(case: Case, value: Number) -> Suggestion:
+def _switched(case: SuggestionCase, value: Number) -> Suggestion:
     source, current = parameter_name(case.comparison), shown_current(case)
     text = f"switch {source} from {show(current)} to {show(value)}"
     feasible = (Interval.point(float(value)),)
     return Suggestion(source, current, "switch", value, float(value), True, text, None, feasible)
 
 
-def _sentence(case: Case, found: Choice) -> Suggestion:
+def _sentence(case: SuggestionCase, found: Choice) -> Suggestion:
     source, inside = parameter_name(case.comparison), found.interval
     up = found.value > case.present
     boundary = inside.low if up else inside.high

@@ -18,7 +18,7 @@ class NoneBecauseError(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class Evidence:
+class SuggestionEvidence:
     """Evaluations of one comparison up to a mark, those that count for a type of error.
 
     ``cmp`` and ``thresh`` are float64[n]: type I the two of the last flop, the earlier first; type
@@ -34,7 +34,7 @@ class Evidence:
 
 
 @dataclass(frozen=True, slots=True)
-class _Kept:
+class _KeptEnds:
     """What summaries say of the evaluations in a window: those at the ends of what each encloses.
 
     The outermost values are all that type II asks for. ``threshold`` is the last one up to the
@@ -50,7 +50,7 @@ class _Kept:
     @classmethod
     def of(
         cls, summaries: Summaries | None, key: str, mark_ns: int, window_s: float
-    ) -> _Kept | None:
+    ) -> _KeptEnds | None:
         """None where there are none of ``key`` before the mark."""
         if summaries is None or key not in summaries.keys:
             return None
@@ -72,14 +72,14 @@ class _Kept:
 
 def evidence_of(
     recording: Recording, key: str, mark_ns: int, kind: MarkType, window_s: float
-) -> Evidence:
+) -> SuggestionEvidence:
     """What the log has of ``key`` up to a mark.
 
     Raises:
         NoneBecauseError: there is nothing.
     """
     events = recording.events
-    kept = _Kept.of(recording.summaries, key, mark_ns, window_s)
+    kept = _KeptEnds.of(recording.summaries, key, mark_ns, window_s)
     rows = _rows_up_to(events, key, mark_ns)
     if kept is None and not rows.size:
         raise NoneBecauseError("it was not evaluated before the mark")
@@ -91,7 +91,7 @@ def evidence_of(
         threshold = float(seen[-1])
     if kind == "I":
         pair = last_flop(events, rows)
-        return Evidence(events.cmp[pair], events.thresh[pair], threshold, seen, False)
+        return SuggestionEvidence(events.cmp[pair], events.thresh[pair], threshold, seen, False)
     begin = mark_ns - round(window_s * 1e9)
     window = rows[int(np.searchsorted(events.time_ns[rows], begin, side="left")) :]
     cmp, thresh = events.cmp[window], events.thresh[window]
@@ -99,7 +99,7 @@ def evidence_of(
         cmp, thresh = np.append(kept.cmp, cmp), np.append(kept.thresh, thresh)
     if not cmp.size:
         raise NoneBecauseError("it was not evaluated in the window before the mark")
-    return Evidence(cmp, thresh, threshold, seen, kept is not None)
+    return SuggestionEvidence(cmp, thresh, threshold, seen, kept is not None)
 
 
 def _rows_up_to(events: Events, key: str, mark_ns: int) -> Int64s:

@@ -12,7 +12,12 @@ from pytpc.diagnosis.ranking.clocks import two_clocks
 from pytpc.diagnosis.ranking.complaints import complaints
 from pytpc.diagnosis.ranking.reasons import why
 from pytpc.diagnosis.results.advice import Advice, Remedy, Suggestion
-from pytpc.diagnosis.results.mission import MarkAnswer, MissionAnswer, RankCurves, SuspectAnswer
+from pytpc.diagnosis.results.mission_answer import (
+    MarkAnswer,
+    MissionAnswer,
+    RankCurves,
+    SuspectAnswer,
+)
 from pytpc.diagnosis.results.suspects import MarkRanking
 from pytpc.diagnosis.scores.curves import STEP_S, rank_curves
 from pytpc.diagnosis.suggestion.advise import advise, alternatives

@@ -21,7 +21,7 @@ _OPPOSITE = {"<": ">=", ">=": "<", ">": "<=", "<=": ">", "==": "!=", "!=": "=="}
 
 
 def outcomes(relation: str, cmp: Floats, thresh: Floats | float) -> Bools:
-    """bool[n]: ``cmp relation thresh`` (docs/reference/formats.md, "A comparison")."""
+    """bool[n]: ``cmp relation thresh``, the relation as in docs/reference/formats.md."""
     return np.asarray(_RELATIONS[relation](cmp, thresh), dtype=np.bool_)
 
 

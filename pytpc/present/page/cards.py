@@ -10,12 +10,12 @@ from markupsafe import Markup
 
 from pytpc.base.wording import exact, show
 from pytpc.diagnosis.results.advice import Advice, Suggestion, WhatIf
-from pytpc.diagnosis.results.mission import SuspectAnswer
+from pytpc.diagnosis.results.mission_answer import SuspectAnswer
 from pytpc.diagnosis.results.suspects import Suspect
 from pytpc.present.page.mission import ReportedMission
 from pytpc.present.page.payload import finite, series_of
-from pytpc.present.page.plots import EvidenceStyle, evidence_svg, span_of
-from pytpc.present.page.series import Evidence, Span, evidence
+from pytpc.present.page.plots import EvidenceStyle, evidence_svg, value_span
+from pytpc.present.page.series import PlotData, plot_data
 from pytpc.present.page.source import LONGEST_LINE, Line, StepView, source_lines, way_of
 from pytpc.recording.declaration import Declared
 from pytpc.recording.marks import Mark
@@ -218,9 +218,8 @@ def _lead(advice: Advice) -> LeadView:
 
 def _evidence(
     mission: ReportedMission, answer: SuspectAnswer, mark: Mark
-) -> tuple[Evidence, EvidenceStyle]:
+) -> tuple[PlotData, EvidenceStyle]:
     recording, suspect = mission.recording, answer.advice.suspect
-    start, end = recording.start_ns, recording.end_ns
     at = mission.seconds(mark.time_ns)
     style = EvidenceStyle(
         mark=at,
@@ -230,14 +229,12 @@ def _evidence(
         culprit=mission.is_changed(suspect.parameter),
         feasible=answer.feasible,
     )
-    data = evidence(
-        recording.events, suspect.key, mark.time_ns, Span(start, end), recording.summaries
-    )
+    data = plot_data(recording, suspect.key, mark.time_ns)
     return data, style
 
 
-def _figure(data: Evidence, style: EvidenceStyle, suspect: Suspect) -> dict[str, object]:
-    low, high, beyond = span_of(data, style)
+def _figure(data: PlotData, style: EvidenceStyle, suspect: Suspect) -> dict[str, object]:
+    low, high, beyond = value_span(data, style)
     return {
         "begin": data.begin,
         "end": data.end,

@@ -16,7 +16,7 @@ from pathlib import Path
 from pytpc.base.atomic import write_atomic
 from pytpc.conditions.tpc_details import Details
 from pytpc.present.page.environment import environment
-from pytpc.present.page.source import LONGEST_LINE, StepView, read_lines, way_of
+from pytpc.present.page.source import LONGEST_LINE, StepView, source_file_lines, way_of
 from pytpc.static.static_info import StaticInfo
 
 _CONTEXT = 2
@@ -174,7 +174,7 @@ def _origin(each: Details) -> str:
 def _code(each: Details) -> list[CodeLine]:
     """The condition's lines with two before and after; else the line that the analysis kept."""
     found, nearest = each.condition, each.nearest
-    lines = read_lines(Path(each.tpc.file)) if found is not None else None
+    lines = source_file_lines(Path(each.tpc.file)) if found is not None else None
     if found is None or lines is None or found.end_lineno > len(lines):
         text = (nearest.source_code or "")[:LONGEST_LINE]
         return [CodeLine(nearest.lineno, "", text, "")] if text else []

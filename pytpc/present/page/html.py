@@ -44,10 +44,10 @@ def write_page(
     Raises:
         TpcError: the file cannot be written; what stood there before is untouched.
     """
-    write_atomic(path, render(missions, title, on_progress).encode("utf-8", "replace"))
+    write_atomic(path, page_text(missions, title, on_progress).encode("utf-8", "replace"))
 
 
-def render(
+def page_text(
     missions: Sequence[ReportedMission], title: str, on_progress: Progress | None = None
 ) -> str:
     """The page as text. Whatever comes from the robot is escaped."""

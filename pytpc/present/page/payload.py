@@ -16,9 +16,9 @@ import numpy.typing as npt
 from markupsafe import Markup
 
 from pytpc.base.columns import Floats
-from pytpc.diagnosis.results.mission import RankCurves
+from pytpc.diagnosis.results.mission_answer import RankCurves
 from pytpc.present.page.environment import seen
-from pytpc.present.page.series import Span, gap_after, kept_of, lane, runs, thin
+from pytpc.present.page.series import gap_after, kept_of, lane, runs, thin
 from pytpc.recording.marks import MarkType
 from pytpc.recording.mission import Recording
 
@@ -39,7 +39,7 @@ def embedded(document: object) -> Markup:
     return Markup(text)
 
 
-def packed(values: npt.NDArray[np.generic]) -> str:
+def base64_of(values: npt.NDArray[np.generic]) -> str:
     """The bytes of an array, little-endian, in base64."""
     return base64.b64encode(
         np.ascontiguousarray(values, values.dtype.newbyteorder("<")).tobytes()
@@ -65,49 +65,38 @@ def series_of(recording: Recording, key: str) -> dict[str, object]:
     change = np.flatnonzero(np.concatenate([[True], ~same])[: limit.size])
     change = change[thin(seconds[change], limit[change], KEPT)]
     return {
-        "t": packed(((events.time_ns[kept] - start_ns) / 1e9).astype(np.float32)),
-        "c": packed(events.cmp[kept]),
-        "r": packed(events.result[kept].astype(np.uint8)),
-        "lt": packed(seconds[change]),
-        "lv": packed(limit[change]),
+        "t": base64_of(((events.time_ns[kept] - start_ns) / 1e9).astype(np.float32)),
+        "c": base64_of(events.cmp[kept]),
+        "r": base64_of(events.result[kept].astype(np.uint8)),
+        "lt": base64_of(seconds[change]),
+        "lv": base64_of(limit[change]),
         "gap": gap_after(seconds),
         "of": int(rows.size),
-        "kept": [packed(column) for column in spans],
+        "kept": [base64_of(column) for column in spans],
     }
 
 
 def lanes_of(recording: Recording, lanes: Sequence[tuple[str, str]]) -> dict[str, object]:
     """The lanes of the timeline, from pairs of (label, key)."""
-    found = [lane_of(recording, key, FINE) for _, key in lanes]
+    found = [lane(recording, key, FINE) for _, key in lanes]
     return {
         "labels": [calm(label) for label, _ in lanes],
         "columns": FINE,
-        "runs": [packed(np.array(runs(states), dtype=np.int32).reshape(-1)) for states in found],
+        "runs": [base64_of(np.array(runs(states), dtype=np.int32).reshape(-1)) for states in found],
     }
-
-
-def lane_of(recording: Recording, key: str, bins: int) -> npt.NDArray[np.int8]:
-    """int8[bins]: the states of one lane, see `pytpc.present.page.series.lane`."""
-    return lane(
-        recording.events,
-        key,
-        Span(recording.start_ns, recording.end_ns),
-        bins=bins,
-        summaries=recording.summaries,
-    )
 
 
 def curves_of(curves: RankCurves, names: Sequence[str], start_ns: int) -> dict[str, object]:
     """Both rank curves of ``names``: uint16 of 65,535ths, by type, and the times."""
     places = [curves.parameters.index(name) for name in names]
     return {
-        "t": packed(((curves.times_ns - start_ns) / 1e9).astype(np.float64)),
+        "t": base64_of(((curves.times_ns - start_ns) / 1e9).astype(np.float64)),
         "I": [_ranks(curves.rank1[:, place]) for place in places],
         "II": [_ranks(curves.rank2[:, place]) for place in places],
     }
 
 
-def marks_of(marks: Sequence[tuple[float, MarkType | None]]) -> list[Mapping[str, object]]:
+def marks_json(marks: Sequence[tuple[float, MarkType | None]]) -> list[Mapping[str, object]]:
     """Marks as (seconds, type) in the order of the page."""
     return [{"t": time, "type": kind or ""} for time, kind in marks]
 
@@ -129,4 +118,4 @@ def calm(text: str) -> str:
 
 
 def _ranks(values: Floats) -> str:
-    return packed(np.rint(np.clip(np.nan_to_num(values), 0, 1) * _RANKS).astype(np.uint16))
+    return base64_of(np.rint(np.clip(np.nan_to_num(values), 0, 1) * _RANKS).astype(np.uint16))

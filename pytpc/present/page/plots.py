@@ -25,7 +25,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from pytpc.present.page.environment import seen
-from pytpc.present.page.series import Evidence
+from pytpc.present.page.series import PlotData
 from pytpc.recording.events import Floats
 from pytpc.recording.marks import MarkType
 
@@ -86,7 +86,7 @@ class EvidenceStyle:
     feasible: tuple[tuple[float, float], ...] = ()
 
 
-def evidence_svg(data: Evidence, style: EvidenceStyle, ident: str, label: str) -> str:
+def evidence_svg(data: PlotData, style: EvidenceStyle, ident: str, label: str) -> str:
     """Compared value and threshold over time, the mark, and the result below.
 
     Args:
@@ -129,7 +129,7 @@ def evidence_svg(data: Evidence, style: EvidenceStyle, ident: str, label: str) -
         return svg_of(figure, ident, label)
 
 
-def _values(axes: Axes, data: Evidence, style: EvidenceStyle) -> None:
+def _values(axes: Axes, data: PlotData, style: EvidenceStyle) -> None:
     colour = COLOUR["culprit" if style.culprit else "value"]
     finite, limit = _drawable(data.cmp), _drawable(data.thresh)
     axes.plot(data.time, finite, color=colour, linewidth=1.4)
@@ -158,7 +158,7 @@ def _values(axes: Axes, data: Evidence, style: EvidenceStyle) -> None:
             linewidth=1.3,
             linestyle=(0, (1, 1.6)),
         )
-    low, high, beyond = span_of(data, style)
+    low, high, beyond = value_span(data, style)
     axes.set_ylim(low, high)
     for begin, end in style.feasible:
         shown = max(begin, low), min(end, high)
@@ -179,7 +179,7 @@ def _values(axes: Axes, data: Evidence, style: EvidenceStyle) -> None:
     axes.tick_params(axis="x", length=0, labelbottom=False)
 
 
-def _dots(axes: Axes, data: Evidence, values: Floats, colour: str) -> None:
+def _dots(axes: Axes, data: PlotData, values: Floats, colour: str) -> None:
     """Single evaluations: filled where the result was true, hollow where it was false."""
     after = np.searchsorted(data.steps, data.time, side="right") - 1
     drawn = np.isfinite(data.time)
@@ -201,7 +201,7 @@ def _drawable(values: Floats) -> Floats:
     return np.clip(np.where(np.isfinite(values), values, np.nan), -_LARGEST, _LARGEST)
 
 
-def span_of(data: Evidence, style: EvidenceStyle) -> tuple[float, float, bool]:
+def value_span(data: PlotData, style: EvidenceStyle) -> tuple[float, float, bool]:
     """The ends of the axis of values, and whether values lie beyond them."""
     suggested = np.nan if style.suggested is None else style.suggested
     limits = np.append(_drawable(data.thresh), suggested)
@@ -234,7 +234,7 @@ def _span(values: Floats, limits: Floats) -> tuple[float, float, bool]:
     return low, high, False
 
 
-def _name_mark(axes: Axes, data: Evidence, style: EvidenceStyle) -> None:
+def _name_mark(axes: Axes, data: PlotData, style: EvidenceStyle) -> None:
     """Beside the line of the mark, on the side that has room."""
     right = style.mark - data.begin < 0.85 * (data.end - data.begin)
     axes.annotate(
@@ -249,7 +249,7 @@ def _name_mark(axes: Axes, data: Evidence, style: EvidenceStyle) -> None:
     )
 
 
-def _outcomes(axes: Axes, data: Evidence) -> None:
+def _outcomes(axes: Axes, data: PlotData) -> None:
     if data.steps.size:
         time = np.append(data.steps, data.ends)
         level = np.append(data.outcome, data.outcome[-1]).astype(np.float64)

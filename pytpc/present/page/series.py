@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from pytpc.recording.events import Bools, Events, Floats, Int64s
+from pytpc.recording.events import Bools, Floats, Int64s
+from pytpc.recording.mission import Recording
 from pytpc.recording.summaries import Summaries
 
 POINTS = 1200
@@ -28,7 +28,7 @@ _HOLD_PERIODS = 3.0
 
 
 @dataclass(frozen=True, slots=True)
-class Evidence:
+class PlotData:
     """The evaluations of one TPC around a mark; times are seconds since the recording began.
 
     ``time``, ``cmp`` and ``thresh`` are float64[n], n at most ``POINTS`` and the gaps: where the
@@ -69,23 +69,10 @@ def kept_of(summaries: Summaries, key: str, start_ns: int) -> Floats:
     return found[:, np.isfinite(found).all(axis=0)]
 
 
-class Span(NamedTuple):
-    """The begin and the end of a mission."""
-
-    start_ns: int
-    end_ns: int
-
-
-def evidence(
-    events: Events,
-    key: str,
-    mark_ns: int,
-    span: Span,
-    summaries: Summaries | None = None,
-) -> Evidence:
+def plot_data(recording: Recording, key: str, mark_ns: int) -> PlotData:
     """The evaluations from 20 s before a mark, or from the last flop if that is earlier, to 6 s
     after it, within the recording."""
-    start_ns, end_ns = span
+    events, start_ns, end_ns = recording.events, recording.start_ns, recording.end_ns
     rows = events.rows_of(key)
     times = events.time_ns[rows]
     begin = mark_ns - round(_AROUND_S[0] * 1e9)
@@ -103,10 +90,10 @@ def evidence(
     change = np.flatnonzero(np.concatenate([[True], result[1:] != result[:-1]])[: result.size])
     kept_changes = change[thin(seconds[change], result[change].astype(np.float64), POINTS)]
     shown = flops[(flops >= begin) & (flops <= end)]
-    kept_spans = kept_of(summaries if summaries is not None else Summaries.empty(), key, start_ns)
+    kept_spans = kept_of(recording.summaries, key, start_ns)
     from_to = (begin - start_ns) / 1e9, (end - start_ns) / 1e9
     touching = (kept_spans[1] >= from_to[0]) & (kept_spans[0] <= from_to[1])
-    return Evidence(
+    return PlotData(
         time=lines[0],
         cmp=lines[1],
         thresh=lines[2],
@@ -151,21 +138,15 @@ def gap_after(time: Floats) -> float:
     return max(_GAP_S, _GAP_FACTOR * float(np.median(steps))) if steps.size else _GAP_S
 
 
-def lane(
-    events: Events,
-    key: str,
-    span: Span,
-    *,
-    bins: int = BINS,
-    summaries: Summaries | None = None,
-) -> npt.NDArray[np.int8]:
+def lane(recording: Recording, key: str, bins: int = BINS) -> npt.NDArray[np.int8]:
     """int8[bins]: what the TPC ``key`` gave in each of equal spans of the mission.
 
     A result holds until the next one, if that comes within 2 s and three usual periods of the TPC:
     a slow one is not a row of dots, and a pause stays a pause. A summary with flops is both in all
     of its period.
     """
-    start_ns, end_ns = span
+    events, summaries = recording.events, recording.summaries
+    start_ns, end_ns = recording.start_ns, recording.end_ns
     states = np.zeros(bins, dtype=np.int8)
     rows = events.rows_of(key)
     times, result = events.time_ns[rows], events.result[rows]
@@ -178,7 +159,7 @@ def lane(
         usual = min(_GAP_S * 1e9, _HOLD_PERIODS * float(np.median(steps)))
         for row in np.flatnonzero((np.diff(place) > 1) & (steps <= usual)):
             states[place[row] + 1 : place[row + 1]] = TRUE if result[row] else FALSE
-    if summaries is not None and key in summaries.keys:
+    if key in summaries.keys:
         own = summaries.take(summaries.key == summaries.keys.index(key))
         ends = np.stack([own.begin_ns, own.end_ns]) - start_ns
         spans = np.clip(ends * bins // max(1, end_ns - start_ns), 0, bins - 1)

@@ -57,7 +57,7 @@ def source_lines(static_info: StaticInfo, found: Comparison) -> tuple[list[Line]
     """
     own = [Line(found.lineno, found.source_code or "", True)]
     path = static_info.source_path(found.key)
-    lines = _read_lines(path)
+    lines = _decoded_lines(path)
     if lines is None:
         return (own if found.source_code else []), "the source file is not on this machine"
     if not 1 <= found.lineno <= len(lines) or (
@@ -74,7 +74,7 @@ def source_lines(static_info: StaticInfo, found: Comparison) -> tuple[list[Line]
     ], ""
 
 
-def read_lines(path: Path) -> list[bytes] | None:
+def source_file_lines(path: Path) -> list[bytes] | None:
     """A file's lines in UTF-8; None where it is not there, or too large to be anyone's source."""
     try:
         if path.stat().st_size > _LARGEST_SOURCE:
@@ -84,8 +84,8 @@ def read_lines(path: Path) -> list[bytes] | None:
         return None
 
 
-def _read_lines(path: Path) -> list[str] | None:
-    lines = read_lines(path)
+def _decoded_lines(path: Path) -> list[str] | None:
+    lines = source_file_lines(path)
     if lines is None:
         return None
     return [line.decode("utf-8", "replace").rstrip().expandtabs(4) for line in lines]

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -17,9 +16,9 @@ from matplotlib.figure import Figure
 
 from pytpc.base.columns import Floats
 from pytpc.present.page.mission import ReportedMission
-from pytpc.present.page.payload import curves_of, lane_of, lanes_of
+from pytpc.present.page.payload import curves_of, lanes_of
 from pytpc.present.page.plots import COLOUR, MARK_LINES, drawing, short, svg_of
-from pytpc.present.page.series import BINS, BOTH, FALSE, TRUE, runs
+from pytpc.present.page.series import BINS, BOTH, FALSE, TRUE, lane, runs
 from pytpc.recording.marks import MarkType
 
 _LANES = 8
@@ -71,7 +70,7 @@ def timeline(mission: ReportedMission, ident: str) -> tuple[Markup, dict[str, ob
     start = recording.start_ns
     accent = order.index(changed) if changed is not None else 0
     lanes = [
-        Lane(name, lane_of(recording, best[name][1], BINS), row == accent, name == changed)
+        Lane(name, lane(recording, best[name][1]), row == accent, name == changed)
         for row, name in enumerate(order)
     ]
     marks = [(mission.seconds(mark.time_ns), mark.type) for mark in recording.marks]
@@ -82,14 +81,7 @@ def timeline(mission: ReportedMission, ident: str) -> tuple[Markup, dict[str, ob
         curves.rank1[::every, places],
         curves.rank2[::every, places],
     )
-    label = f"results and ranks of {len(lanes)} parameters over {recording.seconds:.0f} s,"
-    svg = timeline_svg(
-        lanes,
-        still,
-        marks,
-        seconds=recording.seconds,
-        name=FigureName(f"{ident}-t", f"{label} {len(marks)} marks"),
-    )
+    svg = timeline_svg(lanes, still, marks, recording.seconds, ident=f"{ident}-t")
     moving = lanes_of(recording, [(name, best[name][1]) for name in order])
     moving["curves"] = curves_of(curves, order, start)
     moving["accent"] = accent
@@ -97,20 +89,13 @@ def timeline(mission: ReportedMission, ident: str) -> tuple[Markup, dict[str, ob
     return Markup(svg), moving
 
 
-class FigureName(NamedTuple):
-    """The prefix of a figure's ids, unlike that of any other, and what it shows, in words."""
-
-    ident: str
-    label: str
-
-
 def timeline_svg(
     lanes: Sequence[Lane],
     curves: Curves,
     marks: Sequence[tuple[float, MarkType | None]],
-    *,
     seconds: float,
-    name: FigureName,
+    *,
+    ident: str,
 ) -> str:
     """Every suspect's results and ranks over the whole mission, and the marks, numbered from 1.
 
@@ -119,12 +104,12 @@ def timeline_svg(
         curves: their ranks.
         marks: time in seconds since the recording began, and type, in the order of time.
         seconds: length of the recording.
-        name: of the figure.
+        ident: prefix of all ids, unlike that of any other figure of the page.
 
     Returns:
         An ``<svg>`` element.
     """
-    ident, label = name
+    label = f"results and ranks of {len(lanes)} parameters over {seconds:.0f} s, {len(marks)} marks"
     seconds = max(seconds, 1e-3)
     heights = [0.25 + _LANE_INCHES * len(lanes), _CURVE_INCHES, _CURVE_INCHES]
     with drawing(8.8):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from pytpc.base.wording import percent
-from pytpc.diagnosis.results.mission import MissionAnswer
+from pytpc.diagnosis.results.mission_answer import MissionAnswer
 
 
 @dataclass(frozen=True)

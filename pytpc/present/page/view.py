@@ -15,7 +15,7 @@ from markupsafe import Markup
 
 from pytpc.base.wording import many
 from pytpc.diagnosis.question import Types
-from pytpc.diagnosis.results.mission import MarkAnswer
+from pytpc.diagnosis.results.mission_answer import MarkAnswer
 from pytpc.diagnosis.results.suspects import MarkRanking
 from pytpc.present.page.answer import AnswerView, answers, spoken
 from pytpc.present.page.cards import (
@@ -26,7 +26,7 @@ from pytpc.present.page.cards import (
     row_view,
 )
 from pytpc.present.page.mission import ReportedMission
-from pytpc.present.page.payload import embedded, marks_of
+from pytpc.present.page.payload import embedded, marks_json
 from pytpc.present.page.timeline import timeline
 from pytpc.present.page.together import TogetherView, together
 from pytpc.recording.marks import MarkType
@@ -126,7 +126,7 @@ def mission_view(
         payload=embedded(
             {
                 "seconds": recording.seconds,
-                "marks": marks_of(
+                "marks": marks_json(
                     [(mission.seconds(mark.time_ns), mark.type) for mark in recording.marks]
                 ),
                 "series": drawn.series,
@@ -187,7 +187,7 @@ def _positions(mission: ReportedMission) -> str:
 
 _BELIEVED: dict[Types, str] = {
     "believe": "",
-    "doubt": "doubted: the suspects of the other type stay rivals",
+    "doubt": "doubted: suspects of the other type still compete",
     "ignore": "ignored: ranked by both scores combined",
 }
 
@@ -208,8 +208,8 @@ def _facts(mission: ReportedMission) -> list[tuple[str, str]]:
         ("Length", f"{recording.seconds:.1f} s"),
         ("Reports", reports),
         ("Comparisons seen", f"{seen} of {len(static.thresholds)} found in the source"),
-        ("Changes of a result", f"{int(events.flop.sum()):,}"),
-        ("Nodes that report", str(len(nodes))),
+        ("Result changes", f"{int(events.flop.sum()):,}"),
+        ("Reporting nodes", str(len(nodes))),
     ]
     believed = _BELIEVED[mission.answer.question.types]
     return [*facts, ("Types of the marks", believed)] if believed else facts

@@ -12,7 +12,7 @@ import numpy as np
 
 from pytpc.base.wording import Number, show
 from pytpc.diagnosis.suggestion.choice import Possible
-from pytpc.diagnosis.suggestion.suggestion_evidence import Evidence, NoneBecauseError
+from pytpc.diagnosis.suggestion.suggestion_evidence import NoneBecauseError, SuggestionEvidence
 from pytpc.diagnosis.thresholds.intervals import Interval, Intervals, holds, intersection
 from pytpc.diagnosis.thresholds.units import (
     ParameterUnit,
@@ -29,13 +29,13 @@ EQUALITIES = frozenset({"==", "!="})
 
 
 @dataclass(frozen=True, slots=True)
-class Case:
+class SuggestionCase:
     """What a suggestion is worked out from: the evaluations up to the mark, and the parameter."""
 
     comparison: Comparison
     how: ParameterUnit
     possible: Possible
-    evidence: Evidence
+    evidence: SuggestionEvidence
 
     @property
     def relation(self) -> str:
@@ -76,8 +76,11 @@ def refuse(comparison: Comparison, unit: LinkUnit | None) -> None:
 
 
 def case_of(
-    comparison: Comparison, unit: LinkUnit | None, evidence: Evidence, declared: Declared | None
-) -> Case:
+    comparison: Comparison,
+    unit: LinkUnit | None,
+    evidence: SuggestionEvidence,
+    declared: Declared | None,
+) -> SuggestionCase:
     """The case of a comparison that ``refuse`` lets pass.
 
     Raises:
@@ -95,10 +98,12 @@ def case_of(
     whole = is_whole(comparison, unit, seen)
     if declared is not None and declared.type in {"int", "double"}:
         whole = declared.type == "int"
-    return Case(comparison, how, Possible(whole, is_unsigned(comparison, unit), declared), evidence)
+    return SuggestionCase(
+        comparison, how, Possible(whole, is_unsigned(comparison, unit), declared), evidence
+    )
 
 
-def values_for(case: Case, thresholds: Intervals) -> Intervals:
+def values_for(case: SuggestionCase, thresholds: Intervals) -> Intervals:
     """The values of the parameter that give one of ``thresholds``, none of them the present one.
 
     Raises:
@@ -119,7 +124,7 @@ def values_for(case: Case, thresholds: Intervals) -> Intervals:
     raise NoneBecauseError("no value of the parameter gives such a threshold")
 
 
-def is_truth(case: Case) -> bool:
+def is_truth(case: SuggestionCase) -> bool:
     """Whether the parameter is true or false."""
     found, declared = case.comparison, case.possible.declared
     if declared is not None:
@@ -129,6 +134,6 @@ def is_truth(case: Case) -> bool:
     return unknown or (isinstance(found.default, bool) and plain)
 
 
-def shown_current(case: Case) -> Number:
+def shown_current(case: SuggestionCase) -> Number:
     """The parameter's present value in its own type."""
     return bool(case.threshold) if is_truth(case) else case.current
