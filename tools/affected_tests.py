@@ -244,9 +244,13 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--base", metavar="BRANCH", help="Compare with it instead of main.")
     parser.add_argument("--most", type=int, default=MOST, help=f"At most so many files ({MOST}).")
+    parser.add_argument("--changed", action="store_true", help="Print the changed files instead.")
     given = parser.parse_args()
     base = merge_base(given.base)
     changed = {*git("diff", "--name-only", base), *git("ls-files", "-o", "--exclude-standard")}
+    if given.changed:
+        print(*sorted(changed), sep="\n")
+        return 0
     tree = Tree(ROOT, git("ls-files", "-co", "--exclude-standard"), PACKAGES)
     reached = tree.reached(changed)
     chosen = reached[: given.most]
