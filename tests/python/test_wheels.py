@@ -20,7 +20,7 @@ def build_wheel(project: Path, package: str, folder: Path) -> Path:
     """The wheel of a copy of ``project``: setuptools leaves its traces beside the sources."""
     copy = folder / f"{package}-source"
     copy.mkdir()
-    for name in ("pyproject.toml", "README.md"):
+    for name in ("pyproject.toml", "README.md", "VERSION"):
         if (project / name).is_file():
             shutil.copy(project / name, copy)
     shutil.copytree(project / package, copy / package, ignore=shutil.ignore_patterns("__pycache__"))
@@ -111,6 +111,11 @@ def test_a_wheel_has_every_file_of_its_package(wheels):
         with zipfile.ZipFile(wheel) as archive:
             names = {name for name in archive.namelist() if ".dist-info/" not in name}
         assert names == files_of(folder)
+
+
+def test_both_wheels_have_the_version_of_the_project(wheels):
+    version = (ROOT / "VERSION").read_text().strip()
+    assert [wheel.name.split("-")[1] for wheel in wheels] == [version, version]
 
 
 def test_the_package_is_that_of_the_wheel(product):
