@@ -31,7 +31,7 @@ _SILENT_S = 5.0
 class StudyProgress:
     """A context manager; everything is told on standard error, and missions that ended by a line.
 
-    Without a terminal there is no bar, but a line every five seconds of what is at work.
+    Without a terminal there is no bar, but a line every five seconds about the work under way.
     """
 
     def __init__(self, what: str, console: Console | None = None) -> None:
@@ -83,7 +83,7 @@ class StudyProgress:
         self._bar.reset(self._task, total=flights)
 
     def ended(self, result: Result) -> None:
-        """A mission has ended; one of an earlier run is no news."""
+        """A mission has ended; those of an earlier run are not reported."""
         if result.kept:
             return
         self._bar.advance(self._task)

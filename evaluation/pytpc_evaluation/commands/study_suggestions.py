@@ -1,4 +1,4 @@
-"""The command ``study suggestions``: what is to be flown next, and what came of it so far."""
+"""The command ``study suggestions``: what to fly next, and the results so far."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def suggestions_command(
 ) -> None:
     """Read the results of flown suggestions, and list what to fly next.
 
-    Run it by turns with ``study suggested`` until nothing is left.
+    Alternate it with ``study suggested`` until nothing is left.
     """
     ranking = None if method is None else METHODS[method]
     with alone_with_results(out), progress("working out suggestions") as advance:

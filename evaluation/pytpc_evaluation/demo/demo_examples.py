@@ -176,7 +176,7 @@ def link_package(example: Example, workspace: Path) -> None:
         link = workspace / "src" / package.name
         if link.resolve() == package:
             continue
-        # What stands there is the link of an earlier checkout.
+        # An earlier checkout left its link there.
         try:
             link.parent.mkdir(parents=True, exist_ok=True)
             link.unlink(missing_ok=True)

@@ -1,6 +1,6 @@
 """What a mission was flown with, as one number: where it is another, the mission is flown again.
 
-No folder's name is in it, so that a study may be moved, and gone on with from another checkout.
+No folder's name is in it, so a study may be moved, and continued from another checkout.
 """
 
 from __future__ import annotations

@@ -237,7 +237,7 @@ def _clear(folder: Path) -> None:
 def cut(recording: Recording, end_ns: int) -> Recording:
     """The recording until ``end_ns``.
 
-    How long a graph goes on after that hangs on the machine, and so would what is made of it.
+    How long a graph goes on after that depends on the machine, and so would the results.
     """
     events = recording.events.between(recording.start_ns, end_ns)
     return replace(recording, events=events, end_ns=min(recording.end_ns, end_ns))

@@ -109,7 +109,7 @@ def opened(
         on_build: called with each line of a build.
 
     Raises:
-        TpcError: something named is not there, a system does not build, or another run is at work.
+        TpcError: something named does not exist, a system does not build, or another run is on.
     """
     examples = selection.examples(EXAMPLES)
     check_treatments(selection, examples)

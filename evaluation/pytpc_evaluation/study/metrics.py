@@ -22,7 +22,7 @@ SPARSE = 5
 """A bin with verdicts about fewer treatments says little."""
 SEED = 8
 CONFIDENT = 0.5
-"""From here on a method accuses: it holds its first suspect for likelier than all else together,
+"""From here on a method accuses: it takes its first suspect to be likelier than all else together,
 "none of them" included."""
 _TAIL = 0.025
 """What an interval of 95 % leaves out at each end."""
@@ -118,7 +118,7 @@ class Bin(NamedTuple):
 
     @property
     def is_sparse(self) -> bool:
-        """Whether its share hangs on single treatments."""
+        """Whether its share depends on single treatments."""
         return self.treatments < SPARSE
 
 

@@ -38,7 +38,7 @@ MOST_TRIES = {"lasting": 3, SUSPECTS: 3}
 
 @dataclass(frozen=True)
 class Try:
-    """A value that was asked for, and what came of it.
+    """A value that was asked for, and its result.
 
     ``gone`` and ``new_error`` are None until it is flown, ``reason`` are the errors that were seen
     then. Where nothing was suggested ``value`` is None, and ``reason`` says why. Where the flight

@@ -1,4 +1,4 @@
-"""Which suggestions are to be flown, and what came of them: by rounds, one flight a mission.
+"""Which suggestions to fly, and their results: in rounds, one flight for each mission.
 
 ``next_round`` takes in what ``pytpc study suggested`` has flown, works out what each chain of tries
 asks for next, and writes
@@ -140,7 +140,7 @@ def next_round(
 
 
 def _is_known(chain: Chain, chains: Sequence[Chain]) -> bool:
-    """Whether the open try of a chain was flown for another one; what came of it is taken then.
+    """Whether the open try of a chain was flown for another one; its result is taken then.
 
     Not so where the next value comes from the log of that flight, which may not be there any more.
     """
@@ -163,7 +163,7 @@ def _setting(one: Try) -> tuple[str, str | None, float | None]:
 
 
 def _came(one: Try, flown: Try) -> Try:
-    """A try with what came of another one of the same value."""
+    """A try with the result of another one with the same value."""
     return replace(
         one,
         gone=flown.gone,
@@ -247,7 +247,7 @@ def _flown(folder: Path, digest: str) -> Try | None:
     """The suggestion that was flown last for a mission; None where there is none of this digest.
 
     Raises:
-        InputError: what came of it cannot be read.
+        InputError: its result cannot be read.
     """
     path = folder / SUGGESTION_FILE
     if not (folder / DONE_FILE).is_file() or not path.is_file():
@@ -263,7 +263,7 @@ def _flown(folder: Path, digest: str) -> Try | None:
             flown["gone"], bool(flown["new"]), "; ".join(flown["errors"]),
         )  # fmt: skip
     except (KeyError, TypeError) as error:
-        raise InputError(f"not what came of a suggestion: {error}", path) from error
+        raise InputError(f"not the result of a suggestion: {error}", path) from error
 
 
 def _save(chains: Sequence[Chain], out: Path) -> None:

@@ -136,7 +136,7 @@ def make_report(
     if asked.draw:
         drawn, undrawn = draw_systems(originals, study.systems, images, halves, progress("drawing"))
         drawn = [*draw_results(results.positions, images, results.parts), *drawn]
-        # Where the folder happens to be is nobody's business on the page.
+        # The page does not say where the folder happens to be.
         troubles += [trouble.replace(f"{folder}/", "") for trouble in undrawn]
     changed = changed_in(study.systems, progress("replaying what was changed"))
     tables, full = _tables(study, originals, results, changed)

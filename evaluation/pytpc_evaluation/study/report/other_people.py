@@ -1,4 +1,4 @@
-"""How much hangs on who looks on: the ranking by other people's marks, as a table of the page."""
+"""How much depends on the people: the ranking by other people's marks, as a table of the page."""
 
 from __future__ import annotations
 

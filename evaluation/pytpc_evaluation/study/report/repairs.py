@@ -30,7 +30,7 @@ _COLUMNS = (*_MISSION, "parameter", "value", "gone", "new", "failure")
 
 @dataclass(frozen=True, slots=True)
 class Repair:
-    """A treated mission, and what came of the suggestion for it.
+    """A treated mission, and the result of its suggestion.
 
     ``parameter`` and ``value`` are what was set, None where nothing was suggested. ``gone`` is None
     where in the treated mission no error was seen; ``fresh`` is whether an error was seen that was
@@ -178,7 +178,7 @@ def tries_table(chains: Sequence[Chain], parts: Sequence[Part], flights: Sequenc
 
 
 def repairs_table(rows: Sequence[Repair]) -> Table:
-    """Every treated mission and what came of its suggestion."""
+    """Every treated mission and the result of its suggestion."""
     headings = (
         *("Treatment", "Half", "Seed", "Changed", "Old", "Tipping", "New"),
         *("Suggested for", "Suggested", "Error", "New error"),
