@@ -65,7 +65,7 @@ class RecordBlock(ReportColumns):
 
     @classmethod
     def joined(cls, blocks: list[RecordBlock]) -> RecordBlock:
-        """All of ``blocks`` behind one another."""
+        """All of ``blocks`` joined."""
         names = [field.name for field in fields(cls)]
         columns: dict[str, Any] = {
             name: np.concatenate([getattr(block, name) for block in blocks]) for name in names
@@ -139,7 +139,7 @@ class _TpcReader:
         self._progress(self._chunk_count)
 
     def blocks(self) -> Iterator[RecordBlock]:
-        """All reports in the order of the steady clock; what is not reports is taken in before."""
+        """All reports in the order of the steady clock; everything else is read first."""
         threads = self._chunks()
         self._read_system()
         self._clock = Clock.of([(self.header.steady_ns, self.header.real_ns), *self._system.syncs])
@@ -149,7 +149,7 @@ class _TpcReader:
     # --- the file
 
     def _chunks(self) -> list[_Thread]:
-        """The headers of all chunks; holes in the file are jumped over."""
+        """The headers of all chunks; holes in the file are skipped."""
         threads: dict[int, _Thread] = {}
         descriptor = self._stream.fileno()
         place = layout.HEADER_BYTES
@@ -260,7 +260,7 @@ class _TpcReader:
         return block.part(np.argsort(block.steady, kind="stable"))
 
     def _next_block(self, thread: _Thread) -> bool:
-        """Read on in a thread until there are reports; False at its end."""
+        """Read on in a thread until there are reports; False at the end."""
         thread.block = None
         while thread.read < len(thread.chunks):
             places = thread.chunks[thread.read : thread.read + _GROUP]
@@ -325,7 +325,7 @@ class _TpcReader:
         places: list[int],
         is_last: bool,
     ) -> RecordBlock:
-        """Chunks of which one at least is not full, or has something else than reports."""
+        """Chunks of which at least one is not full or holds other records than reports."""
         blocks = []
         for row, place in enumerate(places):
             first = thread.firsts[thread.read]
@@ -467,7 +467,7 @@ def _byte(place: int, record: int) -> int:
 
 
 def _node_of(header: FileHeader, path: Path) -> str:
-    """What to call the process: as its node, or, where it never was one, as its program.
+    """The name of the process: that of its node or, if it never was one, of its program.
 
     A forked child has its parent's name. What one of them evaluates says nothing about the other.
     """

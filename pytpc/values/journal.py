@@ -176,7 +176,7 @@ class Journal:
         raise OSError(0, "no number is free")
 
     def remove(self, entry: JournalEntry) -> None:
-        """Forget a change that was taken back, or was not made after all."""
+        """Forget a change that was undone or failed."""
         (self._folder / f"{entry.number:06d}.json").unlink(missing_ok=True)
 
 
