@@ -1,4 +1,4 @@
-"""What the tables of events and of summaries share: columns of numpy, with words as codes.
+"""The base of the tables of events and summaries: numpy columns, with words as codes.
 
 A word column (keys, nodes) is int32 codes into a tuple of words; in Arrow it is a dictionary.
 """
@@ -184,7 +184,7 @@ def to_arrow(
 
 
 def check_schema(found: pa.Schema, expected: pa.Schema) -> None:
-    """See that ``found`` has all columns of ``expected``, whatever else it has.
+    """Check that ``found`` has all columns of ``expected``; others are ignored.
 
     Raises:
         InputError: a column is missing or is of another type.
@@ -283,7 +283,7 @@ def _as_input_errors(path: Path, what: str) -> Iterator[None]:
 
 
 def _check_words(codes: npt.NDArray[Any], words: Sequence[str]) -> None:
-    """See that ``words`` are distinct and every code has one.
+    """Check that ``words`` are distinct and every code has one.
 
     Raises:
         ValueError: a word occurs twice, or a code has none.

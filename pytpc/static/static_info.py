@@ -144,7 +144,7 @@ class StaticInfo:
 
     @property
     def failed(self) -> tuple[LinkUnit, ...]:
-        """The units that were left as they were."""
+        """The units that were not instrumented."""
         return tuple(unit for unit in self.units if unit.status == "failed")
 
     def unit_of(self, key: str) -> LinkUnit:
