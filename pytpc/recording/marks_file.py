@@ -68,7 +68,7 @@ def _locked(folder: Path) -> Iterator[None]:
     """Hold a lock on the folder.
 
     Raises:
-        OSError: it exists already, or there is no such folder.
+        OSError: another process holds it, or there is no such folder.
     """
     descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
     try:

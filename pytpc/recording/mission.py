@@ -173,7 +173,7 @@ def _check_rows(path: Path, said: int, name: str, found: int) -> None:
 
 def _recording(document: object) -> Recording:
     if not isinstance(document, dict) or document.get("schema") != _SCHEMA:
-        raise ValueError(f"schema {_SCHEMA} is read")
+        raise ValueError(f"not of format {_SCHEMA}, the only one that this TPC reads")
     marks = [Mark(**mark) for mark in document["marks"]]
     for mark in marks:
         if type(mark.time_ns) is not int or not isinstance(mark.observer, str):

@@ -22,6 +22,7 @@ from pytpc.base.checked_json import (
     MERGED_SCHEMA,
     SCHEMA_VERSION,
     check_schema,
+    check_version,
     dump_json,
     parse_json,
 )
@@ -185,10 +186,10 @@ class StaticInfo:
         """
         if not isinstance(data, dict) or not isinstance(data.get("units"), list):
             raise InputError('/: not merged static information, "units" is missing', path)
-        if data.get("schema") != SCHEMA_VERSION:
-            raise InputError(
-                f"/schema: {data.get('schema')!r} where {SCHEMA_VERSION} is read", path
-            )
+        version = data.get("schema")
+        check_version(version, path)
+        if version != SCHEMA_VERSION:
+            raise InputError(f"/schema: expected {SCHEMA_VERSION}, found {version!r}", path)
         units = [
             LinkUnit.from_json(unit, path, f"/units/{index}")
             for index, unit in enumerate(data["units"])
