@@ -22,7 +22,6 @@ from pytpc.recording.summaries import Summary
 PREFIX = "threshold_information:"
 SUMMARY_PREFIX = "threshold_summary:"
 DROPPED_PREFIX = "threshold_dropped:"
-BATCH_PREFIX = "#seq:"
 LATEST_NS = 2**63 - 1
 
 _TIME = r"[0-9]{1,10}\.[0-9]{1,9}"

@@ -23,7 +23,6 @@ from pytpc.static.static_info import (
 )
 
 _CLOSEST = 5
-_SHORTEST_KEY = 4
 _FILE_LINE = re.compile(r"(?P<file>[^:]+):(?P<line>[0-9]{1,9})(:[0-9]+)?")
 _KEY = re.compile(r"[0-9a-f]{4,8}(-[0-9a-f-]*)?")
 
