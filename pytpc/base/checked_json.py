@@ -97,16 +97,25 @@ def check_unit(data: object, path: Path, pointer: str = "") -> dict[str, Any]:
         InputError: with the JSON pointer of what breaks the schema.
     """
     version = data.get("schema") if isinstance(data, dict) else SCHEMA_VERSION
-    if isinstance(version, int) and version > SCHEMA_VERSION:
-        raise InputError(
-            f"{pointer}/schema: version {version} is newer than this pytpc, which reads"
-            f" {SCHEMA_VERSION}",
-            path,
-        )
+    check_version(version, path, pointer)
     check_schema(data, path, UNIT_SCHEMA, pointer)
     if not isinstance(data, dict):
         raise TypeError("the schema let something else than an object pass")
     return data
+
+
+def check_version(version: object, path: Path, pointer: str = "") -> None:
+    """See that a document is not of a later version of static information.
+
+    Raises:
+        InputError: it is.
+    """
+    if isinstance(version, int) and version > SCHEMA_VERSION:
+        raise InputError(
+            f"{pointer}/schema: written by a newer TPC (format {version}; this one reads"
+            f" {SCHEMA_VERSION}); rebuild the workspace, or upgrade TPC",
+            path,
+        )
 
 
 def check_schema(

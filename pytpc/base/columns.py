@@ -1,4 +1,4 @@
-"""What the tables of events and of summaries share: columns of numpy, with words as codes.
+"""The base of the tables of events and summaries: numpy columns, with words as codes.
 
 A word column (keys, nodes) is int32 codes into a tuple of words; in Arrow it is a dictionary.
 """
@@ -27,7 +27,7 @@ Read = TypeVar("Read")
 Columns = dict[str, npt.NDArray[np.generic]]
 
 WORDS = pa.dictionary(pa.int32(), pa.string())
-_KINDS = {
+_KINDS: dict[pa.DataType, type[np.generic]] = {
     WORDS: np.int32,
     pa.int64(): np.int64,
     pa.bool_(): np.bool_,
@@ -71,6 +71,11 @@ class WordTable:
     what: ClassVar[str]
     keys: tuple[str, ...]
     nodes: tuple[str, ...]
+    _kinds: ClassVar[dict[str, type[np.generic]]]
+
+    def __init_subclass__(cls) -> None:
+        """Note the type of each column: asking Arrow takes longer than a small table."""
+        cls._kinds = {field.name: _KINDS[field.type] for field in cls.schema}
 
     @classmethod
     def of(cls, *, keys: Iterable[str], nodes: Iterable[str], **columns: npt.ArrayLike) -> Self:
@@ -80,7 +85,7 @@ class WordTable:
             ValueError: columns of different lengths, a code without a word, or a word twice.
             TypeError: a column is missing or has another name.
         """
-        kinds = {field.name: _KINDS.get(field.type) for field in cls.schema}
+        kinds = cls._kinds
         typed = {name: np.asarray(values, kinds.get(name)) for name, values in columns.items()}
         if len(typed) == len(kinds):
             times = typed[cls.order]
@@ -98,7 +103,7 @@ class WordTable:
     @classmethod
     def empty(cls, keys: Iterable[str] = ()) -> Self:
         """No rows, with the given keys."""
-        return cls.of(keys=keys, nodes=(), **{name: [] for name in cls.schema.names})
+        return cls.of(keys=keys, nodes=(), **{name: [] for name in cls._kinds})
 
     @classmethod
     def concat(cls, parts: Sequence[Self]) -> Self:
@@ -122,7 +127,7 @@ class WordTable:
 
     def columns(self) -> Columns:
         """The columns by name, in the order of ``schema``."""
-        return {name: getattr(self, name) for name in self.schema.names}
+        return {name: getattr(self, name) for name in self._kinds}
 
     def equals(self, other: Self) -> bool:
         """Whether both hold the same rows (NaN equals NaN) under the same words."""
@@ -184,7 +189,7 @@ def to_arrow(
 
 
 def check_schema(found: pa.Schema, expected: pa.Schema) -> None:
-    """See that ``found`` has all columns of ``expected``, whatever else it has.
+    """Check that ``found`` has all columns of ``expected``; others are ignored.
 
     Raises:
         InputError: a column is missing or is of another type.
@@ -283,7 +288,7 @@ def _as_input_errors(path: Path, what: str) -> Iterator[None]:
 
 
 def _check_words(codes: npt.NDArray[Any], words: Sequence[str]) -> None:
-    """See that ``words`` are distinct and every code has one.
+    """Check that ``words`` are distinct and every code has one.
 
     Raises:
         ValueError: a word occurs twice, or a code has none.

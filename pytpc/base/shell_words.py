@@ -1,4 +1,4 @@
-"""Changes to an environment, as the text that makes a shell do them."""
+"""Changes of an environment as text for a shell."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ SHELLS = ("sh", "fish")
 
 @dataclass(frozen=True, slots=True)
 class EnvChange:
-    """Variables that get a value, and those that go."""
+    """Variables that get a value, and those that are removed."""
 
     values: Mapping[str, str]
     gone: tuple[str, ...]
@@ -24,7 +24,7 @@ class EnvChange:
         return cls(dict(sorted(values.items())), tuple(sorted(before.keys() - after.keys())))
 
     def text(self, shell: str) -> str:
-        """Lines for a shell of `SHELLS`; ``sh`` is for all that are like it. Empty for nothing."""
+        """Lines for a shell of `SHELLS`; ``sh`` is for all similar ones. Empty without changes."""
         if shell == "fish":
             lines = [f"set -gx {name} {_for_fish(value)}" for name, value in self.values.items()]
             lines += [f"set -e {name}" for name in self.gone]

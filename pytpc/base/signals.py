@@ -1,4 +1,4 @@
-"""Signals that end a process: what it has started is to end with it."""
+"""Ends the children of a process when a signal ends it."""
 
 from __future__ import annotations
 

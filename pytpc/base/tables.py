@@ -1,4 +1,4 @@
-"""Tables of figures, and the one place that writes them: terminal, CSV, Markdown, LaTeX, JSON.
+"""Tables of figures, and how they are written: terminal, CSV, Markdown, LaTeX, JSON.
 
 What a table holds is worked out elsewhere (``pytpc_evaluation.stats``,
 ``pytpc_evaluation.survey.static_tables``). Terminal, Markdown and LaTeX round as a person reads;
@@ -134,7 +134,7 @@ def as_markdown(table: Table) -> str:
 
 
 def _texts(table: Table) -> list[bool]:
-    """For each column whether texts stand in it, which begin at the left."""
+    """Whether each column has texts, which are aligned left."""
     every = [cells for _, cells in (*table.rows, *table.summary)]
     return [any(isinstance(cells[n], str) for cells in every) for n in range(len(table.columns))]
 
@@ -264,7 +264,7 @@ def csv_text(rows: Sequence[Sequence[str]]) -> str:
 
 
 def shown(table: Table, cells: Sequence[Cell], *, statistic: bool = False) -> list[str]:
-    """The cells of a row as a person reads them: rounded; a dash for what is not known.
+    """The cells of a row for people: rounded; a dash for unknown values.
 
     A mean of counts has more decimal places than the counts.
     """
@@ -294,7 +294,7 @@ def _full(cell: Cell) -> str:
 
 
 def _names(table: Table) -> list[str]:
-    """What CSV and JSON call the columns, the names' first; no two alike.
+    """The names of the columns in CSV and JSON, that of the names first; no two are equal.
 
     The last of those that are alike keeps its name: a user ``total`` stands before the totals.
     """
@@ -313,7 +313,7 @@ def _finite(cell: Cell) -> Cell:
 
 
 def _latex_groups(table: Table) -> list[str]:
-    """The line of the groups' names, each with a rule below; none where there are no groups."""
+    """The line of the groups' names, each with a rule below; empty without groups."""
     if not any(column.group for column in table.columns):
         return []
     cells, rules, place = [""], [], 2
@@ -327,7 +327,7 @@ def _latex_groups(table: Table) -> list[str]:
 
 
 def _stacked(heading: str) -> str:
-    """A heading of several words, one below the other: ten columns have to stand on a page."""
+    """A heading of several words, one below the other, so that ten columns fit on a page."""
     words = [latex(word) for word in heading.split()]
     return words[0] if len(words) == 1 else r"\shortstack[r]{" + r"\\".join(words) + "}"
 

@@ -1,4 +1,4 @@
-"""Recordings of a mission become events, summaries and marks: ``read``, ``load_recording``."""
+"""Reads recordings of a mission into events, summaries and marks: ``read``, ``load_recording``."""
 
 from pytpc.ingest.reading import read, read_bag
 from pytpc.recording.mission import (

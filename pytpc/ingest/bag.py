@@ -72,7 +72,7 @@ def read_bag_into(path: Path, gathering: Gathering, on_progress: Progress | None
 
 
 def _broken(path: Path, error: BrokenBagError) -> InputError:
-    """What to say of a bag on which the reader failed: the walk over its records knows the byte."""
+    """The error for a bag that could not be read; a walk over its records finds the byte."""
     try:
         damage = describe_damage(path)
     except OSError as failure:

@@ -35,7 +35,7 @@ _Found = tuple[Int64s, Int64s, Int64s, Int64s]
 
 
 class BrokenBagError(Exception):
-    """The bytes are not those of a bag; the caller finds out where."""
+    """Not a bag, or a damaged one; the caller finds the place."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +54,7 @@ class BagConnection:
 
 @dataclass(frozen=True)
 class BagIndex:
-    """What stands at the end of a bag.
+    """The index at the end of a bag.
 
     ``span`` is the first and last time of all messages, ``chunks`` the first byte of each chunk in
     the order of the file.

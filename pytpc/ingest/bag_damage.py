@@ -1,4 +1,4 @@
-"""Where a ROS 1 bag is broken: a walk over its records, for a message that names the place.
+"""Finds where a ROS 1 bag is broken by a walk over its records.
 
 The walk needs no index, so it also works on what a killed recorder left behind. Format: version
 line, then records of (uint32 length, header, uint32 length, data); the first record is the bag
@@ -17,7 +17,7 @@ _LONGEST_HEADER = 1 << 20
 
 
 def describe_damage(path: Path) -> str | None:
-    """One clause that says what is wrong with the bag and at which byte, None if nothing is found.
+    """One clause with what is wrong and at which byte; None if nothing is found.
 
     Raises:
         OSError: the file cannot be read.
@@ -64,7 +64,7 @@ def _field(stream: BinaryIO, size: int, longest: int) -> bytes | None:
 
 
 def _skip(stream: BinaryIO, size: int) -> int | None:
-    """Read a length; the byte after the field that it announces, None where the file is shorter."""
+    """Read a length; return the byte after that field, None if the file is shorter."""
     raw = stream.read(4)
     if len(raw) < 4:
         return None

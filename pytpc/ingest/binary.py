@@ -3,29 +3,23 @@
 First all chunk headers and the system's records are read (what the sites are called, how the clocks
 go), then the threads' chunks, several at once, and brought together in the order of the steady
 clock. The file may be of a process that was killed, or that still runs.
-
-It is read, not mapped: into memory that is used again and again, and so stays in the processor's
-cache, that was measured to be quicker; and a mapped file that is shortened meanwhile, or lies on a
-broken disk, ends the reader with SIGBUS.
 """
 
 from __future__ import annotations
 
-import os
-import struct
 from collections.abc import Iterator
-from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import Any, BinaryIO, cast
+from typing import BinaryIO, cast
 
 import numpy as np
 import numpy.typing as npt
 
-from pytpc.base.columns import Bools, Int32s, Int64s
+from pytpc.base.columns import Int32s, Int64s
 from pytpc.base.errors import InputError
 from pytpc.base.wording import many
+from pytpc.ingest.binary_chunks import GROUP, Bytes, ChunkFile, RecordBlock, ThreadChunks
 from pytpc.ingest.binary_clock import Clock
-from pytpc.ingest.binary_layout import CHUNK, RECORD, FileHeader, whole_bytes
+from pytpc.ingest.binary_layout import CHUNK, RECORD, FileHeader
 from pytpc.ingest.binary_system import (
     SummaryOrigin,
     SystemRecords,
@@ -34,58 +28,12 @@ from pytpc.ingest.binary_system import (
     summary_rows,
     written_summaries,
 )
-from pytpc.ingest.gathering import Channel, Gathering, Progress, ReportColumns
+from pytpc.ingest.gathering import Channel, Gathering, Progress
 from pytpc.ingest.spool import Rows
 from pytpc.python_runtime import log_layout as layout
 from pytpc.recording.mission import Dropped
 
-Bytes = npt.NDArray[np.uint8]
-
-_GROUP = 32
-# Kind, thread and first record of a chunk, and the time of that record.
-_HEAD = struct.Struct("<IIQ48x8xq")
 _IDENTITY = np.dtype([("thread", "<u4"), ("site", "<u4"), ("period", "<u4")])
-
-
-@dataclass
-class RecordBlock(ReportColumns):
-    """Reports of one thread, or of several in order; ``steady`` does not fall."""
-
-    steady: Int64s
-
-    def __len__(self) -> int:
-        """How many reports."""
-        return int(self.steady.size)
-
-    def part(self, rows: slice | Int64s | Bools) -> RecordBlock:
-        """Some of them."""
-        return RecordBlock(
-            **{field.name: getattr(self, field.name)[rows] for field in fields(self)}
-        )
-
-    @classmethod
-    def joined(cls, blocks: list[RecordBlock]) -> RecordBlock:
-        """All of ``blocks`` behind one another."""
-        names = [field.name for field in fields(cls)]
-        columns: dict[str, Any] = {
-            name: np.concatenate([getattr(block, name) for block in blocks]) for name in names
-        }
-        return cls(**columns)
-
-
-@dataclass
-class _Thread:
-    """The chunks of one thread, in the order of the file, and how far they were read."""
-
-    number: int
-    chunks: list[int] = field(default_factory=list)
-    firsts: list[int] = field(default_factory=list)
-    first_steady: int = 0
-    read: int = 0
-    expected: int = 0
-    simulated_ns: int = -1
-    steady: int = -(2**63)
-    block: RecordBlock | None = None
 
 
 def read_binary(path: Path, gathering: Gathering, on_progress: Progress | None = None) -> None:
@@ -109,7 +57,6 @@ class _TpcReader:
         self, path: Path, stream: BinaryIO, gathering: Gathering, on_progress: Progress | None
     ) -> None:
         self._path = path
-        self._stream = stream
         self._gathering = gathering
         self._on_progress = on_progress
         self.header = FileHeader.of(stream.read(layout.HEADER_BYTES))
@@ -118,15 +65,11 @@ class _TpcReader:
         self._channel: Channel = gathering.channel(str(path), "file")
         head = self.header
         self._channel.process = f"{head.host} {head.pid} {head.steady_ns} {head.real_ns}"
-        self._size = os.fstat(stream.fileno()).st_size
-        self._buffer = np.empty((_GROUP, layout.CHUNK_BYTES), np.uint8)
+        self._file = ChunkFile(path, stream.fileno())
         self._done = 0
         self._system = SystemRecords()
-        self._system_chunks: list[int] = []
-        self._live_chunks: list[int] = []
         self._torn = 0
         self._torn_slots = 0
-        self._chunk_count = 0
         self._last_ns = -(2**63)
         self._clock = Clock.of([(0, 0)])
         self._key_of_site: Int32s = np.full(1, -1, np.int32)
@@ -136,85 +79,21 @@ class _TpcReader:
             self._hand_in(block)
         self._summaries()
         self._complaints()
-        self._progress(self._chunk_count)
+        self._progress(self._file.count)
 
     def blocks(self) -> Iterator[RecordBlock]:
-        """All reports in the order of the steady clock; what is not reports is taken in before."""
-        threads = self._chunks()
+        """All reports in the order of the steady clock; everything else is read first."""
+        threads = self._file.find(self._skip)
         self._read_system()
         self._clock = Clock.of([(self.header.steady_ns, self.header.real_ns), *self._system.syncs])
         self._key_of_site = self._system.key_codes(self._gathering)
         yield from self._merged(threads)
 
-    # --- the file
-
-    def _chunks(self) -> list[_Thread]:
-        """The headers of all chunks; holes in the file are jumped over."""
-        threads: dict[int, _Thread] = {}
-        descriptor = self._stream.fileno()
-        place = layout.HEADER_BYTES
-        while place + layout.CHUNK_HEADER_BYTES <= self._size:
-            head = os.pread(descriptor, _HEAD.size, place)
-            if len(head) < _HEAD.size:
-                break
-            kind, number, first, first_steady = _HEAD.unpack(head)
-            if kind == 0 and (next_data := _data_after(descriptor, place)) != place:
-                if next_data is None:
-                    break
-                behind = (next_data - layout.HEADER_BYTES) // layout.CHUNK_BYTES
-                place = max(
-                    place + layout.CHUNK_BYTES, layout.HEADER_BYTES + behind * layout.CHUNK_BYTES
-                )
-                continue
-            if kind == layout.THREAD_CHUNK:
-                thread = threads.setdefault(number, _Thread(number))
-                if not thread.chunks:
-                    thread.first_steady = first_steady
-                thread.chunks.append(place)
-                thread.firsts.append(first)
-            elif kind == layout.SYSTEM_CHUNK:
-                self._system_chunks.append(place)
-            elif kind == layout.LIVE_CHUNK:
-                self._live_chunks.append(place)
-            elif head.startswith(layout.MAGIC):
-                what = f"another file begins at byte {place}: give each by itself, not joined"
-                raise InputError(what, self._path)
-            elif kind:
-                self._skip(f"a chunk of the unknown kind {kind} at byte {place}")
-            place += layout.CHUNK_BYTES
-        self._chunk_count = sum(len(thread.chunks) for thread in threads.values())
-        return list(threads.values())
-
-    def _load(self, places: list[int]) -> Bytes:
-        """uint8[n, 65536]: some chunks; what the file does not have of them is zero."""
-        buffer = self._buffer[: len(places)]
-        for row, place in enumerate(places):
-            if row and place == places[row - 1] + layout.CHUNK_BYTES:
-                continue
-            last = row
-            while last + 1 < len(places) and places[last + 1] == places[last] + layout.CHUNK_BYTES:
-                last += 1
-            flat = buffer[row : last + 1].reshape(-1)
-            count = os.preadv(self._stream.fileno(), [flat.data], place)
-            flat[count:] = 0
-            whole = whole_bytes(count % layout.CHUNK_BYTES)
-            if count < flat.size and whole < count % layout.CHUNK_BYTES:
-                # The record at which the file ends is not whole, whatever its first word says.
-                begin = count - count % layout.CHUNK_BYTES + whole
-                flat[begin : begin + 4] = 0
-        return buffer
-
-    def _load_one(self, place: int) -> Bytes:
-        """uint8[n], n at most 65536: what there is of one chunk, in whole records."""
-        there = min(layout.CHUNK_BYTES, self._size - place)
-        chunk: Bytes = self._load([place])[0][: whole_bytes(there)]
-        return chunk
-
     def _read_system(self) -> None:
         system = self._system
         expected = 0
-        for place in self._system_chunks:
-            chunk = self._load_one(place)
+        for place in self._file.system:
+            chunk = self._file.load_one(place)
             first = int(chunk[: CHUNK.itemsize].view(CHUNK)["first"][0])
             # A chunk that has no room for a long record counts as full.
             if first > expected:
@@ -225,10 +104,10 @@ class _TpcReader:
 
     # --- reports
 
-    def _merged(self, threads: list[_Thread]) -> Iterator[RecordBlock]:
+    def _merged(self, threads: list[ThreadChunks]) -> Iterator[RecordBlock]:
         """All reports in the order of the steady clock; equal times by thread."""
         waiting = sorted(threads, key=lambda thread: (thread.first_steady, thread.number))
-        active: list[_Thread] = []
+        active: list[ThreadChunks] = []
         while waiting or active:
             if not active or (
                 waiting and waiting[0].first_steady <= min(_last(thread) for thread in active)
@@ -246,7 +125,7 @@ class _TpcReader:
                 continue
             active = [thread for thread in active if self._next_block(thread)]
 
-    def _up_to(self, active: list[_Thread], bound: int) -> RecordBlock:
+    def _up_to(self, active: list[ThreadChunks], bound: int) -> RecordBlock:
         parts = []
         for thread in active:
             assert thread.block is not None
@@ -259,12 +138,12 @@ class _TpcReader:
         block = RecordBlock.joined(parts)
         return block.part(np.argsort(block.steady, kind="stable"))
 
-    def _next_block(self, thread: _Thread) -> bool:
-        """Read on in a thread until there are reports; False at its end."""
+    def _next_block(self, thread: ThreadChunks) -> bool:
+        """Read on in a thread until there are reports; False at the end."""
         thread.block = None
         while thread.read < len(thread.chunks):
-            places = thread.chunks[thread.read : thread.read + _GROUP]
-            loaded = self._load(places)
+            places = thread.chunks[thread.read : thread.read + GROUP]
+            loaded = self._file.load(places)
             records = loaded[:, layout.CHUNK_HEADER_BYTES :].view(RECORD)
             first = thread.firsts[thread.read]
             is_last = thread.read + len(places) == len(thread.chunks)
@@ -282,7 +161,7 @@ class _TpcReader:
 
     def _whole(
         self,
-        thread: _Thread,
+        thread: ThreadChunks,
         loaded: Bytes,
         records: npt.NDArray[np.void],
         places: list[int],
@@ -319,13 +198,13 @@ class _TpcReader:
 
     def _one_by_one(
         self,
-        thread: _Thread,
+        thread: ThreadChunks,
         loaded: Bytes,
         records: npt.NDArray[np.void],
         places: list[int],
         is_last: bool,
     ) -> RecordBlock:
-        """Chunks of which one at least is not full, or has something else than reports."""
+        """Chunks of which at least one is not full or holds other records than reports."""
         blocks = []
         for row, place in enumerate(places):
             first = thread.firsts[thread.read]
@@ -347,7 +226,7 @@ class _TpcReader:
             blocks.append(self._chunk(thread, chunk[:used].copy(), place))
         return RecordBlock.joined(blocks)
 
-    def _chunk(self, thread: _Thread, chunk: npt.NDArray[np.void], place: int) -> RecordBlock:
+    def _chunk(self, thread: ThreadChunks, chunk: npt.NDArray[np.void], place: int) -> RecordBlock:
         what = chunk["what"]
         kinds = what & 0xFF
         reports = kinds == layout.REPORT
@@ -383,7 +262,7 @@ class _TpcReader:
         ).part(kept)
 
     @staticmethod
-    def _rising(thread: _Thread, steady: Int64s) -> Int64s:
+    def _rising(thread: ThreadChunks, steady: Int64s) -> Int64s:
         """Within a thread the order is that of the file, whatever its clock says."""
         if not steady.size:
             return steady
@@ -400,11 +279,11 @@ class _TpcReader:
 
     def _summaries(self) -> None:
         """Those that were written, then those whose period is open, unless they were written."""
-        still_open = [open_summaries(self._load_one(place)) for place in self._live_chunks]
+        still_open = [open_summaries(self._file.load_one(place)) for place in self._file.live]
         unwritten = np.concatenate([kept for kept, _ in still_open]) if still_open else None
         self._torn_slots = sum(torn for _, torn in still_open)
-        for place in self._system_chunks:
-            kept = written_summaries(self._load_one(place))
+        for place in self._file.system:
+            kept = written_summaries(self._file.load_one(place))
             if unwritten is not None and kept.size:
                 unwritten = unwritten[~np.isin(_identity(unwritten), _identity(kept))]
             self._hand_in_summaries(kept)
@@ -445,11 +324,11 @@ class _TpcReader:
     def _progress(self, chunks: int) -> None:
         self._done += chunks
         if self._on_progress is not None:
-            total = self._chunk_count * layout.CHUNK_BYTES
+            total = self._file.count * layout.CHUNK_BYTES
             self._on_progress(min(self._done * layout.CHUNK_BYTES, total), total)
 
 
-def _last(thread: _Thread) -> int:
+def _last(thread: ThreadChunks) -> int:
     assert thread.block is not None
     return int(thread.block.steady[-1])
 
@@ -467,7 +346,7 @@ def _byte(place: int, record: int) -> int:
 
 
 def _node_of(header: FileHeader, path: Path) -> str:
-    """What to call the process: as its node, or, where it never was one, as its program.
+    """The name of the process: that of its node or, if it never was one, of its program.
 
     A forked child has its parent's name. What one of them evaluates says nothing about the other.
     """
@@ -475,11 +354,3 @@ def _node_of(header: FileHeader, path: Path) -> str:
         return f"{header.node} ({header.pid})" if header.parent else header.node
     name = header.program.rpartition("/")[2]
     return f"{name} ({header.pid})" if name else path.stem
-
-
-def _data_after(descriptor: int, place: int) -> int | None:
-    """The next byte of a sparse file that is not in a hole; None where there is none."""
-    try:
-        return os.lseek(descriptor, place, os.SEEK_DATA)
-    except OSError:
-        return None

@@ -50,7 +50,7 @@ class Clock:
         return self.rising(steady)
 
     def rising(self, steady: Int64s) -> Int64s:
-        """The same of times that do not fall; at least one."""
+        """The same for at least one time, in ascending order."""
         first, last = self._place(int(steady[0])), self._place(int(steady[-1]))
         if first == last:
             return self._between(steady, first)

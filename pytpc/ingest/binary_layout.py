@@ -51,7 +51,7 @@ def whole_bytes(count: int) -> int:
 
 @dataclass(frozen=True, slots=True)
 class FileHeader:
-    """What stands at the begin of the file; times in ns of the clocks of its machine."""
+    """The header of the file; times in ns of the clocks of its machine."""
 
     header_bytes: int
     record_bytes: int

@@ -1,4 +1,4 @@
-"""What a binary file says besides reports: sites, clocks, summaries, what was dropped."""
+"""The contents of a binary file besides reports: sites, clocks, summaries, dropped reports."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ Skip = Callable[[str], None]
 
 @dataclass
 class SystemRecords:
-    """What was read of the system's chunks, but for summaries; times are of the steady clock."""
+    """The contents of the system's chunks except summaries; times are of the steady clock."""
 
     keys: dict[int, str] = field(default_factory=dict)
     syncs: list[tuple[int, int]] = field(default_factory=list)
@@ -48,14 +48,14 @@ class SystemRecords:
         return codes
 
     def dropped(self, node: str) -> Iterator[Dropped]:
-        """What was left out, a record each."""
+        """One record for each kind of dropped reports."""
         for site, reason, count, flops in self.drops:
             why = _REASONS.get(reason, "unknown")
             yield Dropped(self.keys.get(site, ""), node, count, min(flops, count), why)
 
 
 def read_system(chunk: Chunk, place: int, system: SystemRecords, skip: Skip) -> None:
-    """Read all of a chunk of system records but the summaries into ``system``.
+    """Read a chunk of system records, except the summaries, into ``system``.
 
     Args:
         chunk: uint8[n]: its bytes, in whole records; n is 65536 but where the file ends.
@@ -163,7 +163,7 @@ def summary_rows(kept: Rows, origin: SummaryOrigin, key_of_site: Int32s, skip: S
 
 
 def _sound(kept: Rows, sites: int, skip: Skip) -> Bools:
-    """Whether the counts of each summary fit together and its site can be known."""
+    """Whether the counts of each summary are consistent and its site is valid."""
     count = kept["count"]
     parts = np.maximum(np.maximum(kept["odd"], kept["far"]), kept["flops"])
     sound: Bools = (count > 0) & (count < _LARGEST_COUNT) & (parts <= count)
@@ -196,7 +196,7 @@ def _records(data: bytes, place: int, skip: Skip) -> Iterator[tuple[int, int, in
 
 
 def _site(system: SystemRecords, number: int, text: bytes) -> str | None:
-    """Take in what a site is called; what is wrong with it, if anything."""
+    """Read the name of a site; return what is wrong with it, if anything."""
     try:
         key = text.decode("utf-8")
     except UnicodeDecodeError:

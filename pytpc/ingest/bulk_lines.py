@@ -1,4 +1,4 @@
-"""Many reports at once: thousands of lines of text become columns without a loop in Python.
+"""Parses thousands of lines of text into columns at once, without a loop in Python.
 
 What is read here is read exactly as ``rosout_line`` reads it. A block of lines in which one line
 is not as expected is halved until the odd lines stand alone; those are left to ``rosout_line``.
@@ -34,7 +34,7 @@ _BOOLS = {"0": False, "1": True, "False": False, "True": True}
 
 
 class _Odd(Exception):
-    """The block has a line that is not as expected."""
+    """The block has an unexpected line."""
 
 
 @dataclass(frozen=True, slots=True)

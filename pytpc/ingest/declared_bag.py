@@ -92,7 +92,7 @@ def decode_description(raw: bytes, topic: str) -> list[Declared]:
 
 
 def _constants(edit_method: str) -> object:
-    """The list of an enumeration; it is written as Python does."""
+    """The list of an enumeration, written as a Python literal."""
     if not edit_method:
         return None
     try:
@@ -103,14 +103,14 @@ def _constants(edit_method: str) -> object:
 
 
 class _DescriptionReader:
-    """Goes through the bytes of a message."""
+    """Reads the bytes of a message in order."""
 
     def __init__(self, raw: bytes) -> None:
         self._raw = raw
         self._at = 0
 
     def group(self) -> None:
-        """Over the name and type of a group."""
+        """Skip the name and type of a group."""
         self.text()
         self.text()
 

@@ -1,4 +1,4 @@
-"""The same report by more than one way: of each, one is counted.
+"""Reports that arrived by more than one way are counted once.
 
 Two rules. What a node is known to pass on is left out whole: of a node that reports on /rosout
 nothing is taken from /rosout_agg, and of a key that is in the log messages of a file nothing from
@@ -43,7 +43,7 @@ class Once:
     """Filters the blocks of a gathering's events; ``notes`` says afterwards what was left out."""
 
     def __init__(self, gathering: Gathering, tolerance_ns: int = TOLERANCE_NS) -> None:
-        """All must have been read by now."""
+        """Everything must have been read before."""
         self._gathering = gathering
         self._tolerance_ns = tolerance_ns
         self._passed_on = [_left_out(gathering.channels, channel) for channel in gathering.channels]
@@ -52,12 +52,12 @@ class Once:
         self._matched: dict[int, int] = {}
 
     def blocks(self, blocks: Iterable[Rows]) -> Iterator[Rows]:
-        """The reports of ``blocks``, which are in order of time, each once."""
+        """The reports of ``blocks``, which are in order of time, without duplicates."""
         blocks = self._not_passed_on(blocks)
         return self._compared(blocks) if self._steps else iter(blocks)
 
     def notes(self) -> list[str]:
-        """A sentence for each channel of which something was left out."""
+        """A sentence for each channel from which something was left out."""
         channels = self._gathering.channels
         notes = []
         for code, count in sorted(self._counted.items()):

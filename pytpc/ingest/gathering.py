@@ -1,4 +1,4 @@
-"""What all readers hand in, of one source or of many, and what is kept of it.
+"""Collects what the readers of one or many sources hand in.
 
 Events go into a spool, which may be on disk; marks, complaints and counters stay in memory. A
 ``Channel`` is one way by which reports came: a topic of one file, or a file that has only one.
@@ -57,14 +57,14 @@ MOST_CHANNELS = 1 << 16
 
 
 class WordCodes:
-    """Words and their codes, in the order in which they came."""
+    """Words and their codes, in the order of their first use."""
 
     def __init__(self) -> None:
         """None yet."""
         self.codes: dict[str, int] = {}
 
     def code(self, word: str) -> int:
-        """The code of ``word``, a new one where it is new."""
+        """The code of ``word``, a new one if needed."""
         return self.codes.setdefault(word, len(self.codes))
 
     def all(self, words: Sequence[str]) -> Int32s:
@@ -86,7 +86,7 @@ class ReportColumns:
 
 @dataclass
 class Channel:
-    """One way by which reports came.
+    """One way by which reports arrived.
 
     ``source`` is the file or folder as it was named, ``way`` which kind of channel of it this is,
     ``topic`` its name for messages. ``pairs`` has what was seen on it, as (key, node) codes.
@@ -171,7 +171,7 @@ class Gathering:
         return range(self._turn - count + 1, self._turn + 1)
 
     def add_events(self, channel: Channel, node: Int32s | int, reports: ReportColumns) -> None:
-        """Take in reports of one node, or of those of which ``node`` has the codes."""
+        """Add reports of one node, or of those whose codes are in ``node``."""
         time_ns = reports.time_ns
         if not time_ns.size:
             return
@@ -210,11 +210,11 @@ class Gathering:
             self.flush()
 
     def add_summary_rows(self, rows: Rows) -> None:
-        """Take in summaries as rows of ``SUMMARY_ROW``."""
+        """Add summaries as rows of ``SUMMARY_ROW``."""
         self.summaries.append(rows)
 
     def add_dropped(self, dropped: Dropped) -> None:
-        """Count what a process left out."""
+        """Count reports that a process dropped."""
         word = (dropped.key, dropped.node, dropped.why)
         self.dropped[word] += dropped.count
         self.dropped_flops[word] += dropped.flops
@@ -242,7 +242,7 @@ class Gathering:
 
     @property
     def dropped_list(self) -> tuple[Dropped, ...]:
-        """All that processes left out, by node, key and reason."""
+        """All dropped reports, by node, key and reason."""
         found = [
             Dropped(key, node, count, self.dropped_flops[key, node, why], why)
             for (key, node, why), count in self.dropped.items()

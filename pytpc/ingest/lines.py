@@ -1,4 +1,4 @@
-"""Reports that come as text, and numbered messages of several lines: into a gathering."""
+"""Reads reports in text, and numbered messages of several lines, into a gathering."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from pytpc.recording.mission import Dropped
 
 
 class Lines:
-    """Reports that come as text on one channel; thousands of them are read at once.
+    """Reads the text reports of one channel, thousands at a time.
 
     ``stamped`` says that each line begins with its own time; that of ``add`` then counts only where
     this is 0, or the line is broken.
@@ -37,7 +37,7 @@ class Lines:
         self.unstamped = 0
 
     def add(self, line: bytes, time_ns: int, node: int, number: int = 0) -> None:
-        """Take in a line; ``number`` is that of the line in the file or message, if any."""
+        """Add a line; ``number`` is that of the line in the file or message, if any."""
         self._lines.append(line)
         self._times.append(time_ns)
         self._nodes.append(node)
@@ -53,7 +53,7 @@ class Lines:
         nodes: list[int],
         numbers: list[int] | None = None,
     ) -> None:
-        """The same of many lines."""
+        """The same for many lines."""
         self._lines += lines
         self._times += times_ns
         self._nodes += nodes
@@ -63,7 +63,7 @@ class Lines:
             self.flush()
 
     def flush(self) -> None:
-        """Hand in all that was taken in."""
+        """Hand in everything that was added."""
         if not self._lines:
             return
         times = np.array(self._times, np.int64)
@@ -120,7 +120,7 @@ class Lines:
 
 @dataclass
 class Batches:
-    """Keeps account of numbered messages of several lines: what is missing, what was dropped."""
+    """Keeps track of numbered messages of several lines: what is missing, what was dropped."""
 
     gathering: Gathering
     next_seq: dict[tuple[str, int], int] = field(default_factory=dict)
@@ -129,7 +129,7 @@ class Batches:
     missed: Counter[str] = field(default_factory=Counter)
 
     def see(self, node: str, batch: BatchHead) -> None:
-        """Take in the first line of a message."""
+        """Add the first line of a message."""
         process = (node, batch.pid)
         expected = self.next_seq.get(process)
         if expected is None:
@@ -140,12 +140,12 @@ class Batches:
         self.dropped[process] = max(self.dropped.get(process, 0), batch.dropped)
 
     def drop(self, node: str, drop: Drop) -> None:
-        """Take in a line that says what was left out."""
+        """Add a line about dropped reports."""
         self.told[node] += drop.count
         self.gathering.add_dropped(Dropped(drop.key, node, drop.count, drop.flops, drop.why))
 
     def close(self) -> None:
-        """Hand in what was left out according to the totals, but that no line told of."""
+        """Hand in dropped reports that are in the totals but in no line."""
         totals: Counter[str] = Counter()
         for (node, _), count in self.dropped.items():
             totals[node] += count

@@ -1,4 +1,4 @@
-"""Messages of ROS, wherever they come from, become reports, summaries and marks.
+"""Turns ROS messages of any source into reports, summaries and marks.
 
 ``Messages`` is fed by the readers of bags, one message at a time.
 """
@@ -52,7 +52,7 @@ class Decoders:
 
 
 class _Unstamped:
-    """Counts the records without a stamp, but those with which a node begins.
+    """Counts records without a stamp, except at the start of a node.
 
     On simulated time a node has none until its first /clock; what it reports before has the bag's
     time, and nothing is wrong. A node's beginning is the first second of its log in the bag.
@@ -88,7 +88,7 @@ class _OtherLine:
 
 
 class _Gaps:
-    """Finds what is missing in numbered messages; who is started again counts from the start.
+    """Finds gaps in numbered messages; a restarted sender counts from the start.
 
     One missing number of each that is ``latched`` is no loss: see ``LossCounter.see``.
     """
@@ -105,7 +105,7 @@ class _Gaps:
         self._last[name] = seq
 
     def see_all(self, names: list[bytes], seq: Int64s) -> None:
-        """The same of many messages in their order."""
+        """The same for many messages in order."""
         codes = {name: code for code, name in enumerate(dict.fromkeys(names))}
         code_of = np.array([codes[name] for name in names], np.int32)
         for name, code in codes.items():
@@ -125,7 +125,7 @@ class _Gaps:
 
 
 class Messages:
-    """Takes in the messages of one source.
+    """Reads the messages of one source.
 
     Args:
         gathering: where it goes.
@@ -144,7 +144,7 @@ class Messages:
         numbered: bool = True,
         latched: Set[bytes] = frozenset(),
     ) -> None:
-        """Nothing was taken in yet."""
+        """Nothing was read yet."""
         self._gathering = gathering
         self._source = source
         self._decoders = decoders
@@ -215,7 +215,7 @@ class Messages:
         return True
 
     def close(self) -> None:
-        """Hand in what is still held."""
+        """Hand in what is still held back."""
         for lines in self._lines.values():
             lines.flush()
             self._unstamped.count += lines.unstamped

@@ -1,4 +1,4 @@
-"""From all that was read to a recording, in memory or, block by block, on disk."""
+"""Makes a recording of everything that was read, in memory or, block by block, on disk."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ Told = Callable[[int, int], None]
 
 @dataclass
 class Merged:
-    """What was read, with sorted words and every report once; the events are still blocks."""
+    """Everything that was read, with sorted words and no report twice; events are in blocks."""
 
     gathering: Gathering
     name: str
@@ -48,7 +48,7 @@ class Merged:
 
     @property
     def comparisons(self) -> int:
-        """How many keys the events have that were given."""
+        """How many keys the events had that were returned."""
         return int(np.count_nonzero(self._seen))
 
     def event_blocks(self) -> Iterator[Rows]:
@@ -65,7 +65,7 @@ class Merged:
                 yield recoded
 
     def summary_blocks(self) -> Iterator[Rows]:
-        """The summaries in order of their begin; the same one twice is given once."""
+        """The summaries in the order of their beginning, without duplicates."""
         self.summaries = 0
         held: Rows | None = None
         for block in self.gathering.summaries.blocks():
@@ -77,7 +77,7 @@ class Merged:
             yield from self._each_once(held)
 
     def _each_once(self, rows: Rows) -> Iterator[Rows]:
-        """Summaries that are equal in all fields came by two channels."""
+        """Drop summaries that came by two channels: they are equal in all fields."""
         if len(self.gathering.channels) > 1:
             rest = [name for name in SUMMARY_ROW.names or () if name != "channel"]
             _, first = np.unique(_packed(rows[rest]), return_index=True)
@@ -95,7 +95,7 @@ class Merged:
         return self.rest(_used(events), summaries)
 
     def rest(self, events: Events, summaries: Summaries) -> Recording:
-        """The recording with these tables; the blocks must have been taken."""
+        """The recording with these tables; the blocks must have been read."""
         gathering = self.gathering
         marks = joined([*gathering.marks, *gathering.mark_messages.marks()])
         start_ns, end_ns = self._span(marks)
@@ -121,7 +121,7 @@ class Merged:
         )
 
     def save(self, folder: Path, told: Told | None = None) -> Recording:
-        """Write an ingested folder without holding the events; the answer has empty tables.
+        """Write a converted folder block by block; the tables of the result are empty.
 
         Raises:
             TpcError: a file cannot be written; ``marks.json`` is written last.
@@ -134,7 +134,7 @@ class Merged:
         return rest
 
     def save_parquet(self, path: Path, told: Told | None = None) -> Recording:
-        """Write the events alone; see ``save``."""
+        """Write only the events; see ``save``."""
         self._parquet(path, event_table.SCHEMA, self.event_blocks(), told)
         return self.rest(Events.empty(), Summaries.empty())
 
@@ -213,7 +213,7 @@ def _columns(blocks: list[Rows], schema: pa.Schema, words: dict[str, list[str]])
 
 
 def _used(events: Events) -> Events:
-    """The table without words that only occur in what was left out."""
+    """The table without words that it does not use."""
     keys = [events.keys[code] for code in np.unique(events.key).tolist()]
     nodes = [events.nodes[code] for code in np.unique(events.node).tolist()]
     return Events.of(

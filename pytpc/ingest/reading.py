@@ -1,4 +1,4 @@
-"""One entrance to all recordings: what a file is, is seen from its content, not from its name."""
+"""One entrance to all recordings: the format is told by the content of a file, not by its name."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ def opened(
     *,
     tolerance_ns: int = TOLERANCE_NS,
 ) -> Iterator[Merged]:
-    """The same with little memory: what is too much for it goes to files in ``scratch``.
+    """The same with little memory: larger data goes to files in ``scratch``.
 
     Args:
         paths: as in ``read``.
@@ -145,7 +145,7 @@ def gather(
 
 
 def sources(path: Path) -> list[Path]:
-    """The recordings that ``path`` stands for: itself, or those in a folder, by name.
+    """The recordings at ``path``: the file itself, or those in a folder, by name.
 
     Raises:
         InputError: it is not there, or is no recordings in this folder.
@@ -171,18 +171,18 @@ def sources(path: Path) -> list[Path]:
 
 
 def is_ingested(path: Path) -> bool:
-    """Whether this is a folder that ``pytpc convert`` wrote."""
+    """Whether ``pytpc convert`` wrote this folder."""
     return (path / MARKS_FILE).is_file() and (path / EVENTS_FILE).is_file()
 
 
 def name_of(paths: Sequence[Path]) -> str:
-    """What to call a mission that is in these files: after the first."""
+    """The name of a mission in these files, taken from the first."""
     path = paths[0]
     return path.name if path.is_dir() else path.stem
 
 
 def reader_of(path: Path) -> Reader:
-    """What reads this, by its first bytes.
+    """The reader for this, by its first bytes.
 
     Raises:
         InputError: it cannot be read, or nothing reads it.

@@ -1,4 +1,4 @@
-"""The three messages that TPC reads, from ROS 1's serialised form.
+"""Decodes the three messages that TPC reads from ROS 1's serialised form.
 
 A mission has hundreds of thousands of log messages; only four fields of each are wanted, so they
 are unpacked here and not through a general deserialiser. The layouts are those of
@@ -23,7 +23,7 @@ _TIME = struct.Struct("<II")
 
 
 class LogMessage(NamedTuple):
-    """A log message: ``seq`` is the publisher's own counter, ``stamp_ns`` 0 where unstamped."""
+    """A log message: ``seq`` is the publisher's own counter, ``stamp_ns`` is 0 if unstamped."""
 
     seq: int
     stamp_ns: int

@@ -1,4 +1,4 @@
-"""The messages that TPC reads, from ROS 2's serialised form (CDR).
+"""Decodes the messages that TPC reads from ROS 2's serialised form (CDR).
 
 A message begins with four bytes of which the second tells the order of bytes; numbers are aligned
 to their size from there on; a string is a uint32 length, which counts the NUL at its end, and bytes

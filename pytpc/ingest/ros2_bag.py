@@ -96,7 +96,7 @@ def _close(reader: _Reader) -> None:
 def _messages(
     reader: _Reader, wanted: list[Connection], path: Path
 ) -> Iterator[tuple[Connection, int, bytes]]:
-    """The messages of ``wanted``; whatever the reader dies of becomes one InputError."""
+    """The messages of ``wanted``; any error of the reader becomes an InputError."""
     if not wanted:
         return
     messages = reader.messages(wanted)

@@ -22,7 +22,6 @@ from pytpc.recording.summaries import Summary
 PREFIX = "threshold_information:"
 SUMMARY_PREFIX = "threshold_summary:"
 DROPPED_PREFIX = "threshold_dropped:"
-BATCH_PREFIX = "#seq:"
 LATEST_NS = 2**63 - 1
 
 _TIME = r"[0-9]{1,10}\.[0-9]{1,9}"
@@ -60,7 +59,7 @@ _FIELDS = (
 
 
 class StampedReport(NamedTuple):
-    """A report that brings its own time, in nanoseconds."""
+    """A report with its own time, in nanoseconds."""
 
     time_ns: int
     report: Report
@@ -68,7 +67,7 @@ class StampedReport(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Drop:
-    """Reports that the process left out; ``key`` is empty where it is not known of which site."""
+    """Reports that the process dropped; ``key`` is empty if the site is not known."""
 
     key: str
     count: int
@@ -135,7 +134,7 @@ def parse_other(text: str, node: str) -> Summary | Drop | Malformed | None:
 
 
 def parse_stamped_other(text: str, node: str) -> Summary | Drop | Malformed | None:
-    """The same behind a time in seconds and a comma."""
+    """The same after a time in seconds and a comma."""
     stamp = _STAMPED.match(text)
     return None if stamp is None else _other(text, stamp.end(), node)
 
@@ -210,7 +209,7 @@ def _read(text: str, start: int) -> Report | Malformed:
 
 
 def _fault(text: str, start: int) -> Malformed:
-    """Where ``_REPORT`` gave up: the slow way, for the few lines that are broken."""
+    """The slow way for the few lines that ``_REPORT`` does not match."""
     place = start
     for what, pattern, separator in _FIELDS:
         found = pattern.match(text, place)

@@ -1,4 +1,4 @@
-"""Rows sorted by time, however many: in memory, or in runs on disk that are merged when read.
+"""Sorts any number of rows by time: in memory, or in runs on disk that are merged on reading.
 
 External merge sort (Knuth, The Art of Computer Programming 3, section 5.4): what comes in is kept
 until there are ``run_rows`` rows, sorted (stably) and written to a file of its own; when all is in,
@@ -36,7 +36,7 @@ class _Run:
 
 
 class Spool:
-    """Takes in rows of one structured type in any order and gives them back sorted by a field.
+    """Collects rows of one structured type in any order and returns them sorted by a field.
 
     Args:
         kind: the type of a row; ``time`` is an int64 field of it.
@@ -63,11 +63,11 @@ class Spool:
         self._written = 0
 
     def __len__(self) -> int:
-        """The number of rows that were taken in."""
+        """The number of rows."""
         return self._held_rows + sum(run.count for run in self._runs)
 
     def append(self, rows: Rows) -> None:
-        """Take in some rows; the array is the spool's from now on."""
+        """Add rows; the spool then owns the array."""
         if not rows.size:
             return
         self._held.append(rows)
@@ -115,7 +115,7 @@ class Spool:
         self._held, self._held_rows = [], 0
 
     def _chains(self) -> list[list[_Run]]:
-        """Runs that follow one another in time, put together.
+        """Joins runs that follow one another in time.
 
         A run goes behind the last one of the chain before it alone: equal times must keep the
         order in which the runs came.
@@ -152,7 +152,7 @@ class _Stream:
         return int(self.rows[self._time][-1])
 
     def take(self, bound: int, side: str) -> Rows:
-        """The rows at hand before ``bound`` (side left) or up to it (right)."""
+        """The loaded rows before ``bound`` (side left) or up to it (right)."""
         assert self.rows is not None
         times: Int64s = self.rows[self._time]
         cut = int(np.searchsorted(times, bound, side=side))  # type: ignore[call-overload]

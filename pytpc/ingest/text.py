@@ -45,7 +45,7 @@ _CSV = re.compile(rb"[0-9]{1,10}\.[0-9]{1,9},|#seq:")
 
 
 def read_text_into(path: Path, gathering: Gathering, on_progress: Progress | None = None) -> None:
-    """Read a log, console output, or CSV; which it is, the first two lines tell.
+    """Read a log, console output, or CSV, told apart by the first two lines.
 
     In CSV every line but the first must be a report; in a log only what begins like one.
 
@@ -115,7 +115,7 @@ class _Taker:
 
 
 class _Log(_Taker):
-    """Lines with anything in front of the report."""
+    """Lines with arbitrary text before the report."""
 
     def __init__(self, path: Path, gathering: Gathering) -> None:
         super().__init__(path, gathering, stamped=False)
@@ -158,7 +158,7 @@ class _Log(_Taker):
 
 
 class _Csv(_Taker):
-    """Lines of the form ``TIME,KEY,RESULT,cmp:C,thresh:T,res:R``, a headline above them."""
+    """Lines of the form ``TIME,KEY,RESULT,cmp:C,thresh:T,res:R`` below a header line."""
 
     def __init__(self, path: Path, gathering: Gathering) -> None:
         super().__init__(path, gathering, stamped=True)

@@ -45,7 +45,7 @@ class Config(NamedTuple):
 
 
 def parsed(name: str, text: str) -> tuple[dict[str, Value] | None, str]:
-    """What ``name`` being ``text`` changes in a `Config`; or None, and why, in one clause."""
+    """The fields of a `Config` that ``name`` set to ``text`` changes; or None and the reason."""
     choices = {"sink": SINKS, "policy": POLICIES}.get(name)
     if choices is not None:
         return ({name: text}, "") if text in choices else (None, f"is none of {', '.join(choices)}")

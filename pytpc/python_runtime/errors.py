@@ -1,4 +1,4 @@
-"""The error of this room, which imports nothing of the others."""
+"""The error of the hook, which imports nothing of the other packages."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The sink ``file``: what of a `LogFile` is not the shortest way of a report."""
+"""The sink ``file``, except for the shortest way of a report, which is in `LogFile`."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _COUNT_AT, _BEGUN_AT = 48, 160
 
 
 def packed(kept: PeriodSummary, *, is_open: bool = False) -> bytes:
-    """A summary as it is in the file, but for its first word."""
+    """A summary as it is in the file, except its first word."""
     return _SUMMARY.pack(
         kept.one.number,
         kept.begin_ns,
@@ -98,7 +98,7 @@ class LiveSlot:
             self._bytes, self._words, self._at = found
 
     def begin(self) -> None:
-        """An evaluation follows that is the first of a period."""
+        """Begin a period."""
         if self._bytes is not None:
             struct.pack_into("<Q", self._bytes, self._at + _COUNT_AT, 0)
             struct.pack_into("<Q", self._bytes, self._at + _BEGUN_AT, 0)

@@ -70,7 +70,7 @@ class FoundPlaces(NamedTuple):
 
 
 def find(tree: ast.Module, listed: Sequence[Listed]) -> FoundPlaces:
-    """Where each of ``listed`` is in ``tree``."""
+    """Find the places of ``listed`` in ``tree``."""
     index = _Index(tree)
     found = FoundPlaces({}, {}, {}, {}, {}, {}, [], [])
     for one in listed:
@@ -256,7 +256,7 @@ def _as_call(index: _Index, found: FoundPlaces, listed: Listed) -> bool:
 
 
 def _has_names(call: ast.Call) -> bool:
-    """Whether each keyword stands there; the analysis lists no others."""
+    """Whether each keyword is given; the analysis lists no others."""
     return all(keyword.arg is not None for keyword in call.keywords)
 
 

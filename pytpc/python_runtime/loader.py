@@ -1,4 +1,4 @@
-"""The import hook: a finder that looks at what the others found, and a loader that compiles anew.
+"""The import hook: a finder that asks the other finders, and a loader that compiles anew.
 
 Only modules whose file has the name of one with listed comparisons are looked at. Their bytecode is
 not cached, so that nothing of ours gets into ``__pycache__`` and nothing from there hides a report.
@@ -20,7 +20,7 @@ from pytpc.python_runtime.words import warn
 
 
 class ReportingLoader(importlib.machinery.SourceFileLoader):
-    """Loads a module from its source; all else, as ``inspect.getsource``, is as of its base."""
+    """Loads a module from its source; all else, as ``inspect.getsource``, is the base's."""
 
     def __init__(self, fullname: str, path: str, instrument: Instrument) -> None:
         """As the base; ``instrument`` compiles."""
@@ -28,7 +28,7 @@ class ReportingLoader(importlib.machinery.SourceFileLoader):
         self._instrument = instrument
 
     def get_code(self, fullname: str) -> CodeType:
-        """The rewritten code; the ordinary one where the module has nothing to report."""
+        """The rewritten code; the ordinary one if the module has nothing to report."""
         path = self.get_filename(fullname)
         data = self.get_data(path)
         code = self._instrument.code(data, path) or relayed(data, path, self._instrument)
@@ -40,7 +40,7 @@ class ReportingLoader(importlib.machinery.SourceFileLoader):
 
 
 class ReportingFinder:
-    """Stands before the finders that there are, and asks them."""
+    """Comes before the existing finders, and asks them."""
 
     def __init__(self, instrument: Instrument) -> None:
         """Packages are known by their folder's name."""
@@ -54,7 +54,7 @@ class ReportingFinder:
         path: Sequence[str] | None = None,
         target: ModuleType | None = None,
     ) -> importlib.machinery.ModuleSpec | None:
-        """What another finder gives, with our loader where the module may have comparisons."""
+        """The spec of another finder, with our loader if the module may have comparisons."""
         if fullname in quiet.TRACERS:
             quiet.watch()
         if fullname.rpartition(".")[2] not in self._names:

@@ -100,7 +100,7 @@ class _ThreadPlace:
         self.chunk: _Chunk = self.former
 
     def fill(self) -> None:
-        """A report was broken off: its place may be in this chunk, or in the one before."""
+        """A report was interrupted: its place may be in this chunk, or in the one before."""
         now = monotonic_ns()
         for chunk in (self.former, self.chunk):
             chunk.fill(now, self.sim_ns)
@@ -161,7 +161,7 @@ class LogFile(Room):
     # --- reports
 
     def _taker(self) -> Take:
-        """What takes a report, with all that it needs at hand."""
+        """The function that takes a report, with all that it needs as local variables."""
         local, whats, pack, steady = self._local, WHATS, pack_report, monotonic_ns
 
         def take(one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> None:
@@ -202,7 +202,7 @@ class LogFile(Room):
         return found
 
     def _claimed(self, place: _ThreadPlace) -> tuple[_Chunk, int] | None:
-        """The next record of the calling thread, in a new chunk where its own is full."""
+        """The next record of the calling thread, in a new chunk if its own is full."""
         while True:
             chunk = place.chunk
             at = chunk.claim()
@@ -218,7 +218,7 @@ class LogFile(Room):
     def _simulated(
         self, place: _ThreadPlace, found: tuple[_Chunk, int], now: int
     ) -> tuple[_Chunk, int] | None:
-        """Write the simulated time where it has changed; the record behind it."""
+        """Write the simulated time if it has changed; return the record after it."""
         chunk, at = found
         sim_ns = ros_state.now().ros_ns if self.is_simulated else -1
         if sim_ns == place.sim_ns:
@@ -346,7 +346,7 @@ class LogFile(Room):
             self._announce(one)
 
     def look(self, now: int) -> None:
-        """What is done once a second: the clocks against one another, and what ROS says."""
+        """Once a second: note the clocks against each other, and the node's state in ROS."""
         with self._lock:
             if now < self._sync_at:
                 return
@@ -363,11 +363,11 @@ class LogFile(Room):
             self._integers(SYNC, 0, before + (after - before) // 2, real, known.ros_ns)
 
     def write_policy(self, config: Config) -> None:
-        """From here on this policy holds."""
+        """Note that this policy applies from now on."""
         self._integers(POLICY, config.policy == "edges", monotonic_ns(), config.period_ns, 0)
 
     def write_dropped(self, one: int, number: int, flops: int, why: str) -> None:
-        """So many reports of a comparison (0: not known which) were dropped."""
+        """Note that reports of a comparison (0: unknown) were dropped."""
         self._integers(DROPPED | REASONS[why] << 16, one, monotonic_ns(), number, flops)
 
     def write_summary(self, raw: bytes, what: int) -> None:

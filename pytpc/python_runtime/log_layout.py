@@ -1,4 +1,4 @@
-"""The binary file of reports, byte for byte, and where a new one is made.
+"""The layout of the binary file of reports, and the place of a new file.
 
 docs/reference/formats.md has the layout in words, runtime_log/Layout.h in C++. The reader of these
 files, `pytpc.ingest.binary`, uses these numbers too.

@@ -1,4 +1,4 @@
-"""What stands between a report and its sink: caps, and the policy ``edges``."""
+"""The policies between a report and its sink: caps, and ``edges``."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _SECOND = 1_000_000_000
 
 
 class Caps:
-    """Reports a second, of a comparison and of the process; what is beyond is counted."""
+    """Limits reports per second, of a comparison and of the process, and counts the rest."""
 
     def __init__(self, config: Config, sink: Sink) -> None:
         """0 is no cap."""
@@ -42,7 +42,7 @@ class Caps:
         self._sink.settle()
 
     def is_over(self, one: Reported, is_flop: bool) -> bool:
-        """Whether a report is one too many; then it is counted."""
+        """Whether a report exceeds a cap; then it is counted."""
         if not (self._site or self._process):
             return False
         second = monotonic_ns() // _SECOND
@@ -67,7 +67,7 @@ class Caps:
             return True
 
     def account(self) -> None:
-        """Say what was dropped since the last time."""
+        """Report what was dropped since the last time."""
         with self._lock:
             over, self._over = self._over, {}
         for one, counts in over.items():
@@ -100,7 +100,7 @@ class Edges:
         self._file = sink.file if isinstance(sink, FileSink) else None
 
     def take(self, one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> None:
-        """Take in one evaluation."""
+        """Add one evaluation."""
         now = monotonic_ns()
         ros = ros_state.time_now_ns()
         period = (now - self._start) // self._period_ns + 1 & 0xFFFFFFFF
@@ -131,7 +131,7 @@ class Edges:
         return _OpenPeriod(PeriodSummary(one, thread), slot)
 
     def _edge(self, one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> int:
-        """Report it where the predicate came to something else than the last time."""
+        """Report it if the predicate's result has changed."""
         last, one.last = one.last, int(result)
         if last == result:
             return 0
@@ -147,7 +147,7 @@ class Edges:
             held.slot.begin()
 
     def flush(self, *, all_of_them: bool) -> None:
-        """Hand on the summaries of periods that are over, or those of the open ones, too."""
+        """Hand on the summaries of periods that are over, and if asked those of open ones."""
         period = (monotonic_ns() - self._start) // self._period_ns + 1 & 0xFFFFFFFF
         with self._lock:
             for held in self._open.values():
@@ -157,7 +157,7 @@ class Edges:
 
 
 def forget(reported: Iterable[Reported]) -> None:
-    """Nothing was evaluated yet: what holds after a fork, or when the policy is changed."""
+    """Forget all evaluations, after a fork or when the policy changes."""
     for one in reported:
         one.last = -1
         one.meter[:] = [0, 0]

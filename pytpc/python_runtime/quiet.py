@@ -1,4 +1,4 @@
-"""How the hook stays unseen: by tracers, and where a signal's handler raises within it.
+"""Keeps the hook unseen by tracers, and passes on what a signal's handler raises within it.
 
 A debugger, a profiler and coverage are told of every Python frame. The functions of the hook are
 Python, but there is one kind of function that CPython runs with tracing off: a hook of
@@ -73,18 +73,18 @@ class _State:
 
 
 class Site:
-    """What a place calls: attributes that are functions, each of which gives an iterator."""
+    """The functions that a place calls, as attributes; each returns an iterator."""
 
     __slots__ = ("__weakref__", "_names")
 
     def offer(self, **functions: Function) -> None:
-        """Let these be the attributes."""
+        """Make these the attributes."""
         self._names = tuple(functions)
         for name, function in functions.items():
             setattr(self, name, hidden(function))
 
     def be_quiet(self) -> None:
-        """From now on no tracer sees them."""
+        """Hide them from tracers from now on."""
         for name in self._names:
             setattr(self, name, partial(Quiet, getattr(self, name)))
 
@@ -98,7 +98,7 @@ def keep(site: Site) -> None:
 
 
 def hidden(function: Function) -> Function:
-    """What is to be called in the place of ``function`` now."""
+    """The function to call instead of ``function`` now."""
     return partial(Quiet, function) if _State.is_quiet else function
 
 
@@ -107,7 +107,7 @@ flat = chain.from_iterable
 
 
 def watch() -> None:
-    """The program has a tracer, or imports one."""
+    """Called when the program has a tracer, or imports one."""
     if not _State.is_watching:
         _State.is_watching = True
         sys.addaudithook(_hook)
@@ -122,7 +122,7 @@ def watch_if_traced() -> None:
 
 
 def begin() -> None:
-    """No tracer sees the functions of the hook from now on."""
+    """Hide the functions of the hook from tracers from now on."""
     if not _State.is_quiet:
         _State.is_quiet = True
         for site in list(_SITES):
@@ -146,7 +146,7 @@ def _nothing() -> Generator[None, None, None]:
 
 
 def raising(error: BaseException) -> Iterator[Any]:
-    """An iterator that raises what came from outside, as if it had come in the program's line.
+    """An iterator that raises an outside error as if it came from the program's line.
 
     `throw` of a generator that is through raises without a frame of its own.
     """
@@ -157,7 +157,7 @@ def raising(error: BaseException) -> Iterator[Any]:
 
 
 def foreign_frames(traceback: TracebackType | None) -> TracebackType | None:
-    """A traceback without the frames of this folder at its begin."""
+    """A traceback without leading frames of this folder."""
     while traceback is not None:
         file = traceback.tb_frame.f_code.co_filename
         if os.path.dirname(os.path.abspath(file)) != _FOLDER:
@@ -167,7 +167,7 @@ def foreign_frames(traceback: TracebackType | None) -> TracebackType | None:
 
 
 def is_programs(error: Exception) -> bool:
-    """Whether an error that came up in the hook is not the hook's, nor that of what it calls.
+    """Whether an error raised in the hook comes neither from it nor from a function that it calls.
 
     It may come up anywhere: raised by a handler of the program's for a signal, as a time-out is, or
     by another thread.

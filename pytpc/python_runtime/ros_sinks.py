@@ -67,7 +67,7 @@ class RosoutSink(Sink):
         self._waiting.append((f"threshold_dropped:{dropped_line(one, count, flops, why)}", 0))
 
     def settle(self) -> None:
-        """Send the lines that wait, when no lock of ours is held."""
+        """Send the waiting lines while no lock of the hook is held."""
         while self._waiting:
             try:
                 line, evaluations = self._waiting.popleft()
@@ -100,11 +100,11 @@ class RosoutSink(Sink):
         self._message = Log
 
     def status(self) -> str:
-        """How much did not get there."""
+        """The number of reports that were not sent."""
         return f"not_sent={self._lost}" if self._lost else ""
 
     def end(self) -> None:
-        """Say how much did not get there."""
+        """Warn about the reports that were not sent."""
         self.settle()
         lost, self._lost = self._lost, 0
         if lost:
@@ -115,7 +115,7 @@ class RosoutSink(Sink):
 
 
 class _Waiting(NamedTuple):
-    """A line that is not made yet: a report, or a finished line. ``at_ns`` is ROS time."""
+    """A line to be sent: a report to be formatted, or a finished line. ``at_ns`` is ROS time."""
 
     at_ns: int
     one: Reported | None
@@ -179,7 +179,7 @@ class TopicSink(Sink):
         return True
 
     def turn(self) -> None:
-        """Advertise, and send what has waited for a batch's time."""
+        """Advertise, and send batches that are due."""
         ros = ros_state.rospy()
         if ros is None or ros.is_shutdown():
             return
@@ -224,7 +224,7 @@ class TopicSink(Sink):
             self._publisher.publish(self._message(data=head + text))
 
     def status(self) -> str:
-        """How many were sent, and whether somebody listens."""
+        """How many were sent, and whether there are subscribers."""
         is_heard = self._publisher is not None and self._publisher.get_num_connections() > 0
         return (
             f"sent={self._sent} waiting={'yes' if self._waiting else 'no'}"
@@ -232,7 +232,7 @@ class TopicSink(Sink):
         )
 
     def end(self) -> None:
-        """Say what was not sent."""
+        """Warn about reports that were not sent."""
         with self._lock:
             unsent = sum(1 for waiting in self._waiting if waiting.report is not None)
             self._waiting.clear()

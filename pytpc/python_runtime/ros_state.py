@@ -1,4 +1,4 @@
-"""What rospy knows, where the program has imported it. Nothing here imports it."""
+"""What rospy knows, if the program has imported it; this module never imports it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 
 class Now(NamedTuple):
-    """What the process knows of ROS: the node's name, and its time (0: not known)."""
+    """The node's name and its ROS time (0: not known)."""
 
     node: str
     ros_ns: int

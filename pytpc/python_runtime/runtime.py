@@ -1,4 +1,4 @@
-"""What is chosen for this process, and what a report meets.
+"""The settings of this process, and the sink and policy that follow from them.
 
 Nothing happens until the first report. Where the program has imported rospy there is then one
 helper thread, which waits for its node, takes over its parameters, and sends what the sinks keep.
@@ -34,7 +34,7 @@ _LATE_S = 0.25
 
 
 class Runtime:
-    """All that changes seldom. There is one, `RUNTIME`."""
+    """The state of the process. There is one instance, `RUNTIME`."""
 
     def __init__(self) -> None:
         """Nothing is started."""
@@ -110,7 +110,7 @@ class Runtime:
                 self._start_helper()
 
     def apply(self, config: Config) -> bool:
-        """Let ``config`` hold from now on; False where its file cannot be had: nothing changes."""
+        """Apply ``config``; False, and no change, if its file cannot be made."""
         self.start()
         with self._lock:
             if config == self.config:
@@ -123,7 +123,7 @@ class Runtime:
             return True
 
     def _choose(self, config: Config) -> bool:
-        """Make ``config`` what a report meets; False where its file cannot be had."""
+        """Build sink and policy of ``config``; False if its file cannot be made."""
         self._flush()
         sink = self._sink_of(config)
         if sink is None:
@@ -147,7 +147,7 @@ class Runtime:
         return True
 
     def _sink_of(self, config: Config) -> Sink | None:
-        """The sink of these settings, the one that there is where it is that."""
+        """The sink for these settings; the current one if it fits."""
         if config.sink == "file":
             return self._file_sink(config)
         if self.file is not None:
@@ -183,7 +183,7 @@ class Runtime:
         return self._sink if is_it else FileSink(self.file)
 
     def _flush(self) -> None:
-        """What was kept until now goes where it was meant to go."""
+        """Hand what was kept until now to its sink."""
         if self._edges is not None:
             self._edges.flush(all_of_them=True)
         self._caps.account()
@@ -196,7 +196,7 @@ class Runtime:
     # --- the helper thread
 
     def _start_helper(self) -> None:
-        """Start it. It is no thread of `threading`, which a program may wait for, or count."""
+        """Start the helper, no thread of `threading`: programs wait for those, or count them."""
         self._has_helper = True
         try:
             _thread.start_new_thread(self._help, ())
@@ -204,7 +204,7 @@ class Runtime:
             warn("no thread could be made: settings cannot be changed while the node runs")
 
     def _help(self) -> None:
-        """Serve the node's settings, and give the sinks their turns, as long as there is any."""
+        """Serve the node's settings, and give the sinks their turns, while there are any."""
         process = os.getpid()
         retry_at = 0.0
         while self._has_helper and os.getpid() == process:
@@ -228,7 +228,7 @@ class Runtime:
         self._has_helper = False
 
     def status(self) -> str:
-        """What holds, in words with ``=`` in them, as C++ nodes answer."""
+        """The settings in effect as ``name=value`` words, as C++ nodes answer."""
         with self._lock:
             config = self.config
             words = [f"sink={config.sink}", f"policy={config.policy}"]

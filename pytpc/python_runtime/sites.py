@@ -1,4 +1,4 @@
-"""What a rewritten comparison calls.
+"""The functions that a rewritten comparison calls.
 
 ``a < b`` has become ``SITE.compare(a, b).__next__()``, with SITE among the constants of the code.
 `compare` gives an iterator, and ``__next__`` of it the outcome. The reason for the detour: where
@@ -40,7 +40,7 @@ FALSE = repeat(False)
 
 
 class Reported:
-    """One key that reports: what the sinks keep for it."""
+    """One key that reports, with what the sinks keep for it."""
 
     __slots__ = ("file", "key", "last", "lock", "meter", "number", "over", "swapped")
 
@@ -87,7 +87,7 @@ _DURATIONS = frozenset({"genpy.rostime", "rospy.rostime"})
 
 
 def nothing(_reported: Reported, _result: bool, _cmp: float, _thresh: float, _res: bool) -> None:
-    """What takes reports where none are wanted."""
+    """Takes reports while none are wanted."""
 
 
 _take: Take = nothing
@@ -95,18 +95,18 @@ _counts = {"unknown_outcomes": 0}
 
 
 def set_take(take: Take) -> None:
-    """What every report is handed to from now on."""
+    """Set the function that takes every report from now on."""
     global _take  # noqa: PLW0603
     _take = take
 
 
 def take(one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> None:
-    """Hand a report to what takes reports now."""
+    """Hand a report to the function that takes reports now."""
     _take(one, result, cmp, thresh, res)
 
 
 def unknown_outcomes() -> int:
-    """Evaluations that were not reported, because only the program may ask for their truth."""
+    """Evaluations that were not reported: testing their truth could run the program's code."""
     return _counts["unknown_outcomes"]
 
 
@@ -145,7 +145,7 @@ def _number_of(value: Any, kind: type) -> float | None:  # noqa: ANN401
 
 
 def truth_of(value: object) -> bool | None:
-    """The truth of ``value`` where asking runs no code of the program, else None."""
+    """The truth of ``value`` if testing it runs no code of the program, else None."""
     if value is True or value is False:
         return bool(value)
     kind = type(value)
@@ -202,7 +202,7 @@ class ComparisonSite(Site):
 
 
 def logger(reported: tuple[Reported, ...]) -> Callable[[Any, Any, bool], None]:
-    """Reports an outcome under each key. What it raises is the program's own."""
+    """Reports an outcome under each key. Exceptions are the program's own."""
 
     def log(a: object, b: object, outcome: bool) -> None:
         try:
@@ -242,7 +242,7 @@ def _comparer(
 
 
 def _later(reported: tuple[Reported, ...]) -> Function:
-    """What reports a comparison behind its outcome, and gives it on."""
+    """Reports a comparison after its outcome, and returns the outcome."""
     log = logger(reported)
 
     def later(a: object, b: object, outcome: object) -> Iterator[Any]:

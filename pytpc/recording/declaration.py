@@ -1,4 +1,4 @@
-"""One declaration of a parameter, and how it is made from what dynamic_reconfigure says."""
+"""A declaration of a parameter, made from one of dynamic_reconfigure."""
 
 from __future__ import annotations
 

@@ -87,7 +87,7 @@ class Events(tables.WordTable):
 
     @cached_property
     def by_key(self) -> KeyIndex:
-        """Where the rows of every key are; worked out once."""
+        """The rows of every key; worked out once."""
         order = np.argsort(self.key, kind="stable").astype(np.int64)
         counts = np.bincount(self.key, minlength=len(self.keys))
         offsets = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)

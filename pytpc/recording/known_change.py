@@ -1,4 +1,4 @@
-"""What is known to have been done to a robot: ``treatment.json`` in the folder of its mission.
+"""A known change of a robot: ``treatment.json`` in the folder of its mission.
 
 A study writes the file (``pytpc_evaluation.treatment``). Of its fields the report shows two.
 """

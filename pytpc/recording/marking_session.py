@@ -1,4 +1,4 @@
-"""A session in which an observer marks: keys and times in, marks and lines of text out.
+"""A session in which an observer sets marks: keys and times in, marks and lines of text out.
 
 Nothing here touches a terminal, a clock, a file or a graph; those are in ``marking_terminal``,
 ``marking_file`` and ``marking_graph``.
@@ -86,7 +86,7 @@ def press(session: Session, key: str, now_ns: int | None) -> tuple[Session, Mark
 
 
 def _look_back(session: Session, key: str) -> tuple[Session, MarkChange | None]:
-    """Keys about the last mark: a note to it, or take it back."""
+    """Keys for the last mark: add a note to it, or undo it."""
     if not session.marks:
         return replace(session, said="no mark yet"), None
     last = session.marks[-1]
@@ -151,12 +151,12 @@ class Player:
         return cls(start_ns, max(start_ns, end_ns), start_ns, 0)
 
     def time_ns(self, steady_ns: int) -> int:
-        """Where it is; it stops at the end."""
+        """The current time of the clock; it stops at the end."""
         run = int((steady_ns - self.since_ns) * self.speed) if self.playing else 0
         return min(self.end_ns, self.at_ns + max(0, run))
 
     def press(self, key: str, steady_ns: int) -> Player | None:
-        """The clock after a key, None where the key is not for it."""
+        """The clock after a key, None if the key is not for it."""
         at_ns = self.time_ns(steady_ns)
         here = replace(self, at_ns=at_ns, since_ns=steady_ns)
         if key == " ":

@@ -51,7 +51,7 @@ class Mark:
 
 
 def topic_of_marks(topic: str) -> tuple[MarkType | None, str] | None:
-    """Type and observer of the marks on ``topic``, or None where it carries none.
+    """Type and observer of the marks on ``topic``, or None if it carries no marks.
 
     ``/mark_action`` -> ``("I", "")``, ``/marks0/mark_no_action`` -> ``("II", "marks0")``,
     ``/mark_wrong`` -> ``(None, "")``.
@@ -111,7 +111,7 @@ def note_text(time_ns: int, note: str) -> str:
 
 
 def parse_note(text: str) -> tuple[int, str] | None:
-    """The reverse of ``note_text``; None where it is no note."""
+    """The reverse of ``note_text``; None if the text is not a note."""
     time, comma, note = text.partition(",")
     seconds, dot, nanoseconds = time.partition(".")
     if not comma or not dot or len(nanoseconds) != 9:
@@ -133,7 +133,7 @@ class MarkMessages:
 
     @staticmethod
     def message_type(topic: str) -> Literal["Time", "String"] | None:
-        """Which of std_msgs the messages of ``topic`` are; None where it is not about marks."""
+        """The type, of std_msgs, of a topic's messages; None if the topic is not about marks."""
         last = topic.rpartition("/")[2]
         if last == NOTE_TOPIC:
             return "String"
@@ -159,7 +159,7 @@ class MarkMessages:
         self._notes.append((observer_of(topic, NOTE_TOPIC) or "", *found))
 
     def marks(self) -> tuple[Mark, ...]:
-        """The marks that were not taken back, with their last notes, sorted."""
+        """The marks that were not undone, with their last notes, sorted."""
         marks = without_undone(sorted(self._marks, key=Mark.order), self._undone)
         for note in self._notes:
             marks = with_note(marks, *note)
@@ -167,7 +167,7 @@ class MarkMessages:
 
 
 def marks_beside(recording: Path) -> Path:
-    """Where the marks of a recording are that were made after it: ``BAG.marks.csv``."""
+    """The file of marks that were made after the recording: ``BAG.marks.csv``."""
     return recording.with_name(f"{recording.name}.marks.csv")
 
 

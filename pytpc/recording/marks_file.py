@@ -14,7 +14,7 @@ from pytpc.recording.marks import Mark, read_marks, write_marks
 
 
 class MarksFile:
-    """A file that several observers may write at once: each applies only its own changes.
+    """A file that several observers may write at once; each applies only its own changes.
 
     What cannot be written (a full disk) is kept, and tried again with the next change and at the
     end.
@@ -37,7 +37,7 @@ class MarksFile:
         self.before: tuple[Mark, ...] = read_marks(path) if path.exists() else ()
 
     def take(self, change: MarkChange) -> None:
-        """A change that is to be written by the next ``flush``."""
+        """Add a change for the next ``flush``."""
         self.pending.append(change)
 
     def flush(self) -> str:
@@ -65,10 +65,10 @@ class MarksFile:
 
 @contextlib.contextmanager
 def _locked(folder: Path) -> Iterator[None]:
-    """Nobody else who asks for this has the folder.
+    """Hold a lock on the folder.
 
     Raises:
-        OSError: it exists already, or there is no such folder.
+        OSError: another process holds it, or there is no such folder.
     """
     descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
     try:

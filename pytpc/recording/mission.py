@@ -1,4 +1,4 @@
-"""A mission as it was recorded: its events, its marks, and what could not be read of it.
+"""A recorded mission: its events, its marks, and records that could not be read.
 
 On disk it is a folder with ``events.parquet``, ``marks.json`` and, where there are summaries,
 ``summaries.parquet`` (docs/reference/formats.md).
@@ -27,7 +27,7 @@ _SCHEMA = 1
 
 @dataclass(frozen=True, slots=True)
 class MalformedRecord:
-    """A record that was skipped: where it stood, and why. ``text`` is cut to 200 characters."""
+    """A record that was skipped: its place and the reason. ``text`` is cut to 200 characters."""
 
     topic: str
     time_ns: int
@@ -37,7 +37,7 @@ class MalformedRecord:
 
 @dataclass(frozen=True, slots=True)
 class Dropped:
-    """Reports that the instrumented process itself left out, and why.
+    """Reports that the instrumented process dropped, and why.
 
     ``key`` is empty where it is not known of which comparison; ``flops`` of the ``count`` were
     flops; ``why`` is ``site`` or ``process`` (a cap on reports per second), ``nested`` (made while
@@ -124,7 +124,7 @@ def write_marks(recording: Recording, folder: Path, events: int, summaries: int)
 
 
 def load_recording(folder: Path) -> Recording:
-    """Read the folder that ``save_recording`` wrote.
+    """Read a folder of ``save_recording``.
 
     Raises:
         InputError: a file is missing or broken, or the files are not of one recording.
@@ -140,7 +140,7 @@ def load_recording(folder: Path) -> Recording:
 
 
 def read_marks(folder: Path) -> tuple[Recording, int, int]:
-    """Read ``marks.json`` alone: a recording with empty tables, and how many rows they have.
+    """Read only ``marks.json``: a recording with empty tables, and their number of rows on disk.
 
     Raises:
         InputError: the file is missing or broken.
@@ -173,7 +173,7 @@ def _check_rows(path: Path, said: int, name: str, found: int) -> None:
 
 def _recording(document: object) -> Recording:
     if not isinstance(document, dict) or document.get("schema") != _SCHEMA:
-        raise ValueError(f"schema {_SCHEMA} is read")
+        raise ValueError(f"not of format {_SCHEMA}, the only one that this TPC reads")
     marks = [Mark(**mark) for mark in document["marks"]]
     for mark in marks:
         if type(mark.time_ns) is not int or not isinstance(mark.observer, str):

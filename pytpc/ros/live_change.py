@@ -1,4 +1,4 @@
-"""A change on the running robot that is noted, and taken back."""
+"""Changes a value on the running robot, records that, and undoes it."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from pytpc.values.origins import from_json, to_json
 def set_live(
     robot: Robot, change: LiveChange, journal: Journal
 ) -> tuple[JournalEntry, object, bool]:
-    """Set a value on the running robot, and note it.
+    """Set a value on the running robot and record it.
 
     Returns:
         The note; the value that holds then; whether the node has taken it over by itself.
@@ -45,7 +45,7 @@ def set_live(
 def take_back_live(
     entry: JournalEntry, journal: Journal, *, dry_run: bool = False, force: bool = False
 ) -> None:
-    """Take a change of the running robot back and forget it.
+    """Undo a change of the running robot and forget it.
 
     Raises:
         TpcError: the value was changed since, or the robot does not take it.

@@ -1,4 +1,4 @@
-"""What is left of a mission that was recorded: its files, how it went, how far it is.
+"""The files of a recorded mission, its options, and how it went.
 
 A recorded mission's folder has ``mission.bag``, ``params.yaml`` (the parameters at the end;
 ``params_start.yaml`` right after the launch), ``origins.json`` (where these values came from),

@@ -76,7 +76,7 @@ _TWO: dict[str, Callable[[float, float], float]] = {
 
 
 def from_json(tree: object) -> Tree:
-    """The tree of parsed JSON that the schema has let pass."""
+    """The tree in parsed JSON that was checked by the schema."""
     if isinstance(tree, list):
         return tuple(from_json(part) for part in tree)
     return tree if isinstance(tree, str) else float(tree)  # type: ignore[arg-type]

@@ -1,4 +1,4 @@
-"""Why a comparison was found, and why others were not: the static information, asked a question.
+"""Explains from the static information why a comparison was found, and others were not.
 
 ``look_up`` takes what a user has at hand (a key, a parameter's name, ``FILE:LINE``) and gives all
 that the static information says about it, as data; ``pytpc explain`` prints it.
@@ -23,7 +23,6 @@ from pytpc.static.static_info import (
 )
 
 _CLOSEST = 5
-_SHORTEST_KEY = 4
 _FILE_LINE = re.compile(r"(?P<file>[^:]+):(?P<line>[0-9]{1,9})(:[0-9]+)?")
 _KEY = re.compile(r"[0-9a-f]{4,8}(-[0-9a-f-]*)?")
 
@@ -38,7 +37,7 @@ class FoundComparison:
 
 @dataclass(frozen=True)
 class Explanation:
-    """All that is known about a key, a parameter or a line.
+    """Everything known about a key, a parameter or a line.
 
     ``comparisons`` are the nearest to their exposing statements first. The others are the reads,
     the comparisons on which nothing exposed depends, and the blind spots of the same parameter or
@@ -106,7 +105,7 @@ def _of_parameter(static: StaticInfo, name: str) -> Explanation:
 
 
 def _same(name: str | None, asked: str) -> bool:
-    """Whether a name is meant: ``~arm/limit`` is asked for as ``arm/limit`` or ``limit``, too."""
+    """Whether a name matches: ``arm/limit`` and ``limit`` also match ``~arm/limit``."""
     return name is not None and (name == asked or bool(re.search(f"[~/]{re.escape(asked)}$", name)))
 
 

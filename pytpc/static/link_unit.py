@@ -1,4 +1,4 @@
-"""One link unit as the static analysis saw it: its file's contents as dataclasses, and back.
+"""One link unit of the static analysis: JSON to dataclasses, and back.
 
 Field names of the classes are the names in the JSON (docs/reference/formats.md#static-information).
 """
@@ -30,7 +30,7 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class Transform:
-    """How a derived threshold comes from its parameter.
+    """How a derived threshold is computed from its parameter.
 
     ``affine``: threshold = scale * parameter + offset. ``expression``: ``tree`` says it (see
     ``pytpc.static.arithmetic``; None in files of before), and ``scale`` and ``offset`` are None.
@@ -53,7 +53,7 @@ class Transform:
 
 @dataclass(frozen=True, slots=True)
 class ParameterRead:
-    """A call that reads a parameter; ``name`` has ``<dynamic>`` for what no constant gives."""
+    """A call that reads a parameter; ``name`` has ``<dynamic>`` for a part that is no constant."""
 
     name: str
     api: str
@@ -67,7 +67,7 @@ class ParameterRead:
 
 @dataclass(frozen=True, slots=True)
 class Exposing:
-    """An exposing statement; ``topic`` is None where no constant names it."""
+    """An exposing statement; ``topic`` is None if no constant names it."""
 
     api: str
     topic: str | None
@@ -79,7 +79,7 @@ class Exposing:
 
 @dataclass(frozen=True, slots=True)
 class PathStep:
-    """What happens on one line on the way from a parameter's read to what exposes it.
+    """One line on the way from a parameter's read to what exposes it.
 
     ``step`` is the most telling thing that happens there, ``what`` says all of it. A place is
     empty and 0 where steps were left out or no debug information names it.
@@ -96,7 +96,7 @@ class PathStep:
 
 @dataclass(frozen=True, slots=True)
 class LeftOut:
-    """A link unit that is there and was not analysed, so it reports nothing; and why."""
+    """A link unit that was not analysed, and so reports nothing; and the reason."""
 
     package: str
     link_unit: str
@@ -117,7 +117,7 @@ class NotExposed:
 
 @dataclass(frozen=True, slots=True)
 class BlindSpot:
-    """A place behind which the analysis does not see; ``parameter`` is None where none is meant."""
+    """A blind spot of the analysis; ``parameter`` is None if it concerns none in particular."""
 
     kind: str
     parameter: str | None
@@ -178,7 +178,7 @@ class Tool:
 
 @dataclass(frozen=True, slots=True)
 class Counts:
-    """How much of a link unit there is of each thing, and how much could not be resolved."""
+    """The counts of a link unit: how many of each thing, and how many could not be resolved."""
 
     functions: int
     predicates: int
@@ -257,7 +257,7 @@ class LinkUnit:
 
     @classmethod
     def from_checked(cls, data: Mapping[str, Any]) -> LinkUnit:
-        """Build a unit from JSON of which it is known that it keeps to the schema."""
+        """Build a unit from JSON that the schema has checked."""
         unit = dict(data)
         del unit["schema"]
         unit["tool"] = Tool(**unit["tool"])

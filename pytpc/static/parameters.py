@@ -1,4 +1,4 @@
-"""Names of parameters: as the static analysis knows them, and as a person gives them."""
+"""Names of parameters, as the static analysis knows them and as users give them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The user's own rules: a JSON file that tells the analysis what else reads or exposes."""
+"""The user's own rules: a JSON file with more functions that read or expose."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pytpc.base.checked_json import RULES_SCHEMA, check_schema, parse_json
 
 
 def check_rules(path: Path) -> None:
-    """See that a file of rules has the form of ``schema/rules.schema.json``.
+    """Check a file of rules against ``schema/rules.schema.json``.
 
     The plugin checks it again where it links: there a fault is a warning, because a build must not
     break, and the link unit is left as it was.

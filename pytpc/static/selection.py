@@ -25,7 +25,7 @@ ORDERS: dict[str, Callable[[Tpc], tuple[object, ...]]] = {
 
 @dataclass(frozen=True, slots=True)
 class Selection:
-    """What is wanted; an empty field leaves nothing out.
+    """A selection; an empty field selects everything.
 
     ``packages``: the one in whose folder the source is, or whose program it is in. ``parameters``
     and ``files`` may have wildcards; a name's namespace and a path's first folders may be left out.
@@ -40,7 +40,7 @@ class Selection:
 
 
 def select(static: StaticInfo, wanted: Selection) -> list[Tpc]:
-    """The TPCs that are wanted, sorted.
+    """The selected TPCs, sorted.
 
     Raises:
         InputError: no package has one of the names.

@@ -22,6 +22,7 @@ from pytpc.base.checked_json import (
     MERGED_SCHEMA,
     SCHEMA_VERSION,
     check_schema,
+    check_version,
     dump_json,
     parse_json,
 )
@@ -144,7 +145,7 @@ class StaticInfo:
 
     @property
     def failed(self) -> tuple[LinkUnit, ...]:
-        """The units that were left as they were."""
+        """The units that were not instrumented."""
         return tuple(unit for unit in self.units if unit.status == "failed")
 
     def unit_of(self, key: str) -> LinkUnit:
@@ -185,10 +186,10 @@ class StaticInfo:
         """
         if not isinstance(data, dict) or not isinstance(data.get("units"), list):
             raise InputError('/: not merged static information, "units" is missing', path)
-        if data.get("schema") != SCHEMA_VERSION:
-            raise InputError(
-                f"/schema: {data.get('schema')!r} where {SCHEMA_VERSION} is read", path
-            )
+        version = data.get("schema")
+        check_version(version, path)
+        if version != SCHEMA_VERSION:
+            raise InputError(f"/schema: expected {SCHEMA_VERSION}, found {version!r}", path)
         units = [
             LinkUnit.from_json(unit, path, f"/units/{index}")
             for index, unit in enumerate(data["units"])

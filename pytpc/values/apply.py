@@ -1,4 +1,4 @@
-"""Writing a value into the file that set it, and taking it back."""
+"""Writes a value into the file that set it, and undoes that."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from pytpc.values.scalars import number_text
 
 @dataclass(frozen=True, slots=True)
 class FileChange:
-    """What a new value does to one file.
+    """A change of one file by a new value.
 
     ``path`` is the file itself, behind symbolic links. ``old`` is None where the parameter stood
     nowhere. ``notes`` are sentences for who applies it.
@@ -36,7 +36,7 @@ class FileChange:
 
 
 def read_file(path: Path) -> bytes:
-    """The bytes of a file that is to be changed.
+    """Read the bytes of a file that will be changed.
 
     Raises:
         InputError: it cannot be read.
@@ -61,7 +61,7 @@ def decoded(data: bytes, path: Path) -> str:
 
 
 def shown(value: object) -> str:
-    """A value as it is told of.
+    """A value as shown to the user.
 
     >>> shown(0.5), shown(True), shown("a"), shown(None)
     ('0.5', 'true', 'a', 'not set')
@@ -74,7 +74,7 @@ def shown(value: object) -> str:
 
 
 def apply_change(change: FileChange, journal: Journal) -> JournalEntry:
-    """Write a change, and note it so that it can be taken back.
+    """Write a change and record it for undo.
 
     Raises:
         TpcError: the file changed since the change was worked out, or cannot be written; it is as
@@ -98,7 +98,7 @@ def _apply_change(change: FileChange, journal: Journal) -> JournalEntry:
 
 
 def undo_change(entry: JournalEntry, journal: Journal) -> FileChange:
-    """What taking back a change of a file does to it; nothing is written.
+    """Work out how to undo a change of a file; nothing is written.
 
     Raises:
         TpcError: the file has changed since, by a later change or by someone else.
@@ -119,7 +119,7 @@ def undo_change(entry: JournalEntry, journal: Journal) -> FileChange:
 
 
 def replace_file(path: Path, data: bytes) -> None:
-    """Put new bytes into a file; its owner and permissions stay.
+    """Replace the content of a file; its owner and permissions stay.
 
     Raises:
         TpcError: it cannot be written; what stood there is untouched.
@@ -160,7 +160,7 @@ def _lines(data: bytes) -> list[str]:
 
 
 def change_as_json(change: FileChange) -> Mapping[str, object]:
-    """A change for a program that reads it."""
+    """A change as JSON."""
     return {
         "parameter": change.parameter,
         "path": str(change.path),

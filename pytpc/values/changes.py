@@ -1,4 +1,4 @@
-"""What was changed on a robot: read from a history, or from what the parameters were before."""
+"""Changes made on a robot, from a history or from an earlier dump of the parameters."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def _number(one: dict[str, object], name: str, path: Path) -> float:
 
 
 def changes_between(before: Path, after: Path) -> tuple[Change, ...]:
-    """What differs between two dumps of the parameters (params.yaml), by full names, sorted.
+    """The differences between two dumps of the parameters (params.yaml), by full names, sorted.
 
     Where a value is no number, or is in one of them only, it is nan.
 

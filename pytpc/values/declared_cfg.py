@@ -1,4 +1,4 @@
-"""What ``.cfg`` files of dynamic_reconfigure declare; these are Python programs, and are not run.
+"""Reads the declarations in ``.cfg`` files of dynamic_reconfigure without running them.
 
 Followed are what nearly all of these files consist of: constants and arithmetic with them, names,
 lists, groups, ``const``, ``enum`` and ``add``, and loops over what is known. What is not (calls of
@@ -67,7 +67,7 @@ _NAMES: dict[str, object] = {
 
 
 class _UnknownError(Exception):
-    """A value that is not followed."""
+    """A value that cannot be worked out."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,7 +96,7 @@ def read_cfg(text: bytes, path: Path) -> tuple[list[Declared], list[str]]:
 
 
 class _CfgReader:
-    """Goes through the statements with the values that it knows."""
+    """Interprets the statements as far as values are known."""
 
     def __init__(self, path: Path) -> None:
         self.found: list[Declared] = []

@@ -44,7 +44,7 @@ def is_installed(path: Path) -> bool:
 
 
 def of_the_system(path: Path) -> bool:
-    """Whether a file belongs to what the machine's packages installed."""
+    """Whether a file was installed by a package of the system."""
     real = path.resolve()
     return any(folder in real.parents for folder in SYSTEM_FOLDERS) and "local" not in real.parts
 

@@ -1,4 +1,4 @@
-"""What ``pytpc apply`` changed, so that it can be taken back byte for byte.
+"""The changes that ``pytpc apply`` made, so that they can be undone byte for byte.
 
 One JSON file for each change, in ``$XDG_STATE_HOME/tpc/applied`` (``~/.local/state`` where that is
 not set). It is written before the file is changed, and removed when the change is taken back.
@@ -64,15 +64,15 @@ def digest(data: bytes) -> str:
 
 
 class Journal:
-    """The changes that can be taken back."""
+    """The changes that can be undone."""
 
     def __init__(self, folder: Path) -> None:
-        """The folder need not be there."""
+        """The folder need not exist."""
         self._folder = folder
 
     @contextlib.contextmanager
     def held(self) -> Iterator[None]:
-        """While it is held no other process changes a file: the second of two waits.
+        """While this is held, no other process changes a file; a second one waits.
 
         Raises:
             TpcError: the folder cannot be written.
@@ -99,7 +99,7 @@ class Journal:
         return self._all()[0]
 
     def broken(self) -> list[InputError]:
-        """What is wrong with the notes that cannot be read; the others are good all the same."""
+        """What is wrong with the entries that cannot be read; the others can still be used."""
         return self._all()[1]
 
     def _all(self) -> tuple[list[JournalEntry], list[InputError]]:
@@ -176,7 +176,7 @@ class Journal:
         raise OSError(0, "no number is free")
 
     def remove(self, entry: JournalEntry) -> None:
-        """Forget a change that was taken back, or was not made after all."""
+        """Forget a change that was undone or failed."""
         (self._folder / f"{entry.number:06d}.json").unlink(missing_ok=True)
 
 

@@ -1,4 +1,4 @@
-"""Changing one value in a launch file: all other bytes stay as they are."""
+"""Changes one value in a launch file; all other bytes stay."""
 
 from __future__ import annotations
 
@@ -225,7 +225,7 @@ def _edit_attribute(data: bytes, tag: Tag, attribute: Attribute, given: NewText)
 
 
 def _check(data: bytes, result: bytes, place: tuple[int, str], text: str) -> None:
-    """See that the new file says what it should: this attribute is new, and no other one."""
+    """Check that the new file differs in this attribute only."""
     before, after = tags_of(data), tags_of(result)
     wanted = [
         {

@@ -1,4 +1,4 @@
-"""Launch files as they are written: the tags, their attributes and texts with exact places.
+"""Reads the tags, attributes and texts of a launch file with their exact places.
 
 Bytes go in and byte offsets come out, whatever the file's encoding. expat says where a tag begins;
 what is inside its angle brackets is read here, because no XML parser keeps where an attribute's
@@ -124,7 +124,7 @@ def _read_head(tag: Tag, data: bytes, encoding: str) -> None:
 
 
 def meaning(raw: str) -> str:
-    """What an attribute's text means: entities are resolved, white space is blanks."""
+    """The value of an attribute's text: entities resolved, white space as blanks."""
     text = re.sub(r"\r\n|[\r\n\t]", " ", raw)
     text = re.sub(r"&#(\d+);", lambda m: chr(int(m[1])), text)
     text = re.sub(r"&#x([0-9a-fA-F]+);", lambda m: chr(int(m[1], 16)), text)

@@ -1,4 +1,4 @@
-"""A new value: what a person typed, read as the type that the parameter has, and written again."""
+"""Reads a new value, as typed by a user, as the parameter's type, and writes it again."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _NAMES: dict[ValueType, str] = {
 
 
 class Refused(ValueError):
-    """A change that is not made; ``lineno`` is the line that it is about, counted from 1."""
+    """A change that is refused; ``lineno`` is the line in question, counted from 1."""
 
     def __init__(self, message: str, lineno: int | None = None) -> None:
         """See the class."""
@@ -32,7 +32,7 @@ class Refused(ValueError):
 
 
 def read_value(given: str, kind: ValueType, *, force: bool = False) -> object:
-    """What ``given`` is as a value of a type.
+    """``given`` as a value of a type.
 
     Args:
         given: as typed.
@@ -75,7 +75,7 @@ def _number(given: str) -> int | float:
 
 
 def guessed(given: str) -> object:
-    """What a text is where nothing is known of its type: 0.5, 3, true, else a text."""
+    """The value of a text of unknown type: 0.5, 3, true, else a text."""
     value = plain_value(given)
     if isinstance(value, str):
         try:
@@ -86,7 +86,7 @@ def guessed(given: str) -> object:
 
 
 def yaml_text(value: object, given: str, old: str = "", style: str = "") -> str:
-    """A scalar as it is written in YAML, so that rosparam reads this value.
+    """A scalar as YAML that rosparam reads as this value.
 
     Args:
         value: bool, int, float, text.
@@ -110,7 +110,7 @@ def yaml_text(value: object, given: str, old: str = "", style: str = "") -> str:
 
 
 def bool_text(value: bool, old: str) -> str:
-    """A bool in the words and the case of the one that stood there.
+    """A bool in the spelling of the one it replaces.
 
     >>> bool_text(False, "True"), bool_text(True, "OFF"), bool_text(True, "")
     ('False', 'ON', 'true')
@@ -147,7 +147,7 @@ def _escape(character: str) -> str:
 
 
 def degrees_text(value: float) -> str | None:
-    """The degrees that rosparam turns into exactly this angle in rad; None where none does.
+    """The degrees that rosparam turns into exactly this angle in rad; None if there are none.
 
     rosparam multiplies by pi and divides by 180.
     """

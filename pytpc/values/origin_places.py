@@ -1,4 +1,4 @@
-"""From what roslaunch's loader did to the line that set a value."""
+"""Finds the line that set a value, from what roslaunch's loader did."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class _Files:
         self._sources: dict[Path, Path | None] = {}
 
     def data(self, path: Path) -> bytes:
-        """All of a file; nothing where it cannot be read."""
+        """The content of a file; empty if it cannot be read."""
         if path not in self._bytes:
             try:
                 self._bytes[path] = path.read_bytes()
@@ -63,7 +63,7 @@ class _Files:
         return self._texts[launch].get(offset)
 
     def settings(self, path: Path, start: int, end: int | None = None) -> dict[str, YamlSetting]:
-        """What a YAML file, or a piece of a file, sets, by keys as ROS joins them.
+        """The values that a YAML file, or a part of one, sets, by keys as ROS joins them.
 
         Nothing where it cannot be read.
         """

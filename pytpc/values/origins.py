@@ -61,7 +61,7 @@ class Origin:
 
 
 def read_origins(mission: Path) -> Mapping[str, Origin]:
-    """The origins that were recorded with a mission, by full name; empty where none were.
+    """The origins that were recorded with a mission, by full name; empty if there are none.
 
     Args:
         mission: the folder of the mission, or its bag.
@@ -81,7 +81,7 @@ def read_origins(mission: Path) -> Mapping[str, Origin]:
 
 
 def origins_file(mission: Path) -> Path:
-    """Where the origins of a mission stand, of which ``mission`` is the folder or the bag."""
+    """The file with the origins of a mission, given its folder or its bag."""
     return (mission if mission.is_dir() else mission.parent) / ORIGINS_FILE
 
 
@@ -132,7 +132,7 @@ def write_origins(document: Mapping[str, Any], origins: Mapping[str, Origin], pa
 
 
 def as_json(origin: Origin) -> dict[str, object]:
-    """The fields of an origin but its name; those that are empty are left out."""
+    """The fields of an origin except its name, without empty ones."""
     fields: dict[str, object] = {
         "path": None if origin.path is None else str(origin.path),
         "lineno": origin.lineno,

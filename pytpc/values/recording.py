@@ -1,4 +1,4 @@
-"""Recording, with a mission, where the values of its parameters came from."""
+"""Records, with a mission, where the values of its parameters came from."""
 
 from __future__ import annotations
 

@@ -36,7 +36,7 @@ _TAG = "tag:yaml.org,2002:"
 
 
 def type_of(value: object) -> ValueType:
-    """How rosparam calls the type of a value.
+    """The name that rosparam has for the type of a value.
 
     >>> type_of(True), type_of(2), type_of(0.5)
     ('bool', 'int', 'double')

@@ -1,4 +1,4 @@
-"""What ``pytpc apply`` and ``pytpc origin`` are given: a mission, a launch file, a YAML file."""
+"""Finds what ``pytpc apply`` and ``pytpc origin`` should change, in a mission or a file."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _LISTED = 8
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """Where values can be looked for: what is known of them, and the nodes of the launch file.
+    """The known origins of values, and the nodes of the launch file.
 
     ``launch`` is the launch file, None where that is not known. ``files`` has the SHA-256 that the
     files had when they were read.
@@ -105,7 +105,7 @@ def _of_mission(path: Path) -> Target:
 
 
 def chosen(target: Target, parameter: str) -> Origin:
-    """The origin of the parameter that a person means.
+    """The origin of the parameter that a user names.
 
     Args:
         target: where it is looked for.
@@ -309,7 +309,7 @@ def _why_not(origin: Origin) -> str:
 
 
 def _where(path: Path, real: Path) -> tuple[str, ...]:
-    """What to know of where a change goes."""
+    """Notes on the file that a change goes to."""
     return (*_copies(path, real), *_other_names(real))
 
 

@@ -1,4 +1,4 @@
-"""What a launch file sets, and which line of which file sets it.
+"""The values that a launch file sets, and which line of which file sets each.
 
 ``trace_launch`` runs ``pytpc.values.tracer.launch_tracer`` with roslaunch's own Python, and
 ``pytpc.values.origin_places`` turns what that says into places.

@@ -1,4 +1,4 @@
-"""Taking back what ``pytpc apply`` did to a file."""
+"""Undoes what ``pytpc apply`` did to a file."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pytpc.values.journal import Journal, JournalEntry
 
 
 def entry_of(journal: Journal, what: str) -> JournalEntry:
-    """The change that is to be taken back.
+    """The change to undo.
 
     Args:
         journal: of the changes.
@@ -35,7 +35,7 @@ def entry_of(journal: Journal, what: str) -> JournalEntry:
 
 
 def take_back_file(entry: JournalEntry, journal: Journal, *, dry_run: bool = False) -> FileChange:
-    """Take a change of a file back and forget it; what that does to the file.
+    """Undo a change of a file and forget it; return the change that this is.
 
     Raises:
         TpcError: the file was changed since.

@@ -1,4 +1,4 @@
-"""Changing one value in a YAML text: all other characters stay as they are."""
+"""Changes one value in a YAML text; all other characters stay."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Edit:
 
 
 def all_settings(text: str) -> list[Mapping[Keys, YamlSetting]]:
-    """What each document of a YAML text sets.
+    """The values that each document of a YAML text sets.
 
     Raises:
         Refused: it is not YAML.
@@ -41,7 +41,7 @@ def all_settings(text: str) -> list[Mapping[Keys, YamlSetting]]:
 
 
 def edit_yaml(text: str, keys: Keys, given: str, *, force: bool = False) -> Edit:
-    """Put a value in the place of another.
+    """Replace one value by another.
 
     Args:
         text: of a YAML file.
@@ -179,7 +179,7 @@ def _put(text: str, node: YamlNode, piece: str) -> str:
 def _check(
     before: list[Mapping[Keys, YamlSetting]], text: str, changed: Mapping[tuple[int, Keys], object]
 ) -> None:
-    """See that the text says what it should: these values are new, and every other one is not.
+    """Check that the edited text has these new values and no other changes.
 
     ``changed`` has them by the number of the document and the keys.
     """
@@ -193,7 +193,7 @@ def _check(
 def _all_values(
     documents: list[Mapping[Keys, YamlSetting]],
 ) -> dict[tuple[int, Keys], tuple[str, int]]:
-    """The values of all documents, each with how often its keys stand before it.
+    """The values of all documents, each with the number of earlier uses of its keys.
 
     As text, which tells 1 from 1.0 and takes NaN for NaN.
     """

@@ -1,4 +1,4 @@
-"""YAML as it is written: each value with its exact place in the text.
+"""Reads YAML with the exact place of each value in the text.
 
 Loading YAML forgets where a value stood and how it was written; writing it anew changes quotes,
 indentation and comments. Here a text is read into nodes with spans, so that one scalar can be
@@ -47,7 +47,7 @@ class YamlNode:
 
     @property
     def behind(self) -> YamlNode:
-        """The node itself, or that which the alias stands for."""
+        """The node itself, or the one that the alias refers to."""
         return self if self.target is None else self.target
 
     @property
@@ -217,7 +217,7 @@ def _is_merge(key: YamlNode) -> bool:
 
 
 def value_of(node: YamlNode) -> object:
-    """What rosparam makes of a node.
+    """The value that rosparam reads from a node.
 
     Raises:
         ValueError: a tag that rosparam does not know, a value that does not fit it, or a list that

@@ -293,7 +293,7 @@ def test_recordings_that_are_broken(mission, tmp_path):
     path = folder / "marks.json"
     good = json.loads(path.read_text())
     for change, message in [
-        ({"schema": 2}, "schema 1 is read"),
+        ({"schema": 2}, "not of format 1, the only one that this TPC reads"),
         ({"events": 7}, "7 events, but events.parquet has 6"),
         ({"marks": [{"time_ns": 1.5, "type": "I", "observer": ""}]}, "without a time in ns"),
         ({"marks": [{"time_ns": 1, "type": "III", "observer": ""}]}, "a mark of type 'III'"),

@@ -17,13 +17,13 @@ ROOT = Path(__file__).parents[2]
 PRELUDE = """\
 import os, sys, threading, time
 sys.path.insert(0, {root!r})
-from pytpc.python_runtime.find import Place
+from pytpc.python_runtime.find import ListedPlace
 from pytpc.python_runtime.listed import Listed
 from pytpc.python_runtime.runtime import RUNTIME
-from pytpc.python_runtime.sites import Comparison
+from pytpc.python_runtime.sites import ComparisonSite
 def site(key, operator="Gt"):
     listed = Listed(key, ">", 1, 1, None, None, None, "right", None)
-    return Comparison(operator, (RUNTIME.register(Place(listed, False)),))
+    return ComparisonSite(operator, (RUNTIME.register(ListedPlace(listed, False)),))
 def over(site, a, b):
     return site.compare(a, b).__next__()
 """

@@ -161,7 +161,7 @@ def test_named_nodes_have_to_run():
     running = [f"/n{i}" for i in range(7)]
     assert chosen(running, []) == running
     assert chosen(running, ["n3", "/n1", "n3"]) == ["/n3", "/n1"]
-    with pytest.raises(RunError, match=r"^/x is no .* there are /n0, .*, /n4 and 2 more$"):
+    with pytest.raises(RunError, match=r"^/x is not .* there are /n0, .*, /n4 and 2 more$"):
         chosen(running, ["n1", "x"])
     with pytest.raises(RunError, match="no instrumented node is running"):
         chosen([], ["n1"])

@@ -1,4 +1,4 @@
-"""Lets Python nodes report: this folder on PYTHONPATH, TPC_PYTHON=1, and TPC_STATIC.
+"""Makes Python nodes report: this folder on PYTHONPATH, TPC_PYTHON=1, and TPC_STATIC.
 
 A script of the static information is started again by pytpc/python_runtime/run.py, in the same
 process and with the same options of the interpreter; every other program goes on as it was. Another
@@ -43,7 +43,7 @@ def _script() -> str:
 
 
 def _may_be_named(script: str, paths: "list[str]") -> bool:
-    """Whether the static information, as mere text, has the script's name, or it needs a look."""
+    """Whether the text of the static information has the script's name, or must be parsed."""
     try:
         with open(script, "rb") as stream:
             head = stream.read(_ENTRY_BYTES + 1)
@@ -64,7 +64,7 @@ def _may_be_named(script: str, paths: "list[str]") -> bool:
 
 
 def _is_in(text: bytes, name: bytes) -> bool:
-    """Whether a JSON string is this name, or ends with it behind a slash, with .py or without."""
+    """Whether a JSON string is this name, or ends with it after a slash, with .py or without."""
     stem = name[:-3] if name.endswith(b".py") else name
     place = text.find(stem)
     while place > 0:

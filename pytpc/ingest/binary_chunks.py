@@ -1,0 +1,161 @@
+"""The chunks of a binary file of reports: where they are, and their bytes.
+
+They are read, not mapped: into memory that is used again and again, and so stays in the processor's
+cache, which was measured to be quicker; and a mapped file that is shortened meanwhile, or lies on a
+broken disk, ends the reader with SIGBUS.
+"""
+
+from __future__ import annotations
+
+import os
+import struct
+from collections.abc import Callable
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from pytpc.base.columns import Bools, Int64s
+from pytpc.base.errors import InputError
+from pytpc.ingest.binary_layout import whole_bytes
+from pytpc.ingest.gathering import ReportColumns
+from pytpc.python_runtime import log_layout as layout
+
+Bytes = npt.NDArray[np.uint8]
+Skip = Callable[[str], None]
+
+# The most chunks that are read at once.
+GROUP = 32
+# Kind, thread and first record of a chunk, and the time of that record.
+_HEAD = struct.Struct("<IIQ48x8xq")
+
+
+@dataclass
+class RecordBlock(ReportColumns):
+    """Reports of one thread, or of several in order; ``steady`` does not fall."""
+
+    steady: Int64s
+
+    def __len__(self) -> int:
+        """How many reports."""
+        return int(self.steady.size)
+
+    def part(self, rows: slice | Int64s | Bools) -> RecordBlock:
+        """Some of them."""
+        return RecordBlock(
+            **{field.name: getattr(self, field.name)[rows] for field in fields(self)}
+        )
+
+    @classmethod
+    def joined(cls, blocks: list[RecordBlock]) -> RecordBlock:
+        """All of ``blocks`` joined."""
+        names = [field.name for field in fields(cls)]
+        columns: dict[str, Any] = {
+            name: np.concatenate([getattr(block, name) for block in blocks]) for name in names
+        }
+        return cls(**columns)
+
+
+@dataclass
+class ThreadChunks:
+    """The chunks of one thread, in the order of the file, and how far they were read."""
+
+    number: int
+    chunks: list[int] = field(default_factory=list)
+    firsts: list[int] = field(default_factory=list)
+    first_steady: int = 0
+    read: int = 0
+    expected: int = 0
+    simulated_ns: int = -1
+    steady: int = -(2**63)
+    block: RecordBlock | None = None
+
+
+class ChunkFile:
+    """The chunks of one file.
+
+    ``system`` and ``live`` are the first bytes of those chunks, ``count`` is the number of chunks
+    of threads; all are known after ``find``.
+    """
+
+    def __init__(self, path: Path, descriptor: int) -> None:
+        """See the class; nothing is read yet."""
+        self._path = path
+        self._descriptor = descriptor
+        self._buffer = np.empty((GROUP, layout.CHUNK_BYTES), np.uint8)
+        self.size = os.fstat(descriptor).st_size
+        self.system: list[int] = []
+        self.live: list[int] = []
+        self.count = 0
+
+    def find(self, skip: Skip) -> list[ThreadChunks]:
+        """Read the headers of all chunks; holes in the file are skipped."""
+        threads: dict[int, ThreadChunks] = {}
+        descriptor = self._descriptor
+        place = layout.HEADER_BYTES
+        while place + layout.CHUNK_HEADER_BYTES <= self.size:
+            head = os.pread(descriptor, _HEAD.size, place)
+            if len(head) < _HEAD.size:
+                break
+            kind, number, first, first_steady = _HEAD.unpack(head)
+            if kind == 0 and (next_data := _data_after(descriptor, place)) != place:
+                if next_data is None:
+                    break
+                behind = (next_data - layout.HEADER_BYTES) // layout.CHUNK_BYTES
+                place = max(
+                    place + layout.CHUNK_BYTES, layout.HEADER_BYTES + behind * layout.CHUNK_BYTES
+                )
+                continue
+            if kind == layout.THREAD_CHUNK:
+                thread = threads.setdefault(number, ThreadChunks(number))
+                if not thread.chunks:
+                    thread.first_steady = first_steady
+                thread.chunks.append(place)
+                thread.firsts.append(first)
+            elif kind == layout.SYSTEM_CHUNK:
+                self.system.append(place)
+            elif kind == layout.LIVE_CHUNK:
+                self.live.append(place)
+            elif head.startswith(layout.MAGIC):
+                what = f"another file begins at byte {place}: give each by itself, not joined"
+                raise InputError(what, self._path)
+            elif kind:
+                skip(f"a chunk of the unknown kind {kind} at byte {place}")
+            place += layout.CHUNK_BYTES
+        self.count = sum(len(thread.chunks) for thread in threads.values())
+        return list(threads.values())
+
+    def load(self, places: list[int]) -> Bytes:
+        """uint8[n, 65536]: some chunks; what the file does not have of them is zero."""
+        buffer = self._buffer[: len(places)]
+        for row, place in enumerate(places):
+            if row and place == places[row - 1] + layout.CHUNK_BYTES:
+                continue
+            last = row
+            while last + 1 < len(places) and places[last + 1] == places[last] + layout.CHUNK_BYTES:
+                last += 1
+            flat = buffer[row : last + 1].reshape(-1)
+            count = os.preadv(self._descriptor, [flat.data], place)
+            flat[count:] = 0
+            whole = whole_bytes(count % layout.CHUNK_BYTES)
+            if count < flat.size and whole < count % layout.CHUNK_BYTES:
+                # The record at which the file ends is not whole, whatever its first word says.
+                begin = count - count % layout.CHUNK_BYTES + whole
+                flat[begin : begin + 4] = 0
+        return buffer
+
+    def load_one(self, place: int) -> Bytes:
+        """uint8[n], n at most 65536: what there is of one chunk, in whole records."""
+        there = min(layout.CHUNK_BYTES, self.size - place)
+        chunk: Bytes = self.load([place])[0][: whole_bytes(there)]
+        return chunk
+
+
+def _data_after(descriptor: int, place: int) -> int | None:
+    """The next byte of a sparse file that is not in a hole; None where there is none."""
+    try:
+        return os.lseek(descriptor, place, os.SEEK_DATA)
+    except OSError:
+        return None
