@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from pytpc.api.suggesting import suggest, what_if
     from pytpc.diagnosis.question import Question
     from pytpc.present.answers import Advices, Diagnosed
-    from pytpc.values.changes import Change
+    from pytpc.recording.parameter_change import Change
 
 __all__ = [
     "Advices",

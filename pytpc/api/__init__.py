@@ -41,7 +41,7 @@ _PLACES = {
 }
 _MODULES = {name: f"{__name__}.{module}" for module, names in _PLACES.items() for name in names} | {
     "Advices": "pytpc.present.answers",
-    "Change": "pytpc.values.changes",
+    "Change": "pytpc.recording.parameter_change",
     "Diagnosed": "pytpc.present.answers",
     "Question": "pytpc.diagnosis.question",
 }

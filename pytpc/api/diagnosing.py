@@ -8,16 +8,17 @@ from typing import TypedDict, Unpack
 
 from pytpc.api.missions import Source, find_declared, load_static, read, read_marked
 from pytpc.base.errors import InputError
-from pytpc.diagnosis.question import Changed, Question, Types
+from pytpc.diagnosis.question import Question, Types
 from pytpc.diagnosis.ranking.blame import blame
 from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.diagnosis.suggestion.blamed import advise_blamed
 from pytpc.ingest import Recording
 from pytpc.present.answers import Diagnosed
+from pytpc.recording.parameter_change import Change
 from pytpc.ros.mission_run import PARAMS_FILE
 from pytpc.static.parameters import same_parameter
 from pytpc.static.static_info import StaticInfo
-from pytpc.values.changes import Change, changes_between
+from pytpc.values.changes import changes_between
 
 
 class DiagnoseSettings(TypedDict, total=False):
@@ -63,11 +64,6 @@ def diagnose(
     return Diagnosed(found, tuple(advise_blamed(found, recording, static, question)))
 
 
-def changed(changes: Sequence[Change]) -> tuple[Changed, ...]:
-    """Changes as a question takes them."""
-    return tuple((one.parameter, one.old, one.new) for one in changes)
-
-
 def changes_since(before: Path, mission: Path) -> tuple[Change, ...]:
     """What differs between a params.yaml of earlier and the one in a mission's folder.
 
@@ -93,6 +89,6 @@ def _question(static: StaticInfo, source: Path | None, settings: DiagnoseSetting
         types=settings.get("types", "believe"),
         top=settings.get("top", Question().top),
         reference=None if reference is None else read(reference),
-        changes=changed(settings.get("changes", ())),
+        changes=settings.get("changes", ()),
         declared=find_declared(static, source),
     )

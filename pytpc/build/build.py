@@ -213,7 +213,7 @@ def workspace_env(install_base: Path, begin: Mapping[str, str] | None = None) ->
     """
     script = install_base.absolute() / "setup.bash"
     if not script.is_file():
-        raise WorkspaceError("no setup.bash here: build the workspace first", install_base)
+        raise WorkspaceError("no setup.bash here; build the workspace first", install_base)
     if begin is None:
         kept = ("HOME", "USER", "LOGNAME", "LANG", "LC_ALL", "TERM", "TZ", "TMPDIR")
         clean = {name: os.environ[name] for name in kept if name in os.environ}
@@ -258,8 +258,8 @@ def _require_toolchain(bases: Bases, packages: Sequence[Package], toolchain: Pat
         for path in sorted(folder.glob("CMakeFiles/*/CMakeSystem.cmake")):
             if f'include("{toolchain}")' not in path.read_text("utf-8", "replace"):
                 raise WorkspaceError(
-                    "was configured without TPC, or with one that was elsewhere, and CMake keeps"
-                    " the compiler of a build folder; remove this folder",
+                    "was configured without TPC, or with a TPC that has moved, and CMake keeps the"
+                    " compiler of a build folder; delete this folder and build again",
                     folder,
                 )
 
@@ -279,8 +279,8 @@ def _alone_in(bases: Bases) -> Iterator[None]:
                 fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
             except BlockingIOError:
                 raise WorkspaceError(
-                    "another pytpc build is at work in this folder; wait for its end, or give"
-                    " this one a folder of its own with --base",
+                    "another pytpc build is running in this folder; wait until it ends, or build"
+                    " in another folder with --base",
                     bases.root,
                 ) from None
         yield

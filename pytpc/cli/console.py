@@ -77,10 +77,10 @@ def tell_left_out(static: StaticInfo) -> None:
 
 
 def warn_of_failed(static: StaticInfo) -> None:
-    """A line for each link unit that was left as it was."""
+    """A line for each link unit that was not instrumented."""
     for unit in static.failed:
         warn(
-            f"{unit.link_unit} of package {unit.package} was left as it was and reports nothing:"
+            f"{unit.link_unit} of package {unit.package} is not instrumented and reports nothing:"
             f" {unit.failure}"
         )
 

@@ -10,7 +10,7 @@ from typing import Literal
 
 import click
 
-from pytpc.api.diagnosing import changed, changes_since, diagnose, is_compared
+from pytpc.api.diagnosing import changes_since, diagnose, is_compared
 from pytpc.api.missions import find_declared
 from pytpc.api.ranking import Rankings
 from pytpc.api.suggesting import smallest_changes
@@ -39,8 +39,9 @@ from pytpc.present.as_json import blame_json, ranking_json
 from pytpc.present.rankings import print_blame, print_rankings
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
+from pytpc.recording.parameter_change import Change
 from pytpc.static.static_info import StaticInfo
-from pytpc.values.changes import Change, read_changes
+from pytpc.values.changes import read_changes
 from pytpc.values.declared_files import read_declared
 
 
@@ -196,7 +197,7 @@ def _answer(
         if given.before is not None:
             changes = changes_since(given.before, source)
             _warn_of(changes, given.before, static)
-            question = replace(question, changes=changed(changes))
+            question = replace(question, changes=changes)
         together = diagnose(recording, static, question)
         # Of summaries all marks together say little.
         if not (given.each or given.as_json or len(recording.summaries)):
@@ -205,13 +206,13 @@ def _answer(
     return _Answer(recording, together, rankings, smallest_changes(rankings))
 
 
-def _known(path: Path | None, static: StaticInfo) -> tuple[tuple[str, float, float], ...]:
+def _known(path: Path | None, static: StaticInfo) -> tuple[Change, ...]:
     """The changes in a file."""
     if path is None:
         return ()
     changes = read_changes(path)
     _warn_of(changes, path, static)
-    return changed(changes)
+    return changes
 
 
 def _warn_of(changes: Sequence[Change], path: Path, static: StaticInfo) -> None:

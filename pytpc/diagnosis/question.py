@@ -9,15 +9,13 @@ from typing import Literal, get_args
 from pytpc.recording.declaration import Declared
 from pytpc.recording.marks import Mark, MarkType
 from pytpc.recording.mission import Recording
+from pytpc.recording.parameter_change import Change
 
 WINDOW_S = 12.0
 """The window of type II, in seconds."""
 
 Types = Literal["believe", "doubt", "ignore"]
 """How far the observer's types of the marks are believed, see `pytpc.diagnosis.ranking.ranking`."""
-
-Changed = tuple[str, float, float]
-"""A parameter that was changed, the value before and after."""
 
 Source = Literal["reference", "default", "declared"]
 """Who says of a value that it is good."""
@@ -54,7 +52,7 @@ class Question:
     window_s: float = WINDOW_S
     top: int = 5
     reference: Recording | None = None
-    changes: Sequence[Changed] = ()
+    changes: Sequence[Change] = ()
     declared: Sequence[Declared] = ()
     flown: Sequence[float] = ()
     sources: Collection[Source] = EVERY_SOURCE

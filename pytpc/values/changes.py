@@ -3,22 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from pathlib import Path
 
 from pytpc.base.checked_json import parse_json
 from pytpc.base.errors import InputError
+from pytpc.recording.parameter_change import Change
 from pytpc.values.recording import read_parameters
-
-
-@dataclass(frozen=True)
-class Change:
-    """A parameter that was changed on the robot, by the name that its node reads it by."""
-
-    parameter: str
-    node: str
-    old: float
-    new: float
 
 
 def read_changes(path: Path) -> tuple[Change, ...]:

@@ -15,8 +15,8 @@ from pytpc.diagnosis.results.suspects import Accused, Blame, Evaluation
 from pytpc.diagnosis.suggestion.blamed import advise_blamed
 from pytpc.ingest import Recording
 from pytpc.recording.marks import Mark
+from pytpc.recording.parameter_change import Change
 from pytpc.recording.summaries import Summary, SummaryBuilder
-from pytpc.values.changes import Change
 from pytpc_evaluation.study.case import Case
 from pytpc_evaluation.study.methods import METHODS
 
@@ -142,7 +142,7 @@ def test_users_get_what_the_study_judges():
     case = Case(mission(), STATIC, clean, (changed,))
     alone = blame(mission(), STATIC)
     assert same(alone, METHODS["tpc"](case))
-    known = {"reference": clean}, {"changes": [("~gate", 0.9, 0.375)]}
+    known = {"reference": clean}, {"changes": [Change("~gate", "", 0.9, 0.375)]}
     for method, beside in zip(("tpc+reference", "tpc+changes"), known, strict=True):
         found = blame(mission(), STATIC, Question(**beside))
         assert same(found, METHODS[method](case))
@@ -153,7 +153,9 @@ def test_users_get_what_the_study_judges():
 # The clean run says that ~safe is what it was, the history that ~gate is. By both it is neither.
 def test_a_clean_run_and_the_changes_together():
     clean = Recording("clean", events([(1, 0, 0, 0.1, 0.9), (2, 1, 0, 1, 9)]), (), 0, ns(80))
-    found = blame(mission(), STATIC, Question(reference=clean, changes=[("safe", 5.0, 9.0)]))
+    found = blame(
+        mission(), STATIC, Question(reference=clean, changes=[Change("safe", "", 5.0, 9.0)])
+    )
     assert blame(mission(), STATIC, Question(reference=clean)).accused == "~gate"
     assert found.accused is None
     assert found.none > 0.5
@@ -228,7 +230,7 @@ def test_the_value_of_before_comes_first():
         assert advice.accused.parameter == "~gate"
         return advice.remedy
 
-    before = tried(changes=[("gate", 0.2, 0.375)])
+    before = tried(changes=[Change("gate", "", 0.2, 0.375)])
     assert (before.direction, before.value, before.basis) == ("lower", 0.2, "before")
     assert before.text == (
         "lower ~gate from 0.375 to 0.2 (the value before it was changed; the log alone points the"
@@ -236,7 +238,11 @@ def test_the_value_of_before_comes_first():
     )
     assert tried(reference=clean).value == 0.9
     found = blame(recording, STATIC)
-    for nothing in (("gate", math.nan, 0.375), ("gate", 0.375, 0.375), ("safe", 1, 9)):
+    for nothing in (
+        Change("gate", "", math.nan, 0.375),
+        Change("gate", "", 0.375, 0.375),
+        Change("safe", "", 1, 9),
+    ):
         (advice,) = advise_blamed(found, recording, STATIC, Question(top=1, changes=[nothing]))
         assert advice.remedy.basis != "before"
 
@@ -244,7 +250,7 @@ def test_the_value_of_before_comes_first():
 # It went right with 0.9; 0.2 was a try in between. With 0.9 ~gate (0.4 at most) does not turn at
 # 30 s, with 0.2 it turns earlier: so the order tells which of both is replayed.
 def test_of_several_changes_the_oldest_has_the_value_of_before():
-    both = [("gate", 0.9, 0.2), ("gate", 0.2, 0.375)]
+    both = [Change("gate", "", 0.9, 0.2), Change("gate", "", 0.2, 0.375)]
     found = blame(mission(), STATIC, Question(changes=both))
     assert found == blame(mission(), STATIC, Question(changes=both[:1]))
     assert found != blame(mission(), STATIC, Question(changes=both[1:]))

@@ -468,7 +468,7 @@ KEPT = ("USER", "LOGNAME", "LANG", "LC_ALL", "TERM", "TZ", "TMPDIR")
 
 
 def test_an_install_base_that_is_none_or_fails_is_one_line(tmp_path: Path) -> None:
-    with pytest.raises(WorkspaceError, match=r"no setup.bash here: build the workspace first"):
+    with pytest.raises(WorkspaceError, match=r"no setup.bash here; build the workspace first"):
         workspace_env(tmp_path)
     (tmp_path / "setup.bash").write_text("echo broken >&2\nreturn 3\n", encoding="utf-8")
     with pytest.raises(RunError) as caught:
@@ -574,7 +574,7 @@ def test_two_builds_at_once_are_one_line(workspace: Path, colcon: FakeColcon) ->
     descriptor = os.open(own, os.O_RDONLY)
     try:
         fcntl.flock(descriptor, fcntl.LOCK_EX)
-        with pytest.raises(WorkspaceError, match="another pytpc build is at work"):
+        with pytest.raises(WorkspaceError, match="another pytpc build is running"):
             build_workspace(workspace)
     finally:
         os.close(descriptor)

@@ -8,7 +8,8 @@ import math
 import pytest
 
 from pytpc.base.errors import InputError
-from pytpc.values.changes import Change, changes_between, read_changes
+from pytpc.recording.parameter_change import Change
+from pytpc.values.changes import changes_between, read_changes
 
 
 def test_a_history(tmp_path):

@@ -174,7 +174,7 @@ def test_what_is_known_beside_the_log_and_does_not_fit(files, tmp_path):
     words = ("rank", bag, "--static", static)
     file = tmp_path / "known"
     file.write_text("{}")
-    one_line(run(*words, "--changes", file), "known: not a history of changes: a list")
+    one_line(run(*words, "--changes", file), "known: not a history of changes: expected a list")
     file.write_text("[]")
     assert "known: no parameter that is compared anywhere was changed" in (
         run(*words, "--changes", file).stderr

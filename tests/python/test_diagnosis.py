@@ -37,6 +37,7 @@ from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.ingest import Recording
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark
+from pytpc.recording.parameter_change import Change
 
 STATIC = static_info(
     comparison(0, "~gate"),
@@ -300,7 +301,12 @@ def test_only_the_first_mark_of_an_observer_tells_when_it_began():
 
 def test_what_is_as_it_was_is_hardly_to_blame():
     assert (of_change(1.0, 2.0), of_change(2.0, 2.0)) == (0.0, UNCHANGED)
-    prior = of_changes(("~a", "~b", "~c"), [("/node/b", 1.0, 2.0), ("~b", 1.0, 1.0), ("~c", 3, 3)])
+    changes = [
+        Change("/node/b", "", 1.0, 2.0),
+        Change("~b", "", 1.0, 1.0),
+        Change("~c", "", 3, 3),
+    ]
+    prior = of_changes(("~a", "~b", "~c"), changes)
     assert prior.tolist() == [UNCHANGED, 0.0, UNCHANGED]
     assert of_changes(("~a", "~b"), []).tolist() == [0.0, 0.0]
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from pytpc.values.changes import Change
+from pytpc.recording.parameter_change import Change
 from pytpc_evaluation.demo.demo_examples import IMAGE_CAPTURE
 from pytpc_evaluation.study.changes import harmless_changes
 from pytpc_evaluation.treatment import Treatment

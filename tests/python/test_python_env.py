@@ -159,7 +159,7 @@ def test_a_workspace_without_python_sets_nothing(workspace):
 def test_setup_is_sourced_in_the_callers_environment(workspace, place):
     status, _, said = invoke(str(workspace), "--setup")
     assert status == 1
-    assert f"{workspace}/.tpc/install: no setup.bash here: build the workspace first" in said
+    assert f"{workspace}/.tpc/install: no setup.bash here; build the workspace first" in said
     (workspace / place).mkdir(parents=True)
     (workspace / place / "setup.bash").write_text(
         'export PYTHONPATH="/ws/lib:$PYTHONPATH"; export ROS_PACKAGE_PATH=/ws/share; echo said\n'

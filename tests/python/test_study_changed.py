@@ -11,7 +11,7 @@ from study_pages import row_of
 from study_samples import EVENTS, STATIC
 
 from pytpc.recording.mission import Recording
-from pytpc.values.changes import Change
+from pytpc.recording.parameter_change import Change
 from pytpc_evaluation.study.report.changed import turned
 from pytpc_evaluation.study.report.making import ReportOptions, make_report
 

@@ -13,7 +13,7 @@ from pytpc.base.errors import InputError
 from pytpc.diagnosis.ranking.posterior import REASONED, diagnose_log
 from pytpc.ingest import Recording, save_recording
 from pytpc.recording.marks import Mark
-from pytpc.values.changes import Change
+from pytpc.recording.parameter_change import Change
 from pytpc_evaluation.study.case import Case
 from pytpc_evaluation.study.data import Mission, UserMark, missions
 from pytpc_evaluation.study.fit import Batch, fit, samples

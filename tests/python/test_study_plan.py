@@ -11,7 +11,7 @@ import pytest
 from study_flights import robot, treatment
 
 from pytpc.base.errors import InputError
-from pytpc.values.changes import Change
+from pytpc.recording.parameter_change import Change
 from pytpc.values.recording import read_parameters
 from pytpc_evaluation.demo.demo_examples import EXAMPLES, Example
 from pytpc_evaluation.study.changes import DECOYS, drawn_changes, harmless_changes, save_changes

@@ -256,7 +256,7 @@ def test_a_build_folder_of_another_compiler_is_noticed(tmp_path: Path) -> None:
         capture_output=True,
     )
     lists.write_text(CMAKELISTS, encoding="utf-8")
-    with pytest.raises(WorkspaceError, match="remove this folder") as caught:
+    with pytest.raises(WorkspaceError, match="delete this folder") as caught:
         build_workspace(tmp_path)
     assert caught.value.path == str(folder)
     shutil.rmtree(folder)

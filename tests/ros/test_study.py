@@ -15,8 +15,8 @@ from pytpc.base.paths import cmake_file, log_library, plugin
 from pytpc.cli.main import main
 from pytpc.diagnosis.ranking.ranking import unknown_keys
 from pytpc.ingest.reading import read
+from pytpc.recording.parameter_change import Change
 from pytpc.static.static_info import StaticInfo
-from pytpc.values.changes import Change
 from pytpc.values.recording import read_parameters
 from pytpc_evaluation.demo.demo_examples import WATER_SAMPLER
 from pytpc_evaluation.demo.demo_show import Built

@@ -10,8 +10,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from pytpc.recording.mission import Recording
+from pytpc.recording.parameter_change import Change
 from pytpc.static.static_info import StaticInfo
-from pytpc.values.changes import Change
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from pathlib import Path
 from pytpc.base.atomic import write_atomic
 from pytpc.base.checked_json import parse_json
 from pytpc.base.errors import InputError
-from pytpc.values.changes import Change
+from pytpc.recording.parameter_change import Change
 from pytpc.values.recording import read_parameters
 from pytpc_evaluation.demo.demo_examples import Example
 from pytpc_evaluation.treatment import Treatment

@@ -15,8 +15,9 @@ from pytpc.base.columns import read_table
 from pytpc.base.errors import InputError, TpcError
 from pytpc.recording.marks import MARK_TYPES, Mark, MarkType
 from pytpc.recording.mission import Recording, load_recording
+from pytpc.recording.parameter_change import Change
 from pytpc.static.static_info import StaticInfo
-from pytpc.values.changes import Change, read_changes
+from pytpc.values.changes import read_changes
 from pytpc_evaluation.study.case import Case
 from pytpc_evaluation.study.changes import CHANGES_FILE
 from pytpc_evaluation.study.dataset import DONE_FILE, MARKED_FILE, STUDY_FILE

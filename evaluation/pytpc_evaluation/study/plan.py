@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Literal
 
 from pytpc.base.errors import InputError
-from pytpc.values.changes import Change
+from pytpc.recording.parameter_change import Change
 from pytpc.values.recording import read_parameters
 from pytpc.values.scalars import number_text
 from pytpc_evaluation.demo.demo_examples import EXAMPLES, Example

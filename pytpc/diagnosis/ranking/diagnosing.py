@@ -6,12 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from pytpc.diagnosis.question import Changed
 from pytpc.diagnosis.ranking.other_values import before_changes, diagnose_replayed, of_clean_run
 from pytpc.diagnosis.ranking.posterior import Diagnosis, diagnose_log
 from pytpc.diagnosis.ranking.priors import of_changes, of_reference
 from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.recording.mission import Recording
+from pytpc.recording.parameter_change import Change
 from pytpc.static.static_info import StaticInfo
 
 
@@ -20,7 +20,7 @@ def diagnose_beside(
     static_info: StaticInfo,
     *,
     reference: Recording | None = None,
-    changes: Sequence[Changed] = (),
+    changes: Sequence[Change] = (),
 ) -> Diagnosis:
     """Judge all parameters by all marks, and by what the other values would have changed.
 
@@ -42,7 +42,7 @@ def diagnose_beside(
     if changes:
         priors.append(of_changes(tpcs.names, changes))
         # The last of them counts there.
-        oldest_last = [(name, old) for name, old, _ in reversed(changes)]
+        oldest_last = [(one.parameter, one.old) for one in reversed(changes)]
         others.update(before_changes(static_info, oldest_last))
     if not priors:
         return diagnose_log(recording, static_info)

@@ -14,6 +14,7 @@ import numpy as np
 from pytpc.base.columns import Floats
 from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.recording.events import Events
+from pytpc.recording.parameter_change import Change
 from pytpc.static.parameters import same_parameter
 
 UNCHANGED = -12.0
@@ -21,16 +22,16 @@ UNCHANGED = -12.0
 the robot may be elsewhere than where that value was right."""
 
 
-def of_changes(names: Sequence[str], changes: Iterable[tuple[str, float, float]]) -> Floats:
-    """float64[p], the log prior of each name, from (parameter, old, new); 0 where there is none."""
+def of_changes(names: Sequence[str], changes: Iterable[Change]) -> Floats:
+    """float64[p], the log prior of each name; 0 where nothing is known to be changed."""
     found = list(changes)
     if not found:
         return np.zeros(len(names))
     prior = np.full(len(names), UNCHANGED)
-    for parameter, old, new in found:
+    for change in found:
         for column, name in enumerate(names):
-            if same_parameter(parameter, name):
-                prior[column] = max(prior[column], of_change(old, new))
+            if same_parameter(change.parameter, name):
+                prior[column] = max(prior[column], of_change(change.old, change.new))
     return prior
 
 

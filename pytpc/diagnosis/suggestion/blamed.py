@@ -6,13 +6,14 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
-from pytpc.diagnosis.question import PLAIN, Changed, Question
+from pytpc.diagnosis.question import PLAIN, Question
 from pytpc.diagnosis.results.advice import BlamedAdvice, Remedy
 from pytpc.diagnosis.results.suspects import Blame
 from pytpc.diagnosis.suggestion.declared import declared_for
 from pytpc.diagnosis.suggestion.remedy import remedy, restored
 from pytpc.diagnosis.suggestion.what_if import what_if
 from pytpc.recording.mission import Recording
+from pytpc.recording.parameter_change import Change
 from pytpc.static.parameters import same_parameter
 from pytpc.static.static_info import StaticInfo
 
@@ -44,9 +45,10 @@ def advise_blamed(
     return found
 
 
-def _as_before(found: Remedy, changes: Sequence[Changed]) -> Remedy:
+def _as_before(found: Remedy, changes: Sequence[Change]) -> Remedy:
     """The remedy with the value that the parameter had before it was changed, if that is known."""
-    for name, old, new in changes:
-        if same_parameter(name, found.parameter) and math.isfinite(old) and old != new:
-            return restored(found, old, "before", "the value before it was changed")
+    for one in changes:
+        known = math.isfinite(one.old) and one.old != one.new
+        if known and same_parameter(one.parameter, found.parameter):
+            return restored(found, one.old, "before", "the value before it was changed")
     return found

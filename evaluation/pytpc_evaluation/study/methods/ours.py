@@ -22,8 +22,7 @@ def tpc_changes(case: Case) -> Verdict:
 
     The order of the changes says nothing.
     """
-    changes = [(change.parameter, change.old, change.new) for change in case.changes]
-    return verdict(diagnose_beside(case.recording, case.static_info, changes=changes))
+    return verdict(diagnose_beside(case.recording, case.static_info, changes=case.changes))
 
 
 def verdict(found: Diagnosis) -> Verdict:

@@ -9,8 +9,8 @@ from collections.abc import Sequence
 
 from pytpc.diagnosis.ranking.other_values import turned_by_clean_run
 from pytpc.diagnosis.scores.score_tables import Tpcs
+from pytpc.recording.parameter_change import Change
 from pytpc.static.parameters import same_parameter
-from pytpc.values.changes import Change
 from pytpc_evaluation.study.case import Case, Verdict
 
 

@@ -18,9 +18,9 @@ from pytpc.base.errors import InputError
 from pytpc.base.tables import Cell, Column, Table
 from pytpc.diagnosis.thresholds.replay import tracks_of
 from pytpc.recording.mission import Recording
+from pytpc.recording.parameter_change import Change
 from pytpc.static.parameters import same_parameter
 from pytpc.static.static_info import StaticInfo
-from pytpc.values.changes import Change
 from pytpc_evaluation.study.report.folder import Flight, Progress, System
 
 

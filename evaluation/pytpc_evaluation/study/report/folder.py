@@ -16,9 +16,10 @@ from pytpc.base.checked_json import parse_json
 from pytpc.base.errors import InputError, TpcError
 from pytpc.base.wording import many
 from pytpc.recording.marks import Mark
+from pytpc.recording.parameter_change import Change
 from pytpc.static.parameters import parameter_name, same_parameter
 from pytpc.static.static_info import StaticInfo
-from pytpc.values.changes import Change, read_changes
+from pytpc.values.changes import read_changes
 from pytpc_evaluation.stats.missions import StudyMission, load_missions
 from pytpc_evaluation.study.changes import CHANGES_FILE
 from pytpc_evaluation.study.data import MISSIONS, user_marks
