@@ -44,7 +44,7 @@ _ROOMY = 20
 _LEGEND = "Trend of the window: a low bar is near the threshold, an x is a flop. Bold: just flopped"
 
 
-class Options(NamedTuple):
+class WatchOptions(NamedTuple):
     """What the observer has chosen: which tables, how many rows, which mark is looked back at (None
     for now), and what the terminal can show."""
 
@@ -87,7 +87,7 @@ class Panel(NamedTuple):
     look: Look
     kept: Sequence[Kept]
     status: Status
-    options: Options
+    options: WatchOptions
 
 
 class _Column(NamedTuple):

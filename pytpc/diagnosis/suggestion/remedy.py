@@ -31,7 +31,7 @@ from pytpc.base.wording import Number, exact, many, show
 from pytpc.diagnosis.question import PLAIN, Question
 from pytpc.diagnosis.results.advice import Basis, Direction, KnownValue, Remedy, Suggestion
 from pytpc.diagnosis.suggestion.choice import choose
-from pytpc.diagnosis.suggestion.known import NAMES, known_values, value_in
+from pytpc.diagnosis.suggestion.known_values import NAMES, known_values, value_in
 from pytpc.diagnosis.suggestion.lasting import Lasting, lasting
 from pytpc.diagnosis.suggestion.suggest import At, suggest_for_most
 from pytpc.diagnosis.suggestion.suggestion_case import (

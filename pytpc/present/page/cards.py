@@ -12,9 +12,10 @@ from pytpc.base.wording import exact, show
 from pytpc.diagnosis.results.advice import Advice, Suggestion, WhatIf
 from pytpc.diagnosis.results.mission_answer import SuspectAnswer
 from pytpc.diagnosis.results.suspects import Suspect
-from pytpc.present.page.mission import ReportedMission
-from pytpc.present.page.payload import finite, series_of
+from pytpc.present.as_json import finite
+from pytpc.present.page.payload import series_of
 from pytpc.present.page.plots import EvidenceStyle, evidence_svg, value_span
+from pytpc.present.page.reported_mission import ReportedMission
 from pytpc.present.page.series import PlotData, plot_data
 from pytpc.present.page.source import LONGEST_LINE, Line, StepView, source_lines, way_of
 from pytpc.recording.declaration import Declared

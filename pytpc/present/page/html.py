@@ -19,7 +19,7 @@ from markupsafe import Markup
 
 from pytpc.base.atomic import write_atomic
 from pytpc.present.page.environment import environment
-from pytpc.present.page.mission import ReportedMission
+from pytpc.present.page.reported_mission import ReportedMission
 from pytpc.present.page.view import ROWS, figures, mission_view
 
 Progress = Callable[[int, int], None]

@@ -101,11 +101,6 @@ def marks_json(marks: Sequence[tuple[float, MarkType | None]]) -> list[Mapping[s
     return [{"t": time, "type": kind or ""} for time, kind in marks]
 
 
-def finite(value: float | None) -> float | None:
-    """``value``, or None where JSON has no number for it."""
-    return value if value is not None and np.isfinite(value) else None
-
-
 def calm(text: str) -> str:
     """``text`` as it may be drawn: seen, and without what Bokeh takes for a formula.
 

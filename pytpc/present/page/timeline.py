@@ -15,9 +15,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from pytpc.base.columns import Floats
-from pytpc.present.page.mission import ReportedMission
 from pytpc.present.page.payload import curves_of, lanes_of
 from pytpc.present.page.plots import COLOUR, MARK_LINES, drawing, short, svg_of
+from pytpc.present.page.reported_mission import ReportedMission
 from pytpc.present.page.series import BINS, BOTH, FALSE, TRUE, lane, runs
 from pytpc.recording.marks import MarkType
 

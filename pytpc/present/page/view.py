@@ -25,8 +25,8 @@ from pytpc.present.page.cards import (
     card_view,
     row_view,
 )
-from pytpc.present.page.mission import ReportedMission
 from pytpc.present.page.payload import embedded, marks_json
+from pytpc.present.page.reported_mission import ReportedMission
 from pytpc.present.page.timeline import timeline
 from pytpc.present.page.together import TogetherView, together
 from pytpc.recording.marks import MarkType
