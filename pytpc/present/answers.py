@@ -1,4 +1,4 @@
-"""What `pytpc.api` answers, to look at in a terminal or a notebook."""
+"""The answers of `pytpc.api`, to look at in a terminal or a notebook."""
 
 from __future__ import annotations
 

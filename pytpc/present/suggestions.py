@@ -1,4 +1,4 @@
-"""What to try, as text for a terminal: by all marks together, and by marks that say the same."""
+"""Suggestions as text for a terminal: by all marks together, and by marks with the same answer."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
-"""What ``.cfg`` files of dynamic_reconfigure declare; these are Python programs, and are not run.
+"""What ``.cfg`` files of dynamic_reconfigure declare. They are Python programs, which are not run.
 
-Followed are what nearly all of these files consist of: constants and arithmetic with them, names,
-lists, groups, ``const``, ``enum`` and ``add``, and loops over what is known. What is not (calls of
-other functions with the generator, values from elsewhere) is said and left out.
+Followed is what nearly all of these files consist of: constants and arithmetic with them, names,
+lists, groups, ``const``, ``enum`` and ``add``, and loops over known values. Everything else (calls
+of other functions with the generator, values from elsewhere) is reported and left out.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What a log has of each comparison up to a time, beside the scores."""
+"""What a log has of each comparison up to a time, beside its scores: first, last, and when."""
 
 from __future__ import annotations
 

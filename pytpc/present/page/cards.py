@@ -1,4 +1,4 @@
-"""A suspect at a mark as plain texts and numbers, before any HTML: a row, or a row and its card."""
+"""A suspect at a mark as plain texts and numbers, before any HTML: its row and its card."""
 
 from __future__ import annotations
 
@@ -312,7 +312,7 @@ def _declared(declared: Declared) -> str:
 
 
 def _sortable(value: float) -> float:
-    """NaN sorts behind all else, infinities at the ends; JSON and HTML know neither."""
+    """NaN sorts last, infinities at the ends; JSON and HTML have neither."""
     if math.isnan(value):
         return 1e308
     return max(-1e308, min(1e308, value))

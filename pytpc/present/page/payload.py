@@ -1,8 +1,8 @@
-"""What the figures that move are drawn from: numbers of a mission as JSON inside the page.
+"""The numbers of a mission from which the page's script draws, as JSON inside the page.
 
-Columns of numbers are little-endian arrays in base64, which a browser reads at once and which lose
-nothing: NaN and infinities are no JSON. All evaluations of a TPC are kept once for each mission,
-however many cards show them.
+Columns of numbers are little-endian arrays in base64, which a browser reads at once and without
+loss (JSON has no NaN and no infinities). The evaluations of a TPC are in the page once for each
+mission, however many cards show them.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""The figure of a whole mission: what the suspects' comparisons gave, their ranks, the marks.
+"""The figure of a whole mission: the results of the suspects' comparisons, their ranks, the marks.
 
-It is made twice, as an SVG that stands still and as numbers for the one that moves.
+It is drawn twice: as a still SVG, and as numbers for the figure that can be moved.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class Curves:
 
 
 def timeline(mission: ReportedMission, ident: str) -> tuple[Markup, dict[str, object] | None]:
-    """The figure that stands still, and what the moving one shows; nothing where nobody is suspect.
+    """The still figure, and the numbers of the moving one; nothing without a suspect.
 
     Its lanes are the parameters that come first at some mark, and the changed one.
     """
