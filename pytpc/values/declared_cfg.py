@@ -15,7 +15,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from pytpc.recording.declaration import Declared, Said, make_declared
+from pytpc.recording.declaration import Declared, RawValues, make_declared
 
 _TYPES = {"str_t": "str", "bool_t": "bool", "int_t": "int", "double_t": "double"}
 _ADD = ("name", "paramtype", "level", "description", "default", "min", "max", "edit_method")
@@ -264,7 +264,7 @@ class _CfgReader:
             make_declared(
                 name,
                 str(type_),
-                Said(*(given.get(what) for what in ("min", "max", "default", "description"))),
+                RawValues(*(given.get(what) for what in ("min", "max", "default", "description"))),
                 constants=given.get("edit_method"),
                 place=f"{self._path}:{call.lineno}",
             )

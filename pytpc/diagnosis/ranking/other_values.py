@@ -33,7 +33,7 @@ from pytpc.diagnosis.ranking.priors import thresholds_of
 from pytpc.diagnosis.ranking.result_streams import ResultStream, ResultStreams
 from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.diagnosis.thresholds.inverse import kept_as
-from pytpc.diagnosis.thresholds.outcomes import outcomes
+from pytpc.diagnosis.thresholds.threshold_sets import outcomes
 from pytpc.diagnosis.thresholds.units import NoUnitError, is_text, read_type, tree_of
 from pytpc.recording.events import Events
 from pytpc.recording.mission import Recording

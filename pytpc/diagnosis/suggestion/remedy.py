@@ -43,8 +43,8 @@ from pytpc.diagnosis.suggestion.suggestion_case import (
 )
 from pytpc.diagnosis.suggestion.suggestion_evidence import NoneBecauseError, SuggestionEvidence
 from pytpc.diagnosis.thresholds.intervals import Interval, Intervals, holds, intersection, words
-from pytpc.diagnosis.thresholds.outcomes import thresholds_for
 from pytpc.diagnosis.thresholds.replay import Track, tracks_of
+from pytpc.diagnosis.thresholds.threshold_sets import thresholds_for
 from pytpc.diagnosis.thresholds.units import NoUnitError
 from pytpc.recording.declaration import Declared
 from pytpc.recording.marks import MARK_TYPES, Mark, MarkType

@@ -15,7 +15,7 @@ import numpy as np
 from pytpc.base.columns import Bools, Floats, Int64s
 from pytpc.base.errors import InputError
 from pytpc.diagnosis.thresholds.inverse import kept_as
-from pytpc.diagnosis.thresholds.outcomes import outcomes
+from pytpc.diagnosis.thresholds.threshold_sets import outcomes
 from pytpc.diagnosis.thresholds.units import NoUnitError, is_text, read_type, tree_of
 from pytpc.recording.events import Events
 from pytpc.recording.summaries import Summaries

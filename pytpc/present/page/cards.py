@@ -106,7 +106,7 @@ class CardView:
     alternatives: list[tuple[str, str]]
 
 
-class Figures:
+class PageFigures:
     """The figures of one mission, as the page's script draws them: cards, and series by TPC."""
 
     def __init__(self, mission: ReportedMission) -> None:
@@ -161,7 +161,7 @@ def row_view(mission: ReportedMission, advice: Advice, *, mixed: bool = False) -
 
 
 def card_view(
-    mission: ReportedMission, answer: SuspectAnswer, mark: Mark, figures: Figures, ident: str
+    mission: ReportedMission, answer: SuspectAnswer, mark: Mark, figures: PageFigures, ident: str
 ) -> CardView:
     """The card of a suspect at a mark; its figure is added to ``figures``."""
     advice = answer.advice

@@ -266,7 +266,7 @@ def _outcomes(axes: Axes, data: PlotData) -> None:
     axes.tick_params(axis="y", length=0)
 
 
-def short(text: str, most: int) -> str:
+def shortened(text: str, most: int) -> str:
     """``text``, cut to so many characters."""
     return text if len(text) <= most else f"{text[: most - 1]}…"
 

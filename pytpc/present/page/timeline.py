@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 
 from pytpc.base.columns import Floats
 from pytpc.present.page.payload import curves_of, lanes_of
-from pytpc.present.page.plots import COLOUR, MARK_LINES, drawing, short, svg_of
+from pytpc.present.page.plots import COLOUR, MARK_LINES, drawing, shortened, svg_of
 from pytpc.present.page.reported_mission import ReportedMission
 from pytpc.present.page.series import BINS, BOTH, FALSE, TRUE, lane, runs
 from pytpc.recording.marks import MarkType
@@ -159,7 +159,7 @@ def _lanes(axes: Axes, lanes: Sequence[Lane], seconds: float) -> None:
                 edgecolor=COLOUR["paper"],
             )
     axes.set_ylim(len(lanes) - 0.4, -0.6)
-    axes.set_yticks(range(len(lanes)), [short(one.label, 30) for one in lanes])
+    axes.set_yticks(range(len(lanes)), [shortened(one.label, 30) for one in lanes])
     for tick, one in zip(axes.get_yticklabels(), lanes, strict=True):
         if one.accent:
             tick.set_color(_colour(one))
