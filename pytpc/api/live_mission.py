@@ -23,8 +23,8 @@ from pytpc.diagnosis.question import Question, Types
 from pytpc.diagnosis.ranking.watching import KINDS, KeptRankings, Watching
 from pytpc.diagnosis.results.live import Look, Seen
 from pytpc.diagnosis.scores.live_scores import LiveRanking
-from pytpc.present.marking_terminal import Mission
-from pytpc.present.watch_screen import LAYOUTS, Options, Panel, Status, watch_screen
+from pytpc.present.marking_terminal import MarkedMission
+from pytpc.present.watch_screen import LAYOUTS, Panel, Status, WatchOptions, watch_screen
 from pytpc.recording.marking_session import MarkChange, Session, View
 from pytpc.recording.mission import Recording
 from pytpc.recording.summaries import Summary
@@ -237,7 +237,7 @@ class WatchedMission:
     """
 
     def __init__(
-        self, mission: Mission, feed: Feed, options: Options, *, believe: bool = True
+        self, mission: MarkedMission, feed: Feed, options: WatchOptions, *, believe: bool = True
     ) -> None:
         """See the class."""
         self._mission = mission
@@ -339,7 +339,7 @@ class WatchedMission:
     def paint(
         self, session: Session, view: View, width: int, height: int, *, utf8: bool
     ) -> Sequence[Text]:
-        """The screen, for ``pytpc.present.marking_terminal.run``."""
+        """The screen, for ``pytpc.present.marking_terminal.run_marking``."""
         now_ns = view.now_ns if view.now_ns is not None else (self.watching.last_ns or 0)
         return watch_screen(session, view, self.panel(now_ns, utf8=utf8), width, height)
 

@@ -14,9 +14,9 @@ from pytpc.diagnosis.question import PLAIN, WINDOW_S, Question, Types
 from pytpc.diagnosis.ranking.ranking import rank_marks
 from pytpc.diagnosis.results.mission_answer import RankCurves
 from pytpc.diagnosis.results.suspects import MarkRanking
-from pytpc.diagnosis.scores.curves import STEP_S, rank_curves
+from pytpc.diagnosis.scores.rank_curves import STEP_S, rank_curves
 from pytpc.ingest import Recording
-from pytpc.present.notebook import Table
+from pytpc.present.notebook import NotebookTable
 from pytpc.recording.declaration import Declared
 from pytpc.static.parameters import parameter_name, same_parameter
 from pytpc.static.static_info import StaticInfo
@@ -115,7 +115,7 @@ class Rankings(Sequence[MarkRanking]):
             for suspect in ranking.suspects[:top]
         ]
 
-    def table(self, top: int = PLAIN.top) -> Table:
+    def table(self, top: int = PLAIN.top) -> NotebookTable:
         """The same to look at; a mark at which nothing could be ranked has a row that says so."""
         rows = []
         for number, ranking in enumerate(self.rankings, start=1):
@@ -136,7 +136,7 @@ class Rankings(Sequence[MarkRanking]):
                 for suspect in ranking.suspects[:top]
             ]
         headings = ("mark", "at", "type", "#", "parameter", "rank", "score", "compared at")
-        return Table(headings, tuple(rows), frozenset({0, 1, 3, 5, 6}))
+        return NotebookTable(headings, tuple(rows), frozenset({0, 1, 3, 5, 6}))
 
     def __str__(self) -> str:
         """The table as text."""

@@ -12,7 +12,7 @@ from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.results.suspects import MarkRanking
 from pytpc.diagnosis.suggestion.whole_mission import answer_mission
 from pytpc.present.page.html import Progress, write_page
-from pytpc.present.page.mission import ReportedMission
+from pytpc.present.page.reported_mission import ReportedMission
 from pytpc.recording.declaration import Declared
 from pytpc.recording.known_change import read_known_change
 from pytpc.recording.mission import Recording

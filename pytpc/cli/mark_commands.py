@@ -19,7 +19,13 @@ from pytpc.base.wording import many, plain
 from pytpc.cli.arguments import as_object
 from pytpc.cli.console import console, warn
 from pytpc.cli.options import JSON, PATH, recording_of
-from pytpc.present.marking_terminal import Mission, Paint, RecordedMission, paint_marks, run
+from pytpc.present.marking_terminal import (
+    MarkedMission,
+    Paint,
+    RecordedMission,
+    paint_marks,
+    run_marking,
+)
 from pytpc.recording.marking_session import MarkChange, Session
 from pytpc.recording.marks import (
     MARK_TYPES,
@@ -62,7 +68,7 @@ def mark_command(*, bag: Path | None, observer: str, output: Path | None) -> Non
     check_observer(observer)
     path = marks_path(bag, observer, output)
     if bag is None:
-        mission: Mission = GraphMarks(uri_of(os.environ), observer)
+        mission: MarkedMission = GraphMarks(uri_of(os.environ), observer)
     else:
         recording = recording_of(bag)
         mission = recorded(recording, bag)
@@ -101,7 +107,7 @@ def recorded(recording: Recording, source: Path) -> RecordedMission:
 
 
 def mark_in_terminal(
-    mission: Mission,
+    mission: MarkedMission,
     observer: str,
     path: Path,
     *,
@@ -119,7 +125,7 @@ def mark_in_terminal(
         mission.close()
         raise
     ours = tuple(mark for mark in file.before if mark.observer == observer)
-    session = run(Session(observer, ours), mission, file, paint=paint, full=full)
+    session = run_marking(Session(observer, ours), mission, file, paint=paint, full=full)
     warn_of_nothing = "" if path.exists() else " (no file was written)"
     click.echo(f"{many(len(session.marks), 'mark')}: {plain(str(path))}{warn_of_nothing}")
 

@@ -44,8 +44,8 @@ from pytpc.cli.options import (
 from pytpc.cli.sources import static_of
 from pytpc.diagnosis.question import Question, Types
 from pytpc.diagnosis.results.live import LiveRow, Look
-from pytpc.present.marking_terminal import Mission
-from pytpc.present.watch_screen import LAYOUTS, Options, Status, table
+from pytpc.present.marking_terminal import MarkedMission
+from pytpc.present.watch_screen import LAYOUTS, Status, WatchOptions, table
 from pytpc.recording.marking_session import clock_text
 from pytpc.recording.mission import Recording
 from pytpc.ros.marking import GraphMarks
@@ -108,7 +108,7 @@ def watch_command(given: _WatchArguments) -> None:
         raise InputError("it has no comparison with a parameter", given.static_source)
     fresh = fresh_watching(static, Question(given.types, given.window_s))
     layout = (None,) if given.types == "ignore" else LAYOUTS[0]
-    options = Options(layout=layout, top=given.top)
+    options = WatchOptions(layout=layout, top=given.top)
     if given.once or given.as_json:
         _once(given.recording, fresh, options, given.seconds, as_json=given.as_json)
         return
@@ -120,7 +120,7 @@ def watch_command(given: _WatchArguments) -> None:
     mark_in_terminal(watched, given.observer, path, paint=watched.paint, full=True)
 
 
-def _opened(recording: Path | None, observer: str, fresh: Watching) -> tuple[Mission, Feed]:
+def _opened(recording: Path | None, observer: str, fresh: Watching) -> tuple[MarkedMission, Feed]:
     """What is marked and what is watched."""
     if recording is None:
         master = uri_of(os.environ)
@@ -139,7 +139,7 @@ def _read(source: Path, static: StaticInfo) -> Recording:
 def _once(
     recording: Path | None,
     fresh: Watching,
-    options: Options,
+    options: WatchOptions,
     seconds: float | None,
     *,
     as_json: bool,
@@ -196,7 +196,7 @@ def _listen(watched: WatchedMission, seconds: float) -> None:
 class _Still:
     """A recording whose clock stands."""
 
-    def __init__(self, mission: Mission, now_ns: int) -> None:
+    def __init__(self, mission: MarkedMission, now_ns: int) -> None:
         self._now_ns = now_ns
         self.press, self.view = mission.press, mission.view
         self.send, self.tick, self.close = mission.send, mission.tick, mission.close

@@ -87,4 +87,4 @@ class Question:
 
 
 PLAIN = Question()
-"""All settings as they are where nobody says otherwise."""
+"""The default of every setting."""

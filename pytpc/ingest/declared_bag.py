@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from pytpc.ingest.bag_chunks import MAGIC, BrokenBagError, messages, read_index
-from pytpc.recording.declaration import Declared, Said, make_declared
+from pytpc.recording.declaration import Declared, RawValues, make_declared
 
 _TYPE = "dynamic_reconfigure/msg/ConfigDescription"
 _TOPIC = "/parameter_descriptions"
@@ -83,7 +83,7 @@ def decode_description(raw: bytes, topic: str) -> list[Declared]:
             make_declared(
                 f"{node}/{name}",
                 type_,
-                Said(lows.get(name), highs.get(name), defaults.get(name), description),
+                RawValues(lows.get(name), highs.get(name), defaults.get(name), description),
                 constants=_constants(edit_method),
                 place=f"topic {topic}",
             )

@@ -1,4 +1,4 @@
-"""What `pytpc.api` answers, to look at in a terminal or a notebook."""
+"""The answers of `pytpc.api`, to look at in a terminal or a notebook."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import overload
 from pytpc.base.wording import exact, percent, plain, show
 from pytpc.diagnosis.results.advice import Advice, BlamedAdvice
 from pytpc.diagnosis.results.suspects import Blame, MarkRanking
-from pytpc.present.notebook import Table
+from pytpc.present.notebook import NotebookTable
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +42,7 @@ class Advices(Sequence[Advice]):
         """The advices in the order of the suspects."""
         return iter(self.advices)
 
-    def table(self) -> Table:
+    def table(self) -> NotebookTable:
         """A row for each suspect."""
         rows = []
         for advice in self.advices:
@@ -60,7 +60,7 @@ class Advices(Sequence[Advice]):
                 )
             )
         headings = ("#", "parameter", "value", "to try", "in the recorded run", "smallest change")
-        return Table(headings, tuple(rows), frozenset({0, 2}))
+        return NotebookTable(headings, tuple(rows), frozenset({0, 2}))
 
     def __str__(self) -> str:
         """The table as text."""
@@ -111,7 +111,7 @@ class Diagnosed:
             for one in self.blame.suspects
         ]
 
-    def table(self) -> Table:
+    def table(self) -> NotebookTable:
         """A row for each suspect that has an advice."""
         rows = []
         for one in self.advice:
@@ -129,7 +129,7 @@ class Diagnosed:
                 )
             )
         headings = ("#", "parameter", "probability", "type", "value", "to try", "compared at")
-        return Table(headings, tuple(rows), frozenset({0, 2, 4}))
+        return NotebookTable(headings, tuple(rows), frozenset({0, 2, 4}))
 
     def _said(self) -> list[str]:
         return [self.blame.title, self.blame.text, *self.blame.notes]

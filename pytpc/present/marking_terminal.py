@@ -50,7 +50,7 @@ _NAMES = {
 """What ``marking.press`` calls a key; all others are characters or nothing."""
 
 
-class Mission(Protocol):
+class MarkedMission(Protocol):
     """What is marked: a graph, or a clock that goes through a recording."""
 
     def now_ns(self) -> int | None:
@@ -128,9 +128,9 @@ def paint_marks(
     return [Text(line) for line in screen(session, view, width, height)]
 
 
-def run(
+def run_marking(
     session: Session,
-    mission: Mission,
+    mission: MarkedMission,
     file: MarksFile,
     *,
     paint: Paint = paint_marks,

@@ -14,7 +14,7 @@ _GAP = 2
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class NotebookTable:
     """Headings and rows of text; ``right`` says which columns hold numbers.
 
     Texts may come from a robot: ``str`` shows control characters as what they are, HTML is escaped.

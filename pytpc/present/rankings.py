@@ -10,13 +10,13 @@ from rich.table import Table
 from rich.text import Text
 
 from pytpc.base.wording import exact, percent, plain, show
-from pytpc.diagnosis.results.advice import BlamedAdvice, Suggested
+from pytpc.diagnosis.results.advice import BlamedAdvice, Remedy, Suggested, Suggestion
 from pytpc.diagnosis.results.suspects import Blame, MarkRanking
 from pytpc.recording.marks import MarkType
 from pytpc.recording.mission import Recording
 from pytpc.static.static_info import Comparison
 
-_WHAT = {
+TYPE_WORDS = {
     "I": "type I, did what it should not",
     "II": "type II, does not do what it should",
     None: "no type",
@@ -38,8 +38,8 @@ def print_rankings(
 def print_blame(console: Console, blame: Blame, advice: Sequence[BlamedAdvice]) -> None:
     """Print what all marks say together: the verdict, and a table of the suspects with advice."""
     verdict = Text(plain(blame.text), style="bold" if blame.accused is not None else "yellow")
-    parts: list[RenderableType] = [Text(blame.title, style="bold"), _indented(verdict)]
-    parts += [_indented(Text(plain(note), style="yellow")) for note in blame.notes]
+    parts: list[RenderableType] = [Text(blame.title, style="bold"), indented(verdict)]
+    parts += [indented(Text(plain(note), style="yellow")) for note in blame.notes]
     if advice:
         table = _table()
         table.add_column("#", justify="right")
@@ -51,24 +51,20 @@ def print_blame(console: Console, blame: Blame, advice: Sequence[BlamedAdvice]) 
         table.add_column("Compared at", overflow="fold")
         for one in advice:
             table.add_row(*_blamed_cells(one))
-        parts.append(_indented(table))
+        parts.append(indented(table))
     console.print(Padding(Group(*parts), (0, 0, 1, 0), expand=False), highlight=False)
 
 
 def _blamed_cells(one: BlamedAdvice) -> list[Text]:
     accused, tried = one.accused, one.remedy
     current = accused.last.thresh if tried.current is None else tried.current
-    if tried.direction is None:
-        what = Text(plain(f"none: {tried.reason}"), style="dim")
-    else:
-        what = Text(f"{_WAYS[tried.direction]} ").append(exact(tried.value), style="bold")
     return [
         Text(f"{accused.position}=" if accused.tied else str(accused.position)),
         Text(plain(accused.parameter), style="bold" if accused.position == 1 else ""),
         Text(percent(accused.probability)),
         Text(_KINDS[accused.type]),
         Text(show(current)),
-        what,
+        _advised(tried),
         _place(accused.comparison),
     ]
 
@@ -79,10 +75,12 @@ def _mark(
     mark = ranking.mark
     seconds = (mark.time_ns - recording.start_ns) / 1e9
     by = f", by {mark.observer}" if mark.observer else ""
-    title = Text(f"Mark {number} at {seconds:.1f} s: {_WHAT[mark.type]}{plain(by)}", style="bold")
+    title = Text(
+        f"Mark {number} at {seconds:.1f} s: {TYPE_WORDS[mark.type]}{plain(by)}", style="bold"
+    )
     heading: list[RenderableType] = [title]
     if not ranking.enough:
-        heading.append(_indented(_lack(ranking)))
+        heading.append(indented(_lack(ranking)))
     if not rows:
         return Padding(Group(*heading), (0, 0, 1, 0))
     table = _table()
@@ -105,7 +103,8 @@ def _table() -> Table:
     return Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
 
 
-def _indented(part: RenderableType) -> RenderableType:
+def indented(part: RenderableType) -> RenderableType:
+    """A part below a title."""
     return Padding(part, (0, 0, 0, 2), expand=False)
 
 
@@ -116,19 +115,21 @@ def _lack(ranking: MarkRanking) -> Text:
 def _cells(row: Suggested, mixed: bool) -> list[Text]:
     suspect, advice = row.suspect, row.suggestion
     current = advice.current if advice.current is not None else suspect.last.thresh
-    if advice.direction is None:
-        what = Text(plain(f"none: {advice.reason}"), style="dim")
-    else:
-        what = Text(f"{_WAYS[advice.direction]} ").append(exact(advice.value), style="bold")
     return [
         Text(f"{suspect.position}=" if suspect.tied else str(suspect.position)),
         Text(plain(suspect.parameter), style="bold" if suspect.position == 1 else ""),
         Text(show(current)),
-        what,
+        _advised(advice),
         *([Text(suspect.type)] if mixed else []),
         Text(f"{suspect.score:.3g}"),
         _place(suspect.comparison),
     ]
+
+
+def _advised(found: Suggestion | Remedy) -> Text:
+    if found.direction is None:
+        return Text(plain(f"none: {found.reason}"), style="dim")
+    return Text(f"{_WAYS[found.direction]} ").append(exact(found.value), style="bold")
 
 
 def _place(found: Comparison) -> Text:

@@ -1,4 +1,4 @@
-"""What to try, as text for a terminal: by all marks together, and by marks that say the same."""
+"""Suggestions as text for a terminal: by all marks together, and by marks with the same answer."""
 
 from __future__ import annotations
 
@@ -11,15 +11,9 @@ from rich.text import Text
 from pytpc.base.wording import many, percent, plain
 from pytpc.diagnosis.results.advice import BlamedAdvice, JoinedAdvice, MarkGroup
 from pytpc.diagnosis.results.suspects import Blame
-from pytpc.recording.marks import MarkType
+from pytpc.present.rankings import TYPE_WORDS, indented
 from pytpc.recording.mission import Recording
 from pytpc.static.static_info import Comparison
-
-_WHAT: dict[MarkType | None, str] = {
-    "I": "type I, did what it should not",
-    "II": "type II, does not do what it should",
-    None: "no type",
-}
 
 
 def together_text(found: Blame, first: BlamedAdvice, parameter: str | None) -> RenderableType:
@@ -36,28 +30,26 @@ def together_text(found: Blame, first: BlamedAdvice, parameter: str | None) -> R
     if first.what_if is not None:
         parts.append(Text(plain(f"   {first.what_if.text}")))
     title = Text(found.title, style="bold")
-    return Padding(Group(title, *map(_indented, parts)), (0, 0, 1, 0), expand=False)
+    return Padding(Group(title, *map(indented, parts)), (0, 0, 1, 0), expand=False)
 
 
 def group_text(group: MarkGroup, recording: Recording, parameter: str | None) -> RenderableType:
     """What to do at marks that say the same."""
     seconds = [f"{(mark.time_ns - recording.start_ns) / 1e9:.1f}" for mark in group.marks]
-    title = f"{many(len(seconds), 'mark').capitalize()} at {_list(seconds)} s: {_WHAT[group.type]}"
+    title = (
+        f"{many(len(seconds), 'mark').capitalize()} at {_list(seconds)} s: {TYPE_WORDS[group.type]}"
+    )
     parts: list[RenderableType] = [Text(title, style="bold")]
     for reason in group.reasons:
         lack = Text(plain(f"not enough evidence: {reason}"), style="yellow")
-        parts.append(_indented(lack))
+        parts.append(indented(lack))
     for number, joined in enumerate(group.suspects, start=1):
-        parts.append(_indented(_suspect(number, joined, len(seconds))))
+        parts.append(indented(_suspect(number, joined, len(seconds))))
     if not group.suspects:
         nobody = "no parameter has a score here"
         what = nobody if parameter is None else f"{parameter} has no score here"
-        parts.append(_indented(Text(plain(what))))
+        parts.append(indented(Text(plain(what))))
     return Padding(Group(*parts), (0, 0, 1, 0), expand=False)
-
-
-def _indented(part: RenderableType) -> RenderableType:
-    return Padding(part, (0, 0, 0, 2), expand=False)
 
 
 def _list(words: Sequence[str]) -> str:

@@ -1,7 +1,7 @@
-"""The screen of ``pytpc watch``: what was looked at in, lines of styled text out.
+"""The screen of ``pytpc watch``: takes what to show, returns lines of styled text.
 
-Every line fits its width whatever the robot calls its parameters, and means the same without
-colours and without UTF-8. Columns go as the terminal becomes narrower, the least needed first.
+Every line fits its width whatever the robot calls its parameters, and can be read without colours
+and without UTF-8. As the terminal becomes narrower, the least important columns go first.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ _ROOMY = 20
 _LEGEND = "Trend of the window: a low bar is near the threshold, an x is a flop. Bold: just flopped"
 
 
-class Options(NamedTuple):
+class WatchOptions(NamedTuple):
     """What the observer has chosen: which tables, how many rows, which mark is looked back at (None
     for now), and what the terminal can show."""
 
@@ -87,7 +87,7 @@ class Panel(NamedTuple):
     look: Look
     kept: Sequence[Kept]
     status: Status
-    options: Options
+    options: WatchOptions
 
 
 class _Column(NamedTuple):

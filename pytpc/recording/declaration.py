@@ -32,8 +32,8 @@ class Declared:
     package: str = ""
 
 
-class Said(NamedTuple):
-    """What a declaration says of a parameter, of any type."""
+class RawValues(NamedTuple):
+    """The values of a declaration as they were read, of any type."""
 
     low: object
     high: object
@@ -41,8 +41,10 @@ class Said(NamedTuple):
     description: object
 
 
-def make_declared(name: str, type_: str, said: Said, *, constants: object, place: str) -> Declared:
-    """A declaration of dynamic_reconfigure; None for one that makes no sense.
+def make_declared(
+    name: str, type_: str, said: RawValues, *, constants: object, place: str
+) -> Declared:
+    """A declaration of dynamic_reconfigure; values that make no sense become None.
 
     ``constants`` are those of the enumeration, each with a ``name`` and a ``value``.
     """

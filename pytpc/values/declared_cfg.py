@@ -1,8 +1,8 @@
 """Reads the declarations in ``.cfg`` files of dynamic_reconfigure without running them.
 
-Followed are what nearly all of these files consist of: constants and arithmetic with them, names,
-lists, groups, ``const``, ``enum`` and ``add``, and loops over what is known. What is not (calls of
-other functions with the generator, values from elsewhere) is said and left out.
+Followed is what nearly all of these files consist of: constants and arithmetic with them, names,
+lists, groups, ``const``, ``enum`` and ``add``, and loops over known values. Everything else (calls
+of other functions with the generator, values from elsewhere) is reported and left out.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from pytpc.recording.declaration import Declared, Said, make_declared
+from pytpc.recording.declaration import Declared, RawValues, make_declared
 
 _TYPES = {"str_t": "str", "bool_t": "bool", "int_t": "int", "double_t": "double"}
 _ADD = ("name", "paramtype", "level", "description", "default", "min", "max", "edit_method")
@@ -264,7 +264,7 @@ class _CfgReader:
             make_declared(
                 name,
                 str(type_),
-                Said(*(given.get(what) for what in ("min", "max", "default", "description"))),
+                RawValues(*(given.get(what) for what in ("min", "max", "default", "description"))),
                 constants=given.get("edit_method"),
                 place=f"{self._path}:{call.lineno}",
             )

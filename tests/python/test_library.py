@@ -16,7 +16,7 @@ from pytpc import api
 from pytpc.base.errors import InputError
 from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.suggestion.joining import join_advice
-from pytpc.present.notebook import Table
+from pytpc.present.notebook import NotebookTable
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
 from pytpc_evaluation.stats import notebook_tables
@@ -142,7 +142,7 @@ def test_html_is_escaped():
 
 
 def test_a_table_of_wide_characters():
-    table = Table(("a", "n"), (("漢字", "1"), ("x", "10")), frozenset({1}), "t")
+    table = NotebookTable(("a", "n"), (("漢字", "1"), ("x", "10")), frozenset({1}), "t")
     assert str(table).splitlines() == ["t", "a      n", "漢字   1", "x     10"]
     assert table._repr_html_().startswith("<table><caption>t</caption>")
 

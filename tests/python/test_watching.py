@@ -14,7 +14,7 @@ from pytpc.api.live_reports import Reports
 from pytpc.diagnosis.ranking.watching import BINS, KeptRankings, Watching
 from pytpc.diagnosis.results.live import Look, Seen
 from pytpc.diagnosis.scores.live_scores import LiveRanking
-from pytpc.present.watch_screen import LAYOUTS, Options, Panel, Status, table, watch_screen
+from pytpc.present.watch_screen import LAYOUTS, Panel, Status, WatchOptions, table, watch_screen
 from pytpc.recording.marking_session import MarkChange, Session, View
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
@@ -142,14 +142,14 @@ def test_a_mark_whose_type_is_not_believed_is_ranked_by_both():
     assert parameters == {"~speed", "~limit"}
 
 
-def panel(look: Look, options: Options, kept: KeptRankings | None = None) -> Panel:
+def panel(look: Look, options: WatchOptions, kept: KeptRankings | None = None) -> Panel:
     return Panel(look, tuple(kept or ()), Status(6, 2.0, 1), options)
 
 
 def shown(
-    width: int, height: int, options: Options | None = None, session: Session | None = None
+    width: int, height: int, options: WatchOptions | None = None, session: Session | None = None
 ) -> list[Text]:
-    options = options or Options()
+    options = options or WatchOptions()
     look = watching(*EVENTS).look(110 * S, 5)
     view = View("watching on http://robot:11311", ("connected",), 100 * S, 110 * S)
     return watch_screen(session or Session(""), view, panel(look, options), width, height)
@@ -184,7 +184,7 @@ def test_no_line_is_too_wide_and_none_too_many(layout):
     session = Session("", (Mark(105 * S, "I", note="ü" * 90), Mark(110 * S, None)))
     for width in (1, 2, 7, 20, 39, 40, 60, 80, 99, 120, 300):
         for height in (1, 2, 5, 9, 24, 60):
-            lines = shown(width, height, Options(layout=layout), session)
+            lines = shown(width, height, WatchOptions(layout=layout), session)
             assert len(lines) <= height
             assert all(cell_len(line.plain) <= width for line in lines), (width, height)
 
@@ -197,7 +197,7 @@ def test_what_is_being_written_is_shown_however_small_the_screen_is():
 
 def test_without_utf8_all_is_ascii():
     session = Session("", (Mark(105 * S, "I", note="dröhnt"),))
-    lines = texts(shown(100, 30, Options(utf8=False), session))
+    lines = texts(shown(100, 30, WatchOptions(utf8=False), session))
     assert all(line.isascii() for line in lines)
     assert any("dr?hnt" in line for line in lines)
 
@@ -210,7 +210,7 @@ def test_names_from_the_robot_cannot_steer_the_terminal():
     for event in (EVENTS[0], EVENTS[2], EVENTS[4]):
         found.take(event)
     look = found.look(110 * S, 5)
-    lines = watch_screen(Session(""), View("t", (), 0, 0), panel(look, Options()), 120, 40)
+    lines = watch_screen(Session(""), View("t", (), 0, 0), panel(look, WatchOptions()), 120, 40)
     assert any("漢字" in line.plain for line in lines)
     for line in lines:
         assert line.plain.isprintable()
@@ -220,7 +220,7 @@ def test_names_from_the_robot_cannot_steer_the_terminal():
 def test_why_there_is_nothing_to_show():
     look = watching().look(110 * S, 5)
     view = View("t", (), 0, 0)
-    lines = texts(watch_screen(Session(""), view, panel(look, Options()), 120, 20))
+    lines = texts(watch_screen(Session(""), view, panel(look, WatchOptions()), 120, 20))
     assert any(look.reasons["I"][:20] in line for line in lines)
     assert look.reasons["I"]
 

@@ -20,7 +20,7 @@ import numpy as np
 from pytpc.base.columns import Int64s
 from pytpc.base.tables import Cell, Column, Table, statistics
 from pytpc.diagnosis.ranking.ranking import APART_NS
-from pytpc.diagnosis.thresholds.outcomes import outcomes
+from pytpc.diagnosis.thresholds.threshold_sets import outcomes
 from pytpc.recording.events import Bools, Events, Floats
 from pytpc.recording.mission import Recording
 from pytpc.recording.summaries import Summaries

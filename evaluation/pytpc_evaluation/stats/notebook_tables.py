@@ -9,7 +9,7 @@ from pathlib import Path
 
 from pytpc.api.missions import Source, load_static
 from pytpc.base import tables
-from pytpc.present.notebook import Table
+from pytpc.present.notebook import NotebookTable
 from pytpc.static.static_info import StaticInfo
 from pytpc_evaluation.stats.missions import load_missions
 from pytpc_evaluation.stats.thesis_tables import NUMBERS, thesis_tables
@@ -25,7 +25,7 @@ class StudyTable:
         """The rows with their numbers in full; ``pandas.DataFrame(table.rows())``."""
         return [dict(row) for row in tables.as_json(self.table)["rows"]]
 
-    def shown(self) -> Table:
+    def shown(self) -> NotebookTable:
         """The same as a person reads it, with the statistics below."""
         headings = [f"{column.group} {column.heading}".strip() for column in self.table.columns]
         rows = [(name, *tables.shown(self.table, cells)) for name, cells in self.table.rows]
@@ -34,7 +34,7 @@ class StudyTable:
             for name, cells in self.table.summary
         ]
         right = frozenset(range(1, len(headings) + 1))
-        return Table((self.table.first, *headings), tuple(rows), right, self.table.title)
+        return NotebookTable((self.table.first, *headings), tuple(rows), right, self.table.title)
 
     def __str__(self) -> str:
         """The table as text."""

@@ -1,7 +1,7 @@
-"""Whom all marks of a mission accuse together, in the words and places of a user.
+"""Which parameter all marks of a mission blame together, in the words of a user.
 
-``blame`` is the entrance: `pytpc.diagnosis.ranking.diagnosing`, and what there is to say where the
-marks or the reports are not enough.
+``blame`` is the entrance. It adds to `pytpc.diagnosis.ranking.diagnose_beside` what is to be said
+where the marks or the reports are not enough.
 """
 
 from __future__ import annotations
@@ -9,15 +9,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from pytpc.base.wording import many
 from pytpc.diagnosis.question import PLAIN, Question
-from pytpc.diagnosis.ranking.diagnosing import diagnose_beside
+from pytpc.diagnosis.ranking.diagnose_beside import diagnose_beside
 from pytpc.diagnosis.ranking.posterior import Decisive, Diagnosis
 from pytpc.diagnosis.ranking.ranking import outside
 from pytpc.diagnosis.results.suspects import Accused, Blame, Evaluation
-from pytpc.diagnosis.scores.evaluations import LoggedEvaluations
+from pytpc.diagnosis.scores.evaluations import KeyRows, LoggedEvaluations
 from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark
@@ -88,16 +86,7 @@ def _last(events: Events, by: Decisive, time_ns: int) -> Evaluation:
     """The last evaluation of a comparison in a node up to a time, else its first."""
     rows = events.rows_of(by.key)
     rows = rows[events.node[rows] == events.nodes.index(by.node)]
-    place = int(np.searchsorted(events.time_ns[rows], time_ns, side="right")) - 1
-    row = int(rows[max(0, place)])
-    return Evaluation(
-        int(events.time_ns[row]),
-        bool(events.result[row]),
-        float(events.cmp[row]),
-        float(events.thresh[row]),
-        bool(events.res[row]),
-        by.node,
-    )
+    return KeyRows(events, rows, events.time_ns[rows]).at(time_ns)
 
 
 def _notes(recording: Recording, beyond: Sequence[str]) -> tuple[str, ...]:

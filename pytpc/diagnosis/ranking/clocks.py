@@ -1,4 +1,4 @@
-"""Times in one recording that cannot be of one clock: the wall's, and a simulation's."""
+"""Finds times in one recording that belong to two clocks: wall time and simulated time."""
 
 from __future__ import annotations
 

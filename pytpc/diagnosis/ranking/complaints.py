@@ -1,4 +1,4 @@
-"""What is wrong with a recording, in sentences: nothing is left out without a word."""
+"""What is wrong with a recording, in sentences: everything that was left out is named."""
 
 from __future__ import annotations
 

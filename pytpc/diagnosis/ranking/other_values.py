@@ -1,22 +1,21 @@
-"""Replay: what would have been decided with the other value, that of before or of a clean run.
+"""Replay: what the robot would have decided with the value before a change, or of a clean run.
 
-That is what an engineer does who knows which parameters are not as they were: with which of them
-would the robot have decided otherwise before the marks, when, and for how long? The logged
-comparisons of a parameter are evaluated again with its other threshold. Turns are spans in which
-the outcome would be another one. A turn ends where the outcome is the same again; where the
-comparison is left alone before, the way of its value is followed on, as it rose or fell last, until
-it would be. So a decision that would have come a moment sooner or later weighs
-little, whatever the number by which the value was changed. Of each comparison it is asked
+An engineer who knows which parameters have changed asks: with which of the old values would the
+robot have decided otherwise before the marks, when, and for how long? The logged comparisons of a
+parameter are evaluated again with its other threshold. A turn is a span in which the outcome
+differs; it ends where the outcome is the same again. If the comparison is left alone before that,
+its value is extrapolated as it last rose or fell. So a decision that comes a moment sooner or later
+weighs little, however much the value was changed. For each comparison
 
     acted  = log( sum of u fit / (sum of u + c) ) - log( mean of fit )
     u      = d^2 / (d^2 + MOMENT_S^2), LEAST at least
     waited = log( (turned in the wait + s)^2 / (turned elsewhere + s) )
 
 with the duration d of each turn, and shares of the time; ``fit`` and the wait are those of
-`pytpc.diagnosis.ranking.mark_evidence`, of the marks. Type I is charged with ``acted`` of the turns
-that begin before the last of the observers' first marks, type II with ``waited`` or, half of it
-each, ``acted``: a change that cannot be undone. Both go by the odds of the types. A parameter whose
-other value turns nothing before the marks is acquitted.
+`pytpc.diagnosis.ranking.mark_evidence`. Type I uses ``acted`` of the turns that begin before the
+last of the observers' first marks. Type II uses ``waited`` or, with half the weight each,
+``acted``: a change that cannot be undone. Both are weighted by the odds of the types. A parameter
+whose other value turns nothing before the marks is acquitted.
 """
 
 from __future__ import annotations
@@ -34,7 +33,7 @@ from pytpc.diagnosis.ranking.priors import thresholds_of
 from pytpc.diagnosis.ranking.result_streams import ResultStream, ResultStreams
 from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.diagnosis.thresholds.inverse import kept_as
-from pytpc.diagnosis.thresholds.outcomes import outcomes
+from pytpc.diagnosis.thresholds.threshold_sets import outcomes
 from pytpc.diagnosis.thresholds.units import NoUnitError, is_text, read_type, tree_of
 from pytpc.recording.events import Events
 from pytpc.recording.mission import Recording

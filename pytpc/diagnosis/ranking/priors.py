@@ -1,8 +1,9 @@
-"""What is known of the parameters beside the log: which of them are not as they were.
+"""What is known of the parameters beside the log: which of them have changed.
 
-A parameter that has the value with which the robot went right is hardly to blame. By how much one
-was changed is not asked: what is a lot differs from one parameter to the next (in the study, whose
-harmless changes are as large as the others, ``largest-change`` is no better than chance).
+A parameter that kept the value with which the robot went right is unlikely to be the cause. The
+size of a change does not count: what is a large change differs from one parameter to the next (in
+the study, whose harmless changes are as large as the others, ``largest-change`` is no better than
+chance).
 """
 
 from __future__ import annotations

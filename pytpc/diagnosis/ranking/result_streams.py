@@ -1,7 +1,7 @@
-"""The log as streams: the evaluations of one comparison in one node, and when its results changed.
+"""The log as streams: the evaluations of one comparison in one node, and when its result changed.
 
-All times are seconds from the begin of the log, float64. What is worked out here depends on no
-mark, so that it is worked out once for a recording.
+All times are seconds since the log began, float64. Nothing here depends on a mark, so that it is
+computed once for each recording.
 """
 
 from __future__ import annotations
@@ -17,15 +17,15 @@ from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.recording.events import Events
 
 PAUSE_S = 2.0
-"""A comparison that was evaluated again after a longer time than this, and three of its usual
-intervals, had been left alone: the robot had been doing something else."""
+"""A comparison that was not evaluated for longer than this, and for three of its usual intervals,
+had been left alone: the robot was doing something else."""
 
 BURST_S = 0.5
-"""Changes of one result that follow upon each other within this time are one: noise at a
-threshold. The first of them is what happened."""
+"""Changes of one result within this time of each other count as one: noise at a threshold. The
+first of them counts."""
 
 DECISIVE = 20
-"""A comparison whose result changed more often than this up to then takes no part in cascades."""
+"""A comparison whose result has changed more often than this takes no part in cascades."""
 
 LARGEST = 1e290
 """A value beyond this is taken for infinite, so that sums of them stay within a double."""

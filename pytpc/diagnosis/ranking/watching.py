@@ -1,9 +1,8 @@
-"""What is watched while a robot runs: evaluations in, what is to be shown of the suspects out.
+"""The live diagnosis of a running mission: takes evaluations, answers what to show of the suspects.
 
-Nothing here touches a terminal, a graph, a file or a clock; those are in ``watch_screen``,
-``live_mission`` and ``terminal``. The scores are those of `pytpc.diagnosis.scores.live_scores`;
-beside them each comparison has its last values, its last flop, and how near it came to its
-threshold lately.
+It is pure: terminal, graph, files and clock are in `pytpc.present.watch_screen` and
+`pytpc.api.live_mission`. The scores are those of `pytpc.diagnosis.scores.live_scores`. In addition
+it keeps the last values of each comparison, its last flop, and how near it came to its threshold.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Whom a diagnosis suspects: the answer at one mark, and that of all marks together."""
+"""The parameters that a diagnosis suspects: at one mark, and by all marks together."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ class MarkRanking:
 
 
 SURE = 0.5
-"""From this probability on the first parameter is accused: it is likelier than all else together"""
+"""A parameter with at least this probability is accused: all others together are less likely."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,12 +115,12 @@ class Blame:
 
     @property
     def confidence(self) -> float:
-        """The probability of the first; 0 where nobody is suspected."""
+        """The probability of the first suspect; 0 without a suspect."""
         return self.suspects[0].probability if self.suspects else 0.0
 
     @property
     def accused(self) -> str | None:
-        """The parameter that is held for likelier than all else together; None: not sure."""
+        """The parameter that is likelier than all others together; None if there is none."""
         return self.suspects[0].parameter if self.confidence >= SURE else None
 
     @property

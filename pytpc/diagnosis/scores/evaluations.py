@@ -1,4 +1,4 @@
-"""What a log has of each comparison up to a time, beside the scores."""
+"""What a log has of each comparison up to a time, beside its scores: first, last, and when."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class LoggedEvaluations:
         self.summaries = summaries
         self._codes = {key: code for code, key in enumerate(events.keys)}
         self._summary_codes = {key: code for code, key in enumerate(summaries.keys)}
-        self._of: dict[str, list[_KeyRows]] = {}
+        self._of: dict[str, list[KeyRows]] = {}
 
     @cached_property
     def first_ns(self) -> dict[str, int]:
@@ -78,21 +78,21 @@ class LoggedEvaluations:
         before = [evaluation for evaluation in found if evaluation.time_ns <= mark_ns]
         return max(before) if before else min(found)
 
-    def _tables(self, key: str) -> Iterator[_KeyRows]:
+    def _tables(self, key: str) -> Iterator[KeyRows]:
         rows = self.events.by_key.rows(self._codes[key])
         if rows.size:
-            yield _KeyRows(self.events, rows, self.events.time_ns[rows])
+            yield KeyRows(self.events, rows, self.events.time_ns[rows])
         own = self._rows_of(key)
         if own.size:
             own = own[np.argsort(self.summaries.end_ns[own], kind="stable")]
-            yield _KeyRows(self.summaries, own, self.summaries.end_ns[own])
+            yield KeyRows(self.summaries, own, self.summaries.end_ns[own])
 
     def _rows_of(self, key: str) -> Int64s:
         """The summaries of a key; a table may know a key and have none."""
         return np.flatnonzero(self.summaries.key == self._summary_codes.get(key, -1))
 
 
-class _KeyRows(NamedTuple):
+class KeyRows(NamedTuple):
     """The rows of one key, in the order of ``times_ns``; there is at least one."""
 
     table: Events | Summaries

@@ -1,4 +1,4 @@
-"""What `live_scores` keeps of each comparison in each node, and how it forgets."""
+"""The part of a log that `live_scores` keeps of each comparison in each node."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Both scores of all TPCs, and of all parameters, at many times: what rankings are read from."""
+"""Both scores of all TPCs and parameters at many times: rankings are read from these tables."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""All that is advised about the suspects at a mark: the entrance to this room."""
+"""The advice for the suspects at one mark: the entrance to this room."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One value out of the set of those that would do: near the present one, possible, and readable."""
+"""Chooses one value of those that would do: near the current one, possible, and readable."""
 
 from __future__ import annotations
 

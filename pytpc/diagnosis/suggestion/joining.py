@@ -1,4 +1,4 @@
-"""Advice for several marks at once: marks that say the same need one answer."""
+"""Advice for several marks at once: marks with the same answer are joined."""
 
 from __future__ import annotations
 

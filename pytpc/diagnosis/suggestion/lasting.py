@@ -31,8 +31,8 @@ import numpy as np
 
 from pytpc.base.columns import Bools, Floats, Int64s
 from pytpc.diagnosis.suggestion.suggestion_case import EQUALITIES
-from pytpc.diagnosis.thresholds.outcomes import outcomes, thresholds_for
 from pytpc.diagnosis.thresholds.replay import Track
+from pytpc.diagnosis.thresholds.threshold_sets import outcomes, thresholds_for
 from pytpc.recording.marks import MarkType
 
 Ground = Literal["steady", "ramps", "peaks", "growth"]

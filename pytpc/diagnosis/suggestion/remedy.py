@@ -31,7 +31,7 @@ from pytpc.base.wording import Number, exact, many, show
 from pytpc.diagnosis.question import PLAIN, Question
 from pytpc.diagnosis.results.advice import Basis, Direction, KnownValue, Remedy, Suggestion
 from pytpc.diagnosis.suggestion.choice import choose
-from pytpc.diagnosis.suggestion.known import NAMES, known_values, value_in
+from pytpc.diagnosis.suggestion.known_values import NAMES, known_values, value_in
 from pytpc.diagnosis.suggestion.lasting import Lasting, lasting
 from pytpc.diagnosis.suggestion.suggest import At, suggest_for_most
 from pytpc.diagnosis.suggestion.suggestion_case import (
@@ -43,8 +43,8 @@ from pytpc.diagnosis.suggestion.suggestion_case import (
 )
 from pytpc.diagnosis.suggestion.suggestion_evidence import NoneBecauseError, SuggestionEvidence
 from pytpc.diagnosis.thresholds.intervals import Interval, Intervals, holds, intersection, words
-from pytpc.diagnosis.thresholds.outcomes import thresholds_for
 from pytpc.diagnosis.thresholds.replay import Track, tracks_of
+from pytpc.diagnosis.thresholds.threshold_sets import thresholds_for
 from pytpc.diagnosis.thresholds.units import NoUnitError
 from pytpc.recording.declaration import Declared
 from pytpc.recording.marks import MARK_TYPES, Mark, MarkType

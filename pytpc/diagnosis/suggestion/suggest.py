@@ -40,7 +40,7 @@ from pytpc.diagnosis.thresholds.intervals import (
     union,
     words,
 )
-from pytpc.diagnosis.thresholds.outcomes import outcomes, thresholds_for, thresholds_for_one
+from pytpc.diagnosis.thresholds.threshold_sets import outcomes, thresholds_for, thresholds_for_one
 from pytpc.diagnosis.thresholds.units import NoUnitError
 from pytpc.recording.declaration import Declared
 from pytpc.recording.events import Bools, Floats

@@ -1,6 +1,6 @@
-"""One parameter at one of its comparisons: what suggestions about it are worked out from.
+"""One parameter at one of its comparisons: the data from which suggestions are computed.
 
-Sets of thresholds that would do become sets of values of the parameter here.
+Turns sets of thresholds that would do into sets of values of the parameter.
 """
 
 from __future__ import annotations

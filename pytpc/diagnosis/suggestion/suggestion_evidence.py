@@ -1,4 +1,4 @@
-"""What a suggestion is worked out from: the two evaluations of a flop, or those of a window."""
+"""The evaluations from which a suggestion is computed: the two of a flop, or those of a window."""
 
 from __future__ import annotations
 

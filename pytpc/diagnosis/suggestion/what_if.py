@@ -1,4 +1,4 @@
-"""What a value of a parameter would have changed in a recorded run, before the robot is touched."""
+"""Replays a recorded run with another value of a parameter, before the robot is touched."""
 
 from __future__ import annotations
 

@@ -19,9 +19,9 @@ from pytpc.diagnosis.results.mission_answer import (
     SuspectAnswer,
 )
 from pytpc.diagnosis.results.suspects import MarkRanking
-from pytpc.diagnosis.scores.curves import STEP_S, rank_curves
+from pytpc.diagnosis.scores.rank_curves import STEP_S, rank_curves
 from pytpc.diagnosis.suggestion.advise import advise, alternatives
-from pytpc.diagnosis.suggestion.blamed import advise_blamed
+from pytpc.diagnosis.suggestion.blamed_advice import advise_blamed
 from pytpc.diagnosis.suggestion.joining import with_remedies
 from pytpc.diagnosis.thresholds.units import threshold_of
 from pytpc.recording.mission import Recording

@@ -1,6 +1,6 @@
-"""Sets of values of a parameter that would do: a few intervals, with or without their ends.
+"""Sets of numbers as a few intervals, with or without their ends.
 
-A set is a tuple of intervals, apart from each other and in ascending order.
+A set is a tuple of disjoint intervals in ascending order.
 """
 
 from __future__ import annotations

@@ -1,12 +1,11 @@
-"""Which values of a parameter give a set of thresholds.
+"""Computes which values of a parameter give a set of thresholds.
 
-A tree is inverted from its outermost operator to its innermost. One operator, as a function of its
-one operand that holds the parameter, is monotone on pieces, which are written down here; on a piece
-an end of an interval is found by bisection over the doubles, with the very arithmetic that
-``evaluate`` does, so that a double is in the result just where its threshold is in the set. What
-overflows on the way is a number like others: 1 / (1 / x) is 0 where 1 / x is infinite. Of
-operators that begin anew for ever (sines, remainders) only the pieces next to a given value are
-looked at.
+A tree is inverted from its outermost operator to its innermost. Each operator, as a function of its
+operand that holds the parameter, is monotone on pieces, which are listed here. On a piece an end of
+an interval is found by bisection over the doubles, with the same arithmetic as ``evaluate``: a
+double is in the result exactly if its threshold is in the set. Overflow is not special: 1 / (1 / x)
+is 0 where 1 / x is infinite. Of periodic operators (sines, remainders) only the pieces next to a
+given value are searched.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
-"""The logged comparisons of one parameter, evaluated again with other values of it.
+"""Evaluates the logged comparisons of one parameter again with other values of it.
 
-For each comparison the evaluations are split by their outcome in the log. Of each half the number
-that a threshold would turn is how many compared values lie on one side of it: one look into sorted
-values for any number of thresholds, or one pass over them for a single one.
+The evaluations of each comparison are split by their outcome in the log. The number of each half
+that a threshold would turn is how many compared values lie on one side of it: a binary search in
+sorted values for several thresholds, or one pass over them for a single one.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 from pytpc.base.columns import Bools, Floats, Int64s
 from pytpc.base.errors import InputError
 from pytpc.diagnosis.thresholds.inverse import kept_as
-from pytpc.diagnosis.thresholds.outcomes import outcomes
+from pytpc.diagnosis.thresholds.threshold_sets import outcomes
 from pytpc.diagnosis.thresholds.units import NoUnitError, is_text, read_type, tree_of
 from pytpc.recording.events import Events
 from pytpc.recording.summaries import Summaries

@@ -1,4 +1,4 @@
-"""What the page says first: which parameter, up or down, to what, and why."""
+"""The first thing on the page: which parameter, up or down, to what value, and why."""
 
 from __future__ import annotations
 

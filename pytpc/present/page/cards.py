@@ -1,4 +1,4 @@
-"""A suspect at a mark as plain texts and numbers, before any HTML: a row, or a row and its card."""
+"""A suspect at a mark as plain texts and numbers, before any HTML: its row and its card."""
 
 from __future__ import annotations
 
@@ -12,9 +12,10 @@ from pytpc.base.wording import exact, show
 from pytpc.diagnosis.results.advice import Advice, Suggestion, WhatIf
 from pytpc.diagnosis.results.mission_answer import SuspectAnswer
 from pytpc.diagnosis.results.suspects import Suspect
-from pytpc.present.page.mission import ReportedMission
-from pytpc.present.page.payload import finite, series_of
+from pytpc.present.as_json import finite
+from pytpc.present.page.payload import series_of
 from pytpc.present.page.plots import EvidenceStyle, evidence_svg, value_span
+from pytpc.present.page.reported_mission import ReportedMission
 from pytpc.present.page.series import PlotData, plot_data
 from pytpc.present.page.source import LONGEST_LINE, Line, StepView, source_lines, way_of
 from pytpc.recording.declaration import Declared
@@ -105,7 +106,7 @@ class CardView:
     alternatives: list[tuple[str, str]]
 
 
-class Figures:
+class PageFigures:
     """The figures of one mission, as the page's script draws them: cards, and series by TPC."""
 
     def __init__(self, mission: ReportedMission) -> None:
@@ -160,7 +161,7 @@ def row_view(mission: ReportedMission, advice: Advice, *, mixed: bool = False) -
 
 
 def card_view(
-    mission: ReportedMission, answer: SuspectAnswer, mark: Mark, figures: Figures, ident: str
+    mission: ReportedMission, answer: SuspectAnswer, mark: Mark, figures: PageFigures, ident: str
 ) -> CardView:
     """The card of a suspect at a mark; its figure is added to ``figures``."""
     advice = answer.advice
@@ -311,7 +312,7 @@ def _declared(declared: Declared) -> str:
 
 
 def _sortable(value: float) -> float:
-    """NaN sorts behind all else, infinities at the ends; JSON and HTML know neither."""
+    """NaN sorts last, infinities at the ends; JSON and HTML have neither."""
     if math.isnan(value):
         return 1e308
     return max(-1e308, min(1e308, value))

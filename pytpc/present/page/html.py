@@ -1,7 +1,7 @@
 """The report page as one HTML file that asks the network for nothing.
 
-Figures stand in it twice: as SVG, which is seen without a script and on paper, and as numbers, of
-which the page's script makes figures that move, by Bokeh's own JavaScript.
+Each figure is in it twice: as SVG, for paper and for readers without scripts, and as numbers from
+which the page's script draws with Bokeh (docs/explanation/decisions.md).
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from markupsafe import Markup
 
 from pytpc.base.atomic import write_atomic
 from pytpc.present.page.environment import environment
-from pytpc.present.page.mission import ReportedMission
+from pytpc.present.page.reported_mission import ReportedMission
 from pytpc.present.page.view import ROWS, figures, mission_view
 
 Progress = Callable[[int, int], None]

@@ -1,8 +1,8 @@
-"""What the figures that move are drawn from: numbers of a mission as JSON inside the page.
+"""The numbers of a mission from which the page's script draws, as JSON inside the page.
 
-Columns of numbers are little-endian arrays in base64, which a browser reads at once and which lose
-nothing: NaN and infinities are no JSON. All evaluations of a TPC are kept once for each mission,
-however many cards show them.
+Columns of numbers are little-endian arrays in base64, which a browser reads at once and without
+loss (JSON has no NaN and no infinities). The evaluations of a TPC are in the page once for each
+mission, however many cards show them.
 """
 
 from __future__ import annotations
@@ -99,11 +99,6 @@ def curves_of(curves: RankCurves, names: Sequence[str], start_ns: int) -> dict[s
 def marks_json(marks: Sequence[tuple[float, MarkType | None]]) -> list[Mapping[str, object]]:
     """Marks as (seconds, type) in the order of the page."""
     return [{"t": time, "type": kind or ""} for time, kind in marks]
-
-
-def finite(value: float | None) -> float | None:
-    """``value``, or None where JSON has no number for it."""
-    return value if value is not None and np.isfinite(value) else None
 
 
 def calm(text: str) -> str:

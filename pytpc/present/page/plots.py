@@ -1,9 +1,9 @@
-"""The figures of the report page, as SVG that takes its colours and font from the page.
+"""The still figures of the report page, as SVG with the colours and the font of the page.
 
 matplotlib writes literal colours into the SVG. Each of ours is replaced by a CSS variable of the
-page, so that one figure serves a light page, a dark one and paper. Nothing is told by colour alone:
-true and false differ in height and filling, the threshold is dashed, the two types of marks differ
-in line and label.
+page, so that one figure serves a light page, a dark page and paper. Colour is never the only
+signal: true and false differ in height and filling, the threshold is dashed, and the two types of
+marks differ in line and label.
 """
 
 from __future__ import annotations
@@ -266,7 +266,7 @@ def _outcomes(axes: Axes, data: PlotData) -> None:
     axes.tick_params(axis="y", length=0)
 
 
-def short(text: str, most: int) -> str:
+def shortened(text: str, most: int) -> str:
     """``text``, cut to so many characters."""
     return text if len(text) <= most else f"{text[: most - 1]}…"
 

@@ -1,4 +1,4 @@
-"""What the plots show, taken from the events: thinned to what a plot can hold, extremes kept."""
+"""The data of the plots, from the events: thinned to what a plot can show, extremes kept."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The source text around a comparison, and its way from the read to what is exposed."""
+"""The source text around a comparison, and the steps from the read to the exposing statement."""
 
 from __future__ import annotations
 

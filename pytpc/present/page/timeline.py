@@ -1,6 +1,6 @@
-"""The figure of a whole mission: what the suspects' comparisons gave, their ranks, the marks.
+"""The figure of a whole mission: the results of the suspects' comparisons, their ranks, the marks.
 
-It is made twice, as an SVG that stands still and as numbers for the one that moves.
+It is drawn twice: as a still SVG, and as numbers for the figure that can be moved.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from pytpc.base.columns import Floats
-from pytpc.present.page.mission import ReportedMission
 from pytpc.present.page.payload import curves_of, lanes_of
-from pytpc.present.page.plots import COLOUR, MARK_LINES, drawing, short, svg_of
+from pytpc.present.page.plots import COLOUR, MARK_LINES, drawing, shortened, svg_of
+from pytpc.present.page.reported_mission import ReportedMission
 from pytpc.present.page.series import BINS, BOTH, FALSE, TRUE, lane, runs
 from pytpc.recording.marks import MarkType
 
@@ -48,7 +48,7 @@ class Curves:
 
 
 def timeline(mission: ReportedMission, ident: str) -> tuple[Markup, dict[str, object] | None]:
-    """The figure that stands still, and what the moving one shows; nothing where nobody is suspect.
+    """The still figure, and the numbers of the moving one; nothing without a suspect.
 
     Its lanes are the parameters that come first at some mark, and the changed one.
     """
@@ -159,7 +159,7 @@ def _lanes(axes: Axes, lanes: Sequence[Lane], seconds: float) -> None:
                 edgecolor=COLOUR["paper"],
             )
     axes.set_ylim(len(lanes) - 0.4, -0.6)
-    axes.set_yticks(range(len(lanes)), [short(one.label, 30) for one in lanes])
+    axes.set_yticks(range(len(lanes)), [shortened(one.label, 30) for one in lanes])
     for tick, one in zip(axes.get_yticklabels(), lanes, strict=True):
         if one.accent:
             tick.set_color(_colour(one))

@@ -1,4 +1,4 @@
-"""What all marks of a mission say together, in the words of the page."""
+"""The verdict of all marks of a mission, in the words of the page."""
 
 from __future__ import annotations
 
@@ -12,8 +12,7 @@ from pytpc.diagnosis.results.mission_answer import MissionAnswer
 class TogetherView:
     """The verdict, the value to try of the first suspect, and the next ones with probabilities.
 
-    ``remedy`` is empty where nobody is suspected or nothing can be suggested. ``notes`` say what
-    keeps it from being surer.
+    ``remedy`` is empty without a suspect or a suggestion. ``notes`` say what limits the verdict.
     """
 
     title: str

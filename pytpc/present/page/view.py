@@ -18,15 +18,9 @@ from pytpc.diagnosis.question import Types
 from pytpc.diagnosis.results.mission_answer import MarkAnswer
 from pytpc.diagnosis.results.suspects import MarkRanking
 from pytpc.present.page.answer import AnswerView, answers, spoken
-from pytpc.present.page.cards import (
-    CardView,
-    Figures,
-    SuspectView,
-    card_view,
-    row_view,
-)
-from pytpc.present.page.mission import ReportedMission
+from pytpc.present.page.cards import CardView, PageFigures, SuspectView, card_view, row_view
 from pytpc.present.page.payload import embedded, marks_json
+from pytpc.present.page.reported_mission import ReportedMission
 from pytpc.present.page.timeline import timeline
 from pytpc.present.page.together import TogetherView, together
 from pytpc.recording.marks import MarkType
@@ -98,7 +92,7 @@ def mission_view(
     ident = f"m{number}"
     recording = mission.recording
     kinds = [mark.type for mark in recording.marks]
-    drawn = Figures(mission)
+    drawn = PageFigures(mission)
     marks = [
         _mark_view(mission, answer, (ident, place), drawn, on_figure)
         for place, answer in enumerate(mission.answer.marks, start=1)
@@ -141,7 +135,7 @@ def _mark_view(
     mission: ReportedMission,
     answer: MarkAnswer,
     at: tuple[str, int],
-    drawn: Figures,
+    drawn: PageFigures,
     on_figure: Callable[[], None],
 ) -> MarkView:
     ranking = answer.ranking

@@ -1,4 +1,4 @@
-"""What to do with those whom all marks of a mission accuse together."""
+"""The advice for the parameters that all marks of a mission blame together."""
 
 from __future__ import annotations
 

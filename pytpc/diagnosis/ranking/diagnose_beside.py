@@ -1,4 +1,4 @@
-"""The diagnosis with what is known beside the log: a clean run, or what was changed."""
+"""The diagnosis with what is known beside the log: a clean run, or a list of changes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Values of a parameter that are known to be good, whatever the log of the mission says."""
+"""Values of a parameter that are known to be good, whatever the log says."""
 
 from __future__ import annotations
 
