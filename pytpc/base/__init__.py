@@ -1,1 +1,1 @@
-"""What every room needs: errors, files written atomically, columns, tables, checked JSON, paths."""
+"""What every room needs: errors, files written atomically, columns, checked JSON, paths."""

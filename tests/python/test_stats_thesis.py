@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import pytest
 
-from pytpc.base.tables import Table, shown
 from pytpc.diagnosis.scores.scores import NONE
 from pytpc.recording.marks import MarkType
 from pytpc_evaluation.stats.delays import DelaysOfTrial, delays_table
 from pytpc_evaluation.stats.found import FoundAtMark, FoundInTrial, found_table
 from pytpc_evaluation.stats.marked import MarksOfTrial, confusion_table, marks_table
 from pytpc_evaluation.stats.runtime import RuntimeRow, RuntimeStatistics, runtime_table
+from pytpc_evaluation.tables import Table, shown
 
 # Table 6.12: locations, comparisons, frequency, runtime %, flops, true %, false %.
 RUNTIME = """

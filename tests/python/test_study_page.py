@@ -13,7 +13,6 @@ import pyarrow.parquet as pq
 import pytest
 from study_pages import row_of, rows_of
 
-from pytpc.base.tables import Column, Table
 from pytpc_evaluation.study.report.conclusion import conclusion
 from pytpc_evaluation.study.report.confidence import Accusations, calibration, false_accusations
 from pytpc_evaluation.study.report.drawings import draw_results
@@ -22,6 +21,7 @@ from pytpc_evaluation.study.report.page import wrapped
 from pytpc_evaluation.study.report.parts import Part
 from pytpc_evaluation.study.report.positions import Position, read_positions
 from pytpc_evaluation.study.report.systems import nearness
+from pytpc_evaluation.tables import Column, Table
 from pytpc_evaluation.treatment import load_treatment
 
 ROOT = Path(__file__).parents[2]

@@ -10,7 +10,6 @@ from static_units import KEYS, comparison, failed_unit, unit
 from survey_samples import AFTER, BAD, build, found, result
 
 from pytpc.base.errors import InputError
-from pytpc.base.tables import statistics
 from pytpc.static.static_info import LinkUnit
 from pytpc_evaluation.survey.static_tables import tables
 from pytpc_evaluation.survey.trees import (
@@ -21,6 +20,7 @@ from pytpc_evaluation.survey.trees import (
     found_in,
     needed_trees,
 )
+from pytpc_evaluation.tables import statistics
 
 
 def tree(name: str, **packages: str) -> Tree:

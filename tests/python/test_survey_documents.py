@@ -5,9 +5,9 @@ import io
 
 from survey_samples import AFTER, BAD, build, found, result
 
-from pytpc.base.tables import as_csv, as_latex, as_markdown, latex
 from pytpc_evaluation.survey.static_tables import tables
 from pytpc_evaluation.survey.survey_documents import documents, faults
+from pytpc_evaluation.tables import as_csv, as_latex, as_markdown, latex
 
 
 def test_csv_has_numbers_in_full() -> None:

@@ -9,7 +9,7 @@ import json
 import pytest
 from rich.console import Console
 
-from pytpc.base.tables import (
+from pytpc_evaluation.tables import (
     Column,
     Table,
     as_csv,

@@ -13,7 +13,6 @@ from rich.text import Text
 
 from pytpc.base.atomic import write_atomic
 from pytpc.base.errors import InputError
-from pytpc.base.tables import Table, as_csv, as_json, as_latex, as_markdown, as_rich
 from pytpc.base.wording import many, plain
 from pytpc.cli.console import console, progress, warn
 from pytpc.cli.options import JSON, PATH, STATIC, WINDOW, recording_of
@@ -22,6 +21,7 @@ from pytpc.static.static_info import StaticInfo
 from pytpc_evaluation.stats.figure_choice import Figures
 from pytpc_evaluation.stats.missions import StudyMission, load_missions
 from pytpc_evaluation.stats.thesis_tables import NUMBERS, study_complaints, thesis_tables
+from pytpc_evaluation.tables import Table, as_csv, as_json, as_latex, as_markdown, as_rich
 
 _SUFFIXES = {"text": ".txt", "csv": ".csv", "markdown": ".md", "latex": ".tex", "json": ".json"}
 _FIGURE_FORMATS = ("png", "svg", "pdf")

@@ -15,13 +15,13 @@ from rich.text import Text
 from pytpc.base.atomic import write_atomic
 from pytpc.base.checked_json import dump_json
 from pytpc.base.errors import WorkspaceError
-from pytpc.base.tables import as_rich
 from pytpc.base.wording import many, plain
 from pytpc.cli.console import console, warn
 from pytpc_evaluation.survey.static_tables import tables
 from pytpc_evaluation.survey.survey_documents import FORMATS, documents, faults
 from pytpc_evaluation.survey.surveying import Options, Step, survey
 from pytpc_evaluation.survey.trees import TreeResult
+from pytpc_evaluation.tables import as_rich
 
 _FOLDER = click.Path(path_type=Path, file_okay=True)
 _JOB_LINE = re.compile(r"^(Starting >>>|Finished <<<|Failed +<<<|Aborted +<<<) (?P<name>\S+)")

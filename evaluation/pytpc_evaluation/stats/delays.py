@@ -18,7 +18,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from pytpc.base.columns import Int64s
-from pytpc.base.tables import Cell, Column, Table, statistics
 from pytpc.diagnosis.ranking.ranking import APART_NS
 from pytpc.diagnosis.thresholds.threshold_sets import outcomes
 from pytpc.recording.events import Bools, Events, Floats
@@ -28,6 +27,7 @@ from pytpc.static.arithmetic import evaluate
 from pytpc.static.parameters import parameter_name, same_parameter
 from pytpc.static.static_info import Comparison, StaticInfo
 from pytpc_evaluation.stats.missions import StudyMission, Trial, user_of
+from pytpc_evaluation.tables import Cell, Column, Table, statistics
 from pytpc_evaluation.treatment import Treatment
 
 

@@ -11,13 +11,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from pytpc.base.tables import Cell, Column, Table, statistics
 from pytpc.diagnosis.question import WINDOW_S, Question
 from pytpc.diagnosis.ranking.ranking import rank_marks
 from pytpc.diagnosis.scores.scores import NONE
 from pytpc.recording.marks import MARK_TYPES, MarkType
 from pytpc.static.static_info import StaticInfo
 from pytpc_evaluation.stats.missions import Trial
+from pytpc_evaluation.tables import Cell, Column, Table, statistics
 
 
 @dataclass(frozen=True, slots=True)

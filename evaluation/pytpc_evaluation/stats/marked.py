@@ -6,11 +6,11 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from pytpc.base.tables import Cell, Column, Table, statistics
 from pytpc.base.wording import many
 from pytpc.recording.marks import MARK_TYPES, MarkType
 from pytpc_evaluation.stats.missions import Trial, user_of
 from pytpc_evaluation.stats.runtime import SUMMARY
+from pytpc_evaluation.tables import Cell, Column, Table, statistics
 from pytpc_evaluation.treatment import TreatmentType
 
 NO_TYPE = "No type"

@@ -8,16 +8,16 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pytpc.api.missions import Source, load_static
-from pytpc.base import tables
 from pytpc.present.notebook import NotebookTable
 from pytpc.static.static_info import StaticInfo
+from pytpc_evaluation import tables
 from pytpc_evaluation.stats.missions import load_missions
 from pytpc_evaluation.stats.thesis_tables import NUMBERS, thesis_tables
 
 
 @dataclass(frozen=True, slots=True)
 class StudyTable:
-    """A table of `pytpc.base.tables` that prints, and shows itself in a notebook."""
+    """A table of `pytpc_evaluation.tables` that prints, and shows itself in a notebook."""
 
     table: tables.Table
 

@@ -19,7 +19,6 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from pytpc.base.columns import Floats, Int64s
-from pytpc.base.tables import Column, Table, statistics
 from pytpc.base.wording import many
 from pytpc.diagnosis.scores.summary_scores import covered
 from pytpc.recording.events import Events
@@ -27,6 +26,7 @@ from pytpc.recording.mission import Recording
 from pytpc.recording.summaries import Summaries
 from pytpc.static.parameters import parameter_name
 from pytpc.static.static_info import StaticInfo
+from pytpc_evaluation.tables import Column, Table, statistics
 
 SUMMARY = {
     "mean": "mean",

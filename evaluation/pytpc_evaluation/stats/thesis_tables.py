@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import TypeVar
 
-from pytpc.base.tables import Table
 from pytpc.diagnosis.question import WINDOW_S
 from pytpc.diagnosis.ranking.clocks import two_clocks
 from pytpc.diagnosis.ranking.complaints import complaints
@@ -17,6 +16,7 @@ from pytpc_evaluation.stats.found import found_in, found_table
 from pytpc_evaluation.stats.marked import MarksOfTrial, confusion_table, marks_table
 from pytpc_evaluation.stats.missions import StudyMission, Trial, in_order, users_of
 from pytpc_evaluation.stats.runtime import runtime_statistics, runtime_table
+from pytpc_evaluation.tables import Table
 
 Result = TypeVar("Result")
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from pytpc.base.tables import STATISTICS, Cell, Column, Table, statistics
 from pytpc_evaluation.survey.source_lines import CPP, HEADER, PYTHON
 from pytpc_evaluation.survey.trees import Build, TreeResult
+from pytpc_evaluation.tables import STATISTICS, Cell, Column, Table, statistics
 
 
 @dataclass(frozen=True, slots=True)

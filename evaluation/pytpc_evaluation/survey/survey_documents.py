@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from pytpc.base.tables import (
+from pytpc.base.wording import many
+from pytpc_evaluation.survey.static_tables import tables
+from pytpc_evaluation.survey.trees import TreeResult
+from pytpc_evaluation.tables import (
     Table,
     as_csv,
     as_latex,
@@ -13,9 +16,6 @@ from pytpc.base.tables import (
     markdown,
     markdown_row,
 )
-from pytpc.base.wording import many
-from pytpc_evaluation.survey.static_tables import tables
-from pytpc_evaluation.survey.trees import TreeResult
 
 FORMATS = ("csv", "markdown", "latex")
 

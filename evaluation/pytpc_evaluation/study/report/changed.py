@@ -15,13 +15,13 @@ from statistics import fmean, median
 import numpy as np
 
 from pytpc.base.errors import InputError
-from pytpc.base.tables import Cell, Column, Table
 from pytpc.diagnosis.thresholds.replay import tracks_of
 from pytpc.recording.mission import Recording
 from pytpc.recording.parameter_change import Change
 from pytpc.static.parameters import same_parameter
 from pytpc.static.static_info import StaticInfo
 from pytpc_evaluation.study.report.folder import Flight, Progress, System
+from pytpc_evaluation.tables import Cell, Column, Table
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from pytpc.base.tables import Table
 from pytpc_evaluation.study.report.judged import HELD_BACK
 from pytpc_evaluation.study.report.parts import SECOND_ROUND
 from pytpc_evaluation.study.report.ranked import (
@@ -16,6 +15,7 @@ from pytpc_evaluation.study.report.ranked import (
     TARGETS,
     TURNED,
 )
+from pytpc_evaluation.tables import Table
 
 _LABELS = "confused"
 """What a user has: types as people say them."""

@@ -10,7 +10,6 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import product
 
-from pytpc.base.tables import Cell, Column, Table
 from pytpc.base.wording import many
 from pytpc_evaluation.study.data import ALL, LABELS
 from pytpc_evaluation.study.metrics import (
@@ -24,6 +23,7 @@ from pytpc_evaluation.study.metrics import (
 )
 from pytpc_evaluation.study.report.positions import Position, ordered
 from pytpc_evaluation.study.report.ranked import BESIDE_CLEAN, OURS
+from pytpc_evaluation.tables import Cell, Column, Table
 
 SURE_METHODS = (OURS, BESIDE_CLEAN)
 """Those whose confidence is looked at."""

@@ -10,7 +10,6 @@ from typing import Any, Literal, TypeVar
 
 from pytpc.base.atomic import write_atomic
 from pytpc.base.errors import InputError, TpcError
-from pytpc.base.tables import Table, as_csv, as_json
 from pytpc_evaluation.study.data import LABELS
 from pytpc_evaluation.study.judge import POSITIONS_FILE
 from pytpc_evaluation.study.plan import HALVES, Half
@@ -60,6 +59,7 @@ from pytpc_evaluation.study.report.sensitivity import SENSITIVITY_FILE, is_up_to
 from pytpc_evaluation.study.report.systems import rounds_of, systems_table, treatments_table
 from pytpc_evaluation.study.suggestion_chains import CHAINS_FILE, Chain, load_chains
 from pytpc_evaluation.study.suggestions import HEADLINE_FILE
+from pytpc_evaluation.tables import Table, as_csv, as_json
 
 RESULTS_FILE = "results.json"
 FIGURES_FILE = "figures.json"

@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from statistics import fmean, median
 
-from pytpc.base.tables import Cell, Column, Table
 from pytpc.diagnosis.scores.scores import NONE
 from pytpc.recording.marks import MarkType
 from pytpc_evaluation.stats.delays import DelaysOfTrial, delays_of, delays_table
@@ -20,6 +19,7 @@ from pytpc_evaluation.stats.missions import Trial, in_order, users_of
 from pytpc_evaluation.stats.runtime import RuntimeStatistics, runtime_statistics, runtime_table
 from pytpc_evaluation.study.report import thesis_figures as thesis
 from pytpc_evaluation.study.report.folder import System
+from pytpc_evaluation.tables import Cell, Column, Table
 from pytpc_evaluation.treatment import TreatmentType
 
 TOP_ROWS = 8

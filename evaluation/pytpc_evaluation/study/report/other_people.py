@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from pytpc.base.tables import Cell, Column, Table
 from pytpc_evaluation.study.data import LABELS
 from pytpc_evaluation.study.report.parts import Part
 from pytpc_evaluation.study.report.positions import Position, ordered
 from pytpc_evaluation.study.report.ranked import METHODS, TARGET_PLACES, percent, top
 from pytpc_evaluation.study.report.sensitivity import CROWDS
+from pytpc_evaluation.tables import Cell, Column, Table
 
 _WORDS: Mapping[str, str] = {
     "thesis": "the study's own",

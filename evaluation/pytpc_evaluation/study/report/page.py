@@ -10,7 +10,6 @@ from functools import cache
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 
-from pytpc.base.tables import Table, as_markdown, markdown
 from pytpc_evaluation.study.metrics import CONFIDENT, DRAWS
 from pytpc_evaluation.study.report.changed import Changed
 from pytpc_evaluation.study.report.conclusion import conclusion
@@ -21,6 +20,7 @@ from pytpc_evaluation.study.report.parts import Part
 from pytpc_evaluation.study.report.repairs import TARGET
 from pytpc_evaluation.study.report.systems import NEAR
 from pytpc_evaluation.study.suggestion_chains import HEADLINE
+from pytpc_evaluation.tables import Table, as_markdown, markdown
 
 IMAGES = "images/study"
 BESIDE = "study"

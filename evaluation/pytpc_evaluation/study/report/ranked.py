@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
-from pytpc.base.tables import Cell, Column, Table
 from pytpc_evaluation.study.data import ALL, LABELS
 from pytpc_evaluation.study.metrics import Estimate, estimate, share
 from pytpc_evaluation.study.report.folder import UNKNOWN, System
 from pytpc_evaluation.study.report.parts import Part
 from pytpc_evaluation.study.report.positions import Position, by_treatment, ordered, with_absent
 from pytpc_evaluation.study.report.systems import language_of, nearness, one_of_each
+from pytpc_evaluation.tables import Cell, Column, Table
 
 OURS = "tpc"
 BESIDE_CLEAN = "tpc+reference"

@@ -12,7 +12,6 @@ import pyarrow as pa
 
 from pytpc.base.columns import read_table
 from pytpc.base.errors import InputError
-from pytpc.base.tables import Cell, Column, Table
 from pytpc.base.wording import show
 from pytpc_evaluation.study.metrics import Estimate, share
 from pytpc_evaluation.study.report.folder import Flight
@@ -20,6 +19,7 @@ from pytpc_evaluation.study.report.parts import Part
 from pytpc_evaluation.study.report.positions import ordered
 from pytpc_evaluation.study.report.ranked import percent, verdict_of
 from pytpc_evaluation.study.suggestion_chains import HEADLINE, MOST_TRIES, VARIANTS, Chain, outcomes
+from pytpc_evaluation.tables import Cell, Column, Table
 
 TARGET = 0.80
 """The share of treatments in which the error is to be gone."""

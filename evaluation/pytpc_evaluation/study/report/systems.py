@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
-from pytpc.base.tables import Cell, Column, Table
 from pytpc.base.wording import show
 from pytpc.static.static_info import StaticInfo
 from pytpc_evaluation.stats.runtime import runtime_statistics
 from pytpc_evaluation.study.report.folder import Flight, System
+from pytpc_evaluation.tables import Cell, Column, Table
 from pytpc_evaluation.treatment import Treatment
 
 NEAR = 0.5
