@@ -256,7 +256,7 @@ def _key(tree: Tree, options: Options, tools: str, before: Sequence[str]) -> str
 
 
 def _digest_of_tpc() -> str:
-    """Stands for the installed half (passes, log library, tpc.cmake, rules) and ``pynodes``."""
+    """Stands for the installed half (passes, log library, tpc.cmake, rules) and the analysis."""
     files = [log_library(), plugin(), defer_plugin(), cmake_file()]
     root = prefix()
     for part in ("lib/tpc", "share/tpc"):

@@ -4,7 +4,7 @@ from pathlib import Path
 from textwrap import dedent
 
 import pytest
-from pynode_samples import analysed, found, marked
+from python_analysis_samples import analysed, found, marked
 
 _READ = "limit = rospy.get_param('~limit')\nother = rospy.get_param('~other')\n"
 _SUB = "\nrospy.Subscriber('in', Float64, cb)\n"

@@ -5,7 +5,7 @@ from pathlib import Path
 from textwrap import dedent
 
 import pytest
-from pynode_samples import analysed, found, marked, only
+from python_analysis_samples import analysed, found, marked, only
 
 from pytpc.python_analysis.analysis import analyse_entry
 from pytpc.python_analysis.rules_file import load_rules

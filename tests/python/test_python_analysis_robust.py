@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
-from pynode_samples import PRELUDE, analysed, only
+from python_analysis_samples import PRELUDE, analysed, only
 
 from pytpc.base.errors import InputError
 from pytpc.cli.main import main
@@ -162,7 +162,8 @@ def test_an_error_of_the_analysis_fails_one_unit(
     assert failures["good"] is None
     why = failures["bad"] or ""
     # The read is on the line behind the three of PRELUDE.
-    assert why.startswith("bad.py:4: an error of the analysis: KeyError in test_pynodes_robust.py:")
+    where = "KeyError in test_python_analysis_robust.py:"
+    assert why.startswith(f"bad.py:4: an error of the analysis: {where}")
     assert "\n" not in why
     assert "call" in why
 

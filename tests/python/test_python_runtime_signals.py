@@ -7,7 +7,7 @@ import traceback
 
 import pytest
 from hook_samples import PATH, instrumented, listed
-from test_pyhook_file import files, recording, rows, run
+from test_python_runtime_file import files, recording, rows, run
 
 from pytpc.python_runtime import sites
 

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from pynode_samples import analysed, found, marked
+from python_analysis_samples import analysed, found, marked
 
 SAMPLES = {
     "local": """

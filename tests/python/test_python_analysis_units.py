@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
-from pynode_samples import PRELUDE, analysed, only
+from python_analysis_samples import PRELUDE, analysed, only
 
 from pytpc.base.errors import InputError
 from pytpc.cli.main import main

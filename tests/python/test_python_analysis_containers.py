@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from pynode_samples import analysed, found, marked
+from python_analysis_samples import analysed, found, marked
 
 SAMPLES = {
     "lists are joined": """

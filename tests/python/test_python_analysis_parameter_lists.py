@@ -6,7 +6,7 @@ from pathlib import Path
 from textwrap import dedent, indent
 
 import pytest
-from pynode_samples import analysed, found, marked
+from python_analysis_samples import analysed, found, marked
 
 START = """
 from rclpy.node import Node

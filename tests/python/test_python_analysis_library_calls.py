@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from pynode_samples import analysed, found, marked, only
+from python_analysis_samples import analysed, found, marked, only
 
 START = """import math, operator
 import operator as op

@@ -10,7 +10,7 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
-from test_pyhook_file import PRELUDE, ROOT, recording, rows, run
+from test_python_runtime_file import PRELUDE, ROOT, recording, rows, run
 
 MANY = """
 one = site("one")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from textwrap import indent
 
-from pynode_samples import analysed
+from python_analysis_samples import analysed
 
 from pytpc.python_analysis.ir.program import Loader, Program
 from pytpc.python_analysis.points_to.points_to import PointsTo

@@ -8,7 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from pynode_samples import analysed, found, marked
+from python_analysis_samples import analysed, found, marked
 
 SAMPLES = {
     "how long a call waits is not what it gives": """

@@ -8,7 +8,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from test_pyhook_run import comparison, unit
+from test_python_runtime_run import comparison, unit
 
 ROOT = Path(__file__).parents[2]
 SCRIPT = """\
@@ -54,7 +54,7 @@ def test_step_of_pdb(tmp_path, python):
     plain, hooked = outputs(tmp_path, "breakpoint()", said=said, python=python)
     assert hooked == plain
     assert "--Call--" in plain
-    assert "pyhook" not in hooked
+    assert "python_runtime" not in hooked
 
 
 def test_a_debugger_that_begins_within_a_loop(tmp_path):
