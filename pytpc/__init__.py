@@ -19,8 +19,8 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from pytpc.api.diagnosing import diagnose
+    from pytpc.api.mark_rankings import Rankings, curves, rank
     from pytpc.api.missions import load_static, read
-    from pytpc.api.ranking import Rankings, curves, rank
     from pytpc.api.report import write_report
     from pytpc.api.suggesting import suggest, what_if
     from pytpc.diagnosis.question import Question

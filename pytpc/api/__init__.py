@@ -30,7 +30,7 @@ from importlib import import_module
 
 _PLACES = {
     "missions": ("load_static", "read"),
-    "ranking": ("Rankings", "curves", "rank"),
+    "mark_rankings": ("Rankings", "curves", "rank"),
     "diagnosing": ("diagnose",),
     "suggesting": ("suggest", "what_if"),
     "report": ("write_report",),

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from pytpc.api.mark_rankings import Rankings
 from pytpc.api.missions import Source
-from pytpc.api.ranking import Rankings
 from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.results.suspects import MarkRanking
 from pytpc.diagnosis.suggestion.whole_mission import answer_mission

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TypedDict, Unpack
 
+from pytpc.api.mark_rankings import Rankings
 from pytpc.api.missions import Source, load_static, read
-from pytpc.api.ranking import Rankings
 from pytpc.base.wording import Number
 from pytpc.diagnosis.question import PLAIN, Question
 from pytpc.diagnosis.ranking.blame import blame

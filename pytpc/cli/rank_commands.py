@@ -11,8 +11,8 @@ from typing import Literal
 import click
 
 from pytpc.api.diagnosing import changes_since, diagnose, is_compared
+from pytpc.api.mark_rankings import Rankings
 from pytpc.api.missions import find_declared
-from pytpc.api.ranking import Rankings
 from pytpc.api.suggesting import smallest_changes
 from pytpc.base.errors import InputError
 from pytpc.base.wording import plain
@@ -36,7 +36,7 @@ from pytpc.diagnosis.question import Question, Types
 from pytpc.diagnosis.results.advice import Suggested
 from pytpc.present.answers import Diagnosed
 from pytpc.present.as_json import blame_json, ranking_json
-from pytpc.present.rankings import print_blame, print_rankings
+from pytpc.present.ranking_tables import print_blame, print_rankings
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
 from pytpc.recording.parameter_change import Change

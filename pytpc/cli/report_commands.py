@@ -9,8 +9,8 @@ from pathlib import Path
 
 import click
 
+from pytpc.api.mark_rankings import Rankings
 from pytpc.api.missions import find_declared
-from pytpc.api.ranking import Rankings
 from pytpc.api.report import CARDS, MissionReport, report_of, write_missions
 from pytpc.base.errors import TpcError
 from pytpc.base.wording import many

@@ -15,7 +15,7 @@ WINDOW_S = 12.0
 """The window of type II, in seconds."""
 
 Types = Literal["believe", "doubt", "ignore"]
-"""How far the observer's types of the marks are believed, see `pytpc.diagnosis.ranking.ranking`."""
+"""How far the observer's types of the marks are believed, see `mark_ranking`."""
 
 Source = Literal["reference", "default", "declared"]
 """Who says of a value that it is good."""

@@ -18,7 +18,7 @@ from pytpc.ingest.binary import read_binary
 from pytpc.ingest.duplicates import TOLERANCE_NS
 from pytpc.ingest.folder import read_folder_into
 from pytpc.ingest.gathering import Gathering, Progress
-from pytpc.ingest.outcome import Merged
+from pytpc.ingest.merged import Merged
 from pytpc.ingest.ros2_bag import MCAP_MAGIC, SQLITE_MAGIC, read_ros2_into
 from pytpc.ingest.text import read_text_into
 from pytpc.python_runtime.log_layout import MAGIC as TPC_MAGIC
@@ -60,7 +60,7 @@ def read(
         InputError: a file is missing, of no known format, or broken; one line.
     """
     given = [paths] if isinstance(paths, Path) else list(paths)
-    if len(given) == 1 and is_ingested(given[0]):
+    if len(given) == 1 and is_converted(given[0]):
         recording = load_recording(given[0])
         return replace(recording, marks=joined([*recording.marks, *_beside(given[0])]))
     gathering = Gathering()
@@ -152,7 +152,7 @@ def sources(path: Path) -> list[Path]:
     """
     if not path.exists():
         raise InputError("no such bag, file or folder", path)
-    if not path.is_dir() or is_ingested(path) or (path / ROS2_FILE).is_file():
+    if not path.is_dir() or is_converted(path) or (path / ROS2_FILE).is_file():
         return [path]
     try:
         entries = sorted(entry for entry in path.iterdir() if not entry.name.startswith("."))
@@ -170,7 +170,7 @@ def sources(path: Path) -> list[Path]:
     return found
 
 
-def is_ingested(path: Path) -> bool:
+def is_converted(path: Path) -> bool:
     """Whether ``pytpc convert`` wrote this folder."""
     return (path / MARKS_FILE).is_file() and (path / EVENTS_FILE).is_file()
 
@@ -188,7 +188,7 @@ def reader_of(path: Path) -> Reader:
         InputError: it cannot be read, or nothing reads it.
     """
     if path.is_dir():
-        return read_folder_into if is_ingested(path) else read_ros2_into
+        return read_folder_into if is_converted(path) else read_ros2_into
     try:
         with path.open("rb") as stream:
             first = stream.read(_FIRST)
@@ -225,7 +225,7 @@ def _read_marks_into(path: Path, gathering: Gathering, on_progress: Progress | N
 
 def _is_recording(path: Path) -> bool:
     if path.is_dir():
-        return is_ingested(path) or (path / ROS2_FILE).is_file()
+        return is_converted(path) or (path / ROS2_FILE).is_file()
     if (
         path.name.endswith(".marks.csv")
         and path.with_name(path.name[: -len(".marks.csv")]).exists()

@@ -11,7 +11,7 @@ from rich.text import Text
 from pytpc.base.wording import many, percent, plain
 from pytpc.diagnosis.results.advice import BlamedAdvice, JoinedAdvice, MarkGroup
 from pytpc.diagnosis.results.suspects import Blame
-from pytpc.present.rankings import TYPE_WORDS, indented
+from pytpc.present.ranking_tables import TYPE_WORDS, indented
 from pytpc.recording.mission import Recording
 from pytpc.static.static_info import Comparison
 

@@ -27,7 +27,7 @@ from pathlib import Path
 from fuzz.reader_samples import EXTENSIONS, WORDS, samples
 from pytpc.base.errors import TpcError
 from pytpc.ingest.gathering import Gathering
-from pytpc.ingest.outcome import Merged
+from pytpc.ingest.merged import Merged
 from pytpc.ingest.reading import gather
 
 SECONDS = 5

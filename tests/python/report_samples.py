@@ -10,7 +10,7 @@ from html.parser import HTMLParser
 from mission_samples import comparison, events, ns, static_info
 
 from pytpc.api.report import MissionReport, write_missions
-from pytpc.diagnosis.ranking.ranking import rank_marks
+from pytpc.diagnosis.ranking.mark_ranking import rank_marks
 from pytpc.ingest import Recording
 from pytpc.recording.marks import Mark
 from pytpc.static.static_info import PathStep

@@ -18,10 +18,13 @@ BREAKS = {
     ),
     "product": ("pytpc/values/scalars.py", "import pytpc_evaluation.study.plan"),
     "inside-a-node": ("pytpc/python_runtime/words.py", "from pytpc.base import errors"),
-    "pure-diagnosis": ("pytpc/diagnosis/ranking/ranking.py", "from pytpc.ingest import reading"),
+    "pure-diagnosis": (
+        "pytpc/diagnosis/ranking/mark_ranking.py",
+        "from pytpc.ingest import reading",
+    ),
     "no-files-in-diagnosis": ("pytpc/diagnosis/scores/scores.py", "import pathlib"),
     "no-diagnosis-in-present": (
-        "pytpc/present/rankings.py",
+        "pytpc/present/ranking_tables.py",
         "from pytpc.diagnosis.ranking import blame",
     ),
     "one-door": ("pytpc/cli/options.py", "from pytpc.ingest import reading"),

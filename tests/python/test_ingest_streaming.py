@@ -19,7 +19,7 @@ from pytpc.cli.main import main
 from pytpc.ingest import load_recording, read
 from pytpc.ingest import spool as spool_module
 from pytpc.ingest.gathering import Gathering
-from pytpc.ingest.outcome import Merged
+from pytpc.ingest.merged import Merged
 from pytpc.ingest.reading import gather, opened
 from pytpc.recording.events import read_parquet
 

@@ -42,7 +42,9 @@ def test_advice_looks_at_the_window_that_ranked():
 
 
 def test_import_is_lazy():
-    code = "import sys, pytpc; print('numpy' in sys.modules, 'pytpc.api.ranking' in sys.modules)"
+    code = (
+        "import sys, pytpc; print('numpy' in sys.modules, 'pytpc.api.mark_rankings' in sys.modules)"
+    )
     said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert said.stdout.split() == ["False", "False"]
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from mission_samples import comparison, key, ns, static_info
 
 from pytpc.diagnosis.question import Question
-from pytpc.diagnosis.ranking.ranking import rank_marks
+from pytpc.diagnosis.ranking.mark_ranking import rank_marks
 from pytpc.diagnosis.scores.live_scores import LiveRanking, LiveScores, TooOldError
 from pytpc.diagnosis.scores.scores import NONE, Before, Formula, type1, type2
 from pytpc.diagnosis.scores.summary_scores import LogTables, type2_of_summaries

@@ -22,7 +22,7 @@ from rosbags.highlevel import AnyReader
 from pytpc.api.record import sink_settings
 from pytpc.base.errors import InputError, RunError
 from pytpc.cli.mission_commands import record_command
-from pytpc.diagnosis.ranking.ranking import rank_marks
+from pytpc.diagnosis.ranking.mark_ranking import rank_marks
 from pytpc.ingest import Recording
 from pytpc.recording.marks import Mark
 from pytpc.ros.mission_run import (

@@ -10,7 +10,7 @@ from pytpc.diagnosis.ranking.other_values import (
     ACQUITTED,
     before_changes,
     diagnose_replayed,
-    of_clean_run,
+    of_good_run,
     replayed,
     turns,
 )
@@ -88,7 +88,7 @@ def test_old_values_become_thresholds_in_their_own_unit():
 def test_of_a_clean_run_only_what_differs_is_replayed():
     here = events([(1, 0, 0, 1, 4), (1, 1, 0, 1, 4), (1, 2, 0, 1, 4)])
     there = events([(1, 0, 0, 1, 2), (1, 1, 0, 1, 4)])
-    assert of_clean_run(Tpcs.of(STATIC), here, there) == {key(0): 2.0}
+    assert of_good_run(Tpcs.of(STATIC), here, there) == {key(0): 2.0}
 
 
 def mission():

@@ -15,7 +15,8 @@ from suite.python_run import missing_modules, run_nodes
 from suite.report import analyse_python
 
 ROOT = Path(__file__).parents[2]
-WITH_BOTH = all(importlib.util.find_spec(f"pytpc.{name}") for name in ("python_analysis", "python_runtime"))
+ROOMS = ("python_analysis", "python_runtime")
+WITH_BOTH = all(importlib.util.find_spec(f"pytpc.{name}") for name in ROOMS)
 # What a timed node publishes is not the same twice.
 NODES = [node for node in nodes(PYTHON_PACKAGE) if not load(node, PYTHON_PACKAGE).timed]
 

@@ -6,7 +6,7 @@ import pytest
 from mission_samples import comparison, events, key, ns, static_info
 
 from pytpc.diagnosis.question import Question
-from pytpc.diagnosis.ranking.ranking import rank_marks, unknown_keys
+from pytpc.diagnosis.ranking.mark_ranking import rank_marks, unknown_keys
 from pytpc.ingest import Recording
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark

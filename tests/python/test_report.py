@@ -20,7 +20,7 @@ from pytpc.base.errors import TpcError
 from pytpc.base.wording import percent
 from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.blame import blame
-from pytpc.diagnosis.ranking.ranking import rank_marks
+from pytpc.diagnosis.ranking.mark_ranking import rank_marks
 from pytpc.diagnosis.suggestion.joining import join_advice
 from pytpc.ingest import MalformedRecord, Recording
 from pytpc.present.page.series import (

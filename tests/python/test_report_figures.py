@@ -14,7 +14,7 @@ from mission_samples import comparison, events, key, ns, static_info
 from report_samples import Page, mission, written
 
 from pytpc.api.report import MissionReport
-from pytpc.diagnosis.ranking.ranking import rank_marks
+from pytpc.diagnosis.ranking.mark_ranking import rank_marks
 from pytpc.ingest import Recording
 from pytpc.present.page.series import FALSE, TRUE
 from pytpc.recording.marks import Mark

@@ -20,7 +20,7 @@ import pytest
 from mission_samples import comparison, events, ns, static_info
 
 from pytpc.diagnosis.question import Question
-from pytpc.diagnosis.ranking.ranking import rank_marks
+from pytpc.diagnosis.ranking.mark_ranking import rank_marks
 from pytpc.diagnosis.scores.rank_curves import rank_curves
 from pytpc.diagnosis.scores.score_tables import Tpcs, parameter_tables, tpc_scores
 from pytpc.diagnosis.scores.scores import NONE

@@ -323,7 +323,7 @@ def test_what_is_said_about_code_is_no_code(package):
 
 def test_the_rankings_of_users_are_the_code_of_the_methods():
     assert "pytpc.diagnosis.ranking.other_values" in modules_used(METHODS["tpc"].__module__)
-    assert "pytpc.diagnosis.ranking.ranking" in modules_used(METHODS["thesis"].__module__)
+    assert "pytpc.diagnosis.ranking.mark_ranking" in modules_used(METHODS["thesis"].__module__)
     assert not any(
         name.startswith("pytpc.cli") for name in modules_used("pytpc_evaluation.study.case")
     )

@@ -16,7 +16,7 @@ from rich.text import Text
 
 from pytpc.api.report import MissionReport
 from pytpc.base.errors import RunError
-from pytpc.diagnosis.ranking.ranking import rank_marks
+from pytpc.diagnosis.ranking.mark_ranking import rank_marks
 from pytpc.diagnosis.results.suspects import MarkRanking
 from pytpc.diagnosis.suggestion.suggest import At, suggest
 from pytpc.ingest import Recording, read_bag, save_recording

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pytpc.base.columns import Int64s
-from pytpc.diagnosis.ranking.ranking import APART_NS
+from pytpc.diagnosis.ranking.mark_ranking import APART_NS
 from pytpc.diagnosis.thresholds.threshold_sets import outcomes
 from pytpc.recording.events import Bools, Events, Floats
 from pytpc.recording.mission import Recording

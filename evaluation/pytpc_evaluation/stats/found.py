@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from pytpc.diagnosis.question import WINDOW_S, Question
-from pytpc.diagnosis.ranking.ranking import rank_marks
+from pytpc.diagnosis.ranking.mark_ranking import rank_marks
 from pytpc.diagnosis.scores.scores import NONE
 from pytpc.recording.marks import MARK_TYPES, MarkType
 from pytpc.static.static_info import StaticInfo

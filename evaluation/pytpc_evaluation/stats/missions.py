@@ -14,7 +14,7 @@ from typing import Any
 
 from pytpc.base.checked_json import parse_json
 from pytpc.base.errors import InputError
-from pytpc.ingest.reading import is_ingested, read
+from pytpc.ingest.reading import is_converted, read
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import RUN_FILE, Recording
 from pytpc_evaluation.treatment import TREATMENT_FILE, Treatment, TreatmentType, load_treatment
@@ -163,7 +163,7 @@ def _treatments(folder: Path) -> dict[str, Treatment]:
 
 
 def _expanded(path: Path) -> list[Path]:
-    if not path.is_dir() or is_ingested(path) or (path / RUN_FILE).is_file():
+    if not path.is_dir() or is_converted(path) or (path / RUN_FILE).is_file():
         return [path]
     below = sorted({run.parent for run in path.rglob(RUN_FILE)})
     return below or [path]

@@ -12,8 +12,8 @@ from dataclasses import replace
 from pytpc.base.wording import many
 from pytpc.diagnosis.question import PLAIN, Question
 from pytpc.diagnosis.ranking.diagnose_beside import diagnose_beside
-from pytpc.diagnosis.ranking.posterior import Decisive, Diagnosis
-from pytpc.diagnosis.ranking.ranking import outside
+from pytpc.diagnosis.ranking.mark_ranking import outside
+from pytpc.diagnosis.ranking.posterior import Decisive, Posterior
 from pytpc.diagnosis.results.suspects import Accused, Blame, Evaluation
 from pytpc.diagnosis.scores.evaluations import KeyRows, LoggedEvaluations
 from pytpc.diagnosis.scores.score_tables import Tpcs
@@ -57,7 +57,7 @@ def blame(recording: Recording, static_info: StaticInfo, question: Question = PL
 
 
 def _suspects(
-    found: Diagnosis, static_info: StaticInfo, marks: Sequence[Mark], events: Events
+    found: Posterior, static_info: StaticInfo, marks: Sequence[Mark], events: Events
 ) -> tuple[Accused, ...]:
     order = found.order
     scores = [round(float(found.scores[column]), _DIGITS) for column in order]

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from pytpc.diagnosis.ranking.ranking import APART_NS
+from pytpc.diagnosis.ranking.mark_ranking import APART_NS
 from pytpc.recording.mission import Recording
 
 _NAMED = 3

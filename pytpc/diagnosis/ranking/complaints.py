@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from pytpc.base.wording import many
-from pytpc.diagnosis.ranking.ranking import unknown_keys
+from pytpc.diagnosis.ranking.mark_ranking import unknown_keys
 from pytpc.recording.mission import Recording
 from pytpc.static.static_info import StaticInfo
 

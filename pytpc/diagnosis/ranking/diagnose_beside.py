@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from pytpc.diagnosis.ranking.other_values import before_changes, diagnose_replayed, of_clean_run
-from pytpc.diagnosis.ranking.posterior import Diagnosis, diagnose_log
+from pytpc.diagnosis.ranking.other_values import before_changes, diagnose_replayed, of_good_run
+from pytpc.diagnosis.ranking.posterior import Posterior, diagnose_log
 from pytpc.diagnosis.ranking.priors import of_changes, of_reference
 from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.recording.mission import Recording
@@ -21,7 +21,7 @@ def diagnose_beside(
     *,
     reference: Recording | None = None,
     changes: Sequence[Change] = (),
-) -> Diagnosis:
+) -> Posterior:
     """Judge all parameters by all marks, and by what the other values would have changed.
 
     Args:
@@ -38,7 +38,7 @@ def diagnose_beside(
     if reference is not None:
         events, clean = recording.events, reference.events
         priors.append(of_reference(tpcs, events, clean))
-        others.update(of_clean_run(tpcs, events, clean))
+        others.update(of_good_run(tpcs, events, clean))
     if changes:
         priors.append(of_changes(tpcs.names, changes))
         # The last of them counts there.

@@ -28,7 +28,7 @@ import numpy as np
 
 from pytpc.base.columns import Bools, Floats
 from pytpc.diagnosis.ranking.mark_evidence import SHARE, Marked, Wait, any_time, caused, marked
-from pytpc.diagnosis.ranking.posterior import Diagnosis, diagnose_log, softmax, type_odds
+from pytpc.diagnosis.ranking.posterior import Posterior, diagnose_log, softmax, type_odds
 from pytpc.diagnosis.ranking.priors import thresholds_of
 from pytpc.diagnosis.ranking.result_streams import ResultStream, ResultStreams
 from pytpc.diagnosis.scores.score_tables import Tpcs
@@ -68,7 +68,7 @@ clean mission and no fault of the tuning half has an accusation."""
 
 def diagnose_replayed(
     recording: Recording, static_info: StaticInfo, prior: Floats, others: Mapping[str, float]
-) -> Diagnosis:
+) -> Posterior:
     """The diagnosis of `pytpc.diagnosis.ranking.posterior` with what the replay says.
 
     Args:
@@ -114,7 +114,7 @@ def before_changes(
     return found
 
 
-def of_clean_run(tpcs: Tpcs, events: Events, reference: Events) -> dict[str, float]:
+def of_good_run(tpcs: Tpcs, events: Events, reference: Events) -> dict[str, float]:
     """The threshold of each comparison in a clean run, by its key, where it is another one."""
     here, there = thresholds_of(events, tpcs), thresholds_of(reference, tpcs)
     differs = (here != there) & ~np.isnan(here) & ~np.isnan(there)
@@ -154,7 +154,7 @@ def replayed(
     return found
 
 
-def turned_by_clean_run(
+def turned_by_good_run(
     recording: Recording, static_info: StaticInfo, reference: Recording
 ) -> dict[str, int]:
     """How many recorded results would be others with the thresholds of a clean run.
@@ -163,7 +163,7 @@ def turned_by_clean_run(
         By the name of each parameter that has another threshold there; all of its comparisons.
     """
     tpcs = Tpcs.of(static_info)
-    others = of_clean_run(tpcs, recording.events, reference.events)
+    others = of_good_run(tpcs, recording.events, reference.events)
     found: dict[str, int] = {}
     for stream in ResultStreams.of(recording.events, tpcs).streams:
         key, name = tpcs.keys[stream.code], tpcs.names[stream.column]

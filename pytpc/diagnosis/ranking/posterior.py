@@ -96,7 +96,7 @@ class Decisive(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Diagnosis:
+class Posterior:
     """The parameters and what speaks against them.
 
     ``names`` as `Tpcs.names`; ``scores`` float64[p], the greater the more suspicious, -inf where
@@ -125,7 +125,7 @@ def diagnose_log(
     *,
     prior: Floats | None = None,
     weights: Weights = WEIGHTS,
-) -> Diagnosis:
+) -> Posterior:
     """Judge all parameters by all marks of a mission together.
 
     Args:
@@ -146,7 +146,7 @@ def diagnose_log(
     if not marks or not streams.streams:
         nobody = np.full(len(tpcs.names), -np.inf)
         nothing = (None,) * len(tpcs.names)
-        return Diagnosis(tpcs.names, nobody, np.zeros(len(tpcs.names)), 1.0, 0.5, nothing)
+        return Posterior(tpcs.names, nobody, np.zeros(len(tpcs.names)), 1.0, 0.5, nothing)
     times = np.array([mark.time_ns for mark in marks], np.int64)
     observed = marked(times, tuple(mark.observer for mark in marks), streams)
     found = mark_evidence(streams, observed)
@@ -158,7 +158,7 @@ def diagnose_log(
     posterior, rest = softmax(scores, none)
     by = _decisive(streams, tpcs, mixed)
     type1 = 1.0 / (1.0 + math.exp(float(said.odds[0])))
-    return Diagnosis(tpcs.names, scores, posterior, rest, type1, by)
+    return Posterior(tpcs.names, scores, posterior, rest, type1, by)
 
 
 def _decisive(streams: ResultStreams, tpcs: Tpcs, mixed: Mixture) -> tuple[Decisive | None, ...]:

@@ -25,7 +25,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pytpc.diagnosis.question import PLAIN, WINDOW_S, Question
-from pytpc.diagnosis.ranking.ranking import Ranker
+from pytpc.diagnosis.ranking.mark_ranking import Ranker
 from pytpc.diagnosis.results.suspects import Evaluation, MarkRanking
 from pytpc.diagnosis.scores.live_streams import AGAIN, EventStream, Rows, SummaryStream, end_of
 from pytpc.diagnosis.scores.score_tables import Tpcs, TpcScores, parameter_tables, tpc_scores

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pytpc.diagnosis.ranking.diagnose_beside import diagnose_beside
-from pytpc.diagnosis.ranking.posterior import Diagnosis
+from pytpc.diagnosis.ranking.posterior import Posterior
 from pytpc_evaluation.study.case import Case, Verdict
 
 
@@ -25,7 +25,7 @@ def tpc_changes(case: Case) -> Verdict:
     return verdict(diagnose_beside(case.recording, case.static_info, changes=case.changes))
 
 
-def verdict(found: Diagnosis) -> Verdict:
+def verdict(found: Posterior) -> Verdict:
     """The order, and the posterior of the first as the confidence; 0 where there is nobody."""
     order = found.order
     return Verdict(

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from pytpc.diagnosis.ranking.other_values import turned_by_clean_run
+from pytpc.diagnosis.ranking.other_values import turned_by_good_run
 from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.recording.parameter_change import Change
 from pytpc.static.parameters import same_parameter
@@ -49,7 +49,7 @@ def turned_decisions(case: Case) -> Verdict:
     """
     if case.reference is None:
         return Verdict(())
-    found = turned_by_clean_run(case.recording, case.static_info, case.reference)
+    found = turned_by_good_run(case.recording, case.static_info, case.reference)
     order = sorted(found, key=lambda name: (-found[name], name))
     return Verdict(tuple(order), scores=tuple(float(found[name]) for name in order))
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from pytpc.diagnosis.question import Question, Types
-from pytpc.diagnosis.ranking.ranking import rank_marks
+from pytpc.diagnosis.ranking.mark_ranking import rank_marks
 from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc_evaluation.study.case import Case, Verdict
 

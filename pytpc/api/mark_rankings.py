@@ -11,7 +11,7 @@ from pytpc.api.missions import Source, find_declared, load_static, read, read_ma
 from pytpc.base.errors import InputError
 from pytpc.base.wording import plain
 from pytpc.diagnosis.question import PLAIN, WINDOW_S, Question, Types
-from pytpc.diagnosis.ranking.ranking import rank_marks
+from pytpc.diagnosis.ranking.mark_ranking import rank_marks
 from pytpc.diagnosis.results.mission_answer import RankCurves
 from pytpc.diagnosis.results.suspects import MarkRanking
 from pytpc.diagnosis.scores.rank_curves import STEP_S, rank_curves
