@@ -1,7 +1,9 @@
 //===- GatherResults.h - The threshold predicate comparisons --------------===//
 //
-// Thesis A.12: what ParamUsageFinder and BackwardPropagate agree on. The one
-// place to add another kind of threshold.
+// Thesis A.12: what ParamUsageFinder and BackwardPropagate agree on, and the
+// label of each. What is a threshold is decided in ParamUsageFinder and
+// ConstantFinder; docs/explanation/architecture.md#the-passes says what else
+// another kind needs.
 //
 //===----------------------------------------------------------------------===//
 #ifndef TPC_GATHERRESULTS_H
