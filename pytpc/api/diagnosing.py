@@ -45,8 +45,8 @@ def diagnose(
             in the sources of the static information, and beside a mission that is given by its
             path.
         **settings: in place of ``question``. ``types``: with ``ignore`` the types of the marks do
-            not count. ``reference``: a mission of the same build that went right. ``changes``: what
-            was changed since it went right, see `pytpc.values.changes.read_changes` and
+            not count. ``reference``: a good run of the same build. ``changes``: what was changed
+            since the last good run, see `pytpc.values.changes.read_changes` and
             `pytpc.values.changes.changes_between`. ``top``: for how many suspects there is a value
             to try.
 

@@ -124,7 +124,7 @@ def warn_about(recording: Recording, static: StaticInfo | None) -> None:
 
 
 def reference_of(source: Path | None, static: StaticInfo) -> Recording | None:
-    """A mission that went right.
+    """The good run that ``--reference`` names, None without one.
 
     Raises:
         InputError: it cannot be read, or is of another build.

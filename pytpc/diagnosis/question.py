@@ -34,7 +34,7 @@ class Question:
         window_s: the window of type II, and how long before a mark counts as near to it, in
             seconds.
         top: for how many suspects a value is suggested.
-        reference: a mission of the same build that went right.
+        reference: a good run of the same build.
         changes: what was changed since the robot went right, newest last; empty where that is not
             known. Of several changes of one parameter the oldest has the value that was right.
         declared: ranges, types and defaults that are declared of parameters.

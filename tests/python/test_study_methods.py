@@ -127,7 +127,7 @@ def test_the_largest_change_is_by_its_part_of_the_value():
     assert largest_change(case([], [], changes=changes)).order == ("~b", "~a", "~c")
 
 
-# Of a the clean run's 3.5 turns the 3 alone; of b its 5 turns one in each of
+# Of a the good run's 3.5 turns the 3 alone; of b its 5 turns one in each of
 # its nodes; c is as it was, and ~never is in neither.
 def test_what_the_clean_run_would_have_turned():
     rows = [(t, 0, t > 2, t, 2) for t in range(1, 5)] + [(1, 2, 0, 1, 2), (2, 2, 0, 1, 2)]

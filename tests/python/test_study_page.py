@@ -314,14 +314,14 @@ def test_the_conclusion():
     assert len(said) == 5
     assert all(line.endswith(".") for line in said)
     assert "in 20 % of the held-back treatments" in said[0]
-    assert "and in 69 % with the log of one clean run" in said[0]
+    assert "and in 69 % with the log of one good run" in said[0]
     assert "34 % and 94 %" in said[1]
     assert "16 % with one person and 18 % with four" in said[1]
     assert "4 % among all parameters and 39 % among those that differ" in said[2]
     assert "finds 71 %, without looking at a mark" in said[2]
-    assert "19 % from the log alone, 80 % with a clean run, 17 % by the thesis's" in said[3]
+    assert "19 % from the log alone, 80 % with a good run, 17 % by the thesis's" in said[3]
     assert said[4].startswith(
-        "So the target of 80 % is missed from one log alone and reached with a clean run"
+        "So the target of 80 % is missed from one log alone and reached with a good run"
     )
     assert conclusion({"users-held-back": tables["users-held-back"]}) == ""
     # Nothing is known of a method: percent() gives a dash.

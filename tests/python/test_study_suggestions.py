@@ -85,7 +85,7 @@ def wanted(out):
 
 
 # The smallest change is to 4. Three times the way is 9, so it lasts from 10 on; from that log five
-# times the way, 50: 51. The default and the clean run have 25. Seed 2 has not been flown. Who is
+# times the way, 50: 51. The default and the good run have 25. Seed 2 has not been flown. Who is
 # told nothing suspects the counter, too: what was flown for the others is not flown again, though
 # after it another value was.
 def test_rounds(out):
@@ -145,7 +145,7 @@ def test_suspects_are_tried_in_turn(out):
 
 
 # A mission in which only the flag was asked, and it never changed; the mark is of what was said.
-# Beside a clean run in which all is the same it is none of the parameters.
+# Beside a good run in which all is the same it is none of the parameters.
 def test_the_ranking_may_say_that_it_is_none_of_them(out):
     quiet = Recording("m", log(25, range(10)).events, (), 0, ns(100))
     save(out / "missions" / MISSION, quiet)

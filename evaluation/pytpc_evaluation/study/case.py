@@ -18,7 +18,7 @@ from pytpc.static.static_info import StaticInfo
 class Case:
     """A mission and what is known beside it.
 
-    ``recording`` has the marks, with types or without. ``reference`` is a clean run, None where
+    ``recording`` has the marks, with types or without. ``reference`` is a good run, None where
     there is none. ``changes`` are in the order in which they were made, empty where unknown.
     """
 

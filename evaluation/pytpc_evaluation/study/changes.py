@@ -2,7 +2,7 @@
 
 Every mission has decoys: other parameters that were changed by as much as the treatments' are, and
 do no harm. So neither "what was changed last", nor "what was changed most", nor "what differs from
-the clean run" is a trivial answer.
+the good run" is a trivial answer.
 """
 
 from __future__ import annotations

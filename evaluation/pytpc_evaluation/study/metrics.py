@@ -130,7 +130,7 @@ def reliability(
     Args:
         confidence: float64[n] in [0, 1].
         right: float64[n], whether the first suspect was to blame, a share where several are tied;
-            of clean runs and of faults in the source never.
+            of clean missions and of faults in the source never.
         units: the treatment of each.
 
     Returns:

@@ -66,7 +66,7 @@ def next_try(chain: Chain, out: Path) -> Try:
 
 
 def _ranked(chain: Chain, out: Path) -> Try:
-    """What a user has who knows a clean run and nothing of the treatment.
+    """What a user has who knows a good run and nothing of the treatment.
 
     It is the first of the ranking `tpc_reference` by the marks as they were said, with the value
     that `pytpc suggest` and `pytpc rank` lead with for it.

@@ -12,11 +12,11 @@ asks for next, and writes
 A chain is one mission and one variant. ``smallest`` is the thesis's value. ``lasting`` has what the
 log alone says, and tries again from the log of each flight that did not help. ``with-default`` may
 also take the default in the source (in these robots it is the value before the treatment, which
-flatters), and ``with-reference`` a clean run's value. These are told the changed parameter and the
+flatters), and ``with-reference`` a good run's value. These are told the changed parameter and the
 right types of the marks, of all users. ``suspects`` is told the types: it tries the first of a
 ranking in turn, each with what the log alone says. ``ranked`` is told nothing: it takes the first
-of the ranking beside a clean run, by the marks as they were said, with what the log alone says;
-``ranked-reference`` is the same with the clean run's value. What was flown for one chain counts for
+of the ranking beside a good run, by the marks as they were said, with what the log alone says;
+``ranked-reference`` is the same with the good run's value. What was flown for one chain counts for
 all that want the same.
 """
 

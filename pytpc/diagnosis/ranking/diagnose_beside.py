@@ -1,4 +1,4 @@
-"""The diagnosis with what is known beside the log: a clean run, or a list of changes."""
+"""The diagnosis with what is known beside the log: a good run, or a list of changes."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def diagnose_beside(
     Args:
         recording: the mission with its marks, of any types or none.
         static_info: what the analysis found.
-        reference: a clean run, whose thresholds are looked at; None where there is none.
+        reference: a good run, whose thresholds are looked at; None where there is none.
         changes: what was changed since the robot went right, newest last, empty where that is not
             known. Their order says nothing; of several changes of one parameter the oldest has the
             value with which the robot went right. Beside a reference, what either of them says is

@@ -1,4 +1,4 @@
-"""Replay: what the robot would have decided with the value before a change, or of a clean run.
+"""Replay: what the robot would have decided with the value before a change, or of a good run.
 
 An engineer who knows which parameters have changed asks: with which of the old values would the
 robot have decided otherwise before the marks, when, and for how long? The logged comparisons of a
@@ -115,7 +115,7 @@ def before_changes(
 
 
 def of_good_run(tpcs: Tpcs, events: Events, reference: Events) -> dict[str, float]:
-    """The threshold of each comparison in a clean run, by its key, where it is another one."""
+    """The threshold of each comparison in a good run, by its key, where it is another one."""
     here, there = thresholds_of(events, tpcs), thresholds_of(reference, tpcs)
     differs = (here != there) & ~np.isnan(here) & ~np.isnan(there)
     return {tpcs.keys[code]: float(there[code]) for code in np.flatnonzero(differs)}
@@ -157,7 +157,7 @@ def replayed(
 def turned_by_good_run(
     recording: Recording, static_info: StaticInfo, reference: Recording
 ) -> dict[str, int]:
-    """How many recorded results would be others with the thresholds of a clean run.
+    """How many recorded results would be others with the thresholds of a good run.
 
     Returns:
         By the name of each parameter that has another threshold there; all of its comparisons.

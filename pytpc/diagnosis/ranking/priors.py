@@ -37,7 +37,7 @@ def of_changes(names: Sequence[str], changes: Iterable[Change]) -> Floats:
 
 
 def of_reference(tpcs: Tpcs, events: Events, reference: Events) -> Floats:
-    """float64[p], the log prior of each parameter, from the thresholds of a clean run.
+    """float64[p], the log prior of each parameter, from the thresholds of a good run.
 
     A parameter none of whose comparisons was evaluated in both, or that changed while the robot
     ran, is between: nothing is known of it.

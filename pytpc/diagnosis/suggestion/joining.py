@@ -87,7 +87,7 @@ def with_remedies(
         static_info: what the analysis found.
         rankings: of its marks.
         lists: for each the advice for its first suspects.
-        question: its ``window_s``; a mission that went right is not looked at.
+        question: its ``window_s``; a good run is not looked at.
     """
     alone = replace(question, reference=None, flown=())
     marks: dict[tuple[object, ...], list[Mark]] = {}

@@ -28,14 +28,14 @@ def known_values(
 ) -> list[KnownValue]:
     """Those that there are, the strongest evidence first.
 
-    A clean run has shown that its value does; a default is what its author thought would; one that
+    A good run has shown that its value does; a default is what its author thought would; one that
     is declared may hold for other robots, too.
 
     Args:
         case: the parameter at one of its comparisons.
         static_info: what the analysis found, of the reference's build, too.
         parameter: its name in the source.
-        reference: a clean run.
+        reference: a good run.
     """
     found: list[KnownValue] = []
     flown = None if reference is None else value_in(reference, static_info, parameter)

@@ -3,7 +3,7 @@
 The smallest change is often not enough; a counter reaches the next number, too, and noise the
 next bit. Here all marks of a mission are asked at once, and the evidence counts in this order:
 
-1. a value of a clean run, whichever way it is: it was flown, and nothing went wrong, while the way
+1. a value of a good run, whichever way it is: it was flown, and nothing went wrong, while the way
    that the log shows hangs on what people said of the type of the error;
 2. the direction of the log (`pytpc.diagnosis.suggestion.lasting`), never one that makes what the
 robot stood by

@@ -13,7 +13,7 @@ def tpc(case: Case) -> Verdict:
 
 
 def tpc_reference(case: Case) -> Verdict:
-    """With the thresholds of a clean run, where there is one, and what they would have changed."""
+    """With the thresholds of a good run, where there is one, and what they would have changed."""
     return verdict(diagnose_beside(case.recording, case.static_info, reference=case.reference))
 
 

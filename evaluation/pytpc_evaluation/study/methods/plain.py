@@ -43,9 +43,9 @@ def _newest_first(changes: Sequence[Change], case: Case) -> Verdict:
 
 
 def turned_decisions(case: Case) -> Verdict:
-    """By how many recorded results the value of the clean run would have turned, the most first.
+    """By how many recorded results the value of the good run would have turned, the most first.
 
-    Of the parameters that differ from it; all others, and all without a clean run, are tied.
+    Of the parameters that differ from it; all others, and all without a good run, are tied.
     """
     if case.reference is None:
         return Verdict(())
@@ -55,7 +55,7 @@ def turned_decisions(case: Case) -> Verdict:
 
 
 def differs_at_random(case: Case) -> Verdict:
-    """Those that differ from the clean run are tied before all others, and chance decides."""
+    """Those that differ from the good run are tied before all others, and chance decides."""
     order = turned_decisions(case).order
     return Verdict(order, scores=(0.0,) * len(order))
 

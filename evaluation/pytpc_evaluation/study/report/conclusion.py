@@ -32,21 +32,21 @@ def conclusion(tables: Mapping[str, Table]) -> str:
             (
                 "One person who watches the robot and marks its errors gets the changed parameter"
                 f" among the first three in {one(OURS)} % of the held-back treatments from the log"
-                f" of that mission alone, and in {one(BESIDE_CLEAN)} % with the log of one clean"
+                f" of that mission alone, and in {one(BESIDE_CLEAN)} % with the log of one good"
                 " run beside it.",
                 f"With four people's marks it is {four(OURS)} % and {four(BESIDE_CLEAN)} %; the"
                 f" thesis's ranking has {one(BASELINE)} % with one person and {four(BASELINE)} %"
                 " with four.",
                 f"Chance finds {four(CHANCE)} % among all parameters and"
-                f" {four(CHANCE_OF_DIFFERENT)} % among those that differ from the clean run;"
+                f" {four(CHANCE_OF_DIFFERENT)} % among those that differ from the good run;"
                 " counting which of these would have turned most recorded decisions finds"
                 f" {four(TURNED)} %, without looking at a mark.",
                 "In the second round, whose treatments nobody had seen ranked before, four people's"
                 f" marks give {unseen(OURS)} % from the log alone, {unseen(BESIDE_CLEAN)} % with a"
-                f" clean run, {unseen(BASELINE)} % by the thesis's ranking and {unseen(TURNED)} %"
+                f" good run, {unseen(BASELINE)} % by the thesis's ranking and {unseen(TURNED)} %"
                 " by counting turned decisions.",
                 f"So the target of {target:.0f} % is {_said(unseen(OURS), target)} from one log"
-                f" alone and {_said(unseen(BESIDE_CLEAN), target)} with a clean run: record one"
+                f" alone and {_said(unseen(BESIDE_CLEAN), target)} with a good run: record one"
                 " while the robot behaves.",
             )
         )

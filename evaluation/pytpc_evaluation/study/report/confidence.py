@@ -73,7 +73,7 @@ def judged(rows: Iterable[Position], method: str) -> list[Position]:
 
 
 def rightness(row: Position) -> float:
-    """Whether the first is to blame, a share where it is tied; on clean runs and faults nobody."""
+    """Whether the first is to blame, a share where it is tied; 0 on clean missions and faults."""
     return row.within(1) if row.changed else 0.0
 
 

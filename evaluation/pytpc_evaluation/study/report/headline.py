@@ -58,11 +58,11 @@ class Headline:
 
 _RANKED = {
     "": ("", OURS),
-    "-with-clean-run": (", with a clean run", BESIDE_CLEAN),
+    "-with-clean-run": (", with a good run", BESIDE_CLEAN),
     "-thesis": (", by the thesis's ranking", BASELINE),
     "-chance": (", by chance", CHANCE),
     "-chance-of-different": (
-        ", by chance among what differs from a clean run",
+        ", by chance among what differs from a good run",
         CHANCE_OF_DIFFERENT,
     ),
 }
@@ -71,7 +71,7 @@ _RANKED = {
 _VARIANTS = {
     "smallest": "the smallest change, the changed parameter being known",
     RANKED: "the suggested value of what is ranked first by confused marks, nothing being known",
-    RANKED_REFERENCE: "the clean run's value of what is ranked first by confused marks (the value"
+    RANKED_REFERENCE: "the good run's value of what is ranked first by confused marks (the value"
     " before the treatment is put back where the ranking is right)",
 }
 """The variants of suggestions that are told beside the headline, of their first tries."""

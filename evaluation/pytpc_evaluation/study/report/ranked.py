@@ -18,7 +18,7 @@ from pytpc_evaluation.tables import Cell, Column, Table
 
 OURS = "tpc"
 BESIDE_CLEAN = "tpc+reference"
-"""Ours where there is a clean run."""
+"""Ours where there is a good run."""
 BASELINE = "thesis"
 CHANCE = "random"
 CHANCE_OF_DIFFERENT = "differs-at-random"
@@ -62,7 +62,7 @@ def percent(found: Estimate) -> str:
 
 
 def result_table(rows: Sequence[Position], part: Part) -> Table:
-    """The result: ours without and with a clean run beside the thesis's ranking and chance."""
+    """The result: ours without and with a good run beside the thesis's ranking and chance."""
     methods = (BASELINE, OURS, BESIDE_CLEAN, CHANCE, CHANCE_OF_DIFFERENT)
     judged = (OURS, BESIDE_CLEAN)
     verdicts = (f"Verdict on {method}" for method in judged)
