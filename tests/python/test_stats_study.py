@@ -296,7 +296,7 @@ def test_all_tables_of_odd_missions():
 def test_complaints():
     assert list(study_complaints(mission(MISSED, (), treatment("type2")), STATIC)) == []
     (first,) = study_complaints(mission(MISSED), STATIC)
-    assert first.startswith("its treatment is not known")
+    assert first.startswith("its treatment is unknown")
     (first,) = study_complaints(mission(MISSED, (), treatment("type1", "~other")), STATIC)
     assert "changed ~other, with which nothing" in first
     (first,) = study_complaints(mission((), (), treatment("clean")), STATIC)
