@@ -40,7 +40,9 @@ bool Sides::isHanded(const Instruction &Call,
   return !To || any_of(To->args(), [&](const Use &Arg) {
     return Arg->getType()->isPointerTy() &&
            any_of(Pointers.resolve(Arg, false), [&](const Location &A) {
-             return is_contained(Variables, A);
+             return any_of(Variables, [&](const Location &Variable) {
+               return Variable.mayEqual(A);
+             });
            });
   });
 }

@@ -52,11 +52,14 @@ def diagnose(
 
     Raises:
         InputError: the mission has no marks, or something cannot be read.
-        TypeError: both ``question`` and other settings are given.
+        TypeError: both ``question`` and other settings are given, or a setting that there is not.
     """
     if question is not None and settings:
         raise TypeError("give a question or single settings, not both")
     recording, static = read_marked(mission), load_static(static_info)
+    unknown = sorted(set(settings) - DiagnoseSettings.__annotations__.keys())
+    if unknown:
+        raise TypeError(f"diagnose() has no setting {', '.join(unknown)}")
     if question is None:
         source = None if isinstance(mission, Recording) else Path(mission)
         question = _question(static, source, settings)

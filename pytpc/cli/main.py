@@ -44,7 +44,7 @@ SUMMARIES = {
     "watch": ("watch_commands", "Show the suspected parameters while the robot runs; mark."),
 }
 RENAMED = {"ingest": "convert"}
-"""Commands that were called otherwise."""
+"""Old names of commands, and the new ones."""
 
 _EVALUATION = frozenset({"stats", "study", "survey"})
 
@@ -58,7 +58,12 @@ def summaries() -> dict[str, tuple[str, str]]:
     """
     found = {name: (f"pytpc.cli.{module}", text) for name, (module, text) in SUMMARIES.items()}
     for point in entry_points(group="pytpc.commands"):
-        found.update({name: said for name, said in point.load().items() if name not in found})
+        try:
+            added = point.load()
+        except ImportError as error:
+            click.echo(f"pytpc: warning: commands of {point.value} are missing: {error}", err=True)
+            continue
+        found.update({name: said for name, said in added.items() if name not in found})
     return dict(sorted(found.items()))
 
 
@@ -79,7 +84,7 @@ class _Commands(click.Group):
             module = f"pytpc.cli.{SUMMARIES[cmd_name][0]}"
         elif cmd_name in summaries():
             module = summaries()[cmd_name][0]
-        elif cmd_name in _EVALUATION:
+        elif cmd_name in _EVALUATION and not ctx.resilient_parsing:
             raise TpcError(
                 f"`{cmd_name}` is in the package pytpc-evaluation; in a checkout of TPC:"
                 " pip install ./evaluation"

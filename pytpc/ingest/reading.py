@@ -148,7 +148,7 @@ def sources(path: Path) -> list[Path]:
     """The recordings at ``path``: the file itself, or those in a folder, by name.
 
     Raises:
-        InputError: it is not there, or is no recordings in this folder.
+        InputError: it is not there, or the folder has no recordings.
     """
     if not path.exists():
         raise InputError("no such bag, file or folder", path)

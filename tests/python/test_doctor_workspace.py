@@ -185,7 +185,7 @@ def test_blocks(workspace: Path) -> None:
         "warning",
         "TPC's block points to another installation",
         str(path),
-        "python -m pytpc.workspace.patch WORKSPACE",
+        "pytpc patch WORKSPACE",
     )
     path.write_bytes(patch_text(LISTS, CMAKE_FILE).replace(b" OPTIONAL", b""))
     severity, what, where, _ = only(check(workspace))

@@ -236,3 +236,8 @@ def test_all_marks_together_are_escaped():
         "mark 1: the last report up to the mark is 96 s before it",
     ]
     assert "<table" not in nobody._repr_html_()
+
+
+def test_a_misspelt_setting_of_diagnose_is_an_error():
+    with pytest.raises(TypeError, match="has no setting typs"):
+        pytpc.diagnose(MISSION, STATIC, typs="ignore")

@@ -9,6 +9,7 @@ from __future__ import annotations
 import struct
 from collections.abc import Mapping
 
+from pytpc.base.errors import RunError
 from pytpc.python_runtime.config import NAMES
 from pytpc.ros.node_settings import NodeStatus, values_of
 from pytpc.ros.ros1.connection import LENGTH
@@ -64,12 +65,11 @@ class InstrumentedNodes:
                 self._master.call("deleteParam", parameter)
 
     def reload(self, node: str) -> NodeStatus:
-        """Have a node take over its parameters, and say which settings are in effect.
-
-        Raises:
-            RunError: the master does not answer.
-        """
-        uri = self._master.service_uri(node + _RELOAD)
+        """Have a node take over its parameters, and say which settings are in effect."""
+        try:
+            uri = self._master.service_uri(node + _RELOAD)
+        except RunError as error:
+            return NodeStatus(node, False, str(error))
         if uri is None:
             return NodeStatus(node, False, f"does not answer: nobody offers {node}{_RELOAD}")
         try:

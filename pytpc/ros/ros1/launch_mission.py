@@ -177,10 +177,12 @@ class _Watch:
         limit = time.monotonic() + _SET_PATIENCE_S
         while time.monotonic() < limit and not self._launched.has_ended_well:
             self.look()
-            names = self._graph.call("getParamNames")
-            known = set(names) if isinstance(names, list) else set()
-            if not {n for n in wanted if not _stands(n, known)}:
-                return
+            # On a busy machine the master may be late: then the next look asks again.
+            with contextlib.suppress(RunError):
+                names = self._graph.call("getParamNames")
+                known = set(names) if isinstance(names, list) else set()
+                if not {n for n in wanted if not _stands(n, known)}:
+                    return
             time.sleep(_POLL_S)
 
     def wait_for_clock(self) -> None:

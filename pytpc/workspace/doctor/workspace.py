@@ -160,7 +160,7 @@ def _block(lists: bytes, path: Path, cmake_file: str) -> Iterator[Finding]:
             yield warning(
                 "TPC's block points to another installation",
                 path,
-                "python -m pytpc.workspace.patch WORKSPACE",
+                "pytpc patch WORKSPACE",
             )
     except WorkspaceError as fault:
         where = path if fault.line is None else f"{path}:{fault.line}"
