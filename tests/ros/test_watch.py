@@ -53,10 +53,10 @@ class Node:
         said = f"{stamp // 10**9}.{stamp % 10**9 // 100:07d},{text}"
         self.publisher.publish("/threshold_information", encode_string(said))
 
-    def wait_for_listeners(self, *names: str) -> None:
+    def wait_for_listeners(self, *names: str, topic: str = "/rosout") -> None:
         until = time.monotonic() + 10
-        while not all(any(n in one for one in self.publisher.listeners()) for n in names):
-            assert time.monotonic() < until, self.publisher.listeners()
+        while not all(any(n in one for one in self.publisher.listeners(topic)) for n in names):
+            assert time.monotonic() < until, self.publisher.listeners(topic)
             time.sleep(0.05)
 
 
@@ -98,7 +98,7 @@ def test_reports_of_all_ways_are_ranked_and_marked(graph: RosGraph, static: Path
         with watch(graph, static) as screen:
             screen.wait_for("watching on", "0 reports of 0 nodes")
             logs.wait_for_listeners("tpc_relay", "tpc_watch")
-            python.wait_for_listeners("tpc_watch")
+            python.wait_for_listeners("tpc_watch", topic="/threshold_information")
             for cmp in (4, 2, 4):
                 logs.log(f"threshold_information:{report(0, cmp, 3)}")
             for cmp in (0.0, 0.5, 0.99):

@@ -98,14 +98,19 @@ class RawPublisher:
                     self._drop(topic, link)
         return sent
 
-    def listeners(self) -> set[str]:
-        """The names of the nodes that listen to any topic."""
+    def listeners(self, only: str | None = None) -> set[str]:
+        """The names of the nodes that listen to a topic, or to any."""
         with self._lock:
             for topic, links in self._links.items():
                 for link in list(links):
                     if _is_closed(link[1]):
                         self._drop(topic, link)
-            return {node for links in self._links.values() for node, _ in links}
+            return {
+                node
+                for topic, links in self._links.items()
+                for node, _ in links
+                if only in (None, topic)
+            }
 
     def close(self) -> None:
         """Leave the graph. A master that is gone already is no error."""
