@@ -104,7 +104,7 @@ def test_a_node_with_dynamic_reconfigure_takes_it_at_once(apply, graph: RosGraph
     done = apply("--live", "/tuned/limit", "0.75")
     assert done.exit_code == 0, done.output
     assert f"{graph.uri}: /tuned/limit 0.5 -> 0.75" in done.output
-    assert "without a restart" in done.output
+    assert "uses it now (dynamic_reconfigure), without a restart" in done.output
     # The node says what its callback was given.
     assert graph.call("getParam", "/seen/limit") == 0.75
     undone = apply("--undo")
@@ -130,7 +130,7 @@ def test_what_the_node_makes_of_it_is_said(apply, graph: RosGraph) -> None:
     answer = json.loads(apply("--live", "/tuned/limit", "5", "--json").output)["live"]
     # Its description says 0 to 1.
     assert (answer["new"], answer["holds"]) == (5.0, 1.0)
-    assert answer["note"].startswith("the node limited it to 1.0")
+    assert answer["note"] == "the node limited it to 1.0 (dynamic_reconfigure)"
     assert apply("--undo", "--force").exit_code == 0
     assert graph.call("getParam", "/seen/limit") == 0.5
 
@@ -197,7 +197,10 @@ def test_the_node_ends_before_the_undo(apply, graph: RosGraph) -> None:
     while "/gone/set_parameters" not in json.dumps(graph.call("getSystemState")):
         assert time.monotonic() < deadline, "the node does not come up"
         time.sleep(0.1)
-    assert "without a restart" in apply("--live", "/gone/limit", "0.75").output
+    assert (
+        "uses it now (dynamic_reconfigure), without a restart"
+        in apply("--live", "/gone/limit", "0.75").output
+    )
     graph.stop(node)
     # What the next node will read is set back all the same.
     undone = apply("--undo")
