@@ -22,7 +22,7 @@ from pytpc_evaluation.study.judge import POSITIONS_FILE, judge
 from pytpc_evaluation.study.methods import METHODS
 from pytpc_evaluation.study.report import judging
 from pytpc_evaluation.study.report.judged import JUDGED_FILE, load_judgings, told_judgings
-from pytpc_evaluation.study.report.judging import rank_missions
+from pytpc_evaluation.study.report.judging import by_own_marks
 from pytpc_evaluation.study.report.making import ReportOptions, make_report
 from pytpc_evaluation.study.report.positions import Position, read_positions
 from pytpc_evaluation.study.resume import alone_with_results
@@ -43,7 +43,7 @@ def contents(study: Path) -> bytes:
 def ranked(study, tmp_path_factory) -> Path:
     """The small study whose tuning half is ranked."""
     folder = Path(shutil.copytree(study, tmp_path_factory.mktemp("ranked") / "study"))
-    rank_missions(folder, ["tuning"])
+    by_own_marks().complete(folder, ["tuning"])
     return folder
 
 
@@ -90,16 +90,16 @@ def test_only_what_is_missing_is_ranked(own, asked):
     gone += [row for row in rows_in(own) if row.treatment == "fault_wires"]
     rest = [asdict(row) for row in rows_in(own) if row not in gone]
     write_rows(own / POSITIONS_FILE, rest)
-    rank_missions(own, ["tuning"])
+    by_own_marks().complete(own, ["tuning"])
     assert asked == [("clean", 1, ("thesis",)), ("fault_wires", 1, tuple(METHODS))]
     assert contents(own) == before
-    rank_missions(own, ["tuning"])
+    by_own_marks().complete(own, ["tuning"])
     assert len(asked) == 2
 
 
 def test_again_ranks_all_of_the_half(own, asked):
     before = contents(own)
-    rank_missions(own, ["tuning"], again=True)
+    by_own_marks().complete(own, ["tuning"], again=True)
     assert {(name, seed) for name, seed, _ in asked} == TUNING
     assert contents(own) == before
 
@@ -108,7 +108,7 @@ def test_again_ranks_all_of_the_half(own, asked):
 def test_a_mission_that_was_marked_anew_is_ranked_again(own, asked):
     before = rows_in(own)
     write_said(own / "missions/alpha/type1_low/seed-1", [(7, "user1", "I", "I")])
-    rank_missions(own, ["tuning"])
+    by_own_marks().complete(own, ["tuning"])
     assert asked == [("type1_low", 1, tuple(METHODS))]
     rows = [row for row in rows_in(own) if (row.treatment, row.seed) == ("type1_low", 1)]
     assert len(rows) == 2 * 3 * len(METHODS)
@@ -119,7 +119,7 @@ def test_a_mission_that_was_marked_anew_is_ranked_again(own, asked):
 
 def test_what_a_method_is_given_has_it_rank_again(own, asked):
     (own / "missions/alpha/clean/seed-1/changes.json").write_text("[]")
-    rank_missions(own, ["tuning"])
+    by_own_marks().complete(own, ["tuning"])
     assert asked == [("clean", 1, tuple(METHODS))]
 
 
@@ -128,7 +128,7 @@ def test_a_method_that_has_changed_ranks_all_again_and_no_other_does(own, asked,
         return "new code" if method is METHODS["random"] else method_digest(method)
 
     monkeypatch.setattr(judging, "method_digest", changed)
-    rank_missions(own, ["tuning"])
+    by_own_marks().complete(own, ["tuning"])
     assert {(name, seed) for name, seed, _ in asked} == TUNING
     assert {methods for _, _, methods in asked} == {("random",)}
 
@@ -137,7 +137,7 @@ def test_methods_come_and_go(own, asked, monkeypatch):
     new = {"first": lambda case: Verdict(("~high",)), "thesis": METHODS["thesis"]}
     monkeypatch.setattr(judging, "METHODS", new)
     monkeypatch.setattr(judging, "method_digest", lambda of: method_digest(METHODS["thesis"]))
-    rank_missions(own, ["tuning"])
+    by_own_marks().complete(own, ["tuning"])
     assert {methods for _, _, methods in asked} == {("first",)}
     tuning = [row for row in rows_in(own) if row.half == "tuning"]
     assert {row.method for row in tuning} == {"first", "thesis"}
@@ -145,7 +145,7 @@ def test_methods_come_and_go(own, asked, monkeypatch):
 
 def test_the_table_is_the_same_however_many_processes_rank(own):
     before = contents(own)
-    rank_missions(own, ["tuning"], again=True, jobs=2)
+    by_own_marks().complete(own, ["tuning"], again=True, jobs=2)
     assert contents(own) == before
 
 
@@ -161,9 +161,9 @@ def test_an_interrupted_ranking_is_gone_on_with(own, monkeypatch, asked):
 
         patch.setattr(judging, "judge", interrupted)
         with pytest.raises(KeyboardInterrupt):
-            rank_missions(own, ["tuning"])
+            by_own_marks().complete(own, ["tuning"])
     assert {row.treatment for row in rows_in(own)} == {"clean", "fault_wires"}
-    rank_missions(own, ["tuning"])
+    by_own_marks().complete(own, ["tuning"])
     assert {name for name, _, _ in asked} == {"type1_low"}
     assert len(contents(own)) < len(before)
 
@@ -175,7 +175,7 @@ def test_an_interruption_ends_all_processes_and_keeps_what_they_did(own):
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        rank_missions(own, ["tuning"], interrupt, jobs=2)
+        by_own_marks().complete(own, ["tuning"], interrupt, jobs=2)
     assert active_children() == []
     assert len({(row.treatment, row.seed) for row in rows_in(own)}) == 1
 
@@ -184,15 +184,15 @@ def test_a_broken_mission_does_not_keep_others_from_being_ranked(own):
     shutil.rmtree(own / "results")
     (own / "missions/alpha/clean/seed-1/marks.parquet").write_text("x")
     with pytest.raises(InputError, match=r"clean/seed-1/marks\.parquet: not a file of marks"):
-        rank_missions(own, ["tuning"])
+        by_own_marks().complete(own, ["tuning"])
     assert {(row.treatment, row.seed) for row in rows_in(own)} == TUNING - {("clean", 1)}
 
 
 def test_two_do_not_rank_at_once(own):
     with alone_with_results(own):
-        rank_missions(own, ["tuning"])
+        by_own_marks().complete(own, ["tuning"])
         with pytest.raises(RunError, match="another command is at work on these results"):
-            rank_missions(own, ["tuning"], again=True)
+            by_own_marks().complete(own, ["tuning"], again=True)
 
 
 @pytest.mark.parametrize("words", [["report", "--again", "--docs", "x.md"], ["suggestions"]])
@@ -217,7 +217,7 @@ def test_what_another_one_has_ranked_meanwhile_is_kept(own, asked, monkeypatch):
         return lock(folder)
 
     monkeypatch.setattr(judging, "alone_with_results", late)
-    rank_missions(own, ["tuning"])
+    by_own_marks().complete(own, ["tuning"])
     assert asked == []
     assert contents(own) == before
 
@@ -225,13 +225,13 @@ def test_what_another_one_has_ranked_meanwhile_is_kept(own, asked, monkeypatch):
 # Four missions are held back; judged once, again by the same code, and by other code. The tuning
 # half is not counted, nor is a page for which there was nothing to rank.
 def test_each_judging_of_what_is_held_back_is_written_down(own, tmp_path, monkeypatch):
-    rank_missions(own, ["tuning"], again=True)
+    by_own_marks().complete(own, ["tuning"], again=True)
     assert load_judgings(own) == []
-    rank_missions(own, ["held-back"])
-    rank_missions(own, ["held-back"])
-    rank_missions(own, ["held-back", "tuning"], again=True)
+    by_own_marks().complete(own, ["held-back"])
+    by_own_marks().complete(own, ["held-back"])
+    by_own_marks().complete(own, ["held-back", "tuning"], again=True)
     monkeypatch.setattr(judging, "method_digest", lambda of: f"new {method_digest(of)}")
-    rank_missions(own, ["held-back"])
+    by_own_marks().complete(own, ["held-back"])
     found = load_judgings(own)
     assert [one.missions for one in found] == [4, 4, 4]
     assert found[0].digest == found[1].digest != found[2].digest
@@ -256,7 +256,7 @@ def test_an_interrupted_judging_counts(own):
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        rank_missions(own, ["held-back"], interrupt)
+        by_own_marks().complete(own, ["held-back"], interrupt)
     (found,) = load_judgings(own)
     assert found.missions == 1
     assert told_judgings([found]).endswith(

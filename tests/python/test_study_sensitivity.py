@@ -20,14 +20,14 @@ from pytpc_evaluation.study.dataset import Done, save_done
 from pytpc_evaluation.study.judge import POSITIONS_FILE
 from pytpc_evaluation.study.people import look_on
 from pytpc_evaluation.study.report import sensitivity
-from pytpc_evaluation.study.report.judging import rank_missions
+from pytpc_evaluation.study.report.judging import by_own_marks
 from pytpc_evaluation.study.report.making import ReportOptions, make_report
 from pytpc_evaluation.study.report.positions import Position, read_positions
 from pytpc_evaluation.study.report.sensitivity import (
     CROWDS,
     PROGRAM,
     SENSITIVITY_FILE,
-    rank_by_others,
+    by_others,
 )
 
 TUNING = {("type1_low", 1), ("type1_low", 2), ("fault_wires", 1), ("clean", 1)}
@@ -58,7 +58,7 @@ def looked_at(study, tmp_path_factory) -> Path:
     for name, seed in TUNING:
         wrong = [("I", 6.0, 6.0)] if name == "type1_low" else []
         seen(folder / f"missions/alpha/{name}/seed-{seed}", wrong)
-    rank_by_others(folder, ["tuning"])
+    by_others().complete(folder, ["tuning"])
     return folder
 
 
@@ -113,7 +113,7 @@ def test_the_first_crowd_ranks_as_the_study_does(own, tmp_path):
         words += ["--sights", str(mission / "sights.parquet"), "--folder", str(tmp_path)]
         look_on(PROGRAM, {}, words)
         shutil.copy(tmp_path / "thesis.parquet", mission / "marks.parquet")
-    rank_missions(own, ["tuning"])
+    by_own_marks().complete(own, ["tuning"])
 
     def verdicts(rows: list[Position], who: str) -> dict[tuple[object, ...], tuple[object, ...]]:
         return {
@@ -130,9 +130,9 @@ def test_the_first_crowd_ranks_as_the_study_does(own, tmp_path):
 
 def test_what_is_known_is_kept(own, asked):
     before = (own / SENSITIVITY_FILE).read_bytes()
-    rank_by_others(own, ["tuning"])
+    by_others().complete(own, ["tuning"])
     assert asked == []
-    rank_by_others(own, ["tuning"], again=True, jobs=1)
+    by_others().complete(own, ["tuning"], again=True, jobs=1)
     assert sorted(asked) == ["clean", "fault_wires", "type1_low", "type1_low"]
     assert (own / SENSITIVITY_FILE).read_bytes() == before
 
@@ -144,7 +144,7 @@ def test_what_is_known_is_kept(own, asked):
 )
 def test_a_mission_that_was_seen_otherwise_is_looked_at_again(own, asked, otherwise):
     seen(own / "missions/alpha/clean/seed-1", **{"causes": [], **otherwise})
-    rank_by_others(own, ["tuning"])
+    by_others().complete(own, ["tuning"])
     assert asked == ["clean"]
 
 
@@ -152,7 +152,7 @@ def test_a_mission_that_is_not_whole_does_not_keep_others_from_being_ranked(own)
     (own / SENSITIVITY_FILE).unlink()
     (own / "missions/alpha/clean/seed-1/done.json").write_text("{}")
     with pytest.raises(InputError, match=r"clean/seed-1/done\.json: does not say who looked on"):
-        rank_by_others(own, ["tuning"])
+        by_others().complete(own, ["tuning"])
     assert {(row.treatment, row.seed) for row in rows_in(own)} == TUNING - {("clean", 1)}
 
 

@@ -27,8 +27,8 @@ def sensitivity_command(*, out: Path, half: str, again: bool, jobs: int) -> None
     They are faster or slower, vary more, mark both kinds of errors equally often, work alone, or
     toss a coin for the type. Nothing is flown; ``study report`` shows the result.
     """
-    from pytpc_evaluation.study.report.sensitivity import SENSITIVITY_FILE, rank_by_others  # noqa: PLC0415
+    from pytpc_evaluation.study.report.sensitivity import SENSITIVITY_FILE, by_others  # noqa: PLC0415
 
     with progress("ranking by other people's marks") as advance:
-        rank_by_others(out, CHOSEN[half], advance, again=again, jobs=jobs)
+        by_others().complete(out, CHOSEN[half], advance, again=again, jobs=jobs)
     click.echo(f"{out / SENSITIVITY_FILE}", err=True)

@@ -34,7 +34,7 @@ _Place = tuple[str, str, int]
 
 @dataclass(frozen=True)
 class Ranking:
-    """A table of verdicts, and how it comes about; other processes get it, too.
+    """A table of verdicts, and how it is made. It is sent to the processes that rank.
 
     ``file`` is below the study's folder. ``inputs`` is the digest of all that is read of a mission
     (study's folder, mission's, half). ``judge`` gives the verdicts of methods on a mission that was
@@ -46,6 +46,14 @@ class Ranking:
     inputs: Callable[[Path, Path, str], str]
     judge: Callable[[Mission, Path, Mapping[str, Method]], Iterable[Judged]]
     save: Callable[[Iterable[Judged], Path], None]
+
+    def is_complete(self, folder: Path, halves: Sequence[Half]) -> bool:
+        """Whether ``complete`` would have nothing to do.
+
+        Raises:
+            InputError: a mission or the table cannot be read.
+        """
+        return _Plan.of(self, folder, halves, again=False).is_done
 
     def complete(
         self,
@@ -107,32 +115,15 @@ class _Task:
     digests: Mapping[str, str]
 
 
-def rank_missions(
-    folder: Path,
-    halves: Sequence[Half],
-    on_progress: Progress | None = None,
-    *,
-    again: bool = False,
-    jobs: int = 1,
-) -> None:
-    """Complete ``results/positions.parquet``, see `Ranking.complete`."""
-    positions = Ranking(POSITIONS_FILE, METHODS, mission_digest, _by_own_marks, save_positions)
-    positions.complete(folder, halves, on_progress, again=again, jobs=jobs)
+def by_own_marks() -> Ranking:
+    """``results/positions.parquet``: all methods, by the marks of the study's own observers."""
+    return Ranking(POSITIONS_FILE, METHODS, mission_digest, _judge_own_marks, save_positions)
 
 
-def _by_own_marks(
+def _judge_own_marks(
     mission: Mission, _folder: Path, methods: Mapping[str, Method]
 ) -> Iterable[Judged]:
     return judge(mission, methods)
-
-
-def is_complete(ranking: Ranking, folder: Path, halves: Sequence[Half]) -> bool:
-    """Whether ``complete`` would have nothing to do.
-
-    Raises:
-        InputError: a mission or the table cannot be read.
-    """
-    return _Plan.of(ranking, folder, halves, again=False).is_done
 
 
 @dataclass

@@ -32,7 +32,7 @@ from pytpc_evaluation.study.report.judged import (
     load_judgings,
     told_judgings,
 )
-from pytpc_evaluation.study.report.judging import rank_missions
+from pytpc_evaluation.study.report.judging import by_own_marks
 from pytpc_evaluation.study.report.original import Original
 from pytpc_evaluation.study.report.other_people import others_table, parts_with_others
 from pytpc_evaluation.study.report.page import BESIDE, IMAGES, Contents, page, tables_page
@@ -55,7 +55,7 @@ from pytpc_evaluation.study.report.repairs import (
     repairs_table,
     tries_table,
 )
-from pytpc_evaluation.study.report.sensitivity import SENSITIVITY_FILE, is_up_to_date
+from pytpc_evaluation.study.report.sensitivity import SENSITIVITY_FILE, by_others
 from pytpc_evaluation.study.report.systems import rounds_of, systems_table, treatments_table
 from pytpc_evaluation.study.suggestion_chains import CHAINS_FILE, Chain, load_chains
 from pytpc_evaluation.study.suggestions import HEADLINE_FILE
@@ -122,7 +122,8 @@ def make_report(
     if asked.rank is not None:
         try:
             again = asked.rank == "again"
-            rank_missions(folder, halves, progress("ranking"), again=again, jobs=asked.jobs)
+            advance = progress("ranking")
+            by_own_marks().complete(folder, halves, advance, again=again, jobs=asked.jobs)
         except InputError as error:
             troubles.append(f"Not all missions are ranked: {told(error, folder)}.")
     results = _read_results(folder, study, halves, troubles)
@@ -326,7 +327,7 @@ def _others(folder: Path, halves: Sequence[Half], troubles: list[str]) -> list[P
     rows = _results(folder / SENSITIVITY_FILE, read_positions, troubles, "ranked by others")
     own = {row.half for row in rows}
     try:
-        current = is_up_to_date(folder, [half for half in halves if half in own])
+        current = by_others().is_complete(folder, [half for half in halves if half in own])
     except InputError:
         # What cannot be read is said already.
         return rows

@@ -1,15 +1,16 @@
-"""The study's missions, looked at by other people than those whom constants of the ranking know.
+"""The study's missions, marked by people whom the ranking was not tuned to.
 
-Delays and numbers of marks are drawn from tables 6.14 and 6.15 of the thesis, and constants of
-``pytpc.scoring`` come from there, too. Here the same missions are marked by people who are faster,
-slower, alone and so on, and ranked by their marks: ``results/sensitivity.parquet``. Its rows are
-as in ``results/positions.parquet``, with the crowd as ``who``.
+The study's observers draw their delays and numbers of marks from tables 6.14 and 6.15 of the
+thesis, and the ranking takes its constants from the same tables. Here the missions are marked by
+people who are faster, slower, alone and so on, and ranked by those marks. The verdicts stand in
+``results/sensitivity.parquet``. Its rows are those of ``results/positions.parquet``, with the
+crowd as ``who``.
 """
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -26,9 +27,7 @@ from pytpc_evaluation.study.digest import people_digest
 from pytpc_evaluation.study.judge import SCHEMA, Judged, judge
 from pytpc_evaluation.study.methods import METHODS
 from pytpc_evaluation.study.people import look_on
-from pytpc_evaluation.study.plan import Half
-from pytpc_evaluation.study.report.folder import Progress
-from pytpc_evaluation.study.report.judging import Ranking, is_complete
+from pytpc_evaluation.study.report.judging import Ranking
 from pytpc_evaluation.study.verdict_digest import contents, digest_of, mission_digest
 
 SENSITIVITY_FILE = Path("results") / "sensitivity.parquet"
@@ -39,28 +38,8 @@ _METHODS = ("tpc", "tpc+reference", "thesis")
 _LABELS: tuple[Labels, ...] = ("typed", "confused")
 
 
-def rank_by_others(
-    folder: Path,
-    halves: Sequence[Half],
-    on_progress: Progress | None = None,
-    *,
-    again: bool = False,
-    jobs: int = 1,
-) -> None:
-    """Complete ``results/sensitivity.parquet``; arguments and errors as of `Ranking.complete`."""
-    _others().complete(folder, halves, on_progress, again=again, jobs=jobs)
-
-
-def is_up_to_date(folder: Path, halves: Sequence[Half]) -> bool:
-    """Whether the table has what there is to know of ``halves``, as missions and code are now.
-
-    Raises:
-        InputError: a mission or the table cannot be read.
-    """
-    return is_complete(_others(), folder, halves)
-
-
-def _others() -> Ranking:
+def by_others() -> Ranking:
+    """``results/sensitivity.parquet``: some methods, by the marks of other people."""
     methods = {name: METHODS[name] for name in _METHODS}
     return Ranking(SENSITIVITY_FILE, methods, inputs_digest, judge_by_others, save_sensitivity)
 
