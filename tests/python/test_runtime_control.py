@@ -155,6 +155,10 @@ def test_master_that_is_gone_is_one_line():
         port = gone.getsockname()[1]
     with pytest.raises(RunError, match=r"does not answer \(getSystemState: Connection refused\)"):
         InstrumentedNodes(f"http://{HOST}:{port}").names()
+    # What the other nodes answered is shown all the same.
+    status = InstrumentedNodes(f"http://{HOST}:{port}").reload("/a")
+    assert not status.success
+    assert "does not answer (lookupService: Connection refused)" in status.message
 
 
 def test_named_nodes_have_to_run():

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
+import signal
 import subprocess
+import time
 import tomllib
 from pathlib import Path
 
@@ -130,3 +133,33 @@ def test_one_version_everywhere():
     for path in (ROOT / "pyproject.toml", ROOT / "CMakeLists.txt"):
         assert not written.search(path.read_text()), f"{path.name} repeats the version"
     assert f"## [{version}]" in (ROOT / "CHANGELOG.md").read_text()
+
+
+@pytest.mark.parametrize("ending", [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupt_ends_what_setup_has_started(tmp_path, ending):
+    tools = tmp_path / "tools"
+    tools.mkdir()
+    setup = Path(shutil.copy(ROOT / "tools/setup", tools))
+    (tools / "debian-packages.txt").write_text("new\n")
+    started = tmp_path / "started"
+    install = tools / "install-packages"
+    # A whole line is in the file, or none: the move is one step.
+    install.write_text(
+        '#!/bin/sh\n[ "$1" = --missing ] && echo new && exit\n'
+        f"echo $$ >{started}.new\nmv {started}.new {started}\nexec sleep 600\n"
+    )
+    install.chmod(0o755)
+    # A test that runs in the background hands an ignored interrupt on.
+    ran = subprocess.Popen(["/usr/bin/env", "--default-signal=INT", setup], cwd=tmp_path)
+    try:
+        while not started.exists():
+            assert ran.poll() is None
+            time.sleep(0.05)
+        ran.send_signal(ending)
+        assert ran.wait(timeout=60) == 130
+        sleeper = Path("/proc", started.read_text().strip())
+        while sleeper.exists():
+            time.sleep(0.05)
+    finally:
+        ran.kill()
+        ran.wait()

@@ -13,7 +13,10 @@ import pytest
 
 from pytpc.base.errors import MissingToolError
 from pytpc.ingest import Dropped, load_recording
+from pytpc.ros.mission_run import Progress
+from pytpc.ros.ros1 import launch_mission
 from pytpc.ros.ros1.graph import RosGraph
+from pytpc.values.trace import Trace
 
 ROOT = Path(__file__).parents[2]
 KEY = "0a1b2c3d-0000-5000-8000-00000000000f"
@@ -48,6 +51,27 @@ mark.publish(rospy.Time.now())
 rospy.sleep(0.5)
 print("done", flush=True)
 """
+
+
+def test_parameters_are_awaited_though_the_master_hangs(tmp_path: Path) -> None:
+    begun = Trace(Path("x.launch"), {}, {"/set": [{"from": "launch"}]}, [], {})
+    with RosGraph({"PATH": "/usr/bin:/bin"}, tmp_path / "ros") as graph:
+        graph.call("setParam", "/set", 1)
+        master = int(str(graph.call("getPid")))
+        os.kill(master, signal.SIGSTOP)
+        looks = []
+
+        def look(progress: Progress) -> None:
+            looks.append(progress)
+            # The first question went unanswered.
+            if len(looks) == 2:
+                os.kill(master, signal.SIGCONT)
+
+        launched = graph.start("launch", ["sleep", "600"])
+        watch = launch_mission._Watch(graph, launched, tmp_path, time.monotonic(), look)
+        watch.wait_for_parameters(begun)
+        assert len(looks) >= 2
+        assert graph.call("getParamNames") == ["/set"]
 
 
 def test_a_running_graph(tmp_path: Path) -> None:
