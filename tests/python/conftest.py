@@ -13,7 +13,7 @@ from study_samples import make_study
 
 from interpreters import interpreters
 from pytpc.cli.main import main
-from pytpc_evaluation.study.report.making import Made, make_report
+from pytpc_evaluation.study.report.making import WrittenReport, make_report
 
 
 @pytest.fixture(
@@ -60,13 +60,13 @@ def own_study(study: Path, tmp_path: Path) -> Path:
 
 
 @pytest.fixture(scope="session")
-def made_study(study: Path, tmp_path_factory: pytest.TempPathFactory) -> Made:
+def made_study(study: Path, tmp_path_factory: pytest.TempPathFactory) -> WrittenReport:
     """Its page with all that belongs to it."""
     return make_report(study, tmp_path_factory.mktemp("docs") / "study.md")
 
 
 @pytest.fixture(scope="session")
-def study_text(made_study: Made) -> str:
+def study_text(made_study: WrittenReport) -> str:
     """The text of its page, and behind it that of the page with all tables."""
     tables = made_study.page.parent / "study/tables.md"
     return made_study.page.read_text() + tables.read_text()

@@ -3,7 +3,7 @@
 from typing import Any
 
 from pytpc_evaluation.survey.source_lines import LineCount, SourceLines
-from pytpc_evaluation.survey.trees import Build, Found, NotBuilt, TreeResult
+from pytpc_evaluation.survey.trees import Build, NotBuilt, TreeCounts, TreeResult
 
 BAD = NotBuilt("bad", "CMake: CMakeLists.txt:3: Could not find it", ("Eigen3",))
 AFTER = NotBuilt("after", "skipped: what it needs does not build")
@@ -24,11 +24,11 @@ def build(processor: float, *not_built: NotBuilt) -> Build:
     return Build(processor * 2, processor, processor / 2, not_built)
 
 
-def found(comparisons: int = 0, **changes: Any) -> Found:
+def found(comparisons: int = 0, **changes: Any) -> TreeCounts:
     """What was found: one parameter and one file for every two comparisons."""
     half = (comparisons + 1) // 2
     fields = {"python": 0, "units": 1, "failed": (), "without": (), **changes}
-    return Found(comparisons, parameters=half, files=half, **fields)
+    return TreeCounts(comparisons, parameters=half, files=half, **fields)
 
 
 def result(

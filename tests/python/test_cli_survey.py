@@ -10,7 +10,7 @@ from survey_samples import BAD, build, found, result
 
 from pytpc.cli.main import main
 from pytpc_evaluation.commands import survey_commands
-from pytpc_evaluation.survey.surveying import Options, Step
+from pytpc_evaluation.survey.surveying import Options, SurveyProgress
 from pytpc_evaluation.survey.trees import TreeResult
 
 RESULTS = [result("arm", 10.0, 12.5, found=found(4)), result("leg", 4.0, build(5.0, BAD))]
@@ -26,11 +26,11 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> list[Options]:
     options: list[Options] = []
 
     def survey(
-        folders: Sequence[Path], given: Options, on_step: Callable[[Step], None]
+        folders: Sequence[Path], given: Options, on_step: Callable[[SurveyProgress], None]
     ) -> list[TreeResult]:
         options.append(given)
         for what, line in (("building with TPC", ""), ("building with TPC", "Starting >>> a")):
-            on_step(Step(folders[0].name, 1, 2, what, line))
+            on_step(SurveyProgress(folders[0].name, 1, 2, what, line))
         return RESULTS
 
     monkeypatch.setattr(survey_commands, "survey", survey)

@@ -21,7 +21,7 @@ from pytpc_evaluation.study import digest, fly, people
 from pytpc_evaluation.study.dataset import Cause, load_done
 from pytpc_evaluation.study.fly import Flier, remarks_of
 from pytpc_evaluation.study.plan import Flight, flights_of
-from pytpc_evaluation.study.system import System
+from pytpc_evaluation.study.system import BuiltSystem
 
 
 @pytest.fixture
@@ -114,7 +114,7 @@ def rig(monkeypatch) -> Rig:
 @pytest.fixture
 def flier(example, tmp_path, rig) -> Flier:
     static = static_info(comparison(1, "~a"), comparison(2, "~b"))
-    system = System(example, static, {"TPC_SINK": "file"}, {}, "build 1")
+    system = BuiltSystem(example, static, {"TPC_SINK": "file"}, {}, "build 1")
     return Flier(system, tmp_path / "out", 12.0, "people 1")
 
 

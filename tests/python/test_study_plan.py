@@ -17,7 +17,7 @@ from pytpc_evaluation.demo.demo_examples import EXAMPLES, Example
 from pytpc_evaluation.study.changes import DECOYS, drawn_changes, harmless_changes, save_changes
 from pytpc_evaluation.study.plan import (
     Flight,
-    Selection,
+    FlightSelection,
     Setting,
     check_treatments,
     flights_of,
@@ -246,19 +246,19 @@ def test_flights_are_the_reference_and_each_treatment_with_both_seeds(tmp_path, 
 
 def test_a_part_of_it_may_be_chosen(tmp_path, monkeypatch):
     example = robot(tmp_path, monkeypatch, "type1_b")
-    chosen = Selection(treatments=["type1_b"], seeds=[2])
+    chosen = FlightSelection(treatments=["type1_b"], seeds=[2])
     assert [one.name for one in flights_of(example, chosen)] == [
         "robot",
         "robot/type1_b/seed-2",
     ]
     with pytest.raises(InputError, match="there is no treatment type9; there are clean, type1_b"):
-        check_treatments(Selection(treatments=["type9"]), [example])
+        check_treatments(FlightSelection(treatments=["type9"]), [example])
     with pytest.raises(InputError, match="there is no system ship, but robot"):
-        Selection(systems=["ship"]).examples([example])
+        FlightSelection(systems=["ship"]).examples([example])
 
 
 def test_the_quick_part_is_one_robot_with_an_error_of_each_type():
-    quick = Selection(quick=True)
+    quick = FlightSelection(quick=True)
     (example,) = quick.examples()
     found = flights_of(example, quick)
     assert [one.treatment.type for one in found] == ["clean", "clean", "type1", "type2"]

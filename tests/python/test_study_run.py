@@ -26,7 +26,7 @@ from pytpc_evaluation.study.dataset import StudyFile, load_causes, load_done, sa
 from pytpc_evaluation.study.plan import Flight, flights_of
 from pytpc_evaluation.study.resume import alone_in, end_leftovers
 from pytpc_evaluation.study.run import Result, Runner
-from pytpc_evaluation.study.system import System
+from pytpc_evaluation.study.system import BuiltSystem
 
 
 @pytest.fixture
@@ -229,7 +229,7 @@ def fleet(example, tmp_path, monkeypatch) -> FakeFlier:
     save = StudyFile.save
     monkeypatch.setattr(StudyFile, "save", lambda self: save(self, (example,)))
     static = static_info(comparison(1, "~a"))
-    system = System(example, static, {}, {}, "build")
+    system = BuiltSystem(example, static, {}, {}, "build")
     monkeypatch.setattr(flying, "prepare", lambda *_: (system, True))
     found = FakeFlier(tmp_path / "out")
     monkeypatch.setattr(flying, "Flier", lambda *_: found)

@@ -15,17 +15,17 @@ from pytpc.cli.main import main
 from pytpc_evaluation.commands import study_commands
 from pytpc_evaluation.study import flying
 from pytpc_evaluation.study.dataset import Cause, StudyFile, save_done
-from pytpc_evaluation.study.plan import Selection, Setting, flights_of
+from pytpc_evaluation.study.plan import FlightSelection, Setting, flights_of
 from pytpc_evaluation.study.suggested import (
     FAILED_FILE,
     Tried,
-    Wanted,
+    WantedFlight,
     judged,
     load_failed,
     load_wanted,
     suggested_flight,
 )
-from pytpc_evaluation.study.system import System
+from pytpc_evaluation.study.system import BuiltSystem
 
 LEAKS, STANDS = Cause("I", 20.0, 20.0, "it leaks"), Cause("II", 12.5, 40.0, "it stands there")
 ROW = {
@@ -75,8 +75,8 @@ def test_the_list_is_read(tmp_path):
     path = tmp_path / "wanted.json"
     path.write_text(json.dumps([ROW, {**ROW, "seed": 2, "node": None, "value": 3}]))
     assert load_wanted(path) == [
-        Wanted("robot", "type1_b", 1, Setting("~b", "/pump", 1.9)),
-        Wanted("robot", "type1_b", 2, Setting("~b", "", 3.0)),
+        WantedFlight("robot", "type1_b", 1, Setting("~b", "/pump", 1.9)),
+        WantedFlight("robot", "type1_b", 2, Setting("~b", "", 3.0)),
     ]
 
 
@@ -103,7 +103,7 @@ def test_a_wrong_list_is_an_error(tmp_path, document, what):
 
 def test_a_mission_has_to_be_there_before_it_is_flown_again(example, tmp_path):
     flights = flights_of(example)
-    wanted = Wanted("robot", "type1_b", 1, Setting("~b", "/pump", 1.9))
+    wanted = WantedFlight("robot", "type1_b", 1, Setting("~b", "/pump", 1.9))
     with pytest.raises(InputError, match="has not been flown"):
         suggested_flight(wanted, flights, tmp_path)
     save_done(made(), tmp_path / "missions/robot/type1_b/seed-1")
@@ -113,7 +113,7 @@ def test_a_mission_has_to_be_there_before_it_is_flown_again(example, tmp_path):
     # The same people look on.
     (mission,) = [one for one in flights if one.label == "missions/robot/type1_b/seed-1"]
     assert flight.people == mission.people
-    none = Wanted("robot", "type9", 1, wanted.setting)
+    none = WantedFlight("robot", "type9", 1, wanted.setting)
     with pytest.raises(InputError, match="there is no mission robot/type9/seed-1"):
         suggested_flight(none, flights, tmp_path)
 
@@ -160,10 +160,10 @@ def test_failures_that_cannot_be_read(tmp_path):
 @pytest.fixture
 def fleet(example, tmp_path, monkeypatch) -> FakeFlier:
     """The command flies the little robot, and only seems to; nothing is seen with a suggestion."""
-    monkeypatch.setattr(Selection, "examples", lambda *_: [example])
+    monkeypatch.setattr(FlightSelection, "examples", lambda *_: [example])
     save = StudyFile.save
     monkeypatch.setattr(StudyFile, "save", lambda self: save(self, (example,)))
-    system = System(example, static_info(comparison(1, "~a")), {}, {}, "build")
+    system = BuiltSystem(example, static_info(comparison(1, "~a")), {}, {}, "build")
     monkeypatch.setattr(flying, "prepare", lambda *_: (system, True))
     found = FakeFlier(tmp_path / "out")
     monkeypatch.setattr(flying, "Flier", lambda *_: found)

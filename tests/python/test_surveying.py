@@ -14,7 +14,7 @@ from pytpc.base.errors import RunError, WorkspaceError
 from pytpc.workspace.colcon import Bases
 from pytpc_evaluation.survey import surveying
 from pytpc_evaluation.survey.measured_build import BuildWay, Measured, read_tree, underlaid
-from pytpc_evaluation.survey.surveying import Options, Step, survey
+from pytpc_evaluation.survey.surveying import Options, SurveyProgress, survey
 from pytpc_evaluation.survey.trees import Tree
 
 Log = list[tuple[str, str]]
@@ -109,7 +109,7 @@ def test_a_changed_tree_is_built_again_with_what_stands_on_it(
 def test_the_python_of_a_tree_is_analysed(tmp_path: Path, built: Log) -> None:
     """Also where it does not build, and again where it has changed."""
     tree = make_mixed(tmp_path / "ws")
-    steps: list[Step] = []
+    steps: list[SurveyProgress] = []
     (found,) = survey([tree], Options(tmp_path / "out", 2), steps.append)
     assert (found.found.comparisons, found.found.python, found.found.units) == (0, 4, 3)
     assert found.found.failed == (
@@ -209,7 +209,7 @@ def test_trees_of_one_name_are_told_apart(tmp_path: Path, built: Log) -> None:
 def test_two_surveys_do_not_write_into_one_folder(
     tmp_path: Path, trees: tuple[Path, Path], built: Log
 ) -> None:
-    def second(step: Step) -> None:
+    def second(step: SurveyProgress) -> None:
         with pytest.raises(WorkspaceError, match="out: another survey is running here"):
             run(tmp_path / "out", trees[1])
         assert run(tmp_path / "elsewhere", trees[1]) == ["lower"]
@@ -236,7 +236,7 @@ def test_the_output_is_not_put_into_a_tree(tmp_path: Path, built: Log) -> None:
 def test_steps_say_which_tree_and_what(
     tmp_path: Path, trees: tuple[Path, Path], built: Log
 ) -> None:
-    steps: list[Step] = []
+    steps: list[SurveyProgress] = []
     survey([trees[1]], Options(tmp_path / "out", 1), steps.append)
     assert [step.what for step in steps] == [
         "reading sources",

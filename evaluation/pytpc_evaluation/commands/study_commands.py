@@ -21,7 +21,7 @@ from pytpc_evaluation.commands.study_sensitivity import sensitivity_command
 from pytpc_evaluation.commands.study_suggestions import suggestions_command
 from pytpc_evaluation.demo.demo_examples import EXAMPLES
 from pytpc_evaluation.study.flying import opened
-from pytpc_evaluation.study.plan import SEEDS, Flight, Selection, flights_of
+from pytpc_evaluation.study.plan import SEEDS, Flight, FlightSelection, flights_of
 from pytpc_evaluation.study.run import Result
 from pytpc_evaluation.study.suggested import (
     TRIED_FILE,
@@ -90,7 +90,7 @@ def run_command(
     exit status is 1.
     """
     seed_numbers = [int(seed) for seed in seeds]
-    selection = Selection(systems, treatments, seed_numbers, quick=quick)
+    selection = FlightSelection(systems, treatments, seed_numbers, quick=quick)
     with (
         StudyProgress("study") as progress,
         opened(out, selection, rate=rate, on_build=progress.building) as study,
@@ -115,7 +115,7 @@ def suggested_command(
     default is results/suggestions-wanted.json in the study's folder.
     """
     suggestions = load_wanted(wanted or out / WANTED_FILE)
-    selection = Selection(sorted({one.system for one in suggestions}))
+    selection = FlightSelection(sorted({one.system for one in suggestions}))
     if not suggestions:
         raise click.UsageError("the list is empty: there is nothing to fly")
     with (

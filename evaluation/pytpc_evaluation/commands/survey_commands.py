@@ -19,7 +19,7 @@ from pytpc.base.wording import many, plain
 from pytpc.cli.console import console, warn
 from pytpc_evaluation.survey.static_tables import tables
 from pytpc_evaluation.survey.survey_documents import FORMATS, documents, faults
-from pytpc_evaluation.survey.surveying import Options, Step, survey
+from pytpc_evaluation.survey.surveying import Options, SurveyProgress, survey
 from pytpc_evaluation.survey.trees import TreeResult
 from pytpc_evaluation.tables import as_rich
 
@@ -147,7 +147,7 @@ class _Progress:
     def __exit__(self, *_: object) -> None:
         self._bar.stop()
 
-    def show(self, step: Step) -> None:
+    def show(self, step: SurveyProgress) -> None:
         """Take one step of the survey."""
         at = (step.number, step.what)
         if at != self._said:
@@ -171,7 +171,7 @@ class _Progress:
             description=Text(plain(f"{step.tree}: {step.what}{running}")).markup,
         )
 
-    def _say_how_far(self, step: Step) -> None:
+    def _say_how_far(self, step: SurveyProgress) -> None:
         """A line every two seconds, where there is no bar."""
         if step.far and not self._console.is_terminal and time.monotonic() - self._told > _SILENT_S:
             self._told = time.monotonic()

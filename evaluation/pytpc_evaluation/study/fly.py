@@ -38,7 +38,7 @@ from pytpc_evaluation.study.dataset import (
 from pytpc_evaluation.study.digest import flight_digest, marks_digest
 from pytpc_evaluation.study.people import cut_sights, mark, read_marked, see
 from pytpc_evaluation.study.plan import Flight, overlay_text
-from pytpc_evaluation.study.system import System
+from pytpc_evaluation.study.system import BuiltSystem
 from pytpc_evaluation.treatment import Treatment, save_treatment
 
 SETTLE_S = 15.0
@@ -55,7 +55,7 @@ class Flier:
     ``people`` is the digest of those who look on; ``rate`` is in simulated s for a s of the wall.
     """
 
-    system: System
+    system: BuiltSystem
     out: Path
     rate: float
     people: str

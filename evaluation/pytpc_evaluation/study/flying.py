@@ -15,7 +15,7 @@ from pytpc_evaluation.demo.demo_examples import EXAMPLES, Example
 from pytpc_evaluation.study.dataset import StudyFile
 from pytpc_evaluation.study.digest import people_digest
 from pytpc_evaluation.study.fly import Flier
-from pytpc_evaluation.study.plan import Flight, Selection, check_treatments, flights_of
+from pytpc_evaluation.study.plan import Flight, FlightSelection, check_treatments, flights_of
 from pytpc_evaluation.study.resume import alone_in
 from pytpc_evaluation.study.run import Result, Runner
 from pytpc_evaluation.study.system import prepare
@@ -35,7 +35,7 @@ class Listener(Protocol):
 
 
 @dataclass
-class Study:
+class StudyRun:
     """What a run needs to know of its study.
 
     ``fliers`` and ``flights`` are by system: who flies, and what there is to fly.
@@ -95,11 +95,11 @@ class Study:
 @contextmanager
 def opened(
     out: Path,
-    selection: Selection,
+    selection: FlightSelection,
     *,
     rate: float | None = None,
     on_build: Callable[[Example, str], None] | None = None,
-) -> Iterator[Study]:
+) -> Iterator[StudyRun]:
     """Open a study's folder, with the systems of the selection built; nobody else may be in it.
 
     Args:
@@ -115,7 +115,7 @@ def opened(
     check_treatments(selection, examples)
     people = people_digest()
     with alone_in(out):
-        study = Study(out, StudyFile.of(out, versions()))
+        study = StudyRun(out, StudyFile.of(out, versions()))
         for example in examples:
             system, _ = prepare(example, out, _told(on_build, example))
             flown_at = example.study_rate if rate is None else rate

@@ -72,7 +72,7 @@ class Judged:
     round: int = 1
 
 
-class Place(NamedTuple):
+class MeanPlace(NamedTuple):
     """A place from 1, the mean of those of all that are ``tied`` there."""
 
     mean: float
@@ -122,7 +122,7 @@ def judge(
                 )
 
 
-def position(verdict: Verdict, parameter: str | None, names: Sequence[str]) -> Place | None:
+def position(verdict: Verdict, parameter: str | None, names: Sequence[str]) -> MeanPlace | None:
     """The place of a parameter among ``names``, None where none was changed.
 
     A name that several parameters of the source can have means the first of them in the order.
@@ -133,16 +133,16 @@ def position(verdict: Verdict, parameter: str | None, names: Sequence[str]) -> P
     return min(places, default=None)
 
 
-def place(verdict: Verdict, name: str, parameters: int) -> Place:
+def place(verdict: Verdict, name: str, parameters: int) -> MeanPlace:
     """The place of a name among so many parameters."""
     if name not in verdict.order:
         named = len(verdict.order)
-        return Place((named + 1 + parameters) / 2, parameters - named)
+        return MeanPlace((named + 1 + parameters) / 2, parameters - named)
     index = verdict.order.index(name)
     if not verdict.scores:
-        return Place(index + 1.0, 1)
+        return MeanPlace(index + 1.0, 1)
     tied = [n for n, score in enumerate(verdict.scores) if score == verdict.scores[index]]
-    return Place(sum(tied) / len(tied) + 1.0, len(tied))
+    return MeanPlace(sum(tied) / len(tied) + 1.0, len(tied))
 
 
 def save_positions(rows: Iterable[Judged], out: Path) -> None:

@@ -177,7 +177,7 @@ def halves(system: str, treatments: Sequence[Treatment]) -> dict[tuple[str, int]
 
 
 @dataclass(frozen=True)
-class Selection:
+class FlightSelection:
     """What is to be flown; where nothing is named, all of it. ``quick`` is the part for CI."""
 
     systems: Collection[str] = ()
@@ -205,7 +205,7 @@ class Selection:
         return (not names or treatment.name in names) and (not seeds or seed in seeds)
 
 
-def check_treatments(selection: Selection, examples: Sequence[Example]) -> None:
+def check_treatments(selection: FlightSelection, examples: Sequence[Example]) -> None:
     """See that each treatment that was named is one of a system that was chosen.
 
     Raises:
@@ -219,7 +219,7 @@ def check_treatments(selection: Selection, examples: Sequence[Example]) -> None:
         )
 
 
-def flights_of(example: Example, selection: Selection | None = None) -> list[Flight]:
+def flights_of(example: Example, selection: FlightSelection | None = None) -> list[Flight]:
     """The flights of a system: the reference, then the missions by treatment and seed.
 
     Args:
@@ -229,7 +229,7 @@ def flights_of(example: Example, selection: Selection | None = None) -> list[Fli
     Raises:
         InputError: a treatment, or the list of decoys, cannot be read.
     """
-    chosen = selection or Selection()
+    chosen = selection or FlightSelection()
     among = harmless_changes(example)
     treatments = example.all_treatments()
     half = halves(example.name, treatments)

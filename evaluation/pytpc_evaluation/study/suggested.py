@@ -47,7 +47,7 @@ _TRIED = pa.schema(
 
 
 @dataclass(frozen=True)
-class Wanted:
+class WantedFlight:
     """A suggestion that is to be tried in one mission."""
 
     system: str
@@ -88,7 +88,7 @@ class Failed:
     failure: str
 
 
-def load_wanted(path: Path) -> list[Wanted]:
+def load_wanted(path: Path) -> list[WantedFlight]:
     """The list of what is to be tried; ``node`` may be null where one node has the parameter.
 
     Raises:
@@ -110,7 +110,7 @@ def load_wanted(path: Path) -> list[Wanted]:
     return wanted
 
 
-def _wanted(one: object) -> Wanted:
+def _wanted(one: object) -> WantedFlight:
     if not isinstance(one, dict):
         raise ValueError(f"{one!r} is no object")
     system, treatment, seed, parameter, node, value = (one[name] for name in _FIELDS)
@@ -119,10 +119,10 @@ def _wanted(one: object) -> Wanted:
         raise ValueError(f"{texts} are not texts")
     if not isinstance(seed, int) or not isinstance(value, int | float) or isinstance(value, bool):
         raise ValueError(f"seed {seed!r} or value {value!r} is not a number")
-    return Wanted(system, treatment, seed, Setting(parameter, node or "", float(value)))
+    return WantedFlight(system, treatment, seed, Setting(parameter, node or "", float(value)))
 
 
-def suggested_flight(wanted: Wanted, missions: Sequence[Flight], out: Path) -> Flight:
+def suggested_flight(wanted: WantedFlight, missions: Sequence[Flight], out: Path) -> Flight:
     """The flight that tries a suggestion.
 
     Args:

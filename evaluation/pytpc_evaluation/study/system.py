@@ -23,7 +23,7 @@ _BUILT_FILE = "built.json"
 
 
 @dataclass(frozen=True)
-class System:
+class BuiltSystem:
     """A robot that is built.
 
     ``env`` is the environment of its nodes, whose reports go to files; ``plain_env`` that of
@@ -44,7 +44,7 @@ def system_folder(example: Example, out: Path) -> Path:
 
 def prepare(
     example: Example, out: Path, on_output: Callable[[str], None] | None = None
-) -> tuple[System, bool]:
+) -> tuple[BuiltSystem, bool]:
     """Build a robot, unless it is built from the same sources, by the same tools, already.
 
     Args:
@@ -79,7 +79,7 @@ def prepare(
     static = StaticInfo.load(static_file)
     plain_env = workspace_env(bases.install)
     env = {**mission_env(plain_env, bases.static_info), "TPC_SINK": "file"}
-    return System(example, static, env, plain_env, build_digest(example, static)), not is_built
+    return BuiltSystem(example, static, env, plain_env, build_digest(example, static)), not is_built
 
 
 def _read(path: Path) -> object:

@@ -50,7 +50,7 @@ class Options:
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class SurveyProgress:
     """What is being done: the tree, its number among ``total``, and what; or a line of colcon's.
 
     ``far`` says how far it is, where that is known.
@@ -65,7 +65,7 @@ class Step:
 
 
 def survey(
-    folders: Sequence[Path], options: Options, on_step: Callable[[Step], None]
+    folders: Sequence[Path], options: Options, on_step: Callable[[SurveyProgress], None]
 ) -> list[TreeResult]:
     """Survey source trees; the result of each is on the disk as soon as it is there.
 
@@ -112,7 +112,7 @@ def _alone(output: Path) -> Iterator[None]:
 
 
 def _survey(
-    trees: Sequence[Tree], options: Options, on_step: Callable[[Step], None]
+    trees: Sequence[Tree], options: Options, on_step: Callable[[SurveyProgress], None]
 ) -> list[TreeResult]:
     tools = _digest_of_tpc()
     needed = needed_trees(trees)
@@ -139,13 +139,13 @@ def _survey(
 
 @dataclass(frozen=True, slots=True)
 class _Say:
-    on_step: Callable[[Step], None]
+    on_step: Callable[[SurveyProgress], None]
     tree: str
     number: int
     total: int
 
     def __call__(self, what: str, line: str = "", *, far: str = "") -> None:
-        self.on_step(Step(self.tree, self.number, self.total, what, line, far))
+        self.on_step(SurveyProgress(self.tree, self.number, self.total, what, line, far))
 
 
 def _named(folders: Sequence[Path]) -> list[Tree]:

@@ -66,7 +66,7 @@ class Build:
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
+class TreeCounts:
     """What the analysis found in a tree.
 
     ``comparisons`` counts places in the tree's own files in C++ (file, line, column and parameter),
@@ -100,7 +100,7 @@ class TreeResult:
     first: str
     plain: Build | None
     tpc: Build
-    found: Found
+    found: TreeCounts
     lines: SourceLines
 
     @property
@@ -162,7 +162,7 @@ class TreeResult:
             first=data["first"],
             plain=None if data["plain"] is None else _build(data["plain"]),
             tpc=_build(data["tpc"]),
-            found=Found(
+            found=TreeCounts(
                 **{
                     **found,
                     "failed": tuple(found["failed"]),
@@ -189,7 +189,7 @@ def found_in(
     tree: Path,
     without: Iterable[str] = (),
     unreadable: Iterable[str] = (),
-) -> Found:
+) -> TreeCounts:
     """Count what the link units of a tree have.
 
     Args:
@@ -213,7 +213,7 @@ def found_in(
             if one.type != "constant" and Path(file).is_relative_to(root):
                 places[unit.is_python].add((file, one.lineno, one.column, one.source))
     every = places[False] | places[True]
-    return Found(
+    return TreeCounts(
         comparisons=len(places[False]),
         python=len(places[True]),
         parameters=len({source for _, _, _, source in every}),

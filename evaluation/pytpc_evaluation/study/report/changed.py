@@ -20,12 +20,12 @@ from pytpc.recording.mission import Recording
 from pytpc.recording.parameter_change import Change
 from pytpc.static.parameters import same_parameter
 from pytpc.static.static_info import StaticInfo
-from pytpc_evaluation.study.report.folder import Flight, Progress, System
+from pytpc_evaluation.study.report.folder import FlownMission, FlownSystem, Progress
 from pytpc_evaluation.tables import Cell, Column, Table
 
 
 @dataclass(frozen=True, slots=True)
-class Made:
+class TurnedChange:
     """A change in a mission, and how many of the decisions in its log it turned."""
 
     system: str
@@ -45,8 +45,8 @@ class Changed:
     ``counts`` has for each mission how many harmless ones there are.
     """
 
-    harmless: tuple[Made, ...]
-    treated: tuple[Made, ...]
+    harmless: tuple[TurnedChange, ...]
+    treated: tuple[TurnedChange, ...]
     counts: tuple[int, ...]
 
     @property
@@ -70,7 +70,7 @@ class Changed:
         return "-" if not self.harmless else f"{_turned_percent(self.harmless):.0f}"
 
 
-def changed_in(systems: Sequence[System], on_progress: Progress | None = None) -> Changed:
+def changed_in(systems: Sequence[FlownSystem], on_progress: Progress | None = None) -> Changed:
     """The changes of all missions.
 
     Args:
@@ -110,7 +110,7 @@ def turned(recording: Recording, static_info: StaticInfo, change: Change) -> int
     return count
 
 
-def changes_table(changed: Changed, systems: Sequence[System]) -> Table:
+def changes_table(changed: Changed, systems: Sequence[FlownSystem]) -> Table:
     """Sizes of the harmless changes and of the treatments' by system."""
     columns = (
         Column("Harmless changes", 0),
@@ -134,24 +134,24 @@ def changes_table(changed: Changed, systems: Sequence[System]) -> Table:
     return Table("changes", "Sizes of changes", columns, tuple(rows), (), "System")
 
 
-def _made(flight: Flight, change: Change, static_info: StaticInfo) -> Made:
+def _made(flight: FlownMission, change: Change, static_info: StaticInfo) -> TurnedChange:
     count = turned(flight.mission.recording, static_info, change)
-    return Made(flight.system, change, count)
+    return TurnedChange(flight.system, change, count)
 
 
-def _is_treated(change: Change, flight: Flight) -> bool:
+def _is_treated(change: Change, flight: FlownMission) -> bool:
     parameter = flight.treatment.parameter
     if parameter is None:
         return False
     return change.node == flight.treatment.node and same_parameter(parameter, change.parameter)
 
 
-def _once(made: Iterable[Made]) -> list[Made]:
+def _once(made: Iterable[TurnedChange]) -> list[TurnedChange]:
     """Each change once, of however many missions."""
     return list({(one.what, one.change.new): one for one in made}.values())
 
 
-def _median_size(made: Iterable[Made]) -> float | None:
+def _median_size(made: Iterable[TurnedChange]) -> float | None:
     sizes = [
         abs(math.log(one.change.new / one.change.old))
         for one in made
@@ -164,5 +164,5 @@ def _factor(size: float | None) -> str:
     return "-" if size is None else f"{math.exp(size):.3g}"
 
 
-def _turned_percent(made: Sequence[Made]) -> float:
+def _turned_percent(made: Sequence[TurnedChange]) -> float:
     return 100 * fmean(one.turned > 0 for one in made)

@@ -14,7 +14,7 @@ from pytpc_evaluation.stats.figures import state_of, trial_figure
 from pytpc_evaluation.stats.missions import Trial
 from pytpc_evaluation.study.report.charts import reliability_chart, result_chart
 from pytpc_evaluation.study.report.confidence import SAID, SURE_METHODS, calibration
-from pytpc_evaluation.study.report.folder import Flight, System
+from pytpc_evaluation.study.report.folder import FlownMission, FlownSystem
 from pytpc_evaluation.study.report.original import KIND_NAMES, Original
 from pytpc_evaluation.study.report.parts import Part
 from pytpc_evaluation.study.report.positions import Position
@@ -39,7 +39,7 @@ class Drawing:
 
 def draw_systems(
     originals: Sequence[Original],
-    systems: Sequence[System],
+    systems: Sequence[FlownSystem],
     folder: Path,
     halves: Sequence[str],
     on_progress: Advance | None = None,
@@ -107,9 +107,9 @@ def draw_results(rows: Sequence[Position], folder: Path, parts: Sequence[Part]) 
     return drawn
 
 
-def shown_flights(system: System, halves: Sequence[str]) -> list[Flight]:
+def shown_flights(system: FlownSystem, halves: Sequence[str]) -> list[FlownMission]:
     """The first treatment of each type by name with marks, else the first: nothing is picked."""
-    shown: dict[str, Flight] = {}
+    shown: dict[str, FlownMission] = {}
     flights = [flight for flight in system.flights if flight.half in halves]
     for flight in one_of_each(flights):
         kind = flight.treatment.type
@@ -118,10 +118,10 @@ def shown_flights(system: System, halves: Sequence[str]) -> list[Flight]:
     return list(shown.values())
 
 
-def _title(flight: Flight) -> str:
+def _title(flight: FlownMission) -> str:
     return f"{flight.system}, {KIND_NAMES[flight.treatment.type]}, seed {flight.seed}"
 
 
-def _caption(flight: Flight) -> str:
+def _caption(flight: FlownMission) -> str:
     kind = KIND_NAMES[flight.treatment.type]
     return f"{flight.system}, {kind}: {flight.treatment.name}, seed {flight.seed}."

@@ -40,7 +40,7 @@ Progress = Callable[[int, int], None]
 
 
 @dataclass(frozen=True, eq=False)
-class Flight:
+class FlownMission:
     """A mission of the study; ``said`` are its marks with the types that the users gave.
 
     ``changes`` are the treatment's own and the harmless ones.
@@ -65,7 +65,7 @@ class Flight:
 
 
 @dataclass(frozen=True, eq=False)
-class System:
+class FlownSystem:
     """A robot of the study: what the analysis found in it, its missions, and a clean one apart.
 
     ``remarks`` say in sentences where a mission did not go as its treatment demands.
@@ -73,7 +73,7 @@ class System:
 
     name: str
     static_info: StaticInfo
-    flights: tuple[Flight, ...]
+    flights: tuple[FlownMission, ...]
     reference: StudyMission | None
     sources: Path | None
     remarks: tuple[str, ...] = ()
@@ -109,14 +109,14 @@ class System:
 
 
 @dataclass(frozen=True, eq=False)
-class Study:
+class FlownStudy:
     """All that is read of a study but its results; ``troubles`` are sentences."""
 
-    systems: tuple[System, ...]
+    systems: tuple[FlownSystem, ...]
     troubles: tuple[str, ...]
 
 
-def load_study(folder: Path, on_progress: Progress | None = None) -> Study:
+def load_study(folder: Path, on_progress: Progress | None = None) -> FlownStudy:
     """Read a study's folder.
 
     Args:
@@ -158,7 +158,7 @@ def load_study(folder: Path, on_progress: Progress | None = None) -> Study:
             except TpcError as error:
                 troubles.append(f"{_place(path, folder)} is left out: {told(error, folder)}.")
         systems.append(
-            System(
+            FlownSystem(
                 name,
                 static_info,
                 tuple(flights),
@@ -172,10 +172,10 @@ def load_study(folder: Path, on_progress: Progress | None = None) -> Study:
     ]
     if not names:
         troubles.append("No mission has been flown.")
-    return Study(tuple(systems), tuple(troubles))
+    return FlownStudy(tuple(systems), tuple(troubles))
 
 
-def _flight(path: Path, system: str, halves: Mapping[tuple[str, int], str]) -> Flight:
+def _flight(path: Path, system: str, halves: Mapping[tuple[str, int], str]) -> FlownMission:
     if not (path / DONE_FILE).is_file():
         raise TpcError("it was not flown to its end")
     (mission,) = load_missions([path])
@@ -188,7 +188,7 @@ def _flight(path: Path, system: str, halves: Mapping[tuple[str, int], str]) -> F
     changes = path / CHANGES_FILE
     made = read_changes(changes) if changes.is_file() else ()
     strayed = _strayed(path / CAUSES_FILE, mission.treatment)
-    return Flight(system, half, seed, mission, mission.treatment, marks, made, strayed)
+    return FlownMission(system, half, seed, mission, mission.treatment, marks, made, strayed)
 
 
 def _strayed(causes: Path, treatment: Treatment) -> bool:

@@ -23,7 +23,7 @@ from pytpc_evaluation.study.report.confidence import (
     reliability_table,
 )
 from pytpc_evaluation.study.report.drawings import Advance, Drawing, draw_results, draw_systems
-from pytpc_evaluation.study.report.folder import Flight, Study, load_study, told
+from pytpc_evaluation.study.report.folder import FlownMission, FlownStudy, load_study, told
 from pytpc_evaluation.study.report.headline import Headline, headlines
 from pytpc_evaluation.study.report.judged import (
     HELD_BACK,
@@ -71,7 +71,7 @@ Row = TypeVar("Row", Position, Repair, Chain)
 
 
 @dataclass(frozen=True, eq=False)
-class Made:
+class WrittenReport:
     """What was written: the page, the other files, and the numbers as an object for JSON."""
 
     page: Path
@@ -100,7 +100,7 @@ def make_report(
     target: Path,
     options: ReportOptions | None = None,
     on_progress: Callable[[str], Advance] | None = None,
-) -> Made:
+) -> WrittenReport:
     """Write the page, with its figures and tables beside it.
 
     Args:
@@ -161,7 +161,7 @@ def make_report(
 
 def _write(
     contents: Contents, full: Mapping[str, Table], judged: Sequence[Judging], target: Path
-) -> Made:
+) -> WrittenReport:
     """Write the page and what stands beside it, but its figures, which are drawn already."""
     figures = [one.to_json() for one in contents.headlines]
     numbers = {
@@ -184,7 +184,7 @@ def _write(
         written.append(beside / name)
         write_atomic(written[-1], text.encode())
     write_atomic(target, page(contents).encode())
-    return Made(target, tuple(written), numbers, tuple(contents.troubles))
+    return WrittenReport(target, tuple(written), numbers, tuple(contents.troubles))
 
 
 @dataclass(frozen=True, eq=False)
@@ -195,7 +195,7 @@ class _Results:
     ``others`` are verdicts by other people's marks, of all halves; there may be none.
     """
 
-    flights: Sequence[Flight]
+    flights: Sequence[FlownMission]
     parts: Sequence[Part]
     positions: Sequence[Position]
     others: Sequence[Position]
@@ -205,7 +205,7 @@ class _Results:
 
 
 def _read_results(
-    folder: Path, study: Study, halves: Sequence[Half], troubles: list[str]
+    folder: Path, study: FlownStudy, halves: Sequence[Half], troubles: list[str]
 ) -> _Results:
     """What there is in the study's folder; a sentence among ``troubles`` for what is not."""
     ranked = _results(folder / POSITIONS_FILE, read_positions, troubles, "ranked")
@@ -259,7 +259,7 @@ def json_text(numbers: object) -> str:
 
 
 def _tables(
-    study: Study, originals: Sequence[Original], results: _Results, changed: Changed
+    study: FlownStudy, originals: Sequence[Original], results: _Results, changed: Changed
 ) -> tuple[dict[str, Table], dict[str, Table]]:
     """The tables of the page by label, and those that are too long for it by their file's name."""
     systems, parts, positions = study.systems, results.parts, results.positions

@@ -18,7 +18,7 @@ from pytpc_evaluation.stats.marked import MarksOfTrial, confusion_table, marks_t
 from pytpc_evaluation.stats.missions import Trial, in_order, users_of
 from pytpc_evaluation.stats.runtime import RuntimeStatistics, runtime_statistics, runtime_table
 from pytpc_evaluation.study.report import thesis_figures as thesis
-from pytpc_evaluation.study.report.folder import System
+from pytpc_evaluation.study.report.folder import FlownSystem
 from pytpc_evaluation.tables import Cell, Column, Table
 from pytpc_evaluation.treatment import TreatmentType
 
@@ -42,7 +42,7 @@ class Original:
     users: tuple[str, ...]
 
     @classmethod
-    def of(cls, system: System, halves: Sequence[str]) -> Original:
+    def of(cls, system: FlownSystem, halves: Sequence[str]) -> Original:
         """Count and rank; ranks are taken in the treatments of ``halves`` alone."""
         missions = [flight.as_said() for flight in system.flights]
         half = {flight.treatment.name: flight.half for flight in system.flights}

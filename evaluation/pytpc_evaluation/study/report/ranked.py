@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from pytpc_evaluation.study.data import ALL, LABELS
 from pytpc_evaluation.study.metrics import Estimate, estimate, share
-from pytpc_evaluation.study.report.folder import UNKNOWN, System
+from pytpc_evaluation.study.report.folder import UNKNOWN, FlownSystem
 from pytpc_evaluation.study.report.parts import Part
 from pytpc_evaluation.study.report.positions import Position, by_treatment, ordered, with_absent
 from pytpc_evaluation.study.report.systems import language_of, nearness, one_of_each
@@ -176,7 +176,7 @@ def grouped_table(
     return Table(label, title, columns, tuple(lines), (), first)
 
 
-def groups_of(systems: Sequence[System]) -> dict[str, Group]:
+def groups_of(systems: Sequence[FlownSystem]) -> dict[str, Group]:
     """What treatments are grouped by: heading -> name of a verdict's group."""
     near, spoken = {}, {}
     for system in systems:

@@ -14,7 +14,7 @@ from pytpc.base.columns import read_table
 from pytpc.base.errors import InputError
 from pytpc.base.wording import show
 from pytpc_evaluation.study.metrics import Estimate, share
-from pytpc_evaluation.study.report.folder import Flight
+from pytpc_evaluation.study.report.folder import FlownMission
 from pytpc_evaluation.study.report.parts import Part
 from pytpc_evaluation.study.report.positions import ordered
 from pytpc_evaluation.study.report.ranked import percent, verdict_of
@@ -37,7 +37,7 @@ class Repair:
     not there before, None where the mission was not flown again.
     """
 
-    flight: Flight
+    flight: FlownMission
     parameter: str | None = None
     value: float | None = None
     gone: bool | None = False
@@ -56,7 +56,7 @@ class Repair:
         return {None: "none was seen before", True: "gone", False: "still there"}[self.gone]
 
 
-def read_repairs(path: Path, flights: Iterable[Flight]) -> list[Repair]:
+def read_repairs(path: Path, flights: Iterable[FlownMission]) -> list[Repair]:
     """What came of the suggestions for all ``flights`` with a changed parameter, in their order.
 
     Where nothing was suggested, or the flight failed, the error is not gone.
@@ -93,7 +93,7 @@ def repairs_summary(rows: Sequence[Repair], parts: Sequence[Part]) -> Table:
         Column("Verdict", 0),
     )
     lines: list[tuple[str, tuple[Cell, ...]]] = []
-    kinds: dict[str, Callable[[Flight], bool]] = {
+    kinds: dict[str, Callable[[FlownMission], bool]] = {
         "all": lambda _: True,
         "type I": lambda flight: flight.treatment.type == "type1",
         "type II": lambda flight: flight.treatment.type == "type2",
@@ -112,7 +112,7 @@ def repairs_summary(rows: Sequence[Repair], parts: Sequence[Part]) -> Table:
     return Table("repairs", "Suggestions, flown", columns, tuple(lines), (), "Treatments of")
 
 
-def chains_in(chains: Iterable[Chain], part: Part, flights: Iterable[Flight]) -> list[Chain]:
+def chains_in(chains: Iterable[Chain], part: Part, flights: Iterable[FlownMission]) -> list[Chain]:
     """The chains of a part; ``flights`` say of what round a treatment is."""
     rounds = {(one.system, one.treatment.name): one.treatment.round for one in flights}
     return [
@@ -132,7 +132,9 @@ def first_try(chains: Sequence[Chain], variant: str, *, clean: bool = False) -> 
     return share(np.array(well, np.float64), [one.unit for one in found])
 
 
-def tries_table(chains: Sequence[Chain], parts: Sequence[Part], flights: Sequence[Flight]) -> Table:
+def tries_table(
+    chains: Sequence[Chain], parts: Sequence[Part], flights: Sequence[FlownMission]
+) -> Table:
     """What came of each variant within so many tries, by part; chains that wait are left out.
 
     Args:
@@ -219,7 +221,7 @@ def _units(rows: Iterable[Repair]) -> list[tuple[str, str]]:
     return [(row.flight.system, row.flight.treatment.name) for row in rows]
 
 
-def _repair(flight: Flight, row: dict[str, Any] | None) -> Repair:
+def _repair(flight: FlownMission, row: dict[str, Any] | None) -> Repair:
     if row is None:
         return Repair(flight)
     failure = str(row["failure"] or "")

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pytpc.base.wording import show
 from pytpc.static.static_info import StaticInfo
 from pytpc_evaluation.stats.runtime import runtime_statistics
-from pytpc_evaluation.study.report.folder import Flight, System
+from pytpc_evaluation.study.report.folder import FlownMission, FlownSystem
 from pytpc_evaluation.tables import Cell, Column, Table
 from pytpc_evaluation.treatment import Treatment
 
@@ -18,7 +18,7 @@ NEAR = 0.5
 _KINDS = ("type1", "type2", "fault", "clean")
 
 
-def systems_table(systems: Sequence[System]) -> Table:
+def systems_table(systems: Sequence[FlownSystem]) -> Table:
     """How large the systems are."""
     columns = (
         Column("Nodes that report", 0),
@@ -58,7 +58,7 @@ def systems_table(systems: Sequence[System]) -> Table:
     return Table("systems", "The systems", columns, tuple(rows), (), first="System")
 
 
-def treatments_table(systems: Sequence[System]) -> Table:
+def treatments_table(systems: Sequence[FlownSystem]) -> Table:
     """What was done to the systems, and what comes of it."""
     columns = tuple(
         Column(heading, 0)
@@ -92,7 +92,7 @@ def treatments_table(systems: Sequence[System]) -> Table:
     return Table("treatments", "The treatments", columns, tuple(rows), (), first="System")
 
 
-def rounds_of(systems: Sequence[System]) -> dict[str, int]:
+def rounds_of(systems: Sequence[FlownSystem]) -> dict[str, int]:
     """How many treatments changed a parameter: by half and round, ``tuning-1``, ``held-back-2``."""
     found = Counter(
         f"{flight.half}-{flight.treatment.round}"
@@ -103,7 +103,7 @@ def rounds_of(systems: Sequence[System]) -> dict[str, int]:
     return dict(sorted(found.items()))
 
 
-def one_of_each(flights: Sequence[Flight]) -> list[Flight]:
+def one_of_each(flights: Sequence[FlownMission]) -> list[FlownMission]:
     """The first mission of each treatment: type I, type II, faults, clean, each by name."""
     found = {
         (_KINDS.index(flight.treatment.type), flight.treatment.name): flight
@@ -124,7 +124,7 @@ def nearness(treatment: Treatment) -> str | None:
     return "near" if beyond < NEAR * way else "far"
 
 
-def language_of(system: System, treatment: Treatment) -> str:
+def language_of(system: FlownSystem, treatment: Treatment) -> str:
     """The language of what a treatment changed; a dash where it changed no parameter."""
     return "-" if treatment.parameter is None else system.language(treatment.parameter)
 
