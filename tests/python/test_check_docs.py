@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from check_docs import dead_citations
+from check_docs import Page, dead_citations, long_lines
 
 ROOT = Path(__file__).parents[2]
 
@@ -16,7 +16,7 @@ CLEAN = """# A page: `code` in its title
 Text with a [link](other.md#a-second-heading), one to [this page](#a-page-code-in-its-title),
 one to a [folder](folder) and one [elsewhere](https://example.org/nowhere#at-all).
 
-| a row of a table | WIDE |
+| a row of a table of 160 characters | WIDER |
 | --- | --- |
 
 https://example.org/WIDE
@@ -39,7 +39,7 @@ make = "pytpc nonsense"
 ```
 
 `pytpc watch --once`, `make demo` and `pytpc`.
-""".replace("WIDE", "wide" * 40)
+""".replace("WIDER", "r" * 119).replace("WIDE", "wide" * 40)
 
 OTHER = "# One\n\n## A second heading\n\n## A second heading\n"
 
@@ -125,6 +125,22 @@ def test_each_fault_is_found_at_its_line(page: Path):
 def test_commands_in_blocks_are_found(page: Path, block: str, expected: list[str]):
     page.write_text(f"# Page\n\n{block}\n")
     assert check(page) == expected
+
+
+@pytest.mark.parametrize(
+    ("width", "expected"), [(160, []), (161, ["5: row of 161 characters, at most 160"])]
+)
+def test_a_row_of_a_table_has_at_most_160_characters(page: Path, width: int, expected: list[str]):
+    row = f"| a | {'x' * (width - 8)} |"
+    page.write_text(f"| one | two |\n| --- | --- |\n| a | b |\n| a | c |\n{row}\n")
+    assert (len(row), check(page)) == (width, expected)
+
+
+def test_rows_that_a_program_writes_may_be_longer():
+    study = Page(ROOT / "docs/study.md")
+    rows = study.line_numbers("table_open")
+    assert any(len(study.lines[number - 1]) > 160 for number in rows)
+    assert list(long_lines(study)) == []
 
 
 def test_a_changelog_may_name_what_was(page: Path):
