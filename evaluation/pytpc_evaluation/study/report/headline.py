@@ -62,17 +62,17 @@ _RANKED = {
     "-thesis": (", by the thesis's ranking", BASELINE),
     "-chance": (", by chance", CHANCE),
     "-chance-of-different": (
-        ", by chance among what differs from a good run",
+        ", by chance among the parameters that differ from a good run",
         CHANCE_OF_DIFFERENT,
     ),
 }
 """Whose shares are told: the end of the name, words, and the method."""
 
 _VARIANTS = {
-    "smallest": "the smallest change, the changed parameter being known",
-    RANKED: "the suggested value of what is ranked first by confused marks, nothing being known",
-    RANKED_REFERENCE: "the good run's value of what is ranked first by confused marks (the value"
-    " before the treatment is put back where the ranking is right)",
+    "smallest": "the smallest change of the changed parameter",
+    RANKED: "the value that TPC suggests for its first suspect (confused marks)",
+    RANKED_REFERENCE: "the good run's value of TPC's first suspect (confused marks; a right"
+    " ranking puts back the value before the treatment)",
 }
 """The variants of suggestions that are told beside the headline, of their first tries."""
 
@@ -116,7 +116,7 @@ def _suggested(repairs: Sequence[Repair], chains: Sequence[Chain], part: Part) -
     told = {False: "gone", True: "gone and no new one"}
     found = []
     for clean, what in told.items():
-        text = f"Error {what} with the suggested value, the changed parameter being known"
+        text = f"Error {what} with the value that TPC suggests for the changed parameter"
         name = f"suggestions-{_GONE[clean]}-{part.name}"
         share = gone(repairs, part, clean=clean)
         found += _share(name, f"{text}, {part.title}", share, TARGET)
