@@ -19,7 +19,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "python")
 from figures import figure
 from mission_samples import comparison, key, static_info
 
-from pytpc.diagnosis.suggestion.what_if import MOST_VALUES, sweep, what_if
+from pytpc.diagnosis.suggestion.what_if import what_if
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
@@ -63,17 +63,13 @@ def seconds(work: Callable[[], object]) -> float:
 
 
 def main() -> None:
-    """Print a figure for one value and for as many as a sweep takes."""
+    """Print a figure for one value."""
     for comparisons in (1, 50):
         recording, static = mission(comparisons)
         one = seconds(lambda: what_if(recording, static, "~limit", 0.7))  # noqa: B023
         name = f"what_if_{comparisons}_comparisons"
         target = f"<{TARGET_S}"
         figure(TOPIC, name, one, unit="s", target=target, hit=one < TARGET_S)
-        values = np.linspace(-2, 2, MOST_VALUES)
-        many = seconds(lambda: sweep(recording, static, "~limit", values))  # noqa: B023
-        name = f"sweep_{MOST_VALUES}_values_{comparisons}_comparisons"
-        figure(TOPIC, name, many, unit="s", target="<1", hit=many < 1)
 
 
 if __name__ == "__main__":

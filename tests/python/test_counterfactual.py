@@ -6,7 +6,6 @@ import math
 import re
 from dataclasses import replace
 
-import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -15,7 +14,7 @@ from mission_samples import comparison, events, key, link_unit, ns, static_info
 from pytpc.base.errors import InputError
 from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.suggestion.suggest import At, suggest
-from pytpc.diagnosis.suggestion.what_if import CLOSED_LOOP, sweep, what_if
+from pytpc.diagnosis.suggestion.what_if import CLOSED_LOOP, what_if
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
 from pytpc.recording.summaries import Summaries, Summary, SummaryBuilder
@@ -106,17 +105,20 @@ def test_the_sentence():
     assert nothing.caveats == ("none of its comparisons was evaluated",)
 
 
-def test_several_values_at_once():
-    found = sweep(RECORDED, LIMIT, "limit", [4, 7, 1, 5, NAN])
-    assert found.answered.tolist() == [1, 1, 1, 0, 1]
-    # With a threshold that is no number nothing is greater: the three that were True turn.
-    assert found.flipped_near.tolist() == [1, 1, 3, 0, 1]
-    assert found.flipped_away.tolist() == [0, 1, 1, 0, 2]
+# With a threshold that is no number nothing is greater: the three that were True turn.
+@pytest.mark.parametrize(
+    ("value", "answered", "near", "away"),
+    [(4, 1, 1, 0), (7, 1, 1, 1), (1, 1, 3, 1), (5, 0, 0, 0), (NAN, 1, 1, 2)],
+)
+def test_other_values(value, answered, near, away):
+    found = what_if(RECORDED, LIMIT, "limit", value)
+    assert counts(found) == (answered, near, away)
     assert (found.marks, found.evaluations) == (2, 7)
-    with pytest.raises(ValueError, match="at most 64 values"):
-        sweep(RECORDED, LIMIT, "limit", np.zeros(65))
+
+
+def test_a_negative_window():
     with pytest.raises(ValueError, match="window_s is negative"):
-        sweep(RECORDED, LIMIT, "limit", [1], Question(window_s=-1))
+        what_if(RECORDED, LIMIT, "limit", 1, Question(window_s=-1))
 
 
 # faces >= limit of 3 at 0 s (2), 5 s (4): the flop before the mark at 6 s. A second comparison,
@@ -348,7 +350,6 @@ COMPARE = {
 }
 
 
-# One value at a time, many at once, and the definition itself say the same.
 @settings(max_examples=150, deadline=None)
 @given(
     st.lists(st.tuples(CMPS, st.sampled_from([0.0, 1.0])), max_size=12),
@@ -361,14 +362,11 @@ def test_against_the_definition(pairs, relation, values, at):
     rows = [(t, 0, compare(cmp, thresh), cmp, thresh) for t, (cmp, thresh) in enumerate(pairs)]
     recorded = mission(rows, [Mark(ns(at), "II")])
     static = static_info(comparison(0, "~limit", relation))
-    many = sweep(recorded, static, "limit", values, Question(window_s=3))
-    for place, value in enumerate(values):
+    for value in values:
         turned = [t for t, _, held, cmp, _ in rows if compare(cmp, value) != held]
         near = [t for t in turned if at - 3 <= t <= at]
         expected = (int(bool(near)), len(near), len(turned) - len(near))
         assert counts(what_if(recorded, static, "limit", value, Question(window_s=3))) == expected
-        got = (many.answered[place], many.flipped_near[place], many.flipped_away[place])
-        assert got == expected
 
 
 # What is suggested for a mark answers that mark.

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
-from pytpc.base.columns import Bools, Floats, Int64s
+from pytpc.base.columns import Bools, Int64s
 from pytpc.base.wording import Number, exact, many
 from pytpc.diagnosis.question import PLAIN, Question
 from pytpc.diagnosis.results.advice import WhatIf
@@ -18,32 +17,10 @@ from pytpc.recording.marks import Mark, MarkType
 from pytpc.recording.mission import Recording
 from pytpc.static.static_info import StaticInfo
 
-MOST_VALUES = 64
-"""How many values ``sweep`` takes."""
-
 CLOSED_LOOP = (
     "the robot would have gone on differently from the first decision that changes; what came after"
     " it is replayed as it was logged"
 )
-
-
-@dataclass(frozen=True, eq=False)
-class Sweep:
-    """``WhatIf`` for v values of one parameter.
-
-    ``values`` float64[v], in the parameter's unit, as they were given; ``answered``,
-    ``flipped_near`` and ``flipped_away`` int64[v] of ``marks`` marks and ``evaluations``.
-    """
-
-    parameter: str
-    values: Floats
-    marks: int
-    evaluations: int
-    answered: Int64s
-    flipped_near: Int64s
-    flipped_away: Int64s
-    unsure: Int64s
-    caveats: tuple[str, ...]
 
 
 def what_if(
@@ -66,73 +43,38 @@ def what_if(
     Raises:
         InputError: there is no such parameter, or several.
     """
-    found = sweep(recording, static_info, parameter, [value], question)
-    result = WhatIf(
-        parameter=found.parameter,
-        value=value,
-        marks=found.marks,
-        answered=int(found.answered[0]),
-        evaluations=found.evaluations,
-        flipped_near=int(found.flipped_near[0]),
-        flipped_away=int(found.flipped_away[0]),
-        text="",
-        caveats=found.caveats,
-        unsure=int(found.unsure[0]),
-    )
-    mixed = any(mark.type != question.kind for mark in _asked(recording, question))
-    return replace(result, text=_sentence(result, question.kind, mixed=mixed))
-
-
-def sweep(
-    recording: Recording,
-    static_info: StaticInfo,
-    parameter: str,
-    values: npt.ArrayLike,
-    question: Question = PLAIN,
-) -> Sweep:
-    """The same for many values at once; the arguments are those of ``what_if``.
-
-    Raises:
-        InputError: there is no such parameter, or several.
-        ValueError: there are more than ``MOST_VALUES`` values.
-    """
-    several = np.atleast_1d(np.asarray(values, dtype=np.float64))
-    if several.size > MOST_VALUES:
-        raise ValueError(f"at most {MOST_VALUES} values are replayed at once")
     kind, window_s = question.kind, question.window_s
     name, tracks, without = tracks_of(recording.events, recording.summaries, static_info, parameter)
     asked = _asked(recording, question)
     near = _spans([*recording.marks, *asked], window_s)
-    answered = np.zeros(several.size, dtype=np.int64)
-    for mark in asked:
-        answered += _answered(tracks, several, mark, kind or mark.type, window_s)
-    flipped_near = np.zeros(several.size, dtype=np.int64)
-    flipped = np.zeros_like(flipped_near)
-    unsure = np.zeros_like(flipped_near)
+    answered = sum(_answers(tracks, value, mark, kind or mark.type, window_s) for mark in asked)
+    flipped_near = flipped = unsure = 0
     for track in tracks:
-        thresholds = track.thresholds(several)
+        threshold = track.threshold(value)
+        turned = track.turned(threshold) & track.own
         inside = _within(track.time_ns, track.time_ns, near)
-        turned_near, turned = track.turned_near(inside, thresholds)
-        flipped_near += turned_near
-        flipped += turned
         beside = _within(track.kept.begin_ns, track.kept.end_ns, near)
-        for place, threshold in enumerate(thresholds.tolist()):
-            least, most = track.turned_kept(np.ones_like(beside), threshold)
-            flipped_near[place] += track.turned_kept(beside, threshold)[0]
-            flipped[place] += least
-            unsure[place] += most - least
-    evaluations = sum(int(track.own.sum() + track.kept.count.sum()) for track in tracks)
-    return Sweep(
-        name,
-        several,
-        len(asked),
-        evaluations,
-        answered,
-        flipped_near,
-        flipped - flipped_near,
-        unsure,
-        (*_caveats(tracks, without, recording), *_long_before(tracks, asked, kind, window_s)),
+        least, most = track.turned_kept(np.ones_like(beside), threshold)
+        flipped_near += int((turned & inside).sum()) + track.turned_kept(beside, threshold)[0]
+        flipped += int(turned.sum()) + least
+        unsure += most - least
+    result = WhatIf(
+        parameter=name,
+        value=value,
+        marks=len(asked),
+        answered=answered,
+        evaluations=sum(int(track.own.sum() + track.kept.count.sum()) for track in tracks),
+        flipped_near=flipped_near,
+        flipped_away=flipped - flipped_near,
+        text="",
+        caveats=(
+            *_caveats(tracks, without, recording),
+            *_long_before(tracks, asked, kind, window_s),
+        ),
+        unsure=unsure,
     )
+    mixed = any(mark.type != kind for mark in asked)
+    return replace(result, text=_sentence(result, kind, mixed=mixed))
 
 
 def _asked(recording: Recording, question: Question) -> tuple[Mark, ...]:
@@ -142,32 +84,28 @@ def _asked(recording: Recording, question: Question) -> tuple[Mark, ...]:
     return tuple(m for m in recording.marks if kind is None or m.type in {kind, None})
 
 
-def _answered(
-    tracks: Sequence[Track], values: Floats, mark: Mark, kind: MarkType | None, window_s: float
-) -> Bools:
-    """bool[v]: whether each value answers a mark; one without a type by either definition."""
-    if kind is None:
-        first = _stays(tracks, values, mark.time_ns)
-        return first | _turns(tracks, values, mark.time_ns, window_s)
+def _answers(
+    tracks: Sequence[Track], value: Number, mark: Mark, kind: MarkType | None, window_s: float
+) -> bool:
+    """Whether the value answers a mark; one without a type by either definition."""
     if kind == "I":
-        return _stays(tracks, values, mark.time_ns)
-    return _turns(tracks, values, mark.time_ns, window_s)
+        return _stays(tracks, value, mark.time_ns)
+    turns = _turns(tracks, value, mark.time_ns, window_s)
+    return turns or (kind is None and _stays(tracks, value, mark.time_ns))
 
 
-def _stays(tracks: Sequence[Track], values: Floats, mark_ns: int) -> Bools:
-    """bool[v]: whether the parameter's last flop up to the mark would not have happened.
+def _stays(tracks: Sequence[Track], value: Number, mark_ns: int) -> bool:
+    """Whether the parameter's last flop up to the mark would not have happened.
 
     Both of its evaluations have to have the earlier outcome; one that flopped because of another
     comparison of its predicate is not answered.
     """
     last = _last_flop(tracks, mark_ns)
     if last is None:
-        return np.zeros(values.size, dtype=np.bool_)
+        return False
     track, pair = last
-    logged = np.array([not track.other(pair, t)[0] for t in track.thresholds(values).tolist()])
-    turned = np.array([track.other(pair, t)[1] for t in track.thresholds(values).tolist()])
-    changed = bool(track.res[pair[0]] != track.res[pair[1]])
-    return np.asarray(logged & turned & changed, dtype=np.bool_)
+    before, after = track.turned(track.threshold(value), pair).tolist()
+    return after and not before and bool(track.res[pair[0]] != track.res[pair[1]])
 
 
 def _last_flop(tracks: Sequence[Track], mark_ns: int) -> tuple[Track, Int64s] | None:
@@ -183,17 +121,17 @@ def _last_flop(tracks: Sequence[Track], mark_ns: int) -> tuple[Track, Int64s] | 
     return None if last is None else last[1:]
 
 
-def _turns(tracks: Sequence[Track], values: Floats, mark_ns: int, window_s: float) -> Bools:
-    """bool[v]: whether an evaluation of the window would have gone the other way."""
+def _turns(tracks: Sequence[Track], value: Number, mark_ns: int, window_s: float) -> bool:
+    """Whether an evaluation of the window would have gone the other way."""
     begin_ns = mark_ns - round(window_s * 1e9)
-    result = np.zeros(values.size, dtype=np.bool_)
     for track in tracks:
-        thresholds = track.thresholds(values)
-        result |= track.turned(track.rows_between(begin_ns, mark_ns), thresholds) > 0
+        threshold = track.threshold(value)
         kept = (track.kept.begin_ns >= begin_ns) & (track.kept.end_ns <= mark_ns)
-        if kept.any():
-            result |= np.array([track.turned_kept(kept, t)[0] > 0 for t in thresholds.tolist()])
-    return result
+        if track.turned(threshold, track.rows_between(begin_ns, mark_ns)).any():
+            return True
+        if kept.any() and track.turned_kept(kept, threshold)[0] > 0:
+            return True
+    return False
 
 
 def _spans(marks: Sequence[Mark], window_s: float) -> Int64s:

@@ -1,9 +1,4 @@
-"""Evaluates the logged comparisons of one parameter again with other values of it.
-
-The evaluations of each comparison are split by their outcome in the log. The number of each half
-that a threshold would turn is how many compared values lie on one side of it: a binary search in
-sorted values for several thresholds, or one pass over them for a single one.
-"""
+"""Evaluates the logged comparisons of one parameter again with another value of it."""
 
 from __future__ import annotations
 
@@ -14,6 +9,7 @@ import numpy as np
 
 from pytpc.base.columns import Bools, Floats, Int64s
 from pytpc.base.errors import InputError
+from pytpc.base.wording import Number
 from pytpc.diagnosis.thresholds.inverse import kept_as
 from pytpc.diagnosis.thresholds.threshold_sets import outcomes
 from pytpc.diagnosis.thresholds.units import NoUnitError, is_text, read_type, tree_of
@@ -23,7 +19,7 @@ from pytpc.static.arithmetic import Tree, evaluate
 from pytpc.static.parameters import parameter_name, same_parameter
 from pytpc.static.static_info import Comparison, StaticInfo
 
-_FEW = 3
+_ALL = slice(None)
 _SLACK_NS = 100_000_000
 
 
@@ -50,20 +46,20 @@ class Track:
     kept: Summaries
     own: Bools
 
-    def thresholds(self, values: Floats) -> Floats:
-        """float64[v]: the thresholds that values of the parameter give."""
-        return np.array([evaluate(self.tree, float(value)) for value in values])
+    def threshold(self, value: Number) -> float:
+        """The threshold that a value of the parameter gives."""
+        return evaluate(self.tree, float(value))
 
-    def other(self, rows: slice | Int64s | Bools, threshold: float) -> Bools:
+    def turned(self, threshold: float, rows: slice | Int64s = _ALL) -> Bools:
         """bool[rows]: whether the outcome would be another with ``threshold``."""
-        cmp, thresh = self.cmp[rows], self.thresh[rows]
-        if self.comparison.relation == "flag":
-            return np.asarray(self._flag(rows, threshold) != self.res[rows], dtype=np.bool_)
         relation = self.comparison.relation
+        if relation == "flag":
+            return np.asarray(self._flag(rows, threshold) != self.res[rows], dtype=np.bool_)
+        cmp, thresh = self.cmp[rows], self.thresh[rows]
         before = outcomes(relation, cmp, thresh)
         return np.asarray(before != outcomes(relation, cmp, threshold), dtype=np.bool_)
 
-    def _flag(self, rows: slice | Int64s | Bools, threshold: float) -> Bools:
+    def _flag(self, rows: slice | Int64s, threshold: float) -> Bools:
         """Outcomes of a flag; of a switch those of the log where it had this value."""
         res = self.res[rows]
         if bool(np.all(self.res == (self.thresh != 0))):
@@ -72,21 +68,6 @@ class Track:
         if not np.any(same):
             return res
         return np.full(res.shape, bool(self.res[same][-1]))
-
-    def turned(self, rows: slice | Int64s | Bools, thresholds: Floats) -> Int64s:
-        """int64[v]: how many of ``rows`` would have another outcome, for each threshold."""
-        if thresholds.size <= _FEW or self.comparison.relation == "flag":
-            return np.array(
-                [np.count_nonzero(self.other(rows, one)) for one in thresholds.tolist()]
-            )
-        relation = self.comparison.relation
-        cmp = self.cmp[rows]
-        went = outcomes(relation, cmp, self.thresh[rows])
-        finite = ~np.isnan(cmp)
-        true, false = np.sort(cmp[went & finite]), np.sort(cmp[~went & finite])
-        return (true.size - _holding(true, relation, thresholds)) + _holding(
-            false, relation, thresholds
-        )
 
     def turned_kept(self, rows: Bools, threshold: float) -> tuple[int, int]:
         """How many evaluations of the summaries ``rows`` would turn: for certain, and at most.
@@ -129,17 +110,6 @@ class Track:
         most = np.where(alike, least, size - ~low - ~high)
         return int(least.sum()), int(most.sum())
 
-    def turned_near(self, near: Bools, thresholds: Floats) -> tuple[Int64s, Int64s]:
-        """int64[v] each: how many of ``near``, and of all, would turn; without those summed up."""
-        if thresholds.size > _FEW and self.comparison.relation != "flag":
-            return self.turned(self.own & near, thresholds), self.turned(self.own, thresholds)
-        counts = []
-        for threshold in thresholds.tolist():
-            turned = self.other(slice(None), threshold) & self.own
-            counts.append((np.count_nonzero(turned & near), np.count_nonzero(turned)))
-        both = np.array(counts, dtype=np.int64).reshape(-1, 2)
-        return both[:, 0], both[:, 1]
-
     def flop_before(self, mark_ns: int) -> Int64s | None:
         """int64[2]: the places of the last flop up to a mark; None where there is none."""
         count = int(np.searchsorted(self.flop_ns, mark_ns, side="right"))
@@ -149,22 +119,6 @@ class Track:
         """The evaluations of a closed span."""
         first = int(np.searchsorted(self.time_ns, begin_ns, side="left"))
         return slice(first, int(np.searchsorted(self.time_ns, end_ns, side="right")))
-
-
-def _holding(cmps: Floats, relation: str, thresholds: Floats) -> Int64s:
-    """int64[v]: for how many of the sorted ``cmps`` the relation holds, for each threshold."""
-    below = np.searchsorted(cmps, thresholds, side="left")
-    up_to = np.searchsorted(cmps, thresholds, side="right")
-    counts = {
-        "<": below,
-        "<=": up_to,
-        ">": cmps.size - up_to,
-        ">=": cmps.size - below,
-        "==": up_to - below,
-        "!=": cmps.size - (up_to - below),
-    }[relation]
-    none = np.isnan(thresholds)
-    return np.where(none, cmps.size if relation == "!=" else 0, counts)
 
 
 def tracks_of(

@@ -105,8 +105,7 @@ def turned(recording: Recording, static_info: StaticInfo, change: Change) -> int
     nodes, count = recording.events.nodes, 0
     for track in tracks:
         own = track.node == (nodes.index(change.node) if change.node in nodes else -1)
-        values = track.thresholds(np.array([change.old]))
-        count += int(track.turned(own, values)[0])
+        count += int(np.count_nonzero(track.turned(track.threshold(change.old)) & own))
     return count
 
 
