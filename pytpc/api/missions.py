@@ -8,8 +8,6 @@ from dataclasses import replace
 from pathlib import Path
 
 from pytpc.base.errors import InputError
-from pytpc.diagnosis.ranking.clocks import two_clocks
-from pytpc.diagnosis.ranking.complaints import complaints
 from pytpc.ingest import Recording
 from pytpc.ingest import read as read_recording
 from pytpc.recording.declaration import Declared
@@ -86,15 +84,6 @@ def check_reports(recording: Recording, static_info: StaticInfo, source: Path) -
             " give the static.json of the build that was recorded",
             source,
         )
-
-
-def faults_of(recording: Recording, static_info: StaticInfo | None) -> list[str]:
-    """A line for each thing that is wrong with a recording, and for what was left out of it.
-
-    Two clocks in it matter where it is diagnosed, by the static information.
-    """
-    clocks = [] if static_info is None else two_clocks(recording)
-    return [*complaints(recording, static_info), *clocks]
 
 
 def find_declared(

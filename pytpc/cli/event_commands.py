@@ -57,7 +57,7 @@ def convert_command(
             on_written=written,
         )
     recording = outcome.recording
-    warn_about(recording, None)
+    warn_about(recording)
     kinds = [mark.type for mark in recording.marks]
     if as_json:
         click.echo(json.dumps(_summary_of(outcome, output), ensure_ascii=False))

@@ -13,7 +13,6 @@ import click
 from rich.console import Console
 
 from pytpc.api.converting import convert
-from pytpc.api.missions import faults_of
 from pytpc.api.record import (
     DEFAULT_TOPICS,
     MissionRun,
@@ -25,6 +24,7 @@ from pytpc.api.record import (
 from pytpc.base.errors import InputError
 from pytpc.base.wording import many
 from pytpc.cli.arguments import as_object
+from pytpc.recording.faults import faults_of
 from pytpc.recording.mission import REPORTS_FOLDER
 from pytpc.ros.ros1.master import uri_of
 from pytpc.ros.ros1.record_graph import stop_on_signals
@@ -126,7 +126,7 @@ def record_command(given: _RecordArguments) -> None:
     if given.parquet:
         output = given.output
         outcome = convert([output], output)
-        for fault in faults_of(outcome.recording, None):
+        for fault in faults_of(outcome.recording):
             click.echo(f"warning: {fault}", err=True)
         click.echo(f"{many(outcome.events, 'report')} in Parquet: {output}")
 

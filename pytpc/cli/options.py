@@ -9,10 +9,11 @@ from typing import TypeVar
 
 import click
 
-from pytpc.api.missions import check_reports, faults_of, read_named
+from pytpc.api.missions import check_reports, read_named
 from pytpc.base.wording import plain
 from pytpc.cli.console import progress, warn
 from pytpc.diagnosis.question import WINDOW_S
+from pytpc.recording.faults import faults_of
 from pytpc.recording.mission import Recording
 from pytpc.static.static_info import StaticInfo
 
@@ -117,7 +118,7 @@ def check(recording: Recording, static: StaticInfo, source: Path) -> None:
     warn_about(recording, static)
 
 
-def warn_about(recording: Recording, static: StaticInfo | None) -> None:
+def warn_about(recording: Recording, static: StaticInfo | None = None) -> None:
     """A line for each thing that is wrong with a recording, and for what was left out of it."""
     for fault in faults_of(recording, static):
         warn(f"{plain(recording.name)}: {plain(fault)}")

@@ -19,6 +19,7 @@ from pytpc.diagnosis.ranking.mark_evidence import (
     marked,
     reaction,
 )
+from pytpc.diagnosis.ranking.other_values import UNCHANGED, of_change, of_changes, of_reference
 from pytpc.diagnosis.ranking.posterior import (
     MARKS_I,
     MARKS_II,
@@ -31,7 +32,6 @@ from pytpc.diagnosis.ranking.posterior import (
     softmax,
     type_odds,
 )
-from pytpc.diagnosis.ranking.priors import UNCHANGED, of_change, of_changes, of_reference
 from pytpc.diagnosis.ranking.result_streams import ResultStreams
 from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.ingest import Recording

@@ -8,13 +8,13 @@ from mission_samples import comparison, events, key, ns, static_info
 
 from pytpc.diagnosis.ranking.other_values import (
     ACQUITTED,
+    UNCHANGED,
     before_changes,
     diagnose_replayed,
     of_good_run,
     replayed,
     turns,
 )
-from pytpc.diagnosis.ranking.priors import UNCHANGED
 from pytpc.diagnosis.ranking.result_streams import ResultStreams
 from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.ingest import Recording

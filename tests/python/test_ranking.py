@@ -6,9 +6,10 @@ import pytest
 from mission_samples import comparison, events, key, ns, static_info
 
 from pytpc.diagnosis.question import Question
-from pytpc.diagnosis.ranking.mark_ranking import rank_marks, unknown_keys
+from pytpc.diagnosis.ranking.mark_ranking import rank_marks
 from pytpc.ingest import Recording
 from pytpc.recording.events import Events
+from pytpc.recording.faults import unknown_keys
 from pytpc.recording.marks import Mark
 from pytpc.recording.summaries import Summaries, Summary, SummaryBuilder
 from pytpc.static.parameters import parameter_name

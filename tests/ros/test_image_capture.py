@@ -18,8 +18,8 @@ import pytest
 from pytpc.base.errors import MissingToolError, RunError
 from pytpc.base.paths import cmake_file, log_library, plugin
 from pytpc.build.build import BuildResult, workspace_env
-from pytpc.diagnosis.ranking.mark_ranking import unknown_keys
 from pytpc.ingest import read_bag
+from pytpc.recording.faults import unknown_keys
 from pytpc.ros.mission_run import MISSION_DONE, Progress, RecordOptions
 from pytpc.ros.ros1.graph import GRAPH_WORD, RosGraph
 from pytpc.ros.ros1.launch_mission import run_mission

@@ -13,7 +13,7 @@ import pytest
 from flown import Fly, expected, flights, found, need_cpp_half
 from rich.console import Console
 
-from pytpc.diagnosis.ranking.mark_ranking import unknown_keys
+from pytpc.recording.faults import unknown_keys
 from pytpc.ros.ros1.graph import RosGraph
 from pytpc_evaluation.demo.demo import gone_wrong
 from pytpc_evaluation.demo.demo_examples import NAVIGATION

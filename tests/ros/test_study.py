@@ -13,8 +13,8 @@ from click.testing import CliRunner, Result
 from pytpc.base.errors import MissingToolError
 from pytpc.base.paths import cmake_file, log_library, plugin
 from pytpc.cli.main import main
-from pytpc.diagnosis.ranking.mark_ranking import unknown_keys
 from pytpc.ingest.reading import read
+from pytpc.recording.faults import unknown_keys
 from pytpc.recording.parameter_change import Change
 from pytpc.static.static_info import StaticInfo
 from pytpc.values.recording import read_parameters

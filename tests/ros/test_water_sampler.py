@@ -7,7 +7,7 @@ from collections import Counter
 import pytest
 from flown import Fly, expected, flights, found, need_cpp_half
 
-from pytpc.diagnosis.ranking.mark_ranking import unknown_keys
+from pytpc.recording.faults import unknown_keys
 from pytpc_evaluation.demo.demo import FIRST, gone_wrong
 from pytpc_evaluation.demo.demo_examples import WATER_SAMPLER
 from pytpc_evaluation.demo.demo_show import Built

@@ -18,9 +18,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from pytpc.base.columns import Int64s
-from pytpc.diagnosis.ranking.mark_ranking import APART_NS
 from pytpc.diagnosis.thresholds.threshold_sets import outcomes
 from pytpc.recording.events import Bools, Events, Floats
+from pytpc.recording.faults import CLOCKS_APART_NS
 from pytpc.recording.mission import Recording
 from pytpc.recording.summaries import Summaries
 from pytpc.static.arithmetic import evaluate
@@ -54,7 +54,7 @@ def delays_of(trial: Trial, static_info: StaticInfo) -> DelaysOfTrial | None:
     delays: dict[str, float] = {}
     for mark in sorted(mission.recording.marks, key=lambda mark: mark.time_ns):
         # What is more than a day later was set on another clock.
-        if start_ns <= mark.time_ns <= start_ns + APART_NS:
+        if start_ns <= mark.time_ns <= start_ns + CLOCKS_APART_NS:
             delays.setdefault(user_of(mark), (mark.time_ns - start_ns) / 1e9)
     start = (start_ns - mission.recording.start_ns) / 1e9
     return DelaysOfTrial(trial.label, start, delays)

@@ -7,8 +7,7 @@ from functools import partial
 from typing import TypeVar
 
 from pytpc.diagnosis.question import WINDOW_S
-from pytpc.diagnosis.ranking.clocks import two_clocks
-from pytpc.diagnosis.ranking.complaints import complaints
+from pytpc.recording.faults import faults_of
 from pytpc.static.parameters import parameter_name, same_parameter
 from pytpc.static.static_info import StaticInfo
 from pytpc_evaluation.stats.delays import delays_of, delays_table
@@ -72,8 +71,7 @@ def thesis_tables(
 
 def study_complaints(mission: StudyMission, static_info: StaticInfo) -> Iterator[str]:
     """What a reader of the tables has to know about a mission, in sentences."""
-    yield from complaints(mission.recording, static_info)
-    yield from two_clocks(mission.recording)
+    yield from faults_of(mission.recording, static_info)
     if not len(mission.recording.events) and not len(mission.recording.summaries):
         yield "no threshold reports: was the workspace built with TPC?"
     if mission.treatment is None:

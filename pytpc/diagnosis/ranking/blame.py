@@ -1,6 +1,6 @@
 """Which parameter all marks of a mission blame together, in the words of a user.
 
-``blame`` is the entrance. It adds to `pytpc.diagnosis.ranking.diagnose_beside` what is to be said
+``blame`` is the entrance. It adds to `pytpc.diagnosis.ranking.other_values` what is to be said
 where the marks or the reports are not enough.
 """
 
@@ -11,8 +11,8 @@ from dataclasses import replace
 
 from pytpc.base.wording import many
 from pytpc.diagnosis.question import PLAIN, Question
-from pytpc.diagnosis.ranking.diagnose_beside import diagnose_beside
 from pytpc.diagnosis.ranking.mark_ranking import outside
+from pytpc.diagnosis.ranking.other_values import diagnose_beside
 from pytpc.diagnosis.ranking.posterior import Decisive, Posterior
 from pytpc.diagnosis.results.suspects import Accused, Blame, Evaluation
 from pytpc.diagnosis.scores.evaluations import KeyRows, LoggedEvaluations

@@ -34,7 +34,7 @@ from pytpc.diagnosis.scores.evaluations import Evaluations, LoggedEvaluations
 from pytpc.diagnosis.scores.score_tables import Tables, Tpcs, parameter_tables, tpc_scores
 from pytpc.diagnosis.scores.scores import NONE, combined
 from pytpc.diagnosis.scores.summary_scores import LogTables
-from pytpc.recording.events import Events
+from pytpc.recording.faults import CLOCKS_APART_NS
 from pytpc.recording.marks import Mark, MarkType
 from pytpc.recording.mission import Recording
 from pytpc.static.static_info import StaticInfo
@@ -44,9 +44,6 @@ DOUBT: dict[MarkType, float] = {"I": 26 / 32, "II": 45 / 70}
 
 FEWEST = 2
 """Fewer parameters that were evaluated up to the mark than this are no ranking."""
-
-# A robot on simulated time and one on the wall's are decades apart, two missions hours.
-APART_NS = 24 * 3600 * 10**9
 
 
 def rank_marks(
@@ -72,19 +69,6 @@ def rank_marks(
     ranker = Ranker(static_info, tpcs, LoggedEvaluations(events, recording.summaries), question)
     tables = parameter_tables(tpcs, scores)
     return [ranker.ranking(mark, tables, row) for row, mark in enumerate(recording.marks)]
-
-
-def unknown_keys(events: Events, static_info: StaticInfo) -> dict[str, int]:
-    """Keys in the log that the static information does not know, with their number of reports.
-
-    They come from a program that was built at another time than the static information.
-    """
-    counts = Counter(events.key.tolist())
-    return {
-        key: counts[code]
-        for code, key in enumerate(events.keys)
-        if counts[code] and key not in static_info.comparisons
-    }
 
 
 class _Ordered(NamedTuple):
@@ -207,7 +191,7 @@ def outside(mark: Mark, evidence: Evaluations, window_s: float = WINDOW_S) -> st
         return "no comparison was reported"
     last = evidence.reported_ns(mark.time_ns)
     away = min(first.values()) - mark.time_ns if last is None else mark.time_ns - last
-    if away > APART_NS:
+    if away > CLOCKS_APART_NS:
         return "the mark is on another clock than the reports"
     if last is None:
         return f"the mark is {_seconds(away)} before the first report"

@@ -21,7 +21,7 @@ whose other value turns nothing before the marks is acquitted.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -29,7 +29,6 @@ import numpy as np
 from pytpc.base.columns import Bools, Floats
 from pytpc.diagnosis.ranking.mark_evidence import SHARE, Marked, Wait, any_time, caused, marked
 from pytpc.diagnosis.ranking.posterior import Posterior, diagnose_log, softmax, type_odds
-from pytpc.diagnosis.ranking.priors import thresholds_of
 from pytpc.diagnosis.ranking.result_streams import ResultStream, ResultStreams
 from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.diagnosis.thresholds.inverse import kept_as
@@ -37,6 +36,7 @@ from pytpc.diagnosis.thresholds.threshold_sets import outcomes
 from pytpc.diagnosis.thresholds.units import NoUnitError, is_text, read_type, tree_of
 from pytpc.recording.events import Events
 from pytpc.recording.mission import Recording
+from pytpc.recording.parameter_change import Change
 from pytpc.static.arithmetic import evaluate
 from pytpc.static.parameters import same_parameter
 from pytpc.static.static_info import StaticInfo
@@ -53,6 +53,10 @@ SLOPE_S = 2.0
 ACQUITTED = -4.0
 """The log odds of a parameter whose other value would have turned nothing before the marks."""
 
+UNCHANGED = -12.0
+"""The log odds of a parameter that kept the value with which the robot went right. Not less, as the
+record may be wrong, and the robot may be at another place. The size of a change does not count:
+what is a large change differs from one parameter to the next."""
 
 ALONE = 0.2
 """What the log by itself counts beside the replay, which looks at the same marks."""
@@ -66,6 +70,40 @@ NOBODY = -0.4
 clean mission and no fault of the tuning half has an accusation."""
 
 
+def diagnose_beside(
+    recording: Recording,
+    static_info: StaticInfo,
+    *,
+    reference: Recording | None = None,
+    changes: Sequence[Change] = (),
+) -> Posterior:
+    """Judge all parameters by all marks, and by what the other values would have changed.
+
+    Args:
+        recording: the mission with its marks, of any types or none.
+        static_info: what the analysis found.
+        reference: a good run, whose thresholds are looked at; None where there is none.
+        changes: what was changed since the robot went right, newest last, empty where that is not
+            known. Their order says nothing; of several changes of one parameter the oldest has the
+            value with which the robot went right. Beside a reference, what either of them says is
+            as it was is unlikely; the values of before are taken from the changes first.
+    """
+    tpcs = Tpcs.of(static_info)
+    priors, others = [], {}
+    if reference is not None:
+        events, good = recording.events, reference.events
+        priors.append(of_reference(tpcs, events, good))
+        others.update(of_good_run(tpcs, events, good))
+    if changes:
+        priors.append(of_changes(tpcs.names, changes))
+        # The last of them counts there.
+        oldest_last = [(one.parameter, one.old) for one in reversed(changes)]
+        others.update(before_changes(static_info, oldest_last))
+    if not priors:
+        return diagnose_log(recording, static_info)
+    return diagnose_replayed(recording, static_info, np.min(priors, axis=0), others)
+
+
 def diagnose_replayed(
     recording: Recording, static_info: StaticInfo, prior: Floats, others: Mapping[str, float]
 ) -> Posterior:
@@ -74,7 +112,7 @@ def diagnose_replayed(
     Args:
         recording: the mission with its marks.
         static_info: what the analysis found.
-        prior: float64[p], see `pytpc.diagnosis.ranking.priors`.
+        prior: float64[p], see `pytpc.diagnosis.ranking.other_values`.
         others: the other threshold of each comparison of which one is known, by its key.
     """
     alone = diagnose_log(recording, static_info)
@@ -146,7 +184,7 @@ def replayed(
         if key not in others:
             continue
         other = others[key]
-        turned = _turned(static_info.thresholds[key].relation, stream, other)
+        turned = is_other(static_info.thresholds[key].relation, stream, other)
         charge = ACQUITTED
         if np.any(turned & (stream.times <= marks.times.max())):
             charge = max(charge, _charge(stream, turned, other, (marks, wait), odds))
@@ -154,26 +192,7 @@ def replayed(
     return found
 
 
-def turned_by_good_run(
-    recording: Recording, static_info: StaticInfo, reference: Recording
-) -> dict[str, int]:
-    """How many recorded results would be others with the thresholds of a good run.
-
-    Returns:
-        By the name of each parameter that has another threshold there; all of its comparisons.
-    """
-    tpcs = Tpcs.of(static_info)
-    others = of_good_run(tpcs, recording.events, reference.events)
-    found: dict[str, int] = {}
-    for stream in ResultStreams.of(recording.events, tpcs).streams:
-        key, name = tpcs.keys[stream.code], tpcs.names[stream.column]
-        if key in others:
-            turned = _turned(static_info.thresholds[key].relation, stream, others[key])
-            found[name] = found.get(name, 0) + int(np.count_nonzero(turned))
-    return found
-
-
-def _turned(relation: str, stream: ResultStream, other: float) -> Bools:
+def is_other(relation: str, stream: ResultStream, other: float) -> Bools:
     """bool[n]: whether the outcome would be another one."""
     if relation == "flag":
         return np.asarray((stream.thresh != 0) != (other != 0))
@@ -240,3 +259,48 @@ def _until_alike(stream: ResultStream, place: int, other: float) -> float:
         return math.inf
     span = float(stream.times[place] - stream.times[first])
     return abs(way) * span / rise + span / (place - first)
+
+
+def of_changes(names: Sequence[str], changes: Iterable[Change]) -> Floats:
+    """float64[p], the log prior of each name; 0 where nothing is known to be changed."""
+    found = list(changes)
+    if not found:
+        return np.zeros(len(names))
+    prior = np.full(len(names), UNCHANGED)
+    for change in found:
+        for column, name in enumerate(names):
+            if same_parameter(change.parameter, name):
+                prior[column] = max(prior[column], of_change(change.old, change.new))
+    return prior
+
+
+def of_reference(tpcs: Tpcs, events: Events, reference: Events) -> Floats:
+    """float64[p], the log prior of each parameter, from the thresholds of a good run.
+
+    A parameter none of whose comparisons was evaluated in both, or that changed while the robot
+    ran, is between: nothing is known of it.
+    """
+    here, there = thresholds_of(events, tpcs), thresholds_of(reference, tpcs)
+    prior: dict[str, float] = {}
+    for now, then, name in zip(here, there, tpcs.parameters, strict=True):
+        if np.isnan(now) or np.isnan(then):
+            continue
+        prior[name] = max(prior.get(name, UNCHANGED), of_change(then, now))
+    known = np.array([prior.get(name, np.nan) for name in tpcs.names])
+    return np.where(np.isnan(known), UNCHANGED / 2, known)
+
+
+def of_change(old: float, new: float) -> float:
+    """The log odds of a parameter that was ``old`` and is ``new``."""
+    return UNCHANGED if old == new else 0.0
+
+
+def thresholds_of(events: Events, tpcs: Tpcs) -> Floats:
+    """float64[n]: the threshold of each comparison, nan where it has none or several."""
+    own = events.with_keys(tpcs.keys)
+    found = np.full(len(tpcs.keys), np.nan)
+    for code in range(len(tpcs.keys)):
+        values = own.thresh[own.by_key.rows(code)]
+        if values.size and np.isfinite(values[0]) and bool(np.all(values == values[0])):
+            found[code] = values[0]
+    return found

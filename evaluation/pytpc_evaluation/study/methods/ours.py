@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pytpc.diagnosis.ranking.diagnose_beside import diagnose_beside
+from pytpc.diagnosis.ranking.other_values import diagnose_beside
 from pytpc.diagnosis.ranking.posterior import Posterior
 from pytpc_evaluation.study.case import Case, Verdict
 

@@ -7,7 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from pytpc.diagnosis.ranking.other_values import turned_by_good_run
+import numpy as np
+
+from pytpc.diagnosis.ranking.other_values import is_other, of_good_run
+from pytpc.diagnosis.ranking.result_streams import ResultStreams
 from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.recording.parameter_change import Change
 from pytpc.static.parameters import same_parameter
@@ -49,7 +52,15 @@ def turned_decisions(case: Case) -> Verdict:
     """
     if case.reference is None:
         return Verdict(())
-    found = turned_by_good_run(case.recording, case.static_info, case.reference)
+    tpcs, events = Tpcs.of(case.static_info), case.recording.events
+    others = of_good_run(tpcs, events, case.reference.events)
+    found: dict[str, int] = {}
+    for stream in ResultStreams.of(events, tpcs).streams:
+        key, name = tpcs.keys[stream.code], tpcs.names[stream.column]
+        if key in others:
+            relation = case.static_info.thresholds[key].relation
+            turned = int(np.count_nonzero(is_other(relation, stream, others[key])))
+            found[name] = found.get(name, 0) + turned
     order = sorted(found, key=lambda name: (-found[name], name))
     return Verdict(tuple(order), scores=tuple(float(found[name]) for name in order))
 
