@@ -11,7 +11,7 @@ from pytpc.base.errors import InputError
 from pytpc.diagnosis.question import Question, Types
 from pytpc.diagnosis.ranking.blame import blame
 from pytpc.diagnosis.scores.score_tables import Tpcs
-from pytpc.diagnosis.suggestion.blamed_advice import advise_blamed
+from pytpc.diagnosis.suggestion.advise import advise_blamed
 from pytpc.ingest import Recording
 from pytpc.present.answers import Diagnosed
 from pytpc.recording.parameter_change import Change

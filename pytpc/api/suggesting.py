@@ -13,9 +13,13 @@ from pytpc.diagnosis.question import PLAIN, Question
 from pytpc.diagnosis.ranking.blame import blame
 from pytpc.diagnosis.results.advice import BlamedAdvice, MarkGroup, Suggested, WhatIf
 from pytpc.diagnosis.results.suspects import Blame
-from pytpc.diagnosis.suggestion.advise import advise, suggest_each
-from pytpc.diagnosis.suggestion.blamed_advice import advise_blamed
-from pytpc.diagnosis.suggestion.joining import join_advice, with_remedies
+from pytpc.diagnosis.suggestion.advise import (
+    advise,
+    advise_blamed,
+    join_advice,
+    suggest_each,
+    with_remedies,
+)
 from pytpc.diagnosis.suggestion.what_if import what_if as replay
 from pytpc.ingest import Recording
 from pytpc.present.answers import Advices

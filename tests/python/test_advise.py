@@ -9,8 +9,7 @@ from mission_samples import comparison, events, ns, static_info
 
 from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.mark_ranking import rank_marks
-from pytpc.diagnosis.suggestion.advise import advise, alternatives
-from pytpc.diagnosis.suggestion.joining import join_advice
+from pytpc.diagnosis.suggestion.advise import advise, alternatives, join_advice
 from pytpc.present.as_json import advice_json, group_json
 from pytpc.recording.declaration import Declared
 from pytpc.recording.marks import Mark

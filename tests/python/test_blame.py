@@ -12,7 +12,7 @@ from pytpc.base.wording import percent
 from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.blame import blame
 from pytpc.diagnosis.results.suspects import Accused, Blame, Evaluation
-from pytpc.diagnosis.suggestion.blamed_advice import advise_blamed
+from pytpc.diagnosis.suggestion.advise import advise_blamed
 from pytpc.ingest import Recording
 from pytpc.recording.marks import Mark
 from pytpc.recording.parameter_change import Change
@@ -135,7 +135,7 @@ def same(found, verdict):
     return found.confidence == verdict.confidence
 
 
-# In the clean run ~gate's threshold was higher, and ~safe's the same: so it is in the history.
+# In the good run ~gate's threshold was higher, and ~safe's the same: so it is in the history.
 def test_users_get_what_the_study_judges():
     clean = Recording("clean", events([(1, 0, 0, 0.1, 0.9), (2, 1, 0, 1, 9)]), (), 0, ns(80))
     changed = Change("~gate", "/node", 0.9, 0.375)
@@ -150,8 +150,8 @@ def test_users_get_what_the_study_judges():
         assert found.confidence > alone.confidence
 
 
-# The clean run says that ~safe is what it was, the history that ~gate is. By both it is neither.
-def test_a_clean_run_and_the_changes_together():
+# The good run says that ~safe is what it was, the history that ~gate is. By both it is neither.
+def test_a_good_run_and_the_changes_together():
     clean = Recording("clean", events([(1, 0, 0, 0.1, 0.9), (2, 1, 0, 1, 9)]), (), 0, ns(80))
     found = blame(
         mission(), STATIC, Question(reference=clean, changes=[Change("safe", "", 5.0, 9.0)])
@@ -218,7 +218,7 @@ def test_one_suspect_at_its_place():
     assert found.only("speed").suspects == ()
 
 
-# Whatever the log says: with 0.9 it went right, or with what the clean run had. What is no number,
+# Whatever the log says: with 0.9 it went right, or with what the good run had. What is no number,
 # or was not changed, is no value to try.
 def test_the_value_of_before_comes_first():
     recording = mission((*MARKS, Mark(ns(70), "II")))

@@ -183,7 +183,7 @@ def test_marks_that_do_not_agree(files):
 
 
 # With 0.9 it went right. By the log ~cover would have to be lower; `pytpc rank` has the same value.
-def test_a_clean_run_overrules_the_log(files, tmp_path):
+def test_a_good_run_overrules_the_log(files, tmp_path):
     bag, static = files
     clean = tmp_path / "clean.bag"
     with BagFile(clean) as writer:
@@ -196,7 +196,7 @@ def test_a_clean_run_overrules_the_log(files, tmp_path):
     assert mark["diagnosis"]["suspects"][0]["remedy"]["value"] == 0.9
 
 
-def test_a_clean_run_of_another_build(files, tmp_path):
+def test_a_good_run_of_another_build(files, tmp_path):
     bag, static = files
     clean = tmp_path / "clean.bag"
     with BagFile(clean) as writer:
@@ -206,9 +206,9 @@ def test_a_clean_run_of_another_build(files, tmp_path):
     assert str(clean) in result.stderr
 
 
-# A clean run with 0.15 lies below 0.5, as the smallest change wants, so that it is taken, though
+# A good run with 0.15 lies below 0.5, as the smallest change wants, so that it is taken, though
 # only what is below 0.1 lasts. That 0.9 was flown before changes nothing: half of 0.2 is the least.
-def test_a_clean_run_and_what_was_flown(files, tmp_path):
+def test_a_good_run_and_what_was_flown(files, tmp_path):
     bag, static = files
     clean = tmp_path / "clean.bag"
     with BagFile(clean) as writer:

@@ -149,8 +149,8 @@ def test_what_was_changed_is_likelier(files, tmp_path):
     assert probabilities(*words, "--before", before) == pytest.approx(known)
 
 
-# In the clean run coverage was compared with 0.4, faces with the same 3.
-def test_what_differs_from_a_clean_run_is_likelier(files, tmp_path):
+# In the good run coverage was compared with 0.4, faces with the same 3.
+def test_what_differs_from_a_good_run_is_likelier(files, tmp_path):
     bag, static = files
     clean = tmp_path / "clean.bag"
     with BagFile(clean) as writer:

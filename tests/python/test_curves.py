@@ -10,7 +10,7 @@ from mission_samples import comparison, events, ns, static_info
 from pytpc.base.errors import TpcError
 from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.mark_ranking import rank_marks
-from pytpc.diagnosis.scores.rank_curves import rank_curves
+from pytpc.diagnosis.scores.score_tables import rank_curves
 from pytpc.diagnosis.scores.scores import NONE
 from pytpc.ingest import Recording
 from pytpc.recording.marks import Mark

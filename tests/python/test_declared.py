@@ -12,7 +12,7 @@ from rosbags.rosbag1 import Writer
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from pytpc.diagnosis.results.suspects import Evaluation, Suspect
-from pytpc.diagnosis.suggestion.declared import declared_for
+from pytpc.diagnosis.suggestion.advise import declared_for
 from pytpc.ingest.declared_bag import decode_description
 from pytpc.values.declared_cfg import read_cfg
 from pytpc.values.declared_files import declared_in, read_declared

@@ -311,7 +311,7 @@ def test_what_is_as_it_was_is_hardly_to_blame():
     assert of_changes(("~a", "~b"), []).tolist() == [0.0, 0.0]
 
 
-def test_a_clean_run_tells_which_threshold_is_another():
+def test_a_good_run_tells_which_threshold_is_another():
     tpcs = Tpcs.of(STATIC)
     here = events([(1, 0, 0, 1, 4), (1, 1, 0, 1, 4), (1, 2, 0, 1, 4), (2, 2, 0, 1, 5)])
     there = events([(1, 0, 0, 1, 2), (1, 1, 0, 1, 4), (1, 2, 0, 1, 4)])

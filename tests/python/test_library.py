@@ -15,7 +15,7 @@ import pytpc_evaluation
 from pytpc import api
 from pytpc.base.errors import InputError
 from pytpc.diagnosis.question import Question
-from pytpc.diagnosis.suggestion.joining import join_advice
+from pytpc.diagnosis.suggestion.advise import join_advice
 from pytpc.present.notebook import NotebookTable
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording

@@ -85,7 +85,7 @@ def test_old_values_become_thresholds_in_their_own_unit():
     assert before_changes(STATIC, changes) == {key(3): 7.0, key(0): 1.5}
 
 
-def test_of_a_clean_run_only_what_differs_is_replayed():
+def test_of_a_good_run_only_what_differs_is_replayed():
     here = events([(1, 0, 0, 1, 4), (1, 1, 0, 1, 4), (1, 2, 0, 1, 4)])
     there = events([(1, 0, 0, 1, 2), (1, 1, 0, 1, 4)])
     assert of_good_run(Tpcs.of(STATIC), here, there) == {key(0): 2.0}

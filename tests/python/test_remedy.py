@@ -216,16 +216,16 @@ def test_summaries():
     assert (found.value, found.direction) == (7.25, "lower")
 
 
-# What lasts is above 0.1. The clean run's 0.35 lies there; 0.02 would make stronger what the robot
+# What lasts is above 0.1. The good run's 0.35 lies there; 0.02 would make stronger what the robot
 # stood by, if the marks are of the type that was said. It went right with it all the same.
 @pytest.mark.parametrize(
     ("flown", "direction", "words"),
     [
-        (0.35, "raise", "(the value of the clean run)"),
-        (0.02, "lower", "(the value of the clean run; the log alone points the other way)"),
+        (0.35, "raise", "(the value of the good run)"),
+        (0.02, "lower", "(the value of the good run; the log alone points the other way)"),
     ],
 )
-def test_the_value_of_a_clean_run_is_taken_whatever_the_log_says(flown, direction, words):
+def test_the_value_of_a_good_run_is_taken_whatever_the_log_says(flown, direction, words):
     static = static_info(comparison(0, "limit", "<"))
     log = recording(rows("<", [0.1] * 5, 0.04))
     typed = marks(95, kind="II")
@@ -240,22 +240,22 @@ def test_the_value_of_a_clean_run_is_taken_whatever_the_log_says(flown, directio
     assert (again.direction, again.basis) == ("raise", "lasting")
 
 
-def test_a_clean_run_with_the_same_value_says_nothing():
+def test_a_good_run_with_the_same_value_says_nothing():
     log = recording(rows("<", [0.1] * 5, 0.04))
     static = static_info(comparison(0, "limit", "<"))
     found = remedy(log, static, "limit", marks(95, kind="II"), Question(reference=log))
     assert (found.value, found.basis) == (0.101, "lasting")
 
 
-# A flag that never changed: to a mark of type I the log has no answer, but the clean run has. The
+# A flag that never changed: to a mark of type I the log has no answer, but the good run has. The
 # count of 3 is a whole number, and so is what is tried.
-def test_a_clean_run_answers_where_the_log_does_not():
+def test_a_good_run_answers_where_the_log_does_not():
     flag = static_info(comparison(0, "on", "flag", default=True))
     clean = recording(rows("flag", [1] * 5, 1))
     log = recording(rows("flag", [0] * 5, 0))
     found = remedy(log, flag, "on", marks(95), Question(reference=clean))
     assert (found.value, found.direction, found.basis) == (True, "switch", "reference")
-    assert found.text == "switch on from false to true (the value of the clean run)"
+    assert found.text == "switch on from false to true (the value of the good run)"
     whole = static_info(comparison(0, "limit", ">=", default=3))
     clean = recording(rows(">=", [0] * 5, 8))
     log = recording(rows(">=", [0] * 5, 3))

@@ -21,7 +21,7 @@ from pytpc.base.wording import percent
 from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.blame import blame
 from pytpc.diagnosis.ranking.mark_ranking import rank_marks
-from pytpc.diagnosis.suggestion.joining import join_advice
+from pytpc.diagnosis.suggestion.advise import join_advice
 from pytpc.ingest import MalformedRecord, Recording
 from pytpc.present.page.series import (
     BINS,

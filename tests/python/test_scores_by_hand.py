@@ -21,8 +21,7 @@ from mission_samples import comparison, events, ns, static_info
 
 from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.mark_ranking import rank_marks
-from pytpc.diagnosis.scores.rank_curves import rank_curves
-from pytpc.diagnosis.scores.score_tables import Tpcs, parameter_tables, tpc_scores
+from pytpc.diagnosis.scores.score_tables import Tpcs, parameter_tables, rank_curves, tpc_scores
 from pytpc.diagnosis.scores.scores import NONE
 from pytpc.diagnosis.scores.summary_scores import LogTables
 from pytpc.ingest import Recording

@@ -12,7 +12,7 @@ import pytest
 from matplotlib.colors import to_hex
 from mission_samples import comparison, events, ns, static_info
 
-from pytpc.diagnosis.scores.rank_curves import rank_curves
+from pytpc.diagnosis.scores.score_tables import rank_curves
 from pytpc.ingest import Recording
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark

@@ -129,7 +129,7 @@ def test_the_largest_change_is_by_its_part_of_the_value():
 
 # Of a the good run's 3.5 turns the 3 alone; of b its 5 turns one in each of
 # its nodes; c is as it was, and ~never is in neither.
-def test_what_the_clean_run_would_have_turned():
+def test_what_the_good_run_would_have_turned():
     rows = [(t, 0, t > 2, t, 2) for t in range(1, 5)] + [(1, 2, 0, 1, 2), (2, 2, 0, 1, 2)]
     rows += [(t, 1, 1, 4 * t, 3, node) for t in (1, 2) for node in ("/left", "/right")]
     clean = Recording(

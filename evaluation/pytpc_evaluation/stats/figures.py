@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from pytpc.base.errors import TpcError
 from pytpc.diagnosis.question import WINDOW_S, Question
-from pytpc.diagnosis.scores.rank_curves import STEP_S, rank_curves
+from pytpc.diagnosis.scores.score_tables import STEP_S, rank_curves
 from pytpc.static.static_info import StaticInfo
 from pytpc_evaluation.stats.bars import runtime_bars
 from pytpc_evaluation.stats.curves import mission_figure

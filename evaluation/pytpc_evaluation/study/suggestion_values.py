@@ -12,7 +12,7 @@ from pytpc.base.wording import percent
 from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.blame import blame
 from pytpc.diagnosis.results.advice import Remedy
-from pytpc.diagnosis.suggestion.blamed_advice import advise_blamed
+from pytpc.diagnosis.suggestion.advise import advise_blamed
 from pytpc.diagnosis.suggestion.remedy import remedy
 from pytpc.recording.mission import Recording, load_recording
 from pytpc.static.parameters import DYNAMIC, same_parameter

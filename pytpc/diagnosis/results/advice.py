@@ -62,7 +62,7 @@ class Remedy:
     ``current`` and ``value`` are in the parameter's unit, as `Suggestion` has them; ``basis`` is
     the evidence that decided: a known value, the lasting one, one that is stepped to because the
     values ``growth`` bounds nothing, one ``between`` those that were flown, the ``smallest``
-    change, or the one of ``before`` it was changed (`pytpc.diagnosis.suggestion.blamed_advice`).
+    change, or the one of ``before`` it was changed (`pytpc.diagnosis.suggestion.advise`).
     ``smallest`` is the smallest change that does at the most of the marks. ``kind`` is the type of
     error that is answered and ``key`` the comparison by which. ``known`` are all values that
     somebody knows to be good. Where nothing can be suggested ``value``, ``direction`` and ``basis``
@@ -122,7 +122,7 @@ class Advice:
 
     ``suggestion`` is the smallest change, and ``what_if`` what it would have changed, None
     where nothing is suggested. ``remedy`` is the value to try, and ``tried`` what that would have
-    changed; `pytpc.diagnosis.suggestion.joining.with_remedies` fills them, for they need the other
+    changed; `pytpc.diagnosis.suggestion.advise.with_remedies` fills them, for they need the other
     marks.
     """
 

@@ -1,19 +1,44 @@
-"""The advice for the suspects at one mark: the entrance to this room."""
+"""The advice for suspects: at one mark, for marks that say the same, and for all together."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 from pytpc.diagnosis.question import PLAIN, Question
-from pytpc.diagnosis.results.advice import Advice, Suggested, Suggestion
-from pytpc.diagnosis.results.suspects import MarkRanking, Suspect
-from pytpc.diagnosis.suggestion.declared import declared_for
+from pytpc.diagnosis.results.advice import (
+    Advice,
+    BlamedAdvice,
+    JoinedAdvice,
+    MarkGroup,
+    Remedy,
+    Suggested,
+    Suggestion,
+    WhatIf,
+)
+from pytpc.diagnosis.results.suspects import Accused, Blame, MarkRanking, Suspect
+from pytpc.diagnosis.suggestion.remedy import remedy, restored
 from pytpc.diagnosis.suggestion.suggest import At, suggest
 from pytpc.diagnosis.suggestion.what_if import what_if
+from pytpc.diagnosis.thresholds.intervals import holds
 from pytpc.recording.declaration import Declared
-from pytpc.recording.marks import Mark
+from pytpc.recording.marks import Mark, MarkType
 from pytpc.recording.mission import Recording
+from pytpc.recording.parameter_change import Change
+from pytpc.static.parameters import same_parameter
 from pytpc.static.static_info import StaticInfo
+
+if TYPE_CHECKING:
+    from pathlib import PurePath
+
+
+@dataclass
+class _OpenGroup:
+    marks: list[Mark] = field(default_factory=list)
+    lists: list[list[Advice]] = field(default_factory=list)
+    reasons: list[str] = field(default_factory=list)
 
 
 def advise(
@@ -108,3 +133,192 @@ def _suggested(
     about = declared_for(question.declared, suspect, static_info.source_path(suspect.key))
     at = At(mark.time_ns, suspect.type)
     return suggest(recording, static_info, suspect.comparison, at, question.about(about)), about
+
+
+def declared_for(
+    declared: Sequence[Declared], suspect: Suspect | Accused, source: PurePath | None = None
+) -> Declared | None:
+    """What is declared of a suspect's parameter; None without a declaration, or if they differ.
+
+    What the node itself published counts before what a file says. With ``source``, the file of the
+    comparison, only declarations of the package that holds this file count.
+    """
+    same = [one for one in declared if same_parameter(one.parameter, suspect.parameter)]
+    said = [one for one in same if one.parameter.startswith(f"{suspect.last.node}/")]
+    if not said:
+        # Full names are those of messages: other nodes have parameters of their own.
+        said = [one for one in same if not one.parameter.startswith("/")]
+        if source is not None:
+            above = {str(folder) for folder in source.parents}
+            said = [one for one in said if one.package in above]
+    meanings = {replace(one, parameter="", description="", place="", package="") for one in said}
+    return said[0] if len(meanings) == 1 else None
+
+
+def join_advice(
+    recording: Recording,
+    static_info: StaticInfo,
+    rankings: Sequence[MarkRanking],
+    question: Question = PLAIN,
+) -> list[MarkGroup]:
+    """The advice for all marks, those that say the same together, in the order of the first ones.
+
+    The arguments are those of `pytpc.diagnosis.suggestion.advise.advise`, with the rankings of
+    several marks.
+    """
+    groups: dict[tuple[object, ...], _OpenGroup] = {}
+    for ranking in rankings:
+        advice = advise(recording, static_info, ranking, question)
+        group = groups.setdefault(_says(ranking.mark, advice), _OpenGroup())
+        group.marks.append(ranking.mark)
+        group.lists.append(advice)
+        if ranking.reason and ranking.reason not in group.reasons:
+            group.reasons.append(ranking.reason)
+    return [
+        MarkGroup(
+            tuple(group.marks),
+            group.marks[0].type,
+            tuple(
+                JoinedAdvice(
+                    advice,
+                    named,
+                    agreed,
+                    *_tried(recording, static_info, group.marks, advice, question),
+                )
+                for advice, named, agreed in _joined(group.lists, question.top)
+            ),
+            tuple(group.reasons),
+        )
+        for group in groups.values()
+    ]
+
+
+def with_remedies(
+    recording: Recording,
+    static_info: StaticInfo,
+    rankings: Sequence[MarkRanking],
+    lists: Sequence[Sequence[Advice]],
+    question: Question = PLAIN,
+) -> list[list[Advice]]:
+    """The advice for each mark with the values to try, the same as ``join_advice`` has.
+
+    They are from all the marks that say the same.
+
+    Args:
+        recording: the mission.
+        static_info: what the analysis found.
+        rankings: of its marks.
+        lists: for each the advice for its first suspects.
+        question: its ``window_s``; a good run is not looked at.
+    """
+    alone = replace(question, reference=None, flown=())
+    marks: dict[tuple[object, ...], list[Mark]] = {}
+    for ranking, advice in zip(rankings, lists, strict=True):
+        marks.setdefault(_says(ranking.mark, advice), []).append(ranking.mark)
+    known: dict[tuple[object, ...], tuple[Remedy, WhatIf | None]] = {}
+    found = []
+    for ranking, advice in zip(rankings, lists, strict=True):
+        says, filled = _says(ranking.mark, advice), []
+        for one in advice:
+            place = (says, one.suspect.parameter, one.suspect.type)
+            if place not in known:
+                known[place] = _tried(recording, static_info, marks[says], one, alone)
+            filled.append(replace(one, remedy=known[place][0], tried=known[place][1]))
+        found.append(filled)
+    return found
+
+
+def _says(mark: Mark, advice: Sequence[Advice]) -> tuple[object, ...]:
+    """What marks say that are joined: the type, the first suspect and what to do with it."""
+    if not advice:
+        return (mark.type,)
+    first = advice[0]
+    return (
+        mark.type, first.suspect.parameter, first.suspect.type, first.suggestion.direction,
+    )  # fmt: skip
+
+
+def _tried(
+    recording: Recording,
+    static_info: StaticInfo,
+    marks: Sequence[Mark],
+    advice: Advice,
+    question: Question,
+) -> tuple[Remedy, WhatIf | None]:
+    """The value to try, by the type that the parameter is suspected for."""
+    kind = advice.suspect.type
+    typed = [replace(mark, type=kind) for mark in marks]
+    about = question.about(advice.declared)
+    found = remedy(recording, static_info, advice.suspect.parameter, typed, about)
+    return found, _replayed(recording, static_info, found, question.replayed(kind, typed))
+
+
+def _replayed(
+    recording: Recording, static_info: StaticInfo, found: Remedy, question: Question
+) -> WhatIf | None:
+    """What the value to try would have changed; None where there is none."""
+    if found.value is None:
+        return None
+    return what_if(recording, static_info, found.parameter, found.value, question)
+
+
+def _joined(lists: Sequence[Sequence[Advice]], top: int) -> list[tuple[Advice, int, int]]:
+    """The first suspects of all lists; one that a list does not have stands behind its last.
+
+    Each with the number of marks that name it, and of those at which its suggestion would do.
+    """
+    found: dict[tuple[str, MarkType], list[Advice]] = {}
+    places: dict[tuple[str, MarkType], int] = {}
+    for some in lists:
+        for advice in some:
+            name = (advice.suspect.parameter, advice.suspect.type)
+            found.setdefault(name, []).append(advice)
+            places[name] = places.get(name, 0) + advice.suspect.position - top - 1
+    order = sorted(found, key=lambda name: (places[name], name))
+    return [_most_agreed(found[name]) for name in order[:top]]
+
+
+def _most_agreed(same: Sequence[Advice]) -> tuple[Advice, int, int]:
+    """The one of several suggestions for a parameter that would do at the most marks."""
+    best, most = same[0], 0
+    for advice in same:
+        value = advice.suggestion.value
+        if value is None:
+            continue
+        count = sum(holds(other.suggestion.feasible, float(value)) for other in same)
+        if count > most:
+            best, most = advice, count
+    return best, len(same), most
+
+
+def advise_blamed(
+    blame: Blame, recording: Recording, static_info: StaticInfo, question: Question = PLAIN
+) -> list[BlamedAdvice]:
+    """The first of them with the value to try, as `remedy.remedy` has it.
+
+    All marks count, without the types that were said: most people confuse them (thesis, table
+    6.13), and the value depends on the type more than on all else. The type is what the log says
+    for this parameter (`Remedy.kind`). The value of before a change, or of the reference, comes
+    before what the log says: with it the robot went right.
+    """
+    found = []
+    for accused in blame.suspects[: question.top]:
+        name = accused.parameter
+        about = declared_for(question.declared, accused, static_info.source_path(accused.key))
+        untyped = [replace(mark, type=None) for mark in blame.marks]
+        value = remedy(recording, static_info, name, untyped, question.about(about))
+        value = _as_before(value, question.changes)
+        kind = value.kind or accused.type
+        typed = [replace(mark, type=kind) for mark in blame.marks]
+        then = _replayed(recording, static_info, value, question.replayed(kind, typed))
+        found.append(BlamedAdvice(accused, value, then))
+    return found
+
+
+def _as_before(found: Remedy, changes: Sequence[Change]) -> Remedy:
+    """The remedy with the value that the parameter had before it was changed, if that is known."""
+    for one in changes:
+        known = math.isfinite(one.old) and one.old != one.new
+        if known and same_parameter(one.parameter, found.parameter):
+            return restored(found, one.old, "before", "the value before it was changed")
+    return found

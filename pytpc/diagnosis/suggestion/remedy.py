@@ -27,21 +27,22 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pytpc.base.columns import Floats
+from pytpc.base.errors import InputError
 from pytpc.base.wording import Number, exact, many, show
-from pytpc.diagnosis.question import PLAIN, Question
+from pytpc.diagnosis.question import PLAIN, Question, Source
 from pytpc.diagnosis.results.advice import Basis, Direction, KnownValue, Remedy, Suggestion
 from pytpc.diagnosis.suggestion.choice import choose
-from pytpc.diagnosis.suggestion.known_values import NAMES, known_values, value_in
 from pytpc.diagnosis.suggestion.lasting import Lasting, lasting
 from pytpc.diagnosis.suggestion.suggest import At, suggest_for_most
 from pytpc.diagnosis.suggestion.suggestion_case import (
+    NoneBecauseError,
     SuggestionCase,
+    SuggestionEvidence,
     case_of,
     refuse,
     shown_current,
     values_for,
 )
-from pytpc.diagnosis.suggestion.suggestion_evidence import NoneBecauseError, SuggestionEvidence
 from pytpc.diagnosis.thresholds.intervals import Interval, Intervals, holds, intersection, words
 from pytpc.diagnosis.thresholds.replay import Track, tracks_of
 from pytpc.diagnosis.thresholds.threshold_sets import thresholds_for
@@ -49,7 +50,14 @@ from pytpc.diagnosis.thresholds.units import NoUnitError
 from pytpc.recording.declaration import Declared
 from pytpc.recording.marks import MARK_TYPES, Mark, MarkType
 from pytpc.recording.mission import Recording
-from pytpc.static.static_info import StaticInfo
+from pytpc.static.static_info import Default, StaticInfo
+
+NAMES: dict[Source, str] = {
+    "reference": "the value of the good run",
+    "default": "the default in the source",
+    "declared": "the declared default",
+}
+"""What each kind of evidence is called, the strongest first."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -205,17 +213,23 @@ def _wanted(
     end_ns: int,
 ) -> _Wanted:
     comparison = track.comparison
-    unit = static_info.unit_of(comparison.key)
-    refuse(comparison, unit)
-    seen = _thresholds(track, end_ns)
-    nothing = np.zeros(0)
-    evidence = SuggestionEvidence(nothing, nothing, float(seen[-1]), seen, bool(len(track.kept)))
-    case = case_of(comparison, unit, evidence, declared)
+    refuse(comparison, static_info.unit_of(comparison.key))
+    case = _case(track, _thresholds(track, end_ns), static_info, declared)
     edges = [
         values_for(case, thresholds_for(comparison.relation, edge, found.outcome))
         for edge in (found.edge, found.least)
     ]
     return _Wanted(track, case, found, edges[0], edges[1])
+
+
+def _case(
+    track: Track, seen: Floats, static_info: StaticInfo, declared: Declared | None
+) -> SuggestionCase:
+    """The case of a comparison whose thresholds were ``seen``; see `case_of`."""
+    nothing = np.zeros(0)
+    evidence = SuggestionEvidence(nothing, nothing, float(seen[-1]), seen, bool(len(track.kept)))
+    unit = static_info.unit_of(track.comparison.key)
+    return case_of(track.comparison, unit, evidence, declared)
 
 
 def _thresholds(track: Track, end_ns: int) -> Floats:
@@ -329,3 +343,50 @@ def _as_smallest(name: str, kind: MarkType, found: Suggestion, key: str | None) 
         name, found.current, found.direction, found.value, "smallest", found.text, None, kind, key,
         found,
     )  # fmt: skip
+
+
+def known_values(
+    case: SuggestionCase, static_info: StaticInfo, parameter: str, reference: Recording | None
+) -> list[KnownValue]:
+    """Those that there are, the strongest evidence first.
+
+    A good run has shown that its value does; a default is what its author thought would; one that
+    is declared may hold for other robots, too.
+
+    Args:
+        case: the parameter at one of its comparisons.
+        static_info: what the analysis found, of the reference's build, too.
+        parameter: its name in the source.
+        reference: a good run.
+    """
+    found: list[KnownValue] = []
+    flown = None if reference is None else value_in(reference, static_info, parameter)
+    if flown is not None:
+        found.append(KnownValue("reference", float(flown)))
+    declared = case.possible.declared
+    defaults: list[tuple[Source, Default]] = [
+        ("default", case.comparison.default),
+        ("declared", None if declared is None else declared.default),
+    ]
+    for source, value in defaults:
+        if value is not None and not isinstance(value, str):
+            found.append(KnownValue(source, float(value)))
+    return found
+
+
+def value_in(recording: Recording, static_info: StaticInfo, parameter: str) -> Number | None:
+    """The value that a parameter last had in a mission; None where the log does not say."""
+    try:
+        _, tracks, _ = tracks_of(recording.events, recording.summaries, static_info, parameter)
+    except InputError:
+        return None
+    for track in tracks:
+        seen = np.concatenate([track.kept.thresh, track.thresh])
+        seen = seen[np.isfinite(seen)]
+        if not seen.size:
+            continue
+        try:
+            return shown_current(_case(track, seen, static_info, None))
+        except (NoneBecauseError, NoUnitError):
+            continue
+    return None

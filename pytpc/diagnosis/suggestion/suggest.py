@@ -23,14 +23,15 @@ from pytpc.diagnosis.results.advice import Direction, Suggestion
 from pytpc.diagnosis.suggestion.choice import WHOLE, Choice, choose, nearest_of
 from pytpc.diagnosis.suggestion.suggestion_case import (
     EQUALITIES,
+    NoneBecauseError,
     SuggestionCase,
     case_of,
+    evidence_of,
     is_truth,
     refuse,
     shown_current,
     values_for,
 )
-from pytpc.diagnosis.suggestion.suggestion_evidence import NoneBecauseError, evidence_of
 from pytpc.diagnosis.thresholds.intervals import (
     Interval,
     Intervals,

@@ -19,10 +19,8 @@ from pytpc.diagnosis.results.mission_answer import (
     SuspectAnswer,
 )
 from pytpc.diagnosis.results.suspects import MarkRanking, Suspect
-from pytpc.diagnosis.scores.rank_curves import STEP_S, rank_curves
-from pytpc.diagnosis.suggestion.advise import advise, alternatives
-from pytpc.diagnosis.suggestion.blamed_advice import advise_blamed
-from pytpc.diagnosis.suggestion.joining import with_remedies
+from pytpc.diagnosis.scores.score_tables import STEP_S, rank_curves
+from pytpc.diagnosis.suggestion.advise import advise, advise_blamed, alternatives, with_remedies
 from pytpc.diagnosis.thresholds.units import threshold_of
 from pytpc.recording.events import Floats
 from pytpc.recording.faults import faults_of
