@@ -159,11 +159,12 @@ def test_a_time_that_is_forgotten_has_no_scores():
     assert live.scores_at(ns(99))[1].tolist() == [1.0]
 
 
-def test_unknown_keys_are_counted():
+def test_unknown_keys_are_left_out():
     live = LiveScores([key(0)], [1])
     for number in (0, 1, 1):
         live.add(5, key(number), "/a", True, 1.0, 0.0, True)
-    assert live.unknown == {key(1): 2}
+    assert live.first_ns == {key(0): 5}
+    assert live.last(key(0), 5).time_ns == 5
 
 
 def test_nothing_yet():

@@ -18,7 +18,6 @@ The cost of a report does not depend on how many there were, that of scores on w
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
@@ -27,7 +26,7 @@ import numpy.typing as npt
 from pytpc.diagnosis.question import PLAIN, WINDOW_S, Question
 from pytpc.diagnosis.ranking.mark_ranking import Ranker
 from pytpc.diagnosis.results.suspects import Evaluation, MarkRanking
-from pytpc.diagnosis.scores.live_streams import AGAIN, EventStream, Rows, SummaryStream, end_of
+from pytpc.diagnosis.scores.live_streams import AGAIN, EventStream, Rows, SummaryStream
 from pytpc.diagnosis.scores.score_tables import Tpcs, TpcScores, parameter_tables, tpc_scores
 from pytpc.diagnosis.scores.scores import NEVER, Before, not_negative
 from pytpc.diagnosis.scores.summary_scores import LogTables
@@ -41,7 +40,6 @@ LATE_S = 10.0
 
 # Longer than a summary and a report of it may be apart, see ``covered``.
 _SUMMARY_SLACK_NS = 1_000_000_000
-_MOST_UNKNOWN = 1000
 
 
 class TooOldError(ValueError):
@@ -51,8 +49,7 @@ class TooOldError(ValueError):
 class LiveScores:
     """Both scores of every comparison, from reports as they come.
 
-    ``late`` counts the reports that came too late to count. ``unknown`` has the reports of keys
-    that are not among ``keys``, of the first thousand of these.
+    ``late`` counts the reports that came too late to count. Reports of other keys are left out.
     """
 
     def __init__(
@@ -84,9 +81,7 @@ class LiveScores:
         self.tpcs = Tpcs(tuple(keys), distances, tuple(keys))
         self.window_s = window_s
         self.late = 0
-        self.unknown: Counter[str] = Counter()
         self.first_ns: dict[str, int] = {}
-        self.last_ns = NEVER
         self._codes = {key: code for code, key in enumerate(keys)}
         self._window_ns = round(window_s * 1e9)
         self._keep_ns = self._window_ns + round(late_s * 1e9)
@@ -110,7 +105,6 @@ class LiveScores:
         """Take in a report, as `pytpc.recording.events.EventBuilder.add` does."""
         streams = self._streams.get(key)
         if streams is None:
-            self._count_unknown(key)
             return
         stream = streams.get(node)
         if stream is None:
@@ -132,16 +126,15 @@ class LiveScores:
             if time_ns > stream.look_ns:
                 stream.look_ns = time_ns + self._again_ns
                 stream.forget(time_ns - self._keep_ns)
-        self._saw(key, time_ns, time_ns)
+        self._saw(key, time_ns)
 
     def add_summary(self, summary: Summary) -> None:
         """Take in a summary (policy ``edges``)."""
         if summary.key not in self._summaries:
-            self._count_unknown(summary.key)
             return
         stream = self._summaries[summary.key].setdefault(summary.node, SummaryStream())
         stream.add(summary, self._keep_ns + _SUMMARY_SLACK_NS)
-        self._saw(summary.key, min(summary.begin_ns, summary.end_ns), end_of(summary))
+        self._saw(summary.key, min(summary.begin_ns, summary.end_ns))
 
     def scores_at(self, mark_ns: int) -> tuple[Floats, Floats]:
         """Both scores at one time, of all that was added and is not later.
@@ -193,14 +186,9 @@ class LiveScores:
                 times += [min(mark_ns, one.end_ns) for one in begun]
         return max(times, default=None)
 
-    def _saw(self, key: str, first_ns: int, last_ns: int) -> None:
+    def _saw(self, key: str, first_ns: int) -> None:
         if first_ns < self.first_ns.get(key, 2**63):
             self.first_ns[key] = first_ns
-        self.last_ns = max(self.last_ns, last_ns)
-
-    def _count_unknown(self, key: str) -> None:
-        if key in self.unknown or len(self.unknown) < _MOST_UNKNOWN:
-            self.unknown[key] += 1
 
     def _events(self, mark_ns: int, before: Before) -> Events:
         """What is kept, but for streams that began after the mark; the rest goes to ``before``."""
@@ -285,7 +273,7 @@ class LiveRanking:
     """The suspects at any instant of a mission that runs.
 
     ``scores`` takes the reports in (`LiveScores.add`, `LiveScores.add_summary`); reports of keys
-    that are not comparisons with parameters are counted in its ``unknown``.
+    that are not comparisons with parameters are left out.
     """
 
     def __init__(self, static_info: StaticInfo, question: Question = PLAIN) -> None:

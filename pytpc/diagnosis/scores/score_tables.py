@@ -1,4 +1,4 @@
-"""Both scores of all TPCs and parameters at many times: rankings are read from these tables."""
+"""Both scores of all TPCs and parameters at many times, for rankings and for rank curves."""
 
 from __future__ import annotations
 
@@ -12,13 +12,19 @@ import numpy.typing as npt
 from pytpc.base.errors import TpcError
 from pytpc.diagnosis.question import PLAIN, WINDOW_S, Question
 from pytpc.diagnosis.results.mission_answer import RankCurves
-from pytpc.diagnosis.scores.scores import Formula, by_parameter, combined, ranks, type1
+from pytpc.diagnosis.scores.scores import Formula, ParameterTable, by_parameter, combined, type1
 from pytpc.diagnosis.scores.summary_scores import LogTables, type2_of_summaries
-from pytpc.recording.events import Floats, Int64s
+from pytpc.recording.events import Floats
 from pytpc.recording.marks import MarkType
 from pytpc.recording.mission import Recording
 from pytpc.static.parameters import parameter_name
 from pytpc.static.static_info import StaticInfo
+
+STEP_S = 0.1
+"""10 Hz."""
+
+# Some 2 GB in all five tables. A mission that seems to take decades has two clocks in it.
+_MOST_NUMBERS = 50_000_000
 
 
 @dataclass(frozen=True)
@@ -64,20 +70,6 @@ class TpcScores(NamedTuple):
     second: Floats
 
 
-class ParameterTable(NamedTuple):
-    """One score of the p parameters at t times.
-
-    ``names`` as `Tpcs.names`; ``scores`` float64[t, p]; ``best`` int64[t, p], the TPC that has that
-    score, and ``distance`` float64[t, p] that one's; ``ranks`` float64[t, p].
-    """
-
-    names: tuple[str, ...]
-    scores: Floats
-    best: Int64s
-    distance: Floats
-    ranks: Floats
-
-
 class Tables(NamedTuple):
     """Both scores of the parameters."""
 
@@ -114,21 +106,8 @@ def tpc_scores(
 
 def parameter_tables(tpcs: Tpcs, scores: TpcScores) -> Tables:
     """The scores of the TPCs joined by parameter, with ranks."""
-    return Tables(_joined(tpcs, scores.first), _joined(tpcs, scores.second))
-
-
-def _joined(tpcs: Tpcs, scores: Floats) -> ParameterTable:
-    """The distance of a parameter is that of its best TPC."""
-    found = by_parameter(scores, tpcs.parameters, tpcs.distance, tpcs.keys)
-    distance = np.append(tpcs.distance, np.inf)[found.best]
-    return ParameterTable(found.names, found.scores, found.best, distance, ranks(found.scores))
-
-
-STEP_S = 0.1
-"""10 Hz."""
-
-# Some 2 GB in all five tables. A mission that seems to take decades has two clocks in it.
-_MOST_NUMBERS = 50_000_000
+    names, distance, keys = tpcs.parameters, tpcs.distance, tpcs.keys
+    return Tables(*(by_parameter(one, names, distance, keys) for one in scores))
 
 
 def rank_curves(

@@ -139,13 +139,9 @@ def type2(
     D is the mean of |cmp - thresh| / (max_i - min_i), and flops and n_i (evaluations with
     |cmp - thresh| > 1e-4) are counted, over the window [m - w, m].
 
-    Args:
-        events: the evaluations.
-        marks_ns: int64[marks], the times m in nanoseconds, in any order.
-        distance: float64[keys], d_i of ``events.keys``; d_max is the largest of them.
-        formula: its ``window_s`` is w, ``alpha`` the exponent of D, ``beta`` of the number of flops
-            in the window, ``gamma`` of n_i, ``delta`` of the distance.
-        before: what was before the first of ``events``; no window may begin earlier.
+    The arguments are those of ``type1``; d_max is the largest distance. The formula's ``window_s``
+    is w, ``alpha`` the exponent of D, ``beta`` of the number of flops in the window, ``gamma`` of
+    n_i, ``delta`` of the distance. No window may begin before the first of ``events``.
 
     Returns:
         float64[marks, keys]; ``NONE`` where the key has no evaluation with finite values in the
@@ -198,39 +194,45 @@ def ranks(scores: Floats) -> Floats:
     return result
 
 
-class ParameterScores(NamedTuple):
-    """Scores by parameter: ``names`` sorted; ``scores`` float64[marks, parameters]; ``best``
-    int64[marks, parameters], the column of the TPC that has that score."""
+class ParameterTable(NamedTuple):
+    """One score of the p parameters at t times.
+
+    ``names`` as `score_tables.Tpcs.names`; ``scores`` float64[t, p]; ``best`` int64[t, p], the TPC that has that
+    score, and ``distance`` float64[t, p] that one's; ``ranks`` float64[t, p].
+    """
 
     names: tuple[str, ...]
     scores: Floats
     best: Int64s
+    distance: Floats
+    ranks: Floats
 
 
 def by_parameter(
-    scores: Floats,
-    parameters: Sequence[str],
-    distance: npt.ArrayLike | None = None,
-    keys: Sequence[str] | None = None,
-) -> ParameterScores:
-    """A parameter's score is the best of its TPCs'; ``parameters`` names that of each column.
+    scores: Floats, parameters: Sequence[str], distance: npt.ArrayLike, keys: Sequence[str]
+) -> ParameterTable:
+    """A parameter's score is the best of its TPCs'; of equal ones the nearer, then the first key.
 
-    Raises:
-        ValueError: ``parameters`` does not have a name for each column.
+    Args:
+        scores: float64[marks, n].
+        parameters: the name of the parameter of each TPC.
+        distance: float64[n], theirs; that of a parameter is the one of its best TPC.
+        keys: theirs.
     """
-    if len(parameters) != scores.shape[1]:
-        raise ValueError("one parameter for each column is needed")
     names = sorted(set(parameters))
     number = {name: place for place, name in enumerate(names)}
-    ties = _tie_order(len(parameters), distance, keys)
+    distances = np.asarray(distance, dtype=np.float64)
     columns: list[list[int]] = [[] for _ in names]
-    for column in ties.tolist():
+    for column in np.lexsort((np.asarray(list(keys)), distances)).tolist():
         columns[number[parameters[column]]].append(column)
     values = np.where(scores == NONE, np.inf, scores)
     best = np.empty((scores.shape[0], len(names)), dtype=np.int64)
     for place, own in enumerate(columns):
         best[:, place] = np.array(own)[np.argmin(values[:, own], axis=1)]
-    return ParameterScores(tuple(names), np.take_along_axis(scores, best, axis=1), best)
+    joined = np.take_along_axis(scores, best, axis=1)
+    # Without a TPC there is nothing to take a distance from.
+    nearest = np.append(distances, np.inf)[best]
+    return ParameterTable(tuple(names), joined, best, nearest, ranks(joined))
 
 
 def combined(first: Floats, second: Floats, weight: float = 1.0) -> Floats:
@@ -380,10 +382,3 @@ def count_within(times: Int64s, begins: Int64s, ends: Int64s) -> Int64s:
 def beside_none(values: Floats) -> Floats:
     """A score that happens to be 9999.9 must not read as none."""
     return np.where(values == NONE, np.nextafter(NONE, np.inf), values)
-
-
-def _tie_order(n: int, distance: npt.ArrayLike | None, keys: Sequence[str] | None) -> Int64s:
-    """The columns by distance, then key, then place."""
-    distances = np.zeros(n) if distance is None else np.asarray(distance, dtype=np.float64)
-    names = np.arange(n) if keys is None else np.asarray(list(keys))
-    return np.lexsort((names, distances)).astype(np.int64)
