@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import overload
 
 from pytpc.api.missions import Source, find_declared, load_static, read, read_marked
 from pytpc.base.errors import InputError
@@ -16,14 +15,14 @@ from pytpc.diagnosis.results.mission_answer import RankCurves
 from pytpc.diagnosis.results.suspects import MarkRanking
 from pytpc.diagnosis.scores.score_tables import STEP_S, rank_curves
 from pytpc.ingest import Recording
-from pytpc.present.notebook import NotebookTable
+from pytpc.present.notebook import NotebookTable, TableSequence
 from pytpc.recording.declaration import Declared
 from pytpc.static.parameters import parameter_name, same_parameter
 from pytpc.static.static_info import StaticInfo
 
 
 @dataclass(frozen=True, slots=True)
-class Rankings(Sequence[MarkRanking]):
+class Rankings(TableSequence[MarkRanking]):
     """The rankings of one mission, one for each mark, in the order of the marks.
 
     A sequence of `pytpc.diagnosis.results.suspects.MarkRanking`; ``recording`` and ``static_info``
@@ -84,23 +83,10 @@ class Rankings(Sequence[MarkRanking]):
             only.append(replace(ranking, suspects=tuple(exact or same)))
         return replace(self, rankings=tuple(only))
 
-    def __len__(self) -> int:
-        """The number of marks."""
-        return len(self.rankings)
-
-    @overload
-    def __getitem__(self, index: int) -> MarkRanking: ...
-
-    @overload
-    def __getitem__(self, index: slice) -> tuple[MarkRanking, ...]: ...
-
-    def __getitem__(self, index: int | slice) -> MarkRanking | tuple[MarkRanking, ...]:
-        """The ranking of a mark."""
-        return self.rankings[index]
-
-    def __iter__(self) -> Iterator[MarkRanking]:
-        """The rankings in the order of the marks."""
-        return iter(self.rankings)
+    @property
+    def items(self) -> tuple[MarkRanking, ...]:
+        """The ranking of each mark."""
+        return self.rankings
 
     def rows(self, top: int = PLAIN.top) -> list[dict[str, object]]:
         """The first ``top`` suspects of each mark, flat; ``pandas.DataFrame(rankings.rows())``.
@@ -147,14 +133,6 @@ class Rankings(Sequence[MarkRanking]):
             ]
         headings = ("mark", "at", "type", "#", "parameter", "rank", "score", "compared at")
         return NotebookTable(headings, tuple(rows), frozenset({0, 1, 3, 5, 6}))
-
-    def __str__(self) -> str:
-        """The table as text."""
-        return str(self.table())
-
-    def _repr_html_(self) -> str:
-        """The table for a notebook, escaped."""
-        return self.table()._repr_html_()
 
 
 def rank(

@@ -19,6 +19,7 @@ from pytpc.base.wording import many, plain
 from pytpc.cli.arguments import as_object
 from pytpc.cli.console import console, warn
 from pytpc.cli.options import JSON, PATH, recording_of
+from pytpc.present.as_json import mark_json
 from pytpc.present.marking_terminal import (
     MarkedMission,
     Paint,
@@ -185,7 +186,9 @@ def marks_command(given: _MarksArguments) -> None:
         marks = tuple(mark for mark in marks if mark != gone)
     if given.as_json:
         click.echo(
-            json.dumps([_mark_json(found, mark) for mark in marks], indent=1, ensure_ascii=False)
+            json.dumps(
+                [mark_json(mark, found.start_ns) for mark in marks], indent=1, ensure_ascii=False
+            )
         )
     elif given.as_csv:
         click.echo(marks_text(marks), nl=False)
@@ -240,16 +243,6 @@ def _change(source: Path, change: MarkChange) -> None:
     fault = file.flush()
     if fault:
         raise TpcError(fault, file.path)
-
-
-def _mark_json(found: Recording, mark: Mark) -> dict[str, object]:
-    return {
-        "time_ns": mark.time_ns,
-        "seconds": (mark.time_ns - found.start_ns) / 1e9,
-        "type": mark.type,
-        "observer": mark.observer,
-        "note": mark.note,
-    }
 
 
 def _marks_table(found: Recording, marks: Sequence[Mark]) -> Table:

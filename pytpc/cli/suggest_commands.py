@@ -29,7 +29,7 @@ from pytpc.cli.options import (
 )
 from pytpc.cli.sources import static_of
 from pytpc.diagnosis.question import Question, Types
-from pytpc.present.as_json import blame_json, group_json, what_if_json
+from pytpc.present.as_json import blame_json, fields_json, group_json
 from pytpc.present.suggestions import group_text, together_text
 from pytpc.recording.mission import Recording
 from pytpc.static.static_info import StaticInfo
@@ -172,7 +172,7 @@ def _show_value(
     question = Question(given.types, given.window_s)
     answers = what_if_by_type(recording, static, given.parameter, value, question)
     if given.as_json:
-        items = [{"type": kind, **what_if_json(answer)} for kind, answer in answers]
+        items = [{"type": kind, **fields_json(answer)} for kind, answer in answers]
         document = {"mission": recording.name, "what_if": items}
         click.echo(json.dumps(document, indent=1, ensure_ascii=False))
         return

@@ -43,9 +43,9 @@ from pytpc.cli.options import (
 )
 from pytpc.cli.sources import static_of
 from pytpc.diagnosis.question import Question, Types
-from pytpc.diagnosis.results.live import LiveRow, Look
+from pytpc.present.as_json import look_json
 from pytpc.present.marking_terminal import MarkedMission
-from pytpc.present.watch_screen import LAYOUTS, Status, WatchOptions, table
+from pytpc.present.watch_screen import LAYOUTS, WatchOptions, table
 from pytpc.recording.marking_session import clock_text
 from pytpc.recording.mission import Recording
 from pytpc.ros.marking import GraphMarks
@@ -167,7 +167,7 @@ def _once(
             raise RunError(status.fault)
         warn("no reports arrived: is a node that was built with TPC running?")
     if as_json:
-        document = _json_of(look, status, now_ns - start_ns if recording is not None else None)
+        document = look_json(look, status, now_ns - start_ns if recording is not None else None)
         click.echo(json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False))
         return
     console = Console(width=None if sys.stdout.isatty() else 120)
@@ -203,56 +203,6 @@ class _Still:
 
     def now_ns(self) -> int | None:
         return self._now_ns
-
-
-def _json_of(look: Look, status: Status, into_ns: int | None) -> dict[str, object]:
-    return {
-        "time_ns": look.now_ns,
-        "seconds": None if into_ns is None else into_ns / 1e9,
-        "reports": status.reports,
-        "nodes": status.nodes,
-        "unknown_keys": status.unknown,
-        "lost": status.lost,
-        "fault": status.fault,
-        "parameters": look.parameters,
-        "rankings": {
-            kind or "combined": {
-                "reason": look.reasons[kind],
-                "suspects": [_suspect(row) for row in rows],
-            }
-            for kind, rows in look.rows.items()
-        },
-    }
-
-
-def _suspect(row: LiveRow) -> dict[str, object]:
-    suspect, last = row.suspect, row.last
-    found = suspect.comparison
-    return {
-        "position": suspect.position,
-        "tied": suspect.tied,
-        "parameter": suspect.parameter,
-        "key": suspect.key,
-        "score": suspect.score,
-        "score_type": suspect.type,
-        "rank": suspect.rank,
-        "rank1": suspect.rank1,
-        "rank2": suspect.rank2,
-        "cmp": None if last is None else _finite(last.cmp),
-        "relation": found.relation,
-        "thresh": None if last is None else _finite(last.thresh),
-        "result": None if last is None else last.result,
-        "node": None if last is None else last.node,
-        "seconds_since_flop": row.flop_s,
-        "topic": found.topic,
-        "file": found.file,
-        "lineno": found.lineno,
-    }
-
-
-def _finite(value: float) -> float | None:
-    """JSON has neither NaN nor infinity."""
-    return value if abs(value) < float("inf") else None
 
 
 COMMANDS: list[click.Command] = [watch_command]

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from html import escape
-from typing import overload
 
 from pytpc.base.wording import exact, percent, plain, show
 from pytpc.diagnosis.results.advice import Advice, BlamedAdvice
 from pytpc.diagnosis.results.suspects import Blame, MarkRanking
-from pytpc.present.notebook import NotebookTable
+from pytpc.present.notebook import NotebookTable, TableSequence
 
 
 @dataclass(frozen=True, slots=True)
-class Advices(Sequence[Advice]):
+class Advices(TableSequence[Advice]):
     """What to do with the suspects at one mark, in their order.
 
     A sequence of `pytpc.diagnosis.results.advice.Advice`: suspect, value to try, smallest
@@ -24,23 +22,10 @@ class Advices(Sequence[Advice]):
     advices: tuple[Advice, ...]
     ranking: MarkRanking
 
-    def __len__(self) -> int:
-        """The number of suspects."""
-        return len(self.advices)
-
-    @overload
-    def __getitem__(self, index: int) -> Advice: ...
-
-    @overload
-    def __getitem__(self, index: slice) -> tuple[Advice, ...]: ...
-
-    def __getitem__(self, index: int | slice) -> Advice | tuple[Advice, ...]:
-        """The advice for a suspect."""
-        return self.advices[index]
-
-    def __iter__(self) -> Iterator[Advice]:
-        """The advices in the order of the suspects."""
-        return iter(self.advices)
+    @property
+    def items(self) -> tuple[Advice, ...]:
+        """The advice for each suspect."""
+        return self.advices
 
     def table(self) -> NotebookTable:
         """A row for each suspect."""
@@ -61,14 +46,6 @@ class Advices(Sequence[Advice]):
             )
         headings = ("#", "parameter", "value", "to try", "in the recorded run", "smallest change")
         return NotebookTable(headings, tuple(rows), frozenset({0, 2}))
-
-    def __str__(self) -> str:
-        """The table as text."""
-        return str(self.table())
-
-    def _repr_html_(self) -> str:
-        """The table for a notebook, escaped."""
-        return self.table()._repr_html_()
 
 
 @dataclass(frozen=True, slots=True)

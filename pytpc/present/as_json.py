@@ -1,9 +1,10 @@
-"""Advice as JSON: the output of ``suggest --json`` and ``rank --json``."""
+"""Answers as JSON: what ``rank``, ``suggest``, ``watch`` and ``marks`` print with ``--json``."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import asdict
 
 from pytpc.base.wording import Number
 from pytpc.diagnosis.results.advice import (
@@ -16,8 +17,9 @@ from pytpc.diagnosis.results.advice import (
     Suggestion,
     WhatIf,
 )
-from pytpc.diagnosis.results.suspects import Blame, MarkRanking
-from pytpc.diagnosis.thresholds.intervals import Intervals
+from pytpc.diagnosis.results.live import LiveRow, Look
+from pytpc.diagnosis.results.suspects import Blame, MarkRanking, Suspect
+from pytpc.present.watch_screen import Status
 from pytpc.recording.declaration import Declared
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
@@ -26,37 +28,21 @@ Json = dict[str, object]
 
 
 def finite(value: Number | None) -> Number | None:
-    """JSON has neither NaN nor infinity: null."""
+    """The number, or None where JSON has none for it: NaN and infinity."""
     return value if value is not None and math.isfinite(value) else None
 
 
-def intervals_json(intervals: Intervals) -> list[Json]:
-    """A list of ``{low, high, low_inclusive, high_inclusive}``; an end that is none is null."""
-    return [
-        {
-            "low": finite(one.low),
-            "high": finite(one.high),
-            "low_inclusive": one.low_inclusive,
-            "high_inclusive": one.high_inclusive,
-        }
-        for one in intervals
-    ]
+def fields_json(found: Suggestion | WhatIf | Declared) -> Json:
+    """All fields, those of what is inside, too; a number that JSON lacks is null."""
+    return {name: _without_nan(value) for name, value in asdict(found).items()}
 
 
-def suggestion_json(found: Suggestion) -> Json:
-    """All fields of a suggestion."""
-    return {
-        "parameter": found.parameter,
-        "current": finite(found.current),
-        "direction": found.direction,
-        "value": finite(found.value),
-        "boundary": finite(found.boundary),
-        "inclusive": found.inclusive,
-        "text": found.text,
-        "reason": found.reason,
-        "feasible": intervals_json(found.feasible),
-        "limited_by": found.limited_by,
-    }
+def _without_nan(value: object) -> object:
+    if isinstance(value, float):
+        return finite(value)
+    if isinstance(value, dict):
+        return {name: _without_nan(one) for name, one in value.items()}
+    return [_without_nan(one) for one in value] if isinstance(value, tuple) else value
 
 
 def remedy_json(found: Remedy) -> Json:
@@ -74,35 +60,11 @@ def remedy_json(found: Remedy) -> Json:
     }
 
 
-def what_if_json(found: WhatIf) -> Json:
-    """All fields of a counterfactual."""
-    return {
-        "parameter": found.parameter,
-        "value": finite(found.value),
-        "marks": found.marks,
-        "answered": found.answered,
-        "evaluations": found.evaluations,
-        "flipped_near": found.flipped_near,
-        "flipped_away": found.flipped_away,
-        "unsure": found.unsure,
-        "text": found.text,
-        "caveats": list(found.caveats),
-    }
-
-
-def declared_json(found: Declared) -> Json:
-    """All fields of a declaration; ``choices`` is a list of ``{name, value}``."""
-    return {
-        "parameter": found.parameter,
-        "type": found.type,
-        "low": finite(found.low),
-        "high": finite(found.high),
-        "step": finite(found.step),
-        "default": found.default if isinstance(found.default, str) else finite(found.default),
-        "choices": [{"name": name, "value": value} for name, value in found.choices],
-        "description": found.description,
-        "place": found.place,
-    }
+def _declared(found: Declared) -> Json:
+    """A declaration; ``choices`` is a list of ``{name, value}``."""
+    fields = fields_json(found)
+    del fields["package"]
+    return {**fields, "choices": [{"name": name, "value": value} for name, value in found.choices]}
 
 
 def advice_json(found: Advice) -> Json:
@@ -119,9 +81,9 @@ def advice_json(found: Advice) -> Json:
         "lineno": suspect.comparison.lineno,
         "source_code": suspect.comparison.source_code,
         "node": suspect.last.node,
-        "suggestion": suggestion_json(found.suggestion),
-        "what_if": None if found.what_if is None else what_if_json(found.what_if),
-        "declared": None if found.declared is None else declared_json(found.declared),
+        "suggestion": fields_json(found.suggestion),
+        "what_if": None if found.what_if is None else fields_json(found.what_if),
+        "declared": None if found.declared is None else _declared(found.declared),
     }
 
 
@@ -144,15 +106,7 @@ def ranking_json(ranking: MarkRanking, recording: Recording, rows: Sequence[Sugg
 def _suspected(row: Suggested) -> Json:
     suspect, advice = row.suspect, row.suggestion
     return {
-        "position": suspect.position,
-        "tied": suspect.tied,
-        "parameter": suspect.parameter,
-        "key": suspect.key,
-        "score": suspect.score,
-        "rank": suspect.rank,
-        "rank1": suspect.rank1,
-        "rank2": suspect.rank2,
-        "score_type": suspect.type,
+        **_ranked(suspect),
         "current": finite(advice.current),
         "direction": advice.direction,
         "value": finite(advice.value),
@@ -167,11 +121,26 @@ def _suspected(row: Suggested) -> Json:
     }
 
 
+def _ranked(suspect: Suspect) -> Json:
+    """The place of a suspect in a ranking."""
+    return {
+        "position": suspect.position,
+        "tied": suspect.tied,
+        "parameter": suspect.parameter,
+        "key": suspect.key,
+        "score": suspect.score,
+        "score_type": suspect.type,
+        "rank": suspect.rank,
+        "rank1": suspect.rank1,
+        "rank2": suspect.rank2,
+    }
+
+
 def group_json(group: MarkGroup, start_ns: int) -> Json:
     """Marks that say the same, with what is advised; ``start_ns`` is the begin of the mission."""
     return {
         "type": group.type,
-        "marks": [_mark(mark, start_ns) for mark in group.marks],
+        "marks": [mark_json(mark, start_ns) for mark in group.marks],
         "reasons": list(group.reasons),
         "suspects": [_joined(joined) for joined in group.suspects],
     }
@@ -192,7 +161,7 @@ def blame_json(blame: Blame, advice: Sequence[BlamedAdvice]) -> Json:
 
 def _blamed(found: BlamedAdvice) -> Json:
     accused = found.accused
-    tried = None if found.what_if is None else what_if_json(found.what_if)
+    tried = None if found.what_if is None else fields_json(found.what_if)
     return {
         "position": accused.position,
         "tied": accused.tied,
@@ -210,7 +179,7 @@ def _blamed(found: BlamedAdvice) -> Json:
 
 
 def _joined(found: JoinedAdvice) -> Json:
-    tried = None if found.what_if is None else what_if_json(found.what_if)
+    tried = None if found.what_if is None else fields_json(found.what_if)
     return {
         **advice_json(found.advice),
         "named": found.named,
@@ -219,11 +188,50 @@ def _joined(found: JoinedAdvice) -> Json:
     }
 
 
-def _mark(mark: Mark, start_ns: int) -> Json:
+def mark_json(mark: Mark, start_ns: int) -> Json:
+    """A mark; ``start_ns`` is the begin of the mission."""
     return {
         "time_ns": mark.time_ns,
         "seconds": (mark.time_ns - start_ns) / 1e9,
         "type": mark.type,
         "observer": mark.observer,
         "note": mark.note,
+    }
+
+
+def look_json(look: Look, status: Status, into_ns: int | None) -> Json:
+    """The rankings of an instant, ``into_ns`` after the begin of a recording."""
+    return {
+        "time_ns": look.now_ns,
+        "seconds": None if into_ns is None else into_ns / 1e9,
+        "reports": status.reports,
+        "nodes": status.nodes,
+        "unknown_keys": status.unknown,
+        "lost": status.lost,
+        "fault": status.fault,
+        "parameters": look.parameters,
+        "rankings": {
+            kind or "combined": {
+                "reason": look.reasons[kind],
+                "suspects": [_row(row) for row in rows],
+            }
+            for kind, rows in look.rows.items()
+        },
+    }
+
+
+def _row(row: LiveRow) -> Json:
+    suspect, last = row.suspect, row.last
+    found = suspect.comparison
+    return {
+        **_ranked(suspect),
+        "cmp": None if last is None else finite(last.cmp),
+        "relation": found.relation,
+        "thresh": None if last is None else finite(last.thresh),
+        "result": None if last is None else last.result,
+        "node": None if last is None else last.node,
+        "seconds_since_flop": row.flop_s,
+        "topic": found.topic,
+        "file": found.file,
+        "lineno": found.lineno,
     }

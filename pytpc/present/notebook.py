@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
+from typing import TypeVar, overload
 
 from rich.cells import cell_len
 
 from pytpc.base.wording import plain
 
 _GAP = 2
+Item = TypeVar("Item")
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,3 +60,38 @@ class NotebookTable:
 
 def _html(text: str) -> str:
     return escape(plain(text))
+
+
+class TableSequence(Sequence[Item]):
+    """Answers in their order, which a terminal shows as a table and a notebook as HTML."""
+
+    @property
+    @abstractmethod
+    def items(self) -> tuple[Item, ...]:
+        """The answers."""
+
+    @abstractmethod
+    def table(self) -> NotebookTable:
+        """The answers to look at."""
+
+    def __len__(self) -> int:
+        """How many there are."""
+        return len(self.items)
+
+    @overload
+    def __getitem__(self, index: int) -> Item: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> tuple[Item, ...]: ...
+
+    def __getitem__(self, index: int | slice) -> Item | tuple[Item, ...]:
+        """One of them."""
+        return self.items[index]
+
+    def __str__(self) -> str:
+        """The table as text."""
+        return str(self.table())
+
+    def _repr_html_(self) -> str:
+        """The table for a notebook, escaped."""
+        return self.table()._repr_html_()
