@@ -3,10 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TypedDict, Unpack
 
-from pytpc.api.missions import Source, find_declared, load_static, read, read_marked
+from pytpc.api.missions import (
+    Source,
+    find_declared,
+    load_static,
+    question_of,
+    read,
+    read_marked,
+)
 from pytpc.base.errors import InputError
 from pytpc.diagnosis.question import Question, Types
 from pytpc.diagnosis.ranking.blame import blame
@@ -52,19 +60,16 @@ def diagnose(
 
     Raises:
         InputError: the mission has no marks, or something cannot be read.
-        TypeError: both ``question`` and other settings are given, or a setting that there is not.
+        TypeError: both ``question`` and other settings are given, or there is no such setting.
     """
-    if question is not None and settings:
-        raise TypeError("give a question or single settings, not both")
+    asked = question_of(question, settings)
     recording, static = read_marked(mission), load_static(static_info)
-    unknown = sorted(set(settings) - DiagnoseSettings.__annotations__.keys())
-    if unknown:
-        raise TypeError(f"diagnose() has no setting {', '.join(unknown)}")
     if question is None:
         source = None if isinstance(mission, Recording) else Path(mission)
-        question = _question(static, source, settings)
-    found = blame(recording, static, question)
-    return Diagnosed(found, tuple(advise_blamed(found, recording, static, question)))
+        good = None if asked.reference is None else read(asked.reference)
+        asked = replace(asked, reference=good, declared=find_declared(static, source))
+    found = blame(recording, static, asked)
+    return Diagnosed(found, tuple(advise_blamed(found, recording, static, asked)))
 
 
 def changes_since(before: Path, mission: Path) -> tuple[Change, ...]:
@@ -84,14 +89,3 @@ def is_compared(changes: Sequence[Change], static_info: StaticInfo) -> bool:
     """Whether one of the changed parameters is compared anywhere: else they say nothing."""
     names = Tpcs.of(static_info).names
     return any(same_parameter(one.parameter, name) for one in changes for name in names)
-
-
-def _question(static: StaticInfo, source: Path | None, settings: DiagnoseSettings) -> Question:
-    reference = settings.get("reference")
-    return Question(
-        types=settings.get("types", "believe"),
-        top=settings.get("top", Question().top),
-        reference=None if reference is None else read(reference),
-        changes=settings.get("changes", ()),
-        declared=find_declared(static, source),
-    )

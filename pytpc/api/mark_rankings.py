@@ -5,11 +5,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TypedDict, Unpack
 
-from pytpc.api.missions import Source, find_declared, load_static, read, read_marked
+from pytpc.api.missions import (
+    Source,
+    find_declared,
+    load_static,
+    question_of,
+    read,
+    read_marked,
+)
 from pytpc.base.errors import InputError
 from pytpc.base.wording import plain
-from pytpc.diagnosis.question import PLAIN, WINDOW_S, Question, Types
+from pytpc.diagnosis.question import PLAIN, Question, Types
 from pytpc.diagnosis.ranking.mark_ranking import rank_marks
 from pytpc.diagnosis.results.mission_answer import RankCurves
 from pytpc.diagnosis.results.suspects import MarkRanking
@@ -19,6 +27,13 @@ from pytpc.present.notebook import NotebookTable, TableSequence
 from pytpc.recording.declaration import Declared
 from pytpc.static.parameters import parameter_name, same_parameter
 from pytpc.static.static_info import StaticInfo
+
+
+class RankSettings(TypedDict, total=False):
+    """The settings of ``rank`` as keywords."""
+
+    types: Types
+    window_s: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,25 +153,24 @@ class Rankings(TableSequence[MarkRanking]):
 def rank(
     mission: Recording | Source,
     static_info: StaticInfo | Source,
-    *,
-    types: Types = "believe",
-    window_s: float = WINDOW_S,
     question: Question | None = None,
+    **settings: Unpack[RankSettings],
 ) -> Rankings:
     """The suspected parameters at each mark, most suspicious first.
 
     Args:
         mission: the mission with its marks.
         static_info: what the analysis found.
-        types: ``believe`` the observer's types, ``doubt`` them (the other type's suspects stay
-            rivals) or ``ignore`` them.
-        window_s: the window of type II, in seconds.
-        question: all settings at once, in place of ``types`` and ``window_s``.
+        question: all settings at once.
+        **settings: in place of ``question``. ``types``: ``believe`` the observer's types, ``doubt``
+            them (the other type's suspects stay rivals) or ``ignore`` them. ``window_s``: the
+            window of type II, in seconds.
 
     Raises:
         InputError: the mission has no marks, or something cannot be read.
+        TypeError: both ``question`` and other settings are given, or there is no such setting.
     """
-    asked = question or Question(types=types, window_s=window_s)
+    asked = question_of(question, settings)
     source = None if isinstance(mission, Recording) else Path(mission)
     return Rankings.of(read_marked(mission), load_static(static_info), asked, source)
 
@@ -164,15 +178,18 @@ def rank(
 def curves(
     mission: Recording | Source,
     static_info: StaticInfo | Source,
+    question: Question | None = None,
     *,
     step_s: float = STEP_S,
-    window_s: float = WINDOW_S,
-    question: Question | None = None,
+    **settings: Unpack[RankSettings],
 ) -> RankCurves:
     """Scores and ranks of all parameters over the mission, every ``step_s`` seconds.
 
+    The other arguments are those of ``rank``; ``types`` change nothing here.
+
     Raises:
         InputError: something cannot be read.
+        TypeError: both ``question`` and other settings are given, or there is no such setting.
     """
-    asked = question or Question(window_s=window_s)
+    asked = question_of(question, settings)
     return rank_curves(read(mission), load_static(static_info), asked, step_s=step_s)

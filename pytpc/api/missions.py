@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Callable, Mapping
+from dataclasses import fields, replace
 from pathlib import Path
+from typing import Any
 
 from pytpc.base.errors import InputError
+from pytpc.diagnosis.question import Question
 from pytpc.ingest import Recording
 from pytpc.ingest import read as read_recording
 from pytpc.recording.declaration import Declared
@@ -91,3 +93,17 @@ def find_declared(
 ) -> list[Declared]:
     """The ranges that are declared in the analysed sources, and in a mission's folder."""
     return declared_in(static_info, [] if source is None else [source], on_skipped)
+
+
+def question_of(question: Question | None, settings: Mapping[str, Any]) -> Question:
+    """The question that is given, or one with these settings.
+
+    Raises:
+        TypeError: both are given, or there is no such setting.
+    """
+    if question is not None and settings:
+        raise TypeError("give a question or single settings, not both")
+    unknown = sorted(settings.keys() - {field.name for field in fields(Question)})
+    if unknown:
+        raise TypeError(f"there is no setting {', '.join(unknown)}")
+    return Question(**settings) if question is None else question

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import count
 from pathlib import Path
 
 from pytpc.api.mark_rankings import Rankings
 from pytpc.api.missions import Source
+from pytpc.base.atomic import write_atomic
 from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.results.suspects import MarkRanking
 from pytpc.diagnosis.suggestion.whole_mission import answer_mission
-from pytpc.present.page.html import Progress, write_page
+from pytpc.present.page.html import page_text
 from pytpc.present.page.reported_mission import ReportedMission
 from pytpc.recording.declaration import Declared
 from pytpc.recording.known_change import read_known_change
@@ -19,6 +21,7 @@ from pytpc.recording.mission import Recording
 from pytpc.static.static_info import StaticInfo
 from pytpc.values.origins import Origin, read_origins
 
+Progress = Callable[[int, int], None]
 TITLE = "Suspected parameters"
 CARDS = 3
 """Suspects of a mark that are shown with their evidence."""
@@ -45,6 +48,12 @@ class MissionReport:
     changed_parameter: str | None = None
     origins: Mapping[str, Origin] = field(default_factory=dict)
     question: Question = CARDS_ALONE
+
+    @property
+    def figures(self) -> int:
+        """How many figures the page has of it: one of the whole mission, and one for each card."""
+        top = self.question.top
+        return 1 + sum(len(ranking.suspects[:top]) for ranking in self.rankings)
 
     def answered(self) -> ReportedMission:
         """The mission with its diagnosis, as the page takes it."""
@@ -113,11 +122,24 @@ def write_missions(
     title: str = TITLE,
     on_progress: Progress | None = None,
 ) -> None:
-    """Diagnose the missions and write the page, atomically; see `write_page`.
+    """Diagnose the missions and write the page, atomically. The same missions make the same bytes.
+
+    Args:
+        path: the HTML file.
+        missions: in the order of the page. Only what the page shows of each is kept.
+        title: its heading.
+        on_progress: called with (figures made, figures in all); a figure takes a tenth of a second.
 
     Raises:
         TpcError: the file cannot be written; what stood there before is untouched.
     """
-    write_page(
-        path, [mission.answered() for mission in missions], title=title, on_progress=on_progress
-    )
+    total = sum(mission.figures for mission in missions)
+    made = count(1)
+
+    def figure_made() -> None:
+        number = next(made)
+        if on_progress is not None:
+            on_progress(number, total)
+
+    text = page_text((mission.answered() for mission in missions), title, figure_made)
+    write_atomic(path, text.encode("utf-8", "replace"))

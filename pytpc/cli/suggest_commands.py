@@ -30,7 +30,7 @@ from pytpc.cli.options import (
 from pytpc.cli.sources import static_of
 from pytpc.diagnosis.question import Question, Types
 from pytpc.present.as_json import blame_json, fields_json, group_json
-from pytpc.present.suggestions import group_text, together_text
+from pytpc.present.ranking_tables import group_text, together_text
 from pytpc.recording.mission import Recording
 from pytpc.static.static_info import StaticInfo
 

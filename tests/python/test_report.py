@@ -4,6 +4,7 @@ import base64
 import hashlib
 import math
 import re
+import weakref
 from dataclasses import replace
 from html import unescape
 from pathlib import Path
@@ -22,6 +23,7 @@ from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.blame import blame
 from pytpc.diagnosis.ranking.mark_ranking import rank_marks
 from pytpc.diagnosis.suggestion.advise import join_advice
+from pytpc.diagnosis.suggestion.whole_mission import answer_mission
 from pytpc.ingest import MalformedRecord, Recording
 from pytpc.present.page.series import (
     BINS,
@@ -468,3 +470,18 @@ def test_scores_of_both_types_say_which(tmp_path):
     assert "doubted: suspects of the other" in written(
         tmp_path, replace(report, question=Question(types="doubt"))
     )
+
+
+# With three missions the answer of the first, which has its curves, is gone when the third comes.
+def test_answers_are_not_kept(tmp_path, monkeypatch):
+    answers, held = [], []
+
+    def remembered(*arguments):
+        held.append(sum(answer() is not None for answer in answers))
+        made = answer_mission(*arguments)
+        answers.append(weakref.ref(made))
+        return made
+
+    monkeypatch.setattr("pytpc.api.report.answer_mission", remembered)
+    write_missions(tmp_path / "report.html", [mission(tmp_path)] * 3)
+    assert held == [0, 1, 1]

@@ -21,9 +21,7 @@ from pytpc.present.page.source import LONGEST_LINE, Line, StepView, source_lines
 from pytpc.recording.declaration import Declared
 from pytpc.recording.marks import Mark
 from pytpc.static.static_info import Comparison
-from pytpc.values.origins import origin_for
-
-_PARTS = 2
+from pytpc.values.origins import Origin, origin_for
 
 
 @dataclass(frozen=True)
@@ -48,18 +46,6 @@ class SuspectView:
     scored: str
     rank: str
     order: Mapping[str, float | int | str]
-
-
-@dataclass(frozen=True)
-class OriginView:
-    """Where a value came from; ``full`` has whole paths, ``overrides`` what does not count."""
-
-    place: str
-    full: str
-    text: str
-    via: list[str]
-    overrides: list[str]
-    note: str
 
 
 @dataclass(frozen=True)
@@ -99,7 +85,7 @@ class CardView:
     source: list[Line]
     source_note: str
     way: list[StepView]
-    origin: OriginView | None
+    origin: Origin | None
     declared: str
     declared_at: str
     what_if: WhatIf | None
@@ -196,7 +182,7 @@ def card_view(
         source=lines,
         source_note=note,
         way=way_of(found),
-        origin=_origin_view(mission, suspect),
+        origin=origin_for(mission.origins, suspect.parameter, last.node, found.default),
         declared=_declared(declared) if declared is not None else "",
         declared_at=declared.place if declared is not None else "",
         what_if=advice.what_if if advice.tried is None else advice.tried,
@@ -263,27 +249,6 @@ def _bound(suggestion: Suggestion) -> str:
 def _exposed(found: Comparison) -> str:
     place = f"{found.exposed_at.file}:{found.exposed_at.lineno}"
     return f"{found.topic} ({place})" if found.topic else place
-
-
-def _origin_view(mission: ReportedMission, suspect: Suspect) -> OriginView | None:
-    default = suspect.comparison.default
-    origin = origin_for(mission.origins, suspect.parameter, suspect.last.node, default)
-    if origin is None:
-        return None
-    return OriginView(
-        place=_short_path(origin.words()),
-        full=origin.words(),
-        text=origin.text.strip()[:LONGEST_LINE],
-        via=list(origin.via),
-        overrides=list(origin.overridden),
-        note=origin.note,
-    )
-
-
-def _short_path(place: str) -> str:
-    """The last parts of a long path; what stands before them is the same for all of a robot."""
-    parts = place.split("/")
-    return place if len(parts) <= _PARTS + 1 else "/".join(["…", *parts[-_PARTS:]])
 
 
 def _alternatives(others: Sequence[Advice]) -> list[tuple[str, str]]:

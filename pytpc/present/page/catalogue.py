@@ -5,17 +5,14 @@ It asks the network for nothing, and can be read without its script, which only 
 
 from __future__ import annotations
 
-import base64
-import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass
-from importlib.resources import files
 from itertools import groupby
 from pathlib import Path
 
 from pytpc.base.atomic import write_atomic
 from pytpc.conditions.tpc_details import Details
-from pytpc.present.page.environment import environment
+from pytpc.present.page.environment import environment, page_script, script_hash
 from pytpc.present.page.source import LONGEST_LINE, StepView, source_file_lines, way_of
 from pytpc.static.static_info import StaticInfo
 
@@ -82,8 +79,7 @@ def write_catalogue(path: Path, static: StaticInfo, found: Sequence[Details], ti
 
 def render(static: StaticInfo, found: Sequence[Details], title: str) -> str:
     """The page as text. Whatever comes from the sources is escaped."""
-    script = files("pytpc.present.page").joinpath("templates", "tpcs.js").read_text("utf-8")
-    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    script = page_script("tpcs.js")
     packages = _packages(found)
     return (
         environment()
@@ -92,7 +88,7 @@ def render(static: StaticInfo, found: Sequence[Details], title: str) -> str:
             title=title,
             packages=packages,
             script=script,
-            script_hash=f"sha256-{digest}",
+            script_hash=script_hash(script),
             facts=_summary(static, found),
             warnings=[
                 f"{unit.package}/{unit.link_unit} was not analysed: {unit.failure}"

@@ -1,8 +1,11 @@
-"""The templates of the pages."""
+"""The templates and scripts of the pages."""
 
 from __future__ import annotations
 
+import base64
+import hashlib
 import re
+from importlib.resources import files
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
@@ -13,10 +16,12 @@ _UNSEEN = re.compile(
     r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]"
 )
 
+_PARTS = 2
+
 
 def environment() -> Environment:
     """An environment in which every text is escaped and seen, and a misspelt name is an error."""
-    return Environment(
+    made = Environment(
         finalize=_seen,
         loader=PackageLoader("pytpc.present.page"),
         autoescape=True,
@@ -25,6 +30,8 @@ def environment() -> Environment:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
+    made.filters["short_path"] = _short_path
+    return made
 
 
 def seen(text: str) -> str:
@@ -32,6 +39,22 @@ def seen(text: str) -> str:
     return _UNSEEN.sub("\N{REPLACEMENT CHARACTER}", text)
 
 
+def page_script(name: str) -> str:
+    """One of our scripts."""
+    return files("pytpc.present.page").joinpath("templates", name).read_text("utf-8")
+
+
+def script_hash(script: str) -> str:
+    """The name by which a page's content security policy allows a script."""
+    return f"sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}"
+
+
 def _seen(value: object) -> object:
     """Texts with a sign for what cannot be seen; Markup is ours and stays."""
     return seen(value) if isinstance(value, str) and not isinstance(value, Markup) else value
+
+
+def _short_path(place: str) -> str:
+    """The last parts of a long path; what stands before them is the same for all of a robot."""
+    parts = place.split("/")
+    return place if len(parts) <= _PARTS + 1 else "/".join(["…", *parts[-_PARTS:]])

@@ -17,12 +17,11 @@ from pytpc.base.wording import many
 from pytpc.diagnosis.question import Types
 from pytpc.diagnosis.results.mission_answer import MarkAnswer
 from pytpc.diagnosis.results.suspects import MarkRanking
-from pytpc.present.page.answer import AnswerView, answers, spoken
+from pytpc.present.page.answer import AnswerView, TogetherView, answers, spoken, together
 from pytpc.present.page.cards import CardView, PageFigures, SuspectView, card_view, row_view
 from pytpc.present.page.payload import embedded, marks_json
 from pytpc.present.page.reported_mission import ReportedMission
 from pytpc.present.page.timeline import timeline
-from pytpc.present.page.together import TogetherView, together
 from pytpc.recording.marks import MarkType
 
 ROWS = 8
@@ -77,12 +76,6 @@ class MissionView:
     facts: list[tuple[str, str]]
     warnings: list[str]
     payload: Markup
-
-
-def figures(mission: ReportedMission) -> int:
-    """How many figures ``mission_view`` makes."""
-    cards = sum(len(mark.first) for mark in mission.answer.marks)
-    return 1 + cards
 
 
 def mission_view(
