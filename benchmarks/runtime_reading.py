@@ -66,7 +66,7 @@ def go(path):
 """
 CONVERT = """
 from pytpc.cli.main import main
-import pytpc.cli.event_commands
+import pytpc.cli.mission_commands
 def go(path):
     main(["convert", path, "-o", path + ".out", "--json"], standalone_mode=False)
     return 0

@@ -1,12 +1,43 @@
-"""The arguments and options of a command as one object."""
+"""Arguments and options that several commands share, and a command's arguments as one object."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import wraps
+from pathlib import Path
 from typing import TypeVar
 
+import click
+
 Arguments = TypeVar("Arguments")
+Command = TypeVar("Command", bound=Callable[..., object])
+
+PATH = click.Path(path_type=Path)
+JSON = click.option("--json", "as_json", is_flag=True, help="Print JSON, for programs.")
+STATIC_OUTPUT = click.option(
+    "-o",
+    "--output",
+    type=PATH,
+    default=Path("static.json"),
+    show_default=True,
+    help="Write the static information to this file.",
+)
+RULES = click.option(
+    "--rules",
+    type=PATH,
+    metavar="FILE",
+    help="JSON file with your own rules: more functions that read a parameter or expose.",
+)
+PYTHON_RULES = click.option(
+    "--python-rules",
+    type=PATH,
+    metavar="FILE",
+    help="JSON file with your own rules for Python nodes.",
+)
+NO_PYTHON = click.option("--no-python", is_flag=True, help="Do not analyse Python nodes.")
+CONSTANTS = click.option(
+    "--constants", is_flag=True, help="Report comparisons with constants, too."
+)
 
 
 def as_object(

@@ -14,14 +14,7 @@ from pytpc.base.paths import MERGED_FILE, OWN_FOLDER
 
 _VARIABLE = "_PYTPC_COMPLETE"
 _SHELLS = ("bash", "zsh", "fish")
-_WHERE = {
-    "bash": 'eval "$(pytpc completion bash)"   # in ~/.bashrc',
-    "zsh": 'eval "$(pytpc completion zsh)"   # in ~/.zshrc, after compinit',
-    "fish": "pytpc completion fish > ~/.config/fish/completions/pytpc.fish",
-}
 _LARGEST = 64 << 20
-# What arguments and options are called that take a parameter of the robot, alone or among others.
-_NAMES_A_PARAMETER = {"parameter", "parameters", "question", "words"}
 
 
 @click.command("completion")
@@ -38,52 +31,17 @@ def completion_command(shell: str) -> None:
     assert found is not None, "click has these three"
     root = click.get_current_context().find_root().command
     script = found(root, {}, "pytpc", _VARIABLE).source()
-    click.echo(f"# {_WHERE[shell]}\n{script}")
+    click.echo(f"# `pytpc completion --help` says where this goes.\n{script}")
 
 
-class ParameterName(click.types.StringParamType):
-    """A parameter of the robot: any text; those of the static information are offered.
+def offer_parameters(
+    ctx: click.Context, _: click.Parameter, incomplete: str
+) -> list[CompletionItem]:
+    """The robot's parameters that begin like what was typed, with or without their ``~``.
 
     They are looked for where the command's own option ``--static`` says, else among its other
-    arguments, else here. What cannot be read offers nothing: completion never complains.
+    arguments, else here. Files are offered where there is none: completion never complains.
     """
-
-    name = "parameter"
-
-    def shell_complete(
-        self, ctx: click.Context, param: click.Parameter, incomplete: str
-    ) -> list[CompletionItem]:
-        """The names that begin like what was typed, or do so without their ``~``; else files."""
-        return _offered(ctx, incomplete)
-
-
-class SourceOrParameter(click.Path):
-    """A path where a parameter of the robot may stand as well, behind any number of paths."""
-
-    def __init__(self) -> None:
-        """Paths are given as ``Path``."""
-        super().__init__(path_type=Path)
-
-    def shell_complete(
-        self, ctx: click.Context, param: click.Parameter, incomplete: str
-    ) -> list[CompletionItem]:
-        """As that of ``ParameterName``."""
-        return _offered(ctx, incomplete)
-
-
-def completing(command: click.Command) -> click.Command:
-    """The command, completing parameters of the robot wherever it takes one."""
-    named = [one for one in command.params if one.name in _NAMES_A_PARAMETER]
-    for param in named:
-        if isinstance(param.type, click.types.StringParamType):
-            param.type = ParameterName()
-    for param in command.params:
-        if named and param.name == "sources" and isinstance(param.type, click.Path):
-            param.type = SourceOrParameter()
-    return command
-
-
-def _offered(ctx: click.Context, incomplete: str) -> list[CompletionItem]:
     names = [
         CompletionItem(name)
         for name in parameter_names(_sources(ctx))

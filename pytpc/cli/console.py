@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 
 import click
@@ -16,7 +17,7 @@ from rich.text import Text
 
 from pytpc.base.wording import many, plain
 from pytpc.build.reconcile import remark
-from pytpc.static.static_info import LinkUnit, StaticInfo
+from pytpc.static.static_info import StaticInfo
 
 Advance = Callable[[int, int], None]
 
@@ -28,6 +29,26 @@ _SILENT_S = 2.0
 def console() -> Console:
     """Where tables are printed."""
     return Console(width=None if sys.stdout.isatty() else _PIPED_WIDTH)
+
+
+def print_json(document: object) -> None:
+    """Print a document as JSON on standard output."""
+    click.echo(json.dumps(document, indent=1, ensure_ascii=False))
+
+
+def table_of(
+    headings: Sequence[str], rows: Iterable[Sequence[str | Text]], right: Collection[str] = ()
+) -> Table:
+    """A table of texts from anywhere; the columns ``right`` hold numbers, the others are folded."""
+    table = Table()
+    for heading in headings:
+        if heading in right:
+            table.add_column(heading, justify="right")
+        else:
+            table.add_column(heading, overflow="fold")
+    for row in rows:
+        table.add_row(*(cell if isinstance(cell, Text) else Text(plain(cell)) for cell in row))
+    return table
 
 
 def warn(text: str) -> None:
@@ -94,20 +115,19 @@ def found_text(static: StaticInfo) -> str:
 
 
 def _units_table(static: StaticInfo) -> Table:
-    table = Table()
-    for heading in ("Package", "Link unit"):
-        table.add_column(heading, overflow="fold")
-    for heading in ("Comparisons", "Parameter reads", "Exposing statements"):
-        table.add_column(heading, justify="right")
-    table.add_column("Status")
-    for unit in static.units:
-        table.add_row(Text(unit.package), Text(unit.link_unit), *_numbers(unit), remark(unit))
-    return table
-
-
-def _numbers(unit: LinkUnit) -> list[str]:
-    counts = unit.counts
-    return [
-        str(number)
-        for number in (counts.comparisons, counts.parameter_reads, counts.exposing_statements)
-    ]
+    numbers = ("Comparisons", "Parameter reads", "Exposing statements")
+    return table_of(
+        ("Package", "Link unit", *numbers, "Status"),
+        (
+            (
+                unit.package,
+                unit.link_unit,
+                str(unit.counts.comparisons),
+                str(unit.counts.parameter_reads),
+                str(unit.counts.exposing_statements),
+                remark(unit),
+            )
+            for unit in static.units
+        ),
+        right=numbers,
+    )

@@ -12,8 +12,8 @@ from pytpc.base.errors import InputError, WorkspaceError
 from pytpc.base.paths import MERGED_FILE, OWN_FOLDER
 from pytpc.base.shell_words import SHELLS, EnvChange
 from pytpc.build.build import installed, workspace_env
+from pytpc.cli.arguments import JSON, PATH
 from pytpc.cli.console import warn
-from pytpc.cli.options import PATH
 from pytpc.ros.python_env import has_python, with_python, without_python
 
 
@@ -28,7 +28,7 @@ from pytpc.ros.python_env import has_python, with_python, without_python
     show_default=True,
     help="Shell to print for; sh is for bash, zsh and the like.",
 )
-@click.option("--json", "as_json", is_flag=True, help="Print a JSON object.")
+@JSON
 def env_command(*, source: Path | None, off: bool, setup: bool, shell: str, as_json: bool) -> None:
     """Print shell commands; Python nodes started from this shell will report.
 

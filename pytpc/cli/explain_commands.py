@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections import Counter
 from dataclasses import asdict
 from pathlib import Path
@@ -14,8 +13,9 @@ from rich.table import Table
 from rich.text import Text
 
 from pytpc.base.wording import many, plain
-from pytpc.cli.console import console
-from pytpc.cli.sources import SOURCES, static_of
+from pytpc.cli.arguments import JSON
+from pytpc.cli.console import console, print_json
+from pytpc.cli.sources import SOURCES, SOURCES_AND_QUESTION, static_of
 from pytpc.static.explanations import (
     Explanation,
     FoundComparison,
@@ -40,10 +40,9 @@ _KINDS = {
 
 
 @click.command("explain")
-@SOURCES
-@click.argument("question", metavar="KEY|PARAMETER|FILE:LINE")
+@SOURCES_AND_QUESTION
 @click.option("--all", "show_all", is_flag=True, help="Show the path of every matching comparison.")
-@click.option("--json", "as_json", is_flag=True, help="Print a JSON object.")
+@JSON
 def explain_command(
     sources: tuple[Path, ...], question: str, show_all: bool, as_json: bool
 ) -> None:
@@ -55,7 +54,7 @@ def explain_command(
     """
     explanation = look_up(static_of(sources), question)
     if as_json:
-        click.echo(json.dumps(_json(explanation), indent=1, ensure_ascii=False))
+        print_json(_json(explanation))
         return
     out = console()
     shown = explanation.comparisons if show_all else explanation.comparisons[:1]
@@ -72,7 +71,7 @@ def explain_command(
 
 @click.command("blind-spots")
 @SOURCES
-@click.option("--json", "as_json", is_flag=True, help="Print a JSON list.")
+@JSON
 def blind_spots_command(sources: tuple[Path, ...], as_json: bool) -> None:
     """List the places in SOURCE that the analysis cannot see past."""
     static = static_of(sources)
@@ -82,7 +81,7 @@ def blind_spots_command(sources: tuple[Path, ...], as_json: bool) -> None:
             for unit in static.units
             for spot in unit.blind_spots
         ]
-        click.echo(json.dumps(spots, indent=1, ensure_ascii=False))
+        print_json(spots)
         return
     out = console()
     for unit in static.units:

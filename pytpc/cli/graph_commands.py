@@ -8,11 +8,11 @@ from pathlib import Path
 
 import click
 from rich.table import Table
-from rich.text import Text
 
 from pytpc.base.errors import RunError
 from pytpc.base.wording import many, plain
-from pytpc.cli.console import console, progress, warn
+from pytpc.cli.arguments import JSON, PATH
+from pytpc.cli.console import console, progress, table_of, warn
 from pytpc.python_runtime.config import POLICIES, SINKS
 from pytpc.ros.node_settings import NodeStatus, chosen
 from pytpc.ros.ros1 import relay
@@ -43,13 +43,13 @@ _COUNT = click.IntRange(min=0, max=(1 << 31) - 1)
 )
 @click.option(
     "--folder",
-    type=click.Path(path_type=Path),
+    type=PATH,
     help="Folder for the files of --sink file, on the node's machine.",
 )
 @click.option("--file-limit", type=_COUNT, help="Largest size of a file in MiB; 0: no limit.")
 @click.option("--file-reserve", type=_COUNT, help="MiB to leave free on the disk.")
 @click.option("--clear", is_flag=True, help="Forget earlier settings first.")
-@click.option("--json", "as_json", is_flag=True, help="Print a JSON list.")
+@JSON
 def sink_command(
     *, nodes: tuple[str, ...], folder: Path | None, clear: bool, as_json: bool, **options: Value
 ) -> None:
@@ -105,20 +105,14 @@ def _as_json(status: NodeStatus) -> dict[str, object]:
 
 
 def _table(found: list[NodeStatus]) -> Table:
-    table = Table()
-    for heading in ("Node", "Sink", "Policy"):
-        table.add_column(heading, overflow="fold")
-    for heading in ("Sites", "Dropped"):
-        table.add_column(heading, justify="right")
-    table.add_column("More", overflow="fold")
     shown = ("sink", "policy", "sites", "dropped")
+    rows = []
     for status in found:
         rest = [f"{name}={value}" for name, value in status.values.items() if name not in shown]
-        if not status.values:
-            rest = [status.message]
         cells = [status.values.get(name, "") for name in shown]
-        table.add_row(*(Text(plain(cell)) for cell in (status.node, *cells, " ".join(rest))))
-    return table
+        rows.append((status.node, *cells, " ".join(rest) if status.values else status.message))
+    headings = ("Node", "Sink", "Policy", "Sites", "Dropped", "More")
+    return table_of(headings, rows, right=("Sites", "Dropped"))
 
 
 COMMANDS: list[click.Command] = [sink_command, relay_command]

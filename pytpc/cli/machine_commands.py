@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import json
-import sys
 from pathlib import Path
 
 import click
 from rich.console import Console
-from rich.table import Table
 from rich.text import Text
 
 from pytpc.base.paths import cmake_file, prefix
-from pytpc.base.wording import many, plain
+from pytpc.base.wording import many
+from pytpc.cli.arguments import CONSTANTS, JSON, PATH, RULES
+from pytpc.cli.console import console, print_json, table_of
 from pytpc.static.rules import check_rules
 from pytpc.workspace.doctor.finding import Finding, Severity, by_severity
 from pytpc.workspace.doctor.look import look_at_machine
@@ -22,21 +21,14 @@ from pytpc.workspace.doctor.workspace import check_workspace
 from pytpc.workspace.toolchain import Choices, Step, Way, shown, steps
 
 _STYLES = {Severity.ERROR: "bold red", Severity.WARNING: "yellow", Severity.NOTE: "dim"}
-# Piped output has no width of its own.
-_PIPED_WIDTH = 160
 
 
 @click.command("toolchain")
 @click.argument("tool", type=click.Choice([way.value for way in Way]), required=False)
-@click.option(
-    "--rules",
-    type=click.Path(path_type=Path),
-    metavar="FILE",
-    help="JSON file with your own rules: more functions that read a parameter or expose.",
-)
+@RULES
 @click.option("--profile", type=click.Choice(["default", "thesis"]), help="Rules to analyse with.")
-@click.option("--constants", is_flag=True, help="Report comparisons with constants, too.")
-@click.option("--json", "as_json", is_flag=True, help="Print a JSON list.")
+@CONSTANTS
+@JSON
 def toolchain_command(
     *, tool: str | None, rules: Path | None, profile: str | None, constants: bool, as_json: bool
 ) -> None:
@@ -52,14 +44,14 @@ def toolchain_command(
     found = {way: steps(way, prefix(), choices) for way in ways}
     if as_json:
         data = [{"tool": way.value, "steps": [_step(step) for step in found[way]]} for way in ways]
-        click.echo(json.dumps(data, indent=1, ensure_ascii=False))
+        print_json(data)
         return
     click.echo("\n".join(shown(way, found[way]) for way in ways), nl=False)
 
 
 @click.command("doctor")
-@click.argument("workspace", type=click.Path(path_type=Path), required=False)
-@click.option("--json", "as_json", is_flag=True, help="Print a JSON list.")
+@click.argument("workspace", type=PATH, required=False)
+@JSON
 @click.pass_context
 def doctor_command(ctx: click.Context, *, workspace: Path | None, as_json: bool) -> None:
     """Check this machine and WORKSPACE, and print the command that fixes each problem.
@@ -74,7 +66,7 @@ def doctor_command(ctx: click.Context, *, workspace: Path | None, as_json: bool)
     findings = by_severity(findings)
     if as_json:
         data = [found.to_json() for found in findings]
-        click.echo(json.dumps(data, indent=1, ensure_ascii=False))
+        print_json(data)
     else:
         _show_findings(findings)
     if any(found.severity is Severity.ERROR for found in findings):
@@ -85,14 +77,16 @@ def _show_findings(findings: list[Finding]) -> None:
     if not findings:
         click.echo("no problems found")
         return
-    table = Table()
-    for heading in ("", "Problem", "Where", "Fix it with"):
-        table.add_column(heading, overflow="fold")
-    for found in findings:
-        cells = (found.what, found.where or "", found.mend or "")
-        style = _STYLES[found.severity]
-        table.add_row(Text(found.severity.value, style), *(Text(plain(cell)) for cell in cells))
-    Console(width=None if sys.stdout.isatty() else _PIPED_WIDTH).print(table, highlight=False)
+    rows = [
+        (
+            Text(found.severity.value, _STYLES[found.severity]),
+            found.what,
+            found.where or "",
+            found.mend or "",
+        )
+        for found in findings
+    ]
+    console().print(table_of(("", "Problem", "Where", "Fix it with"), rows), highlight=False)
     numbers = [
         many(count, severity.value)
         for severity in Severity

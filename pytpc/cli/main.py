@@ -10,7 +10,6 @@ import click
 from click.shell_completion import CompletionItem
 
 from pytpc.base.errors import TpcError
-from pytpc.cli.completion_commands import completing
 
 INTERRUPTED = 130
 # Where each command is and what the list of commands says of it: what draws, builds or reads bags
@@ -22,7 +21,7 @@ SUMMARIES = {
     "build": ("workspace_commands", "Build a workspace with analysis and instrumentation."),
     "collect": ("static_commands", "Merge the static information of link units into one file."),
     "completion": ("completion_commands", "Print the shell's completion script for pytpc."),
-    "convert": ("event_commands", "Convert bags, binary files, logs or CSV to Parquet."),
+    "convert": ("mission_commands", "Convert bags, binary files, logs or CSV to Parquet."),
     "doctor": ("machine_commands", "Check your setup and print the fix for each problem."),
     "env": ("env_commands", "Print shell commands that make Python nodes report."),
     "explain": ("explain_commands", "Show how a parameter reaches what the robot exposes."),
@@ -92,7 +91,7 @@ class _Commands(click.Group):
         else:
             return super().get_command(ctx, cmd_name)
         commands: list[click.Command] = import_module(module).COMMANDS
-        return completing(next(command for command in commands if command.name == cmd_name))
+        return next(command for command in commands if command.name == cmd_name)
 
     def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
         """The commands that begin so; none is imported for it."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import re
 import time
@@ -16,9 +15,9 @@ from rich.text import Text
 
 from pytpc.base.errors import InputError, TpcError
 from pytpc.base.wording import many, plain
-from pytpc.cli.arguments import as_object
-from pytpc.cli.console import console, warn
-from pytpc.cli.options import JSON, PATH, recording_of
+from pytpc.cli.arguments import JSON, PATH, as_object
+from pytpc.cli.console import console, print_json, warn
+from pytpc.cli.options import recording_of
 from pytpc.present.as_json import mark_json
 from pytpc.present.marking_terminal import (
     MarkedMission,
@@ -42,7 +41,6 @@ from pytpc.recording.mission import Recording
 from pytpc.ros.marking import GraphMarks
 from pytpc.ros.ros1.master import uri_of
 
-_PATH = click.Path(path_type=Path)
 _NAMESPACE = re.compile(r"[A-Za-z]\w*(/[A-Za-z]\w*)*", re.ASCII)
 """What ROS takes where ROS_MASTER_URI is not set."""
 
@@ -55,10 +53,10 @@ OBSERVER = click.option(
 
 
 @click.command("mark")
-@click.argument("bag", type=_PATH, required=False)
+@click.argument("bag", type=PATH, required=False)
 @OBSERVER
 @click.option(
-    "-o", "--output", type=_PATH, help="Write the marks to this CSV file. [default: BAG.marks.csv]"
+    "-o", "--output", type=PATH, help="Write the marks to this CSV file. [default: BAG.marks.csv]"
 )
 def mark_command(*, bag: Path | None, observer: str, output: Path | None) -> None:
     """Mark errors of the robot by pressing a key when you see one.
@@ -185,11 +183,7 @@ def marks_command(given: _MarksArguments) -> None:
         _change(recording, MarkChange(gone, None))
         marks = tuple(mark for mark in marks if mark != gone)
     if given.as_json:
-        click.echo(
-            json.dumps(
-                [mark_json(mark, found.start_ns) for mark in marks], indent=1, ensure_ascii=False
-            )
-        )
+        print_json([mark_json(mark, found.start_ns) for mark in marks])
     elif given.as_csv:
         click.echo(marks_text(marks), nl=False)
     elif marks:

@@ -1,18 +1,19 @@
-"""Commands about missions: ``record``."""
+"""Commands about missions: ``record`` and ``convert``."""
 
 from __future__ import annotations
 
+import json
 import os
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import click
 from rich.console import Console
 
-from pytpc.api.converting import convert
+from pytpc.api.converting import TOLERANCE_NS, Converted, convert
 from pytpc.api.record import (
     DEFAULT_TOPICS,
     MissionRun,
@@ -23,13 +24,15 @@ from pytpc.api.record import (
 )
 from pytpc.base.errors import InputError
 from pytpc.base.wording import many
-from pytpc.cli.arguments import as_object
+from pytpc.cli.arguments import JSON, PATH, as_object
+from pytpc.cli.console import progress
+from pytpc.cli.options import warn_about
 from pytpc.recording.faults import faults_of
+from pytpc.recording.marks import MARK_TYPES
 from pytpc.recording.mission import REPORTS_FOLDER
 from pytpc.ros.ros1.master import uri_of
 from pytpc.ros.ros1.record_graph import stop_on_signals
 
-_PATH = click.Path(path_type=Path)
 _SILENT_S = 5.0
 _LAUNCH_TIMEOUT_S = 300.0
 
@@ -62,13 +65,13 @@ class _RecordArguments:
 
 
 @click.command("record")
-@click.argument("workspace", type=_PATH, required=False)
-@click.argument("launch", type=_PATH, required=False)
+@click.argument("workspace", type=PATH, required=False)
+@click.argument("launch", type=PATH, required=False)
 @click.argument("args", nargs=-1, metavar="[NAME:=VALUE]...")
 @click.option(
     "-o",
     "--output",
-    type=_PATH,
+    type=PATH,
     required=True,
     help="Folder for the bag and what describes the run.",
 )
@@ -93,7 +96,7 @@ class _RecordArguments:
 @click.option(
     "--launch",
     "launched",
-    type=_PATH,
+    type=PATH,
     help="Launch file that started the running graph; it tells where parameter values came from.",
 )
 @click.option("--wall-time", is_flag=True, help="Run in real time, without a /clock.")
@@ -165,9 +168,6 @@ def _launch_arguments(texts: tuple[str, ...]) -> dict[str, str]:
     return {name: value for name, _, value in pairs}
 
 
-COMMANDS: list[click.Command] = [record_command]
-
-
 @contextmanager
 def mission_progress(what: str, unit: str = "s simulated") -> Iterator[Callable[[Progress], None]]:
     """Show how far a mission is: one moving line on a terminal, a line every 5 s where piped."""
@@ -192,3 +192,81 @@ def mission_progress(what: str, unit: str = "s simulated") -> Iterator[Callable[
         yield advance
     finally:
         status.stop()
+
+
+@click.command("convert")
+@click.argument("inputs", type=PATH, nargs=-1, required=True, metavar="INPUT...")
+@click.option(
+    "-o",
+    "--output",
+    type=PATH,
+    required=True,
+    metavar="OUT",
+    help="Folder to write, or a file: .parquet (the events) or .csv (the thesis's form).",
+)
+@click.option(
+    "--tolerance",
+    "tolerance_s",
+    type=click.FloatRange(min=0.0, max=60.0),
+    default=TOLERANCE_NS / 1e9,
+    show_default=True,
+    metavar="SECONDS",
+    help="Take reports in two inputs for the same one if they are at most this far apart.",
+)
+@JSON
+def convert_command(
+    inputs: tuple[Path, ...], output: Path, tolerance_s: float, as_json: bool
+) -> None:
+    """Convert the recordings of one mission to a folder of Parquet files, with each report once.
+
+    An INPUT is a bag (ROS 1, .mcap, .db3), a binary file (.tpc), a log, console output, CSV, a
+    folder of such files, or a folder that this command wrote. Its kind is recognised by its
+    content. Memory use stays small however long the mission is; the disk of OUT needs 35 bytes of
+    temporary space per report.
+    """
+    with (
+        progress(f"reading {inputs[0].name}") as advance,
+        progress(f"writing {output.name}") as written,
+    ):
+        outcome = convert(
+            inputs,
+            output,
+            tolerance_ns=round(tolerance_s * 1e9),
+            on_read=advance,
+            on_written=written,
+        )
+    recording = outcome.recording
+    warn_about(recording)
+    kinds = [mark.type for mark in recording.marks]
+    if as_json:
+        click.echo(json.dumps(_summary_of(outcome, output), ensure_ascii=False))
+        return
+    marks = ", ".join(f"{kinds.count(kind)} of type {kind}" for kind in MARK_TYPES)
+    if None in kinds:
+        marks += f", {kinds.count(None)} without a type"
+    summaries = f", {outcome.summaries:,} summaries" if outcome.summaries else ""
+    click.echo(
+        f"{many(outcome.events, 'report')} of {many(outcome.comparisons, 'comparison')}{summaries},"
+        f" {many(len(kinds), 'mark')} ({marks}) in {recording.seconds:.1f} s: {output}"
+    )
+
+
+def _summary_of(outcome: Converted, output: Path) -> dict[str, object]:
+    recording = outcome.recording
+    return {
+        "output": str(output),
+        "name": recording.name,
+        "reports": outcome.events,
+        "comparisons": outcome.comparisons,
+        "summaries": outcome.summaries,
+        "marks": len(recording.marks),
+        "start_ns": recording.start_ns,
+        "end_ns": recording.end_ns,
+        "malformed": recording.malformed,
+        "lost": recording.lost,
+        "dropped": [asdict(dropped) for dropped in recording.dropped],
+        "notes": list(recording.notes),
+    }
+
+
+COMMANDS: list[click.Command] = [record_command, convert_command]

@@ -3,22 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from pathlib import Path
-from typing import TypeVar
 
 import click
 
 from pytpc.api.missions import check_reports, read_named
 from pytpc.base.wording import plain
+from pytpc.cli.arguments import PATH, Command
 from pytpc.cli.console import progress, warn
 from pytpc.diagnosis.question import WINDOW_S
 from pytpc.recording.faults import faults_of
 from pytpc.recording.mission import Recording
 from pytpc.static.static_info import StaticInfo
-
-PATH = click.Path(path_type=Path)
-Command = TypeVar("Command", bound=Callable[..., object])
 
 
 class Seconds(click.FloatRange):
@@ -52,7 +48,6 @@ TOP = click.option(
     metavar="N",
     help="Show this many suspects.",
 )
-JSON = click.option("--json", "as_json", is_flag=True, help="Print JSON, for programs.")
 WINDOW = click.option(
     "--window",
     "window_s",

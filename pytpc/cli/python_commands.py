@@ -9,9 +9,8 @@ from pathlib import Path
 import click
 
 from pytpc.api.building import analyse
-from pytpc.cli.arguments import as_object
+from pytpc.cli.arguments import CONSTANTS, JSON, PATH, STATIC_OUTPUT, as_object
 from pytpc.cli.console import found_text, progress, show_units, tell_left_out
-from pytpc.cli.options import PATH
 from pytpc.python_analysis.budget import SECONDS
 from pytpc.python_analysis.rules_file import load_rules
 
@@ -29,14 +28,7 @@ class _AnalyseArguments:
 
 @click.command("analyse")
 @click.argument("sources", type=PATH, nargs=-1, required=True, metavar="SOURCE...")
-@click.option(
-    "-o",
-    "--output",
-    type=PATH,
-    default=Path("static.json"),
-    show_default=True,
-    help="Write the static information to this file.",
-)
+@STATIC_OUTPUT
 @click.option(
     "--rules",
     "own",
@@ -51,7 +43,7 @@ class _AnalyseArguments:
     show_default=True,
     help="What counts as exposing; thesis: only publishing and service calls.",
 )
-@click.option("--constants", is_flag=True, help="Report comparisons with constants, too.")
+@CONSTANTS
 @click.option(
     "--max-seconds",
     type=click.FloatRange(min=0),
@@ -59,7 +51,7 @@ class _AnalyseArguments:
     show_default=True,
     help="Stop analysing a script after this time; 0: no limit.",
 )
-@click.option("--json", "as_json", is_flag=True, help="Print the static information, too.")
+@JSON
 @as_object(_AnalyseArguments)
 def analyse_command(given: _AnalyseArguments) -> None:
     """Find the comparisons of Python nodes, without ROS and without running them.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -16,11 +15,9 @@ from pytpc.api.missions import find_declared
 from pytpc.api.suggesting import smallest_changes
 from pytpc.base.errors import InputError
 from pytpc.base.wording import plain
-from pytpc.cli.arguments import as_object
-from pytpc.cli.console import console, warn
+from pytpc.cli.arguments import JSON, PATH, as_object
+from pytpc.cli.console import console, print_json, warn
 from pytpc.cli.options import (
-    JSON,
-    PATH,
     STATIC,
     TOP,
     TYPES,
@@ -173,7 +170,7 @@ def rank_command(given: _RankArguments) -> None:
         answer.show()
     _tell_unmarked(unmarked, len(given.recordings))
     if given.as_json:
-        click.echo(json.dumps(items, indent=1, ensure_ascii=False))
+        print_json(items)
 
 
 COMMANDS: list[click.Command] = [rank_command]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import webbrowser
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,11 +13,9 @@ from pytpc.api.missions import find_declared
 from pytpc.api.report import CARDS, MissionReport, report_of, write_missions
 from pytpc.base.errors import TpcError
 from pytpc.base.wording import many
-from pytpc.cli.arguments import as_object
-from pytpc.cli.console import progress
+from pytpc.cli.arguments import JSON, PATH, as_object
+from pytpc.cli.console import print_json, progress
 from pytpc.cli.options import (
-    JSON,
-    PATH,
     STATIC,
     TYPES,
     WINDOW,
@@ -80,7 +77,7 @@ def report_command(given: _ReportArguments) -> None:
     with progress("drawing") as advance:
         write_missions(output, missions, on_progress=advance)
     if given.as_json:
-        click.echo(json.dumps(_json_of(output, missions), indent=1, ensure_ascii=False))
+        print_json(_json_of(output, missions))
     else:
         marks = sum(len(mission.rankings) for mission in missions)
         click.echo(f"{many(len(missions), 'mission')} with {many(marks, 'mark')}: {output}")

@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 
 from pytpc.base.errors import InputError
-from pytpc.cli.options import PATH
+from pytpc.cli.arguments import PATH
 from pytpc.ros.node_program import command_of
 
 

@@ -11,11 +11,23 @@ from pytpc.base.paths import MERGED_FILE, OWN_FOLDER
 from pytpc.base.wording import many
 from pytpc.build.collect import collect_sources
 from pytpc.build.stale import Stale
+from pytpc.cli.arguments import PATH, Command
+from pytpc.cli.completion_commands import offer_parameters
 from pytpc.cli.console import progress, warn
 from pytpc.static.static_info import StaticInfo, read_static
 
-PATH = click.Path(path_type=Path)
 SOURCES = click.argument("sources", type=PATH, nargs=-1, metavar="[SOURCE]...")
+
+
+def SOURCES_AND_QUESTION(command: Command) -> Command:
+    """The arguments ``sources`` and ``question``; either may be the word that is being typed."""
+    sources = click.argument(
+        "sources", type=PATH, nargs=-1, metavar="[SOURCE]...", shell_complete=offer_parameters
+    )
+    question = click.argument(
+        "question", metavar="KEY|PARAMETER|FILE:LINE", shell_complete=offer_parameters
+    )
+    return sources(question(command))
 
 
 def static_of(sources: Sequence[Path]) -> StaticInfo:

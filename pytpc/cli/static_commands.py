@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import wraps
@@ -18,16 +17,27 @@ from pytpc.api.building import collect
 from pytpc.base.atomic import write_atomic
 from pytpc.base.checked_json import dump_json
 from pytpc.base.wording import many, plain
-from pytpc.cli.arguments import as_object
+from pytpc.cli.arguments import (
+    CONSTANTS,
+    JSON,
+    NO_PYTHON,
+    PATH,
+    PYTHON_RULES,
+    STATIC_OUTPUT,
+    as_object,
+)
+from pytpc.cli.completion_commands import offer_parameters
 from pytpc.cli.console import (
     console,
     found_text,
+    print_json,
     progress,
     show_units,
+    table_of,
     warn_of_failed,
 )
 from pytpc.cli.explain_commands import print_why_not
-from pytpc.cli.sources import PATH, SOURCES, static_of, tell_dropped
+from pytpc.cli.sources import SOURCES, SOURCES_AND_QUESTION, static_of, tell_dropped
 from pytpc.conditions.cpp_conditions import lines_of
 from pytpc.conditions.lookup import look_up_conditions
 from pytpc.conditions.sarif import sarif_log
@@ -66,6 +76,7 @@ def _selecting(command: Callable[..., None]) -> Callable[..., None]:
             "parameters",
             multiple=True,
             metavar="GLOB",
+            shell_complete=offer_parameters,
             help="Show only parameters like this, as in 'max_*'; the namespace may be left out.",
         ),
         click.option(
@@ -91,24 +102,10 @@ def _selecting(command: Callable[..., None]) -> Callable[..., None]:
 
 @click.command("collect")
 @click.argument("sources", type=PATH, nargs=-1, required=True, metavar="SOURCE...")
-@click.option(
-    "-o",
-    "--output",
-    type=PATH,
-    default=Path("static.json"),
-    show_default=True,
-    help="Write the static information to this file.",
-)
-@click.option("--no-python", is_flag=True, help="Do not analyse Python nodes.")
-@click.option(
-    "--python-rules",
-    type=PATH,
-    metavar="FILE",
-    help="JSON file with your own rules for Python nodes.",
-)
-@click.option(
-    "--constants", is_flag=True, help="Report comparisons with constants in Python nodes, too."
-)
+@STATIC_OUTPUT
+@NO_PYTHON
+@PYTHON_RULES
+@CONSTANTS
 def collect_command(
     sources: tuple[Path, ...],
     *,
@@ -138,7 +135,7 @@ def collect_command(
 
 @click.command("list")
 @SOURCES
-@click.option("--json", "as_json", is_flag=True, help="Print a JSON list.")
+@JSON
 @_selecting
 @click.option(
     "--sort",
@@ -160,7 +157,7 @@ def list_command(
     found = select(static, replace(wanted, order=order))
     if as_json:
         listed = [_listed(static, tpc) for tpc in found]
-        click.echo(json.dumps(listed, indent=1, ensure_ascii=False))
+        print_json(listed)
         return
     console().print(_table(static, found), highlight=False)
     warn_of_failed(static)
@@ -172,9 +169,8 @@ def list_command(
 
 
 @click.command("show")
-@SOURCES
-@click.argument("question", metavar="KEY|PARAMETER|FILE:LINE")
-@click.option("--json", "as_json", is_flag=True, help="Print a JSON object.")
+@SOURCES_AND_QUESTION
+@JSON
 def show_command(sources: tuple[Path, ...], question: str, as_json: bool) -> None:
     """Show everything known about a comparison, found by KEY, PARAMETER or FILE:LINE.
 
@@ -192,7 +188,7 @@ def show_command(sources: tuple[Path, ...], question: str, as_json: bool) -> Non
             "comparisons": [each.to_json() for each in found],
             "why_no_comparison": why_no_comparison(explanation),
         }
-        click.echo(json.dumps(answer, indent=1, ensure_ascii=False))
+        print_json(answer)
         return
     _print_all(console(), found, explanation)
 
@@ -262,24 +258,18 @@ def _listed(static: StaticInfo, tpc: Tpc) -> dict[str, object]:
 
 
 def _table(static: StaticInfo, tpcs: Sequence[Tpc]) -> Table:
-    table = Table()
-    for heading in ("Parameter", "Type", "Place"):
-        table.add_column(heading, overflow="fold")
-    table.add_column("Distance", justify="right")
     several = any(len(tpc.keys) > 1 for tpc in tpcs)
-    if several:
-        table.add_column("Units", justify="right")
-    for heading in ("Exposed as", "Source line"):
-        table.add_column(heading, overflow="fold")
+    units = ("Units",) if several else ()
+    rows = []
     for tpc in tpcs:
         found = static.comparisons[tpc.key]
         line = found.source_code or f"{found.relation} {found.name or found.source}"
         cells = [tpc.parameter or "", tpc.type, _place(tpc), str(tpc.distance)]
         if several:
             cells.append(str(len(tpc.link_units)) if len(tpc.keys) > 1 else "")
-        cells += [found.topic or "?", line]
-        table.add_row(*(Text(plain(cell)) for cell in cells))
-    return table
+        rows.append([*cells, found.topic or "?", line])
+    headings = ("Parameter", "Type", "Place", "Distance", *units, "Exposed as", "Source line")
+    return table_of(headings, rows, right=("Distance", "Units"))
 
 
 def _place(tpc: Tpc) -> str:

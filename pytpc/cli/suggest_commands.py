@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -13,11 +12,10 @@ from pytpc.api.missions import find_declared
 from pytpc.api.suggesting import suggest_together, what_if_by_type
 from pytpc.base.errors import InputError
 from pytpc.base.wording import Number, plain, show
-from pytpc.cli.arguments import as_object
-from pytpc.cli.console import console, progress
+from pytpc.cli.arguments import JSON, PATH, as_object
+from pytpc.cli.completion_commands import offer_parameters
+from pytpc.cli.console import console, print_json, progress
 from pytpc.cli.options import (
-    JSON,
-    PATH,
     STATIC,
     TOP,
     TYPES,
@@ -60,7 +58,7 @@ class _SuggestArguments:
 
 @click.command("suggest")
 @click.argument("recording", type=PATH)
-@click.argument("parameter", required=False)
+@click.argument("parameter", required=False, shell_complete=offer_parameters)
 @STATIC
 @click.option(
     "--value",
@@ -154,7 +152,7 @@ def _show_suggestions(recording: Recording, static: StaticInfo, given: _SuggestA
             "together": blame_json(answer.together, answer.first),
             "groups": [group_json(group, recording.start_ns) for group in answer.groups],
         }
-        click.echo(json.dumps(document, indent=1, ensure_ascii=False))
+        print_json(document)
         return
     if not answer.is_one_answer:
         for one in answer.first:
@@ -174,7 +172,7 @@ def _show_value(
     if given.as_json:
         items = [{"type": kind, **fields_json(answer)} for kind, answer in answers]
         document = {"mission": recording.name, "what_if": items}
-        click.echo(json.dumps(document, indent=1, ensure_ascii=False))
+        print_json(document)
         return
     first = answers[0][1]
     click.echo(plain(f"{first.parameter} = {show(value)}:"))

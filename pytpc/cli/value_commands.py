@@ -10,25 +10,23 @@ from pathlib import Path
 
 import click
 from rich.table import Table
-from rich.text import Text
 
 from pytpc.api import values
 from pytpc.api.values import FileChange, Journal, JournalEntry, LiveChange, Origin, Place
 from pytpc.base.wording import plain
-from pytpc.cli.arguments import as_object
-from pytpc.cli.console import console, progress, warn
+from pytpc.cli.arguments import JSON, PATH, as_object
+from pytpc.cli.completion_commands import offer_parameters
+from pytpc.cli.console import console, progress, table_of, warn
 from pytpc.values.apply import change_as_json, diff_of, shown
 from pytpc.values.origins import as_json, to_json
 
 _LONGEST = 60
-_PATH = click.Path(path_type=Path)
 _ARGUMENT = re.compile(r"[A-Za-z_]\w*:=.*", re.DOTALL)
 _WORKSPACE = click.option(
     "--workspace",
-    type=_PATH,
+    type=PATH,
     help="Look up $(find ...) in this built workspace. [default: what is sourced]",
 )
-_JSON = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 
 
 @dataclass(frozen=True)
@@ -45,10 +43,12 @@ class _ApplyArguments:
 
 
 @click.command("origin")
-@click.argument("target", type=_PATH)
-@click.argument("words", nargs=-1, metavar="[PARAMETER] [NAME:=VALUE]...")
+@click.argument("target", type=PATH)
+@click.argument(
+    "words", nargs=-1, metavar="[PARAMETER] [NAME:=VALUE]...", shell_complete=offer_parameters
+)
 @_WORKSPACE
-@_JSON
+@JSON
 def origin_command(
     target: Path, words: tuple[str, ...], workspace: Path | None, as_json: bool
 ) -> None:
@@ -72,7 +72,12 @@ def origin_command(
 
 
 @click.command("apply", context_settings={"ignore_unknown_options": True})
-@click.argument("words", nargs=-1, metavar="[TARGET] [PARAMETER VALUE] [NAME:=VALUE]...")
+@click.argument(
+    "words",
+    nargs=-1,
+    metavar="[TARGET] [PARAMETER VALUE] [NAME:=VALUE]...",
+    shell_complete=offer_parameters,
+)
 @click.option("--dry-run", is_flag=True, help="Show the change without writing it.")
 @click.option(
     "--undo", is_flag=True, help="Take back the last change, or the last of FILE, or number N."
@@ -88,7 +93,7 @@ def origin_command(
     help="Allow another type, and changes that affect other parameters, too.",
 )
 @_WORKSPACE
-@_JSON
+@JSON
 @as_object(_ApplyArguments)
 def apply_command(given: _ApplyArguments) -> None:
     """Write VALUE into the YAML or launch file that set PARAMETER.
@@ -248,15 +253,13 @@ def _list(journal: Journal, as_json: bool) -> None:
     if as_json:
         click.echo(json.dumps([_entry_json(entry) for entry in entries], indent=1))
         return
-    table = Table()
-    table.add_column("Change", justify="right")
-    for heading in ("Time", "Parameter", "Old", "New", "Where"):
-        table.add_column(heading, overflow="fold")
-    for entry in entries:
-        cells = (entry.time, entry.parameter, entry.old, entry.new, entry.place)
-        table.add_row(str(entry.number), *(Text(plain(cell)) for cell in cells))
     if entries:
-        console().print(table, highlight=False)
+        rows = [
+            (str(one.number), one.time, one.parameter, one.old, one.new, one.place)
+            for one in entries
+        ]
+        headings = ("Change", "Time", "Parameter", "Old", "New", "Where")
+        console().print(table_of(headings, rows, right=("Change",)), highlight=False)
     else:
         click.echo("no changes to take back", err=True)
 
@@ -290,14 +293,17 @@ def _show_origin(origin: Origin) -> None:
 
 
 def _origins_table(origins: Sequence[Origin]) -> Table:
-    table = Table()
-    for heading in ("Parameter", "Value", "Kind", "Where", "Note"):
-        table.add_column(heading, overflow="fold")
-    for origin in origins:
-        where = origin.words() if origin.path is not None else ""
-        cells = (origin.name, _short(shown(origin.value)), origin.kind, where, origin.note)
-        table.add_row(*(Text(plain(cell)) for cell in cells))
-    return table
+    rows = [
+        (
+            origin.name,
+            _short(shown(origin.value)),
+            origin.kind,
+            origin.words() if origin.path is not None else "",
+            origin.note,
+        )
+        for origin in origins
+    ]
+    return table_of(("Parameter", "Value", "Kind", "Where", "Note"), rows)
 
 
 def _short(text: str) -> str:

@@ -23,7 +23,7 @@ from pytpc.api.live_mission import (
 )
 from pytpc.base.errors import InputError, RunError
 from pytpc.base.signals import signals_end
-from pytpc.cli.arguments import as_object
+from pytpc.cli.arguments import JSON, PATH, as_object
 from pytpc.cli.console import warn
 from pytpc.cli.mark_commands import (
     OBSERVER,
@@ -33,8 +33,6 @@ from pytpc.cli.mark_commands import (
     recorded,
 )
 from pytpc.cli.options import (
-    JSON,
-    PATH,
     STATIC,
     TYPES,
     WINDOW,

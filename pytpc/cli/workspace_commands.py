@@ -12,17 +12,16 @@ from rich.console import Console
 from rich.text import Text
 
 from pytpc.api.building import BuildOptions, BuildResult, build
-from pytpc.cli.arguments import as_object
+from pytpc.cli.arguments import CONSTANTS, NO_PYTHON, PATH, PYTHON_RULES, RULES, as_object
 from pytpc.cli.console import Advance, found_text, progress, show_units, warn
 from pytpc.workspace import patch
 from pytpc.workspace.colcon import Bases, BuildError
 
-_FOLDER = click.Path(path_type=Path, file_okay=True)
 _JOB_LINE = re.compile(r"^(Starting >>>|Finished <<<|Failed +<<<|Aborted +<<<) (?P<name>\S+)")
 
 
 @click.command("patch")
-@click.argument("workspace", type=_FOLDER)
+@click.argument("workspace", type=PATH)
 @click.option("--restore", is_flag=True, help="Remove the lines again.")
 @click.option("--dry-run", is_flag=True, help="Show the changes without writing them.")
 @click.option(
@@ -69,7 +68,7 @@ class _BuildArguments:
 
 
 @click.command("build")
-@click.argument("workspace", type=_FOLDER)
+@click.argument("workspace", type=PATH)
 @click.option(
     "--package",
     "packages",
@@ -83,21 +82,11 @@ class _BuildArguments:
     show_default=True,
     help="CMAKE_BUILD_TYPE of all packages.",
 )
-@click.option("--base", type=_FOLDER, help="Build in this folder. [default: WORKSPACE/.tpc]")
-@click.option(
-    "--rules",
-    type=click.Path(path_type=Path),
-    metavar="FILE",
-    help="JSON file with your own rules: more functions that read a parameter or expose.",
-)
-@click.option("--no-python", is_flag=True, help="Do not analyse Python nodes.")
-@click.option(
-    "--python-rules",
-    type=click.Path(path_type=Path),
-    metavar="FILE",
-    help="JSON file with your own rules for Python nodes.",
-)
-@click.option("--constants", is_flag=True, help="Report comparisons with constants, too.")
+@click.option("--base", type=PATH, help="Build in this folder. [default: WORKSPACE/.tpc]")
+@RULES
+@NO_PYTHON
+@PYTHON_RULES
+@CONSTANTS
 @click.option("--tests", is_flag=True, help="Instrument test programs, too.")
 @click.option(
     "--no-fallback",

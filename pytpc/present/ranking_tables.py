@@ -167,7 +167,8 @@ def together_text(found: Blame, first: BlamedAdvice, parameter: str | None) -> R
 def group_text(group: MarkGroup, recording: Recording, parameter: str | None) -> RenderableType:
     """What to do at marks that say the same."""
     seconds = [f"{(mark.time_ns - recording.start_ns) / 1e9:.1f}" for mark in group.marks]
-    title = f"{many(len(seconds), 'mark').capitalize()} at {_list(seconds)} s: {_TYPE_WORDS[group.type]}"
+    marks = many(len(seconds), "mark").capitalize()
+    title = f"{marks} at {_list(seconds)} s: {_TYPE_WORDS[group.type]}"
     parts: list[RenderableType] = [Text(title, style="bold")]
     for reason in group.reasons:
         parts.append(_indented(_lack(reason)))

@@ -83,9 +83,9 @@ def test_a_question_has_all_settings():
     asked = Question(types="ignore", top=1)
     found = pytpc.diagnose(MISSION, STATIC, asked)
     assert found == pytpc.diagnose(MISSION, STATIC, types="ignore", top=1)
-    with pytest.raises(TypeError, match="^give a question or single settings, not both$"):
+    with pytest.raises(TypeError, match=r"^give a question or single settings, not both$"):
         pytpc.rank(MISSION, STATIC, Question(types="ignore"), types="doubt")
-    with pytest.raises(TypeError, match="^give a question or single settings, not both$"):
+    with pytest.raises(TypeError, match=r"^give a question or single settings, not both$"):
         pytpc.diagnose(MISSION, STATIC, asked, top=1)
 
 
@@ -241,5 +241,5 @@ def test_all_marks_together_are_escaped():
 
 
 def test_a_misspelt_setting_of_diagnose_is_an_error():
-    with pytest.raises(TypeError, match="^there is no setting typs$"):
+    with pytest.raises(TypeError, match=r"^there is no setting typs$"):
         pytpc.diagnose(MISSION, STATIC, typs="ignore")

@@ -14,8 +14,9 @@ from rich.text import Text
 from pytpc.base.atomic import write_atomic
 from pytpc.base.errors import InputError
 from pytpc.base.wording import many, plain
+from pytpc.cli.arguments import JSON, PATH
 from pytpc.cli.console import console, progress, warn
-from pytpc.cli.options import JSON, PATH, STATIC, WINDOW, recording_of
+from pytpc.cli.options import STATIC, WINDOW, recording_of
 from pytpc.cli.sources import static_of
 from pytpc.static.static_info import StaticInfo
 from pytpc_evaluation.stats.figure_choice import Figures

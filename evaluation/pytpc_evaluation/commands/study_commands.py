@@ -12,8 +12,8 @@ from rich.text import Text
 from pytpc.base.checked_json import dump_json
 from pytpc.base.errors import RunError
 from pytpc.base.wording import many, plain
+from pytpc.cli.arguments import JSON, PATH, Command
 from pytpc.cli.console import console
-from pytpc.cli.options import JSON, PATH, Command
 from pytpc_evaluation.commands.study_options import STUDY
 from pytpc_evaluation.commands.study_progress import StudyProgress
 from pytpc_evaluation.commands.study_report import report_command

@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 import click
 
-from pytpc.cli.options import PATH
+from pytpc.cli.arguments import PATH
 from pytpc_evaluation.study.plan import HALVES, Half
 
 Command = TypeVar("Command", bound=Callable[..., Any])

@@ -8,8 +8,8 @@ from pathlib import Path
 import click
 
 from pytpc.base.wording import many, plain
+from pytpc.cli.arguments import JSON, PATH
 from pytpc.cli.console import progress, warn
-from pytpc.cli.options import JSON, PATH
 from pytpc_evaluation.commands.study_options import (
     CHOSEN,
     RANK_AGAIN,

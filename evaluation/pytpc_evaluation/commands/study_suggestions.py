@@ -11,8 +11,8 @@ from rich.table import Table
 from rich.text import Text
 
 from pytpc.base.wording import many, plain
+from pytpc.cli.arguments import JSON
 from pytpc.cli.console import console, progress, warn
-from pytpc.cli.options import JSON
 from pytpc_evaluation.commands.study_options import CHOSEN, STUDY, half_option
 from pytpc_evaluation.study.methods import METHODS
 from pytpc_evaluation.study.resume import alone_with_results

@@ -197,8 +197,8 @@ def ranks(scores: Floats) -> Floats:
 class ParameterTable(NamedTuple):
     """One score of the p parameters at t times.
 
-    ``names`` as `score_tables.Tpcs.names`; ``scores`` float64[t, p]; ``best`` int64[t, p], the TPC that has that
-    score, and ``distance`` float64[t, p] that one's; ``ranks`` float64[t, p].
+    ``names`` sorted; ``scores`` float64[t, p]; ``best`` int64[t, p], the TPC that has that score,
+    and ``distance`` float64[t, p] that one's; ``ranks`` float64[t, p].
     """
 
     names: tuple[str, ...]
