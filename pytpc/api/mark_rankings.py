@@ -91,12 +91,7 @@ class Rankings(TableSequence[MarkRanking]):
         names = {parameter_name(found) for found in self.static_info.thresholds.values()}
         if not any(parameter == name or same_parameter(parameter, name) for name in names):
             raise InputError(f"no comparison with a parameter {plain(parameter)} is known")
-        only = []
-        for ranking in self.rankings:
-            exact = [one for one in ranking.suspects if one.parameter == parameter]
-            same = [one for one in ranking.suspects if same_parameter(parameter, one.parameter)]
-            only.append(replace(ranking, suspects=tuple(exact or same)))
-        return replace(self, rankings=tuple(only))
+        return replace(self, rankings=tuple(one.only(parameter) for one in self.rankings))
 
     @property
     def items(self) -> tuple[MarkRanking, ...]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import threading
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -12,7 +11,7 @@ from pytpc.python_runtime.config import NAMES
 from pytpc.ros.mission_run import DEFAULT_TOPICS, MissionRun, Progress, RecordOptions
 from pytpc.ros.python_env import mission_env
 from pytpc.ros.ros1.launch_mission import run_mission
-from pytpc.ros.ros1.record_graph import record_graph
+from pytpc.ros.ros1.record_graph import record_graph as record_running
 from pytpc.workspace.colcon import Bases
 
 __all__ = ["DEFAULT_TOPICS", "MissionRun", "Progress", "RecordOptions"]
@@ -40,15 +39,6 @@ def record_launch(
     if python:
         env = mission_env(env, Bases.of(workspace).static_info)
     return run_mission(env, options, use_sim_time=use_sim_time)
-
-
-def record_running(options: RecordOptions, stop: threading.Event) -> MissionRun:
-    """Record the graph at ROS_MASTER_URI until ``stop``, or until the options say.
-
-    Raises:
-        RunError: the master does not answer, or the folder has a recording.
-    """
-    return record_graph(options, stop=stop)
 
 
 def sink_settings(env: Mapping[str, str]) -> dict[str, str]:

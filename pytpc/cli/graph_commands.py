@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+from dataclasses import asdict
 from pathlib import Path
 
 import click
@@ -74,7 +75,7 @@ def sink_command(
             found.append(graph.reload(node))
             advance(len(found), len(named))
     if as_json:
-        click.echo(json.dumps([_as_json(status) for status in found], indent=1))
+        click.echo(json.dumps([asdict(status) for status in found], indent=1))
     else:
         console().print(_table(found), highlight=False)
     failed = [status for status in found if not status.success]
@@ -93,15 +94,6 @@ def relay_command(*, ros_arguments: tuple[str, ...]) -> None:
     <node pkg="rosout" type="rosout" name="tpc_relay" launch-prefix="pytpc relay"/>.
     """
     relay.run(ros_arguments, lambda text: click.echo(f"pytpc relay: {plain(text)}", err=True))
-
-
-def _as_json(status: NodeStatus) -> dict[str, object]:
-    return {
-        "node": status.node,
-        "success": status.success,
-        "message": status.message,
-        "values": status.values,
-    }
 
 
 def _table(found: list[NodeStatus]) -> Table:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 
 import click
@@ -18,7 +19,7 @@ from pytpc.workspace.doctor.look import look_at_machine
 from pytpc.workspace.doctor.look_workspace import look_at_known, look_at_workspace
 from pytpc.workspace.doctor.machine import check_machine
 from pytpc.workspace.doctor.workspace import check_workspace
-from pytpc.workspace.toolchain import Choices, Step, Way, shown, steps
+from pytpc.workspace.toolchain import Choices, Way, shown, steps
 
 _STYLES = {Severity.ERROR: "bold red", Severity.WARNING: "yellow", Severity.NOTE: "dim"}
 
@@ -43,7 +44,7 @@ def toolchain_command(
     ways = list(Way) if tool is None else [Way(tool)]
     found = {way: steps(way, prefix(), choices) for way in ways}
     if as_json:
-        data = [{"tool": way.value, "steps": [_step(step) for step in found[way]]} for way in ways]
+        data = [{"tool": way.value, "steps": [asdict(step) for step in found[way]]} for way in ways]
         print_json(data)
         return
     click.echo("\n".join(shown(way, found[way]) for way in ways), nl=False)
@@ -93,10 +94,6 @@ def _show_findings(findings: list[Finding]) -> None:
         if (count := sum(found.severity is severity for found in findings))
     ]
     click.echo(", ".join(numbers))
-
-
-def _step(step: Step) -> dict[str, object]:
-    return {"command": list(step.command), "purpose": step.purpose, "once": step.once}
 
 
 COMMANDS: list[click.Command] = [toolchain_command, doctor_command]

@@ -94,15 +94,16 @@ def marks_path(bag: Path | None, observer: str, output: Path | None) -> Path:
     return Path(time.strftime(f"marks-{who}%Y%m%d-%H%M%S.csv"))
 
 
-def recorded(recording: Recording, source: Path) -> RecordedMission:
-    """The clock that goes through a recording.
+def recorded(recording: Recording, source: Path, begin_ns: int | None = None) -> RecordedMission:
+    """The clock that goes through a recording, from its begin or from a later time.
 
     Raises:
         InputError: it has no length.
     """
     if recording.end_ns <= recording.start_ns:
         raise InputError("nothing in it takes any time", source)
-    return RecordedMission(plain(source.name), recording.start_ns, recording.end_ns)
+    start_ns = recording.start_ns if begin_ns is None else begin_ns
+    return RecordedMission(plain(source.name), start_ns, recording.end_ns)
 
 
 def mark_in_terminal(

@@ -140,7 +140,7 @@ def _record_running(given: _RecordArguments) -> MissionRun:
     stop = stop_on_signals()
     click.echo(f"recording {uri_of(os.environ)}; press Ctrl-C to stop", err=True)
     with mission_progress("recording", "s of it") as advance:
-        return record_running(given.options(advance), stop)
+        return record_running(given.options(advance), stop=stop)
 
 
 def _show_run(run: MissionRun, given: _RecordArguments) -> None:

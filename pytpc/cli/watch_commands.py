@@ -148,7 +148,7 @@ def _once(
         far = round(seconds * 1e9) if seconds is not None else found.end_ns - found.start_ns
         now_ns = min(found.end_ns, found.start_ns + far)
         feed: Feed = RecordedFeed(found, fresh)
-        watched = WatchedMission(_Still(recorded(found, recording), now_ns), feed, options)
+        watched = WatchedMission(recorded(found, recording, now_ns), feed, options)
         watched.take()
         start_ns = found.start_ns
     else:
@@ -189,18 +189,6 @@ def _listen(watched: WatchedMission, seconds: float) -> None:
     except BaseException:
         watched.close()
         raise
-
-
-class _Still:
-    """A recording whose clock stands."""
-
-    def __init__(self, mission: MarkedMission, now_ns: int) -> None:
-        self._now_ns = now_ns
-        self.press, self.view = mission.press, mission.view
-        self.send, self.tick, self.close = mission.send, mission.tick, mission.close
-
-    def now_ns(self) -> int | None:
-        return self._now_ns
 
 
 COMMANDS: list[click.Command] = [watch_command]

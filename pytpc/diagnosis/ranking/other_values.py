@@ -262,12 +262,9 @@ def _until_alike(stream: ResultStream, place: int, other: float) -> float:
 
 
 def of_changes(names: Sequence[str], changes: Iterable[Change]) -> Floats:
-    """float64[p], the log prior of each name; 0 where nothing is known to be changed."""
-    found = list(changes)
-    if not found:
-        return np.zeros(len(names))
+    """float64[p], the log odds of each name, by which of them were changed."""
     prior = np.full(len(names), UNCHANGED)
-    for change in found:
+    for change in changes:
         for column, name in enumerate(names):
             if same_parameter(change.parameter, name):
                 prior[column] = max(prior[column], of_change(change.old, change.new))
@@ -275,7 +272,7 @@ def of_changes(names: Sequence[str], changes: Iterable[Change]) -> Floats:
 
 
 def of_reference(tpcs: Tpcs, events: Events, reference: Events) -> Floats:
-    """float64[p], the log prior of each parameter, from the thresholds of a good run.
+    """float64[p], the log odds of each parameter, by the thresholds of a good run.
 
     A parameter none of whose comparisons was evaluated in both, or that changed while the robot
     ran, is between: nothing is known of it.

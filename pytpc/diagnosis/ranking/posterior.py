@@ -120,27 +120,16 @@ class Posterior:
 
 
 def diagnose_log(
-    recording: Recording,
-    static_info: StaticInfo,
-    *,
-    prior: Floats | None = None,
-    weights: Weights = WEIGHTS,
+    recording: Recording, static_info: StaticInfo, *, weights: Weights = WEIGHTS
 ) -> Posterior:
     """Judge all parameters by all marks of a mission together.
 
     Args:
         recording: the mission with its marks, of any types or none.
         static_info: what the analysis found.
-        prior: float64[p], added to the scores: what is known of the parameters otherwise.
         weights: what the evidence counts.
-
-    Raises:
-        ValueError: ``prior`` does not have one number for each parameter.
     """
     tpcs = Tpcs.of(static_info)
-    extra = np.zeros(len(tpcs.names)) if prior is None else np.asarray(prior, np.float64)
-    if extra.shape != (len(tpcs.names),):
-        raise ValueError("one prior for each parameter is needed")
     streams = ResultStreams.of(recording.events, tpcs)
     marks = recording.marks
     if not marks or not streams.streams:
@@ -154,7 +143,7 @@ def diagnose_log(
     said = Said(places, ranked(recording, tpcs, times), np.array([type_odds(marks)]))
     mixed = mixture(found, said, weights)
     with np.errstate(divide="ignore"):
-        scores, none = np.log(mixed.shares[0, :-1]) + extra, math.log(mixed.shares[0, -1])
+        scores, none = np.log(mixed.shares[0, :-1]), math.log(mixed.shares[0, -1])
     posterior, rest = softmax(scores, none)
     by = _decisive(streams, tpcs, mixed)
     type1 = 1.0 / (1.0 + math.exp(float(said.odds[0])))

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from pytpc.diagnosis.question import WINDOW_S
@@ -177,37 +177,23 @@ class Watching:
         return LiveRow(suspect, track.last, flop_s, tuple(parts))
 
 
-class KeptRankings:
+class KeptRankings(list[Kept]):
     """The rankings at the marks of a session, in the order in which they were made."""
 
     def __init__(self, top: int) -> None:
         """``top`` suspects of each are kept to be shown."""
+        super().__init__()
         self._top = top
-        self._kept: list[Kept] = []
-
-    def __len__(self) -> int:
-        """How many marks have one."""
-        return len(self._kept)
-
-    def __getitem__(self, index: int) -> Kept:
-        """One of them."""
-        return self._kept[index]
-
-    def __iter__(self) -> Iterator[Kept]:
-        """All of them."""
-        return iter(self._kept)
 
     def follow(self, change: MarkChange, watching: Watching, *, believe: bool = True) -> None:
         """Keep, forget or rename what belongs to a mark that was made, taken back or noted."""
         before, after = change
         if before is not None and after is not None:
-            self._kept = [
-                one._replace(mark=after) if one.mark == before else one for one in self._kept
-            ]
+            self[:] = [one._replace(mark=after) if one.mark == before else one for one in self]
         elif before is not None:
-            self._kept = [one for one in self._kept if one.mark != before]
+            self[:] = [one for one in self if one.mark != before]
         elif after is not None:
             asked = after if believe else Mark(after.time_ns, None)
             ranking = watching.ranking_at(asked)
             look = watching.look_of({after.type: ranking}, after.time_ns, self._top)
-            self._kept.append(Kept(after, ranking, look))
+            self.append(Kept(after, ranking, look))

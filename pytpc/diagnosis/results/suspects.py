@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from pytpc.base.wording import percent
 from pytpc.recording.marks import Mark, MarkType
 from pytpc.static.parameters import same_parameter
 from pytpc.static.static_info import Comparison
+
+Named = TypeVar("Named", "Suspect", "Accused")
 
 
 class Evaluation(NamedTuple):
@@ -69,10 +71,20 @@ class MarkRanking:
         found = self.suspect_of(parameter)
         return None if found is None else found.position
 
+    def only(self, parameter: str) -> MarkRanking:
+        """The same with the one suspect, at its position; with none where it is not suspected."""
+        return replace(self, suspects=_meant(self.suspects, parameter))
+
     def suspect_of(self, parameter: str) -> Suspect | None:
         """The most suspicious of what ``parameter`` can mean, see `same_parameter`."""
         same = (s for s in self.suspects if same_parameter(parameter, s.parameter))
         return next(same, None)
+
+
+def _meant(suspects: tuple[Named, ...], parameter: str) -> tuple[Named, ...]:
+    """Those of exactly this name, else all that it can mean."""
+    exact = tuple(one for one in suspects if one.parameter == parameter)
+    return exact or tuple(one for one in suspects if same_parameter(parameter, one.parameter))
 
 
 SURE = 0.5
@@ -143,9 +155,7 @@ class Blame:
 
     def only(self, parameter: str) -> Blame:
         """The same with the one suspect, at its position; with none where it is not suspected."""
-        exact = [one for one in self.suspects if one.parameter == parameter]
-        same = [one for one in self.suspects if same_parameter(parameter, one.parameter)]
-        return replace(self, suspects=tuple(exact or same))
+        return replace(self, suspects=_meant(self.suspects, parameter))
 
     @property
     def title(self) -> str:

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 
-from pytpc.base.wording import Number, show
-from pytpc.diagnosis.thresholds.intervals import Interval, Intervals, holds, intersection, words
+from pytpc.base.wording import show
+from pytpc.diagnosis.thresholds.intervals import Interval, Intervals, intersection, words
 from pytpc.recording.declaration import Declared
 
 WHOLE = "whole number"
@@ -158,12 +157,6 @@ def _nearest(interval: Interval, current: float, possible: Possible) -> float | 
     values += [edge for edge in (ends.high if up else ends.low,) if math.isfinite(edge)]
     values = [value for value in values if not possible.whole or value == round(value)]
     return next((value for value in values if interval.holds(value)), None)
-
-
-def nearest_of(values: Iterator[Number], feasible: Intervals, current: float) -> Number | None:
-    """The one of an enumeration's values nearest to ``current`` that would do."""
-    fitting = [value for value in values if holds(feasible, float(value))]
-    return min(fitting, key=lambda value: (abs(value - current), value), default=None)
 
 
 def readable(interval: Interval, first: float, current: float) -> float:

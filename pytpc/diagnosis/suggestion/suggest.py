@@ -20,7 +20,7 @@ import numpy as np
 from pytpc.base.wording import Number, exact, show
 from pytpc.diagnosis.question import PLAIN, Question
 from pytpc.diagnosis.results.advice import Direction, Suggestion
-from pytpc.diagnosis.suggestion.choice import WHOLE, Choice, choose, nearest_of
+from pytpc.diagnosis.suggestion.choice import WHOLE, Choice, choose
 from pytpc.diagnosis.suggestion.suggestion_case import (
     EQUALITIES,
     NoneBecauseError,
@@ -216,12 +216,10 @@ def _choice_of(case: SuggestionCase, feasible: Intervals, declared: Declared) ->
         raise NoneBecauseError(f"none of the declared choices would do: {names}")
     if case.relation in EQUALITIES and len(numbers) > 1:
         raise NoneBecauseError(f"another choice would do: {_names(declared, tuple(numbers))}")
-    value = nearest_of(iter(numbers), feasible, case.present)
-    assert value is not None, "there is one"
+    value = min(numbers, key=lambda one: (abs(one - case.present), one))
     inside = next(part for part in feasible if part.holds(float(value)))
     up = float(value) > case.present
-    boundary = inside.low if up else inside.high
-    inclusive = inside.low_inclusive if up else inside.high_inclusive
+    boundary, inclusive = _boundary(inside, up)
     source = parameter_name(case.comparison)
     now, then = (_names(declared, (number,)) for number in (case.current, value))
     text = f"switch {source} from {now} to {then}"
@@ -275,11 +273,15 @@ def _switched(case: SuggestionCase, value: Number) -> Suggestion:
     return Suggestion(source, current, "switch", value, float(value), True, text, None, feasible)
 
 
+def _boundary(inside: Interval, up: bool) -> tuple[float, bool]:
+    """Where the values begin that would do, and whether the first of them is one."""
+    return (inside.low, inside.low_inclusive) if up else (inside.high, inside.high_inclusive)
+
+
 def _sentence(case: SuggestionCase, found: Choice) -> Suggestion:
     source, inside = parameter_name(case.comparison), found.interval
     up = found.value > case.present
-    boundary = inside.low if up else inside.high
-    inclusive = inside.low_inclusive if up else inside.high_inclusive
+    boundary, inclusive = _boundary(inside, up)
     direction: Direction = "raise" if up else "lower"
     value = case.number(found.value)
     text = f"{direction} {source} from {show(case.current)} to {exact(value)} ({words((inside,))})"

@@ -81,7 +81,7 @@ def timeline(mission: ReportedMission, ident: str) -> tuple[Markup, dict[str, ob
         curves.rank1[::every, places],
         curves.rank2[::every, places],
     )
-    svg = timeline_svg(lanes, still, marks, recording.seconds, ident=f"{ident}-t")
+    svg = _svg(lanes, still, marks, recording.seconds, ident=f"{ident}-t")
     moving = lanes_of(recording, [(name, best[name][1]) for name in order])
     moving["curves"] = curves_of(curves, order, start)
     moving["accent"] = accent
@@ -89,7 +89,7 @@ def timeline(mission: ReportedMission, ident: str) -> tuple[Markup, dict[str, ob
     return Markup(svg), moving
 
 
-def timeline_svg(
+def _svg(
     lanes: Sequence[Lane],
     curves: Curves,
     marks: Sequence[tuple[float, MarkType | None]],
@@ -99,15 +99,7 @@ def timeline_svg(
 ) -> str:
     """Every suspect's results and ranks over the whole mission, and the marks, numbered from 1.
 
-    Args:
-        lanes: from top to bottom, at least one.
-        curves: their ranks.
-        marks: time in seconds since the recording began, and type, in the order of time.
-        seconds: length of the recording.
-        ident: prefix of all ids, unlike that of any other figure of the page.
-
-    Returns:
-        An ``<svg>`` element.
+    Times are seconds since the recording began; no other figure has ids that begin as ``ident``.
     """
     label = f"results and ranks of {len(lanes)} parameters over {seconds:.0f} s, {len(marks)} marks"
     seconds = max(seconds, 1e-3)
