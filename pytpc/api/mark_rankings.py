@@ -66,16 +66,6 @@ class Rankings(TableSequence[MarkRanking]):
         return cls(tuple(found), recording, static_info, source, question)
 
     @property
-    def types(self) -> Types:
-        """How far the types of the marks were believed."""
-        return self.question.types
-
-    @property
-    def window_s(self) -> float:
-        """The window of type II, in seconds."""
-        return self.question.window_s
-
-    @property
     def declared(self) -> Sequence[Declared]:
         """The declared ranges: those of the question, else those that are found in the sources."""
         if self.question.declared:

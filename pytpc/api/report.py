@@ -15,7 +15,6 @@ from pytpc.diagnosis.results.suspects import MarkRanking
 from pytpc.diagnosis.suggestion.whole_mission import answer_mission
 from pytpc.present.page.html import page_text
 from pytpc.present.page.reported_mission import ReportedMission
-from pytpc.recording.declaration import Declared
 from pytpc.recording.known_change import read_known_change
 from pytpc.recording.mission import Recording
 from pytpc.static.static_info import StaticInfo
@@ -68,23 +67,19 @@ class MissionReport:
         )
 
 
-def report_of(
-    rankings: Rankings, *, top: int = CARDS, declared: Sequence[Declared] | None = None
-) -> MissionReport:
+def report_of(rankings: Rankings, *, top: int = CARDS) -> MissionReport:
     """A ranked mission for the page, with what its folder says of it.
 
     That is where values came from (origins.json), and what had been done to the robot
-    (treatment.json). ``declared`` are the declared ranges of parameters; None: they are looked for
-    in the sources.
+    (treatment.json).
     """
     source, recording = rankings.source, rankings.recording
-    about = rankings.declared if declared is None else declared
     given = MissionReport(
         recording.name,
         recording,
         rankings.static_info,
         rankings.rankings,
-        question=replace(rankings.question, top=top, declared=about),
+        question=replace(rankings.question, top=top, declared=rankings.declared),
     )
     if source is None:
         return given

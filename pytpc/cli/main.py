@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from functools import cache
 from importlib import import_module
-from importlib.metadata import entry_points
 
 import click
 from click.shell_completion import CompletionItem
@@ -53,16 +52,25 @@ def summaries() -> dict[str, tuple[str, str]]:
     """Module and summary of each command, ours and those of other packages, by name.
 
     A package adds commands by an entry point of the group ``pytpc.commands``: a dictionary as this
-    one.
+    one. What cannot be loaded is warned of: the other commands are still wanted.
     """
+    # It takes as long to import as all the rest here, and most commands do without.
+    from importlib.metadata import entry_points  # noqa: PLC0415
+
     found = {name: (f"pytpc.cli.{module}", text) for name, (module, text) in SUMMARIES.items()}
     for point in entry_points(group="pytpc.commands"):
         try:
-            added = point.load()
-        except ImportError as error:
-            click.echo(f"pytpc: warning: commands of {point.value} are missing: {error}", err=True)
+            added = point.load().items()
+        except Exception as error:  # whatever another package raises
+            package = point.dist.name if point.dist is not None else point.value
+            why = f"{type(error).__name__}: {' '.join(str(error).split())}"
+            click.echo(
+                f"pytpc: warning: the package {package} has commands that cannot be loaded"
+                f" ({why}); reinstall or remove it",
+                err=True,
+            )
             continue
-        found.update({name: said for name, said in added.items() if name not in found})
+        found.update({name: said for name, said in added if name not in found})
     return dict(sorted(found.items()))
 
 

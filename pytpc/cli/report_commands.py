@@ -91,10 +91,9 @@ COMMANDS: list[click.Command] = [report_command]
 def _mission(source: Path, static: StaticInfo, given: _ReportArguments) -> MissionReport:
     recording = recording_of(source)
     check(recording, static, source)
-    question = Question(given.types, given.window_s, given.top)
-    rankings = Rankings.of(recording, static, question, source)
     declared = find_declared(static, source, warn_plainly)
-    return report_of(rankings, top=given.top, declared=declared)
+    question = Question(given.types, given.window_s, declared=declared)
+    return report_of(Rankings.of(recording, static, question, source), top=given.top)
 
 
 def _json_of(output: Path, missions: list[MissionReport]) -> dict[str, object]:

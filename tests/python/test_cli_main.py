@@ -1,15 +1,20 @@
 """The list of commands, which is shown without importing them."""
 
+import os
 import subprocess
 import sys
 from importlib import import_module
+from pathlib import Path
 from pkgutil import iter_modules
 
 import click
+import pytest
 from click.testing import CliRunner
 
 import pytpc.cli
 from pytpc.cli.main import SUMMARIES, main
+
+ROOT = Path(__file__).parents[2]
 
 
 def test_all_commands_are_in_the_list_each_with_its_module() -> None:
@@ -41,3 +46,65 @@ def test_what_takes_long_to_import_is_imported_by_those_that_need_it() -> None:
         )
         assert done.returncode == 0, done.stderr
         assert slow.isdisjoint(done.stdout.split()), module
+
+
+def installed(folder: Path, entry_point: str, module: str) -> dict[str, str]:
+    """The environment in which a package is installed that adds commands by an entry point."""
+    info = folder / "extra_commands-1.0.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: extra-commands\nVersion: 1.0\n")
+    (info / "entry_points.txt").write_text(f"[pytpc.commands]\nextra = {entry_point}\n")
+    (folder / "extra_module.py").write_text(module)
+    return {**os.environ, "PYTHONPATH": f"{folder}:{os.environ.get('PYTHONPATH', '')}"}
+
+
+@pytest.mark.parametrize(
+    ("entry_point", "module", "why"),
+    [
+        ("gone:COMMANDS", "", "ModuleNotFoundError: No module named 'gone'"),
+        (
+            "extra_module:COMMANDS",
+            "",
+            "AttributeError: module 'extra_module' has no attribute 'COMMANDS'",
+        ),
+        (
+            "extra_module:COMMANDS",
+            "raise OSError('no\\ndisk')",
+            "OSError: no disk",
+        ),
+        (
+            "extra_module:COMMANDS",
+            "COMMANDS = 3",
+            "AttributeError: 'int' object has no attribute 'items'",
+        ),
+    ],
+)
+def test_a_broken_entry_point_is_one_line_and_the_other_commands_work(
+    entry_point: str, module: str, why: str, tmp_path: Path
+) -> None:
+    env = installed(tmp_path, entry_point, module)
+    done = subprocess.run(
+        [sys.executable, "-m", "pytpc", "--help"],
+        env=env,
+        cwd=ROOT,
+        check=True,
+        capture_output=True,
+        text=True,
+    )
+    assert done.stderr == (
+        "pytpc: warning: the package extra-commands has commands that cannot be loaded"
+        f" ({why}); reinstall or remove it\n"
+    )
+    assert all(
+        f"  {name:<13}{summary}\n" in done.stdout for name, (_, summary) in SUMMARIES.items()
+    )
+    # A command of ours does not even look at them.
+    ours = subprocess.run(
+        [sys.executable, "-m", "pytpc", "completion", "bash"],
+        env=env,
+        cwd=ROOT,
+        check=True,
+        capture_output=True,
+        text=True,
+    )
+    assert ours.stderr == ""

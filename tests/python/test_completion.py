@@ -14,7 +14,7 @@ from click.shell_completion import BashComplete
 from click.testing import CliRunner
 
 from pytpc.cli.completion_commands import parameter_names
-from pytpc.cli.main import main, summaries
+from pytpc.cli.main import SUMMARIES, main, summaries
 
 ROOT = Path(__file__).parents[2]
 EXAMPLE = ROOT / "examples/recorded_mission"
@@ -32,6 +32,22 @@ def test_commands_and_options():
     assert "--static" in offered("watch", incomplete="--")
     assert offered("rank", "--types", incomplete="d") == ["doubt"]
     assert offered("completion") == ["bash", "zsh", "fish"]
+
+
+# As in a wheel of pytpc alone: the commands of the evaluation are not there, and nothing is said.
+def test_completion_without_the_evaluation(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
+    monkeypatch.setattr("importlib.metadata.entry_points", lambda **_: ())
+    summaries.cache_clear()
+    try:
+        assert offered() == list(SUMMARIES)
+        assert offered("study") == list(SUMMARIES)
+        assert offered("rank", "--types", incomplete="d") == ["doubt"]
+        assert CliRunner().invoke(main, ["completion", "bash"]).exit_code == 0
+    finally:
+        summaries.cache_clear()
+    assert capsys.readouterr() == ("", "")
 
 
 def test_commands_are_offered_without_importing_them():
