@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from pytpc.diagnosis.question import PLAIN, Question
@@ -34,13 +34,6 @@ if TYPE_CHECKING:
     from pathlib import PurePath
 
 
-@dataclass
-class _OpenGroup:
-    marks: list[Mark] = field(default_factory=list)
-    lists: list[list[Advice]] = field(default_factory=list)
-    reasons: list[str] = field(default_factory=list)
-
-
 def advise(
     recording: Recording,
     static_info: StaticInfo,
@@ -49,8 +42,7 @@ def advise(
 ) -> list[Advice]:
     """Advice for the first suspects at a mark, in their order.
 
-    The counterfactual looks at the marks of the type that the suspect's score is of, those of no
-    type, and this mark.
+    The replay looks at the marks of the suspect's type, at those without a type, and at this mark.
 
     Args:
         recording: the mission.
@@ -89,8 +81,8 @@ def alternatives(
     Each has ``suspect`` as it is with another ``key`` and ``comparison``; those that suggest the
     same value, or none, are left out.
     """
-    said = _advice(recording, static_info, ranking.mark, suspect, question)
-    known = {(said.suggestion.direction, said.suggestion.value)}
+    said, _ = _suggested(recording, static_info, ranking.mark, suspect, question)
+    known = {(said.direction, said.value)}
     found = []
     for key in suspect.keys:
         if key == suspect.key:
@@ -161,36 +153,26 @@ def join_advice(
     rankings: Sequence[MarkRanking],
     question: Question = PLAIN,
 ) -> list[MarkGroup]:
-    """The advice for all marks, those that say the same together, in the order of the first ones.
+    """Advice for groups of marks that say the same, in the order of their first marks.
 
-    The arguments are those of `pytpc.diagnosis.suggestion.advise.advise`, with the rankings of
-    several marks.
+    The arguments are those of ``advise``, with the rankings of several marks.
     """
-    groups: dict[tuple[object, ...], _OpenGroup] = {}
+    groups: dict[tuple[object, ...], list[tuple[MarkRanking, list[Advice]]]] = {}
     for ranking in rankings:
         advice = advise(recording, static_info, ranking, question)
-        group = groups.setdefault(_says(ranking.mark, advice), _OpenGroup())
-        group.marks.append(ranking.mark)
-        group.lists.append(advice)
-        if ranking.reason and ranking.reason not in group.reasons:
-            group.reasons.append(ranking.reason)
-    return [
-        MarkGroup(
-            tuple(group.marks),
-            group.marks[0].type,
-            tuple(
-                JoinedAdvice(
-                    advice,
-                    named,
-                    agreed,
-                    *_tried(recording, static_info, group.marks, advice, question),
-                )
-                for advice, named, agreed in _joined(group.lists, question.top)
-            ),
-            tuple(group.reasons),
+        groups.setdefault(_says(ranking.mark, advice), []).append((ranking, advice))
+    found = []
+    for own in groups.values():
+        marks = tuple(ranking.mark for ranking, _ in own)
+        suspects = tuple(
+            JoinedAdvice(
+                advice, named, agreed, *_tried(recording, static_info, marks, advice, question)
+            )
+            for advice, named, agreed in _joined([advice for _, advice in own], question.top)
         )
-        for group in groups.values()
-    ]
+        reasons = dict.fromkeys(ranking.reason for ranking, _ in own if ranking.reason)
+        found.append(MarkGroup(marks, marks[0].type, suspects, tuple(reasons)))
+    return found
 
 
 def with_remedies(
@@ -200,16 +182,14 @@ def with_remedies(
     lists: Sequence[Sequence[Advice]],
     question: Question = PLAIN,
 ) -> list[list[Advice]]:
-    """The advice for each mark with the values to try, the same as ``join_advice`` has.
-
-    They are from all the marks that say the same.
+    """Add the values to try to the advice for each mark, as ``join_advice`` works them out.
 
     Args:
         recording: the mission.
         static_info: what the analysis found.
         rankings: of its marks.
         lists: for each the advice for its first suspects.
-        question: its ``window_s``; a good run is not looked at.
+        question: its ``window_s``; a good run does not count here.
     """
     alone = replace(question, reference=None, flown=())
     marks: dict[tuple[object, ...], list[Mark]] = {}
@@ -229,7 +209,7 @@ def with_remedies(
 
 
 def _says(mark: Mark, advice: Sequence[Advice]) -> tuple[object, ...]:
-    """What marks say that are joined: the type, the first suspect and what to do with it."""
+    """What makes marks one group: type, first suspect, and what to do with it."""
     if not advice:
         return (mark.type,)
     first = advice[0]
@@ -263,9 +243,9 @@ def _replayed(
 
 
 def _joined(lists: Sequence[Sequence[Advice]], top: int) -> list[tuple[Advice, int, int]]:
-    """The first suspects of all lists; one that a list does not have stands behind its last.
+    """The first suspects of all lists, a suspect that a list lacks counting as its last.
 
-    Each with the number of marks that name it, and of those at which its suggestion would do.
+    Each comes with how many marks name it, and at how many its suggestion would do.
     """
     found: dict[tuple[str, MarkType], list[Advice]] = {}
     places: dict[tuple[str, MarkType], int] = {}
@@ -294,12 +274,12 @@ def _most_agreed(same: Sequence[Advice]) -> tuple[Advice, int, int]:
 def advise_blamed(
     blame: Blame, recording: Recording, static_info: StaticInfo, question: Question = PLAIN
 ) -> list[BlamedAdvice]:
-    """The first of them with the value to try, as `remedy.remedy` has it.
+    """The first suspects, each with the value to try (`remedy.remedy`).
 
-    All marks count, without the types that were said: most people confuse them (thesis, table
-    6.13), and the value depends on the type more than on all else. The type is what the log says
-    for this parameter (`Remedy.kind`). The value of before a change, or of the reference, comes
-    before what the log says: with it the robot went right.
+    All marks count, but not the types that observers gave: most people confuse them (thesis, table
+    6.13), and the value depends on the type more than on anything else. The log decides the type
+    (`Remedy.kind`). A value from before a change, or from the good run, goes before the log: with
+    it the robot worked.
     """
     found = []
     for accused in blame.suspects[: question.top]:
