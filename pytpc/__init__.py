@@ -18,8 +18,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from pytpc.api.diagnosing import diagnose
-    from pytpc.api.mark_rankings import Rankings, curves, rank
+    from pytpc.api.diagnosing import Rankings, curves, diagnose, rank
     from pytpc.api.missions import load_static, read
     from pytpc.api.report import write_report
     from pytpc.api.suggesting import suggest, what_if

@@ -29,13 +29,11 @@ from __future__ import annotations
 from importlib import import_module
 
 _PLACES = {
-    "missions": ("load_static", "read"),
-    "mark_rankings": ("Rankings", "curves", "rank"),
-    "diagnosing": ("diagnose",),
+    "missions": ("convert", "load_static", "read"),
+    "diagnosing": ("Rankings", "curves", "diagnose", "rank"),
     "suggesting": ("suggest", "what_if"),
     "report": ("write_report",),
     "building": ("BuildOptions", "analyse", "build", "collect"),
-    "converting": ("convert",),
     "record": ("RecordOptions", "record_launch", "record_running"),
     "values": ("apply", "apply_live", "origins", "plan", "undo"),
 }

@@ -1,9 +1,9 @@
-"""Which parameter is to blame, by all marks of a mission together."""
+"""Which parameter is to blame: by all marks together, at each mark, and over the mission."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypedDict, Unpack
 
@@ -16,15 +16,20 @@ from pytpc.api.missions import (
     read_marked,
 )
 from pytpc.base.errors import InputError
-from pytpc.diagnosis.question import Question, Types
+from pytpc.base.wording import plain
+from pytpc.diagnosis.question import PLAIN, Question, Types
 from pytpc.diagnosis.ranking.blame import blame
-from pytpc.diagnosis.scores.score_tables import Tpcs
+from pytpc.diagnosis.ranking.mark_ranking import rank_marks
+from pytpc.diagnosis.results.advice import RankCurves
+from pytpc.diagnosis.results.suspects import MarkRanking
+from pytpc.diagnosis.scores.score_tables import STEP_S, Tpcs, rank_curves
 from pytpc.diagnosis.suggestion.advise import advise_blamed
 from pytpc.ingest import Recording
-from pytpc.present.answers import Diagnosed
+from pytpc.present.answers import Diagnosed, NotebookTable, TableSequence
+from pytpc.recording.declaration import Declared
 from pytpc.recording.parameter_change import Change
 from pytpc.ros.mission_run import PARAMS_FILE
-from pytpc.static.parameters import same_parameter
+from pytpc.static.parameters import parameter_name, same_parameter
 from pytpc.static.static_info import StaticInfo
 from pytpc.values.changes import changes_between
 
@@ -89,3 +94,154 @@ def is_compared(changes: Sequence[Change], static_info: StaticInfo) -> bool:
     """Whether one of the changed parameters is compared anywhere: else they say nothing."""
     names = Tpcs.of(static_info).names
     return any(same_parameter(one.parameter, name) for one in changes for name in names)
+
+
+class RankSettings(TypedDict, total=False):
+    """The settings of ``rank`` as keywords."""
+
+    types: Types
+    window_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Rankings(TableSequence[MarkRanking]):
+    """The rankings of one mission, one for each mark, in the order of the marks.
+
+    A sequence of `pytpc.diagnosis.results.suspects.MarkRanking`; ``recording`` and ``static_info``
+    are what was ranked, ``source`` where the mission was read from, if it was ranked by its path:
+    what else is in its folder is in the report then. ``question`` is what it was ranked with, and
+    what is made of it uses it, too. ``table`` has the first suspects of each
+    mark.
+    """
+
+    rankings: tuple[MarkRanking, ...]
+    recording: Recording
+    static_info: StaticInfo
+    source: Path | None = None
+    question: Question = PLAIN
+
+    @classmethod
+    def of(
+        cls,
+        recording: Recording,
+        static_info: StaticInfo,
+        question: Question = PLAIN,
+        source: Path | None = None,
+    ) -> Rankings:
+        """Rank the parameters at each mark of a recording that was read before."""
+        found = rank_marks(recording, static_info, question)
+        return cls(tuple(found), recording, static_info, source, question)
+
+    @property
+    def declared(self) -> Sequence[Declared]:
+        """The declared ranges: those of the question, else those that are found in the sources."""
+        if self.question.declared:
+            return self.question.declared
+        return find_declared(self.static_info, self.source)
+
+    def only(self, parameter: str) -> Rankings:
+        """The same with the one parameter, at the position that it has.
+
+        Raises:
+            InputError: no comparison with it is known.
+        """
+        names = {parameter_name(found) for found in self.static_info.thresholds.values()}
+        if not any(parameter == name or same_parameter(parameter, name) for name in names):
+            raise InputError(f"no comparison with a parameter {plain(parameter)} is known")
+        return replace(self, rankings=tuple(one.only(parameter) for one in self.rankings))
+
+    @property
+    def items(self) -> tuple[MarkRanking, ...]:
+        """The ranking of each mark."""
+        return self.rankings
+
+    def rows(self, top: int = PLAIN.top) -> list[dict[str, object]]:
+        """The first ``top`` suspects of each mark, flat; ``pandas.DataFrame(rankings.rows())``.
+
+        Each has ``mark`` (from 1), ``seconds`` into the mission, ``type``, ``position``,
+        ``parameter``, ``rank``, ``score``, ``score_type``, ``place`` (``file:line``) and ``key``.
+        """
+        return [
+            {
+                "mark": number,
+                "seconds": (ranking.mark.time_ns - self.recording.start_ns) / 1e9,
+                "type": ranking.mark.type,
+                "position": suspect.position,
+                "parameter": suspect.parameter,
+                "rank": suspect.rank,
+                "score": suspect.score,
+                "score_type": suspect.type,
+                "place": f"{suspect.comparison.file}:{suspect.comparison.lineno}",
+                "key": suspect.key,
+            }
+            for number, ranking in enumerate(self.rankings, start=1)
+            for suspect in ranking.suspects[:top]
+        ]
+
+    def table(self, top: int = PLAIN.top) -> NotebookTable:
+        """The same to look at; a mark at which nothing could be ranked has a row that says so."""
+        rows = []
+        for number, ranking in enumerate(self.rankings, start=1):
+            seconds = (ranking.mark.time_ns - self.recording.start_ns) / 1e9
+            mark = (str(number), f"{seconds:.1f} s", ranking.mark.type or "-")
+            if not ranking.suspects:
+                why = ranking.reason or "no parameter has a score here"
+                rows.append((*mark, "", why, "", "", ""))
+            rows += [
+                (
+                    *mark,
+                    f"{suspect.position}{'=' if suspect.tied else ''}",
+                    suspect.parameter,
+                    f"{suspect.rank:.2f}",
+                    f"{suspect.score:.3g}",
+                    f"{suspect.comparison.file}:{suspect.comparison.lineno}",
+                )
+                for suspect in ranking.suspects[:top]
+            ]
+        headings = ("mark", "at", "type", "#", "parameter", "rank", "score", "compared at")
+        return NotebookTable(headings, tuple(rows), frozenset({0, 1, 3, 5, 6}))
+
+
+def rank(
+    mission: Recording | Source,
+    static_info: StaticInfo | Source,
+    question: Question | None = None,
+    **settings: Unpack[RankSettings],
+) -> Rankings:
+    """The suspected parameters at each mark, most suspicious first.
+
+    Args:
+        mission: the mission with its marks.
+        static_info: what the analysis found.
+        question: all settings at once.
+        **settings: in place of ``question``. ``types``: ``believe`` the observer's types, ``doubt``
+            them (the other type's suspects stay rivals) or ``ignore`` them. ``window_s``: the
+            window of type II, in seconds.
+
+    Raises:
+        InputError: the mission has no marks, or something cannot be read.
+        TypeError: both ``question`` and other settings are given, or there is no such setting.
+    """
+    asked = question_of(question, settings)
+    source = None if isinstance(mission, Recording) else Path(mission)
+    return Rankings.of(read_marked(mission), load_static(static_info), asked, source)
+
+
+def curves(
+    mission: Recording | Source,
+    static_info: StaticInfo | Source,
+    question: Question | None = None,
+    *,
+    step_s: float = STEP_S,
+    **settings: Unpack[RankSettings],
+) -> RankCurves:
+    """Scores and ranks of all parameters over the mission, every ``step_s`` seconds.
+
+    The other arguments are those of ``rank``; ``types`` change nothing here.
+
+    Raises:
+        InputError: something cannot be read.
+        TypeError: both ``question`` and other settings are given, or there is no such setting.
+    """
+    asked = question_of(question, settings)
+    return rank_curves(read(mission), load_static(static_info), asked, step_s=step_s)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from itertools import count
 from pathlib import Path
 
-from pytpc.api.mark_rankings import Rankings
+from pytpc.api.diagnosing import Rankings
 from pytpc.api.missions import Source
 from pytpc.base.atomic import write_atomic
 from pytpc.diagnosis.question import Question

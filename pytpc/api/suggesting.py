@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TypedDict, Unpack
 
-from pytpc.api.mark_rankings import Rankings
+from pytpc.api.diagnosing import Rankings
 from pytpc.api.missions import Source, load_static, read
 from pytpc.base.wording import Number
 from pytpc.diagnosis.question import PLAIN, Question

@@ -13,7 +13,7 @@ from pathlib import Path
 import click
 from rich.console import Console
 
-from pytpc.api.converting import TOLERANCE_NS, Converted, convert
+from pytpc.api.missions import TOLERANCE_S, Converted, convert
 from pytpc.api.record import (
     DEFAULT_TOPICS,
     MissionRun,
@@ -208,7 +208,7 @@ def mission_progress(what: str, unit: str = "s simulated") -> Iterator[Callable[
     "--tolerance",
     "tolerance_s",
     type=click.FloatRange(min=0.0, max=60.0),
-    default=TOLERANCE_NS / 1e9,
+    default=TOLERANCE_S,
     show_default=True,
     metavar="SECONDS",
     help="Take reports in two inputs for the same one if they are at most this far apart.",

@@ -9,8 +9,7 @@ from typing import Literal
 
 import click
 
-from pytpc.api.diagnosing import changes_since, diagnose, is_compared
-from pytpc.api.mark_rankings import Rankings
+from pytpc.api.diagnosing import Rankings, changes_since, diagnose, is_compared
 from pytpc.api.missions import find_declared
 from pytpc.api.suggesting import smallest_changes
 from pytpc.base.errors import InputError

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from pytpc.api.mark_rankings import Rankings
+from pytpc.api.diagnosing import Rankings
 from pytpc.api.missions import find_declared
 from pytpc.api.report import CARDS, MissionReport, report_of, write_missions
 from pytpc.base.errors import TpcError

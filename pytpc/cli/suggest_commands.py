@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from pytpc.api.mark_rankings import Rankings
+from pytpc.api.diagnosing import Rankings
 from pytpc.api.missions import find_declared
 from pytpc.api.suggesting import suggest_together, what_if_by_type
 from pytpc.base.errors import InputError

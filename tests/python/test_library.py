@@ -16,7 +16,7 @@ from pytpc import api
 from pytpc.base.errors import InputError
 from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.suggestion.advise import join_advice
-from pytpc.present.notebook import NotebookTable
+from pytpc.present.answers import NotebookTable
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
 from pytpc_evaluation.stats import notebook_tables
@@ -42,9 +42,7 @@ def test_advice_looks_at_the_window_that_ranked():
 
 
 def test_import_is_lazy():
-    code = (
-        "import sys, pytpc; print('numpy' in sys.modules, 'pytpc.api.mark_rankings' in sys.modules)"
-    )
+    code = "import sys, pytpc; print('numpy' in sys.modules, 'pytpc.api.diagnosing' in sys.modules)"
     said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert said.stdout.split() == ["False", "False"]
 

@@ -19,7 +19,7 @@ from matplotlib.ticker import MaxNLocator
 
 from pytpc.base.columns import Bools, Floats
 from pytpc.base.wording import many
-from pytpc.diagnosis.results.mission_answer import RankCurves
+from pytpc.diagnosis.results.advice import RankCurves
 from pytpc.diagnosis.scores.scores import NONE
 from pytpc.recording.marks import MARK_TYPES, Mark
 from pytpc.recording.mission import Recording

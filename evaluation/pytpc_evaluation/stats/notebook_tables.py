@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pytpc.api.missions import Source, load_static
-from pytpc.present.notebook import NotebookTable
+from pytpc.present.answers import NotebookTable
 from pytpc.static.static_info import StaticInfo
 from pytpc_evaluation import tables
 from pytpc_evaluation.stats.missions import load_missions

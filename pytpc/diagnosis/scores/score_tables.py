@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from pytpc.base.errors import TpcError
 from pytpc.diagnosis.question import PLAIN, WINDOW_S, Question
-from pytpc.diagnosis.results.mission_answer import RankCurves
+from pytpc.diagnosis.results.advice import RankCurves
 from pytpc.diagnosis.scores.scores import Formula, ParameterTable, by_parameter, combined, type1
 from pytpc.diagnosis.scores.summary_scores import LogTables, type2_of_summaries
 from pytpc.recording.events import Floats

@@ -11,11 +11,13 @@ import numpy as np
 from pytpc.base.wording import many, show
 from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.blame import blame
-from pytpc.diagnosis.results.advice import Advice, Remedy, Suggestion
-from pytpc.diagnosis.results.mission_answer import (
+from pytpc.diagnosis.results.advice import (
+    Advice,
     MarkAnswer,
     MissionAnswer,
     RankCurves,
+    Remedy,
+    Suggestion,
     SuspectAnswer,
 )
 from pytpc.diagnosis.results.suspects import MarkRanking, Suspect

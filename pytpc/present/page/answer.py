@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from markupsafe import Markup
 
 from pytpc.base.wording import many, percent
-from pytpc.diagnosis.results.mission_answer import MissionAnswer
+from pytpc.diagnosis.results.advice import MissionAnswer
 from pytpc.present.page.cards import CardView
 
 

@@ -9,8 +9,7 @@ from dataclasses import dataclass
 from markupsafe import Markup
 
 from pytpc.base.wording import exact, show
-from pytpc.diagnosis.results.advice import Advice, Suggestion, WhatIf
-from pytpc.diagnosis.results.mission_answer import SuspectAnswer
+from pytpc.diagnosis.results.advice import Advice, Suggestion, SuspectAnswer, WhatIf
 from pytpc.diagnosis.results.suspects import Suspect
 from pytpc.present.as_json import finite
 from pytpc.present.page.payload import series_of

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from markupsafe import Markup
 
 from pytpc.base.columns import Floats
-from pytpc.diagnosis.results.mission_answer import RankCurves
+from pytpc.diagnosis.results.advice import RankCurves
 from pytpc.present.page.environment import seen
 from pytpc.present.page.series import gap_after, kept_of, lane, runs, thin
 from pytpc.recording.marks import MarkType

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from pytpc.diagnosis.results.mission_answer import MissionAnswer
+from pytpc.diagnosis.results.advice import MissionAnswer
 from pytpc.diagnosis.results.suspects import MarkRanking
 from pytpc.recording.mission import Recording
 from pytpc.static.parameters import same_parameter

@@ -15,7 +15,7 @@ from markupsafe import Markup
 
 from pytpc.base.wording import many
 from pytpc.diagnosis.question import Types
-from pytpc.diagnosis.results.mission_answer import MarkAnswer
+from pytpc.diagnosis.results.advice import MarkAnswer
 from pytpc.diagnosis.results.suspects import MarkRanking
 from pytpc.present.page.answer import AnswerView, TogetherView, answers, spoken, together
 from pytpc.present.page.cards import CardView, PageFigures, SuspectView, card_view, row_view
