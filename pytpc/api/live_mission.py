@@ -12,7 +12,6 @@ import time
 from collections import deque
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import Protocol
 
 import numpy as np
 from rich.text import Text
@@ -56,24 +55,6 @@ def fresh_watching(static_info: StaticInfo, question: Question) -> Watching:
     types: Types = "doubt" if question.types == "doubt" else "believe"
     engine = LiveRanking(static_info, replace(question, types=types))
     return Watching(engine, static_info, question.window_s)
-
-
-class Feed(Protocol):
-    """Where evaluations come from; ``live`` where they come by themselves."""
-
-    live: bool
-
-    def take(self, now_ns: int | None) -> tuple[Watching, Sequence[Item]]:
-        """What is to be taken in now, and into what: another than before where time went back."""
-
-    def fault(self) -> str:
-        """What is wrong, in a few words; empty where nothing."""
-
-    def lost(self) -> int:
-        """How many messages never came."""
-
-    def close(self) -> None:
-        """No more is wanted."""
 
 
 class GraphFeed:
@@ -226,6 +207,9 @@ class RecordedFeed:
         """There is nothing to end."""
 
 
+Feed = GraphFeed | RecordedFeed
+
+
 class WatchedMission:
     """A mission of ``pytpc.present.marking_terminal`` with its live ranking.
 
@@ -337,7 +321,7 @@ class WatchedMission:
         return look
 
     def paint(
-        self, session: Session, view: View, width: int, height: int, *, utf8: bool
+        self, session: Session, view: View, width: int, height: int, utf8: bool
     ) -> Sequence[Text]:
         """The screen, for ``pytpc.present.marking_terminal.run_marking``."""
         now_ns = view.now_ns if view.now_ns is not None else (self.watching.last_ns or 0)

@@ -112,17 +112,13 @@ class RecordedMission:
         """There is nothing to end."""
 
 
-class Paint(Protocol):
-    """Makes the lines of a screen; ``utf8`` says whether the terminal takes more than ASCII."""
-
-    def __call__(
-        self, session: Session, view: View, width: int, height: int, *, utf8: bool
-    ) -> Sequence[Text]:
-        """At most ``height`` lines, none wider than ``width``."""
+Paint = Callable[[Session, View, int, int, bool], Sequence[Text]]
+"""Makes the lines of a screen, at most as wide and high as the two numbers; the last argument says
+whether the terminal takes more than ASCII."""
 
 
 def paint_marks(
-    session: Session, view: View, width: int, height: int, *, utf8: bool
+    session: Session, view: View, width: int, height: int, _utf8: bool
 ) -> Sequence[Text]:
     """The screen of ``mark``."""
     return [Text(line) for line in screen(session, view, width, height)]
@@ -229,7 +225,7 @@ def _shown(
         with Live(console=console, auto_refresh=False, transient=not full, screen=full) as live:
 
             def draw(session: Session, view: View) -> None:
-                lines = paint(session, view, console.width, console.height, utf8=utf8)
+                lines = paint(session, view, console.width, console.height, utf8)
                 text = Text("\n", no_wrap=True, overflow="crop").join(lines)
                 live.update(text, refresh=True)
 
@@ -241,7 +237,7 @@ def _shown(
         nonlocal told
         said = session.said if session.typing is None else "note (Enter ends it):"
         if told is None:
-            lines = paint(session, view, _DUMB_WIDTH, _DUMB_HEIGHT, utf8=False)
+            lines = paint(session, view, _DUMB_WIDTH, _DUMB_HEIGHT, False)
             print("\n".join(line.plain for line in lines if line.plain), flush=True)
         elif said and told != (len(session.marks), said):
             print(said, flush=True)

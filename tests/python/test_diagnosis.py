@@ -31,7 +31,6 @@ from pytpc.diagnosis.ranking.posterior import (
     MARKS_II,
     REPEAT,
     Said,
-    Weights,
     diagnose_log,
     mixture,
     ranked,
@@ -44,6 +43,7 @@ from pytpc.ingest import Recording
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark
 from pytpc.recording.parameter_change import Change
+from pytpc_evaluation.study.fit import REASONED
 
 STATIC = static_info(
     comparison(0, "~gate"),
@@ -134,7 +134,7 @@ def test_the_witnesses_are_mixed_by_hand():
         flat=zero,
     )
     ranks = np.log([[[1, 1 / 2, 1e-300]], [[1 / 2, 1, 1e-300]]])
-    weights = Weights(acted=1, waited=1, ranked=1, none=0, latch=-50)
+    weights = replace(REASONED, acted=1, waited=1, ranked=1, none=0, latch=-50)
 
     def mixed(odds, **changes):
         said = Said(np.array([0, 0, 1]), ranks, np.array([odds]))

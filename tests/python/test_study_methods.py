@@ -10,13 +10,13 @@ import pytest
 from mission_samples import comparison, events, ns, static_info
 
 from pytpc.base.errors import InputError
-from pytpc.diagnosis.ranking.posterior import REASONED, diagnose_log
+from pytpc.diagnosis.ranking.posterior import diagnose_log
 from pytpc.ingest import Recording, save_recording
 from pytpc.recording.marks import Mark
 from pytpc.recording.parameter_change import Change
 from pytpc_evaluation.study.case import Case
 from pytpc_evaluation.study.data import Mission, UserMark, missions
-from pytpc_evaluation.study.fit import Batch, fit, samples
+from pytpc_evaluation.study.fit import REASONED, Batch, fit, samples
 from pytpc_evaluation.study.judge import judge, position, save_positions
 from pytpc_evaluation.study.methods import METHODS
 from pytpc_evaluation.study.methods.importance import importance, importance_of, windows

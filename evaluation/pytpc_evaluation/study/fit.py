@@ -4,7 +4,7 @@
 
 What is made greatest is the mean log posterior of what is to blame: the changed parameter, or none
 of them on clean missions and those with a fault in the source. Each treatment counts the same, and
-a normal prior holds each weight near the one that was chosen by reason (``Weights()``), for there
+a normal prior holds each weight near the one that was chosen by reason (``REASONED``), for there
 are few treatments. The fits with one system left out show how far it goes beyond what it has seen.
 """
 
@@ -20,11 +20,25 @@ import numpy as np
 from pytpc.base.columns import Bools, Floats, Int64s
 from pytpc.base.errors import TpcError
 from pytpc.diagnosis.ranking.mark_evidence import MarkEvidence, mark_evidence, marked
-from pytpc.diagnosis.ranking.posterior import REASONED, Said, Weights, mixture, ranked, type_odds
+from pytpc.diagnosis.ranking.posterior import Said, Weights, mixture, ranked, type_odds
 from pytpc.diagnosis.ranking.result_streams import ResultStreams
 from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.static.parameters import same_parameter
 from pytpc_evaluation.study.data import ALL, LABELS, Mission, missions
+
+REASONED = Weights(
+    acted=0.8,
+    waited=0.8,
+    since=0.4,
+    held=1.0,
+    near=-0.7,
+    flat=-1.5,
+    ranked=1.0,
+    latch=-1.5,
+    none=1.0,
+)
+"""The weights by reason alone: where the fit begins, and what it stays near."""
+
 
 ALONE = 0.3
 """What the marks of single users count beside those of all together, which the study judges by."""

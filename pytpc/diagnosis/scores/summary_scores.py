@@ -84,13 +84,6 @@ def type2_of_summaries(
     return scores
 
 
-class _Spread(NamedTuple):
-    """max - min up to each mark, at least and at most."""
-
-    least: Floats
-    most: Floats
-
-
 class _KeySummaries:
     """The summaries of one key, and its evaluations that are in none, each as one of its own."""
 
@@ -137,18 +130,18 @@ class _KeySummaries:
     def scores(self, begins: Int64s, marks: Int64s, formula: Formula, nearness: float) -> Floats:
         """The score at each mark."""
         window = self._window(begins, marks)
-        spread = self._spread(marks)
-        width = np.where(spread.least > 0, spread.least, spread.most)
+        least, most = self._spreads(marks)
+        width = np.where(least > 0, least, most)
         ratio = window.total / window.number / width
         # No difference exceeds the spread: all that is known of what is beyond a double.
         ratio = np.clip(np.where(np.isfinite(ratio), ratio, 1.0), 0.0, 1.0)
         flops = np.maximum(1.0, count_within(self.flops, begins, marks))
         value = ratio**formula.alpha * flops**formula.beta * window.far**formula.gamma
-        none = (window.number <= 0) | (spread.most <= 0)
+        none = (window.number <= 0) | (most <= 0)
         return np.where(none, NONE, beside_none(value * nearness**formula.delta))
 
-    def _spread(self, marks: Int64s) -> _Spread:
-        """From what had ended by each mark, and from all that had begun."""
+    def _spreads(self, marks: Int64s) -> tuple[Floats, Floats]:
+        """max - min of what had ended by each mark, and of all that had begun."""
         order = np.argsort(self.begin, kind="stable")
         ended = np.searchsorted(self.end, marks, side="right")
         begun = np.searchsorted(self.begin[order], marks, side="right")
@@ -162,7 +155,7 @@ class _KeySummaries:
             highest = np.maximum(highest, self.before[0])
             lowest = np.maximum(lowest, -self.before[1])
             found.append(np.where(np.isfinite(highest), highest + lowest, 0.0))
-        return _Spread(*found)
+        return found[0], found[1]
 
     def _window(self, begins: Int64s, marks: Int64s) -> _SummedWindow:
         """What is in each window."""

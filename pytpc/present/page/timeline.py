@@ -38,15 +38,6 @@ class Lane:
     culprit: bool
 
 
-@dataclass(frozen=True, slots=True)
-class Curves:
-    """Ranks of the lanes' parameters: float64[t] seconds, and float64[t, lanes] by both scores."""
-
-    seconds: Floats
-    first: Floats
-    second: Floats
-
-
 def timeline(mission: ReportedMission, ident: str) -> tuple[Markup, dict[str, object] | None]:
     """The still figure, and the numbers of the moving one; nothing without a suspect.
 
@@ -76,7 +67,7 @@ def timeline(mission: ReportedMission, ident: str) -> tuple[Markup, dict[str, ob
     marks = [(mission.seconds(mark.time_ns), mark.type) for mark in recording.marks]
     places = [curves.parameters.index(name) for name in order]
     every = max(1, curves.times_ns.size // _STILL_STEPS)
-    still = Curves(
+    still = (
         (curves.times_ns[::every] - start) / 1e9,
         curves.rank1[::every, places],
         curves.rank2[::every, places],
@@ -91,7 +82,7 @@ def timeline(mission: ReportedMission, ident: str) -> tuple[Markup, dict[str, ob
 
 def _svg(
     lanes: Sequence[Lane],
-    curves: Curves,
+    curves: tuple[Floats, Floats, Floats],
     marks: Sequence[tuple[float, MarkType | None]],
     seconds: float,
     *,
@@ -100,6 +91,8 @@ def _svg(
     """Every suspect's results and ranks over the whole mission, and the marks, numbered from 1.
 
     Times are seconds since the recording began; no other figure has ids that begin as ``ident``.
+    ``curves`` are float64[t] times, and float64[t, lanes] ranks of the lanes' parameters by types I
+    and II.
     """
     label = f"results and ranks of {len(lanes)} parameters over {seconds:.0f} s, {len(marks)} marks"
     seconds = max(seconds, 1e-3)
@@ -112,8 +105,8 @@ def _svg(
         )
         figure.subplots_adjust(left=0.22, right=0.985, top=1 - 0.22 / height, bottom=0.42 / height)
         _lanes(upper, lanes, seconds)
-        for axes, ranks, kind in ((first, curves.first, "I"), (second, curves.second, "II")):
-            _ranks(axes, lanes, curves.seconds, ranks)
+        for axes, ranks, kind in ((first, curves[1], "I"), (second, curves[2], "II")):
+            _ranks(axes, lanes, curves[0], ranks)
             axes.set_ylabel(f"rank, type {kind}")
         for number, (time, mark_type) in enumerate(marks, start=1):
             for axes in (upper, first, second):
