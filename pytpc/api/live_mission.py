@@ -1,6 +1,6 @@
-"""What is watched: the reports of a running graph, or those of a recording as its clock goes.
+"""What `pytpc watch` shows: the reports of a running graph, or of a recording as its clock runs.
 
-``GraphFeed`` needs no ROS on the observer's machine. What it hears is read by ``reports``.
+``GraphFeed`` needs no ROS on the observer's machine; `live_reports` reads what it receives.
 """
 
 from __future__ import annotations
@@ -41,16 +41,16 @@ _RATE_S = 5.0
 # Ranking a hundred comparisons takes a few hundredths of a second.
 _RANK_S = 0.4
 _SNAPSHOT_NS = 30 * 10**9
-# What comes from several nodes is out of order by less than this; more is a clock put back.
+# Reports of several nodes are out of order by less than this; more means the clock was set back.
 _BACK_NS = 5 * 10**9
-# While the graph has no time; older ones go.
+# Kept while the graph has no time; older ones are dropped.
 _MOST_WAITING = 200_000
 
 
 def fresh_watching(static_info: StaticInfo, question: Question) -> Watching:
-    """The ranking of a mission that nothing was reported of yet.
+    """The ranking of a mission before its first report.
 
-    Where types are ignored, the tables of both are there to be chosen all the same.
+    If types are ignored, the observer can still choose the tables of both types.
     """
     types: Types = "doubt" if question.types == "doubt" else "believe"
     engine = LiveRanking(static_info, replace(question, types=types))
@@ -62,13 +62,13 @@ class GraphFeed:
 
     Args:
         master: URI of the ROS master.
-        fresh: what nothing was taken into; a copy of it is used anew when the clock is put back.
+        fresh: a ranking without reports; where the clock is set back, a copy of it starts again.
     """
 
     live = True
 
     def __init__(self, master: str, fresh: Watching) -> None:
-        """See the class; listens in a thread of its own."""
+        """Listen in a thread of its own."""
         self._master = master
         self._fresh = fresh
         self._watching = fresh.snapshot()
@@ -82,14 +82,14 @@ class GraphFeed:
         self._thread.start()
 
     def take(self, now_ns: int | None) -> tuple[Watching, Sequence[Item]]:
-        """What has come since; nothing while the graph has no time."""
+        """What has arrived since; nothing while the graph has no time."""
         if now_ns is None:
             return self._watching, ()
         last_ns = self._watching.last_ns
         if last_ns is not None and now_ns < last_ns - 2 * _BACK_NS:
-            # Another run of the simulator, or of a bag: what was before is no part of it.
+            # Another run of the simulator or of a bag begins.
             self._watching = self._fresh.snapshot()
-            self._restarted = "the clock was put back: began anew"
+            self._restarted = "the clock was set back, so the ranking started again"
         found = []
         for _ in range(len(self._items)):
             item = self._items.popleft()
@@ -110,11 +110,11 @@ class GraphFeed:
         if self._reports.malformed:
             words.append(f"{self._reports.malformed:,} broken")
         if self._other_clock:
-            words.append(f"{self._other_clock:,} by another clock left out")
+            words.append(f"{self._other_clock:,} left out (another clock)")
         return ", ".join(words)
 
     def lost(self) -> int:
-        """How many messages never came, by their numbers."""
+        """How many messages never arrived, by their sequence numbers."""
         return self._reports.lost
 
     def close(self) -> None:
@@ -138,7 +138,7 @@ class GraphFeed:
             subscriber.close()
 
     def _keep_registered(self, subscriber: RawSubscriber) -> None:
-        """A master that was started anew knows nobody; one that is dead answers late."""
+        """Subscribe again when the master was restarted, which forgets all subscribers."""
         while True:
             try:
                 subscribers = subscriber.master.state().subscribers
@@ -157,14 +157,13 @@ class RecordedFeed:
 
     Args:
         recording: the mission.
-        fresh: what nothing was taken into.
+        fresh: a ranking without reports.
     """
 
     live = False
 
     def __init__(self, recording: Recording, fresh: Watching) -> None:
-        """The clock is at the beginning. Copies of what was known are kept every half a minute,
-        so that going back is not going through all again."""
+        """The clock is at the beginning; a copy is kept every half minute, to go back to."""
         self._recording = recording
         self._ends = np.argsort(recording.summaries.end_ns, kind="stable")
         self._watching = fresh.snapshot()
@@ -173,7 +172,7 @@ class RecordedFeed:
         self._copies = [(self._at_ns, self._place, fresh)]
 
     def take(self, now_ns: int | None) -> tuple[Watching, Sequence[Item]]:
-        """What happened since where the clock was."""
+        """What happened since the last call; if the clock went back, from a kept copy on."""
         if now_ns is None:
             return self._watching, ()
         if now_ns < self._at_ns:
@@ -196,15 +195,15 @@ class RecordedFeed:
         return self._watching, items
 
     def fault(self) -> str:
-        """Nothing can be wrong any more."""
+        """A recording has no connection to lose."""
         return ""
 
     def lost(self) -> int:
-        """How many messages never came to the recorder."""
+        """How many messages the recorder never received."""
         return sum(self._recording.lost.values())
 
     def close(self) -> None:
-        """There is nothing to end."""
+        """Nothing to do."""
 
 
 Feed = GraphFeed | RecordedFeed
@@ -223,7 +222,7 @@ class WatchedMission:
     def __init__(
         self, mission: MarkedMission, feed: Feed, options: WatchOptions, *, believe: bool = True
     ) -> None:
-        """See the class."""
+        """Nothing is shown yet."""
         self._mission = mission
         self._feed = feed
         self._options = options
@@ -253,7 +252,7 @@ class WatchedMission:
         return self._mission.press(key)
 
     def view(self) -> View:
-        """What the mission shows of itself."""
+        """The mission's own view."""
         return self._mission.view()
 
     def send(self, change: MarkChange) -> str:
@@ -266,12 +265,12 @@ class WatchedMission:
         return self.kept[-1].words() if made else ""
 
     def tick(self) -> None:
-        """Take in what has come."""
+        """Take in what has arrived."""
         self._mission.tick()
         self.take()
 
     def take(self) -> None:
-        """Take in what has come up to now."""
+        """Take in what has arrived up to now."""
         self.watching, items = self._feed.take(self.now_ns())
         for item in items:
             if isinstance(item, Seen):
@@ -285,7 +284,7 @@ class WatchedMission:
         self._mission.close()
 
     def status(self) -> Status:
-        """What has come in."""
+        """The counts and faults so far."""
         steady_s, reports = time.monotonic(), self.watching.reports
         self._rates.append((steady_s, reports))
         while self._rates[0][0] < steady_s - _RATE_S:
@@ -303,12 +302,12 @@ class WatchedMission:
         )
 
     def panel(self, now_ns: int, *, utf8: bool) -> Panel:
-        """What is to be shown of an instant."""
+        """What the screen shows of an instant."""
         options = self._options._replace(utf8=utf8)
         return Panel(self._look_at(now_ns), tuple(self.kept), self.status(), options)
 
     def _look_at(self, now_ns: int) -> Look:
-        """The look of now: worked out where anything is new, and some time has gone since."""
+        """The look of now; worked out again only if anything is new and some time has passed."""
         options = self._options
         of = (now_ns, self.watching, self.watching.reports, options.top, options.layout)
         steady_s = time.monotonic()

@@ -1,4 +1,4 @@
-"""Messages of a graph that runs become evaluations and summaries, each once.
+"""Turns the messages of a running graph into evaluations and summaries, each once.
 
 The forms are those of docs/reference/formats.md: log messages on ``/rosout``, single lines and
 numbered batches on ``/threshold_information``.
@@ -32,7 +32,7 @@ _FORGET_S = 5.0
 
 
 class _Held(NamedTuple):
-    """A single line that may be the copy of a log message that is still to come."""
+    """A single line that may copy a log message which has not arrived yet."""
 
     until: float
     line: str
@@ -42,8 +42,8 @@ class _Held(NamedTuple):
 class Reports:
     """Messages in, evaluations and summaries out, each once.
 
-    A relay passes the reports of /rosout on under its own name, so a single line on the topic waits
-    a moment: where the same came on /rosout, it is that one.
+    A relay repeats the reports of /rosout under its own name. So a single line on the topic waits a
+    moment, and is dropped if /rosout brings the same line.
     """
 
     def __init__(self) -> None:
@@ -57,11 +57,11 @@ class Reports:
 
     @property
     def lost(self) -> int:
-        """How many messages never came, by their numbers."""
+        """How many messages never arrived, by their sequence numbers."""
         return sum(self._counter.lost.values())
 
     def read(self, source: Source, data: bytes, steady_s: float) -> list[Item]:
-        """Read a message of either topic; what is broken is counted."""
+        """Read a message of either topic; broken ones are counted."""
         try:
             if source.topic == ROSOUT:
                 return self._log(source, data, steady_s)
@@ -71,7 +71,7 @@ class Reports:
             return []
 
     def due(self, steady_s: float) -> list[Item]:
-        """Lines that have waited long enough and are no copies."""
+        """Lines that have waited long enough and are not copies."""
         found = []
         while self._held and self._held[0].until <= steady_s:
             held = self._held.popleft()

@@ -101,7 +101,7 @@ def recorded(recording: Recording, source: Path, begin_ns: int | None = None) ->
         InputError: it has no length.
     """
     if recording.end_ns <= recording.start_ns:
-        raise InputError("nothing in it takes any time", source)
+        raise InputError("the recording has no length, so no clock can run through it", source)
     start_ns = recording.start_ns if begin_ns is None else begin_ns
     return RecordedMission(plain(source.name), start_ns, recording.end_ns)
 

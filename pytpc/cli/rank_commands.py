@@ -104,8 +104,8 @@ class _Answer:
     "--reference",
     type=PATH,
     metavar="RECORDING",
-    help="A mission of the same build that went right. A parameter that had the same value there"
-    " is unlikely to be the cause.",
+    help="A good run of the same build. A parameter that had the same value there is unlikely to be"
+    " the cause.",
 )
 @click.option(
     "--changes",
@@ -119,7 +119,7 @@ class _Answer:
     "--before",
     type=PATH,
     metavar="FILE",
-    help="params.yaml of a mission that went right, in place of --changes.",
+    help="params.yaml of a good run, in place of --changes.",
 )
 @TYPES
 @WINDOW
@@ -214,7 +214,7 @@ def _known(path: Path | None, static: StaticInfo) -> tuple[Change, ...]:
 def _warn_of(changes: Sequence[Change], path: Path, static: StaticInfo) -> None:
     """Warn where no compared parameter was changed: then the changes say nothing."""
     if not is_compared(changes, static):
-        warn(f"{plain(str(path))}: no parameter that is compared anywhere was changed")
+        warn(f"{plain(str(path))}: none of the changed parameters is compared anywhere")
 
 
 def _marks_at(recording: Recording, at_s: Sequence[float]) -> tuple[Mark, ...]:

@@ -70,7 +70,7 @@ class _SuggestArguments:
     "--reference",
     type=PATH,
     metavar="RECORDING",
-    help="A mission of the same build that went right; its value is suggested if it would help.",
+    help="A good run of the same build; its value is suggested if it would help.",
 )
 @click.option(
     "--flown",

@@ -52,7 +52,7 @@ def test_a_verdict_is_an_accusation_from_one_half_on():
     assert said(0.5, 0.2) == "blame ~gate: 50 %; none of the parameters: 20 %"
     assert said(0.499, 0.2) == "not sure: ~gate is likeliest (50 %); none of the parameters: 20 %"
     assert said(0.3, 0.6) == (
-        "not sure: none of the parameters is likeliest (60 %; a fault in the code is none of them),"
+        "not sure: most likely none of the parameters (60 %; perhaps a fault in the code),"
         " then ~gate (30 %)"
     )
     surest = Blame((accused(0.7),), 0.1, 3, MARKS, ())
@@ -60,7 +60,7 @@ def test_a_verdict_is_an_accusation_from_one_half_on():
     assert Blame((accused(0.49),), 0.1, 3, MARKS, ()).accused is None
     nobody = Blame((), 1.0, 3, MARKS, ())
     assert (nobody.accused, nobody.confidence) == (None, 0.0)
-    assert nobody.text == "not enough evidence to suspect anybody"
+    assert nobody.text == "not enough evidence to suspect any parameter"
 
 
 def test_which_marks_they_are():
@@ -98,7 +98,7 @@ def test_one_mark_says_little_where_it_is_not_sure():
     one = Recording("m", events(still), (Mark(ns(40), None),), 0, ns(80))
     found = blame(one, STATIC)
     assert found.accused is None
-    assert found.notes == ("one mark says little: mark it each time that it happens",)
+    assert found.notes == ("one mark says little: mark the error each time it happens",)
 
 
 # The log ends at 79.5 s: 100 s and 200 s are 20.5 and 120 s later. The two others count.
@@ -188,8 +188,8 @@ def test_summaries_are_told():
     )
     found = blame(mission(summaries=builder.build()), STATIC)
     assert found.notes == (
-        "1,200 evaluations came as summaries (policy edges) and are not judged here, so that what"
-        " the robot waits for is not seen: look at each mark, too",
+        "1,200 evaluations came as summaries (policy edges) and are not judged here; what the robot"
+        " waits for may be missed, so look at each mark, too",
     )
     only = Recording("m", events([]), MARKS, 0, ns(80), summaries=builder.build())
     assert blame(only, STATIC).suspects == ()

@@ -168,7 +168,7 @@ def test_marks_that_do_not_agree(files):
     words = ("suggest", bag, "cover", "--static", static)
     title, verdict, first, *rest = run(*words[:2], *words[3:]).stdout.splitlines()
     assert title.rstrip() == "All 3 marks of 2 observers together: 1 of type I, 2 of type II"
-    assert verdict.startswith("  not sure: none of the parameters is likeliest")
+    assert verdict.startswith("  not sure: most likely none of the parameters")
     assert first.startswith("  1  lower ~cover from 0.6 to 0.0999 (below 0.1: nearly all of 186")
     titles = [line.rstrip() for line in rest if not line.startswith(" ")]
     assert titles == [

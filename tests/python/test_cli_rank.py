@@ -176,7 +176,7 @@ def test_what_is_known_beside_the_log_and_does_not_fit(files, tmp_path):
     file.write_text("{}")
     one_line(run(*words, "--changes", file), "known: not a history of changes: expected a list")
     file.write_text("[]")
-    assert "known: no parameter that is compared anywhere was changed" in (
+    assert "known: none of the changed parameters is compared anywhere" in (
         run(*words, "--changes", file).stderr
     )
     one_line(run(*words, "--before", file), "m.bag: has no params.yaml beside it")
@@ -290,7 +290,7 @@ def test_a_time_that_nobody_marked(files, quiet):
     said = [row.strip() for row in outside.stdout.splitlines() if row.strip()]
     assert said == [
         "The one mark: 1 without a type",
-        "not enough evidence to suspect anybody",
+        "not enough evidence to suspect any parameter",
         "mark 1: the last report up to the mark is 80.1 s before it",
     ]
     thesis = run("rank", quiet, "--static", static, "--at", "100", "--score", "thesis")
@@ -393,7 +393,7 @@ def test_marks_on_another_clock_are_told_in_one_line(files, tmp_path):
         write_reports(writer)
         writer.mark(16, "/mark_action", marked=1_790_000_000)
     result = run("rank", bag, "--static", static)
-    assert "not enough evidence to suspect anybody" in result.stdout
+    assert "not enough evidence to suspect any parameter" in result.stdout
     assert "mark 1: the mark is on another clock than the reports" in result.stdout
     (warning,) = [row for row in result.stderr.splitlines() if "marks are" in row]
     # 1,790,000,000 s after 1970 are 20,717 days and some hours: 2026-09-21.

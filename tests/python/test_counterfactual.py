@@ -200,7 +200,7 @@ def test_flags_and_switches():
     assert counts(what_if(recorded, flag, "on", 2)) == (1, 2, 0)
     found = what_if(recorded, flag, "on", 5)
     assert counts(found) == (0, 0, 0)
-    assert "a switch chooses by it" in found.caveats[-1]
+    assert "it selects a case of a switch" in found.caveats[-1]
 
 
 # NaN is greater than nothing, infinity than all: neither turns, nor does a mark that has no other.
@@ -243,7 +243,9 @@ def test_names():
 def test_caveats():
     joined = static_info(comparison(0, "~limit", other_thresholds=1))
     found = what_if(RECORDED, joined, "limit", 1)
-    assert found.caveats[1].startswith("1 comparison of it stand")
+    assert found.caveats[1] == (
+        "other comparisons share a condition with 1 of its comparisons and may decide the outcome"
+    )
     changed = mission([*greater(ROWS), (35, 0, 0, 1, 2)])
     assert "was changed during the mission" in what_if(changed, LIMIT, "limit", 1).caveats[1]
     text = static_info(comparison(0, "~limit", default="a"), comparison(1, "~limit"))
@@ -281,7 +283,7 @@ def test_summaries():
     found = what_if(recorded, LIMIT, "limit", 0.4)
     assert (*counts(found), found.unsure) == (1, 1, 1, 1)
     assert found.text.endswith("1 of 6 decisions (17 %), perhaps 1 more")
-    assert "only the outermost" in found.caveats[-1]
+    assert found.caveats[-1] == "only the extreme values of each summary are known"
     found = what_if(recorded, LIMIT, "limit", 0.5)
     assert (*counts(found), found.unsure) == (0, 0, 0, 0)
     # The summary has counted what was reported within it.
@@ -322,7 +324,7 @@ def test_summaries_of_a_switch():
     table = kept(flags(2, 2.1, 1, 1), replace(flags(30, 31, 2, 2), res=False, result=False))
     found = what_if(mission([], [Mark(ns(3), "II")], table), static, "mode", 0)
     assert (*counts(found), found.unsure) == (0, 0, 0, 0)
-    assert found.caveats[-1].startswith("a switch chooses by it")
+    assert found.caveats[-1].startswith("it selects a case of a switch")
 
 
 # From 10 s on 7 > 5: with 7 the mark at 30 s is answered, and [10, 30] turns, of which [18, 30] is

@@ -232,7 +232,7 @@ def test_all_marks_together_are_escaped():
     assert "\x1b" not in found._repr_html_() + str(found)
     nobody = pytpc.diagnose(replace(MISSION, marks=(Mark(ns(100), "II"),)), STATIC)
     assert str(nobody).splitlines()[1:] == [
-        "not enough evidence to suspect anybody",
+        "not enough evidence to suspect any parameter",
         "mark 1: the last report up to the mark is 96 s before it",
     ]
     assert "<table" not in nobody._repr_html_()

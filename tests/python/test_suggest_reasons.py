@@ -65,7 +65,7 @@ def test_a_threshold_that_would_do_by_now():
     rows = [(1, 1, 2), (2, 3, 2), (3, 3, 5)]
     assert ask(rows, "I", at=9).boundary == 3
     late = ask([*rows, (4, 3, 5), (5, 0.5, 1)], "I", at=9)
-    assert late.reason == "the threshold has changed since, and would do as it is now"
+    assert late.reason == "the threshold has changed since; its present value would do"
 
 
 # Both parts of "a > A && b > B" report when the condition flops; only the second one changed.
@@ -88,7 +88,7 @@ def test_equality_that_nothing_meets():
 # 3 > 2 was True; with the limit of 5 by now it is False, and what came since was no number.
 def test_a_window_that_would_do_by_now():
     found = ask([(95, 3, 2), (99, NAN, 5)], "II")
-    assert found.reason == "the threshold has changed since, and would do as it is now"
+    assert found.reason == "the threshold has changed since; its present value would do"
 
 
 # 1e-300 * limit is at most 1.8e8 of doubles: never 1e10.

@@ -53,7 +53,9 @@ def blame(recording: Recording, static_info: StaticInfo, question: Question = PL
     made = Blame(suspects, found.none, len(tpcs.names), recording.marks, notes)
     if len(recording.marks) > 1 or made.accused is not None:
         return made
-    return replace(made, notes=(*notes, "one mark says little: mark it each time that it happens"))
+    return replace(
+        made, notes=(*notes, "one mark says little: mark the error each time it happens")
+    )
 
 
 def _suspects(
@@ -99,8 +101,8 @@ def _notes(recording: Recording, beyond: Sequence[str]) -> tuple[str, ...]:
     if len(recording.summaries):
         count = int(recording.summaries.count.sum())
         notes.append(
-            f"{many(count, 'evaluation')} came as summaries (policy edges) and are not judged here,"
-            " so that what the robot waits for is not seen: look at each mark, too"
+            f"{many(count, 'evaluation')} came as summaries (policy edges) and are not judged here;"
+            " what the robot waits for may be missed, so look at each mark, too"
         )
     return tuple(notes)
 

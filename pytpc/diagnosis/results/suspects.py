@@ -139,15 +139,15 @@ class Blame:
     def text(self) -> str:
         """The verdict in one line."""
         if not self.suspects:
-            return "not enough evidence to suspect anybody"
+            return "not enough evidence to suspect any parameter"
         first = self.suspects[0]
         name, sure = first.parameter, percent(first.probability)
         if self.accused is not None:
             return f"blame {name}: {sure}; none of the parameters: {percent(self.none)}"
         if self.none > first.probability:
             return (
-                f"not sure: none of the parameters is likeliest ({percent(self.none)}; a fault in "
-                f"the code is none of them), then {name} ({sure})"
+                f"not sure: most likely none of the parameters ({percent(self.none)}; perhaps a"
+                f" fault in the code), then {name} ({sure})"
             )
         return (
             f"not sure: {name} is likeliest ({sure}); none of the parameters: {percent(self.none)}"

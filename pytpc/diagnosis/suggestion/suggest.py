@@ -140,7 +140,7 @@ def _first_type(case: SuggestionCase) -> Intervals:
         raise NoneBecauseError("no finite threshold would change the outcome")
     both = intersection(earlier, later)
     if holds(both, case.threshold):
-        raise NoneBecauseError("the threshold has changed since, and would do as it is now")
+        raise NoneBecauseError("the threshold has changed since; its present value would do")
     if not both and case.relation in EQUALITIES:
         raise NoneBecauseError("no value is equal to both compared values of the last change")
     return both
@@ -170,7 +170,7 @@ def _still(case: SuggestionCase) -> tuple[Bools, Floats]:
     went = outcomes(case.relation, cmps, evidence.thresh[finite])
     same = went == outcomes(case.relation, cmps, case.threshold)
     if not np.any(same):
-        raise NoneBecauseError("the threshold has changed since, and would do as it is now")
+        raise NoneBecauseError("the threshold has changed since; its present value would do")
     return went[same], cmps[same]
 
 
@@ -253,7 +253,7 @@ def _switch(case: SuggestionCase, kind: MarkType) -> Suggestion:
             raise NoneBecauseError("the flag has changed back since")
     elif case.comparison.type == "derived":
         raise NoneBecauseError(
-            "the parameter chooses between cases, of which nothing more is known"
+            "the parameter chooses between cases, and the analysis does not know which is which"
         )
     else:
         other = 0.0 if now else 1.0

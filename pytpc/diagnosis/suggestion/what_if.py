@@ -163,8 +163,8 @@ def _caveats(
     joined = [track for track in tracks if track.comparison.other_thresholds]
     if joined:
         said.append(
-            f"{many(len(joined), 'comparison')} of it stand in a condition with others, which may"
-            " decide it whatever this one says"
+            f"other comparisons share a condition with {len(joined)} of its comparisons and may"
+            " decide the outcome"
         )
     nodes = {int(node) for track in tracks for node in np.flatnonzero(np.bincount(track.node))}
     if len(nodes) > 1:
@@ -173,9 +173,9 @@ def _caveats(
     if any(np.ptp(track.thresh[np.isfinite(track.thresh)]) > 0 for track in tracks if _some(track)):
         said.append("it was changed during the mission; the value is replayed from begin to end")
     if any(len(track.kept) for track in tracks):
-        said.append("of evaluations in summaries only the outermost are known")
+        said.append("only the extreme values of each summary are known")
     if any(track.comparison.relation == "flag" and _is_switch(track) for track in tracks):
-        said.append("a switch chooses by it; what is not in the log of other values is not known")
+        said.append("it selects a case of a switch; the log does not have all of its values")
     return (*said, *without)
 
 
