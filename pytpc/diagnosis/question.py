@@ -1,4 +1,4 @@
-"""What is asked of a mission: the settings that every verb of the diagnosis takes as one object."""
+"""The settings of a diagnosis, as one object that every verb takes."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ Types = Literal["believe", "doubt", "ignore"]
 """How far the observer's types of the marks are believed, see `mark_ranking`."""
 
 Source = Literal["reference", "default", "declared"]
-"""Who says of a value that it is good."""
+"""Who says that a value is good."""
 
 EVERY_SOURCE: frozenset[Source] = frozenset(get_args(Source))
 
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """What is asked of a mission, beside its log and the static information.
+    """What to find out about a mission.
 
-    A verb takes from it what concerns it; each setting means the same to all of them.
+    Each verb uses the settings that concern it; a setting means the same everywhere.
 
     Attributes:
         types: how far the types of the marks are believed.
@@ -35,17 +35,17 @@ class Question:
             seconds.
         top: for how many suspects a value is suggested.
         reference: a good run of the same build.
-        changes: what was changed since the robot went right, newest last; empty where that is not
-            known. Of several changes of one parameter the oldest has the value that was right.
-        declared: ranges, types and defaults that are declared of parameters.
-        flown: values of the one parameter that is asked about that did not help.
+        changes: what was changed since the robot worked, newest last; empty if not known. If a
+            parameter was changed several times, the oldest change has the value that worked.
+        declared: ranges, types and defaults that parameters are declared with.
+        flown: values of the parameter in question that were tried and did not help.
         sources: which known values may be suggested.
         kind: the type of error that a replay is about; None: of each mark its own.
-        marks: the marks that a replay looks at; None: those of the mission that are of ``kind`` or
-            have no type.
+        marks: the marks that a replay looks at; None: the mission's marks of ``kind`` or without a
+            type.
 
     Raises:
-        ValueError: ``types`` is none of `Types`, or ``window_s`` is negative.
+        ValueError: ``types`` is not one of `Types`, or ``window_s`` is negative.
     """
 
     types: Types = "believe"
@@ -60,29 +60,29 @@ class Question:
     marks: Sequence[Mark] | None = None
 
     def __post_init__(self) -> None:
-        """Check what a type cannot say."""
+        """Check the values."""
         if self.types not in get_args(Types):
             raise ValueError(f"types is {self.types!r}, not one of {', '.join(get_args(Types))}")
         if not self.window_s >= 0:
             raise ValueError("window_s is negative")
 
     def about(self, declared: Declared | None) -> Question:
-        """The same about one parameter, of which only this is declared."""
+        """The question about one parameter, with only its own declaration."""
         return replace(self, declared=() if declared is None else (declared,))
 
     @property
     def declaration(self) -> Declared | None:
-        """What is declared of the one parameter that is asked about.
+        """The declaration of the parameter in question, see ``about``.
 
         Raises:
-            ValueError: something else is declared, too; see ``about``.
+            ValueError: there are several.
         """
         if len(self.declared) > 1:
             raise ValueError("more is declared than of one parameter")
         return self.declared[0] if self.declared else None
 
     def replayed(self, kind: MarkType | None, marks: Sequence[Mark]) -> Question:
-        """The same about these marks."""
+        """The question about a replay at these marks."""
         return replace(self, kind=kind, marks=marks)
 
 

@@ -1,7 +1,7 @@
-"""Which parameter all marks of a mission blame together, in the words of a user.
+"""Which parameter all marks of a mission blame together, in words for a user.
 
-``blame`` is the entrance. It adds to `pytpc.diagnosis.ranking.other_values` what is to be said
-where the marks or the reports are not enough.
+``blame`` is the entrance. It adds notes to the probabilities of
+`pytpc.diagnosis.ranking.other_values` if the marks or the reports are not enough.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from pytpc.recording.mission import Recording
 from pytpc.static.static_info import StaticInfo
 
 _DIGITS = 9
-"""Scores that differ by rounding only are tied."""
+"""Digits after which scores are tied."""
 
 
 def blame(recording: Recording, static_info: StaticInfo, question: Question = PLAIN) -> Blame:
@@ -32,9 +32,9 @@ def blame(recording: Recording, static_info: StaticInfo, question: Question = PL
     Args:
         recording: the mission with its marks.
         static_info: what the analysis found.
-        question: its ``reference`` and ``changes``; of its ``types`` ``believe`` and ``doubt`` are
-            the same, for types are never taken for certain; a mark that has no report in
-            ``window_s`` before it says nothing.
+        question: its ``reference`` and ``changes``. The ``types`` ``believe`` and ``doubt`` are the
+            same here: types are never certain. A mark without a report in ``window_s`` before it
+            does not count.
     """
     if question.types == "ignore":
         untyped = tuple(replace(mark, type=None) for mark in recording.marks)
@@ -85,14 +85,14 @@ def _suspects(
 
 
 def _last(events: Events, by: Decisive, time_ns: int) -> Evaluation:
-    """The last evaluation of a comparison in a node up to a time, else its first."""
+    """The last evaluation of a comparison in a node up to a time, or its first."""
     rows = events.rows_of(by.key)
     rows = rows[events.node[rows] == events.nodes.index(by.node)]
     return KeyRows(events, rows, events.time_ns[rows]).at(time_ns)
 
 
 def _notes(recording: Recording, beyond: Sequence[str]) -> tuple[str, ...]:
-    """What is wrong with the marks, equal reasons together, and with the reports."""
+    """What is wrong with the marks (those with the same reason together) and with the reports."""
     places: dict[str, list[str]] = {}
     for number, reason in enumerate(beyond, start=1):
         if reason:

@@ -1,28 +1,27 @@
-"""What the marks say of each stream: the evidence for either type of error.
+"""What the marks say about each stream: the evidence for either type of error.
 
-Type I, something was done that should not have been. If a change of the comparison's result did it,
-the first mark of each observer came a reaction after that change:
+Type I: the robot did something that it should not. If a change of the comparison's result caused
+it, the first mark of each observer followed that change after a reaction time:
 
     acted = log( sum over its turns t of u(t) fit(t) / (sum of u(t) + c) ) - log( mean of fit )
     fit(t) = product over the first marks m of (e + (1 - e) T p(m - t))
 
-p is the density of reactions, T the length of the log, so that T p compares with marks at any time;
-e is the share of marks that have nothing to do with it. To divide by the sum of u(t) punishes a
-comparison that changes often: most of its changes were not marked. The mean of fit over all times
-is taken off, as the marks of several observers come together whatever it was. u(t) is how well the
-turn t fits as a cause by itself: the first of a cascade causes the others, and what the robot does
-changes after it.
+p is the density of reactions and T the length of the log: T p compares with marks at any time. e is
+the share of marks that have another cause. Dividing by the sum of u(t) punishes a comparison that
+changes often: most of its changes were not marked. The mean of fit over all times is subtracted,
+because the marks of several observers come together for any cause. u(t) is how well the turn t fits
+as a cause by itself: the first of a cascade causes the others, and changes what the robot does.
 
-Type II, something is not done that should be. The comparison is evaluated in the wait before the
-marks and has one result there; elsewhere it is not evaluated, has the other one, or its value is
+Type II: the robot does not do what it should. In the wait before the marks the comparison is
+evaluated with one result; elsewhere it is not evaluated, has the other result, or its value is
 farther from the threshold:
 
     waited = log( (held + s) / (elsewhere + s) )
     since = sum over the first marks m of log(e + (1 - e) T q(m - b(m)))
 
-held is the share of the wait in which it had that result, elsewhere the share of the rest of the
+held is the share of the wait in which it had that result; elsewhere is the share of the rest of the
 log in which it had it with a value as near as in the wait. b(m) is when that began before the mark,
-q the density of an observer's patience: what has been so for long is not what is waited for.
+q the density of an observer's patience: nobody waits for something that has been so for long.
 """
 
 from __future__ import annotations
@@ -40,59 +39,56 @@ REACTION_LOG = 1.946
 """Mean of the logarithms of table 6.14's seven delays of type I: a median of 7 s."""
 
 REACTION_SIGMA = 1.17
-"""Their standard deviation. (The tails of ``reaction`` are heavier: seven numbers do not tell.)"""
+"""Their standard deviation. (The tails of ``reaction`` are heavier: seven numbers are few.)"""
 
 PATIENCE_LOG, PATIENCE_SIGMA = 2.01, 0.74
 """The same of the six delays of type II there: a median of 7.5 s."""
 
 STRAY = 0.1
-"""The share of marks that have nothing to do with the fault that is looked for: the robot does odd
-things after an error, which are marked, too, and on clean missions of the thesis there were marks
-(table 6.15)."""
+"""The share of marks that have another cause than the fault: observers also mark odd things that
+the robot does after an error, and they marked clean missions of the thesis (table 6.15)."""
 
 WAIT_S = 8.0
-"""What is before a mark of type II is taken for wait: table 6.14's delays are 1.7 to 12.4 s with a
-mean of 8.8, so that a window of this length lies in the wait for the most part."""
+"""How long before a mark of type II counts as the wait: table 6.14's delays are 1.7 to 12.4 s with
+a mean of 8.8, so most of a window of this length lies in the wait."""
 
 SHARE = 0.05
-"""Added to shares, so that what never was elsewhere is not infinitely telling."""
+"""Added to shares, so that a result that never was elsewhere is not infinite evidence."""
 
 NEAR_QUANTILE = 0.75
-"""So much of the wait is within what is called as near as in the wait."""
+"""The share of the wait whose values count as near."""
 
 SLACK = 0.05
-"""What is farther from the threshold by this part of the range is as near: a battery sinks, and is
-never as low before."""
+"""A value may be farther from the threshold by this part of the range and still be as near: a
+battery sinks, and was never as low before."""
 
 GRID = 1000
-"""Times at which a cause at any time is tried."""
+"""How many times are tried for a cause at any time."""
 
 BRIEF_S = 2.0
-"""A wait goes on if it is interrupted for this time: at a threshold values are noisy."""
+"""An interruption this short does not end a wait: values at a threshold are noisy."""
 
 START = 0.05
-"""A comparison that begins to be evaluated weighs so much of one that changes: much begins after
-any cause."""
+"""Weight of the start of a comparison's evaluation, against a change: much starts after any
+cause."""
 
 ONCE, ONCE_S = 0.4, 0.3
-"""One that is left alone again within this time may have passed at once, and be the cause."""
+"""Weight of a start that ends within this time: it may have passed at once, and be the cause."""
 
 LATER = 0.4
-"""A change with another one up to ``CASCADE_S`` before it weighs so much of a first one."""
+"""Weight of a change that follows another one within ``CASCADE_S``."""
 
 EFFECT_S = 1.2
-"""What the robot begins or leaves off within this time after a change may be its effect."""
+"""What the robot starts or stops within this time after a change may be its effect."""
 
 IDLE = 0.3
-"""A change after which the robot goes on as before weighs so much; one after which very many
-comparisons begin or are left alone, 1 more."""
+"""Weight of a change after which the robot goes on as before; very many effects add 1."""
 
 HALF = 2.0
-"""After a change with so many effects, it is half of that."""
+"""The number of effects that adds a half."""
 
 OTHERS = 0.3
-"""Added to the sum of the turns' weights: of a comparison whose turns have no effect none is likely
-to be the cause."""
+"""Added to the sum of the turns' weights: turns without any effect are unlikely causes."""
 
 
 class Marked(NamedTuple):
@@ -111,7 +107,7 @@ class MarkEvidence:
 
     ``acted``, ``waited`` and ``since`` see above; ``held`` the share of the wait with one result;
     ``near`` the logarithm of the mean distance from the threshold in the wait as a part of the
-    stream's range; ``flat`` 1 where there is but one value, as of a flag.
+    stream's range; ``flat`` 1 for a stream with one value only, like a flag.
     """
 
     acted: Floats
@@ -140,9 +136,9 @@ def mark_evidence(streams: ResultStreams, marks: Marked) -> MarkEvidence:
 
 
 def reaction(delays: Floats, mean: float = REACTION_LOG, sigma: float = REACTION_SIGMA) -> Floats:
-    """The density of reactions, per second; 0 where the mark came before.
+    """The density of reactions, per second; 0 for marks before the change.
 
-    Of their logarithms it is Student's t with 4 degrees of freedom, 3/8 (1 + z^2/4)^(-5/2).
+    The logarithms follow Student's t with 4 degrees of freedom, 3/8 (1 + z^2/4)^(-5/2).
     """
     density = np.zeros(delays.shape)
     after = delays > 0
@@ -170,7 +166,7 @@ def _acted(stream: ResultStream, streams: ResultStreams, marks: Marked) -> float
 
 
 def caused(turns: Floats, weights: Floats, seconds: float, marks: Marked) -> float:
-    """How well the first marks fit to one of these turns as their cause: ``acted`` but for chance.
+    """How well one of these turns explains the first marks: ``acted`` before chance is subtracted.
 
     Args:
         turns: float64[turns], at least one; their times.
@@ -185,13 +181,13 @@ def caused(turns: Floats, weights: Floats, seconds: float, marks: Marked) -> flo
 
 
 def _fits(turns: Floats, seconds: float, marks: Marked) -> Floats:
-    """How well the first marks fit to each turn as their cause, as logarithms."""
+    """How well each turn explains the first marks, as logarithms."""
     times = max(seconds, 1.0) * reaction(marks.firsts[None, :] - turns[:, None])
     return np.asarray(np.log(STRAY + (1 - STRAY) * times).sum(axis=1))
 
 
 def any_time(seconds: float, marks: Marked) -> float:
-    """The same for a cause at any time up to the last mark: the marks of all come together."""
+    """The same for a cause at any time up to the last mark."""
     last = float(np.clip(marks.firsts.max(initial=0.0), 0.0, seconds))
     fits = _fits(np.linspace(0.0, last, GRID), seconds, marks)
     top = fits.max()
@@ -199,7 +195,7 @@ def any_time(seconds: float, marks: Marked) -> float:
 
 
 class _Waited(NamedTuple):
-    """The evidence for type II; the defaults are those of a stream that is not in the wait."""
+    """The evidence for type II; the defaults are for a stream that is not in the wait."""
 
     waited: float
     since: float
@@ -209,7 +205,7 @@ class _Waited(NamedTuple):
 
 
 class Wait(NamedTuple):
-    """Sorted, disjoint spans that are taken for waits; ``begins`` and ``ends`` float64[spans]."""
+    """Sorted, disjoint spans that count as waits; ``begins`` and ``ends`` float64[spans]."""
 
     begins: Floats
     ends: Floats
@@ -231,7 +227,7 @@ class Wait(NamedTuple):
 
     @property
     def length(self) -> float:
-        """Of all together, in s; 1 at least."""
+        """The length of all spans together in s, at least 1."""
         ends = np.minimum(self.ends, self.seconds)
         return max(float(np.sum(np.maximum(ends - np.maximum(self.begins, 0.0), 0.0))), 1.0)
 
@@ -266,10 +262,10 @@ def _waited(stream: ResultStream, wait: Wait, marks: Marked) -> _Waited:
 
 
 def _since(times: Floats, seconds: float, marks: Marked) -> float:
-    """How well the first marks fit to when the wait began before each of them.
+    """How well the first marks fit to when the wait before each of them began.
 
-    ``times`` are those at which the stream was as in the wait; a pause of up to ``BRIEF_S`` does
-    not end it, nor does a mark after its end of up to that come too late.
+    ``times`` are those at which the stream was as in the wait. A pause of up to ``BRIEF_S`` does
+    not end it, and a mark may come that much after its end.
     """
     firsts = marks.firsts
     begins = np.flatnonzero(np.diff(times, prepend=-np.inf) > BRIEF_S)

@@ -1,20 +1,20 @@
 """The suspects at each mark of a mission: parameters, most suspicious first.
 
-``rank_marks`` is the entrance. TPCs whose threshold is a constant are no parameters and are left
-out. A parameter is named as in the source; where no constant names it, its place does.
+``rank_marks`` is the entrance. TPCs with a constant threshold are left out. A parameter has its
+name in the source; if that is not a constant, its place is its name.
 
 How far the observer's type is believed (``Types``):
 
 - ``believe``: the score of the mark's type orders the parameters.
 - ``ignore``: a parameter's rank is the better one of its two ranks.
-- ``doubt``: the better one, too, but the rank by the other type counts only ``DOUBT`` of itself:
-  the probability that the other type is meant, after the mark, by table 6.13 of the thesis and with
-  both types as likely before it. Of 17 marks on the type I treatment 2 were of type I, of 51 on the
-  type II treatment 26. So after a mark of type I, type II has
+- ``doubt``: the better one, too, but the rank by the other type is multiplied by ``DOUBT``: the
+  probability that the observer meant the other type, by table 6.13 of the thesis, if both types
+  were as likely before. 2 of the 17 marks on the type I treatment were of type I, and 26 of the 51
+  on the type II treatment. So after a mark of type I, type II has
   26/51 / (26/51 + 2/17) = 26/32, and after one of type II, type I has
-  15/17 / (15/17 + 25/51) = 45/70. What is first by the given type stays first, and the first by the
-  other comes in below it, the higher the likelier the confusion. With a weight of 0 this is
-  ``believe``, with 1 ``ignore``.
+  15/17 / (15/17 + 25/51) = 45/70. The first suspect by the given type stays first; the first by the
+  other type comes below it, higher if a confusion is likelier. A weight of 0 is ``believe``, a
+  weight of 1 is ``ignore``.
 
 Equal better ranks are ordered by the other rank. A mark without a type is ranked by both. These are
 baselines (docs/reference/scores.md#when-the-type-may-be-wrong).
@@ -43,7 +43,7 @@ DOUBT: dict[MarkType, float] = {"I": 26 / 32, "II": 45 / 70}
 """How probable the other type is after a mark of this one."""
 
 FEWEST = 2
-"""Fewer parameters that were evaluated up to the mark than this are no ranking."""
+"""The fewest parameters that must have been evaluated up to the mark for a ranking."""
 
 
 def rank_marks(
@@ -55,7 +55,7 @@ def rank_marks(
         recording: the mission. Keys that the static information does not know are left out;
             ``unknown_keys`` counts them.
         static_info: what the analysis found. All its TPCs and parameters count in n of the rank,
-            also those that were never evaluated.
+            even those that were never evaluated.
         question: its ``types`` and ``window_s``.
 
     Returns:
@@ -135,7 +135,7 @@ class Ranker:
         return sorted(places, key=lambda place: (place.order, distance[place.column], place.column))
 
     def _suspect(self, mark: Mark, tables: Tables, row: int, place: _Ordered) -> Suspect:
-        """The suspect at a place of the order, as if it were the first."""
+        """The suspect at a place of the order; its position is set later."""
         table, column = tables.of(place.type), place.column
         key = self.tpcs.keys[int(table.best[row, column])]
         parameter = table.names[column]
@@ -155,7 +155,7 @@ class Ranker:
         )
 
     def _reason(self, mark: Mark, suspects: list[Suspect]) -> str:
-        """Why the evidence is not enough; empty where it is."""
+        """Why the evidence is not enough; empty if it is."""
         first = self.evidence.first_ns
         if not self.tpcs.keys:
             return "the static information has no comparison with a parameter"
@@ -185,7 +185,7 @@ class Ranker:
 
 
 def outside(mark: Mark, evidence: Evaluations, window_s: float = WINDOW_S) -> str:
-    """What is wrong with the time of a mark; empty where nothing is."""
+    """What is wrong with the time of a mark; empty if nothing is."""
     first = evidence.first_ns
     if not first:
         return "no comparison was reported"

@@ -1,4 +1,4 @@
-"""Replay: what the robot would have decided with the value before a change, or of a good run.
+"""What the robot would have decided with values from before a change, or from a good run.
 
 An engineer who knows which parameters have changed asks: with which of the old values would the
 robot have decided otherwise before the marks, when, and for how long? The logged comparisons of a
@@ -45,10 +45,10 @@ MOMENT_S = 2.0
 """A turn of this length weighs half of one that lasts."""
 
 LEAST = 0.001
-"""No turn weighs less."""
+"""The least weight of a turn."""
 
 SLOPE_S = 2.0
-"""Over so long the slope is taken with which a value is followed on."""
+"""How long a value's slope is measured, to extrapolate it."""
 
 ACQUITTED = -4.0
 """The log odds of a parameter whose other value would have turned nothing before the marks."""
@@ -59,15 +59,15 @@ record may be wrong, and the robot may be at another place. The size of a change
 what is a large change differs from one parameter to the next."""
 
 ALONE = 0.2
-"""What the log by itself counts beside the replay, which looks at the same marks."""
+"""Weight of the log alone beside the replay, which uses the same marks."""
 
 REPLAYED = 1.0
-"""What the replay counts. Both, and ``NOBODY``, are chosen on the tuning half of the study, whose
-missions have eight large harmless changes each, by the likelihood of what was to blame."""
+"""Weight of the replay. Both weights, and ``NOBODY``, maximise the likelihood of the true cause on
+the tuning half of the study, whose missions have eight large harmless changes each."""
 
 NOBODY = -0.4
-"""The score of "none of them" where it is known what differs. The likeliest is lower; with -0.4 no
-clean mission and no fault of the tuning half has an accusation."""
+"""The score of "none of them" if it is known what differs. The likeliest value is lower; with -0.4
+no clean mission and no fault in the code of the tuning half is blamed on a parameter."""
 
 
 def diagnose_beside(
@@ -82,11 +82,11 @@ def diagnose_beside(
     Args:
         recording: the mission with its marks, of any types or none.
         static_info: what the analysis found.
-        reference: a good run, whose thresholds are looked at; None where there is none.
-        changes: what was changed since the robot went right, newest last, empty where that is not
-            known. Their order says nothing; of several changes of one parameter the oldest has the
-            value with which the robot went right. Beside a reference, what either of them says is
-            as it was is unlikely; the values of before are taken from the changes first.
+        reference: a good run, if there is one; its thresholds count.
+        changes: what was changed since the robot worked, newest last; empty if not known. Their
+            order does not count, but the oldest change of a parameter has the value that worked.
+            With a reference, too, a parameter is unlikely if either says that it did not change;
+            old values come from the changes first.
     """
     tpcs = Tpcs.of(static_info)
     priors, others = [], {}
@@ -96,7 +96,7 @@ def diagnose_beside(
         others.update(of_good_run(tpcs, events, good))
     if changes:
         priors.append(of_changes(tpcs.names, changes))
-        # The last of them counts there.
+        # The last value for a parameter counts.
         oldest_last = [(one.parameter, one.old) for one in reversed(changes)]
         others.update(before_changes(static_info, oldest_last))
     if not priors:
@@ -113,7 +113,7 @@ def diagnose_replayed(
         recording: the mission with its marks.
         static_info: what the analysis found.
         prior: float64[p], see `pytpc.diagnosis.ranking.other_values`.
-        others: the other threshold of each comparison of which one is known, by its key.
+        others: the other thresholds that are known, by the key of the comparison.
     """
     alone = diagnose_log(recording, static_info)
     if not np.isfinite(alone.scores).any():
@@ -128,10 +128,9 @@ def diagnose_replayed(
 def before_changes(
     static_info: StaticInfo, changes: Iterable[tuple[str, float]]
 ) -> dict[str, float]:
-    """The threshold of each comparison, by its key, with the old values of (parameter, old).
+    """The threshold that each comparison, by its key, has with the old values of (parameter, old).
 
-    Left out is what compares text, or where the way from the parameter to the threshold is not
-    known.
+    Comparisons of text, and those with an unknown way from parameter to threshold, are left out.
     """
     found = {}
     values = list(changes)
@@ -153,7 +152,7 @@ def before_changes(
 
 
 def of_good_run(tpcs: Tpcs, events: Events, reference: Events) -> dict[str, float]:
-    """The threshold of each comparison in a good run, by its key, where it is another one."""
+    """The thresholds in a good run that differ, by the key of the comparison."""
     here, there = thresholds_of(events, tpcs), thresholds_of(reference, tpcs)
     differs = (here != there) & ~np.isnan(here) & ~np.isnan(there)
     return {tpcs.keys[code]: float(there[code]) for code in np.flatnonzero(differs)}
@@ -193,7 +192,7 @@ def replayed(
 
 
 def is_other(relation: str, stream: ResultStream, other: float) -> Bools:
-    """bool[n]: whether the outcome would be another one."""
+    """bool[n]: whether the outcome would differ with the other threshold."""
     if relation == "flag":
         return np.asarray((stream.thresh != 0) != (other != 0))
     now = outcomes(relation, stream.cmp, stream.thresh)
@@ -220,7 +219,7 @@ def _charge(
 
 
 def turns(stream: ResultStream, turned: Bools, other: float) -> tuple[Floats, Floats]:
-    """The spans in which the outcome would be another one.
+    """The spans in which the outcome would differ.
 
     Args:
         stream: n evaluations.
@@ -228,8 +227,8 @@ def turns(stream: ResultStream, turned: Bools, other: float) -> tuple[Floats, Fl
         other: the other threshold.
 
     Returns:
-        float64[turns] each: when they begin, and their lengths in s; infinite where nothing says
-        that the value would ever have got to the other threshold.
+        float64[turns] each: when they begin, and their lengths in s; infinite if the value was not
+        on its way to the other threshold.
     """
     last = np.zeros(turned.size, np.bool_)
     last[np.searchsorted(stream.times, stream.stops, side="right") - 1] = True
@@ -244,10 +243,10 @@ def turns(stream: ResultStream, turned: Bools, other: float) -> tuple[Floats, Fl
 
 
 def _until_alike(stream: ResultStream, place: int, other: float) -> float:
-    """The seconds after an evaluation until its value is past the other threshold, on a line.
+    """The seconds until the value of an evaluation passes the other threshold, on a straight line.
 
-    The line is through what led there: the evaluations of the last ``SLOPE_S`` since the value
-    last went the other way, as a timer does that is set back.
+    The line goes through the evaluations of the last ``SLOPE_S``, without those before the value
+    last turned back, as a timer does when it is reset.
     """
     since = int(np.searchsorted(stream.times, stream.times[place] - SLOPE_S))
     way, last = other - float(stream.cmp[place]), float(stream.cmp[place])
@@ -274,8 +273,8 @@ def of_changes(names: Sequence[str], changes: Iterable[Change]) -> Floats:
 def of_reference(tpcs: Tpcs, events: Events, reference: Events) -> Floats:
     """float64[p], the log odds of each parameter, by the thresholds of a good run.
 
-    A parameter none of whose comparisons was evaluated in both, or that changed while the robot
-    ran, is between: nothing is known of it.
+    A parameter that changed during a run, or was not compared in both, gets half of ``UNCHANGED``:
+    nothing is known about it.
     """
     here, there = thresholds_of(events, tpcs), thresholds_of(reference, tpcs)
     prior: dict[str, float] = {}
@@ -293,7 +292,7 @@ def of_change(old: float, new: float) -> float:
 
 
 def thresholds_of(events: Events, tpcs: Tpcs) -> Floats:
-    """float64[n]: the threshold of each comparison, nan where it has none or several."""
+    """float64[n]: the threshold of each comparison; nan if it had none or several."""
     own = events.with_keys(tpcs.keys)
     found = np.full(len(tpcs.keys), np.nan)
     for code in range(len(tpcs.keys)):

@@ -1,4 +1,4 @@
-"""How likely each parameter is to be the cause, and none of them, from all marks at once.
+"""How likely each parameter is to be the cause, or none of them, from all marks at once.
 
 ``diagnose_log`` is the entrance. It mixes witnesses, each of which gives every parameter, and "none
 of them", a probability (docs/reference/scores.md#how-it-is-joined):
@@ -59,26 +59,27 @@ class Weights:
 WEIGHTS = Weights()
 
 LIED = 0.5
-"""Before any mark is seen: that these observers cannot tell the types apart (table 6.13)."""
+"""The probability, before any mark, that these observers cannot tell the types apart (table
+6.13)."""
 SLIP = 0.05
-"""An observer who can tell them apart says the wrong one this often."""
+"""How often an observer who can tell the types apart names the wrong one."""
 SAID_I = 28 / 68
-"""Who cannot says type I this often, whatever it is: the share of all marks in table 6.13."""
+"""How often one who cannot says type I: the share of all marks in table 6.13."""
 
 MARKS_I, MARKS_II = 17 / 8, 51 / 8
-"""Marks of a user in a trial of either type, by table 6.15, those who set none among them."""
+"""Marks per user in a trial of either type, by table 6.15, including users who set none."""
 LATER = 0.5
-"""What is said at each mark of an observer counts so much of what was said at the one before: what
-comes later is often of another error, that follows from the first."""
+"""The weight of a mark against the observer's mark before it: later marks are often about another
+error that follows from the first."""
 REPEAT = 0.5
-"""How much the number of marks counts: those of one observer are not independent."""
+"""The weight of the number of marks: those of one observer are not independent."""
 
 _DIGITS = 9
 """Mean ranks that differ by rounding only are tied."""
 
 
 class Decisive(NamedTuple):
-    """The comparison that a parameter has its score by: whose it is, and P(I) if it is to blame."""
+    """The comparison that decides a parameter's score, its node, and P(I) if it is to blame."""
 
     key: str
     node: str
@@ -87,7 +88,7 @@ class Decisive(NamedTuple):
 
 @dataclass(frozen=True)
 class Posterior:
-    """The parameters and what speaks against them.
+    """The parameters and how suspicious they are.
 
     ``names`` as `Tpcs.names`; ``scores`` float64[p], the greater the more suspicious, -inf where
     the parameter was never compared; ``posterior`` float64[p]; ``none`` the probability that it is
@@ -104,7 +105,7 @@ class Posterior:
 
     @property
     def order(self) -> list[int]:
-        """The columns of those that were compared, the most suspicious first; ties by name."""
+        """The columns of compared parameters, the most suspicious first; ties by name."""
         known = np.flatnonzero(np.isfinite(self.scores))
         return [int(n) for n in known[np.argsort(-self.scores[known], kind="stable")]]
 
@@ -141,7 +142,7 @@ def diagnose_log(
 
 
 def _decisive(streams: ResultStreams, tpcs: Tpcs, mixed: Mixture) -> tuple[Decisive | None, ...]:
-    """For each parameter the best stream by its likelier type, the first of equal ones."""
+    """For each parameter the best stream by the parameter's likelier type."""
     best: list[Decisive | None] = [None] * len(tpcs.names)
     for turned in (False, True):
         scores = mixed.acted if turned else mixed.waited
@@ -156,8 +157,8 @@ def _decisive(streams: ResultStreams, tpcs: Tpcs, mixed: Mixture) -> tuple[Decis
 def ranked(recording: Recording, tpcs: Tpcs, times_ns: Int64s) -> Floats:
     """float64[2, 1, p]: where the baseline's ranks put each parameter, as -log(place).
 
-    The first by the rank of type I, the second by the better of both; joined over the marks by the
-    mean. Those that are tied have the mean of their places. -inf for what was never compared.
+    The first by the rank of type I, the second by the better of both ranks; the mean over the
+    marks. Tied parameters have the mean of their places; -inf for what was never compared.
     """
     events = recording.events.with_keys(tpcs.keys)
     tables = parameter_tables(
@@ -178,9 +179,9 @@ def ranked(recording: Recording, tpcs: Tpcs, times_ns: Int64s) -> Floats:
 def type_odds(marks: Sequence[Mark]) -> float:
     """log P(II) / P(I) of an error, from what was said at the marks and how often they came.
 
-    The observers either can tell the types apart, but for slips, or what they say means nothing.
-    That all of them agree speaks for the first. Both numbers of table 6.13 taken as they are would
-    make a mark of type I evidence for type II; that is not believed of other people.
+    Either the observers can tell the types apart, except for slips, or what they say means nothing.
+    If all of them agree, the first is likelier. The plain numbers of table 6.13 would make a mark
+    of type I evidence for type II; other people are not assumed to do that.
     """
     users: dict[str, int] = {}
     said = {"I": 0.0, "II": 0.0}
@@ -200,7 +201,7 @@ def type_odds(marks: Sequence[Mark]) -> float:
 
 
 class Said(NamedTuple):
-    """What is known beside the evidence, of s sets of marks with up to p parameters each.
+    """What is known besides the evidence, for s sets of marks with up to p parameters each.
 
     ``places`` int64[streams], whose each is: places in the flat table [s, p]. ``ranked``
     float64[2, s, p], see there; ``odds`` float64[s], see ``type_odds``.
@@ -227,7 +228,7 @@ class Mixture(NamedTuple):
 
 
 def mixture(found: MarkEvidence, said: Said, weights: Weights) -> Mixture:
-    """What all witnesses say together, see the head of this file."""
+    """What all witnesses say together, see the module's docstring."""
     acted = weights.acted * found.acted
     waited = (
         weights.waited * found.waited
@@ -250,27 +251,27 @@ def mixture(found: MarkEvidence, said: Said, weights: Weights) -> Mixture:
 
 
 def _half(own: Floats, order: Floats) -> Floats:
-    """Both in equal parts. Whether it is any parameter at all the order does not know."""
+    """Both in equal parts. The order does not say whether it is any parameter at all."""
     none = own[:, -1:]
     return np.column_stack([(own[:, :-1] + (1.0 - none) * order[:, :-1]) / 2, none])
 
 
 def _best(scores: Floats, places: Int64s, shape: tuple[int, ...]) -> Floats:
-    """float64[s, p]: that of the best stream of each parameter; -inf where there is none."""
+    """float64[s, p]: the score of each parameter's best stream; -inf without a stream."""
     best = np.full(math.prod(shape), -np.inf)
     np.maximum.at(best, places, scores)
     return best.reshape(shape)
 
 
 def _logit(scores: Floats, none: float) -> Floats:
-    """float64[s, p + 1]: exp of the scores as parts of their sum, the last that of ``none``."""
+    """float64[s, p + 1]: the softmax of the scores, with ``none`` as the last one."""
     table = np.column_stack([scores, np.full(scores.shape[0], none)])
     mass = np.exp(table - table.max(axis=1, keepdims=True))
     return np.asarray(mass / mass.sum(axis=1, keepdims=True))
 
 
 def softmax(scores: Floats, none: float) -> tuple[Floats, float]:
-    """The posterior of each, and of none of them."""
+    """The probability of each, and of none of them."""
     top = max(float(scores.max(initial=-np.inf)), none)
     parts = np.exp(scores - top)
     rest = math.exp(none - top)

@@ -1,6 +1,6 @@
 """The log as streams: the evaluations of one comparison in one node, and when its result changed.
 
-All times are seconds since the log began, float64. Nothing here depends on a mark, so that it is
+All times are seconds since the log began, float64. Nothing here depends on a mark, so it is
 computed once for each recording.
 """
 
@@ -18,21 +18,21 @@ from pytpc.recording.events import Events
 
 PAUSE_S = 2.0
 """A comparison that was not evaluated for longer than this, and for three of its usual intervals,
-had been left alone: the robot was doing something else."""
+has paused: the robot was doing something else."""
 
 BURST_S = 0.5
 """Changes of one result within this time of each other count as one: noise at a threshold. The
 first of them counts."""
 
 DECISIVE = 20
-"""A comparison whose result has changed more often than this takes no part in cascades."""
+"""A comparison whose result changed more often than this is not part of cascades."""
 
 LARGEST = 1e290
-"""A value beyond this is taken for infinite, so that sums of them stay within a double."""
+"""A value beyond this counts as infinite, so that sums stay within a double."""
 
 CASCADE_S = 1.5
-"""What changes within this time of another change may be its consequence: nodes wait for messages,
-and a robot's mission runs at a few Hz."""
+"""A change within this time of another one may be its consequence: nodes wait for messages, and a
+mission runs at a few Hz."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +73,7 @@ class ResultStreams:
 
     @classmethod
     def of(cls, events: Events, tpcs: Tpcs) -> ResultStreams:
-        """The streams of a table; kept for as long as the table is."""
+        """The streams of a table; cached as long as the table exists."""
         known = _KEPT.get(events)
         if known is not None and known[0] == tpcs.keys:
             return known[1]
@@ -101,9 +101,9 @@ class ResultStreams:
 
     @cached_property
     def shifts(self) -> Floats:
-        """When a comparison began to be evaluated, or was left alone: the robot did another thing.
+        """When a comparison started or paused: the robot did something else.
 
-        float64[shifts], sorted. The begins and ends of the log are none.
+        float64[shifts], sorted; without the begin and end of the log.
         """
         times = [s.starts for s in self.streams] + [s.stops for s in self.streams]
         found = np.sort(np.concatenate([np.zeros(0), *times]))
@@ -112,7 +112,7 @@ class ResultStreams:
 
     @cached_property
     def decisions(self) -> Floats:
-        """When the result of a comparison changed that does so seldom; float64[changes], sorted."""
+        """When the result of a rarely changing comparison changed; float64[changes], sorted."""
         times = [s.changes for s in self.streams if s.changes.size <= DECISIVE]
         return np.sort(np.concatenate([np.zeros(0), *times]))
 

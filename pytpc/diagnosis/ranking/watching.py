@@ -1,8 +1,7 @@
-"""The live diagnosis of a running mission: takes evaluations, answers what to show of the suspects.
+"""The live diagnosis of a running mission: evaluations in, what to show about the suspects out.
 
-It is pure: terminal, graph, files and clock are in `pytpc.present.watch_screen` and
-`pytpc.api.live_mission`. The scores are those of `pytpc.diagnosis.scores.live_scores`. In addition
-it keeps the last values of each comparison, its last flop, and how near it came to its threshold.
+The scores are those of `pytpc.diagnosis.scores.live_scores`. In addition this keeps the last values
+of each comparison, its last flop, and how near it came to its threshold.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ from pytpc.recording.summaries import Summary
 from pytpc.static.static_info import StaticInfo
 
 BINS = 8
-"""So many parts of the window are shown of each comparison, the last of them now."""
+"""The number of parts of the window that are shown of each comparison."""
 
 KINDS: tuple[MarkType | None, ...] = ("I", "II", None)
 
@@ -38,7 +37,7 @@ class _Bin:
 
 @dataclass(slots=True)
 class _Track:
-    """What is remembered of one comparison, whatever the length of the mission."""
+    """What is kept of one comparison, however long the mission is."""
 
     last: Seen | None = None
     flop_ns: int | None = None
@@ -49,7 +48,7 @@ class _Track:
 
 
 class Watching:
-    """All that is known at the time of the last evaluation.
+    """The state of a mission at its last evaluation.
 
     Args:
         engine: the live scores, without a report yet.
@@ -60,7 +59,7 @@ class Watching:
     def __init__(
         self, engine: LiveRanking, static_info: StaticInfo, window_s: float = WINDOW_S
     ) -> None:
-        """Nothing was seen yet."""
+        """Start without an evaluation."""
         self._engine = engine
         self.static_info = static_info
         self._known = static_info.comparisons
@@ -73,11 +72,11 @@ class Watching:
 
     @property
     def late(self) -> int:
-        """How many evaluations came too late to be ranked."""
+        """How many evaluations arrived too late to count."""
         return self._engine.scores.late
 
     def take(self, seen: Seen) -> None:
-        """Take in an evaluation; one of a comparison that is not known is counted."""
+        """Take in an evaluation; those of unknown comparisons are only counted."""
         self._note(seen.time_ns, seen.node)
         self.reports += 1
         if seen.key not in self._known:
@@ -102,7 +101,7 @@ class Watching:
             track.high = max(track.high, seen.cmp, seen.thresh)
 
     def take_summary(self, summary: Summary) -> None:
-        """Take in a summary: many evaluations at once; its flops have come as evaluations."""
+        """Take in a summary of many evaluations; its flops arrive as evaluations."""
         self._note(summary.end_ns, summary.node)
         self.reports += summary.count
         if summary.key not in self._known:
@@ -126,14 +125,14 @@ class Watching:
         return self._engine.ranking_at(mark)
 
     def look(self, now_ns: int, top: int, kinds: Sequence[MarkType | None] = KINDS) -> Look:
-        """What is to be shown now: the first ``top`` suspects of each of ``kinds``."""
+        """What to show now: the first ``top`` suspects of each of ``kinds``."""
         found = self._engine.rankings_at(now_ns, [Mark(now_ns, kind) for kind in kinds])
         return self.look_of(dict(zip(kinds, found, strict=True)), now_ns, top)
 
     def look_of(
         self, rankings: Mapping[MarkType | None, MarkRanking], now_ns: int, top: int
     ) -> Look:
-        """The same of rankings that are there already."""
+        """The same for rankings that exist already."""
         return Look(
             now_ns,
             {
@@ -145,7 +144,7 @@ class Watching:
         )
 
     def snapshot(self) -> Watching:
-        """A copy that goes its own way; what was found by the analysis is not copied."""
+        """An independent copy, which shares what the analysis found."""
         shared: Iterable[object] = (self.static_info, self._known, *self._known.values())
         return copy.deepcopy(self, {id(one): one for one in shared})
 
@@ -181,12 +180,12 @@ class KeptRankings(list[Kept]):
     """The rankings at the marks of a session, in the order in which they were made."""
 
     def __init__(self, top: int) -> None:
-        """``top`` suspects of each are kept to be shown."""
+        """``top`` is how many suspects of each are kept."""
         super().__init__()
         self._top = top
 
     def follow(self, change: MarkChange, watching: Watching, *, believe: bool = True) -> None:
-        """Keep, forget or rename what belongs to a mark that was made, taken back or noted."""
+        """Follow a mark that was made, taken back or noted."""
         before, after = change
         if before is not None and after is not None:
             self[:] = [one._replace(mark=after) if one.mark == before else one for one in self]

@@ -1,4 +1,4 @@
-"""What a log has of each comparison up to a time, beside its scores: first, last, and when."""
+"""The first and last evaluation of each comparison up to a time."""
 
 from __future__ import annotations
 
@@ -14,24 +14,24 @@ from pytpc.recording.summaries import Summaries
 
 
 class Evaluations(Protocol):
-    """What a ranking is made of beside the scores: of a whole log, or of what came so far."""
+    """What a ranking needs besides the scores: from a whole log, or from the reports so far."""
 
     @property
     def first_ns(self) -> Mapping[str, int]:
-        """When each comparison was evaluated first; those that never were are not in it."""
+        """When each comparison was first evaluated; without those that never were."""
         ...
 
     def reported_ns(self, mark_ns: int) -> int | None:
-        """When anything was evaluated last up to the mark, None where nothing was."""
+        """When the last evaluation up to the mark was; None if there is none."""
         ...
 
     def last(self, key: str, mark_ns: int) -> Evaluation:
-        """The last evaluation up to the mark that is known; only of keys in ``first_ns``."""
+        """The last known evaluation up to the mark; only for keys in ``first_ns``."""
         ...
 
 
 class LoggedEvaluations:
-    """The evidence of a recording."""
+    """The evaluations of a recording."""
 
     def __init__(self, events: Events, summaries: Summaries) -> None:
         """``events`` has the keys of the TPCs; other keys of ``summaries`` are left out."""
@@ -43,7 +43,7 @@ class LoggedEvaluations:
 
     @cached_property
     def first_ns(self) -> dict[str, int]:
-        """When each comparison was evaluated first."""
+        """When each comparison was first evaluated."""
         first = {}
         for key, code in self._codes.items():
             rows, own = self.events.by_key.rows(code), self._rows_of(key)
@@ -54,7 +54,7 @@ class LoggedEvaluations:
         return first
 
     def reported_ns(self, mark_ns: int) -> int | None:
-        """When anything was evaluated last up to the mark; a summary lasts to its end."""
+        """When the last evaluation up to the mark was; a summary lasts to its end."""
         place = int(np.searchsorted(self.events.time_ns, mark_ns, side="right"))
         times = [int(self.events.time_ns[place - 1])] if place else []
         begun = self._ours & (self.summaries.begin_ns <= mark_ns)
@@ -68,9 +68,9 @@ class LoggedEvaluations:
         return np.isin(self.summaries.key, ours)
 
     def last(self, key: str, mark_ns: int) -> Evaluation:
-        """The last evaluation up to the mark that is known: a report, or the last of a summary.
+        """The last known evaluation up to the mark: a report, or the last of a summary.
 
-        Where the mark is within the first period, it is the first of these.
+        If the mark is within the first period, it is the first one after it.
         """
         if key not in self._of:
             self._of[key] = list(self._tables(key))

@@ -1,18 +1,17 @@
 """The scores of the thesis while a mission runs: the same numbers as offline, at every instant.
 
-What is kept are the evaluations of the window and of some seconds more, of each comparison in each
-node (a stream); what is older is counted: flops, the last of them, and the extremes of the values.
-So memory is bounded by the window, whatever the length of the mission. The scores are worked out by
-the very functions of `pytpc.diagnosis.scores.scores` and `pytpc.diagnosis.scores.summary_scores`,
-from what is kept and what was counted (`pytpc.diagnosis.scores.scores.Before`).
+Each comparison in each node is a stream. It keeps the evaluations of the window and of some seconds
+before it. Older ones are only counted: the flops, the last flop, and the extremes of the values. So
+the window bounds the memory, not the length of the mission. The functions of
+`pytpc.diagnosis.scores.scores` and `pytpc.diagnosis.scores.summary_scores` compute the scores from
+what is kept and what was counted (`pytpc.diagnosis.scores.scores.Before`).
 
-LogTables may come in any order between nodes: every stream has its own newest time. Within a stream
-one may come up to ``LATE_S`` after a newer one, and is put where it belongs. What is older still
-than all that is kept cannot be put anywhere any more: it is left out, and counted in ``late``. A
-clock that was put back (a simulation that began again) makes everything late: begin with a new
-object then.
+Reports of different nodes may arrive in any order. Within a stream a report may be up to ``LATE_S``
+older than the newest one, and is put where it belongs. One that is older than all that is kept is
+left out and counted in ``late``. After the clock was set back (a simulation started again)
+everything would be late: start with a new object.
 
-The cost of a report does not depend on how many there were, that of scores on what the window has.
+The cost of a report does not depend on how many there were; that of scores depends on the window.
 """
 
 from __future__ import annotations
@@ -36,14 +35,14 @@ from pytpc.recording.summaries import Summaries, Summary, SummaryBuilder
 from pytpc.static.static_info import StaticInfo
 
 LATE_S = 10.0
-"""How much later than a newer one of its stream a report may come; how far back a mark may lie."""
+"""How much older than the newest of its stream a report may be; how far back a mark may be."""
 
 # Longer than a summary and a report of it may be apart, see ``covered``.
 _SUMMARY_SLACK_NS = 1_000_000_000
 
 
 class TooOldError(ValueError):
-    """Scores were asked for at a time whose window was forgotten in part."""
+    """A part of the window before this time is forgotten."""
 
 
 class LiveScores:
@@ -60,16 +59,16 @@ class LiveScores:
         *,
         late_s: float = LATE_S,
     ) -> None:
-        """Start with none.
+        """Start without a report.
 
         Args:
             keys: the n comparisons.
             distance: float64[n], theirs.
             window_s: the window of type II in seconds.
-            late_s: how much later than a newer one a report may come.
+            late_s: how much older than the newest one a report may be.
 
         Raises:
-            ValueError: ``distance`` is not one number for each key, a key is there twice, or a time
+            ValueError: ``distance`` is not one number for each key, a key stands twice, or a time
                 is negative.
         """
         not_negative(window_s=window_s, late_s=late_s)
@@ -137,15 +136,15 @@ class LiveScores:
         self._saw(summary.key, min(summary.begin_ns, summary.end_ns))
 
     def scores_at(self, mark_ns: int) -> tuple[Floats, Floats]:
-        """Both scores at one time, of all that was added and is not later.
+        """Both scores at one time, from the reports up to then.
 
         Returns:
             float64[n] each: what ``type1`` and ``type2`` (``type2_of_summaries`` for keys with
             summaries) give for the table of all that was added.
 
         Raises:
-            TooOldError: more than ``late_s`` of a stream has come after that time, so that its
-                window is not kept any more.
+            TooOldError: a stream has reports more than ``late_s`` after that time, so its window is
+                no longer kept.
         """
         before = Before.nothing(len(self.tpcs.keys))
         events = self._events(mark_ns, before)
@@ -155,10 +154,10 @@ class LiveScores:
         return scores.first[0], scores.second[0]
 
     def last(self, key: str, mark_ns: int) -> Evaluation:
-        """The last evaluation of a key up to a time, of those that are kept.
+        """The last kept evaluation of a key up to a time.
 
         Raises:
-            KeyError: nothing was reported of it.
+            KeyError: it was never reported.
         """
         found = []
         for node, stream in self._streams[key].items():
@@ -174,7 +173,7 @@ class LiveScores:
         return max(before) if before else min(evaluations)
 
     def reported_ns(self, mark_ns: int) -> int | None:
-        """When anything was evaluated last up to a time, None where nothing was that is known."""
+        """When the last kept evaluation up to a time was; None if there is none."""
         times: list[int] = []
         for streams in self._streams.values():
             for stream in streams.values():
@@ -191,7 +190,7 @@ class LiveScores:
             self.first_ns[key] = first_ns
 
     def _events(self, mark_ns: int, before: Before) -> Events:
-        """What is kept, but for streams that began after the mark; the rest goes to ``before``."""
+        """What is kept of streams that began by the mark; what was counted goes to ``before``."""
         parts: list[Rows] = []
         words: list[tuple[int, str]] = []
         every = [(key, *item) for key, found in self._streams.items() for item in found.items()]
@@ -270,7 +269,7 @@ def _last_of(one: Summary) -> Evaluation:
 
 
 class LiveRanking:
-    """The suspects at any instant of a mission that runs.
+    """The suspects at any instant of a running mission.
 
     ``scores`` takes the reports in (`LiveScores.add`, `LiveScores.add_summary`); reports of keys
     that are not comparisons with parameters are left out.
@@ -288,14 +287,14 @@ class LiveRanking:
         self._ranker = Ranker(static_info, self._tpcs, self.scores, question)
 
     def ranking_at(self, mark: Mark) -> MarkRanking:
-        """What `rank_marks` gives for a mark in a recording of all that was added so far.
+        """What `rank_marks` would give for a mark in a recording of all reports so far.
 
-        Where the mark is older than what is kept, there is not enough evidence any more.
+        For a mark older than what is kept, the ranking says that there is not enough evidence.
         """
         return self.rankings_at(mark.time_ns, [mark])[0]
 
     def rankings_at(self, mark_ns: int, marks: Sequence[Mark]) -> list[MarkRanking]:
-        """The same for several marks of one time, whose scores are worked out once."""
+        """The same for several marks of one time; their scores are computed once."""
         try:
             first, second = self.scores.scores_at(mark_ns)
         except TooOldError:

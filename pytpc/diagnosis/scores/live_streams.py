@@ -14,7 +14,7 @@ from pytpc.recording.events import Bools, Floats, Int64s
 from pytpc.recording.summaries import Summary
 
 AGAIN = 0.25
-"""What may be forgotten is looked for when this part of what is kept has come anew."""
+"""How much of the kept time passes between two looks for what can be forgotten."""
 
 
 class Rows(NamedTuple):
@@ -30,7 +30,7 @@ class Rows(NamedTuple):
 
 @dataclass
 class Counted:
-    """What is known of the evaluations that are not kept."""
+    """What is still known about forgotten evaluations."""
 
     count: int = 0
     first_ns: int = 0
@@ -41,7 +41,7 @@ class Counted:
     lowest: float = np.inf
 
     def take(self, rows: Rows, before: bool | None) -> None:
-        """Count ``rows``, the first of which came after one whose result was ``before``."""
+        """Count ``rows``; the result before the first of them was ``before``."""
         if not self.count:
             self.first_ns = int(rows.time_ns[0])
         self.count += rows.time_ns.size
@@ -60,24 +60,12 @@ class Counted:
 class EventStream:
     """The evaluations of one comparison in one node.
 
-    Where some are not kept, the first of the kept is the last of these: it is counted already, and
-    is there for its result, with which the next one is compared.
+    If some were forgotten, the last of them is still kept as the first row: it is counted already,
+    and its result is compared with that of the next one.
     """
 
-    __slots__ = (
-        "_columns",
-        "cmps",
-        "counted",
-        "look_ns",
-        "numbers",
-        "ress",
-        "results",
-        "threshs",
-        "times",
-    )
-
     def __init__(self) -> None:
-        """Begin with none. ``look_ns`` is when to see what can be forgotten."""
+        """Start empty. ``look_ns`` is when to look for what can be forgotten."""
         self.look_ns = 2**63 - 1
         self.times = array("q")
         self.numbers = array("q")
@@ -96,7 +84,7 @@ class EventStream:
         self.counted = Counted()
 
     def insert(self, row: tuple[int, int, bool, float, float, bool]) -> bool:
-        """Put a row that is older than the newest into its place; False where that is gone."""
+        """Insert a row that is older than the newest; False if its place is forgotten."""
         place = bisect_right(self.times, row[0])
         if not place and self.counted.count:
             return False
@@ -105,7 +93,7 @@ class EventStream:
         return True
 
     def forget(self, horizon_ns: int) -> None:
-        """Count what is before the horizon, and keep the last of it."""
+        """Forget what is before the horizon, except for the last row; count it."""
         known = 1 if self.counted.count else 0
         cut = bisect_left(self.times, horizon_ns)
         if cut <= known:
@@ -129,7 +117,7 @@ class EventStream:
 
 @dataclass
 class SummaryStream:
-    """The summaries of one comparison in one node, all its threads; of the others the extremes."""
+    """The summaries of one comparison in one node, and the extremes of forgotten ones."""
 
     kept: list[Summary] = field(default_factory=list)
     looked_at_ns: int = NEVER
@@ -164,5 +152,5 @@ class SummaryStream:
 
 
 def end_of(summary: Summary) -> int:
-    """When it ended; a clock that was put back may have turned it round."""
+    """When it ended; if the clock was set back, its begin may be later than its end."""
     return max(summary.begin_ns, summary.end_ns)

@@ -4,17 +4,16 @@
 ``NONE`` where there is none. ``ranks`` turns it into ranks in [0, 1], ``by_parameter`` joins the
 TPCs of a parameter, ``combined`` joins the ranks of both types where the observer gave no type.
 
-What the formulas leave open is settled thus. An evaluation at exactly m is "up to m", and the
-window [m - w, m] holds both its ends. A flop happens at the later of its two evaluations, which are
-of the same key and node. An evaluation whose cmp or thresh is NaN or infinite counts for flops, but
-neither for D and n_i nor for max_i and min_i. max_i and min_i are those up to m, so that a score
-after the mission is the score that an observer would have got during it. Where m is the time of the
-last flop, S1 is 0.
+What the formulas leave open: an evaluation at exactly m is "up to m", and the window [m - w, m]
+includes both ends. A flop happens at the later of its two evaluations, which have the same key and
+node. An evaluation whose cmp or thresh is NaN or infinite counts for flops, but not for D, n_i,
+max_i and min_i. max_i and min_i are those up to m, so a score computed after the mission is the
+score that an observer would have got during it. If m is the time of the last flop, S1 is 0.
 
-The cost is O(log n) for a key at a time, whatever the length of the window.
+One key at one time costs O(log n), however long the window is.
 
-Where the policy ``edges`` kept summaries instead of every evaluation, type I is the same number,
-because the first evaluation and all flops are among the events; for type II see
+With the policy ``edges`` there are summaries instead of every evaluation. Type I is the same number
+then, because the first evaluation and all flops are events; for type II see
 `pytpc.diagnosis.scores.summary_scores`.
 """
 
@@ -37,14 +36,14 @@ EQUAL = 1e-4
 """Up to this difference a value counts as the threshold itself (n_i of type II)."""
 
 NEVER = -(2**63)
-"""The time of what did not happen."""
+"""The time of something that never happened."""
 
 _LARGE = 2.0**960
 _SCALE = 2.0**-64
 
 
 class Before(NamedTuple):
-    """What came before the first row of a table whose begin was forgotten, for each of its k keys.
+    """What was forgotten before the first row of a table, for each of its k keys.
 
     ``flops`` int64[k], how many; ``last_flop_ns`` int64[k], the last of them (``NEVER`` where there
     is none); ``finite`` int64[k], evaluations with finite values, and ``highest`` and ``lowest``
@@ -59,7 +58,7 @@ class Before(NamedTuple):
 
     @classmethod
     def nothing(cls, keys: int) -> Before:
-        """The table has its begin."""
+        """Nothing was forgotten."""
         return cls(
             np.zeros(keys, np.int64),
             np.full(keys, NEVER),
@@ -236,7 +235,7 @@ def by_parameter(
 
 
 def combined(first: Floats, second: Floats, weight: float = 1.0) -> Floats:
-    """The better of two ranks, the second of which counts ``weight`` of itself.
+    """The better of two ranks, after the second is multiplied by ``weight``.
 
     Args:
         first: float64[marks, n], ranks of the type that is believed, or of either where none is.
@@ -324,8 +323,8 @@ class RangeSums:
     """
 
     def __init__(self, values: Floats, skipped: int = 0) -> None:
-        """``values`` float64[n], none of them negative, the first ``skipped`` of which were left
-        out: sums are to the last bit what they are with them."""
+        """``values`` float64[n], not negative. ``skipped`` values before them were left out: sums
+        are the same to the last bit as with them."""
         self.shift = skipped % (1 << max(1, values.size).bit_length())
         self.levels = [np.concatenate([np.zeros(self.shift), values]) if self.shift else values]
         while self.levels[-1].size > 1:
@@ -380,5 +379,5 @@ def count_within(times: Int64s, begins: Int64s, ends: Int64s) -> Int64s:
 
 
 def beside_none(values: Floats) -> Floats:
-    """A score that happens to be 9999.9 must not read as none."""
+    """Move a score that happens to be 9999.9 away from ``NONE``."""
     return np.where(values == NONE, np.nextafter(NONE, np.inf), values)

@@ -1,13 +1,12 @@
 """The score of type II where the policy ``edges`` kept summaries instead of every evaluation.
 
-A summary says of all evaluations of one comparison, thread and period: how many, the smallest and
-largest cmp - thresh, the mean of its absolute value, the extremes of the values. The flops are
-events, so their number is exact. A summary that lies within the window, or outside of it, gives its
-part of D exactly. One that straddles an end of the window is taken as spread evenly over its span:
-it counts with the share of the span that is in the window. The score is an estimate then; why no
-bounds are worked out is in docs/explanation/decisions.md.
+A summary describes all evaluations of one comparison, thread and period: their number, the smallest
+and largest cmp - thresh, the mean of its absolute value, the extremes of the values. The flops are
+events, so their number is exact. A summary inside the window gives its part of D exactly. One that
+straddles an end of the window is taken as spread evenly: the share of its span inside the window
+counts. The score is an estimate then; docs/explanation/decisions.md says why there are no bounds.
 
-max_i and min_i are those of what had ended by m, or of what had begun where nothing had.
+max_i and min_i are those of summaries that ended by m; if none did, of those that began by m.
 """
 
 from __future__ import annotations
@@ -41,10 +40,9 @@ _TINY = 1e-200
 
 
 class LogTables(NamedTuple):
-    """What scores are worked out from.
+    """What scores are computed from.
 
-    ``before`` is what was before the first of ``events`` and ``summaries``, the extremes of earlier
-    summaries among it; None: nothing.
+    ``before`` is what was forgotten, including the extremes of forgotten summaries; None: nothing.
     """
 
     events: Events
@@ -108,7 +106,7 @@ class _KeySummaries:
         at = events.time_ns[alone]
         low = np.minimum(events.cmp[alone], events.thresh[alone])
         high = np.maximum(events.cmp[alone], events.thresh[alone])
-        # A clock that was put back may have turned a span round.
+        # If the clock was set back, a span may begin after its end.
         begin = np.concatenate([np.minimum(one, other), at])
         end = np.concatenate([np.maximum(one, other), at])
         order = np.argsort(end, kind="stable")
@@ -141,7 +139,7 @@ class _KeySummaries:
         return np.where(none, NONE, beside_none(value * nearness**formula.delta))
 
     def _spreads(self, marks: Int64s) -> tuple[Floats, Floats]:
-        """max - min of what had ended by each mark, and of all that had begun."""
+        """max - min of summaries that ended by each mark, and of all that began by it."""
         order = np.argsort(self.begin, kind="stable")
         ended = np.searchsorted(self.end, marks, side="right")
         begun = np.searchsorted(self.begin[order], marks, side="right")
