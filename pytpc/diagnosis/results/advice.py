@@ -1,4 +1,4 @@
-"""What a diagnosis advises: a value for a suspected parameter, and what it would have changed."""
+"""What a diagnosis advises for suspected parameters, and its whole answer about a mission."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ class Suggestion:
     """What to do with one parameter.
 
     ``current`` and ``value`` are in the parameter's unit: a bool for a switch, an int for a
-    whole-number parameter. ``boundary`` is where the values begin that would do, and is one of them
-    where ``inclusive``. ``text`` is the sentence to show. Where nothing can be suggested
-    ``direction``, ``value`` and ``boundary`` are None and ``reason`` says why.
+    whole-number parameter. ``boundary`` is where the values that would do begin; it is one of them
+    if ``inclusive``. ``text`` is the sentence to show. If nothing can be suggested, ``direction``,
+    ``value`` and ``boundary`` are None and ``reason`` says why.
 
-    ``feasible`` are all values that would do, whatever is declared of the parameter (of equality
-    and of periodic arithmetic those near the present one); it may have some where nothing is
-    suggested: none that the parameter can take, or no way to choose. ``limited_by`` says what kept
-    ``value`` from the smallest change: a declared range, a step, a whole number, the sign.
+    ``feasible`` are all values that would do, whether or not the parameter can take them (for
+    equality and periodic arithmetic those near the present one). It may have values although none
+    is suggested. ``limited_by`` says what kept ``value`` from the smallest change: a declared
+    range, a step, a whole number, the sign.
     """
 
     parameter: str
@@ -60,14 +60,13 @@ Basis = Literal[
 class Remedy:
     """What to try.
 
-    ``current`` and ``value`` are in the parameter's unit, as `Suggestion` has them; ``basis`` is
-    the evidence that decided: a known value, the lasting one, one that is stepped to because the
-    values ``growth`` bounds nothing, one ``between`` those that were flown, the ``smallest``
-    change, or the one of ``before`` it was changed (`pytpc.diagnosis.suggestion.advise`).
-    ``smallest`` is the smallest change that does at the most of the marks. ``kind`` is the type of
-    error that is answered and ``key`` the comparison by which. ``known`` are all values that
-    somebody knows to be good. Where nothing can be suggested ``value``, ``direction`` and ``basis``
-    are None and ``reason`` says why.
+    ``current`` and ``value`` are in the parameter's unit, as in `Suggestion`. ``basis`` is the
+    evidence that decided: a known value, a ``lasting`` one, a step because the ``growth`` of the
+    values shows no bound, one ``between`` values that were tried, the ``smallest`` change, or the
+    value from ``before`` a change. ``smallest`` is the smallest change that does at the most marks.
+    ``kind`` is the type of error that it answers, by the comparison ``key``. ``known`` are all
+    values that are known to be good. If nothing can be suggested, ``value``, ``direction`` and
+    ``basis`` are None and ``reason`` says why.
     """
 
     parameter: str
@@ -87,14 +86,13 @@ class Remedy:
 class WhatIf:
     """The recorded comparisons of one parameter, replayed with another value.
 
-    ``marks`` marks were looked at (those of the type that the question is about), ``answered`` of
-    them would have been answered: type I, the last flop before the mark would not have happened;
-    type II, an evaluation in the window would have gone the other way. ``evaluations`` of the
-    parameter's TPCs were replayed. ``flipped_near`` of them have another outcome within a window
-    before a mark, ``flipped_away`` elsewhere: the decisions that were right as far as anybody said.
-    ``text`` is the sentence to show, ``caveats`` what the replay could not know.
+    The value answers ``answered`` of the ``marks`` that the question is about. Type I: the last
+    flop before the mark would not have happened. Type II: an evaluation in the window would have
+    gone the other way. ``evaluations`` of the parameter's TPCs were replayed. ``flipped_near`` of
+    them have another outcome within a window before a mark, ``flipped_away`` elsewhere, where
+    nobody complained. ``text`` is the sentence to show, ``caveats`` what the replay cannot know.
 
-    ``unsure`` is how many more may have another outcome: of summaries only the ends are known.
+    ``unsure`` is how many more may have another outcome: only the extremes of summaries are known.
     """
 
     parameter: str
@@ -121,10 +119,9 @@ class Suggested:
 class Advice:
     """A suspect with what to do.
 
-    ``suggestion`` is the smallest change, and ``what_if`` what it would have changed, None
-    where nothing is suggested. ``remedy`` is the value to try, and ``tried`` what that would have
-    changed; `pytpc.diagnosis.suggestion.advise.with_remedies` fills them, for they need the other
-    marks.
+    ``suggestion`` is the smallest change, and ``what_if`` what it would have changed; None if
+    nothing is suggested. ``remedy`` is the value to try, and ``tried`` what that would have
+    changed; `pytpc.diagnosis.suggestion.advise.with_remedies` fills them from all marks.
     """
 
     suspect: Suspect
@@ -136,13 +133,13 @@ class Advice:
 
     @property
     def told(self) -> Suggestion | Remedy:
-        """The value to try, or the smallest change where there is none."""
+        """The value to try, or else the smallest change."""
         return self.suggestion if self.remedy is None or self.remedy.value is None else self.remedy
 
 
 @dataclass(frozen=True, slots=True)
 class BlamedAdvice:
-    """One of them with the value to try; ``what_if`` is None where there is none."""
+    """A parameter that all marks suspect, with the value to try and what it would have changed."""
 
     accused: Accused
     remedy: Remedy
@@ -155,7 +152,7 @@ class JoinedAdvice:
 
     It is a suspect at ``named`` of the marks, and the suggested value would do at ``agreed``.
     ``remedy`` is the value to try, from all marks of the group together, and ``what_if`` what it
-    would have changed, None where there is none.
+    would have changed.
     """
 
     advice: Advice
@@ -169,8 +166,8 @@ class JoinedAdvice:
 class MarkGroup:
     """Marks of one type whose first suspect and the direction of its suggestion are the same.
 
-    ``suspects`` are ordered by their mean position. ``reasons`` say at which marks there is not
-    enough evidence, and why.
+    ``suspects`` are ordered by their mean position. ``reasons`` say why there is not enough
+    evidence at a mark.
     """
 
     marks: tuple[Mark, ...]
@@ -199,11 +196,11 @@ class RankCurves:
 
 @dataclass(frozen=True, slots=True)
 class SuspectAnswer:
-    """All that is known of one of the first suspects at a mark.
+    """All evidence about one of the first suspects at a mark.
 
     ``why`` says what its comparison did before the mark. ``others`` is the advice by the other
-    comparisons of its parameter. ``suggested`` is the threshold that the value to try gives, None
-    where there is no number. ``feasible`` are the thresholds that would do, as (low, high).
+    comparisons of its parameter. ``suggested`` is the threshold that the value to try gives; None
+    if it is not a number. ``feasible`` are the thresholds that would do, as (low, high).
     """
 
     advice: Advice
@@ -224,12 +221,12 @@ class MarkAnswer:
 
 @dataclass(frozen=True, eq=False)
 class MissionAnswer:
-    """All that is found out about one mission.
+    """The whole diagnosis of one mission, as the report page shows it.
 
-    ``question`` is what was asked; its ``top`` is how many suspects of a mark were looked at
-    closely. ``blame`` and ``first`` are the verdict of all marks together and the advice for its
-    first suspect; None without marks, or without a suspect. ``curves`` is None where no mark has a
-    suspect. ``warnings`` say what is wrong with the recording.
+    The ``top`` of its ``question`` is how many suspects of a mark have all evidence. ``blame`` and
+    ``first`` are the verdict of all marks together and the advice for its first suspect; None
+    without marks or suspects. ``curves`` is None if no mark has a suspect. ``warnings`` say what is
+    wrong with the recording.
     """
 
     question: Question

@@ -13,7 +13,7 @@ _NAMED = 3
 
 
 class Seen(NamedTuple):
-    """One evaluation, as it came."""
+    """One evaluation, as it was reported."""
 
     time_ns: int
     key: str
@@ -27,8 +27,8 @@ class Seen(NamedTuple):
 class TrendPart(NamedTuple):
     """What a comparison did in one part of the window.
 
-    ``distance`` is the mean of |cmp - thresh| over max - min (0 is on the threshold, as D of the
-    score of type II), NaN where it was not evaluated; ``flopped`` says whether the result changed.
+    ``distance`` is the mean of |cmp - thresh| over max - min, as D of the score of type II: 0 is on
+    the threshold, NaN means not evaluated. ``flopped`` says whether the result changed.
     """
 
     distance: float
@@ -37,9 +37,8 @@ class TrendPart(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class LiveRow:
-    """A suspect as it is shown: ``parts`` are the last ``BINS`` of its comparison; ``flop_s`` are
-    the seconds since its last flop, None where it has not flopped; ``last`` is its last evaluation,
-    None where there are summaries alone."""
+    """A suspect with the last ``parts`` of its comparison, the seconds since its last flop (None
+    before the first), and its last evaluation (None if there are only summaries)."""
 
     suspect: Suspect
     last: Seen | None
@@ -49,8 +48,8 @@ class LiveRow:
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """What is to be shown of one instant: the rows by type (None: both combined), and why there
-    are none where there are none."""
+    """What to show of one instant: the rows by type (None: both combined), and the reasons if there
+    are none."""
 
     now_ns: int
     rows: Mapping[MarkType | None, tuple[LiveRow, ...]]
@@ -66,7 +65,7 @@ class Kept(NamedTuple):
     look: Look
 
     def words(self) -> str:
-        """The first suspects, or why there is none."""
+        """The first suspects, or the reason why there are none."""
         (rows,), (reason,) = self.look.rows.values(), self.look.reasons.values()
         firsts = [row.suspect for row in rows[:_NAMED]]
         named = [f"{one.position}{'=' if one.tied else ''} {one.parameter}" for one in firsts]

@@ -1,4 +1,8 @@
-"""The parameters that a diagnosis suspects: at one mark, and by all marks together."""
+"""The parameters that a diagnosis suspects.
+
+`MarkRanking` and `Suspect` are the thesis's ranking at one mark, by scores. `Blame` and `Accused`
+are the judgement of all marks together, with probabilities.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +18,7 @@ Named = TypeVar("Named", "Suspect", "Accused")
 
 
 class Evaluation(NamedTuple):
-    """One evaluation, as it was reported, or the last of a summary."""
+    """One reported evaluation, or the last one of a summary."""
 
     time_ns: int
     result: bool
@@ -28,13 +32,12 @@ class Evaluation(NamedTuple):
 class Suspect:
     """A parameter at a mark.
 
-    ``position`` counts from 1; parameters between which nothing decides are ``tied`` and have the
-    same one. ``key`` and ``comparison`` are its most suspicious TPC, ``score`` that one's score by
-    the formula of ``type``. ``rank`` is what they are ordered by: the parameter's rank
-    among all parameters, or what is made of both where the type is not believed. ``keys`` are all
-    TPCs of the parameter that the log has. ``last`` is the TPC's last evaluation up to the mark.
-    ``rank1`` and ``rank2`` are the parameter's ranks by type I and by type II, 0 where it has no
-    such score.
+    ``position`` counts from 1; ``tied`` parameters share one. ``key`` and ``comparison`` are its
+    most suspicious TPC, ``score`` is that TPC's score by the formula of ``type``. Suspects are
+    ordered by ``rank``: the parameter's rank among all parameters, or a combination of both ranks
+    if the type is not believed. ``keys`` are all TPCs of the parameter in the log. ``last`` is the
+    TPC's last evaluation up to the mark. ``rank1`` and ``rank2`` are the parameter's ranks by type
+    I and by type II; 0 without such a score.
     """
 
     position: int
@@ -55,9 +58,8 @@ class Suspect:
 class MarkRanking:
     """The suspects at one mark, most suspicious first; parameters without a score are not here.
 
-    ``parameters`` is the number of parameters among which they were ranked. Where there is not
-    ``enough`` evidence to go by the order, or for any at all, ``reason`` says why; else it is
-    empty.
+    ``parameters`` is the number of parameters that were ranked. If there is not ``enough`` evidence
+    for the order, or for any suspect, ``reason`` says why.
     """
 
     mark: Mark
@@ -88,17 +90,16 @@ def _meant(suspects: tuple[Named, ...], parameter: str) -> tuple[Named, ...]:
 
 
 SURE = 0.5
-"""A parameter with at least this probability is accused: all others together are less likely."""
+"""A parameter of at least this probability is accused: all others together are less likely."""
 
 
 @dataclass(frozen=True, slots=True)
 class Accused:
-    """A parameter and the probability that it is to blame.
+    """A parameter and the probability that it is to blame, by all marks of a mission.
 
-    ``position`` counts from 1; ``tied`` parameters have the same one. ``type`` is the likelier kind
-    of error if it is this parameter: I, the robot did what it should not, or II, it does not do
-    what it should. ``key`` and ``comparison`` are those that decide, ``last`` its last evaluation
-    up to the last mark.
+    ``position`` counts from 1; ``tied`` parameters share one. ``type`` is the likelier type of
+    error if it is this parameter. ``key`` and ``comparison`` decided, ``last`` is their last
+    evaluation up to the last mark.
     """
 
     position: int
@@ -113,10 +114,10 @@ class Accused:
 
 @dataclass(frozen=True, slots=True)
 class Blame:
-    """All parameters that were compared, the likeliest first.
+    """The judgement of all marks of a mission: the compared parameters, the likeliest first.
 
-    ``none`` is the probability that it is none of the parameters, ``parameters`` how many there
-    are, ``marks`` from which it was worked out. ``notes`` say what keeps it from being surer.
+    ``none`` is the probability that it is none of the ``parameters``. ``notes`` say what keeps the
+    judgement from being surer.
     """
 
     suspects: tuple[Accused, ...]
@@ -132,12 +133,12 @@ class Blame:
 
     @property
     def accused(self) -> str | None:
-        """The parameter that is likelier than all others together; None if there is none."""
+        """The parameter that is likelier than all others together, if there is one."""
         return self.suspects[0].parameter if self.confidence >= SURE else None
 
     @property
     def text(self) -> str:
-        """The verdict in one line."""
+        """The judgement in one line."""
         if not self.suspects:
             return "not enough evidence to suspect any parameter"
         first = self.suspects[0]

@@ -19,7 +19,8 @@ _NOTHING = 1e-300
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """A value, the interval of those that would do that it is in, and what kept it from its end."""
+    """A value, the interval of good values that it is in, and what kept it from the interval's
+    end."""
 
     value: float
     interval: Interval
@@ -28,7 +29,7 @@ class Choice:
 
 @dataclass(frozen=True, slots=True)
 class Possible:
-    """Which values a parameter takes: ``declared`` and, of its C++ type, whole and not negative."""
+    """Which values a parameter takes, by its declaration and its C++ type."""
 
     whole: bool = False
     unsigned: bool = False
@@ -70,7 +71,7 @@ class Possible:
         found = self.declared
         if found is None:
             return None, None
-        # Declared with strings or the wrong way round it says nothing.
+        # Ends that are strings, or in the wrong order, do not count.
         low, high = (None if end is None else float(end) for end in (found.low, found.high))
         if low is not None and high is not None and not low <= high:
             return None, None
@@ -82,8 +83,8 @@ def choose(
 ) -> Choice | str:
     """The value nearest to ``current`` that would do and that the parameter can take.
 
-    A change of the sign is avoided where another interval would do and no range is declared that
-    has both signs. Of intervals as near ``up_first`` says which. ``current`` is in none of them.
+    The sign changes only if no other interval would do, or the declared range has both signs. If
+    two intervals are as near, ``up_first`` decides. ``current`` is in none of them.
 
     Returns:
         The choice, or why there is none.
@@ -116,7 +117,7 @@ def _order(
 
 
 def _limits(feasible: Intervals, first: float, current: float, possible: Possible) -> str:
-    """Why ``first`` is not the smallest change that would do; empty where it is."""
+    """Why ``first`` is not the smallest change that would do; empty if it is."""
     ends = [one.first() if one.first() > current else one.last() for one in feasible]
     end = min(ends, key=lambda value: abs(value - current))
     if abs(first - current) <= abs(end - current):
@@ -162,14 +163,14 @@ def _nearest(interval: Interval, current: float, possible: Possible) -> float | 
 def readable(interval: Interval, first: float, current: float) -> float:
     """A value with few digits, inside ``interval`` and not nearer to ``current`` than ``first``.
 
-    Three significant digits, more where those would go past ``first`` by more than half of the way
-    from ``current``.
+    It has three significant digits, or more if three would go past ``first`` by more than half of
+    the way from ``current``.
     """
     up = first > current
     way = abs(first - current)
     context = Context(rounding=ROUND_CEILING if up else ROUND_FLOOR)
     if abs(first) < max(way * 1e-9, _NOTHING):
-        # Next to 0 the digits of the end say nothing about what is small here.
+        # Next to 0 the digits of the end do not show what is small.
         size = way if way > _NOTHING else 1.0
         around = Decimal(10) ** (math.floor(math.log10(size)) - _FIRST_DIGITS + 1)
         return _inside(interval, [0.0, float(around if up else -around)], first)

@@ -1,23 +1,23 @@
-"""Thresholds that would last: what the history of a comparison says of how far its values get.
+"""Thresholds that would last: how far the values of a comparison get, by its history.
 
-A mark of type II says that the robot stands. The outcome that the comparison mostly had before the
-mark kept it there, so the other one is wanted, of nearly all of these evaluations and not of one:
+A mark of type II says that the robot is stuck. The usual outcome of the comparison before the mark
+kept it there, so nearly all of these evaluations should have the other outcome:
 
-- steady values: all but outliers (4 standard deviations, by the median of absolute deviations, so
-  that the way there does not count) and one standard deviation more;
-- one decision that held for most of that time: the program went on by it, did not ask again and
-  stands by it, so that it should not have changed, as of type I;
-- values that grow towards the threshold: what half of the ramps reach, or of the one ramp what it
-  had reached in the middle of the window.
+- steady values: all except outliers (4 standard deviations, by the median of absolute deviations,
+  so the way there does not count), and one standard deviation more;
+- one decision that held for most of that time: the program acted on it and did not compare again,
+  so it should not have changed, as for type I;
+- values that grow towards the threshold: what half of the ramps reach; with one ramp, what it had
+  reached in the middle of the window.
 
-A mark of type I says that the outcome should not have changed. The values of each stay on the
-wrong side have an extreme, its peak. Of n peaks that are spread evenly between a begin and an
-unknown end, the end is with a probability of 2/3 within 3 ** (1/n) times the way to the largest
-(Goodman, "Serial Number Analysis", JASA 1952). A stay that the program itself ended by acting tells
-no end: where there is no other, n is 1, and the way is three times what it was.
+A mark of type I says that the outcome should not have changed. Each stay on the wrong side has an
+extreme value, its peak. If n peaks are spread evenly between a begin and an unknown end, the end is
+with a probability of 2/3 within 3 ** (1/n) times the way to the largest (Goodman, "Serial Number
+Analysis", JASA 1952). A stay that the program itself ended by acting does not show the end: if
+there is no other, n is 1, and the way is three times as long.
 
-After each try that did not help it is a standard deviation more, or a probability of 4/5 and 6/7 (5
-and 7 in place of 3).
+Each value that was tried and did not help adds a standard deviation, or raises the probability to
+4/5 and 6/7 (5 and 7 in place of 3).
 """
 
 from __future__ import annotations
@@ -50,11 +50,11 @@ _WAY = 3.0
 class Lasting:
     """What is wanted of one comparison.
 
-    With ``outcome`` for the compared value ``edge`` it would last; ``least`` is the compared value
-    of the smallest change in this direction, ``up`` whether thresholds have to be higher.
-    ``ground`` says by which rule, ``count`` over how many evaluations (``steady``), ramps or stays.
-    ``near`` says how near the comparison is to it, as a part of the range of its values, or how
-    long (s) before the first mark it changed; the smaller the likelier it is the one.
+    A threshold that gives ``outcome`` for the compared value ``edge`` would last; ``least`` is the
+    compared value of the smallest change in this direction, ``up`` whether thresholds have to be
+    higher. ``ground`` is the rule that decided, ``count`` the number of evaluations (``steady``),
+    ramps or stays. ``near`` is the distance as a part of the range of the values, or how long (s)
+    before the first mark the result changed; a smaller one is likelier the cause.
     """
 
     kind: MarkType
@@ -83,14 +83,14 @@ class _Series:
 def lasting(
     track: Track, kind: MarkType, marks_ns: Sequence[int], window_s: float, tries: int = 0
 ) -> Lasting | None:
-    """What would last of one comparison; None where the log does not say.
+    """What would last for one comparison; None if the log does not say.
 
     Args:
         track: its evaluations.
         kind: the type of error.
         marks_ns: the marks of this type, at least one.
         window_s: the window before a mark.
-        tries: how many values were flown in vain.
+        tries: how many values were tried and did not help.
     """
     relation = track.comparison.relation
     if relation == "flag" or relation in EQUALITIES:
@@ -106,7 +106,7 @@ def lasting(
 
 
 def _series(track: Track, end_ns: int) -> _Series:
-    """The finite evaluations up to a time in the node with the most; of summaries both ends."""
+    """The finite evaluations up to a time in the busiest node; of summaries both ends."""
     kept = track.kept.take(track.kept.end_ns <= end_ns)
     low, high = kept.thresh + kept.diff_min, kept.thresh + kept.diff_max
     time_ns = np.concatenate([track.time_ns, kept.begin_ns, kept.end_ns])
@@ -165,10 +165,10 @@ def _standing(
 
 
 def _held(series: _Series, marks: Int64s, window: int) -> _Series | None:
-    """What led to a decision that held for most of the time before the first marks; None if none.
+    """The evaluations behind a decision that held for most of the time before the first marks.
 
-    The program went on by it and did not ask again: it stands by what was decided then. They are
-    the evaluations since the change before that to the decision.
+    None if there is none. The program acted on the decision and did not compare again. They begin
+    at the change before the one that decided.
     """
     begin, end = int(marks[0]) - window, int(marks[marks <= marks[0] + window][-1])
     until = series.take(series.time_ns <= end)
@@ -185,7 +185,7 @@ def _share(way: float, series: _Series) -> float:
 
 
 def _steady_end(values: Floats, tries: int) -> float:
-    """Above all steady values and their noise; of those below 0 at most half of the way to it."""
+    """Above all steady values and their noise; for values below 0 at most half of the way to 0."""
     middle = float(np.median(values))
     sigma = _MAD_TO_SIGMA * float(np.median(np.abs(values - middle)))
     if sigma == 0:
@@ -197,7 +197,7 @@ def _steady_end(values: Floats, tries: int) -> float:
 
 
 def _ramps(values: Floats) -> Floats | None:
-    """The peaks of values that grow and are reset; None where they do not grow."""
+    """The peaks of values that grow and are reset; None if they do not grow."""
     steps = np.diff(values)
     ups, downs = steps[steps > 0], steps[steps < 0]
     if ups.size < _MORE_UPS * max(1, downs.size):
@@ -212,7 +212,7 @@ def _ramps(values: Floats) -> Floats | None:
 def _stays(
     series: _Series, relation: str, marks: Int64s, window: int, tries: int
 ) -> Lasting | None:
-    """Of the stays on the wrong side before the marks; the first change of the window began it."""
+    """What would last by the stays on the wrong side; the first change in the window began them."""
     change = np.flatnonzero(series.went[1:] != series.went[:-1]) + 1
     if not change.size and series.time_ns[0] >= marks[0] - window:
         # What was never evaluated before had no outcome, and this one is the change.
@@ -254,9 +254,9 @@ def _stays(
 
 
 def _first_change(when: Int64s, marks: Int64s, window: int) -> int | None:
-    """The first change in the window before the first mark, else the last one before it.
+    """The first change in the window before the first mark, or else the last one before it.
 
-    Without any the first one in the windows before the others.
+    If there is none, the first change in the windows before the other marks.
     """
     early = when <= marks[0]
     soon = np.flatnonzero(early & (when >= marks[0] - window))
@@ -269,7 +269,7 @@ def _first_change(when: Int64s, marks: Int64s, window: int) -> int | None:
 
 
 def _is_before(time_ns: int, marks: Int64s, window: int) -> bool:
-    """Whether a stay that began then is one that a mark may mean."""
+    """Whether a mark may mean a stay that began then."""
     inside = (time_ns >= marks - window) & (time_ns <= marks)
     return bool(np.any(inside)) or time_ns <= int(marks[0])
 
@@ -281,19 +281,19 @@ def _step(values: Floats) -> float:
 
 
 def _climbs(values: Floats) -> bool:
-    """Whether the values only grow, and not in one jump."""
+    """Whether the values grow steadily, not in one jump."""
     steps = np.diff(values)
     return bool(np.all(steps >= 0)) and int(np.count_nonzero(steps > 0)) > 1
 
 
 def _begin_of_climb(values: Floats) -> float:
-    """Where the last value was climbed to from, which may be long before the window."""
+    """Where the climb to the last value began, perhaps long before the window."""
     falls = np.flatnonzero(np.diff(values) < 0)
     return float(values[falls[-1] + 1 if falls.size else 0])
 
 
 def _estimate(peak: float, begin: float, factor: float) -> float:
-    """Beyond the peak, by the way from the begin or by the value itself, whichever is less."""
+    """Beyond the peak, by the way from the begin or by the value itself, whichever is less far."""
     by_way = begin + (peak - begin) * factor
     if peak == 0:
         return by_way

@@ -1,21 +1,19 @@
-"""The value to try: one with which the error should stay away, not only its last occurrence.
+"""The value to try: it should prevent the error for good, not only its last occurrence.
 
-The smallest change is often not enough; a counter reaches the next number, too, and noise the
-next bit. Here all marks of a mission are asked at once, and the evidence counts in this order:
+The smallest change is often not enough: a counter reaches the next number, too, and noise the next
+bit. This looks at all marks of a mission at once. The evidence, the strongest first:
 
-1. a value of a good run, whichever way it is: it was flown, and nothing went wrong, while the way
-   that the log shows hangs on what people said of the type of the error;
-2. the direction of the log (`pytpc.diagnosis.suggestion.lasting`), never one that makes what the
-robot stood by
-   stronger;
-3. the default in the source, or a declared one, that lies in the lasting set; where the log cannot
-   say how far is enough (values that grow until the program acts), anywhere beyond the smallest
-   change: a guess by its author is better than one by nobody;
-4. the nearest value of the lasting set;
-5. the smallest change, where nothing else is known (flags, equality).
+1. the value of a good run, in whichever direction: it worked, while the direction in the log
+depends
+   on the types of error that people named;
+2. the direction in the log (`pytpc.diagnosis.suggestion.lasting`);
+3. the default in the source, or a declared one, if it would last; if the log cannot say how far is
+   enough (values that grow until the program acts), any default beyond the smallest change;
+4. the nearest value that would last;
+5. the smallest change, if nothing else is known (flags, equality).
 
-Values that were flown in vain bound the next one: beyond the last one, and before one from which
-the other direction was wanted.
+Values that were tried and did not help bound the next one: it is beyond them, but not beyond a
+value from which the log pointed back.
 """
 
 from __future__ import annotations
@@ -62,7 +60,7 @@ NAMES: dict[Source, str] = {
 
 @dataclass(frozen=True, slots=True)
 class _Wanted:
-    """A comparison with what is wanted of it: values of the parameter that last, and the least."""
+    """A comparison, the values of the parameter that would last, and those that do the least."""
 
     track: Track
     case: SuggestionCase
@@ -93,9 +91,9 @@ def remedy(
         static_info: what the analysis found.
         parameter: its name in the source, or what `same_parameter` takes for it.
         marks: at least one, of any type or none.
-        question: its ``sources``, ``window_s`` and ``reference``, whose value is taken whatever the
-            log says; ``flown`` is without this mission's value, and ``declared`` has at most the
-            one of this parameter.
+        question: its ``sources``, ``window_s`` and ``reference``, whose value goes before the log;
+            ``flown`` is without this mission's value, and ``declared`` has at most the one of this
+            parameter.
 
     Raises:
         InputError: there is no such parameter, or several.
@@ -147,7 +145,7 @@ def _by_log(
             chosen = _chosen(name, wanted, allowed, flown)
             if chosen is not None:
                 return replace(chosen, smallest=smallest[0], known=tuple(known))
-        # What lasts may be nowhere between the values that were flown; then neither is this.
+        # If nothing that lasts is between the values that were tried, this is not either.
         if smallest[0].value is not None and not (wanted and flown):
             return _as_smallest(name, kind, *smallest)
         reason = smallest[0].reason or reason
@@ -155,11 +153,11 @@ def _by_log(
 
 
 def restored(found: Remedy, value: float, basis: Basis, words: str) -> Remedy:
-    """A remedy with the value that the parameter had when the robot went right, in its place.
+    """The remedy with a value that the parameter had when the robot worked.
 
-    It stays as it is where the present value is not known, or is that one. ``words`` say when that
-    was. Where the log would have the other direction the text says so: it is worked out from the
-    types of error that people named, and they confuse these.
+    It does not change if the present value is unknown, or is that value. ``words`` say when the
+    parameter had it. The text says if the log points the other way: the log's direction depends on
+    the types of error that people named, and they confuse these.
     """
     current = found.current
     if current is None or not math.isfinite(value) or value == current:
@@ -181,10 +179,10 @@ def restored(found: Remedy, value: float, basis: Basis, words: str) -> Remedy:
 def _kinds(
     marks: Sequence[Mark], tracks: Sequence[Track], window_s: float
 ) -> list[tuple[MarkType, list[int]]]:
-    """The types of error with their times, first the one that the first marks speak of.
+    """The types of error with their times, beginning with the type of the first marks.
 
-    What came first is the cause of what came later. Marks of no type are of one type together: I
-    where a result of the parameter changed in the windows before most of them, else II.
+    The first error causes the later ones. Marks without a type have one type together: I if a
+    result of the parameter changed in the windows before most of them, else II.
     """
     if not tracks or not marks:
         return []
@@ -233,7 +231,7 @@ def _case(
 
 
 def _thresholds(track: Track, end_ns: int) -> Floats:
-    """float64[n]: up to a time, in its order; at least one, or there were no marks after any."""
+    """float64[n]: the thresholds up to a time, in order; there is at least one."""
     time_ns = np.concatenate([track.time_ns, track.kept.end_ns])
     thresh = np.concatenate([track.thresh, track.kept.thresh])
     order = np.argsort(time_ns, kind="stable")
@@ -243,7 +241,7 @@ def _thresholds(track: Track, end_ns: int) -> Floats:
 def _chosen(
     name: str, wanted: Sequence[_Wanted], known: Sequence[KnownValue], flown: Sequence[float]
 ) -> Remedy | None:
-    """By the nearest comparison, and the others as far as they want the same direction."""
+    """The remedy by the nearest comparison, and by others that want the same direction."""
     first = wanted[0]
     case, rises = first.case, first.rises
     lasts, against = first.lasting, False
@@ -273,7 +271,7 @@ def _chosen(
 
 
 def _bounds(present: float, rises: bool, flown: Sequence[float]) -> Interval:
-    """Between the present value and the next one beyond that was flown: there it was too much."""
+    """Between the present value and the nearest one beyond it that was tried and was too much."""
     beyond = [value for value in flown if (value > present) == rises and value != present]
     if rises:
         return Interval(present, min(beyond, default=math.inf))
@@ -283,7 +281,8 @@ def _bounds(present: float, rises: bool, flown: Sequence[float]) -> Interval:
 def _value(
     wanted: _Wanted, known: Sequence[KnownValue], within: Interval
 ) -> tuple[float | None, Basis]:
-    """The value inside of ``within`` that evidence is for, and which; None where there is none."""
+    """The value inside ``within`` with the best evidence, and which evidence; None if there is
+    none."""
     case, found, lasts, least = wanted.case, wanted.found, wanted.lasting, wanted.least
     possible = case.possible
     for one in known:
@@ -292,7 +291,7 @@ def _value(
             return one.value, one.source
     chosen = choose(lasts, case.present, possible, up_first=found.up)
     if isinstance(chosen, str):
-        # All that lasts is outside of what the parameter takes: its end, if that does anything.
+        # Nothing that lasts is in the parameter's range: take the end of the range, if that helps.
         ends = (possible.interval.high, possible.interval.low)
         beyond = [end for end in ends if math.isfinite(end) and holds(least, end)]
         if not beyond:
@@ -348,14 +347,14 @@ def _as_smallest(name: str, kind: MarkType, found: Suggestion, key: str | None) 
 def known_values(
     case: SuggestionCase, static_info: StaticInfo, parameter: str, reference: Recording | None
 ) -> list[KnownValue]:
-    """Those that there are, the strongest evidence first.
+    """The known good values, the strongest evidence first.
 
-    A good run has shown that its value does; a default is what its author thought would; one that
-    is declared may hold for other robots, too.
+    The value of a good run has worked; a default is the author's choice; a declared default may be
+    meant for other robots.
 
     Args:
         case: the parameter at one of its comparisons.
-        static_info: what the analysis found, of the reference's build, too.
+        static_info: what the analysis found; it holds for the good run, too.
         parameter: its name in the source.
         reference: a good run.
     """
@@ -375,7 +374,7 @@ def known_values(
 
 
 def value_in(recording: Recording, static_info: StaticInfo, parameter: str) -> Number | None:
-    """The value that a parameter last had in a mission; None where the log does not say."""
+    """The last value of a parameter in a mission; None if the log does not say."""
     try:
         _, tracks, _ = tracks_of(recording.events, recording.summaries, static_info, parameter)
     except InputError:

@@ -1,11 +1,11 @@
 """The smallest change of a parameter (docs/reference/scores.md#the-smallest-change).
 
-Type I: the smallest change of the threshold with which the last flop up to the mark would not have
-happened: the evaluation that flopped and the one before it would both have had the earlier outcome.
+Type I: the smallest change of the threshold that prevents the last flop up to the mark. The
+evaluation that flopped and the one before it would both have had the earlier outcome.
 Type II: the smallest change with which at least one evaluation in the window before the mark would
-have gone the other way. Both are sets of thresholds that end at compared values of the log; through
-the arithmetic of the comparison they become sets of values of the parameter, of which one is chosen
-that the parameter can take.
+have gone the other way. Both are sets of thresholds that end at compared values of the log. The
+arithmetic of the comparison turns them into sets of values of the parameter, from which one is
+chosen that the parameter can take.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ from pytpc.static.static_info import Comparison, StaticInfo
 
 
 class At(NamedTuple):
-    """The time of a mark, and the type of error that it is taken for."""
+    """The time of a mark, and its assumed type of error."""
 
     time_ns: int
     kind: MarkType
@@ -102,7 +102,7 @@ def suggest_for_most(
     marks: Sequence[At],
     question: Question = PLAIN,
 ) -> tuple[Suggestion, str]:
-    """The suggestion that does at the most marks, and the key of the comparison that it is by.
+    """The suggestion that would do at the most marks, and the key of its comparison.
 
     Args:
         recording: the mission.
@@ -161,7 +161,8 @@ def _second_type(case: SuggestionCase) -> Intervals:
 
 
 def _still(case: SuggestionCase) -> tuple[Bools, Floats]:
-    """Outcomes and compared values of those that the present threshold would let go as they did."""
+    """Outcomes and compared values of the evaluations that the present threshold would not
+    change."""
     evidence = case.evidence
     finite = np.isfinite(evidence.cmp)
     cmps = evidence.cmp[finite]
@@ -242,7 +243,8 @@ def _names(declared: Declared, values: tuple[Number | str, ...]) -> str:
 def _switch(case: SuggestionCase, kind: MarkType) -> Suggestion:
     """A flag: the value before it changed (type I), or the other one (type II).
 
-    A number is one in a condition of its own, or in a switch, of which any two values may differ.
+    A flag may be a number: in a condition by itself, or in a switch, where any two values may
+    differ.
     """
     now, evidence = case.threshold, case.evidence
     if kind == "I":
@@ -274,7 +276,7 @@ def _switched(case: SuggestionCase, value: Number) -> Suggestion:
 
 
 def _boundary(inside: Interval, up: bool) -> tuple[float, bool]:
-    """Where the values begin that would do, and whether the first of them is one."""
+    """The end of the interval next to the present value, and whether it belongs to it."""
     return (inside.low, inside.low_inclusive) if up else (inside.high, inside.high_inclusive)
 
 

@@ -40,9 +40,10 @@ class NoneBecauseError(Exception):
 class SuggestionEvidence:
     """Evaluations of one comparison up to a mark, those that count for a type of error.
 
-    ``cmp`` and ``thresh`` are float64[n]: type I the two of the last flop, the earlier first; type
-    II those of the window. ``threshold`` is the last one up to the mark, ``seen`` float64[m] are
-    all up to it. ``summed`` says that summaries are among them, which have the ends alone.
+    ``cmp`` and ``thresh`` are float64[n]: for type I the two of the last flop, the earlier first;
+    for type II those of the window. ``threshold`` is the last one up to the mark, ``seen``
+    float64[m] are all up to it. ``summed`` says whether summaries are among them, which have only
+    the extreme values.
     """
 
     cmp: Floats
@@ -54,7 +55,7 @@ class SuggestionEvidence:
 
 @dataclass(frozen=True, slots=True)
 class SuggestionCase:
-    """What a suggestion is worked out from: the evaluations up to the mark, and the parameter."""
+    """The data for a suggestion: the evaluations up to the mark, and the parameter."""
 
     comparison: Comparison
     how: ParameterUnit
@@ -63,12 +64,12 @@ class SuggestionCase:
 
     @property
     def relation(self) -> str:
-        """That of the comparison, the threshold on the right-hand side."""
+        """The comparison's relation, with the threshold on the right-hand side."""
         return self.comparison.relation
 
     @property
     def threshold(self) -> float:
-        """The last one up to the mark."""
+        """The last threshold up to the mark."""
         return self.evidence.threshold
 
     @property
@@ -79,16 +80,16 @@ class SuggestionCase:
 
     @property
     def current(self) -> Number:
-        """The parameter's value as it is shown."""
+        """The parameter's value as a user sees it."""
         return self.number(self.present)
 
     def number(self, value: float) -> Number:
-        """An int of a parameter that takes whole numbers only."""
+        """The value, as an int if the parameter takes whole numbers only."""
         return round(value) if self.possible.whole and math.isfinite(value) else value
 
 
 def refuse(comparison: Comparison, unit: LinkUnit | None) -> None:
-    """Let pass what suggestions can be made about.
+    """Refuse a comparison that no suggestion can be made about.
 
     Raises:
         NoneBecauseError: the threshold is a constant, or text.
@@ -135,7 +136,7 @@ def values_for(case: SuggestionCase, thresholds: Intervals) -> Intervals:
     """
     found = case.how.parameters(thresholds)
     if holds(found, case.present):
-        # What the program rounds otherwise than we do must not come out as "leave it".
+        # The program may round differently; that must not lead to "leave it".
         slack = max(abs(case.present) * _CLOSE, _TINY)
         beside = [Interval.below(case.present - slack), Interval.above(case.present + slack)]
         found = intersection(found, beside)
@@ -165,11 +166,10 @@ def shown_current(case: SuggestionCase) -> Number:
 
 @dataclass(frozen=True, slots=True)
 class _KeptEnds:
-    """What summaries say of the evaluations in a window: those at the ends of what each encloses.
+    """The extreme evaluations of the summaries in a window, which is all that type II needs.
 
-    The outermost values are all that type II asks for. ``threshold`` is the last one up to the
-    mark, in the summary that ends at ``last_ns``. A summary that straddles an end of the window is
-    taken where none lies within it, for its evaluations need not.
+    ``threshold`` is the last one up to the mark, in the summary that ends at ``last_ns``. A summary
+    that straddles an end of the window counts only if no summary is inside it.
     """
 
     cmp: Floats

@@ -37,8 +37,8 @@ def what_if(
         static_info: what the analysis found.
         parameter: its name in the source, or what `same_parameter` takes for it.
         value: in the parameter's unit.
-        question: its ``kind``, ``marks`` and ``window_s``. Without a ``kind`` a mark of no type is
-            answered by either definition.
+        question: its ``kind``, ``marks`` and ``window_s``. Without a ``kind``, either definition
+            answers a mark that has no type.
 
     Raises:
         InputError: there is no such parameter, or several.
@@ -87,7 +87,7 @@ def _asked(recording: Recording, question: Question) -> tuple[Mark, ...]:
 def _answers(
     tracks: Sequence[Track], value: Number, mark: Mark, kind: MarkType | None, window_s: float
 ) -> bool:
-    """Whether the value answers a mark; one without a type by either definition."""
+    """Whether the value answers a mark; without a type either definition will do."""
     if kind == "I":
         return _stays(tracks, value, mark.time_ns)
     turns = _turns(tracks, value, mark.time_ns, window_s)
@@ -97,8 +97,8 @@ def _answers(
 def _stays(tracks: Sequence[Track], value: Number, mark_ns: int) -> bool:
     """Whether the parameter's last flop up to the mark would not have happened.
 
-    Both of its evaluations have to have the earlier outcome; one that flopped because of another
-    comparison of its predicate is not answered.
+    Both of its evaluations must have the earlier outcome. A flop that another comparison of the
+    predicate caused is not answered.
     """
     last = _last_flop(tracks, mark_ns)
     if last is None:
@@ -147,7 +147,7 @@ def _spans(marks: Sequence[Mark], window_s: float) -> Int64s:
 
 
 def _within(begins: Int64s, ends: Int64s, spans: Int64s) -> Bools:
-    """bool[n]: what touches one of the spans."""
+    """bool[n]: which of them touch one of the spans."""
     if not spans.size:
         return np.zeros(begins.size, dtype=np.bool_)
     place = np.searchsorted(spans[:, 0], ends, side="right") - 1
@@ -182,7 +182,7 @@ def _caveats(
 def _long_before(
     tracks: Sequence[Track], asked: Sequence[Mark], kind: MarkType | None, window_s: float
 ) -> Iterator[str]:
-    """A sentence where a mark of type I asks about a flop before its window."""
+    """A caveat if a mark of type I asks about a flop before its window."""
     ages = []
     for mark in asked:
         last = None if (kind or mark.type) == "II" else _last_flop(tracks, mark.time_ns)
@@ -207,7 +207,7 @@ def _is_switch(track: Track) -> bool:
 def _sentence(found: WhatIf, kind: MarkType | None, *, mixed: bool) -> str:
     """What to show: ``0.0527 answers 4 of 4 marks of type II; away from marks it turns ...``.
 
-    ``mixed`` says that not all of the marks are of ``kind``: they are not called so then.
+    ``mixed`` marks are not all of ``kind``, so the sentence does not name the type.
     """
     if not found.evaluations:
         return "it was not evaluated, so nothing is known of other values"

@@ -41,13 +41,13 @@ def answer_mission(
     rankings: Sequence[MarkRanking],
     question: Question,
 ) -> MissionAnswer:
-    """Everything that the report page says of a mission.
+    """Everything that the report page says about a mission.
 
     Args:
         recording: the mission.
         static_info: what the analysis found.
         rankings: the suspects at each mark, as ``rank_marks`` answers the question.
-        question: its ``top`` is how many suspects of a mark are looked at closely.
+        question: its ``top`` is how many suspects of a mark get all the evidence.
     """
     every = [
         advise(recording, static_info, ranking, replace(question, top=len(ranking.suspects)))
@@ -93,7 +93,7 @@ def _curves(
     rankings: Sequence[MarkRanking],
     question: Question,
 ) -> RankCurves | None:
-    """Both ranks over the mission, at 10 Hz, or less often where that is too much for a page."""
+    """Both ranks over the mission, at 10 Hz, or less often if that is too much for a page."""
     if not any(ranking.suspects for ranking in rankings):
         return None
     steps = min(_STEPS, _NUMBERS // max(1, len(static_info.thresholds)))
@@ -128,7 +128,7 @@ def _feasible_thresholds(
 
 
 def why(recording: Recording, suspect: Suspect, mark: Mark, window_s: float) -> str:
-    """What the suspect's comparison did before the mark; empty if it did nothing.
+    """What the suspect's comparison did before the mark, in one sentence; empty if it did nothing.
 
     Type I: its last flop. Type II: its results in the window of ``window_s`` seconds, and the
     evaluation that came nearest to the other outcome.

@@ -28,9 +28,9 @@ class Track:
     """The evaluations of one TPC, in the order of time.
 
     ``time_ns`` int64[n], ``cmp`` and ``thresh`` float64[n], ``result``, ``res`` bool[n], ``node``
-    int64[n] are as in the events; ``flops`` int64[f, 2] are places in these, of the evaluation
-    before and that of each flop, which is at ``flop_ns`` int64[f]. ``kept`` are the summaries of
-    the TPC; ``own`` bool[n] is False for what is counted in one of them.
+    int64[n] are as in the events. ``flops`` int64[f, 2] are the places of each flop's evaluation
+    and of the one before it; ``flop_ns`` int64[f] are their times. ``kept`` are the summaries of
+    the TPC; ``own`` bool[n] is False for evaluations that a summary counts.
     """
 
     comparison: Comparison
@@ -51,7 +51,7 @@ class Track:
         return evaluate(self.tree, float(value))
 
     def turned(self, threshold: float, rows: slice | Int64s = _ALL) -> Bools:
-        """bool[rows]: whether the outcome would be another with ``threshold``."""
+        """bool[rows]: whether the outcome would differ with ``threshold``."""
         relation = self.comparison.relation
         if relation == "flag":
             return np.asarray(self._flag(rows, threshold) != self.res[rows], dtype=np.bool_)
@@ -60,7 +60,7 @@ class Track:
         return np.asarray(before != outcomes(relation, cmp, threshold), dtype=np.bool_)
 
     def _flag(self, rows: slice | Int64s, threshold: float) -> Bools:
-        """Outcomes of a flag; of a switch those of the log where it had this value."""
+        """Outcomes of a flag; for a switch, those of the log at this value."""
         res = self.res[rows]
         if bool(np.all(self.res == (self.thresh != 0))):
             return np.full(res.shape, threshold != 0)
@@ -70,9 +70,9 @@ class Track:
         return np.full(res.shape, bool(self.res[same][-1]))
 
     def turned_kept(self, rows: Bools, threshold: float) -> tuple[int, int]:
-        """How many evaluations of the summaries ``rows`` would turn: for certain, and at most.
+        """How many evaluations of the summaries ``rows`` would turn: at least, and at most.
 
-        Of one whose evaluations went both ways, before or then, only the ends are known.
+        If the evaluations of a summary go both ways, only the extremes are known.
         """
         kept = self.kept.take(rows & (self.kept.count > self.kept.odd))
         if not len(kept):
@@ -90,15 +90,15 @@ class Track:
         sure = all_before & all_after
         turned = before[0] != after[0]
         whole = np.where(sure & turned, size, 0)
-        # One end at least turns where only one of the two is mixed.
+        # At least one extreme turns if only one of the two is mixed.
         some = np.where(sure, 0, np.where(all_before | all_after, 1, 0))
         most = np.where(sure, whole, np.where(all_before | all_after, size - 1, size))
         return int((whole + some).sum()), int(most.sum())
 
     def _kept_flags(self, kept: Summaries, value: bool) -> tuple[int, int]:
-        """The same of a flag, whose extremes are two of its values; of a switch nothing is known.
+        """The same for a flag, whose extremes are two of its values; nothing is known of a switch.
 
-        What lies between a negative and a positive value may be 0.
+        Values between a negative and a positive one may be 0.
         """
         every = self.kept
         if np.any(every.res != (every.thresh != 0)) or np.any(self.res != (self.thresh != 0)):
@@ -111,7 +111,7 @@ class Track:
         return int(least.sum()), int(most.sum())
 
     def flop_before(self, mark_ns: int) -> Int64s | None:
-        """int64[2]: the places of the last flop up to a mark; None where there is none."""
+        """int64[2]: the places of the last flop up to a mark; None if there is none."""
         count = int(np.searchsorted(self.flop_ns, mark_ns, side="right"))
         return self.flops[count - 1] if count else None
 
@@ -127,8 +127,8 @@ def tracks_of(
     """The evaluations of all TPCs of a parameter.
 
     Returns:
-        The parameter's name in the source, the tracks of its TPCs that the log has and that can be
-        replayed, and for each that cannot why.
+        The parameter's name in the source, the tracks of its TPCs in the log, and for each TPC that
+        cannot be replayed the reason.
 
     Raises:
         InputError: there is no such parameter, or several.
@@ -168,7 +168,7 @@ def _name_of(static_info: StaticInfo, parameter: str) -> str:
 
 def _track(events: Events, summaries: Summaries, found: Comparison, tree: Tree) -> Track:
     code = events.keys.index(found.key) if found.key in events.keys else -1
-    # The index of all keys is worth its sorting only where it is there already.
+    # Sorting all keys is not worth it for one of them.
     if code >= 0 and "by_key" in vars(events):
         rows = events.by_key.rows(code)
     else:
@@ -195,7 +195,7 @@ def _track(events: Events, summaries: Summaries, found: Comparison, tree: Tree) 
 
 
 def _flops(result: Bools, node: Int64s) -> Int64s:
-    """int64[f, 2]: the evaluation before in the same node, and that of each flop, by the latter."""
+    """int64[f, 2]: each flop's evaluation, behind the one before it in the same node."""
     if not node.size or not np.ptp(node):
         after = np.flatnonzero(result[1:] != result[:-1]) + 1
         return np.stack([after - 1, after], axis=1).astype(np.int64)
@@ -207,7 +207,7 @@ def _flops(result: Bools, node: Int64s) -> Int64s:
 
 
 def _not_in(kept: Summaries, time_ns: Int64s, node: Int64s, nodes: Sequence[str]) -> Bools:
-    """bool[n]: evaluations that no summary of their node has counted."""
+    """bool[n]: evaluations that no summary of their node counts."""
     own = np.ones(time_ns.size, dtype=np.bool_)
     for row in range(len(kept)):
         name = kept.nodes[kept.node[row]]

@@ -28,7 +28,7 @@ def outcomes(relation: str, cmp: Floats, thresh: Floats | float) -> Bools:
 def thresholds_for(relation: str, cmp: float, outcome: bool) -> Intervals:
     """The finite thresholds T with ``(cmp relation T) == outcome``; ``relation`` is no ``flag``.
 
-    NaN is unequal to every threshold, and no order holds of it.
+    NaN is unequal to every threshold, and no order holds for it.
 
     >>> thresholds_for(">=", 3, False)[0].words()
     'above 3'
@@ -54,7 +54,7 @@ def thresholds_for(relation: str, cmp: float, outcome: bool) -> Intervals:
 def thresholds_for_one(relation: str, cmps: Floats, outcome: bool, current: float) -> Intervals:
     """The thresholds with which at least one of ``cmps`` (float64[n], finite) has ``outcome``.
 
-    They are those of an outermost value; of equality those next to ``current``, at most 16.
+    An extreme value decides; for equality up to 16 values next to ``current``.
     """
     if not cmps.size:
         return ()

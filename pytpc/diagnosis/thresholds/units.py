@@ -33,7 +33,7 @@ class NoUnitError(Exception):
 class ParameterUnit:
     """A tree, at the threshold that it gives now.
 
-    ``anchor`` is where to look first for the parameter's value: its default, if there is one.
+    ``anchor`` is the first guess of the parameter's value: its default, if there is one.
     """
 
     tree: Tree
@@ -41,15 +41,15 @@ class ParameterUnit:
     anchor: float | None = None
 
     def forward(self, parameter: float) -> float:
-        """The threshold that a value of the parameter gives; NaN where there is none."""
+        """The threshold that a value of the parameter gives; NaN if there is none."""
         return evaluate(self.tree, parameter)
 
     @cached_property
     def current(self) -> float | None:
-        """The value of the parameter; None where none gives ``threshold``.
+        """The value of the parameter; None if no value gives ``threshold``.
 
-        Of several the anchor, else that next to it, else the smallest one, a positive one first;
-        of those that round to the same threshold the one with the fewest digits.
+        If several values do: the anchor, else the one next to it, else the smallest, positive ones
+        first. If several round to the same threshold: the one with the fewest digits.
         """
         anchor, t = self.anchor, self.threshold
         if self.tree == "x" or not math.isfinite(t):
@@ -82,7 +82,7 @@ def unit_of(comparison: Comparison, unit: LinkUnit | None, threshold: float) -> 
     default = comparison.default
     anchor = None if default is None or isinstance(default, str) else float(default)
     kept = ParameterUnit(kept_as(tree, read_type(comparison, unit)), threshold, anchor)
-    # A float may be read and the sum be done in doubles, or the other way round.
+    # The program may read a float and compute in doubles, or the other way round.
     return kept if kept.current is not None else ParameterUnit(tree, threshold, anchor)
 
 
@@ -106,7 +106,7 @@ def tree_of(comparison: Comparison) -> Tree:
 
 
 def threshold_of(comparison: Comparison, value: float) -> float:
-    """The threshold that a value of the parameter gives; NaN where that is not known."""
+    """The threshold that a value of the parameter gives; NaN if that is not known."""
     try:
         return evaluate(tree_of(comparison), value)
     except (ArithmeticError, ValueError, NoUnitError):
@@ -114,7 +114,7 @@ def threshold_of(comparison: Comparison, value: float) -> float:
 
 
 def read_type(comparison: Comparison, unit: LinkUnit | None) -> str | None:
-    """The C++ type of the read, where the link unit is known."""
+    """The C++ type of the variable that the parameter is read into, if it is known."""
     place = comparison.read_at
     for read in unit.parameters if unit is not None else ():
         if read.name == comparison.source and (
@@ -125,7 +125,7 @@ def read_type(comparison: Comparison, unit: LinkUnit | None) -> str | None:
 
 
 def is_text(comparison: Comparison, unit: LinkUnit | None) -> bool:
-    """Whether the parameter is text, which is logged by its result alone."""
+    """Whether the parameter is text, of which only results are logged."""
     type_ = read_type(comparison, unit) or ""
     return isinstance(comparison.default, str) or type_.startswith("std::")
 
@@ -133,8 +133,8 @@ def is_text(comparison: Comparison, unit: LinkUnit | None) -> bool:
 def is_whole(comparison: Comparison, unit: LinkUnit | None, values: Floats) -> bool:
     """Whether a parameter takes whole numbers only.
 
-    The C++ type of the read decides; where that is not known, a default that is an int together
-    with ``values`` (float64[n], seen of the parameter) that are all whole but for rounding.
+    The C++ type decides. If it is not known: the default is an int, and all ``values`` (float64[n],
+    seen of the parameter) are whole except for rounding.
     """
     type_ = read_type(comparison, unit)
     if type_ in _WHOLE_TYPES:
@@ -153,7 +153,7 @@ def is_unsigned(comparison: Comparison, unit: LinkUnit | None) -> bool:
 
 
 def simplest(interval: Interval) -> float:
-    """The number in an interval that is written with the fewest digits; of several the smallest."""
+    """The number in an interval with the fewest digits; the smallest of several."""
     low, high = interval.first(), interval.last()
     if interval.holds(0.0):
         return 0.0
