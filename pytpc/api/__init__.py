@@ -1,8 +1,8 @@
 """The one door: a verb for each question, for the command line, notebooks and programs.
 
-Every verb takes what another one gave, or the path of it: ``rank("mission.bag", "my_ws")`` is
-``rank(read("mission.bag"), load_static("my_ws"))``. The answers print as tables, are tables in a
-notebook (all texts from the robot escaped), and hold typed objects.
+Every verb takes what another one returned, or its path: ``rank("mission.bag", "my_ws")`` is
+``rank(read("mission.bag"), load_static("my_ws"))``. The answers hold typed objects, print as
+tables, and are tables in a notebook (with all texts from the robot escaped).
 
 ========================  ==================================================
 ``read``, ``load_static``  a mission; what the analysis of its build found
@@ -21,7 +21,7 @@ notebook (all texts from the robot escaped), and hold typed objects.
 ========================  ==================================================
 
 Errors are `pytpc.base.errors.TpcError`: one line that names the file. A name is imported when it
-is asked for, so that importing this costs nothing.
+is first used, so importing this costs nothing.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ _MODULES = {name: f"{__name__}.{module}" for module, names in _PLACES.items() fo
 
 
 def __getattr__(name: str) -> object:
-    """A verb or a type, from the module that has it."""
+    """Import a verb or a type from its module."""
     if name not in _MODULES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     found: object = getattr(import_module(_MODULES[name]), name)

@@ -39,12 +39,12 @@ def analyse(
 
     Args:
         sources: scripts, packages or workspaces.
-        rules: what reads a parameter, and what exposes.
-        max_seconds: what the analysis of one script may take; 0 is no limit.
-        on_progress: called with (scripts done, scripts in all).
+        rules: what reads a parameter, and what counts as exposing.
+        max_seconds: how long the analysis of one script may take; 0 is no limit.
+        on_progress: called with (scripts done, all scripts).
 
     Raises:
-        InputError: there is no Python node, or none that can be analysed.
+        InputError: there is no Python node, or none can be analysed.
     """
     scripts = joined(scripts_at(source, rules, sources) for source in sources)
     if not scripts.entries and not scripts.left_out:
@@ -68,9 +68,9 @@ def collect(
 
     Args:
         sources: workspaces, build bases, build folders or files of static information.
-        rules: those by which the Python nodes of workspaces are analysed; None: they are not.
-        on_scripts: called with (scripts analysed, scripts in all).
-        on_progress: called with (files read, files in all).
+        rules: for the Python nodes of workspaces; None: they are not analysed.
+        on_scripts: called with (scripts analysed, all scripts).
+        on_progress: called with (files read, all files).
 
     Raises:
         InputError: a source cannot be read.

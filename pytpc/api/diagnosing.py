@@ -54,14 +54,12 @@ def diagnose(
     Args:
         mission: the mission with its marks.
         static_info: what the analysis found.
-        question: all settings at once. Without it the declared ranges of parameters are looked for
-            in the sources of the static information, and beside a mission that is given by its
-            path.
+        question: all settings at once. Without it, declared ranges of parameters are read from the
+            sources of the static information, and from the folder of a mission given by its path.
         **settings: in place of ``question``. ``types``: with ``ignore`` the types of the marks do
             not count. ``reference``: a good run of the same build. ``changes``: what was changed
             since the last good run, see `pytpc.values.changes.read_changes` and
-            `pytpc.values.changes.changes_between`. ``top``: for how many suspects there is a value
-            to try.
+            `pytpc.values.changes.changes_between`. ``top``: how many suspects get a value to try.
 
     Raises:
         InputError: the mission has no marks, or something cannot be read.
@@ -78,10 +76,10 @@ def diagnose(
 
 
 def changes_since(before: Path, mission: Path) -> tuple[Change, ...]:
-    """What differs between a params.yaml of earlier and the one in a mission's folder.
+    """What differs between an earlier params.yaml and the one in a mission's folder.
 
     Raises:
-        InputError: one of them is not there or cannot be read.
+        InputError: one of them does not exist or cannot be read.
     """
     folder = mission if mission.is_dir() else mission.parent
     after = folder / PARAMS_FILE
@@ -91,7 +89,7 @@ def changes_since(before: Path, mission: Path) -> tuple[Change, ...]:
 
 
 def is_compared(changes: Sequence[Change], static_info: StaticInfo) -> bool:
-    """Whether one of the changed parameters is compared anywhere: else they say nothing."""
+    """Whether one of the changed parameters is compared anywhere; otherwise changes say nothing."""
     names = Tpcs.of(static_info).names
     return any(same_parameter(one.parameter, name) for one in changes for name in names)
 
@@ -107,11 +105,9 @@ class RankSettings(TypedDict, total=False):
 class Rankings(TableSequence[MarkRanking]):
     """The rankings of one mission, one for each mark, in the order of the marks.
 
-    A sequence of `pytpc.diagnosis.results.suspects.MarkRanking`; ``recording`` and ``static_info``
-    are what was ranked, ``source`` where the mission was read from, if it was ranked by its path:
-    what else is in its folder is in the report then. ``question`` is what it was ranked with, and
-    what is made of it uses it, too. ``table`` has the first suspects of each
-    mark.
+    A sequence of `pytpc.diagnosis.results.suspects.MarkRanking`. ``recording`` and ``static_info``
+    are what was ranked, with the settings of ``question``. ``source`` is the path of the mission if
+    it was ranked by its path; a report shows the rest of its folder, too.
     """
 
     rankings: tuple[MarkRanking, ...]
@@ -134,13 +130,13 @@ class Rankings(TableSequence[MarkRanking]):
 
     @property
     def declared(self) -> Sequence[Declared]:
-        """The declared ranges: those of the question, else those that are found in the sources."""
+        """The declared ranges: those of the question, or else those in the sources."""
         if self.question.declared:
             return self.question.declared
         return find_declared(self.static_info, self.source)
 
     def only(self, parameter: str) -> Rankings:
-        """The same with the one parameter, at the position that it has.
+        """The rankings of one parameter, at its positions.
 
         Raises:
             InputError: no comparison with it is known.
@@ -179,7 +175,7 @@ class Rankings(TableSequence[MarkRanking]):
         ]
 
     def table(self, top: int = PLAIN.top) -> NotebookTable:
-        """The same to look at; a mark at which nothing could be ranked has a row that says so."""
+        """The rows as a table; a mark without a ranking has a row that says why."""
         rows = []
         for number, ranking in enumerate(self.rankings, start=1):
             seconds = (ranking.mark.time_ns - self.recording.start_ns) / 1e9
@@ -215,7 +211,7 @@ def rank(
         static_info: what the analysis found.
         question: all settings at once.
         **settings: in place of ``question``. ``types``: ``believe`` the observer's types, ``doubt``
-            them (the other type's suspects stay rivals) or ``ignore`` them. ``window_s``: the
+            them (suspects of the other type still compete) or ``ignore`` them. ``window_s``: the
             window of type II, in seconds.
 
     Raises:

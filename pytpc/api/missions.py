@@ -48,9 +48,8 @@ def read(source: Recording | Source) -> Recording:
 
 
 def read_named(source: Path, on_progress: Progress | None = None) -> Recording:
-    """A recorded mission; one that is a folder has the name of the folder.
-
-    The bags of all missions have the same name, their folders have not.
+    """A recorded mission; a folder gives it its name, as the bags of all missions have the same
+    name.
 
     Raises:
         InputError: it cannot be read.
@@ -60,7 +59,7 @@ def read_named(source: Path, on_progress: Progress | None = None) -> Recording:
 
 
 def read_marked(mission: Recording | Source) -> Recording:
-    """The mission, which has to have marks.
+    """Read a mission that must have marks.
 
     Raises:
         InputError: it has none, or cannot be read.
@@ -72,24 +71,24 @@ def read_marked(mission: Recording | Source) -> Recording:
 
 
 def check_reports(recording: Recording, static_info: StaticInfo, source: Path) -> None:
-    """See that the recording has a report that the static information knows.
+    """Check that the static information knows at least one report of the recording.
 
-    Without, it would be ranked as if nothing were suspicious.
+    Otherwise the ranking would say that nothing is suspicious.
 
     Raises:
-        InputError: it has none.
+        InputError: it knows none.
     """
     reported = {*recording.events.keys, *recording.summaries.keys}
     if not reported:
         raise InputError(
-            "no threshold reports: was /rosout recorded, and the workspace built with TPC? "
+            "no threshold reports: was /rosout recorded, and the workspace built with TPC?"
             " Files of the sink `file` belong in the same folder, or in its folder tpc",
             source,
         )
     if reported.isdisjoint(static_info.comparisons):
         raise InputError(
-            "none of its reports is in the static information, which is of another build;"
-            " give the static.json of the build that was recorded",
+            "the static information knows none of its reports: it is of another build; give the"
+            " static.json of the build that was recorded",
             source,
         )
 
@@ -117,7 +116,7 @@ def question_of(question: Question | None, settings: Mapping[str, Any]) -> Quest
 
 @dataclass(frozen=True, slots=True)
 class Converted:
-    """What was written: the recording without its events, and how many there are."""
+    """What was written: the recording without its events, and their numbers."""
 
     recording: Recording
     events: int
@@ -140,8 +139,8 @@ def convert(
         output: a folder, or a file: .parquet (the events) or .csv (the thesis's form). Its disk
             needs 35 bytes of temporary space per report.
         tolerance_ns: how far apart in time one report may be in two inputs.
-        on_read: called with (bytes read, bytes in all).
-        on_written: called with (reports written, reports in all).
+        on_read: called with (bytes read, all bytes).
+        on_written: called with (reports written, all reports).
 
     Raises:
         InputError: an input cannot be read.

@@ -1,4 +1,4 @@
-"""Recording a mission: of a launch file, or of the graph that runs."""
+"""Records a mission: of a launch file, or of the running graph."""
 
 from __future__ import annotations
 
@@ -23,7 +23,8 @@ def record_launch(
 ) -> MissionRun:
     """Run a launch file of a built workspace on a ROS graph of its own, and record it.
 
-    What the caller's environment says of sinks (TPC_SINK, TPC_POLICY, ...) holds for all nodes.
+    The settings of sinks in the caller's environment (TPC_SINK, TPC_POLICY, ...) hold for all
+    nodes.
 
     Args:
         workspace: the workspace.
@@ -42,9 +43,9 @@ def record_launch(
 
 
 def sink_settings(env: Mapping[str, str]) -> dict[str, str]:
-    """What ``env`` says of sinks: a mission's nodes get nothing else of the caller's environment.
+    """The settings of sinks in ``env``, all that a mission's nodes get of the caller's environment.
 
-    A relative folder is the caller's: the nodes run elsewhere.
+    A relative folder becomes absolute, as the nodes run elsewhere.
     """
     names = (f"TPC_{name.upper()}" for name in NAMES)
     settings = {name: env[name] for name in names if env.get(name)}

@@ -1,4 +1,4 @@
-"""The report page: missions are diagnosed here, and `pytpc.present.page` shows the answers."""
+"""The report page: diagnoses missions, and lets `pytpc.present.page` show the answers."""
 
 from __future__ import annotations
 
@@ -26,17 +26,17 @@ CARDS = 3
 """Suspects of a mark that are shown with their evidence."""
 
 CARDS_ALONE = Question(top=CARDS)
-"""What a page answers where nothing else is asked."""
+"""The question of a page without settings."""
 
 
 @dataclass(frozen=True)
 class MissionReport:
     """One mission to report on.
 
-    ``rankings`` are ``rank_marks``' answer for ``recording`` and ``static_info``. ``treatment``
-    says what was done to the robot, and ``changed_parameter`` which parameter was changed, where
-    that is known (in a study). ``origins`` are where the values came from. ``question`` is what the
-    marks were ranked with; its ``top`` is how many suspects have a card.
+    ``rankings`` are the answer of ``rank_marks`` for ``recording``, ``static_info`` and
+    ``question``, whose ``top`` is how many suspects have a card. ``treatment`` says what was done
+    to the robot, and ``changed_parameter`` which parameter was changed, if that is known (in a
+    study). ``origins`` are where the values came from.
     """
 
     name: str
@@ -68,9 +68,9 @@ class MissionReport:
 
 
 def report_of(rankings: Rankings, *, top: int = CARDS) -> MissionReport:
-    """A ranked mission for the page, with what its folder says of it.
+    """A ranked mission for the page.
 
-    That is where values came from (origins.json), and what had been done to the robot
+    Its folder says where values came from (origins.json), and what was done to the robot
     (treatment.json).
     """
     source, recording = rankings.source, rankings.recording
@@ -83,7 +83,7 @@ def report_of(rankings: Rankings, *, top: int = CARDS) -> MissionReport:
     )
     if source is None:
         return given
-    # The bags of all missions may have the same name, their folders have not.
+    # The bags of all missions may have the same name, but not their folders.
     name = source.absolute().name if source.is_dir() else recording.name
     done = read_known_change(source)
     return replace(
@@ -98,7 +98,7 @@ def report_of(rankings: Rankings, *, top: int = CARDS) -> MissionReport:
 def write_report(path: Source, *rankings: Rankings, title: str = TITLE) -> Path:
     """Write the report page of one or several missions: one HTML file that opens offline.
 
-    A mission that was ranked by its path is shown with what else is in its folder.
+    For a mission that was ranked by its path, the page shows the rest of its folder, too.
 
     Returns:
         Its path.

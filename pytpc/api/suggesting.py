@@ -40,8 +40,8 @@ class ReplaySettings(TypedDict, total=False):
 class Suggestions:
     """What to try by all marks of a mission, and by those that say the same.
 
-    ``first`` is what all marks say of the first suspect, or of the one parameter that was asked
-    about; it is empty where that is not suspected.
+    ``first`` is the advice of all marks for the first suspect, or for the parameter in question; it
+    is empty if that is not suspected.
     """
 
     together: Blame
@@ -67,15 +67,15 @@ def suggest(
 ) -> Advices:
     """What to do with suspects at a mark, and what it would have changed in the recorded run.
 
-    Of each it has ``remedy``, the value to try by all marks that say the same (as `pytpc suggest`),
-    and ``suggestion``, the smallest change at this mark.
+    For each suspect: ``remedy``, the value to try by all marks that say the same (as in `pytpc
+    suggest`), and ``suggestion``, the smallest change at this mark.
 
     Args:
-        rankings: what ``rank`` gave.
+        rankings: the answer of ``rank``.
         mark: which of them, counted from 1.
         top: how many suspects.
-        declared: the declared ranges of parameters; None: they are looked for in the sources of the
-            static information, and in the mission where it was ranked by its path.
+        declared: the declared ranges of parameters; None: those in the sources of the static
+            information, and in the folder of a mission that was ranked by its path.
 
     Raises:
         IndexError: there is no such mark.
@@ -91,7 +91,7 @@ def suggest(
 
 
 def smallest_changes(rankings: Rankings) -> list[list[Suggested]]:
-    """The first suspects at each mark with the smallest change of each."""
+    """The first suspects at each mark, each with its smallest change."""
     recording, static, question = rankings.recording, rankings.static_info, rankings.question
     return [suggest_each(recording, static, ranking, question) for ranking in rankings]
 
@@ -100,8 +100,8 @@ def suggest_together(rankings: Rankings, parameter: str | None = None) -> Sugges
     """What to try by all marks, and by each group of marks that say the same.
 
     Args:
-        rankings: what ``rank`` gave; its question says for how many suspects, and what is known.
-        parameter: the one that is asked about; None: the first suspects.
+        rankings: the answer of ``rank``; its question says how many suspects, and what is known.
+        parameter: the one in question; None: the first suspects.
 
     Raises:
         InputError: no comparison with the parameter is known.
@@ -125,13 +125,11 @@ def what_if(
     """What another value of a parameter would have changed in a recorded run.
 
     Args:
-        mission: the run.
-        static_info: what the analysis found.
-        parameter: its name as in the source, or as a user gives it.
-        value: in the parameter's own unit.
-        **settings: ``kind``: the type of error that the question is about; None: of each mark its
-            own. ``marks``: those to answer; None: the mission's, of that type or without one.
-            ``window_s``: how long before a mark counts as near to it, in seconds.
+        mission: the run. static_info: what the analysis found. parameter: its name in the source,
+        or on the robot. value: in the parameter's own unit. **settings: ``kind``: the type of
+        error; None: the type of each mark. ``marks``: the marks to
+            answer; None: those of the mission of that type, or without a type. ``window_s``: how
+            long before a mark counts as near to it, in seconds.
 
     Raises:
         InputError: no comparison is with that parameter, or something cannot be read.

@@ -34,8 +34,8 @@ __all__ += ["apply", "apply_live", "is_yaml", "journal", "origins", "plan", "und
 class Place:
     """Where values are looked up: a mission's folder, a launch file or a YAML file.
 
-    ``args`` are a launch file's arguments; ``workspace`` is the built one in which ``$(find ...)``
-    is looked up, None: what is sourced.
+    ``args`` are a launch file's arguments; ``workspace`` is the built workspace that ``$(find
+    ...)`` searches, None: the sourced one.
     """
 
     path: Path
@@ -45,9 +45,9 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class LiveSetting:
-    """A value on the running robot: what was asked, and what it holds now.
+    """A value on the running robot: the change that was asked for, and what the robot holds now.
 
-    ``taken`` is whether the node has it at once; ``entry`` is None after a dry run.
+    ``taken`` says whether the node uses it at once; ``entry`` is None after a dry run.
     """
 
     name: str
@@ -63,10 +63,10 @@ def journal() -> Journal:
 
 
 def origins(place: Place, parameter: str | None = None) -> list[Origin]:
-    """Where the values of all parameters came from, or of the one.
+    """Where the values of all parameters, or of one, came from.
 
     Raises:
-        InputError: nothing is known of it, or the place says nothing of origins.
+        InputError: the parameter is unknown, or the place does not say where values came from.
     """
     found = _target(place)
     return [chosen(found, parameter)] if parameter else list(found.origins.values())
@@ -81,8 +81,8 @@ def plan(
         place: where the value is to be changed.
         parameter: its name, or the end of it.
         value: as typed.
-        add: where no file sets it, add it to the launch file.
-        force: change its type, and what other parameters share with it.
+        add: add it to the launch file if no file sets it.
+        force: allow another type, and changes that affect other parameters, too.
 
     Raises:
         InputError: there is no such parameter, or it cannot be changed there.
@@ -97,10 +97,10 @@ def plan(
 
 
 def apply(change: FileChange, notes: Journal) -> JournalEntry | None:
-    """Write a change; None where the file says so already.
+    """Write a change; None if the file has that value already.
 
     Raises:
-        TpcError: it cannot be written, or not be noted for ``undo``.
+        TpcError: it cannot be written, or cannot be noted for ``undo``.
     """
     return None if change.before == change.after else apply_change(change, notes)
 
@@ -112,7 +112,7 @@ def apply_live(
 
     Raises:
         InputError: there is no such parameter, or several.
-        RunError: the robot does not answer, or does not take it.
+        RunError: the robot does not answer, or refuses the value.
     """
     robot = Robot(uri_of(os.environ))
     name = _full_name(robot, parameter)
@@ -126,13 +126,13 @@ def apply_live(
 def undo(
     notes: Journal, what: str = "", *, dry_run: bool = False, force: bool = False
 ) -> tuple[JournalEntry, FileChange | None]:
-    """Take back a change; the one of a file comes with it.
+    """Take back a change; for one of a file, the change that did so comes with it.
 
     Args:
         notes: where the changes are noted.
         what: a file or a number; empty: the last one.
         dry_run: write nothing.
-        force: also where the robot's value was changed since.
+        force: even if the robot's value was changed since.
 
     Raises:
         InputError: there is no such change.

@@ -1,4 +1,4 @@
-"""A marking session in a terminal: keys in, a few lines out, whatever the terminal can do."""
+"""A marking session in a terminal, even a simple one: keys in, a few lines out."""
 
 from __future__ import annotations
 
@@ -47,23 +47,23 @@ _NAMES = {
     Keys.ControlC: "end",
     Keys.ControlD: "end",
 }
-"""What ``marking.press`` calls a key; all others are characters or nothing."""
+"""What ``marking.press`` calls these keys; other keys are characters, or do nothing."""
 
 
 class MarkedMission(Protocol):
-    """What is marked: a graph, or a clock that goes through a recording."""
+    """What is marked: a graph, or a recording that a clock runs through."""
 
     def now_ns(self) -> int | None:
         """The time that a mark would have now."""
 
     def press(self, key: str) -> bool:
-        """Take a key, if it is for the mission."""
+        """Handle a key; False if it is not for the mission."""
 
     def view(self) -> View:
-        """What is to be shown of it."""
+        """What the screen shows of it."""
 
     def send(self, change: MarkChange) -> str:
-        """Something happened to the marks; what the observer is to be told of it, or nothing."""
+        """Publish a change of the marks; what to tell the observer, or nothing."""
 
     def tick(self) -> None:
         """Called several times a second."""
@@ -73,10 +73,10 @@ class MarkedMission(Protocol):
 
 
 class RecordedMission:
-    """A recording, gone through by a ``Player``."""
+    """A recording that a ``Player`` runs through."""
 
     def __init__(self, title: str, start_ns: int, end_ns: int) -> None:
-        """The clock stands at the beginning."""
+        """The clock stands at ``start_ns``."""
         self._title = title
         self._player = Player.of(start_ns, end_ns)
 
@@ -93,7 +93,7 @@ class RecordedMission:
         return True
 
     def view(self) -> View:
-        """Where the clock is, and of how much."""
+        """Where the clock is, and the length of the recording."""
         player = self._player
         at = clock_text((self.now_ns() or 0) - player.start_ns)
         whole = clock_text(player.end_ns - player.start_ns)
@@ -102,14 +102,14 @@ class RecordedMission:
         return View(self._title, (status,), player.start_ns, self.now_ns(), PLAYER_HELP)
 
     def send(self, change: MarkChange) -> str:
-        """Nobody else is to know."""
+        """Nobody else needs to know."""
         return ""
 
     def tick(self) -> None:
-        """The clock goes by itself."""
+        """Nothing to do: the clock runs by itself."""
 
     def close(self) -> None:
-        """There is nothing to end."""
+        """Nothing to close."""
 
 
 Paint = Callable[[Session, View, int, int, bool], Sequence[Text]]
@@ -132,14 +132,14 @@ def run_marking(
     paint: Paint = paint_marks,
     full: bool = False,
 ) -> Session:
-    """Mark until the observer ends it, or a signal does; the marks are in the file then.
+    """Mark until the observer or a signal ends the session; then the marks are in the file.
 
     Args:
-        session: with the marks of before.
+        session: with earlier marks.
         mission: what is marked.
-        file: where the marks are kept.
+        file: where the marks go.
         paint: makes the screen.
-        full: take the whole screen, and leave what stood there as it was.
+        full: use the whole screen, and restore it afterwards.
 
     Raises:
         RunError: standard input is no terminal.
@@ -173,7 +173,7 @@ def run_marking(
 
 
 def _saved(session: Session, file: MarksFile) -> Session:
-    """The session that says whether all is in the file."""
+    """The session with a word on whether all marks are in the file."""
     wrong = file.flush()
     if wrong:
         return replace(session, said=wrong)
@@ -190,8 +190,8 @@ def _keys() -> Iterator[Callable[[], list[str]]]:
             if not _is_ready(source, _TURN_S):
                 return []
             pressed = source.read_keys()
-            # A lone Escape may be the beginning of an arrow; and a terminal that is gone is always
-            # ready to be read, until the signal comes.
+            # A lone Escape may begin an arrow key. A closed terminal is always ready to be read,
+            # until the signal comes.
             if not pressed:
                 time.sleep(_ESCAPE_S)
                 pressed = source.read_keys() if _is_ready(source) else source.flush_keys()
@@ -218,8 +218,7 @@ def _named(pressed: KeyPress) -> list[str]:
 def _shown(
     console: Console, paint: Paint, *, full: bool
 ) -> Iterator[Callable[[Session, View], None]]:
-    """A function that shows the session: in place, or where that is not possible, line by line
-    what is new."""
+    """A function that shows the session in place, or on simple terminals line by line."""
     if console.is_terminal and not console.is_dumb_terminal:
         utf8 = console.encoding.startswith("utf")
         with Live(console=console, auto_refresh=False, transient=not full, screen=full) as live:

@@ -1,7 +1,7 @@
 """The screen of ``pytpc watch``: takes what to show, returns lines of styled text.
 
-Every line fits its width whatever the robot calls its parameters, and can be read without colours
-and without UTF-8. As the terminal becomes narrower, the least important columns go first.
+Every line fits its width, however long the names of parameters are, and is readable without colours
+and without UTF-8. On narrow terminals the least important columns are left out.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from pytpc.recording.marks import Mark, MarkType
 
 Layout = tuple[MarkType | None, ...]
 LAYOUTS: tuple[Layout, ...] = (("I", "II"), (None,), ("I",), ("II",))
-"""What can stand side by side, in the order of the key that changes it."""
+"""Which tables stand side by side, in the order of the key `v`."""
 
 WATCH_HELP = ("v view", "m marks")
 _SHORT = {"I": "should not have", "II": "should be doing", None: "wrong"}
@@ -29,7 +29,7 @@ _TITLES: dict[MarkType | None, str] = {
     "II": "Type II: what is near its threshold",
     None: "Both types combined",
 }
-# Blue and orange differ for all who see colours; the words say the same.
+# Colour-blind people can tell blue and orange apart; the words say the same.
 _COLOURS: dict[MarkType | None, str] = {"I": "bright_blue", "II": "dark_orange", None: "bold"}
 _GAP = 2
 _NUMBER = 3 + 1
@@ -45,8 +45,8 @@ _LEGEND = "Trend of the window: a low bar is near the threshold, an x is a flop.
 
 
 class WatchOptions(NamedTuple):
-    """What the observer has chosen: which tables, how many rows, which mark is looked back at (None
-    for now), and what the terminal can show."""
+    """The observer's choices: tables, number of rows, the mark to look back at (None: now), and
+    whether the terminal shows UTF-8."""
 
     layout: Layout = LAYOUTS[0]
     top: int = 10
@@ -55,8 +55,8 @@ class WatchOptions(NamedTuple):
 
 
 class Status(NamedTuple):
-    """What has come in: reports, how many in a second (None of a recording), nodes, keys that are
-    not known, what was lost, what came too late to count, and what is wrong (empty where nothing).
+    """What has arrived: reports, reports per second (None for a recording), nodes, unknown keys,
+    lost messages, reports too late to count, and the fault (empty if there is none).
     """
 
     reports: int = 0
@@ -68,7 +68,7 @@ class Status(NamedTuple):
     fault: str = ""
 
     def words(self) -> str:
-        """One line; what is wrong comes first."""
+        """One line; the fault comes first."""
         text = f"{many(self.reports, 'report')} of {many(self.nodes, 'node')}"
         if self.rate is not None:
             text += f", {self.rate:,.0f}/s"
@@ -82,7 +82,7 @@ class Status(NamedTuple):
 
 
 class Panel(NamedTuple):
-    """What is watched, beside the session and the view of `pytpc.recording.marking_session`."""
+    """What to show besides the session and the view of `pytpc.recording.marking_session`."""
 
     look: Look
     kept: Sequence[Kept]
@@ -91,7 +91,7 @@ class Panel(NamedTuple):
 
 
 class _Column(NamedTuple):
-    """``need`` orders what goes first where room is short: the highest."""
+    """A column of a table; the highest ``need`` is left out first where room is short."""
 
     heading: str
     width: int
@@ -125,7 +125,7 @@ def watch_screen(session: Session, view: View, panel: Panel, width: int, height:
     blank = [Text()] * max(0, left - len(more))
     lines = [*head, *body, *more, *blank, *tail, *foot]
     if len(lines) > height:
-        # Where there is hardly any room: what is asked or said matters most.
+        # On a tiny terminal the last line matters most: a question or a message.
         lines = [*lines[: max(0, height - 1)], lines[-1]]
     return [_encodable(line, panel.options.utf8) for line in lines]
 
@@ -156,7 +156,7 @@ def table(look: Look, kind: MarkType | None, width: int, rows: int, *, utf8: boo
 
 
 def _shown_look(panel: Panel) -> tuple[Look, Layout]:
-    """What is looked at, of now or of a mark, and its tables."""
+    """What is shown, of now or of a mark, and its tables."""
     if panel.options.back is None:
         return panel.look, panel.options.layout
     look = panel.kept[panel.options.back].look
@@ -181,7 +181,7 @@ def _evidence(shown: tuple[Look, Layout], width: int) -> list[Text]:
 
 
 def _body(panel: Panel, view: View, width: int, room: int, stacked: bool) -> list[Text]:
-    """The tables, side by side or below one another; of now, or of a mark."""
+    """The tables of now or of a mark, side by side or below one another."""
     options = panel.options
     look, layout = _shown_look(panel)
     lines: list[Text] = []
@@ -236,7 +236,7 @@ def _named(mark: Mark) -> str:
 
 
 def _keys(view: View) -> str:
-    """What the keys do, in few words; what belongs together stays on one line."""
+    """What the keys do, in a few words that do not wrap."""
     marks = [f"{key} {_SHORT[kind]}" for key, kind in zip("123", ("I", "II", None), strict=True)]
     others = ("n note", "u undo", "q quit")
     words = (*marks, *others, *WATCH_HELP, *view.help)
@@ -246,7 +246,7 @@ def _keys(view: View) -> str:
 def _columns(
     kind: MarkType | None, width: int, rows: Sequence[LiveRow]
 ) -> tuple[list[_Column], int]:
-    """The columns that have room, in their order, and how wide the names are."""
+    """The columns that fit, in their order, and the width of the names."""
     longest = max(cell_len(plain(row.suspect.parameter)) for row in rows)
     score = _Column("Score", 6, True, 1, lambda row, _: score_text(row.suspect.score))
     now = _Column("Now", _now_width(rows), False, 2, lambda row, _: _now(row))
@@ -265,7 +265,7 @@ def _columns(
 
 
 def _now(row: LiveRow) -> str:
-    """What is compared now: ``0.0527 > 0.058``."""
+    """The last comparison: ``0.0527 > 0.058``."""
     if row.last is None:
         return ""
     relation = row.suspect.comparison.relation
@@ -273,7 +273,7 @@ def _now(row: LiveRow) -> str:
         return "on" if row.last.result else "off"
     cmp, thresh = row.last.cmp, row.last.thresh
     left, right = f"{cmp:.3g}", f"{thresh:.3g}"
-    # What is not equal must not look so.
+    # Different numbers must not look equal.
     if left == right and cmp != thresh:
         left, right = exact(cmp), exact(thresh)
     return f"{left} {relation} {right}"
@@ -284,7 +284,7 @@ def _now_width(rows: Sequence[LiveRow]) -> int:
 
 
 def score_text(score: float) -> str:
-    """Three digits, as far as six characters go.
+    """A score with three digits, in at most six characters.
 
     >>> score_text(0.06021), score_text(28.16), score_text(1234.5), score_text(2.5e9)
     ('0.0602', '28.2', '1234', '2e+09')
@@ -313,7 +313,7 @@ def ago(seconds: float | None) -> str:
 
 
 def bars(parts: Sequence[TrendPart], utf8: bool) -> str:
-    """How far the value was from its threshold: low bars are near, a cross is a flop.
+    """A bar for each part of the window: a low one is near the threshold, an x is a flop.
 
     >>> parts = [(0.0, False), (1.0, False), (0.3, True), (math.nan, False)]
     >>> bars([TrendPart(*part) for part in parts], True)
@@ -347,7 +347,7 @@ def _fit(text: str, width: int, *, right: bool = False) -> str:
 
 
 def _encodable(line: Text, utf8: bool) -> Text:
-    """Where the terminal has no UTF-8, what is beyond ASCII is a question mark."""
+    """Replace what is not ASCII by question marks if the terminal has no UTF-8."""
     if utf8 or line.plain.isascii():
         return line
     # One character for one character, so that the styles stay where they are.

@@ -69,7 +69,9 @@ def test_errors_are_one_line(files, tmp_path):
     assert not page.exists()
     other = tmp_path / "other.json"
     static_info(comparison(7, "x")).save(other)
-    one_line(run("rank", bag, "--static", other), "none of its reports is in")
+    one_line(
+        run("rank", bag, "--static", other), "the static information knows none of its reports"
+    )
     quiet = tmp_path / "quiet.bag"
     with BagFile(quiet) as writer:
         writer.log(1, "/uav", line(0, 1, 2, 3))

@@ -165,7 +165,7 @@ def test_what_differs_from_a_good_run_is_likelier(files, tmp_path):
         writer.log(1, "/uav", line(7, 0, 1, 2))
     one_line(
         run("rank", bag, "--static", static, "--reference", other),
-        "other.bag: none of its reports is in the static information",
+        "other.bag: the static information knows none of its reports",
     )
 
 
@@ -347,7 +347,10 @@ def test_unknown_keys_are_named_and_the_rest_is_ranked(files, tmp_path):
         "only coverage had been compared up to the mark",
     )
     static_info(comparison(7, "x")).save(other)
-    one_line(run("rank", bag, "--static", other), "m.bag: none of its reports is in the static")
+    one_line(
+        run("rank", bag, "--static", other),
+        "m.bag: the static information knows none of its reports",
+    )
 
 
 def test_the_most_frequent_unknown_keys_are_named(tmp_path):

@@ -185,7 +185,10 @@ def test_another_build_is_told(files, tmp_path):
     static_info(replace(comparison(7, "x"), lineno=3)).save(other)
     result = run("report", folder, "--static", other, "-o", tmp_path / "r.html")
     assert result.exit_code == 1
-    assert "none of its reports is in the static information" in result.stderr
+    assert (
+        "the static information knows none of its reports: it is of another build; give the"
+        " static.json of the build that was recorded"
+    ) in result.stderr
     assert not (tmp_path / "r.html").exists()
 
 
@@ -211,4 +214,6 @@ def test_a_recording_of_summaries_alone(tmp_path):
     assert "Any value below 0.5 would do" in text_of(page)
     result = run("report", tmp_path / "late", "--static", tmp_path / "other.json", "-o", page)
     assert result.exit_code == 1
-    assert "which is of another build" in result.output
+    assert (
+        "the static information knows none of its reports: it is of another build" in result.output
+    )

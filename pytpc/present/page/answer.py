@@ -1,4 +1,4 @@
-"""The first thing on the page: which parameter, up or down, to what value, and why."""
+"""The top of a mission on the page: the verdict, which parameter to change, and to what value."""
 
 from __future__ import annotations
 
@@ -16,10 +16,9 @@ from pytpc.present.page.cards import CardView
 class AnswerView:
     """Marks that name the same first suspect and the same direction, and that suspect's card.
 
-    It leads with the value to try. Of the values of these marks it is the one that answers most of
-    them, and among these the one that changes least elsewhere. ``numbers`` are the marks' numbers
-    from 1, ``marks`` says in words which they are, ``types`` by which scores it comes first there.
-    ``reason`` says why the evidence at these marks is not enough to go by the answer; empty where
+    The card is the one whose value answers the most of these marks, and changes least elsewhere.
+    ``numbers`` are the marks' numbers from 1, ``marks`` are the same in words, ``types`` the scores
+    that put it first there. ``reason`` says why the evidence at these marks is not enough; empty if
     it is.
     """
 
@@ -38,14 +37,13 @@ class AnswerView:
 
 
 def answers(cards: Sequence[Sequence[CardView]], reasons: Sequence[str]) -> list[AnswerView]:
-    """The answers of a mission, the one that most marks give first.
+    """The answers of a mission, beginning with the one that most marks give.
 
-    Nothing is added up over marks: an answer is what one mark says, and how many say the same.
-    Marks at which there is not enough evidence come behind all others, and do not add to them.
+    Marks without enough evidence come last, in groups of their own.
 
     Args:
-        cards: for each mark those of its first suspects, in order; may be empty.
-        reasons: for each mark why there is not enough evidence; empty where there is.
+        cards: the cards of the first suspects of each mark, in order; may be empty.
+        reasons: for each mark why there is not enough evidence; empty if there is.
     """
     groups: dict[tuple[str, str, bool], list[int]] = {}
     for place, first in enumerate(cards):
@@ -89,7 +87,7 @@ def _worth(card: CardView) -> tuple[int, int]:
 
 
 def _copy(card: CardView) -> Markup:
-    """The figure of a card with other ids, for a page has each once."""
+    """The figure of a card with other ids, which must be unique in a page."""
     return Markup(card.plot.replace(f"{card.ident}-", f"{card.ident}a-"))
 
 
@@ -109,7 +107,8 @@ def _marks(numbers: Sequence[int], of: int) -> str:
 
 @dataclass(frozen=True)
 class TogetherView:
-    """The verdict, the value to try of the first suspect, and the next ones with probabilities.
+    """The verdict, the value to try for the first suspect, and the next suspects with
+    probabilities.
 
     ``remedy`` is empty without a suspect or a suggestion. ``notes`` say what limits the verdict.
     """

@@ -49,9 +49,9 @@ class SuspectView:
 
 @dataclass(frozen=True)
 class LeadView:
-    """What the page says to do with a suspect: the value to try, or where there is none why.
+    """What to do with a suspect: the value to try, or the reason why there is none.
 
-    ``smallest`` is the smallest change at this mark in words, where it is another value.
+    ``smallest`` is the smallest change at this mark in words, if it is another value.
     """
 
     direction: str
@@ -92,7 +92,7 @@ class CardView:
 
 
 class PageFigures:
-    """The figures of one mission, as the page's script draws them: cards, and series by TPC."""
+    """The data of one mission's figures for the page's script: cards, and series by TPC."""
 
     def __init__(self, mission: ReportedMission) -> None:
         """None yet."""
@@ -102,7 +102,7 @@ class PageFigures:
         self.cards: dict[str, dict[str, object]] = {}
 
     def add(self, ident: str, key: str, card: dict[str, object]) -> None:
-        """Keep a card's figure, and the evaluations of its TPC where they are not kept yet."""
+        """Add a card's figure, and the evaluations of its TPC if they are new."""
         if key not in self._numbers:
             self._numbers[key] = len(self.series)
             self.series.append(series_of(self._mission.recording, key))
@@ -110,7 +110,7 @@ class PageFigures:
 
 
 def row_view(mission: ReportedMission, advice: Advice, *, mixed: bool = False) -> SuspectView:
-    """The row of a suspect; ``mixed`` where the ranking has scores of both types."""
+    """The row of a suspect; ``mixed`` says that the ranking has scores of both types."""
     suspect, suggestion = advice.suspect, advice.suggestion
     found = suspect.comparison
     current = suggestion.current if suggestion.current is not None else suspect.last.thresh
@@ -131,7 +131,7 @@ def row_view(mission: ReportedMission, advice: Advice, *, mixed: bool = False) -
         relation=found.relation,
         type=suspect.type,
         score=f"{suspect.score:.3g}",
-        # Scores of both types in one column are no one order.
+        # Scores of different types in one column cannot be compared.
         scored=suspect.type if mixed else "",
         rank=f"{suspect.rank:.2f}",
         order={

@@ -1,6 +1,6 @@
 """The page with all TPCs of a workspace, by package and file, as one HTML file.
 
-It asks the network for nothing, and can be read without its script, which only filters.
+It needs no network, and is readable without its script, which only filters.
 """
 
 from __future__ import annotations
@@ -78,7 +78,7 @@ def write_catalogue(path: Path, static: StaticInfo, found: Sequence[Details], ti
 
 
 def render(static: StaticInfo, found: Sequence[Details], title: str) -> str:
-    """The page as text. Whatever comes from the sources is escaped."""
+    """The page as text, with everything from the sources escaped."""
     script = page_script("tpcs.js")
     packages = _packages(found)
     return (
@@ -187,7 +187,7 @@ def _code(each: Details) -> list[CodeLine]:
         parts = [line[:start], line[start:end], line[end:]]
         before, inside, behind = (part.decode("utf-8", "replace") for part in parts)
         if number != found.lineno and inside.strip():
-            # Of a condition's further lines the text is marked, and not the indentation.
+            # The indentation of a condition's further lines is not marked.
             blank = len(inside) - len(inside.lstrip())
             before, inside = inside[:blank], inside[blank:]
         code.append(CodeLine(number, before[indent:], inside, behind.rstrip()))

@@ -10,8 +10,8 @@ from importlib.resources import files
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-# Control characters but for tabs and line ends, what turns the direction of text (a name could
-# pass for another), and halves of characters, which no file can have.
+# Control characters except tabs and line ends, characters that turn the direction of text (a name
+# could look like another), and halves of characters, which a file cannot have.
 _UNSEEN = re.compile(
     r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]"
 )
@@ -20,7 +20,7 @@ _PARTS = 2
 
 
 def environment() -> Environment:
-    """An environment in which every text is escaped and seen, and a misspelt name is an error."""
+    """An environment that escapes every text, shows what is unseen, and rejects misspelt names."""
     made = Environment(
         finalize=_seen,
         loader=PackageLoader("pytpc.present.page"),
@@ -35,7 +35,7 @@ def environment() -> Environment:
 
 
 def seen(text: str) -> str:
-    """``text`` with a sign for what cannot be seen."""
+    """``text`` with a sign for each unseen character."""
     return _UNSEEN.sub("\N{REPLACEMENT CHARACTER}", text)
 
 
@@ -50,11 +50,11 @@ def script_hash(script: str) -> str:
 
 
 def _seen(value: object) -> object:
-    """Texts with a sign for what cannot be seen; Markup is ours and stays."""
+    """Make texts visible; Markup is ours and stays."""
     return seen(value) if isinstance(value, str) and not isinstance(value, Markup) else value
 
 
 def _short_path(place: str) -> str:
-    """The last parts of a long path; what stands before them is the same for all of a robot."""
+    """The last parts of a long path; the rest is the same for all files of a robot."""
     parts = place.split("/")
     return place if len(parts) <= _PARTS + 1 else "/".join(["…", *parts[-_PARTS:]])

@@ -43,8 +43,8 @@ def page_text(
 
 @cache
 def _scripts() -> tuple[Markup, ...]:
-    """Bokeh's scripts and ours, in the order in which they run."""
-    # Behind the two stands one that only sets how much is said to the console, and says so there.
+    """Bokeh's scripts and ours, in order."""
+    # A third script only sets the level of the console's log, and logs that.
     bokeh = Resources(mode="inline", components=["bokeh", "bokeh-api"]).js_raw[:2]
     own = [page_script(name) for name in _OWN]
     return tuple(Markup(text) for text in (*bokeh, *own))

@@ -23,7 +23,7 @@ from pytpc.recording.marks import MarkType
 from pytpc.recording.mission import Recording
 
 KEPT = 200_000
-"""The most evaluations of one TPC that are kept; of more, the extremes."""
+"""The most evaluations of one TPC in the page; of more, the extremes are kept."""
 
 FINE = 6000
 """The number of columns of a lane that can be zoomed into."""
@@ -47,7 +47,7 @@ def base64_of(values: npt.NDArray[np.generic]) -> str:
 
 
 def series_of(recording: Recording, key: str) -> dict[str, object]:
-    """All evaluations of one TPC.
+    """The evaluations of one TPC.
 
     Returns:
         ``t`` float32 seconds since the recording began, ``c`` float64 compared values, ``r`` uint8
@@ -102,10 +102,7 @@ def marks_json(marks: Sequence[tuple[float, MarkType | None]]) -> list[Mapping[s
 
 
 def calm(text: str) -> str:
-    """``text`` as it may be drawn: seen, and without what Bokeh takes for a formula.
-
-    For a formula it would ask the network for MathJax.
-    """
+    """``text`` without what Bokeh takes for a formula, for which it would load MathJax."""
     text = seen(text)
     for start in ("$$", "\\[", "\\("):
         text = text.replace(start, f"{start[0]}\N{WORD JOINER}{start[1]}")

@@ -29,7 +29,7 @@ from pytpc.present.page.series import PlotData
 from pytpc.recording.events import Floats
 from pytpc.recording.marks import MarkType
 
-# Stand-ins, none of which matplotlib would write of itself.
+# Stand-ins that matplotlib never writes by itself.
 _COLOURS = {
     "#010101": "ink",
     "#020202": "faint",
@@ -75,7 +75,7 @@ MARK_LINES = {"I": "-", "II": (0, (5, 2)), None: (0, (1, 1.5))}
 class EvidenceStyle:
     """What an evidence plot shows besides the evaluations; times in seconds.
 
-    ``feasible`` are the thresholds that would do, as (low, high), either of which may be infinite.
+    ``feasible`` are the thresholds that would do, as (low, high); either may be infinite.
     """
 
     mark: float
@@ -137,7 +137,7 @@ def _values(axes: Axes, data: PlotData, style: EvidenceStyle) -> None:
         axes.fill_between(
             [begin, max(end, begin + 1e-3)], lowest, highest, color=colour, alpha=0.35, linewidth=1
         )
-    # A parameter keeps its value while nothing compares with it.
+    # A parameter keeps its value while nothing is compared with it.
     known = np.flatnonzero(np.isfinite(data.time))
     around = [*known[:1], *known, *known[-1:]]
     axes.step(
@@ -197,7 +197,7 @@ def _dots(axes: Axes, data: PlotData, values: Floats, colour: str) -> None:
 
 
 def _drawable(values: Floats) -> Floats:
-    """NaN where there is no point to draw; matplotlib cannot subtract the largest doubles."""
+    """Drawable values: finite, and small enough for matplotlib to subtract."""
     return np.clip(np.where(np.isfinite(values), values, np.nan), -_LARGEST, _LARGEST)
 
 
@@ -214,8 +214,8 @@ def value_span(data: PlotData, style: EvidenceStyle) -> tuple[float, float, bool
 def _span(values: Floats, limits: Floats) -> tuple[float, float, bool]:
     """Lowest and highest of the axis, and whether values lie beyond them.
 
-    A single outlier (a distance that starts as the largest double) must not flatten all others:
-    where the middle 96 % and the threshold fill less than a fiftieth, they are shown.
+    A single outlier (a distance that starts as the largest double) must not flatten all others: if
+    the middle 96 % and the threshold fill less than a fiftieth, only they are shown.
     """
     everything = np.concatenate([values, limits])
     everything = everything[np.isfinite(everything)]
@@ -235,7 +235,7 @@ def _span(values: Floats, limits: Floats) -> tuple[float, float, bool]:
 
 
 def _name_mark(axes: Axes, data: PlotData, style: EvidenceStyle) -> None:
-    """Beside the line of the mark, on the side that has room."""
+    """Name the mark beside its line, on the side with room."""
     right = style.mark - data.begin < 0.85 * (data.end - data.begin)
     axes.annotate(
         f"mark, type {style.mark_type}" if style.mark_type else "mark",
@@ -257,7 +257,7 @@ def _outcomes(axes: Axes, data: PlotData) -> None:
             time, 0, level, step="post", color=COLOUR["value"], alpha=0.3, linewidth=0
         )
         axes.step(time, level, where="post", color=COLOUR["value"], linewidth=1.2)
-        # What came out last still stands, but was not evaluated again.
+        # The last result still holds, but was not evaluated again.
         axes.plot(
             [data.ends, data.end], level[-2:], color=COLOUR["value"], linewidth=1.2, linestyle=":"
         )
@@ -273,9 +273,9 @@ def shortened(text: str, most: int) -> str:
 
 @contextmanager
 def drawing(size: float) -> Iterator[None]:
-    """Our settings, with text of ``size`` points: the wider figure is shown less enlarged."""
+    """Our settings, with text of ``size`` points."""
     with mpl.rc_context({**_STYLE, "font.size": size}), warnings.catch_warnings():
-        # The page's own font draws the text, so that it does not matter what matplotlib's lacks.
+        # The page's own font draws the text; glyphs that matplotlib's font lacks do not matter.
         warnings.filterwarnings("ignore", message="Glyph")
         yield
 

@@ -31,11 +31,10 @@ _HOLD_PERIODS = 3.0
 class PlotData:
     """The evaluations of one TPC around a mark; times are seconds since the recording began.
 
-    ``time``, ``cmp`` and ``thresh`` are float64[n], n at most ``POINTS`` and the gaps: where the
-    TPC was not evaluated for a while stands a NaN. ``steps`` float64[k] and ``outcome`` bool[k]
-    are the times at which the result began to be what it is, ``evaluations`` the number of
-    evaluations that they stand for, and ``ends`` when those end. ``kept`` float64[4, k] are the
-    summaries, as `kept_of` has them.
+    ``time``, ``cmp`` and ``thresh`` are float64[n], at most ``POINTS`` and the gaps: a NaN stands
+    where the TPC was not evaluated for a while. ``steps`` float64[k] and ``outcome`` bool[k] are
+    the changes of the result, among ``evaluations`` evaluations until ``ends``. ``kept``
+    float64[4, k] are the summaries, see `kept_of`.
     """
 
     time: Floats
@@ -54,7 +53,7 @@ class PlotData:
 def kept_of(summaries: Summaries, key: str, start_ns: int) -> Floats:
     """float64[4, k]: begin and end of each summary of a TPC, lowest and highest compared value.
 
-    Times are seconds since the recording began; what had no finite value is left out.
+    Times are seconds since the recording began; summaries without finite values are left out.
     """
     code = summaries.keys.index(key) if key in summaries.keys else -1
     own = summaries.take(summaries.key == code)
@@ -119,7 +118,7 @@ def thin(time: Floats, values: Floats, most: int) -> Int64s:
     span = np.minimum(((time - time[0]) / width * spans).astype(np.int64), spans - 1)
     first = np.flatnonzero(np.concatenate([[True], span[1:] != span[:-1]]))
     last = np.append(first[1:], n) - 1
-    # NaN is neither lowest nor highest, so that it does not hide the extremes of its span.
+    # NaN must not hide the extremes of its span.
     unknown = np.isnan(values)
     low = np.lexsort((np.where(unknown, np.inf, values), span))[first]
     high = np.lexsort((np.where(unknown, -np.inf, values), span))[last]
@@ -127,23 +126,23 @@ def thin(time: Floats, values: Floats, most: int) -> Int64s:
 
 
 def with_gaps(time: Floats, *columns: Floats) -> list[Floats]:
-    """The columns with a NaN put in wherever the next point is long after the one before."""
+    """The columns with a NaN wherever a point comes long after the one before."""
     gap = np.flatnonzero(np.diff(time) > gap_after(time)) + 1
     return [np.insert(column, gap, np.nan) for column in (time, *columns)]
 
 
 def gap_after(time: Floats) -> float:
-    """Seconds between two evaluations after which the second does not go on from the first."""
+    """Seconds without an evaluation after which a line is interrupted."""
     steps = np.diff(time)
     return max(_GAP_S, _GAP_FACTOR * float(np.median(steps))) if steps.size else _GAP_S
 
 
 def lane(recording: Recording, key: str, bins: int = BINS) -> npt.NDArray[np.int8]:
-    """int8[bins]: what the TPC ``key`` gave in each of equal spans of the mission.
+    """int8[bins]: the results of the TPC ``key`` in equal spans of the mission.
 
     A result holds until the next one, if that comes within 2 s and three usual periods of the TPC:
-    a slow one is not a row of dots, and a pause stays a pause. A summary with flops is both in all
-    of its period.
+    a slow TPC is not a row of dots, and a pause stays a pause. A summary with flops counts as both
+    results in all of its period.
     """
     events, summaries = recording.events, recording.summaries
     start_ns, end_ns = recording.start_ns, recording.end_ns

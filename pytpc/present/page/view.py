@@ -1,7 +1,7 @@
 """What the report page says, as plain texts and numbers, before any HTML.
 
 ``mission_view`` turns a ``ReportedMission`` into what the template prints. It also draws the
-figures, which takes most of the time; ``on_figure`` is called after each.
+figures, which takes most of the time, and calls ``on_figure`` after each.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from pytpc.present.page.timeline import timeline
 from pytpc.recording.marks import MarkType
 
 ROWS = 8
-"""Suspects of a mark that are listed at first; the others are when asked for."""
+"""How many suspects of a mark are listed before the reader asks for more."""
 
 
 WHAT: dict[MarkType | None, str] = {
@@ -81,7 +81,7 @@ class MissionView:
 def mission_view(
     mission: ReportedMission, number: int, on_figure: Callable[[], None]
 ) -> MissionView:
-    """All that the page says about a mission; ``number`` keeps its ids apart from the others'."""
+    """All that the page says about a mission; ``number`` makes its ids unique."""
     ident = f"m{number}"
     recording = mission.recording
     kinds = [mark.type for mark in recording.marks]
