@@ -52,7 +52,7 @@ def offer_parameters(
 
 
 def parameter_names(sources: Iterable[Path]) -> list[str]:
-    """The names of the first source that has any, sorted. Fast: nothing is checked but its form."""
+    """The sorted names in the first source that has any; read without checks, to be fast."""
     for source in sources:
         for path in (source, source / OWN_FOLDER / MERGED_FILE, source / MERGED_FILE):
             names = _names_in(path)
@@ -62,13 +62,13 @@ def parameter_names(sources: Iterable[Path]) -> list[str]:
 
 
 def _sources(ctx: click.Context) -> list[Path]:
-    """Where the static information may be, the likeliest first."""
+    """Where the static information may be, the likeliest place first."""
     static = ctx.params.get("static_source")
     found = [Path(static)] if static else []
     for value in ctx.params.values():
         values = value if isinstance(value, tuple) else (value,)
         found += [Path(one) for one in values if isinstance(one, str | os.PathLike)]
-    # Behind an option that still wants its value click has not read the arguments.
+    # While the value of an option is typed, click has not read the arguments behind it.
     found += [Path(word) for word in split_arg_string(os.environ.get("COMP_WORDS", ""))[2:]]
     return [*found, Path()]
 

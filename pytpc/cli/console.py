@@ -1,4 +1,4 @@
-"""What several commands print alike: tables, progress, warnings."""
+"""Tables, progress and warnings, as all commands print them."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ from pytpc.static.static_info import StaticInfo
 
 Advance = Callable[[int, int], None]
 
-# Piped output has no width of its own; at the usual 80 columns a table would be folded to shreds.
+# Piped output has no width, and 80 columns are too few for a table.
 _PIPED_WIDTH = 160
 _SILENT_S = 2.0
 
 
 def console() -> Console:
-    """Where tables are printed."""
+    """The console for tables."""
     return Console(width=None if sys.stdout.isatty() else _PIPED_WIDTH)
 
 
@@ -58,7 +58,7 @@ def warn(text: str) -> None:
 
 @contextmanager
 def progress(what: str) -> Iterator[Advance]:
-    """Show how far something is once it has taken two seconds: a bar, or lines where piped."""
+    """Show progress after two seconds: a bar, or lines if the output is piped."""
     console = Console(stderr=True)
     bar = Progress(console=console, transient=True)
     task = bar.add_task(escape(plain(what)), total=None)
@@ -107,7 +107,7 @@ def warn_of_failed(static: StaticInfo) -> None:
 
 
 def found_text(static: StaticInfo) -> str:
-    """How many comparisons with parameters there are, in words; one place is one comparison."""
+    """How many comparisons with parameters there are; each place counts once."""
     count = sum(1 for tpc in static.tpcs if tpc.type != "constant")
     keys = len(static.thresholds)
     with_keys = f" ({many(keys, 'key')})" if keys != count else ""

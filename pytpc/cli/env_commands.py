@@ -1,4 +1,4 @@
-"""The command for one's own shell: ``env``."""
+"""The command ``env``, for your own shell."""
 
 from __future__ import annotations
 
@@ -59,11 +59,11 @@ def _on(source: Path | None, before: dict[str, str], *, setup: bool) -> dict[str
 
 
 def static_file(source: Path | None) -> Path:
-    """The file of static information that SOURCE stands for.
+    """The file of static information that SOURCE names.
 
     Raises:
         InputError: there is no such file or folder.
-        WorkspaceError: the folder has none; the message has the command that makes it.
+        WorkspaceError: the folder has none; the message says how to make it.
     """
     here = Path(MERGED_FILE)
     if source is None:

@@ -122,7 +122,7 @@ def _print_way(console: Console, found: FoundComparison) -> None:
 
 def _cells(step: PathStep) -> tuple[Text, Text, Text]:
     what = Text(plain(step.what))
-    # What a function returns at its closing brace has no line worth showing.
+    # The line of a closing brace is not worth showing.
     if step.source_code and step.source_code.strip("}; "):
         what.append("\n    " + plain(step.source_code), style="dim")
     place = Text(plain(where(step)) if step.file else "")
@@ -131,7 +131,7 @@ def _cells(step: PathStep) -> tuple[Text, Text, Text]:
 
 
 def print_why_not(console: Console, explanation: Explanation) -> None:
-    """Say what became of a parameter that no reported comparison is about."""
+    """Say why no comparison of a parameter is reported."""
     for unit, read in explanation.reads:
         text = Text(plain(read.name), style="bold")
         text.append(
@@ -180,7 +180,7 @@ def _plain_table(columns: int) -> Table:
 
 
 def _spots_summary(static: StaticInfo) -> str:
-    """How many there are of each kind, and what is only counted."""
+    """The number of blind spots of each kind, and of those that are not listed."""
     listed = Counter(spot.kind for unit in static.units for spot in unit.blind_spots)
     total = sum(unit.counts.blind_spots for unit in static.units)
     kinds = ", ".join(f"{count} {_KINDS.get(kind, kind)}" for kind, count in listed.items())

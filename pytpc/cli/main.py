@@ -11,8 +11,8 @@ from click.shell_completion import CompletionItem
 from pytpc.base.errors import TpcError
 
 INTERRUPTED = 130
-# Where each command is and what the list of commands says of it: what draws, builds or reads bags
-# takes a second to import, which asking for help, or another command, must not wait for.
+# The module and the summary of each command. Modules that draw, build or read bags take a second to
+# import; neither the help nor another command should wait for that.
 SUMMARIES = {
     "analyse": ("python_commands", "Find the comparisons of Python nodes."),
     "apply": ("value_commands", "Change a value in the file that set it, or on the robot."),
@@ -42,7 +42,7 @@ SUMMARIES = {
     "watch": ("watch_commands", "Show the suspected parameters while the robot runs; mark."),
 }
 RENAMED = {"ingest": "convert"}
-"""Old names of commands, and the new ones."""
+"""Old and new names of commands."""
 
 _EVALUATION = frozenset({"stats", "study", "survey"})
 
@@ -51,10 +51,10 @@ _EVALUATION = frozenset({"stats", "study", "survey"})
 def summaries() -> dict[str, tuple[str, str]]:
     """Module and summary of each command, ours and those of other packages, by name.
 
-    A package adds commands by an entry point of the group ``pytpc.commands``: a dictionary as this
-    one. What cannot be loaded is warned of: the other commands are still wanted.
+    A package adds commands by an entry point of the group ``pytpc.commands``, a dictionary like
+    ``SUMMARIES``. One that cannot be loaded is warned of, and the others still work.
     """
-    # It takes as long to import as all the rest here, and most commands do without.
+    # Its import takes as long as the rest of this module, and most commands do without it.
     from importlib.metadata import entry_points  # noqa: PLC0415
 
     found = {name: (f"pytpc.cli.{module}", text) for name, (module, text) in SUMMARIES.items()}
@@ -77,7 +77,7 @@ def summaries() -> dict[str, tuple[str, str]]:
 class _Commands(click.Group):
     """A group that ends with status 1 and one line after an error, 130 when interrupted.
 
-    A command is imported when it is asked for.
+    A command is imported when it is used.
     """
 
     def list_commands(self, ctx: click.Context) -> list[str]:
@@ -87,7 +87,7 @@ class _Commands(click.Group):
         if cmd_name in RENAMED and not ctx.resilient_parsing:
             ctx.fail(f"{cmd_name} is now called {RENAMED[cmd_name]}: pytpc {RENAMED[cmd_name]}")
         if cmd_name in SUMMARIES:
-            # Asking what is installed takes longer than many a command.
+            # Looking for installed packages takes longer than many commands.
             module = f"pytpc.cli.{SUMMARIES[cmd_name][0]}"
         elif cmd_name in summaries():
             module = summaries()[cmd_name][0]
@@ -102,7 +102,7 @@ class _Commands(click.Group):
         return next(command for command in commands if command.name == cmd_name)
 
     def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
-        """The commands that begin so; none is imported for it."""
+        """The commands that begin like this, without importing them."""
         found = [
             CompletionItem(name, help=summary)
             for name, (_, summary) in summaries().items()

@@ -42,7 +42,7 @@ from pytpc.ros.marking import GraphMarks
 from pytpc.ros.ros1.master import uri_of
 
 _NAMESPACE = re.compile(r"[A-Za-z]\w*(/[A-Za-z]\w*)*", re.ASCII)
-"""What ROS takes where ROS_MASTER_URI is not set."""
+"""A namespace as ROS allows it."""
 
 OBSERVER = click.option(
     "--observer",
@@ -77,17 +77,17 @@ def mark_command(*, bag: Path | None, observer: str, output: Path | None) -> Non
 
 
 def check_observer(observer: str) -> None:
-    """See that an observer's name can be one.
+    """Check that an observer's name is a ROS namespace.
 
     Raises:
-        BadParameter: it is no namespace of ROS.
+        BadParameter: it is not.
     """
     if observer and not _NAMESPACE.fullmatch(observer):
         raise click.BadParameter(f"{observer!r} is not a ROS namespace", param_hint="--observer")
 
 
 def marks_path(bag: Path | None, observer: str, output: Path | None) -> Path:
-    """Where the marks go: where the user says, beside a recording, or into a new file here."""
+    """The file for the marks: the user's choice, one beside the recording, or a new one here."""
     if output is not None or bag is not None:
         return output or marks_beside(bag or Path())
     who = f"{observer.replace('/', '-')}-" if observer else ""
@@ -114,7 +114,7 @@ def mark_in_terminal(
     paint: Paint = paint_marks,
     full: bool = False,
 ) -> None:
-    """Mark until the observer ends it, and say where the marks are; see `terminal.run`.
+    """Mark until the observer ends the session, and say where the marks are; see `run_marking`.
 
     Raises:
         TpcError: the file cannot be used, or there is no terminal.
@@ -212,7 +212,7 @@ def _mark_to_remove(source: Path, marks: Sequence[Mark], number: int) -> Mark:
     """The mark with that number.
 
     Raises:
-        BadParameter: there is none.
+        BadParameter: there is no such mark.
         InputError: it is in the recording itself.
     """
     if number > len(marks):

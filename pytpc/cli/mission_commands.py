@@ -170,7 +170,7 @@ def _launch_arguments(texts: tuple[str, ...]) -> dict[str, str]:
 
 @contextmanager
 def mission_progress(what: str, unit: str = "s simulated") -> Iterator[Callable[[Progress], None]]:
-    """Show how far a mission is: one moving line on a terminal, a line every 5 s where piped."""
+    """Show a mission's progress: one moving line on a terminal, or a line every 5 s if piped."""
     console = Console(stderr=True)
     status = console.status(what)
     told = time.monotonic()

@@ -1,4 +1,4 @@
-"""Options and readings that the commands about recordings share."""
+"""Options and functions that the commands about recordings share."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from pytpc.static.static_info import StaticInfo
 
 
 class Seconds(click.FloatRange):
-    """A number of seconds; unlike a plain range of click's it does not take "nan"."""
+    """A number of seconds; unlike click's float range it rejects "nan"."""
 
     name = "seconds"
 
     def convert(
         self, value: float, param: click.Parameter | None, ctx: click.Context | None
     ) -> float:
-        """The number, or a usage error."""
+        """Convert the text, or fail with a usage error."""
         seconds = float(super().convert(value, param, ctx))
         if math.isnan(seconds):
             self.fail(f"{value!r} is not a number.", param, ctx)
@@ -77,7 +77,7 @@ _BELIEVED = click.option(
     callback=_types,
     help="How far to believe the types of the marks.",
 )
-# What `--types ignore` was called first.
+# The old name of `--types ignore`.
 _OLDER = click.option(
     "--untyped",
     is_flag=True,
@@ -89,12 +89,12 @@ _OLDER = click.option(
 
 
 def TYPES(command: Command) -> Command:
-    """The option ``--types``, as the argument ``types`` of `rank_marks`."""
+    """Add the option ``--types``; the command gets ``types``."""
     return _BELIEVED(_OLDER(command))
 
 
 def recording_of(source: Path) -> Recording:
-    """Read a recording, with its progress shown.
+    """Read a recording and show the progress.
 
     Raises:
         InputError: it cannot be read.
@@ -104,7 +104,7 @@ def recording_of(source: Path) -> Recording:
 
 
 def check(recording: Recording, static: StaticInfo, source: Path) -> None:
-    """See that a recording is of this build, and warn of what is wrong with it.
+    """Check that a recording is of this build, and warn of its faults.
 
     Raises:
         InputError: it is of another build, or has no report.
@@ -114,13 +114,13 @@ def check(recording: Recording, static: StaticInfo, source: Path) -> None:
 
 
 def warn_about(recording: Recording, static: StaticInfo | None = None) -> None:
-    """A line for each thing that is wrong with a recording, and for what was left out of it."""
+    """Warn of each fault of a recording, in a line."""
     for fault in faults_of(recording, static):
         warn(f"{plain(recording.name)}: {plain(fault)}")
 
 
 def reference_of(source: Path | None, static: StaticInfo) -> Recording | None:
-    """The good run that ``--reference`` names, None without one.
+    """Read the good run that ``--reference`` names, if there is one.
 
     Raises:
         InputError: it cannot be read, or is of another build.
@@ -133,5 +133,5 @@ def reference_of(source: Path | None, static: StaticInfo) -> Recording | None:
 
 
 def warn_plainly(line: str) -> None:
-    """Warn in a line that may have any text in it."""
+    """Warn in a line that may contain any text from a robot."""
     warn(plain(line))

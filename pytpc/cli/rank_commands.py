@@ -1,4 +1,4 @@
-"""The command ``rank``: which parameter is to blame, by all marks and at each."""
+"""The command ``rank``: which parameter is to blame, by all marks and at each mark."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ class _RankArguments:
 
 @dataclass(frozen=True)
 class _Answer:
-    """A mission's answer: of all marks together, and of each with the smallest changes."""
+    """The answer about a mission: of all marks together, and of each mark."""
 
     recording: Recording
     together: Diagnosed | None
@@ -80,7 +80,7 @@ class _Answer:
         print_rankings(console(), self.recording, list(marks))
 
     def as_json(self) -> list[dict[str, object]]:
-        """An object for each mark; what all say together is in each of them."""
+        """An object for each mark; each contains the answer of all marks together."""
         found = self.together
         diagnosis = None if found is None else blame_json(found.blame, found.advice)
         return [
@@ -182,10 +182,10 @@ def _answer(
     question: Question,
     given: _RankArguments,
 ) -> _Answer:
-    """The answer for a mission with marks; what is wrong with it is warned of.
+    """Diagnose a mission with marks, and warn of its faults.
 
     Raises:
-        InputError: none of its reports is known, or what it is compared with is not there.
+        InputError: none of its reports is known, or its params.yaml is missing.
     """
     check(recording, static, source)
     together = None
@@ -195,7 +195,7 @@ def _answer(
             _warn_of(changes, given.before, static)
             question = replace(question, changes=changes)
         together = diagnose(recording, static, question)
-        # Of summaries all marks together say little.
+        # All marks together say little about summaries.
         if not (given.each or given.as_json or len(recording.summaries)):
             return _Answer(recording, together, None)
     rankings = Rankings.of(recording, static, question, source)
@@ -203,7 +203,7 @@ def _answer(
 
 
 def _known(path: Path | None, static: StaticInfo) -> tuple[Change, ...]:
-    """The changes in a file."""
+    """Read the changes in a file."""
     if path is None:
         return ()
     changes = read_changes(path)
@@ -212,21 +212,21 @@ def _known(path: Path | None, static: StaticInfo) -> tuple[Change, ...]:
 
 
 def _warn_of(changes: Sequence[Change], path: Path, static: StaticInfo) -> None:
-    """Warn where no compared parameter was changed: then the changes say nothing."""
+    """Warn if no compared parameter was changed: then the changes say nothing."""
     if not is_compared(changes, static):
         warn(f"{plain(str(path))}: none of the changed parameters is compared anywhere")
 
 
 def _marks_at(recording: Recording, at_s: Sequence[float]) -> tuple[Mark, ...]:
-    """Marks without a type, so many seconds after the begin of the recording."""
+    """Marks without a type at these seconds of the recording."""
     return tuple(Mark(recording.start_ns + round(second * 1e9), None) for second in at_s)
 
 
 def _tell_unmarked(unmarked: Sequence[Path], of: int) -> None:
-    """Recordings without a mark.
+    """Warn of recordings without a mark.
 
     Raises:
-        InputError: none of them has one.
+        InputError: no recording has one.
     """
     what = "no marks: add some with `pytpc mark`, or give a time with --at"
     if len(unmarked) == of:

@@ -1,4 +1,4 @@
-"""The SOURCE arguments of commands, and what they stand for."""
+"""The SOURCE arguments of commands, and the static information they name."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def _is_merged(source: Path) -> bool:
 
 
 def tell_dropped(dropped: Sequence[Stale]) -> None:
-    """A line for each file that was left out; nothing is dropped silently."""
+    """Warn of each file that was left out."""
     for stale in dropped:
         unit = stale.file.unit
         keys = many(len(unit.comparisons), "key")

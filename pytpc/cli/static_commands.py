@@ -1,4 +1,4 @@
-"""Commands about what was found: ``collect``, ``list``, ``show`` and ``export``."""
+"""Commands about static information: ``collect``, ``list``, ``show`` and ``export``."""
 
 from __future__ import annotations
 
@@ -246,7 +246,7 @@ def _details(static: StaticInfo, tpcs: Sequence[Tpc]) -> list[Details]:
 
 
 def _listed(static: StaticInfo, tpc: Tpc) -> dict[str, object]:
-    """The comparison with the nearest exposing statement, and the keys of all."""
+    """A place in the source: its comparison nearest to an exposing statement, and all its keys."""
     unit = static.unit_of(tpc.key)
     return {
         "package": unit.package,
@@ -328,7 +328,7 @@ def _facts(each: Details) -> list[tuple[str, Text]]:
 
 
 def _origin(each: Details) -> str:
-    """Where the text above comes from."""
+    """What kind of condition the text comes from, and where it is."""
     found = each.condition
     if found is None:
         return f"the line alone: {each.note}"

@@ -111,10 +111,10 @@ COMMANDS: list[click.Command] = [suggest_command]
 
 
 def _number(text: str) -> Number:
-    """The value that is given: a whole number, a number, true or false.
+    """The value of ``--value``.
 
     Raises:
-        BadParameter: it is none of these.
+        BadParameter: it is not a finite number, true or false.
     """
     if text.lower() in _TRUTHS:
         return _TRUTHS[text.lower()]
@@ -122,7 +122,7 @@ def _number(text: str) -> Number:
         value = float(text)
     except ValueError as error:
         raise click.BadParameter(
-            f"{text!r} is no number, true or false", param_hint="--value"
+            f"{text!r} is not a number, true or false", param_hint="--value"
         ) from error
     if value - value != 0:
         shown = text if len(text) <= _LONGEST else f"{text[:_LONGEST]}..."
@@ -165,7 +165,7 @@ def _show_suggestions(recording: Recording, static: StaticInfo, given: _SuggestA
 def _show_value(
     recording: Recording, static: StaticInfo, value: Number, given: _SuggestArguments
 ) -> None:
-    """What one value would have changed, for each type of mark that there is."""
+    """Show what one value would have changed, for each type of mark in the recording."""
     assert given.parameter is not None, "--value needs it"
     question = Question(given.types, given.window_s)
     answers = what_if_by_type(recording, static, given.parameter, value, question)

@@ -219,7 +219,7 @@ def _set_live(
 
 
 def _told(change: LiveChange, holds: object, taken: bool) -> str:
-    """Whether the node uses the new value already."""
+    """Say whether the node uses the new value already."""
     if taken:
         if repr(holds) != repr(change.new):
             return f"the node limited it to {shown(holds)} (dynamic_reconfigure)"

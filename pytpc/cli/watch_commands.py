@@ -119,7 +119,7 @@ def watch_command(given: _WatchArguments) -> None:
 
 
 def _opened(recording: Path | None, observer: str, fresh: Watching) -> tuple[MarkedMission, Feed]:
-    """What is marked and what is watched."""
+    """The mission to mark, and the feed to watch."""
     if recording is None:
         master = uri_of(os.environ)
         return GraphMarks(master, observer, what="watching"), GraphFeed(master, fresh)
@@ -128,7 +128,7 @@ def _opened(recording: Path | None, observer: str, fresh: Watching) -> tuple[Mar
 
 
 def _read(source: Path, static: StaticInfo) -> Recording:
-    """A recording, with what is wrong with it said."""
+    """Read a recording and warn of its faults."""
     recording = recording_of(source)
     check(recording, static, source)
     return recording
@@ -142,7 +142,7 @@ def _once(
     *,
     as_json: bool,
 ) -> None:
-    """Listen for a while, or go to a place in the recording; then print what is known."""
+    """Listen for a while, or go to a time in the recording; then print the tables."""
     if recording is not None:
         found = _read(recording, fresh.static_info)
         far = round(seconds * 1e9) if seconds is not None else found.end_ns - found.start_ns

@@ -123,9 +123,9 @@ COMMANDS: list[click.Command] = [patch_command, build_command]
 
 
 class _Progress:
-    """Colcon's output as one moving line on a terminal, and as its own start and end lines else.
+    """Shows colcon's output: one moving line on a terminal, or its start and end lines if piped.
 
-    Behind it stands how many scripts are analysed.
+    After it, shows how many Python scripts are analysed.
     """
 
     def __init__(self) -> None:
@@ -145,7 +145,7 @@ class _Progress:
         self._stack.close()
 
     def show_scripts(self, done: int, total: int) -> None:
-        """Say how many scripts are analysed, when colcon is through."""
+        """Show how many scripts are analysed, after colcon has finished."""
         if self._scripts is None:
             self._status.stop()
             self._scripts = self._stack.enter_context(progress("analysing Python scripts"))

@@ -1,4 +1,4 @@
-"""What is wrong with a recording, in sentences: everything that was left out is named."""
+"""The faults of a recording, in sentences; everything that was left out is named."""
 
 from __future__ import annotations
 
@@ -77,8 +77,8 @@ def unknown_keys(events: Events, static_info: StaticInfo) -> dict[str, int]:
 def two_clocks(recording: Recording) -> Iterator[str]:
     """A sentence for each part of a recording that is more than a day from its other reports.
 
-    The clock of most reports is the one to compare with. Nothing is shifted: what is later than a
-    mark on its clock does not count for it.
+    It is compared with the clock of most reports. Nothing is shifted: reports later than a mark on
+    its clock do not count for it.
     """
     events = recording.events
     if not len(events):
@@ -109,7 +109,7 @@ def two_clocks(recording: Recording) -> Iterator[str]:
 
 
 def _day(time_ns: int) -> str:
-    """The date, or the seconds where they cannot be of the wall's clock."""
+    """The date, or the seconds if they cannot be wall time."""
     if abs(time_ns) < 365 * CLOCKS_APART_NS:
         return f"{time_ns / 1e9:.1f} s"
     return str(np.datetime64(time_ns, "ns").astype("datetime64[D]"))

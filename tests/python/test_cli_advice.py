@@ -139,7 +139,7 @@ def test_without_marks(tmp_path, files):
         (["speed"], 1, "no comparison with a parameter speed is known"),
         (["speed", "--value", "1"], 1, "no comparison with a parameter speed is known"),
         (["--value", "1"], 2, "--value needs a PARAMETER"),
-        (["cover", "--value", "much"], 2, "'much' is no number, true or false"),
+        (["cover", "--value", "much"], 2, "'much' is not a number, true or false"),
         (["cover", "--value", "inf"], 2, "'inf' is not finite"),
         (["cover", "--value", "nan"], 2, "'nan' is not finite"),
         (["cover", "--value", "9" * 400], 2, f"'{'9' * 40}...' is not finite"),
