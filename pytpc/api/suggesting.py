@@ -17,7 +17,7 @@ from pytpc.diagnosis.suggestion.advise import (
     advise,
     advise_blamed,
     join_advice,
-    suggest_each,
+    smallest_changes_at,
     with_remedies,
 )
 from pytpc.diagnosis.suggestion.what_if import what_if as replay
@@ -93,7 +93,7 @@ def suggest(
 def smallest_changes(rankings: Rankings) -> list[list[Suggested]]:
     """The first suspects at each mark, each with its smallest change."""
     recording, static, question = rankings.recording, rankings.static_info, rankings.question
-    return [suggest_each(recording, static, ranking, question) for ranking in rankings]
+    return [smallest_changes_at(recording, static, ranking, question) for ranking in rankings]
 
 
 def suggest_together(rankings: Rankings, parameter: str | None = None) -> Suggestions:

@@ -8,7 +8,7 @@ from dataclasses import replace
 from mission_samples import comparison, events, link_unit, ns
 
 from pytpc.diagnosis.question import Question
-from pytpc.diagnosis.suggestion.suggest import At, suggest
+from pytpc.diagnosis.suggestion.smallest_change import At, smallest_change
 from pytpc.recording.mission import Recording
 from pytpc.recording.summaries import Summaries
 from pytpc.static.static_info import StaticInfo
@@ -28,7 +28,7 @@ def suggested(table, found, at, kind, *, unit=None, summaries=None, declared=Non
     unit = replace(unit or link_unit([]), comparisons=(found,))
     log = Recording("m", table, (), 0, ns(200), summaries=summaries or Summaries.empty())
     question = Question(window_s=window_s).about(declared)
-    return suggest(log, StaticInfo.of([unit]), found, At(ns(at), kind), question)
+    return smallest_change(log, StaticInfo.of([unit]), found, At(ns(at), kind), question)
 
 
 def ask(rows, kind, relation=">", at=100.0, **changes):

@@ -13,7 +13,7 @@ from mission_samples import comparison, events, key, link_unit, ns, static_info
 
 from pytpc.base.errors import InputError
 from pytpc.diagnosis.question import Question
-from pytpc.diagnosis.suggestion.suggest import At, suggest
+from pytpc.diagnosis.suggestion.smallest_change import At, smallest_change
 from pytpc.diagnosis.suggestion.what_if import CLOSED_LOOP, what_if
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
@@ -383,7 +383,7 @@ def test_a_suggestion_answers_its_mark(cmps, relation, kind):
     rows = [(t, 0, compare(cmp, 0.5), cmp, 0.5) for t, cmp in enumerate(cmps)]
     recorded = mission(rows, [Mark(ns(len(cmps)), kind)])
     found = comparison(0, "~limit", relation)
-    said = suggest(recorded, static_info(found), found, At(recorded.marks[0].time_ns, kind))
+    said = smallest_change(recorded, static_info(found), found, At(recorded.marks[0].time_ns, kind))
     if said.value is None:
         assert kind == "I"
         return

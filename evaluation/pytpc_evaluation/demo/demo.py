@@ -18,7 +18,7 @@ from pytpc.api.report import MissionReport
 from pytpc.base.errors import RunError
 from pytpc.diagnosis.ranking.mark_ranking import rank_marks
 from pytpc.diagnosis.results.suspects import MarkRanking
-from pytpc.diagnosis.suggestion.suggest import At, suggest
+from pytpc.diagnosis.suggestion.smallest_change import At, smallest_change
 from pytpc.ingest import Recording, read_bag, save_recording
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import EVENTS_FILE, MARKS_FILE
@@ -196,7 +196,7 @@ def _cells(
     if found is None:
         return [time, kind, f"- of {ranking.parameters}", "0", "", "no" if rightly else ""]
     at = At(mark.time_ns, found.type)
-    advice = suggest(mission.recording, static_info, found.comparison, at)
+    advice = smallest_change(mission.recording, static_info, found.comparison, at)
     first = Text("yes", style="bold green") if found.position == 1 else Text("no")
     return [
         time,

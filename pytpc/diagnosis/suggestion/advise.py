@@ -20,7 +20,7 @@ from pytpc.diagnosis.results.advice import (
 )
 from pytpc.diagnosis.results.suspects import Accused, Blame, MarkRanking, Suspect
 from pytpc.diagnosis.suggestion.remedy import remedy, restored
-from pytpc.diagnosis.suggestion.suggest import At, suggest
+from pytpc.diagnosis.suggestion.smallest_change import At, smallest_change
 from pytpc.diagnosis.suggestion.what_if import what_if
 from pytpc.diagnosis.thresholds.intervals import holds
 from pytpc.recording.declaration import Declared
@@ -56,7 +56,7 @@ def advise(
     ]
 
 
-def suggest_each(
+def smallest_changes_at(
     recording: Recording,
     static_info: StaticInfo,
     ranking: MarkRanking,
@@ -124,7 +124,9 @@ def _suggested(
     """The suggestion for a suspect, and what is declared of its parameter."""
     about = declared_for(question.declared, suspect, static_info.source_path(suspect.key))
     at = At(mark.time_ns, suspect.type)
-    return suggest(recording, static_info, suspect.comparison, at, question.about(about)), about
+    return smallest_change(
+        recording, static_info, suspect.comparison, at, question.about(about)
+    ), about
 
 
 def declared_for(

@@ -31,7 +31,7 @@ from pytpc.diagnosis.question import PLAIN, Question, Source
 from pytpc.diagnosis.results.advice import Basis, Direction, KnownValue, Remedy, Suggestion
 from pytpc.diagnosis.suggestion.choice import choose
 from pytpc.diagnosis.suggestion.lasting import Lasting, lasting
-from pytpc.diagnosis.suggestion.suggest import At, suggest_for_most
+from pytpc.diagnosis.suggestion.smallest_change import At, smallest_change_for_most
 from pytpc.diagnosis.suggestion.suggestion_case import (
     NoneBecauseError,
     SuggestionCase,
@@ -120,7 +120,7 @@ def _by_log(
     name, tracks, without = tracks_of(recording.events, recording.summaries, static_info, parameter)
     reason = "; ".join(without) or "none of its comparisons was evaluated"
     for kind, times_ns in _kinds(marks, tracks, question.window_s):
-        smallest = suggest_for_most(
+        smallest = smallest_change_for_most(
             recording,
             static_info,
             [track.comparison for track in tracks],

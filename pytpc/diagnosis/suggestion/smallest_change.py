@@ -58,7 +58,7 @@ class At(NamedTuple):
     kind: MarkType
 
 
-def suggest(
+def smallest_change(
     recording: Recording,
     static_info: StaticInfo,
     comparison: Comparison,
@@ -95,7 +95,7 @@ def suggest(
         return Suggestion(name, current, None, None, None, False, reason, reason, feasible)
 
 
-def suggest_for_most(
+def smallest_change_for_most(
     recording: Recording,
     static_info: StaticInfo,
     comparisons: Sequence[Comparison],
@@ -109,10 +109,10 @@ def suggest_for_most(
         static_info: what the analysis found.
         comparisons: those of one parameter, at least one.
         marks: at least one.
-        question: as for ``suggest``.
+        question: as for ``smallest_change``.
     """
     found = [
-        (suggest(recording, static_info, comparison, at, question), comparison.key)
+        (smallest_change(recording, static_info, comparison, at, question), comparison.key)
         for comparison in comparisons
         for at in marks
     ]
