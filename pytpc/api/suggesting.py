@@ -157,6 +157,6 @@ def what_if_by_type(
     answers = []
     for kind in kinds:
         marks = [mark for mark in recording.marks if mark.type == kind]
-        asked = question.replayed(kind, marks)
+        asked = replace(question, kind=kind, marks=marks)
         answers.append((kind, replay(recording, static_info, parameter, value, asked)))
     return answers

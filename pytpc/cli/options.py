@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from pathlib import Path
 
 import click
@@ -11,10 +12,21 @@ from pytpc.api.missions import check_reports, read_named
 from pytpc.base.wording import plain
 from pytpc.cli.arguments import PATH, Command
 from pytpc.cli.console import progress, warn
-from pytpc.diagnosis.question import WINDOW_S
+from pytpc.diagnosis.question import WINDOW_S, Types
 from pytpc.recording.faults import faults_of
 from pytpc.recording.mission import Recording
 from pytpc.static.static_info import StaticInfo
+
+
+@dataclass(frozen=True)
+class AskArguments:
+    """The options that all commands about recordings have."""
+
+    static_source: Path
+    types: Types
+    window_s: float
+    top: int
+    as_json: bool
 
 
 class Seconds(click.FloatRange):
@@ -111,6 +123,17 @@ def check(recording: Recording, static: StaticInfo, source: Path) -> None:
     """
     check_reports(recording, static, source)
     warn_about(recording, static)
+
+
+def checked_recording(source: Path, static: StaticInfo) -> Recording:
+    """Read a recording of this build, and warn of its faults.
+
+    Raises:
+        InputError: it cannot be read, is of another build, or has no report.
+    """
+    found = recording_of(source)
+    check(found, static, source)
+    return found
 
 
 def warn_about(recording: Recording, static: StaticInfo | None = None) -> None:

@@ -21,6 +21,7 @@ from pytpc.cli.options import (
     TOP,
     TYPES,
     WINDOW,
+    AskArguments,
     Seconds,
     check,
     recording_of,
@@ -28,7 +29,7 @@ from pytpc.cli.options import (
     warn_plainly,
 )
 from pytpc.cli.sources import static_of
-from pytpc.diagnosis.question import Question, Types
+from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.results.advice import Suggested
 from pytpc.present.answers import Diagnosed
 from pytpc.present.as_json import blame_json, ranking_json
@@ -42,19 +43,14 @@ from pytpc.values.declared_files import read_declared
 
 
 @dataclass(frozen=True)
-class _RankArguments:
+class _RankArguments(AskArguments):
     recordings: tuple[Path, ...]
-    static_source: Path
     score: Literal["tpc", "thesis"]
     each: bool
     reference: Path | None
     changes_file: Path | None
     before: Path | None
-    types: Types
-    window_s: float
-    top: int
     at_s: tuple[float, ...]
-    as_json: bool
 
     def __post_init__(self) -> None:
         known = self.reference or self.changes_file or self.before

@@ -19,25 +19,20 @@ from pytpc.cli.options import (
     STATIC,
     TYPES,
     WINDOW,
-    check,
-    recording_of,
+    AskArguments,
+    checked_recording,
     warn_plainly,
 )
 from pytpc.cli.sources import static_of
-from pytpc.diagnosis.question import Question, Types
+from pytpc.diagnosis.question import Question
 from pytpc.static.static_info import StaticInfo
 
 
 @dataclass(frozen=True)
-class _ReportArguments:
+class _ReportArguments(AskArguments):
     recordings: tuple[Path, ...]
-    static_source: Path
     output: Path
-    types: Types
-    window_s: float
-    top: int
     open_it: bool
-    as_json: bool
 
 
 @click.command("report")
@@ -89,8 +84,7 @@ COMMANDS: list[click.Command] = [report_command]
 
 
 def _mission(source: Path, static: StaticInfo, given: _ReportArguments) -> MissionReport:
-    recording = recording_of(source)
-    check(recording, static, source)
+    recording = checked_recording(source, static)
     declared = find_declared(static, source, warn_plainly)
     question = Question(given.types, given.window_s, declared=declared)
     return report_of(Rankings.of(recording, static, question, source), top=given.top)

@@ -20,13 +20,14 @@ from pytpc.cli.options import (
     TOP,
     TYPES,
     WINDOW,
+    AskArguments,
     check,
     recording_of,
     reference_of,
     warn_plainly,
 )
 from pytpc.cli.sources import static_of
-from pytpc.diagnosis.question import Question, Types
+from pytpc.diagnosis.question import Question
 from pytpc.present.as_json import blame_json, fields_json, group_json
 from pytpc.present.ranking_tables import group_text, together_text
 from pytpc.recording.mission import Recording
@@ -37,17 +38,12 @@ _LONGEST = 40
 
 
 @dataclass(frozen=True)
-class _SuggestArguments:
+class _SuggestArguments(AskArguments):
     recording: Path
     parameter: str | None
-    static_source: Path
     value_text: str | None
     reference: Path | None
     flown: tuple[float, ...]
-    types: Types
-    window_s: float
-    top: int
-    as_json: bool
 
     def __post_init__(self) -> None:
         if self.value_text is not None and self.parameter is None:

@@ -36,36 +36,29 @@ from pytpc.cli.options import (
     STATIC,
     TYPES,
     WINDOW,
-    check,
-    recording_of,
+    AskArguments,
+    checked_recording,
 )
 from pytpc.cli.sources import static_of
-from pytpc.diagnosis.question import Question, Types
+from pytpc.diagnosis.question import Question
 from pytpc.present.as_json import look_json
 from pytpc.present.marking_terminal import MarkedMission
 from pytpc.present.watch_screen import LAYOUTS, WatchOptions, table
 from pytpc.recording.marking_session import clock_text
-from pytpc.recording.mission import Recording
 from pytpc.ros.marking import GraphMarks
 from pytpc.ros.ros1.master import uri_of
-from pytpc.static.static_info import StaticInfo
 
 _ONCE_S = 5.0
 _TURN_S = 0.1
 
 
 @dataclass(frozen=True)
-class _WatchArguments:
+class _WatchArguments(AskArguments):
     recording: Path | None
-    static_source: Path
     observer: str
     output: Path | None
-    window_s: float
-    top: int
-    types: Types
     once: bool
     seconds: float | None
-    as_json: bool
 
 
 @click.command("watch")
@@ -123,15 +116,8 @@ def _opened(recording: Path | None, observer: str, fresh: Watching) -> tuple[Mar
     if recording is None:
         master = uri_of(os.environ)
         return GraphMarks(master, observer, what="watching"), GraphFeed(master, fresh)
-    found = _read(recording, fresh.static_info)
+    found = checked_recording(recording, fresh.static_info)
     return recorded(found, recording), RecordedFeed(found, fresh)
-
-
-def _read(source: Path, static: StaticInfo) -> Recording:
-    """Read a recording and warn of its faults."""
-    recording = recording_of(source)
-    check(recording, static, source)
-    return recording
 
 
 def _once(
@@ -144,7 +130,7 @@ def _once(
 ) -> None:
     """Listen for a while, or go to a time in the recording; then print the tables."""
     if recording is not None:
-        found = _read(recording, fresh.static_info)
+        found = checked_recording(recording, fresh.static_info)
         far = round(seconds * 1e9) if seconds is not None else found.end_ns - found.start_ns
         now_ns = min(found.end_ns, found.start_ns + far)
         feed: Feed = RecordedFeed(found, fresh)

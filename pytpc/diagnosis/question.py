@@ -81,10 +81,6 @@ class Question:
             raise ValueError("more is declared than of one parameter")
         return self.declared[0] if self.declared else None
 
-    def replayed(self, kind: MarkType | None, marks: Sequence[Mark]) -> Question:
-        """The question about a replay at these marks."""
-        return replace(self, kind=kind, marks=marks)
-
 
 PLAIN = Question()
 """The default of every setting."""

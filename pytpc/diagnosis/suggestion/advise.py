@@ -109,7 +109,7 @@ def _advice(
     marks = [one for one in recording.marks if one.type in {suspect.type, None} or one == mark]
     if mark not in marks:
         marks.append(mark)
-    replay = question.replayed(suspect.type, marks)
+    replay = replace(question, kind=suspect.type, marks=marks)
     then = what_if(recording, static_info, suspect.parameter, suggestion.value, replay)
     return Advice(suspect, suggestion, then, about)
 
@@ -232,7 +232,9 @@ def _tried(
     typed = [replace(mark, type=kind) for mark in marks]
     about = question.about(advice.declared)
     found = remedy(recording, static_info, advice.suspect.parameter, typed, about)
-    return found, _replayed(recording, static_info, found, question.replayed(kind, typed))
+    return found, _replayed(
+        recording, static_info, found, replace(question, kind=kind, marks=typed)
+    )
 
 
 def _replayed(
@@ -292,7 +294,7 @@ def advise_blamed(
         value = _as_before(value, question.changes)
         kind = value.kind or accused.type
         typed = [replace(mark, type=kind) for mark in blame.marks]
-        then = _replayed(recording, static_info, value, question.replayed(kind, typed))
+        then = _replayed(recording, static_info, value, replace(question, kind=kind, marks=typed))
         found.append(BlamedAdvice(accused, value, then))
     return found
 
