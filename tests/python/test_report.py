@@ -429,7 +429,7 @@ def test_all_marks_together_come_first(tmp_path):
     report = MissionReport("m", late, static, rank_marks(late, static))
     text = " ".join("".join(Page(written(tmp_path, report)).text).split())
     assert (
-        "The one mark: 1 of type I. Not enough evidence to suspect anybody. "
+        "The one mark: 1 of type I. Not enough evidence to suspect any parameter. "
         "Mark 1: the last report up to the mark is 43.1 s before it." in text
     )
     assert "To try: " not in text
