@@ -101,6 +101,19 @@ class WordTable:
         return table
 
     @classmethod
+    def of_rows(cls, rows: Iterable[object]) -> Self:
+        """A table of objects that have an attribute for each column, key and node as text."""
+        columns: dict[str, list[Any]] = {name: [] for name in cls._kinds}
+        for row in rows:
+            for name, column in columns.items():
+                column.append(getattr(row, name))
+        keys, nodes = sorted(set(columns["key"])), sorted(set(columns["node"]))
+        for name, words in (("key", keys), ("node", nodes)):
+            places = {word: place for place, word in enumerate(words)}
+            columns[name] = [places[word] for word in columns[name]]
+        return cls.of(**columns, keys=keys, nodes=nodes)
+
+    @classmethod
     def empty(cls, keys: Iterable[str] = ()) -> Self:
         """No rows, with the given keys."""
         return cls.of(keys=keys, nodes=(), **{name: [] for name in cls._kinds})

@@ -98,16 +98,6 @@ compiler_wrapper = partial(installed, "bin/tpc-clang++")
 mixin_index = partial(installed, "share/tpc/colcon/index.yaml")
 
 
-def accepting_flags() -> list[str]:
-    """The flags with which clang takes what gcc does, as the installed half adds them.
-
-    Raises:
-        MissingToolError: the installed half is not there.
-    """
-    lines = installed("share/tpc/flags").read_text("utf-8").splitlines()
-    return [line.removeprefix("accept ") for line in lines if line.startswith("accept ")]
-
-
 def search_path() -> str:
     """Folders in which programs are looked for: the system's before those of the caller.
 

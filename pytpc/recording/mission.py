@@ -12,9 +12,9 @@ from pathlib import Path
 
 from pytpc.base.atomic import write_atomic
 from pytpc.base.errors import InputError
-from pytpc.recording.events import Events, read_parquet, write_parquet
+from pytpc.recording.events import Events
 from pytpc.recording.marks import MARK_TYPES, Mark
-from pytpc.recording.summaries import Summaries, read_summaries, write_summaries
+from pytpc.recording.summaries import Summaries
 
 EVENTS_FILE = "events.parquet"
 SUMMARIES_FILE = "summaries.parquet"
@@ -91,9 +91,9 @@ def save_recording(recording: Recording, folder: Path) -> None:
     Raises:
         TpcError: a file cannot be written.
     """
-    write_parquet(recording.events, folder / EVENTS_FILE)
+    recording.events.write(folder / EVENTS_FILE)
     if len(recording.summaries):
-        write_summaries(recording.summaries, folder / SUMMARIES_FILE)
+        recording.summaries.write(folder / SUMMARIES_FILE)
     write_marks(recording, folder, len(recording.events), len(recording.summaries))
 
 
@@ -131,10 +131,10 @@ def load_recording(folder: Path) -> Recording:
     """
     recording, event_count, summary_count = read_marks(folder)
     path = folder / MARKS_FILE
-    events = read_parquet(folder / EVENTS_FILE)
+    events = Events.read(folder / EVENTS_FILE)
     _check_rows(path, event_count, EVENTS_FILE, len(events))
     # A file of summaries that nothing tells of was left there.
-    summaries = read_summaries(folder / SUMMARIES_FILE) if summary_count else Summaries.empty()
+    summaries = Summaries.read(folder / SUMMARIES_FILE) if summary_count else Summaries.empty()
     _check_rows(path, summary_count, SUMMARIES_FILE, len(summaries))
     return replace(recording, events=events, summaries=summaries)
 

@@ -6,15 +6,12 @@ evaluations, those too, are in the summaries. The columns are those of docs/refe
 
 from __future__ import annotations
 
-from array import array
 from dataclasses import dataclass
-from typing import Any
 
-import numpy as np
 import pyarrow as pa
 
 from pytpc.base import columns as tables
-from pytpc.base.columns import Bools, Floats, Int32s, Int64s, sorted_words
+from pytpc.base.columns import Bools, Floats, Int32s, Int64s
 
 _INTEGERS = ("begin_ns", "end_ns", "count", "flops", "far", "odd")
 _BOOLS = ("result", "res")
@@ -95,42 +92,3 @@ class Summaries(tables.WordTable):
     schema = SCHEMA
     order = "begin_ns"
     what = "summaries"
-
-
-class SummaryBuilder:
-    """Collects summaries one at a time."""
-
-    def __init__(self) -> None:
-        """Start with none."""
-        self._columns: dict[str, array[Any]] = {
-            name: array("d" if name in _FLOATS else "b" if name in _BOOLS else "q")
-            for name in SCHEMA.names
-        }
-        self._keys: dict[str, int] = {}
-        self._nodes: dict[str, int] = {}
-
-    def __len__(self) -> int:
-        """How many were added."""
-        return len(self._columns["begin_ns"])
-
-    def add(self, summary: Summary) -> None:
-        """Add one; those that begin at the same time keep the order of the calls."""
-        key = self._keys.setdefault(summary.key, len(self._keys))
-        node = self._nodes.setdefault(summary.node, len(self._nodes))
-        for name, column in self._columns.items():
-            column.append(
-                key if name == "key" else node if name == "node" else getattr(summary, name)
-            )
-
-    def build(self) -> Summaries:
-        """The table; its keys and nodes are sorted, so that they depend on nothing else."""
-        keys, key_places = sorted_words(self._keys)
-        nodes, node_places = sorted_words(self._nodes)
-        columns = {name: np.array(column) for name, column in self._columns.items()}
-        columns["key"] = key_places[columns["key"].astype(np.int64)]
-        columns["node"] = node_places[columns["node"].astype(np.int64)]
-        return Summaries.of(**columns, keys=keys, nodes=nodes)
-
-
-read_summaries = Summaries.read
-write_summaries = Summaries.write

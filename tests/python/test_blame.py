@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 
 import pytest
-from mission_samples import comparison, events, key, ns, static_info
+from mission_samples import SummaryBuilder, comparison, events, key, ns, static_info
 
 from pytpc.base.wording import percent
 from pytpc.diagnosis.question import Question
@@ -16,7 +16,7 @@ from pytpc.diagnosis.suggestion.blamed_advice import advise_blamed
 from pytpc.ingest import Recording
 from pytpc.recording.marks import Mark
 from pytpc.recording.parameter_change import Change
-from pytpc.recording.summaries import Summary, SummaryBuilder
+from pytpc.recording.summaries import Summary
 from pytpc_evaluation.study.case import Case
 from pytpc_evaluation.study.methods import METHODS
 

@@ -9,13 +9,13 @@ from dataclasses import replace
 
 import pytest
 from click.testing import CliRunner
-from mission_samples import BagFile, comparison, events, key, line, ns, static_info
+from mission_samples import BagFile, SummaryBuilder, comparison, events, key, line, ns, static_info
 from report_samples import Page
 
 from pytpc.cli.main import main
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording, save_recording
-from pytpc.recording.summaries import Summary, SummaryBuilder
+from pytpc.recording.summaries import Summary
 from pytpc.values.origins import ORIGINS_FILE, Origin, write_origins
 
 ENOUGH = {"enough": True, "reason": ""}

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mission_samples import comparison, events, key, link_unit, ns, static_info
+from mission_samples import SummaryBuilder, comparison, events, key, link_unit, ns, static_info
 
 from pytpc.base.errors import InputError
 from pytpc.diagnosis.question import Question
@@ -18,7 +18,7 @@ from pytpc.diagnosis.suggestion.suggest import At, suggest
 from pytpc.diagnosis.suggestion.what_if import CLOSED_LOOP, sweep, what_if
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
-from pytpc.recording.summaries import Summaries, Summary, SummaryBuilder
+from pytpc.recording.summaries import Summaries, Summary
 from pytpc.static.static_info import ParameterRead, StaticInfo, Transform
 
 NAN, INF = math.nan, math.inf

@@ -21,7 +21,7 @@ from pytpc.ingest import spool as spool_module
 from pytpc.ingest.gathering import Gathering
 from pytpc.ingest.merged import Merged
 from pytpc.ingest.reading import gather, opened
-from pytpc.recording.events import read_parquet
+from pytpc.recording.events import Events
 
 ROOT = Path(__file__).parents[2]
 
@@ -111,7 +111,7 @@ def test_convert_as_json_to_a_file(mission, tmp_path):
         1,
         "mission",
     )
-    assert read_parquet(out).equals(read(mission).events)
+    assert Events.read(out).equals(read(mission).events)
     assert pq.read_schema(out).names[0] == "time_ns"
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mission_samples import comparison, key, ns, static_info
+from mission_samples import EventBuilder, SummaryBuilder, comparison, key, ns, static_info
 
 from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.mark_ranking import rank_marks
@@ -17,9 +17,9 @@ from pytpc.diagnosis.scores.live_scores import LiveRanking, LiveScores, TooOldEr
 from pytpc.diagnosis.scores.scores import NONE, Before, Formula, type1, type2
 from pytpc.diagnosis.scores.summary_scores import LogTables, type2_of_summaries
 from pytpc.ingest import Recording
-from pytpc.recording.events import EventBuilder, Report
+from pytpc.recording.events import Report
 from pytpc.recording.marks import Mark
-from pytpc.recording.summaries import Summary, SummaryBuilder
+from pytpc.recording.summaries import Summary
 
 NAN, INF = math.nan, math.inf
 KEYS = [key(0), key(1), key(2)]

@@ -3,14 +3,14 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from mission_samples import comparison, events, key, ns, static_info
+from mission_samples import SummaryBuilder, comparison, events, key, ns, static_info
 
 from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.mark_ranking import rank_marks, unknown_keys
 from pytpc.ingest import Recording
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark
-from pytpc.recording.summaries import Summaries, Summary, SummaryBuilder
+from pytpc.recording.summaries import Summaries, Summary
 from pytpc.static.parameters import parameter_name
 from pytpc.static.static_info import Place
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from mission_samples import comparison, events, key, ns, static_info
+from mission_samples import SummaryBuilder, comparison, events, key, ns, static_info
 from report_samples import NASTY, Page, mission, written
 
 from pytpc.api.report import MissionReport, write_missions
@@ -37,7 +37,7 @@ from pytpc.present.page.series import (
 )
 from pytpc.recording.declaration import Declared
 from pytpc.recording.marks import Mark
-from pytpc.recording.summaries import Summary, SummaryBuilder
+from pytpc.recording.summaries import Summary
 from pytpc.values.origins import Origin
 
 NAN = math.nan

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pyarrow as pa
 import pytest
-from mission_samples import events, key, ns
+from mission_samples import SummaryBuilder, events, key, ns
 
 from pytpc.base.errors import InputError
 from pytpc.ingest import Dropped, Recording, load_recording, save_recording
@@ -15,9 +15,6 @@ from pytpc.recording.summaries import (
     SCHEMA,
     Summaries,
     Summary,
-    SummaryBuilder,
-    read_summaries,
-    write_summaries,
 )
 
 
@@ -68,8 +65,8 @@ def test_every_field_comes_back(tmp_path):
                   diff_mean=math.nan, abs_mean=math.nan, low=math.nan, high=math.nan,
                   result=False, res=False)  # fmt: skip
     built = table(summary(1), odd)
-    write_summaries(built, tmp_path / "s.parquet")
-    again = read_summaries(tmp_path / "s.parquet")
+    built.write(tmp_path / "s.parquet")
+    again = Summaries.read(tmp_path / "s.parquet")
     assert again.equals(built)
     assert again.abs_mean[0] == 1 / 3
     assert again.diff_min[0] == -0.25
