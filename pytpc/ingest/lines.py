@@ -9,6 +9,7 @@ import numpy as np
 
 from pytpc.ingest.bulk_lines import LINES, read_lines
 from pytpc.ingest.gathering import Channel, Gathering, ReportColumns
+from pytpc.ingest.losses import LossCounter
 from pytpc.ingest.rosout_line import PREFIX, BatchHead, Drop, Malformed, parse_report, parse_stamped
 from pytpc.recording.events import Report
 from pytpc.recording.mission import Dropped
@@ -123,20 +124,14 @@ class Batches:
     """Keeps track of numbered messages of several lines: what is missing, what was dropped."""
 
     gathering: Gathering
-    next_seq: dict[tuple[str, int], int] = field(default_factory=dict)
+    losses: LossCounter[str] = field(default_factory=LossCounter)
     dropped: dict[tuple[str, int], int] = field(default_factory=dict)
     told: Counter[str] = field(default_factory=Counter)
-    missed: Counter[str] = field(default_factory=Counter)
 
     def see(self, node: str, batch: BatchHead) -> None:
         """Add the first line of a message."""
         process = (node, batch.pid)
-        expected = self.next_seq.get(process)
-        if expected is None:
-            self.missed[node] += batch.seq
-        elif batch.seq > expected:
-            self.gathering.lost[node] += batch.seq - expected
-        self.next_seq[process] = max(expected or 0, batch.seq + batch.count)
+        self.losses.see_batch(node, batch)
         self.dropped[process] = max(self.dropped.get(process, 0), batch.dropped)
 
     def drop(self, node: str, drop: Drop) -> None:
@@ -153,8 +148,8 @@ class Batches:
             if total > self.told[node]:
                 rest = total - self.told[node]
                 self.gathering.add_dropped(Dropped("", node, rest, 0, "unknown"))
-        for node, count in sorted(self.missed.items()):
-            if count:
-                self.gathering.late_notes.append(
-                    f"{count:,} reports of {node} were sent before its first one here"
-                )
+        self.gathering.lost.update(self.losses.lost)
+        self.gathering.late_notes += [
+            f"{count:,} reports of {node} were sent before its first one here"
+            for node, count in sorted(self.losses.missed_before.items())
+        ]

@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass
 
@@ -16,6 +15,7 @@ from pytpc.base.wording import many
 from pytpc.ingest.bag_chunks import ChunkMessages as Chunk
 from pytpc.ingest.gathering import Channel, Gathering, Way
 from pytpc.ingest.lines import Batches, Lines
+from pytpc.ingest.losses import LossCounter
 from pytpc.ingest.ros1 import LogMessage, decode_logs
 from pytpc.ingest.rosout_line import (
     DROPPED_PREFIX,
@@ -87,43 +87,6 @@ class _OtherLine:
     number: int = 0
 
 
-class _Gaps:
-    """Finds gaps in numbered messages; a restarted sender counts from the start.
-
-    One missing number of each that is ``latched`` is no loss: see ``LossCounter.see``.
-    """
-
-    def __init__(self, latched: Set[bytes]) -> None:
-        self._last: dict[bytes, int] = {}
-        self._to_spare = set(latched)
-        self.lost: Counter[bytes] = Counter()
-
-    def see(self, name: bytes, seq: int) -> None:
-        last = self._last.get(name)
-        if last is not None and seq > last + 1:
-            self._step(name, np.array([seq - last]))
-        self._last[name] = seq
-
-    def see_all(self, names: list[bytes], seq: Int64s) -> None:
-        """The same for many messages in order."""
-        codes = {name: code for code, name in enumerate(dict.fromkeys(names))}
-        code_of = np.array([codes[name] for name in names], np.int32)
-        for name, code in codes.items():
-            own = seq[code_of == code]
-            last = self._last.get(name)
-            if last is not None:
-                own = np.concatenate([[last], own])
-            self._step(name, np.diff(own))
-            self._last[name] = int(own[-1])
-
-    def _step(self, name: bytes, steps: Int64s) -> None:
-        missing = int((steps[steps > 1] - 1).sum())
-        if name in self._to_spare and (steps == 2).any():
-            self._to_spare.remove(name)
-            missing -= 1
-        self.lost[name] += missing
-
-
 class Messages:
     """Reads the messages of one source.
 
@@ -150,8 +113,9 @@ class Messages:
         self._decoders = decoders
         self._numbered = numbered
         self._batches = Batches(gathering)
-        self._gaps_of_nodes = _Gaps(latched)
-        self._gaps_of_senders = _Gaps(latched)
+        self._latched = latched
+        self._losses_of_nodes: LossCounter[bytes] = LossCounter()
+        self._losses_of_senders: LossCounter[bytes] = LossCounter()
         self._lines: dict[Way, Lines] = {}
         self._channels: dict[Way, Channel] = {}
         self._nodes: dict[bytes, int] = {}
@@ -183,10 +147,9 @@ class Messages:
         places = zip(logs.node_begin.tolist(), logs.node_end.tolist(), strict=True)
         names = [chunk.data[begin:end] for begin, end in places]
         sent_by = [senders[number] for number in chunk.connection[which].tolist()]
-        self._gaps_of_nodes.see_all(names, logs.seq)
-        self._gaps_of_senders.see_all(
-            [sender or name for sender, name in zip(sent_by, names, strict=True)], logs.seq
-        )
+        self._losses_of_nodes.see_all(names, logs.seq, self._latched)
+        known = [sender or name for sender, name in zip(sent_by, names, strict=True)]
+        self._losses_of_senders.see_all(known, logs.seq, self._latched)
         bag_ns = chunk.time_ns[which]
         self._unstamped.see_all(names, bag_ns)
         codes = {name: self._node(name) for name in set(names)}
@@ -222,8 +185,8 @@ class Messages:
         self._batches.close()
         # Who sends numbers: rosbag play does so anew, in one row for all nodes. But rosbag filter
         # names one sender for all. What is missing in both ways of counting is missing.
-        gaps = min(self._gaps_of_nodes, self._gaps_of_senders, key=lambda one: one.lost.total())
-        for name, count in gaps.lost.items():
+        ways = (self._losses_of_nodes, self._losses_of_senders)
+        for name, count in min(ways, key=lambda one: one.lost.total()).lost.items():
             self._gathering.lost[_plain(name)] += count
         if self._unstamped.count:
             self._gathering.late_notes.append(
@@ -233,8 +196,9 @@ class Messages:
     def _log(self, topic: str, caller: str, time_ns: int, raw: bytes) -> None:
         log = self._decoders.log(raw)
         if topic == ROSOUT and self._numbered:
-            self._gaps_of_nodes.see(log.node, log.seq)
-            self._gaps_of_senders.see(caller.encode() or log.node, log.seq)
+            sender = caller.encode() or log.node
+            self._losses_of_nodes.see(log.node, log.seq, latched=log.node in self._latched)
+            self._losses_of_senders.see(sender, log.seq, latched=sender in self._latched)
         self._text_of(log, topic, time_ns)
 
     def _text_of(self, log: LogMessage, topic: str, time_ns: int) -> None:
