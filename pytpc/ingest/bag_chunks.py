@@ -40,14 +40,14 @@ class BrokenBagError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class BagConnection:
-    """One publisher's topic in the bag; ``type`` in the way of ROS 2 (``std_msgs/msg/String``).
+    """One publisher's topic in the bag; ``msgtype`` as in ROS 2 (``std_msgs/msg/String``).
 
     ``latched``: it sent its last message to each new subscriber.
     """
 
     number: int
     topic: str
-    type: str
+    msgtype: str
     caller: str
     latched: bool
 

@@ -44,7 +44,7 @@ def read_bag(path: Path) -> tuple[list[Declared], list[str]]:
             topics = {
                 number: one.topic
                 for number, one in index.connections.items()
-                if one.type == _TYPE and one.topic.endswith(_TOPIC)
+                if one.msgtype == _TYPE and one.topic.endswith(_TOPIC)
             }
             for chunk in messages(stream, index, topics.keys()) if topics else ():
                 for row, number in enumerate(chunk.connection.tolist()):

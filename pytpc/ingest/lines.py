@@ -10,9 +10,19 @@ import numpy as np
 from pytpc.ingest.bulk_lines import LINES, read_lines
 from pytpc.ingest.gathering import Channel, Gathering, ReportColumns
 from pytpc.ingest.losses import LossCounter
-from pytpc.ingest.rosout_line import PREFIX, BatchHead, Drop, Malformed, parse_report, parse_stamped
+from pytpc.ingest.rosout_line import (
+    PREFIX,
+    BatchHead,
+    Drop,
+    Malformed,
+    parse_other,
+    parse_report,
+    parse_stamped,
+    parse_stamped_other,
+)
 from pytpc.recording.events import Report
 from pytpc.recording.mission import Dropped
+from pytpc.recording.summaries import Summary
 
 
 class Lines:
@@ -23,11 +33,12 @@ class Lines:
     """
 
     def __init__(
-        self, gathering: Gathering, channel: Channel, *, stamped: bool, prefix: str = ""
+        self, batches: Batches, channel: Channel, *, stamped: bool, prefix: str = ""
     ) -> None:
         """``prefix`` stood before what ``add`` gets, and stands there in complaints."""
-        self.gathering = gathering
+        self.gathering = batches.gathering
         self.channel = channel
+        self._batches = batches
         self._stamped = stamped
         self._prefix = prefix
         self._lines: list[bytes] = []
@@ -62,6 +73,17 @@ class Lines:
         self._places += numbers or [0] * len(lines)
         if len(self._lines) >= LINES:
             self.flush()
+
+    def add_other(self, text: str, node: str, time_ns: int = 0, number: int = 0) -> None:
+        """Read a line about a summary or about dropped reports; ``time_ns`` is for complaints."""
+        found = parse_stamped_other(text, node) if self._stamped else parse_other(text, node)
+        if isinstance(found, Summary):
+            self.gathering.add_summary(self.channel, found)
+        elif isinstance(found, Drop):
+            self._batches.drop(node, found)
+        else:
+            what = "no time in front" if found is None else f"{found.what}, column {found.column}"
+            self._skip(what, time_ns, text, number)
 
     def flush(self) -> None:
         """Hand in everything that was added."""
@@ -112,11 +134,15 @@ class Lines:
             self.gathering.add_events(self.channel, self._nodes[number], reports)
             return
         what = "no report" if found is None else f"{found.what}, column {found.column}"
-        if self._places[number]:
-            what = f"line {self._places[number]}: {what}"
-        self.gathering.skip(
-            self.channel.topic, time_ns, what, self._prefix + text, self._turns[number]
-        )
+        text = self._prefix + text
+        self._skip(what, time_ns, text, self._places[number], self._turns[number])
+
+    def _skip(
+        self, what: str, time_ns: int, text: str, number: int, turn: int | None = None
+    ) -> None:
+        if number:
+            what = f"line {number}: {what}"
+        self.gathering.skip(self.channel.topic, time_ns, what, text, turn)
 
 
 @dataclass

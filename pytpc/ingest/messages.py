@@ -7,13 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass
+from typing import Protocol, TypeVar
 
 import numpy as np
 
 from pytpc.base.columns import Bools, Int64s
 from pytpc.base.wording import many
 from pytpc.ingest.bag_chunks import ChunkMessages as Chunk
-from pytpc.ingest.gathering import Channel, Gathering, Way
+from pytpc.ingest.gathering import Gathering, Way
 from pytpc.ingest.lines import Batches, Lines
 from pytpc.ingest.losses import LossCounter
 from pytpc.ingest.ros1 import LogMessage, decode_logs
@@ -21,15 +22,10 @@ from pytpc.ingest.rosout_line import (
     DROPPED_PREFIX,
     PREFIX,
     SUMMARY_PREFIX,
-    Drop,
     Malformed,
     parse_batch,
-    parse_other,
-    parse_stamped_other,
 )
 from pytpc.recording.marks import MarkMessages
-from pytpc.recording.mission import Dropped
-from pytpc.recording.summaries import Summary
 
 ROSOUT = "/rosout"
 ROSOUT_AGG = "/rosout_agg"
@@ -42,6 +38,16 @@ _OTHERS = (SUMMARY_PREFIX.encode(), DROPPED_PREFIX.encode())
 _WITH_TIME = tuple(f",{prefix}".encode() for prefix in (SUMMARY_PREFIX, DROPPED_PREFIX))
 
 
+class _AnyConnection(Protocol):
+    @property
+    def topic(self) -> str: ...
+    @property
+    def msgtype(self) -> str: ...
+
+
+_Connection = TypeVar("_Connection", bound=_AnyConnection)
+
+
 @dataclass(frozen=True, slots=True)
 class Decoders:
     """How the three kinds of messages are read; each raises ValueError where bytes are missing."""
@@ -49,6 +55,33 @@ class Decoders:
     log: Callable[[bytes], LogMessage]
     text: Callable[[bytes], bytes]
     time: Callable[[bytes], int]
+
+
+def wanted(
+    connections: Iterable[_Connection], topics: Mapping[str, Set[str]], times: Set[str]
+) -> tuple[list[_Connection], list[str]]:
+    """The connections that carry reports or marks, and a note for each of another type.
+
+    Args:
+        connections: each with a topic and its type.
+        topics: the types of messages on each topic of reports.
+        times: the types of messages with the time of a mark.
+    """
+    found = []
+    notes = set()
+    for connection in connections:
+        expected = topics.get(connection.topic)
+        of_marks = MarkMessages.message_type(connection.topic)
+        if expected is None and of_marks is not None:
+            expected = times if of_marks == "Time" else topics[REPORTS]
+        if expected is None:
+            continue
+        if connection.msgtype in expected:
+            found.append(connection)
+        else:
+            kinds = " or ".join(sorted(expected))
+            notes.add(f"{connection.topic} carries {connection.msgtype}, not {kinds}: not read")
+    return found, sorted(notes)
 
 
 class _Unstamped:
@@ -73,18 +106,6 @@ class _Unstamped:
     def add(self, node: bytes, time_ns: int) -> None:
         """A record without a stamp of a node that was seen."""
         self.count += time_ns - self._began_ns[node] > _BEGINNING_NS
-
-
-@dataclass(frozen=True, slots=True)
-class _OtherLine:
-    """A summary or a count of what was dropped, as text, and where it stood."""
-
-    way: Way
-    topic: str
-    time_ns: int
-    node: str
-    text: str
-    number: int = 0
 
 
 class Messages:
@@ -117,7 +138,6 @@ class Messages:
         self._losses_of_nodes: LossCounter[bytes] = LossCounter()
         self._losses_of_senders: LossCounter[bytes] = LossCounter()
         self._lines: dict[Way, Lines] = {}
-        self._channels: dict[Way, Channel] = {}
         self._nodes: dict[bytes, int] = {}
         self._unstamped = _Unstamped()
 
@@ -214,9 +234,8 @@ class Messages:
             lines.add(log.msg[len(_PREFIX) :], stamp_ns, self._node(log.node))
         elif log.msg.startswith(_OTHERS) and topic == ROSOUT:
             # What the rosout node passes on is the same once more.
-            node, text = _plain(log.node), _plain(log.msg)
-            line = _OtherLine(way, topic, log.stamp_ns or time_ns, node, text)
-            self._other(line, parse_other(text, node))
+            lines = self._lines_of(way, topic, stamped=False, prefix=PREFIX)
+            lines.add_other(_plain(log.msg), _plain(log.node), log.stamp_ns or time_ns)
 
     def _text(self, caller: str, time_ns: int, text: bytes) -> None:
         """A message on the topic: one line, or several of which the first is numbered."""
@@ -240,28 +259,11 @@ class Messages:
             self._stamped("batch", caller, time_ns, line, number)
 
     def _stamped(self, way: Way, caller: str, time_ns: int, line: bytes, number: int = 0) -> None:
+        lines = self._lines_of(way, REPORTS, stamped=True)
         if _is_other(line):
-            text = _plain(line)
-            other = _OtherLine(way, REPORTS, time_ns, caller, text, number)
-            self._other(other, parse_stamped_other(text, caller))
+            lines.add_other(_plain(line), caller, time_ns, number)
         else:
-            lines = self._lines_of(way, REPORTS, stamped=True)
             lines.add(line, time_ns, self._node(caller.encode()), number)
-
-    def _other(self, line: _OtherLine, found: Summary | Drop | Malformed | None) -> None:
-        if isinstance(found, Summary):
-            self._gathering.add_summary(self._channel(line.way, line.topic), found)
-        elif isinstance(found, Drop) and line.topic == REPORTS:
-            self._batches.drop(line.node, found)
-        elif isinstance(found, Drop):
-            self._gathering.add_dropped(
-                Dropped(found.key, line.node, found.count, found.flops, found.why)
-            )
-        else:
-            what = "no time in front" if found is None else f"{found.what}, column {found.column}"
-            if line.number:
-                what = f"line {line.number}: {what}"
-            self._gathering.skip(line.topic, line.time_ns, what, line.text)
 
     def _mark(self, topic: str, time_ns: int, raw: bytes) -> None:
         if MarkMessages.message_type(topic) == "String":
@@ -277,16 +279,11 @@ class Messages:
             code = self._nodes[name] = self._gathering.nodes.code(_plain(name))
         return code
 
-    def _channel(self, way: Way, topic: str) -> Channel:
-        if way not in self._channels:
-            self._channels[way] = self._gathering.channel(self._source, way, topic)
-        return self._channels[way]
-
     def _lines_of(self, way: Way, topic: str, *, stamped: bool, prefix: str = "") -> Lines:
         lines = self._lines.get(way)
         if lines is None:
-            channel = self._channel(way, topic)
-            lines = Lines(self._gathering, channel, stamped=stamped, prefix=prefix)
+            channel = self._gathering.channel(self._source, way, topic)
+            lines = Lines(self._batches, channel, stamped=stamped, prefix=prefix)
             self._lines[way] = lines
         return lines
 

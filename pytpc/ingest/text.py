@@ -19,14 +19,9 @@ from pytpc.ingest.rosout_line import (
     LATEST_NS,
     PREFIX,
     BatchHead,
-    Drop,
-    Malformed,
     nanoseconds,
     parse_batch,
-    parse_other,
-    parse_stamped_other,
 )
-from pytpc.recording.summaries import Summary
 
 _BLOCK = 1 << 20
 _LONGEST = 1 << 16
@@ -82,9 +77,9 @@ class _Taker:
         self._malformed = gathering.malformed
         self.others = 0
         self.channel = gathering.channel(str(path), "text", path.name)
-        self.lines = Lines(gathering, self.channel, stamped=stamped)
-        self.node = path.stem
         self.batches = Batches(gathering)
+        self.lines = Lines(self.batches, self.channel, stamped=stamped)
+        self.node = path.stem
 
     def take(self, number: int, line: bytes) -> None:
         raise NotImplementedError
@@ -93,19 +88,6 @@ class _Taker:
         """Lines that follow one another; the first has the number ``number``."""
         for at, line in enumerate(lines, start=number):
             self.take(at, line)
-
-    def other(
-        self, found: Summary | Drop | Malformed | None, node: str, number: int, text: str
-    ) -> None:
-        """A line that is no report."""
-        self.others += 1
-        if isinstance(found, Summary):
-            self.gathering.add_summary(self.channel, found)
-        elif isinstance(found, Drop):
-            self.batches.drop(node, found)
-        else:
-            what = "no time in front" if found is None else f"{found.what}, column {found.column}"
-            self.gathering.skip(self.channel.topic, 0, f"line {number}: {what}", text)
 
     def close(self) -> None:
         self.lines.flush()
@@ -146,7 +128,8 @@ class _Log(_Taker):
             code = self.gathering.nodes.code(node)
             self.lines.add(rest[len(_PREFIX) :], self._last_ns, code, number)
         else:
-            self.other(parse_other(_plain(rest), node), node, number, _plain(rest))
+            self.others += 1
+            self.lines.add_other(_plain(rest), node, number=number)
 
     def close(self) -> None:
         super().close()
@@ -172,10 +155,11 @@ class _Csv(_Taker):
             if isinstance(batch, BatchHead):
                 self.batches.see(self.node, batch)
             else:
-                self.other(batch, self.node, number, _plain(line))
+                what = f"line {number}: {batch.what}, column {batch.column}"
+                self.gathering.skip(self.channel.topic, 0, what, _plain(line))
         elif _BEGIN.search(line):
-            text = _plain(line)
-            self.other(parse_stamped_other(text, self.node), self.node, number, text)
+            self.others += 1
+            self.lines.add_other(_plain(line), self.node, number=number)
         else:
             self.lines.add(line, 0, self._code, number)
 
