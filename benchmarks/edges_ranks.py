@@ -18,7 +18,7 @@ from pytpc.base.columns import Floats
 from pytpc.diagnosis.scores.score_tables import Tpcs, parameter_tables, tpc_scores
 from pytpc.diagnosis.scores.scores import NONE
 from pytpc.diagnosis.scores.summary_scores import LogTables
-from pytpc.ingest import read
+from pytpc.ingest.reading import read
 from pytpc.recording.events import Events
 from pytpc.recording.summaries import Summaries, Summary
 from pytpc.static.static_info import read_static

@@ -60,7 +60,7 @@ def go(path):
 READ = """
 from pathlib import Path
 import pyarrow.csv, pyarrow.compute
-from pytpc.ingest import read
+from pytpc.ingest.reading import read
 def go(path):
     return len(read(Path(path)).events)
 """

@@ -8,8 +8,7 @@ import numpy as np
 
 from pytpc.base.errors import InputError
 from pytpc.ingest import ros1
-from pytpc.ingest.bag_chunks import BrokenBagError, messages, read_index
-from pytpc.ingest.bag_damage import describe_damage
+from pytpc.ingest.bag_chunks import BrokenBagError, find_damage, messages, read_index
 from pytpc.ingest.gathering import Gathering, Progress
 from pytpc.ingest.messages import REPORTS, ROSOUT, ROSOUT_AGG, Decoders, Messages, wanted
 
@@ -22,21 +21,14 @@ _DECODERS = Decoders(ros1.decode_log, ros1.decode_string, ros1.decode_time)
 def read_bag_into(path: Path, gathering: Gathering, on_progress: Progress | None = None) -> None:
     """Read a ROS 1 bag.
 
-    Reports come from /rosout, /rosout_agg and /threshold_information. Time is the message's own
-    stamp; where that is 0, the time at which the bag got it. Marks come
-    from the topics of docs/reference/formats.md#marks.
-
-    Args:
-        path: the file.
-        gathering: takes it all.
-        on_progress: called with (bytes read, bytes in all) every now and then.
+    Reports come from /rosout, /rosout_agg and /threshold_information, marks from the topics of
+    docs/reference/formats.md#marks. A message without a stamp gets the time at which it was
+    recorded. ``on_progress`` is called with (bytes read, bytes in all).
 
     Raises:
         InputError: the file is no bag, is truncated, has no index or is damaged; one line with the
             byte, where the file itself tells it.
     """
-    if not path.is_file():
-        raise InputError("no such bag" if not path.exists() else "a folder, not a bag", path)
     try:
         with path.open("rb") as stream:
             index = read_index(stream)
@@ -72,9 +64,10 @@ def read_bag_into(path: Path, gathering: Gathering, on_progress: Progress | None
 
 
 def _broken(path: Path, error: BrokenBagError) -> InputError:
-    """The error for a bag that could not be read; a walk over its records finds the byte."""
+    """The error for a bag that could not be read, with the byte at which it is broken."""
     try:
-        damage = describe_damage(path)
+        with path.open("rb") as stream:
+            damage = find_damage(stream, path.stat().st_size)
     except OSError as failure:
         return InputError(f"cannot be read: {failure.strerror or failure}", path)
     if damage is None:

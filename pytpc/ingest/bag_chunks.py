@@ -105,6 +105,38 @@ def read_index(stream: BinaryIO) -> BagIndex:
     return BagIndex(connections, sorted(chunks), (first, last) if last >= 0 else None, index_pos)
 
 
+def find_damage(stream: BinaryIO, size: int) -> str | None:
+    """What is wrong with a bag of ``size`` bytes, and at which byte; None if nothing is found.
+
+    A walk over the records, which needs no index: the first is the bag header, whose ``index_pos``
+    is 0 until the recorder closes the file.
+    """
+    begin = stream.read(len(MAGIC))
+    if begin != MAGIC:
+        if MAGIC.startswith(begin):
+            return f"truncated: the file ends at byte {size}, within its first line"
+        return f'not a ROS 1 bag: "{MAGIC.decode().strip()}" is not at byte 0'
+    index: int | None = None
+    while (place := stream.tell()) < size:
+        try:
+            header = _read_header(stream)
+            behind = _LENGTH.unpack(_read(stream, 4))[0] + stream.tell()
+        except BrokenBagError:
+            behind = size + 1
+        if behind > size:
+            return f"truncated or damaged: no whole record at byte {place} of {size}"
+        if index is None:
+            index = int.from_bytes(header.partition(b"index_pos=")[2][:8], "little")
+        stream.seek(behind)
+    if index is None:
+        return f"truncated: the file ends at byte {size}, before the bag header"
+    if index == 0:
+        return f"not closed by its recorder: no index after byte {size}"
+    if index >= size:
+        return f"truncated: the file ends at byte {size}, the index should be at byte {index}"
+    return None
+
+
 @dataclass(frozen=True)
 class ChunkMessages:
     """The messages of a chunk, in the order of the file; n of them.

@@ -68,18 +68,6 @@ def read(
     return Merged(gathering, name_of(given), tolerance_ns).recording()
 
 
-def read_bag(path: Path, on_progress: Progress | None = None) -> Recording:
-    """Read one ROS 1 bag; see ``read``.
-
-    Raises:
-        InputError: the file is no bag, is truncated, has no index or is damaged.
-    """
-    gathering = Gathering()
-    read_bag_into(path, gathering, on_progress)
-    gathering.marks += _beside(path)
-    return Merged(gathering, path.stem).recording()
-
-
 @contextmanager
 def opened(
     paths: Sequence[Path],

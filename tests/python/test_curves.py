@@ -12,7 +12,7 @@ from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.mark_ranking import rank_marks
 from pytpc.diagnosis.scores.rank_curves import rank_curves
 from pytpc.diagnosis.scores.scores import NONE
-from pytpc.ingest import Recording
+from pytpc.recording.mission import Recording
 from pytpc.recording.marks import Mark
 
 STATIC = static_info(

@@ -15,7 +15,8 @@ from test_mission import log
 from tpc_file import TpcFile, report, site, sync
 
 from pytpc.base.errors import InputError
-from pytpc.ingest import Dropped, read, save_recording
+from pytpc.ingest.reading import read
+from pytpc.recording.mission import Dropped, save_recording
 from pytpc.ingest.bag import _DECODERS
 from pytpc.ingest.bag_chunks import ChunkMessages as Chunk
 from pytpc.ingest.gathering import Gathering

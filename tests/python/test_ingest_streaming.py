@@ -16,7 +16,8 @@ from tpc_file import FULL, TpcFile, report, site, summary, sync
 
 from pytpc.base.errors import TpcError
 from pytpc.cli.main import main
-from pytpc.ingest import load_recording, read
+from pytpc.ingest.reading import read
+from pytpc.recording.mission import load_recording
 from pytpc.ingest import spool as spool_module
 from pytpc.ingest.gathering import Gathering
 from pytpc.ingest.merged import Merged

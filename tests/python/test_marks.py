@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from mission_samples import BagFile, line, ns
 
 from pytpc.base.errors import InputError
-from pytpc.ingest import load_recording, read, read_bag, save_recording
+from pytpc.ingest.reading import read
+from pytpc.recording.mission import load_recording, save_recording
 from pytpc.recording.marks import (
     MARK_TYPES,
     Mark,
@@ -177,7 +178,7 @@ IN_BAG = Mark(ns(120), None, "ana", "it stands, still")
 
 
 def test_a_bag_with_notes_and_what_was_taken_back(bag: Path):
-    recording = read_bag(bag)
+    recording = read(bag)
     assert recording.marks == (IN_BAG,)
     assert [(one.topic, one.what) for one in recording.malformed_first] == [
         ("/ana/mark_note", "not a note: expected SECONDS.NANOSECONDS,NOTE")
@@ -189,7 +190,7 @@ def test_marks_beside_a_bag_are_read_with_it(bag: Path, tmp_path: Path):
     write_marks([late, Mark(ns(120), None, "ana")], marks_beside(bag))
     for source in (bag, tmp_path, [bag, marks_beside(bag)]):
         assert read(source).marks == (IN_BAG, late)
-    assert read_bag(bag).marks == (IN_BAG, late)
+    assert read(bag).marks == (IN_BAG, late)
 
 
 def test_marks_beside_a_folder_of_recordings(bag: Path, tmp_path: Path):

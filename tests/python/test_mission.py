@@ -26,7 +26,7 @@ from pytpc.api.record import sink_settings
 from pytpc.base.errors import InputError, RunError
 from pytpc.cli.mission_commands import record_command
 from pytpc.diagnosis.ranking.mark_ranking import rank_marks
-from pytpc.ingest import Recording
+from pytpc.recording.mission import Recording
 from pytpc.ingest.losses import LossCounter
 from pytpc.ingest.ros1 import decode_log
 from pytpc.recording.marks import Mark

@@ -12,7 +12,7 @@ import pytest
 from click.testing import CliRunner
 
 from pytpc.cli.main import main
-from pytpc.ingest import read
+from pytpc.ingest.reading import read
 from pytpc.static.static_info import StaticInfo
 
 ROOT = Path(__file__).parents[2]

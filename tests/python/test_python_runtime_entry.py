@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from pytpc.ingest import read
+from pytpc.ingest.reading import read
 from pytpc.python_runtime.entry import program_of
 from pytpc.python_runtime.listed import names_script, read_table
 

@@ -11,7 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from pytpc.ingest import Recording, read
+from pytpc.ingest.reading import read
+from pytpc.recording.mission import Recording
 
 ROOT = Path(__file__).parents[2]
 PRELUDE = """\

@@ -13,7 +13,7 @@ import pytest
 from click.testing import CliRunner
 
 from pytpc.cli.main import main
-from pytpc.ingest import read
+from pytpc.ingest.reading import read
 from pytpc.python_runtime.listed import names_script, read_table
 from pytpc.ros.node_program import command_of, interpreter_of
 

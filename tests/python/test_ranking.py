@@ -7,7 +7,7 @@ from mission_samples import SummaryBuilder, comparison, events, key, ns, static_
 
 from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.mark_ranking import rank_marks, unknown_keys
-from pytpc.ingest import Recording
+from pytpc.recording.mission import Recording
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark
 from pytpc.recording.summaries import Summaries, Summary

@@ -22,7 +22,7 @@ from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.blame import blame
 from pytpc.diagnosis.ranking.mark_ranking import rank_marks
 from pytpc.diagnosis.suggestion.joining import join_advice
-from pytpc.ingest import MalformedRecord, Recording
+from pytpc.recording.mission import MalformedRecord, Recording
 from pytpc.present.page.series import (
     BINS,
     BOTH,

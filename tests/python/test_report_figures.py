@@ -15,7 +15,7 @@ from report_samples import Page, mission, written
 
 from pytpc.api.report import MissionReport
 from pytpc.diagnosis.ranking.mark_ranking import rank_marks
-from pytpc.ingest import Recording
+from pytpc.recording.mission import Recording
 from pytpc.present.page.series import FALSE, TRUE
 from pytpc.recording.marks import Mark
 from pytpc.recording.summaries import Summary

@@ -5,7 +5,7 @@ from __future__ import annotations
 from mission_samples import events, ns
 
 from pytpc.diagnosis.ranking.clocks import two_clocks
-from pytpc.ingest import Recording
+from pytpc.recording.mission import Recording
 from pytpc.recording.marks import Mark
 
 # 2026-09-21, in seconds since 1970.

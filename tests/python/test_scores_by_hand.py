@@ -25,7 +25,7 @@ from pytpc.diagnosis.scores.rank_curves import rank_curves
 from pytpc.diagnosis.scores.score_tables import Tpcs, parameter_tables, tpc_scores
 from pytpc.diagnosis.scores.scores import NONE
 from pytpc.diagnosis.scores.summary_scores import LogTables
-from pytpc.ingest import Recording
+from pytpc.recording.mission import Recording
 from pytpc.recording.marks import Mark
 from pytpc.recording.summaries import Summaries
 

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from mission_samples import SECOND, SummaryBuilder, comparison, events, key, static_info
 
-from pytpc.ingest import Recording
+from pytpc.recording.mission import Recording
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark
 from pytpc.recording.summaries import Summaries, Summary

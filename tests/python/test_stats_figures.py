@@ -13,7 +13,7 @@ from matplotlib.colors import to_hex
 from mission_samples import comparison, events, ns, static_info
 
 from pytpc.diagnosis.scores.rank_curves import rank_curves
-from pytpc.ingest import Recording
+from pytpc.recording.mission import Recording
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark
 from pytpc_evaluation.stats.bars import runtime_bars

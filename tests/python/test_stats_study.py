@@ -10,7 +10,7 @@ import pytest
 from mission_samples import SummaryBuilder, comparison, events, key, ns, static_info
 
 from pytpc.base.errors import InputError
-from pytpc.ingest import Recording, save_recording
+from pytpc.recording.mission import Recording, save_recording
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark
 from pytpc.recording.summaries import Summary

@@ -11,7 +11,7 @@ from mission_samples import comparison, events, ns, static_info
 
 from pytpc.base.errors import InputError
 from pytpc.diagnosis.ranking.posterior import REASONED, diagnose_log
-from pytpc.ingest import Recording, save_recording
+from pytpc.recording.mission import Recording, save_recording
 from pytpc.recording.marks import Mark
 from pytpc.recording.parameter_change import Change
 from pytpc_evaluation.study.case import Case

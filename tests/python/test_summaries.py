@@ -9,7 +9,7 @@ import pytest
 from mission_samples import SummaryBuilder, events, key, ns
 
 from pytpc.base.errors import InputError
-from pytpc.ingest import Dropped, Recording, load_recording, save_recording
+from pytpc.recording.mission import Dropped, Recording, load_recording, save_recording
 from pytpc.recording.marks import Mark
 from pytpc.recording.summaries import (
     SCHEMA,
