@@ -8,15 +8,13 @@ import re
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
-from typing import Any, NoReturn
-
-from jsonschema import Draft202012Validator, ValidationError, validators
-from jsonschema.exceptions import best_match
-from referencing import Registry, Resource
-from referencing.jsonschema import DRAFT202012
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from pytpc.base.errors import InputError
 from pytpc.base.wording import plain
+
+if TYPE_CHECKING:
+    from jsonschema import Draft202012Validator, ValidationError
 
 SCHEMA_VERSION = 1
 UNIT_SCHEMA = "static_info.schema.json"
@@ -25,13 +23,6 @@ RULES_SCHEMA = "rules.schema.json"
 PYTHON_RULES_SCHEMA = "python_rules.schema.json"
 _PACKAGE = "pytpc.base"
 _LONGEST_MESSAGE = 160
-# The standard takes 5.0 for an integer; a line or a column must be one that can be counted with.
-_Validator = validators.extend(  # type: ignore[no-untyped-call]
-    Draft202012Validator,
-    type_checker=Draft202012Validator.TYPE_CHECKER.redefine(
-        "integer", lambda _, value: isinstance(value, int) and not isinstance(value, bool)
-    ),
-)
 _SURROGATE = re.compile(rb"\\u[dD][89a-fA-F]")
 
 
@@ -128,6 +119,8 @@ def check_schema(
     Raises:
         InputError: with the JSON pointer of what breaks the schema.
     """
+    from jsonschema.exceptions import best_match  # noqa: PLC0415
+
     fault = best_match(_validator(name, package).iter_errors(data))
     if fault is not None:
         raise InputError(f"{pointer + _pointer(fault) or '/'}: {_shortened(fault.message)}", path)
@@ -135,13 +128,24 @@ def check_schema(
 
 @cache
 def _validator(name: str, package: str) -> Draft202012Validator:
+    # jsonschema takes a tenth of a second to import, and many commands check nothing.
+    from jsonschema import Draft202012Validator, validators  # noqa: PLC0415
+    from referencing import Registry  # noqa: PLC0415
+    from referencing.jsonschema import DRAFT202012  # noqa: PLC0415
+
     schema = _schema(name, package)
     Draft202012Validator.check_schema(schema)
-    # The one schema that another one names.
-    units: Resource[dict[str, Any]] = DRAFT202012.create_resource(_schema(UNIT_SCHEMA, _PACKAGE))
-    validator: Draft202012Validator = _Validator(
-        schema, registry=Registry().with_resource(UNIT_SCHEMA, units)
+    # The standard takes 5.0 for an integer; a line or a column must be one to count with.
+    checker = Draft202012Validator.TYPE_CHECKER.redefine(
+        "integer", lambda _, value: isinstance(value, int) and not isinstance(value, bool)
     )
+    strict = validators.extend(  # type: ignore[no-untyped-call]
+        Draft202012Validator, type_checker=checker
+    )
+    # The one schema that another one names.
+    units = DRAFT202012.create_resource(_schema(UNIT_SCHEMA, _PACKAGE))
+    registry: Any = Registry().with_resource(UNIT_SCHEMA, units)
+    validator: Draft202012Validator = strict(schema, registry=registry)
     return validator
 
 
