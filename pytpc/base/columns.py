@@ -15,7 +15,7 @@ import numpy.typing as npt
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from pytpc.base.atomic import replacing, write_atomic
+from pytpc.base.atomic import replacing
 from pytpc.base.errors import InputError
 
 Int64s = npt.NDArray[np.int64]
@@ -27,11 +27,11 @@ Read = TypeVar("Read")
 Columns = dict[str, npt.NDArray[np.generic]]
 
 WORDS = pa.dictionary(pa.int32(), pa.string())
-_KINDS: dict[pa.DataType, type[np.generic]] = {
-    WORDS: np.int32,
-    pa.int64(): np.int64,
-    pa.bool_(): np.bool_,
-    pa.float64(): np.float64,
+_KINDS: dict[str, tuple[pa.DataType, type[np.generic]]] = {
+    "Int32s": (WORDS, np.int32),
+    "Int64s": (pa.int64(), np.int64),
+    "Bools": (pa.bool_(), np.bool_),
+    "Floats": (pa.float64(), np.float64),
 }
 
 
@@ -61,21 +61,28 @@ def recode(codes: Int32s, words: Sequence[str], among: Sequence[str]) -> Int32s:
 class WordTable:
     """A table whose columns ``key`` and ``node`` are codes into the words ``keys`` and ``nodes``.
 
-    A subclass is a frozen dataclass with a field for each column of ``schema``, an array that
-    cannot be written, and for the two tuples of words. ``of`` makes one, sorted by the column
-    ``order``. ``what`` is what its file is called in messages.
+    A subclass is a frozen dataclass with a field for each column, an array that cannot be written,
+    and for the two tuples of words. ``of`` makes one, sorted by the column ``order``. ``what`` is
+    what its file is called in messages. ``kinds`` and ``schema`` are the columns for numpy and for
+    Arrow, in the order of the fields; a Parquet file with other columns or types is refused.
     """
 
-    schema: ClassVar[pa.Schema]
     order: ClassVar[str]
     what: ClassVar[str]
+    kinds: ClassVar[dict[str, type[np.generic]]]
+    schema: ClassVar[pa.Schema]
     keys: tuple[str, ...]
     nodes: tuple[str, ...]
-    _kinds: ClassVar[dict[str, type[np.generic]]]
 
     def __init_subclass__(cls) -> None:
-        """Note the type of each column: asking Arrow takes longer than a small table."""
-        cls._kinds = {field.name: _KINDS[field.type] for field in cls.schema}
+        """Take the columns from the types of the fields."""
+        columns = {
+            name: _KINDS[kind] for name, kind in cls.__annotations__.items() if kind in _KINDS
+        }
+        cls.kinds = {name: kind for name, (_, kind) in columns.items()}
+        cls.schema = pa.schema(
+            [pa.field(name, kind, nullable=False) for name, (kind, _) in columns.items()]
+        )
 
     @classmethod
     def of(cls, *, keys: Iterable[str], nodes: Iterable[str], **columns: npt.ArrayLike) -> Self:
@@ -85,7 +92,7 @@ class WordTable:
             ValueError: columns of different lengths, a code without a word, or a word twice.
             TypeError: a column is missing or has another name.
         """
-        kinds = cls._kinds
+        kinds = cls.kinds
         typed = {name: np.asarray(values, kinds.get(name)) for name, values in columns.items()}
         if len(typed) == len(kinds):
             times = typed[cls.order]
@@ -103,7 +110,7 @@ class WordTable:
     @classmethod
     def of_rows(cls, rows: Iterable[object]) -> Self:
         """A table of objects that have an attribute for each column, key and node as text."""
-        columns: dict[str, list[Any]] = {name: [] for name in cls._kinds}
+        columns: dict[str, list[Any]] = {name: [] for name in cls.kinds}
         for row in rows:
             for name, column in columns.items():
                 column.append(getattr(row, name))
@@ -116,7 +123,7 @@ class WordTable:
     @classmethod
     def empty(cls, keys: Iterable[str] = ()) -> Self:
         """No rows, with the given keys."""
-        return cls.of(keys=keys, nodes=(), **{name: [] for name in cls._kinds})
+        return cls.of(keys=keys, nodes=(), **{name: [] for name in cls.kinds})
 
     @classmethod
     def concat(cls, parts: Sequence[Self]) -> Self:
@@ -140,7 +147,7 @@ class WordTable:
 
     def columns(self) -> Columns:
         """The columns by name, in the order of ``schema``."""
-        return {name: getattr(self, name) for name in self._kinds}
+        return {name: getattr(self, name) for name in self.kinds}
 
     def equals(self, other: Self) -> bool:
         """Whether both hold the same rows (NaN equals NaN) under the same words."""
@@ -166,7 +173,17 @@ class WordTable:
         Raises:
             InputError: a column is missing, is of another type or has missing values.
         """
-        columns, words = from_arrow(table, cls.schema)
+        check_schema(table.schema, cls.schema)
+        columns: dict[str, npt.ArrayLike] = {}
+        words: dict[str, list[str]] = {}
+        for field in cls.schema:
+            column = table.column(field.name)
+            if column.null_count:
+                raise InputError(f"column {field.name} has {column.null_count} missing values")
+            if field.type == WORDS:
+                words[field.name], columns[field.name] = words_and_codes(column)
+            else:
+                columns[field.name] = column.to_numpy()
         return cls.of(**columns, keys=words["key"], nodes=words["node"])
 
     def write(self, path: Path) -> None:
@@ -216,37 +233,14 @@ def check_schema(found: pa.Schema, expected: pa.Schema) -> None:
             raise InputError(f"column {field.name} is {kind}, not {field.type}")
 
 
-def from_arrow(
-    table: pa.Table, schema: pa.Schema
-) -> tuple[dict[str, npt.ArrayLike], dict[str, list[str]]]:
-    """The reverse of ``to_arrow``; the columns may be in chunks.
-
-    Raises:
-        InputError: a column is missing, is of another type or has missing values.
-    """
-    check_schema(table.schema, schema)
-    columns: dict[str, npt.ArrayLike] = {}
-    words: dict[str, list[str]] = {}
-    for field in schema:
-        column = table.column(field.name)
-        if column.null_count:
-            raise InputError(f"column {field.name} has {column.null_count} missing values")
-        if field.type == WORDS:
-            columns[field.name], words[field.name] = _codes(column)
-        else:
-            columns[field.name] = column.to_numpy()
-    return columns, words
-
-
 def write_table(table: pa.Table, path: Path) -> None:
     """Write Parquet, atomically.
 
     Raises:
         TpcError: the file cannot be written; what stood there before is untouched.
     """
-    sink = pa.BufferOutputStream()
-    pq.write_table(table, sink, compression="zstd")
-    write_atomic(path, sink.getvalue().to_pybytes())
+    with table_writer(path, table.schema) as write:
+        write(table)
 
 
 def read_table(path: Path, what: str, of: Callable[[pa.Table], Read]) -> Read:
@@ -312,12 +306,11 @@ def _check_words(codes: npt.NDArray[Any], words: Sequence[str]) -> None:
         raise ValueError("a code has no key or node")
 
 
-def _codes(column: pa.ChunkedArray) -> tuple[Int32s, list[str]]:
-    """Codes and words of a dictionary column, whatever dictionary each of its chunks has."""
+def words_and_codes(column: pa.ChunkedArray) -> tuple[list[str], Int32s]:
+    """Words and codes of a dictionary column, whatever dictionary each of its chunks has."""
     if column.num_chunks == 0:
-        return np.empty(0, dtype=np.int32), []
+        return [], np.empty(0, dtype=np.int32)
     whole = column.unify_dictionaries().combine_chunks()
     if isinstance(whole, pa.ChunkedArray):
         whole = pa.concat_arrays(whole.chunks)
-    words = whole.dictionary.to_pylist()
-    return whole.indices.to_numpy(zero_copy_only=False), words
+    return whole.dictionary.to_pylist(), whole.indices.to_numpy(zero_copy_only=False)

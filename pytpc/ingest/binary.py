@@ -293,7 +293,7 @@ class _TpcReader:
     def _hand_in_summaries(self, kept: Rows) -> None:
         origin = SummaryOrigin(self._clock, self._last_ns, self._node_code, self._channel.code)
         rows = summary_rows(kept, origin, self._key_of_site, self._skip)
-        self._gathering.add_summary_rows(rows)
+        self._gathering.summaries.append(rows)
 
     def _complaints(self) -> None:
         gathering, header, name = self._gathering, self.header, self._path.name

@@ -4,13 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
-
 from pytpc.base.columns import read_parts
 from pytpc.base.errors import InputError
-from pytpc.ingest.gathering import SUMMARY_ROW, Gathering, Progress, ReportColumns
-from pytpc.recording import events as event_table
-from pytpc.recording import summaries as summary_table
+from pytpc.ingest.gathering import Gathering, Progress, ReportColumns
 from pytpc.recording.events import Events
 from pytpc.recording.mission import EVENTS_FILE, SUMMARIES_FILE, read_marks
 from pytpc.recording.summaries import Summaries
@@ -29,7 +25,7 @@ def read_folder_into(
     recording, events, summaries = read_marks(folder)
     channel = gathering.channel(str(folder), "events")
     done = 0
-    for table in read_parts(folder / EVENTS_FILE, "events", event_table.SCHEMA, _ROWS):
+    for table in read_parts(folder / EVENTS_FILE, "events", Events.schema, _ROWS):
         part = Events.from_arrow(table)
         key = gathering.keys.all(part.keys)[part.key]
         node = gathering.nodes.all(part.nodes)[part.node]
@@ -42,16 +38,9 @@ def read_folder_into(
     done = 0
     if summaries:
         path = folder / SUMMARIES_FILE
-        for table in read_parts(path, "summaries", summary_table.SCHEMA, _ROWS):
-            rows = Summaries.from_arrow(table)
-            made = np.zeros(len(rows), SUMMARY_ROW)
-            for name, column in rows.columns().items():
-                made[name] = column
-            made["key"] = gathering.keys.all(rows.keys)[rows.key]
-            made["node"] = gathering.nodes.all(rows.nodes)[rows.node]
-            made["channel"] = channel.code
-            gathering.add_summary_rows(made)
-            done += len(rows)
+        for table in read_parts(path, "summaries", Summaries.schema, _ROWS):
+            gathering.add_summaries(channel.code, Summaries.from_arrow(table))
+            done += table.num_rows
         _check(path, summaries, done)
     gathering.marks += recording.marks
     gathering.notes += recording.notes

@@ -14,41 +14,25 @@ from typing import Literal
 
 import numpy as np
 
-from pytpc.base.columns import Bools, Floats, Int32s, Int64s
-from pytpc.ingest.spool import RUN_ROWS, Rows, Spool
+from pytpc.base.columns import Bools, Floats, Int32s, Int64s, WordTable
+from pytpc.ingest.spool import RUN_ROWS, Spool
+from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark, MarkMessages
 from pytpc.recording.mission import Dropped, MalformedRecord
-from pytpc.recording.summaries import Summary
+from pytpc.recording.summaries import Summaries, Summary
 
 Progress = Callable[[int, int], None]
 Way = Literal["log", "aggregate", "topic", "batch", "file", "text", "events"]
 
-EVENT_ROW = np.dtype(
-    [
-        ("time_ns", "<i8"),
-        ("cmp", "<f8"),
-        ("thresh", "<f8"),
-        ("key", "<i4"),
-        ("node", "<i4"),
-        ("channel", "<u2"),
-        ("result", "?"),
-        ("res", "?"),
-    ]
-)
-SUMMARY_ROW = np.dtype(
-    [
-        ("begin_ns", "<i8"),
-        ("end_ns", "<i8"),
-        *((name, "<i8") for name in ("count", "flops", "far", "odd")),
-        *((name, "<f8") for name in ("cmp", "thresh", "diff_min", "diff_max", "diff_mean")),
-        *((name, "<f8") for name in ("abs_mean", "low", "high")),
-        ("key", "<i4"),
-        ("node", "<i4"),
-        ("channel", "<u2"),
-        ("result", "?"),
-        ("res", "?"),
-    ]
-)
+
+def _row(table: type[WordTable]) -> np.dtype[np.void]:
+    """A row of a table with its channel; the wide columns come first, which aligns them."""
+    columns = [*table.kinds.items(), ("channel", np.uint16)]
+    return np.dtype(sorted(columns, key=lambda column: -np.dtype(column[1]).itemsize))
+
+
+EVENT_ROW = _row(Events)
+SUMMARY_ROW = _row(Summaries)
 _SHOWN = 20
 _SHOWN_TEXT = 200
 _HELD_SUMMARIES = 4096
@@ -147,7 +131,8 @@ class Gathering:
         self.notes: list[str] = []
         self.late_notes: list[str] = []
         self.spans: list[tuple[int, int]] = []
-        self._held: list[tuple[object, ...]] = []
+        self._held: dict[int, list[Summary]] = {}
+        self._held_count = 0
 
     def channel(self, source: str, way: Way, topic: str = "") -> Channel:
         """A new channel.
@@ -202,15 +187,19 @@ class Gathering:
 
     def add_summary(self, channel: Channel, summary: Summary) -> None:
         """Take in a summary."""
-        values = [getattr(summary, name) for name in SUMMARY_ROW.names or ()
-                  if name not in {"key", "node", "channel", "result", "res"}]  # fmt: skip
-        key, node = self.keys.code(summary.key), self.nodes.code(summary.node)
-        self._held.append((*values, key, node, channel.code, summary.result, summary.res))
-        if len(self._held) >= _HELD_SUMMARIES:
+        self._held.setdefault(channel.code, []).append(summary)
+        self._held_count += 1
+        if self._held_count >= _HELD_SUMMARIES:
             self.flush()
 
-    def add_summary_rows(self, rows: Rows) -> None:
-        """Add summaries as rows of ``SUMMARY_ROW``."""
+    def add_summaries(self, channel: int, table: Summaries) -> None:
+        """Take in the summaries of the channel with this code."""
+        rows = np.empty(len(table), SUMMARY_ROW)
+        for name, column in table.columns().items():
+            rows[name] = column
+        rows["key"] = self.keys.all(table.keys)[table.key]
+        rows["node"] = self.nodes.all(table.nodes)[table.node]
+        rows["channel"] = channel
         self.summaries.append(rows)
 
     def add_dropped(self, dropped: Dropped) -> None:
@@ -231,9 +220,9 @@ class Gathering:
 
     def flush(self) -> None:
         """Nothing is held back after this."""
-        if self._held:
-            self.summaries.append(np.array(self._held, SUMMARY_ROW))
-            self._held = []
+        for channel, summaries in self._held.items():
+            self.add_summaries(channel, Summaries.of_rows(summaries))
+        self._held, self._held_count = {}, 0
 
     @property
     def malformed_first(self) -> tuple[MalformedRecord, ...]:

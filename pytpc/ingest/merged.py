@@ -16,8 +16,6 @@ from pytpc.base.columns import recode, sorted_words, table_writer, to_arrow
 from pytpc.ingest.duplicates import APART_NS, TOLERANCE_NS, Once, clock_notes
 from pytpc.ingest.gathering import SUMMARY_ROW, Gathering
 from pytpc.ingest.spool import Rows
-from pytpc.recording import events as event_table
-from pytpc.recording import summaries as summary_table
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark, joined
 from pytpc.recording.mission import EVENTS_FILE, SUMMARIES_FILE, Recording, write_marks
@@ -89,9 +87,9 @@ class Merged:
     def recording(self) -> Recording:
         """All of it in memory."""
         blocks = list(self.event_blocks())
-        events = Events.of(**_columns(blocks, event_table.SCHEMA, self._words()))
+        events = Events.of(**_columns(blocks, Events.schema, self._words()))
         parts = list(self.summary_blocks())
-        summaries = Summaries.of(**_columns(parts, summary_table.SCHEMA, self._words()))
+        summaries = Summaries.of(**_columns(parts, Summaries.schema, self._words()))
         return self.rest(_used(events), summaries)
 
     def rest(self, events: Events, summaries: Summaries) -> Recording:
@@ -126,16 +124,16 @@ class Merged:
         Raises:
             TpcError: a file cannot be written; ``marks.json`` is written last.
         """
-        self._parquet(folder / EVENTS_FILE, event_table.SCHEMA, self.event_blocks(), told)
+        self._parquet(folder / EVENTS_FILE, Events.schema, self.event_blocks(), told)
         if len(self.gathering.summaries):
-            self._parquet(folder / SUMMARIES_FILE, summary_table.SCHEMA, self.summary_blocks())
+            self._parquet(folder / SUMMARIES_FILE, Summaries.schema, self.summary_blocks())
         rest = self.rest(Events.empty(), Summaries.empty())
         write_marks(rest, folder, self.events, self.summaries)
         return rest
 
     def save_parquet(self, path: Path, told: Told | None = None) -> Recording:
         """Write only the events; see ``save``."""
-        self._parquet(path, event_table.SCHEMA, self.event_blocks(), told)
+        self._parquet(path, Events.schema, self.event_blocks(), told)
         return self.rest(Events.empty(), Summaries.empty())
 
     def save_csv(self, path: Path, told: Told | None = None) -> Recording:
@@ -149,7 +147,8 @@ class Merged:
         return self.rest(Events.empty(), Summaries.empty())
 
     def _lines(self, rows: Rows) -> Iterator[str]:
-        for time_ns, cmp, thresh, key, _, _, result, res in rows.tolist():
+        names = ["time_ns", "key", "result", "cmp", "thresh", "res"]
+        for time_ns, key, result, cmp, thresh, res in rows[names].tolist():
             seconds, rest = divmod(time_ns, 10**9)
             decimals = f"{rest:09d}".removesuffix("0").removesuffix("0")
             yield (
@@ -216,17 +215,10 @@ def _used(events: Events) -> Events:
     """The table without words that it does not use."""
     keys = [events.keys[code] for code in np.unique(events.key).tolist()]
     nodes = [events.nodes[code] for code in np.unique(events.node).tolist()]
-    return Events.of(
-        time_ns=events.time_ns,
-        key=recode(events.key, events.keys, keys),
-        result=events.result,
-        cmp=events.cmp,
-        thresh=events.thresh,
-        res=events.res,
-        node=recode(events.node, events.nodes, nodes),
-        keys=keys,
-        nodes=nodes,
-    )
+    columns = events.columns()
+    columns["key"] = recode(events.key, events.keys, keys)
+    columns["node"] = recode(events.node, events.nodes, nodes)
+    return Events.of(**columns, keys=keys, nodes=nodes)
 
 
 def _packed(rows: Rows) -> npt.NDArray[np.bytes_]:

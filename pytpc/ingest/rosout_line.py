@@ -24,36 +24,36 @@ SUMMARY_PREFIX = "threshold_summary:"
 DROPPED_PREFIX = "threshold_dropped:"
 LATEST_NS = 2**63 - 1
 
-_TIME = r"[0-9]{1,10}\.[0-9]{1,9}"
-_KEY = r"[0-9a-fA-F]{8}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{12}"
+TIME = r"[0-9]{1,10}\.[0-9]{1,9}"
+KEY = r"[0-9a-fA-F]{8}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{12}"
 _BOOL = r"0|1|True|False"
-_DOUBLE = r"[-+]?(?:[0-9]+(?:\.[0-9]*)?(?:[eE][-+]?[0-9]+)?|\.[0-9]+(?:[eE][-+]?[0-9]+)?|inf|nan)"
+DOUBLE = r"[-+]?(?:[0-9]+(?:\.[0-9]*)?(?:[eE][-+]?[0-9]+)?|\.[0-9]+(?:[eE][-+]?[0-9]+)?|inf|nan)"
 _END = r"[ \t\r\n]*"
 
-_REPORT = re.compile(rf"({_KEY}),({_BOOL}),cmp:({_DOUBLE}),thresh:({_DOUBLE}),res:({_BOOL}){_END}")
+_REPORT = re.compile(rf"({KEY}),({_BOOL}),cmp:({DOUBLE}),thresh:({DOUBLE}),res:({_BOOL}){_END}")
 _COUNT = r"[0-9]{1,18}"
 _SUMMARY = re.compile(
-    rf"({_KEY}),({_BOOL}),cmp:({_DOUBLE}),thresh:({_DOUBLE}),res:({_BOOL}),count:({_COUNT}),"
-    rf"flops:({_COUNT}),diff:({_DOUBLE});({_DOUBLE});({_DOUBLE}),abs:({_DOUBLE}),"
-    rf"range:({_DOUBLE});({_DOUBLE}),far:({_COUNT}),odd:({_COUNT}),span:({_TIME});({_TIME}){_END}"
+    rf"({KEY}),({_BOOL}),cmp:({DOUBLE}),thresh:({DOUBLE}),res:({_BOOL}),count:({_COUNT}),"
+    rf"flops:({_COUNT}),diff:({DOUBLE});({DOUBLE});({DOUBLE}),abs:({DOUBLE}),"
+    rf"range:({DOUBLE});({DOUBLE}),far:({_COUNT}),odd:({_COUNT}),span:({TIME});({TIME}){_END}"
 )
 _DROPPED = re.compile(
-    rf"({_KEY})?,count:({_COUNT}),flops:({_COUNT}),why:(site|process|nested|stopped){_END}"
+    rf"({KEY})?,count:({_COUNT}),flops:({_COUNT}),why:(site|process|nested|stopped){_END}"
 )
 _BATCH = re.compile(
-    rf"#seq:({_COUNT}),count:({_COUNT}),dropped:({_COUNT}),pid:({_COUNT}),steady:({_TIME}){_END}"
+    rf"#seq:({_COUNT}),count:({_COUNT}),dropped:({_COUNT}),pid:({_COUNT}),steady:({TIME}){_END}"
 )
-_STAMPED = re.compile(rf"({_TIME}),")
-_BOOLS = {"0": False, "1": True, "False": False, "True": True}
+_STAMPED = re.compile(rf"({TIME}),")
+BOOLS = {"0": False, "1": True, "False": False, "True": True}
 
 _SUMMARY_NUMBERS = {"cmp": 3, "thresh": 4, "diff_min": 8, "diff_max": 9, "diff_mean": 10}
 _SUMMARY_NUMBERS |= {"abs_mean": 11, "low": 12, "high": 13}
 
 _FIELDS = (
-    ("a key (a UUID)", re.compile(_KEY), ","),
+    ("a key (a UUID)", re.compile(KEY), ","),
     ("a result (0, 1, True or False)", re.compile(_BOOL), ",cmp:"),
-    ("cmp as a number", re.compile(_DOUBLE), ",thresh:"),
-    ("thresh as a number", re.compile(_DOUBLE), ",res:"),
+    ("cmp as a number", re.compile(DOUBLE), ",thresh:"),
+    ("thresh as a number", re.compile(DOUBLE), ",res:"),
     ("res (0, 1, True or False)", re.compile(_BOOL), ""),
 )
 
@@ -148,7 +148,7 @@ def parse_batch(text: str) -> BatchHead | Malformed:
 
 
 def nanoseconds(text: str) -> int:
-    """The time of a text that matches ``_TIME``."""
+    """The time of a text that matches ``TIME``."""
     seconds, _, fraction = text.partition(".")
     return int(seconds) * 10**9 + int(fraction.ljust(9, "0"))
 
@@ -189,8 +189,8 @@ def _summary(found: re.Match[str], node: str) -> Summary | Malformed:
         flops=flops,
         far=far,
         odd=odd,
-        result=_BOOLS[found[2]],
-        res=_BOOLS[found[5]],
+        result=BOOLS[found[2]],
+        res=BOOLS[found[5]],
         **numbers,
     )
 
@@ -205,7 +205,7 @@ def _read(text: str, start: int) -> Report | Malformed:
     for value, group in ((cmp, 3), (thresh, 4)):
         if math.isinf(value) and "inf" not in found[group]:
             return Malformed("a number is beyond the range of a double", found.start(group) + 1)
-    return Report(key.lower(), _BOOLS[result], cmp, thresh, _BOOLS[res])
+    return Report(key.lower(), BOOLS[result], cmp, thresh, BOOLS[res])
 
 
 def _fault(text: str, start: int) -> Malformed:

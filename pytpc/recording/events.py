@@ -8,26 +8,11 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-import pyarrow as pa
 
 from pytpc.base import columns as tables
 from pytpc.base.columns import Bools, Floats, Int32s, Int64s, frozen
 
-__all__ = ["SCHEMA", "Bools", "Events", "Floats", "Int32s", "Int64s", "KeyIndex", "Report"]
-
-SCHEMA = pa.schema(
-    [
-        pa.field("time_ns", pa.int64(), nullable=False),
-        pa.field("key", tables.WORDS, nullable=False),
-        pa.field("result", pa.bool_(), nullable=False),
-        pa.field("cmp", pa.float64(), nullable=False),
-        pa.field("thresh", pa.float64(), nullable=False),
-        pa.field("res", pa.bool_(), nullable=False),
-        pa.field("node", tables.WORDS, nullable=False),
-    ]
-)
-"""docs/reference/formats.md#events. A Parquet file with other columns or types is refused."""
-
+__all__ = ["Bools", "Events", "Floats", "Int32s", "Int64s", "KeyIndex", "Report"]
 
 class Report(NamedTuple):
     """What one evaluation reports: docs/reference/runtime.md#log_one."""
@@ -74,7 +59,6 @@ class Events(tables.WordTable):
     keys: tuple[str, ...]
     nodes: tuple[str, ...]
 
-    schema = SCHEMA
     order = "time_ns"
     what = "events"
 

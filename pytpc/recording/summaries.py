@@ -8,25 +8,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import pyarrow as pa
-
 from pytpc.base import columns as tables
 from pytpc.base.columns import Bools, Floats, Int32s, Int64s
-
-_INTEGERS = ("begin_ns", "end_ns", "count", "flops", "far", "odd")
-_BOOLS = ("result", "res")
-_FLOATS = ("cmp", "thresh", "diff_min", "diff_max", "diff_mean", "abs_mean", "low", "high")
-
-SCHEMA = pa.schema(
-    [
-        pa.field("key", tables.WORDS, nullable=False),
-        pa.field("node", tables.WORDS, nullable=False),
-        *(pa.field(name, pa.int64(), nullable=False) for name in _INTEGERS),
-        *(pa.field(name, pa.bool_(), nullable=False) for name in _BOOLS),
-        *(pa.field(name, pa.float64(), nullable=False) for name in _FLOATS),
-    ]
-)
-
 
 @dataclass(frozen=True, slots=True)
 class Summary:
@@ -64,7 +47,7 @@ class Summaries(tables.WordTable):
     """n summaries, sorted by ``begin_ns``; equal ones keep their recorded order.
 
     ``key`` and ``node`` are int32[n], codes into ``keys`` and ``nodes``; the other columns are
-    int64, bool or float64[n] as ``SCHEMA`` has them, and mean what ``Summary`` says. The arrays
+    int64, bool or float64[n] by their types, and mean what ``Summary`` says. The arrays
     are read-only. Make one with ``of``, which sorts and checks.
     """
 
@@ -89,6 +72,5 @@ class Summaries(tables.WordTable):
     keys: tuple[str, ...]
     nodes: tuple[str, ...]
 
-    schema = SCHEMA
     order = "begin_ns"
     what = "summaries"

@@ -12,7 +12,6 @@ from mission_samples import SECOND, EventBuilder, events, key, ns
 
 from pytpc.base.errors import InputError
 from pytpc.recording.events import (
-    SCHEMA,
     Events,
     Report,
 )
@@ -129,7 +128,7 @@ def test_arrays_are_read_only():
 def test_arrow_and_back(rows):
     table = events(rows)
     arrow = table.to_arrow()
-    assert arrow.schema.equals(SCHEMA)
+    assert arrow.schema.equals(Events.schema)
     assert Events.from_arrow(arrow).equals(table)
 
 
@@ -139,7 +138,7 @@ def test_parquet_and_back(tmp_path):
     table.write(path)
     assert Events.read(path).equals(table)
     # The types survive for other readers too.
-    assert pq.read_schema(path).field("key").type == SCHEMA.field("key").type
+    assert pq.read_schema(path).field("key").type == Events.schema.field("key").type
     assert [p.name for p in path.parent.iterdir()] == ["events.parquet"]
 
 

@@ -12,7 +12,6 @@ from pytpc.base.errors import InputError
 from pytpc.recording.mission import Dropped, Recording, load_recording, save_recording
 from pytpc.recording.marks import Mark
 from pytpc.recording.summaries import (
-    SCHEMA,
     Summaries,
     Summary,
 )
@@ -84,7 +83,7 @@ def test_concat_and_take():
 
 
 def test_columns_that_do_not_fit():
-    columns = {name: [0] for name in SCHEMA.names}
+    columns = {name: [0] for name in Summaries.schema.names}
     with pytest.raises(ValueError, match="different lengths"):
         Summaries.of(**{**columns, "far": [1, 2]}, keys=["k"], nodes=["/n"])
     with pytest.raises(ValueError, match="a code has no key or node"):
