@@ -12,8 +12,8 @@ from pytpc.diagnosis.question import Question, Types
 from pytpc.diagnosis.ranking.blame import blame
 from pytpc.diagnosis.scores.score_tables import Tpcs
 from pytpc.diagnosis.suggestion.blamed_advice import advise_blamed
-from pytpc.recording.mission import Recording
 from pytpc.present.answers import Diagnosed
+from pytpc.recording.mission import Recording
 from pytpc.recording.parameter_change import Change
 from pytpc.ros.mission_run import PARAMS_FILE
 from pytpc.static.parameters import same_parameter

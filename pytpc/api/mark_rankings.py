@@ -15,9 +15,9 @@ from pytpc.diagnosis.ranking.mark_ranking import rank_marks
 from pytpc.diagnosis.results.mission_answer import RankCurves
 from pytpc.diagnosis.results.suspects import MarkRanking
 from pytpc.diagnosis.scores.rank_curves import STEP_S, rank_curves
-from pytpc.recording.mission import Recording
 from pytpc.present.notebook import NotebookTable
 from pytpc.recording.declaration import Declared
+from pytpc.recording.mission import Recording
 from pytpc.static.parameters import parameter_name, same_parameter
 from pytpc.static.static_info import StaticInfo
 

@@ -10,9 +10,9 @@ from pathlib import Path
 from pytpc.base.errors import InputError
 from pytpc.diagnosis.ranking.clocks import two_clocks
 from pytpc.diagnosis.ranking.complaints import complaints
-from pytpc.recording.mission import Recording
 from pytpc.ingest.reading import read as read_recording
 from pytpc.recording.declaration import Declared
+from pytpc.recording.mission import Recording
 from pytpc.static.static_info import StaticInfo, read_static
 from pytpc.values.declared_files import declared_in
 

@@ -126,6 +126,18 @@ def check_schema(
         raise InputError(f"{pointer + _pointer(fault) or '/'}: {_shortened(fault.message)}", path)
 
 
+def check_rules(path: Path) -> None:
+    """Check a user's file of rules, which names more functions that read or expose.
+
+    The plugin checks it again when it links, but there a fault is only a warning: the link unit
+    stays as it was, and the build goes on.
+
+    Raises:
+        InputError: the file cannot be read, is no JSON or breaks the schema, with the place.
+    """
+    check_schema(parse_json(path), path, RULES_SCHEMA)
+
+
 @cache
 def _validator(name: str, package: str) -> Draft202012Validator:
     # jsonschema takes a tenth of a second to import, and many commands check nothing.

@@ -11,9 +11,9 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from pytpc.base.checked_json import check_rules
 from pytpc.base.paths import cmake_file, prefix
 from pytpc.base.wording import many, plain
-from pytpc.static.rules import check_rules
 from pytpc.workspace.doctor.finding import Finding, Severity, by_severity
 from pytpc.workspace.doctor.look import look_at_machine
 from pytpc.workspace.doctor.look_workspace import look_at_known, look_at_workspace

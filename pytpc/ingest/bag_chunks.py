@@ -40,8 +40,9 @@ class BrokenBagError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class BagConnection:
-    """One publisher's topic in the bag; ``msgtype`` as in ROS 2 (``std_msgs/msg/String``).
+    """One publisher's topic in the bag.
 
+    ``msgtype`` is as in ROS 2 (``std_msgs/msg/String``), ``definition`` the text of the message.
     ``latched``: it sent its last message to each new subscriber.
     """
 
@@ -50,6 +51,7 @@ class BagConnection:
     msgtype: str
     caller: str
     latched: bool
+    definition: str
 
 
 @dataclass(frozen=True)
@@ -128,12 +130,11 @@ def find_damage(stream: BinaryIO, size: int) -> str | None:
         if index is None:
             index = int.from_bytes(header.partition(b"index_pos=")[2][:8], "little")
         stream.seek(behind)
-    if index is None:
-        return f"truncated: the file ends at byte {size}, before the bag header"
     if index == 0:
         return f"not closed by its recorder: no index after byte {size}"
-    if index >= size:
-        return f"truncated: the file ends at byte {size}, the index should be at byte {index}"
+    if index is None or index >= size:
+        at = "before the bag header" if index is None else f"the index should be at byte {index}"
+        return f"truncated: the file ends at byte {size}, {at}"
     return None
 
 
@@ -352,9 +353,9 @@ def _time(fields: dict[bytes, bytes], name: bytes) -> int:
 def _connection(header: dict[bytes, bytes], data: dict[bytes, bytes]) -> BagConnection:
     if header.get(b"op") != bytes([_CONNECTION]) or b"topic" not in header or b"type" not in data:
         raise BrokenBagError("no connection")
-    topic, kind, caller = (
-        raw.decode("utf-8", "replace")
-        for raw in (header[b"topic"], data[b"type"], data.get(b"callerid", b""))
+    rest = (data.get(name, b"") for name in (b"callerid", b"message_definition"))
+    topic, kind, caller, definition = (
+        raw.decode("utf-8", "replace") for raw in (header[b"topic"], data[b"type"], *rest)
     )
     package, _, name = kind.rpartition("/")
     package = package.removesuffix("/msg")
@@ -362,4 +363,4 @@ def _connection(header: dict[bytes, bytes], data: dict[bytes, bytes]) -> BagConn
     topic = f"/{words}" if topic.startswith("/") else words
     latched = data.get(b"latching") == b"1"
     kind = f"{package}/msg/{name}"
-    return BagConnection(_number(header, b"conn", 4), topic, kind, caller, latched)
+    return BagConnection(_number(header, b"conn", 4), topic, kind, caller, latched, definition)

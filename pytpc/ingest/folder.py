@@ -8,7 +8,7 @@ from pytpc.base.columns import read_parts
 from pytpc.base.errors import InputError
 from pytpc.ingest.gathering import Gathering, Progress, ReportColumns
 from pytpc.recording.events import Events
-from pytpc.recording.mission import EVENTS_FILE, SUMMARIES_FILE, read_marks
+from pytpc.recording.mission import EVENTS_FILE, SUMMARIES_FILE, read_marks_json
 from pytpc.recording.summaries import Summaries
 
 _ROWS = 1 << 18
@@ -22,7 +22,7 @@ def read_folder_into(
     Raises:
         InputError: a file is missing or broken, or the files are not of one recording.
     """
-    recording, events, summaries = read_marks(folder)
+    recording, events, summaries = read_marks_json(folder)
     channel = gathering.channel(str(folder), "events")
     done = 0
     for table in read_parts(folder / EVENTS_FILE, "events", Events.schema, _ROWS):

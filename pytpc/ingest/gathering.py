@@ -27,7 +27,7 @@ Way = Literal["log", "aggregate", "topic", "batch", "file", "text", "events"]
 
 def _row(table: type[WordTable]) -> np.dtype[np.void]:
     """A row of a table with its channel; the wide columns come first, which aligns them."""
-    columns = [*table.kinds.items(), ("channel", np.uint16)]
+    columns: list[tuple[str, type[np.generic]]] = [*table.kinds.items(), ("channel", np.uint16)]
     return np.dtype(sorted(columns, key=lambda column: -np.dtype(column[1]).itemsize))
 
 

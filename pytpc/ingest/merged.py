@@ -18,7 +18,7 @@ from pytpc.ingest.gathering import SUMMARY_ROW, Gathering
 from pytpc.ingest.spool import Rows
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark, joined
-from pytpc.recording.mission import EVENTS_FILE, SUMMARIES_FILE, Recording, write_marks
+from pytpc.recording.mission import EVENTS_FILE, SUMMARIES_FILE, Recording, write_marks_json
 from pytpc.recording.summaries import Summaries
 
 Told = Callable[[int, int], None]
@@ -128,7 +128,7 @@ class Merged:
         if len(self.gathering.summaries):
             self._parquet(folder / SUMMARIES_FILE, Summaries.schema, self.summary_blocks())
         rest = self.rest(Events.empty(), Summaries.empty())
-        write_marks(rest, folder, self.events, self.summaries)
+        write_marks_json(rest, folder, self.events, self.summaries)
         return rest
 
     def save_parquet(self, path: Path, told: Told | None = None) -> Recording:

@@ -11,7 +11,7 @@ from typing import Protocol, TypeVar
 
 import numpy as np
 
-from pytpc.base.columns import Bools, Int64s
+from pytpc.base.columns import Bools
 from pytpc.base.wording import many
 from pytpc.ingest.bag_chunks import ChunkMessages as Chunk
 from pytpc.ingest.gathering import Gathering, Way

@@ -14,6 +14,7 @@ from pytpc.base.columns import Bools, Floats, Int32s, Int64s, frozen
 
 __all__ = ["Bools", "Events", "Floats", "Int32s", "Int64s", "KeyIndex", "Report"]
 
+
 class Report(NamedTuple):
     """What one evaluation reports: docs/reference/runtime.md#log_one."""
 

@@ -94,10 +94,10 @@ def save_recording(recording: Recording, folder: Path) -> None:
     recording.events.write(folder / EVENTS_FILE)
     if len(recording.summaries):
         recording.summaries.write(folder / SUMMARIES_FILE)
-    write_marks(recording, folder, len(recording.events), len(recording.summaries))
+    write_marks_json(recording, folder, len(recording.events), len(recording.summaries))
 
 
-def write_marks(recording: Recording, folder: Path, events: int, summaries: int) -> None:
+def write_marks_json(recording: Recording, folder: Path, events: int, summaries: int) -> None:
     """Write ``marks.json`` beside tables of so many rows; a file of summaries of before is deleted.
 
     Raises:
@@ -129,7 +129,7 @@ def load_recording(folder: Path) -> Recording:
     Raises:
         InputError: a file is missing or broken, or the files are not of one recording.
     """
-    recording, event_count, summary_count = read_marks(folder)
+    recording, event_count, summary_count = read_marks_json(folder)
     path = folder / MARKS_FILE
     events = Events.read(folder / EVENTS_FILE)
     _check_rows(path, event_count, EVENTS_FILE, len(events))
@@ -139,7 +139,7 @@ def load_recording(folder: Path) -> Recording:
     return replace(recording, events=events, summaries=summaries)
 
 
-def read_marks(folder: Path) -> tuple[Recording, int, int]:
+def read_marks_json(folder: Path) -> tuple[Recording, int, int]:
     """Read only ``marks.json``: a recording with empty tables, and their number of rows on disk.
 
     Raises:

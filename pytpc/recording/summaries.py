@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pytpc.base import columns as tables
 from pytpc.base.columns import Bools, Floats, Int32s, Int64s
 
+
 @dataclass(frozen=True, slots=True)
 class Summary:
     """All evaluations of one comparison in one thread and period, in the order of the columns.

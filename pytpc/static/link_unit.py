@@ -42,13 +42,9 @@ class Transform:
     text: str = ""
     tree: Tree | None = None
 
-    def to_json(self) -> dict[str, object]:
+    def to_json(self) -> dict[str, Any]:
         """The fields that its kind has."""
-        if self.kind == "affine":
-            names = ["kind", "scale", "offset", "text"]
-        else:
-            names = ["kind", "text"] if self.tree is None else ["kind", "text", "tree"]
-        return {name: _plain(getattr(self, name)) for name in names}
+        return _object(self)
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,7 +158,7 @@ class Comparison:
 
     def to_json(self) -> dict[str, Any]:
         """The comparison as JSON (docs/reference/formats.md#a-comparison)."""
-        return _without_unknown(_fields(self))
+        return _object(self)
 
 
 @dataclass(frozen=True, slots=True)
@@ -235,7 +231,7 @@ class LinkUnit:
 
     def to_json(self) -> dict[str, Any]:
         """The unit as JSON (docs/reference/formats.md#static-information)."""
-        return _without_unknown({"schema": SCHEMA_VERSION, **_fields(self)})
+        return {"schema": SCHEMA_VERSION, **_object(self)}
 
     def absolute(self, file: str) -> str:
         """A ``file`` field of this unit as an absolute path without ``.`` and ``..``."""
@@ -286,28 +282,20 @@ def _comparison(data: dict[str, Any]) -> Comparison:
     return Comparison(**found)
 
 
-def _fields(value: DataclassInstance) -> dict[str, object]:
-    return {field.name: _plain(getattr(value, field.name)) for field in fields(value)}
+# Fields that only one half of TPC writes, or only one kind of transform has.
+_OPTIONAL = frozenset(
+    {"analysis", "end_lineno", "end_column", "operand", "script", "build_folder"}
+    | {"scale", "offset", "tree"}
+)
 
 
-_OPTIONAL = ("analysis", "end_lineno", "end_column", "operand", "script", "build_folder")
-
-
-def _without_unknown(found: dict[str, object]) -> dict[str, object]:
-    """Fields that only some files have, as those of one half of TPC, are left out by the others."""
-    return {
-        name: value for name, value in found.items() if name not in _OPTIONAL or value is not None
-    }
+def _object(value: DataclassInstance) -> dict[str, Any]:
+    """A dataclass as a JSON object, without optional fields that are not known."""
+    found = ((field.name, getattr(value, field.name)) for field in fields(value))
+    return {name: _plain(item) for name, item in found if item is not None or name not in _OPTIONAL}
 
 
 def _plain(value: object) -> object:
-    """Dataclasses as dicts and tuples as lists; of a transform what its kind has."""
-    if isinstance(value, Transform):
-        return value.to_json()
-    if isinstance(value, Tool | Comparison):
-        return _without_unknown(_fields(value))
-    if is_dataclass(value) and not isinstance(value, type):
-        return _fields(value)
     if isinstance(value, tuple):
         return [_plain(item) for item in value]
-    return value
+    return _object(value) if is_dataclass(value) and not isinstance(value, type) else value

@@ -58,7 +58,8 @@ class Tpc:
 
     def to_json(self) -> dict[str, Any]:
         """The place as JSON (docs/reference/formats.md)."""
-        return {**asdict(self), "keys": [asdict(each) for each in self.keys]}
+        found = asdict(self)
+        return {**found, "keys": list(found["keys"])}
 
 
 Identity = tuple[str, int, int, str, str, str, str]

@@ -13,8 +13,8 @@ from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.blame import blame
 from pytpc.diagnosis.results.suspects import Accused, Blame, Evaluation
 from pytpc.diagnosis.suggestion.blamed_advice import advise_blamed
-from pytpc.recording.mission import Recording
 from pytpc.recording.marks import Mark
+from pytpc.recording.mission import Recording
 from pytpc.recording.parameter_change import Change
 from pytpc.recording.summaries import Summary
 from pytpc_evaluation.study.case import Case

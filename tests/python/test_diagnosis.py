@@ -34,9 +34,9 @@ from pytpc.diagnosis.ranking.posterior import (
 from pytpc.diagnosis.ranking.priors import UNCHANGED, of_change, of_changes, of_reference
 from pytpc.diagnosis.ranking.result_streams import ResultStreams
 from pytpc.diagnosis.scores.score_tables import Tpcs
-from pytpc.recording.mission import Recording
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark
+from pytpc.recording.mission import Recording
 from pytpc.recording.parameter_change import Change
 
 STATIC = static_info(

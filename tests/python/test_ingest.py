@@ -10,9 +10,9 @@ from rosbags.rosbag1 import Writer
 
 from pytpc.base.errors import InputError
 from pytpc.ingest.reading import read
-from pytpc.recording.mission import load_recording, save_recording
 from pytpc.ingest.rosout_line import PREFIX
 from pytpc.recording.marks import Mark, topic_of_marks
+from pytpc.recording.mission import load_recording, save_recording
 
 K = "0a1b2c3d-0000-5000-8000-00000000000F"
 

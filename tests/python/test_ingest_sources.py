@@ -15,14 +15,14 @@ from test_mission import log
 from tpc_file import TpcFile, report, site, sync
 
 from pytpc.base.errors import InputError
-from pytpc.ingest.reading import read
-from pytpc.recording.mission import Dropped, save_recording
 from pytpc.ingest.bag import _DECODERS
 from pytpc.ingest.bag_chunks import ChunkMessages as Chunk
 from pytpc.ingest.gathering import Gathering
 from pytpc.ingest.messages import Messages
+from pytpc.ingest.reading import read
 from pytpc.ingest.rosout_line import PREFIX
 from pytpc.recording.marks import Mark
+from pytpc.recording.mission import Dropped, save_recording
 
 SUMMARY = (
     "threshold_summary:{key},1,cmp:1,thresh:0.5,res:1,count:3,flops:1,diff:-0.25;0.5;0.1,"

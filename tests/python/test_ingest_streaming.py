@@ -16,13 +16,12 @@ from tpc_file import FULL, TpcFile, report, site, summary, sync
 
 from pytpc.base.errors import TpcError
 from pytpc.cli.main import main
-from pytpc.ingest.reading import read
-from pytpc.recording.mission import load_recording
 from pytpc.ingest import spool as spool_module
 from pytpc.ingest.gathering import Gathering
 from pytpc.ingest.merged import Merged
-from pytpc.ingest.reading import gather, opened
+from pytpc.ingest.reading import gather, opened, read
 from pytpc.recording.events import Events
+from pytpc.recording.mission import load_recording
 
 ROOT = Path(__file__).parents[2]
 

@@ -16,9 +16,9 @@ from pytpc.diagnosis.ranking.mark_ranking import rank_marks
 from pytpc.diagnosis.scores.live_scores import LiveRanking, LiveScores, TooOldError
 from pytpc.diagnosis.scores.scores import NONE, Before, Formula, type1, type2
 from pytpc.diagnosis.scores.summary_scores import LogTables, type2_of_summaries
-from pytpc.recording.mission import Recording
 from pytpc.recording.events import Report
 from pytpc.recording.marks import Mark
+from pytpc.recording.mission import Recording
 from pytpc.recording.summaries import Summary
 
 NAN, INF = math.nan, math.inf

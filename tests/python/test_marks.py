@@ -11,7 +11,6 @@ from mission_samples import BagFile, line, ns
 
 from pytpc.base.errors import InputError
 from pytpc.ingest.reading import read
-from pytpc.recording.mission import load_recording, save_recording
 from pytpc.recording.marks import (
     MARK_TYPES,
     Mark,
@@ -26,6 +25,7 @@ from pytpc.recording.marks import (
     topic_of_marks,
     write_marks,
 )
+from pytpc.recording.mission import load_recording, save_recording
 
 MARKS = st.builds(
     Mark,

@@ -26,10 +26,10 @@ from pytpc.api.record import sink_settings
 from pytpc.base.errors import InputError, RunError
 from pytpc.cli.mission_commands import record_command
 from pytpc.diagnosis.ranking.mark_ranking import rank_marks
-from pytpc.recording.mission import Recording
 from pytpc.ingest.losses import LossCounter
 from pytpc.ingest.ros1 import decode_log
 from pytpc.recording.marks import Mark
+from pytpc.recording.mission import Recording
 from pytpc.ros.mission_run import (
     MissionRun,
     RecorderStatus,

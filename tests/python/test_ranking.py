@@ -7,9 +7,9 @@ from mission_samples import SummaryBuilder, comparison, events, key, ns, static_
 
 from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.mark_ranking import rank_marks, unknown_keys
-from pytpc.recording.mission import Recording
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark
+from pytpc.recording.mission import Recording
 from pytpc.recording.summaries import Summaries, Summary
 from pytpc.static.parameters import parameter_name
 from pytpc.static.static_info import Place

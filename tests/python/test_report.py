@@ -22,7 +22,6 @@ from pytpc.diagnosis.question import Question
 from pytpc.diagnosis.ranking.blame import blame
 from pytpc.diagnosis.ranking.mark_ranking import rank_marks
 from pytpc.diagnosis.suggestion.joining import join_advice
-from pytpc.recording.mission import MalformedRecord, Recording
 from pytpc.present.page.series import (
     BINS,
     BOTH,
@@ -37,6 +36,7 @@ from pytpc.present.page.series import (
 )
 from pytpc.recording.declaration import Declared
 from pytpc.recording.marks import Mark
+from pytpc.recording.mission import MalformedRecord, Recording
 from pytpc.recording.summaries import Summary
 from pytpc.values.origins import Origin
 

@@ -19,8 +19,8 @@ from selenium.webdriver.support.ui import WebDriverWait
 
 from pytpc.api.report import MissionReport, write_missions
 from pytpc.diagnosis.ranking.mark_ranking import rank_marks
-from pytpc.recording.mission import Recording
 from pytpc.recording.marks import Mark
+from pytpc.recording.mission import Recording
 from pytpc.static.static_info import PathStep
 
 CHROMIUM, DRIVER = shutil.which("chromium"), shutil.which("chromedriver")

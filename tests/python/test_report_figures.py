@@ -15,9 +15,9 @@ from report_samples import Page, mission, written
 
 from pytpc.api.report import MissionReport
 from pytpc.diagnosis.ranking.mark_ranking import rank_marks
-from pytpc.recording.mission import Recording
 from pytpc.present.page.series import FALSE, TRUE
 from pytpc.recording.marks import Mark
+from pytpc.recording.mission import Recording
 from pytpc.recording.summaries import Summary
 
 NAN = math.nan

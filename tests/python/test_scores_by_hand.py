@@ -25,8 +25,8 @@ from pytpc.diagnosis.scores.rank_curves import rank_curves
 from pytpc.diagnosis.scores.score_tables import Tpcs, parameter_tables, tpc_scores
 from pytpc.diagnosis.scores.scores import NONE
 from pytpc.diagnosis.scores.summary_scores import LogTables
-from pytpc.recording.mission import Recording
 from pytpc.recording.marks import Mark
+from pytpc.recording.mission import Recording
 from pytpc.recording.summaries import Summaries
 
 ROBOT = static_info(

@@ -10,9 +10,9 @@ import pytest
 from mission_samples import SummaryBuilder, comparison, events, key, ns, static_info
 
 from pytpc.base.errors import InputError
-from pytpc.recording.mission import Recording, save_recording
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark
+from pytpc.recording.mission import Recording, save_recording
 from pytpc.recording.summaries import Summary
 from pytpc.static.link_unit import Transform
 from pytpc_evaluation.stats.delays import delays_of, error_start

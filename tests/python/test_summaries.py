@@ -9,8 +9,8 @@ import pytest
 from mission_samples import SummaryBuilder, events, key, ns
 
 from pytpc.base.errors import InputError
-from pytpc.recording.mission import Dropped, Recording, load_recording, save_recording
 from pytpc.recording.marks import Mark
+from pytpc.recording.mission import Dropped, Recording, load_recording, save_recording
 from pytpc.recording.summaries import (
     Summaries,
     Summary,

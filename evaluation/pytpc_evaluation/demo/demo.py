@@ -20,8 +20,8 @@ from pytpc.diagnosis.ranking.mark_ranking import rank_marks
 from pytpc.diagnosis.results.suspects import MarkRanking
 from pytpc.diagnosis.suggestion.suggest import At, suggest
 from pytpc.ingest.reading import read
-from pytpc.recording.mission import EVENTS_FILE, MARKS_FILE, Recording, save_recording
 from pytpc.recording.marks import Mark
+from pytpc.recording.mission import EVENTS_FILE, MARKS_FILE, Recording, save_recording
 from pytpc.ros.mission_run import MISSION_DONE, MissionRun, Progress, RecordOptions
 from pytpc.ros.ros1.launch_mission import run_mission
 from pytpc.static.static_info import StaticInfo
