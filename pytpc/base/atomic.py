@@ -57,17 +57,9 @@ def write_atomic(target: Path, data: bytes) -> None:
     Raises:
         TpcError: the file cannot be written; what stood there before is untouched.
     """
-    try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        staged = stage_beside(target, data)
-        try:
-            staged.replace(target)
-        except BaseException:
-            with contextlib.suppress(OSError):
-                staged.unlink()
-            raise
-    except OSError as error:
-        raise TpcError(f"cannot be written: {error.strerror or error}", target) from error
+    with replacing(target) as staged:
+        staged.touch(0o644, exist_ok=False)
+        staged.write_bytes(data)
 
 
 @contextlib.contextmanager

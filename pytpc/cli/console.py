@@ -16,7 +16,8 @@ from rich.text import Text
 
 from pytpc.base.wording import many, plain
 from pytpc.build.reconcile import remark
-from pytpc.static.static_info import LinkUnit, StaticInfo
+from pytpc.static.link_unit import LinkUnit
+from pytpc.static.static_info import StaticInfo
 
 Advance = Callable[[int, int], None]
 

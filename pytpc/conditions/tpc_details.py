@@ -9,8 +9,9 @@ from typing import TypeVar
 from pytpc.base.wording import exact
 from pytpc.conditions.cpp_conditions import Condition
 from pytpc.conditions.lookup import Answer
+from pytpc.static.link_unit import Comparison, Default, LinkUnit, Transform
 from pytpc.static.places import Tpc
-from pytpc.static.static_info import Comparison, Default, LinkUnit, StaticInfo, Transform
+from pytpc.static.static_info import StaticInfo
 
 _Item = TypeVar("_Item")
 

@@ -14,7 +14,7 @@ from pytpc.diagnosis.results.advice import BlamedAdvice, Remedy, Suggested, Sugg
 from pytpc.diagnosis.results.suspects import Blame, MarkRanking
 from pytpc.recording.marks import MarkType
 from pytpc.recording.mission import Recording
-from pytpc.static.static_info import Comparison
+from pytpc.static.link_unit import Comparison
 
 TYPE_WORDS = {
     "I": "type I, did what it should not",

@@ -13,7 +13,7 @@ from pytpc.diagnosis.results.advice import BlamedAdvice, JoinedAdvice, MarkGroup
 from pytpc.diagnosis.results.suspects import Blame
 from pytpc.present.ranking_tables import TYPE_WORDS, indented
 from pytpc.recording.mission import Recording
-from pytpc.static.static_info import Comparison
+from pytpc.static.link_unit import Comparison
 
 
 def together_text(found: Blame, first: BlamedAdvice, parameter: str | None) -> RenderableType:

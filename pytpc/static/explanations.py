@@ -12,15 +12,15 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 from pytpc.base.errors import InputError
-from pytpc.static.static_info import (
+from pytpc.static.link_unit import (
     BlindSpot,
     Comparison,
     LinkUnit,
     NotExposed,
     ParameterRead,
     PathStep,
-    StaticInfo,
 )
+from pytpc.static.static_info import StaticInfo
 
 _CLOSEST = 5
 _FILE_LINE = re.compile(r"(?P<file>[^:]+):(?P<line>[0-9]{1,9})(:[0-9]+)?")

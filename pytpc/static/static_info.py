@@ -28,46 +28,8 @@ from pytpc.base.checked_json import (
 )
 from pytpc.base.errors import InputError, WorkspaceError
 from pytpc.base.paths import MERGED_FILE, OWN_FOLDER
-from pytpc.static.link_unit import (
-    BlindSpot,
-    Comparison,
-    Counts,
-    Default,
-    Exposing,
-    LeftOut,
-    LinkUnit,
-    NotExposed,
-    ParameterRead,
-    PathStep,
-    Place,
-    Tool,
-    Transform,
-)
+from pytpc.static.link_unit import Comparison, LeftOut, LinkUnit
 from pytpc.static.places import Tpc, merge_places
-
-__all__ = [
-    "BlindSpot",
-    "Comparison",
-    "Counts",
-    "Default",
-    "Exposing",
-    "LeftOut",
-    "LinkUnit",
-    "NotExposed",
-    "ParameterRead",
-    "PathStep",
-    "Place",
-    "StaticInfo",
-    "Tool",
-    "Tpc",
-    "Transform",
-    "collect",
-    "is_python_file",
-    "load_link_unit",
-    "python_unit_file",
-    "read_static",
-    "unit_files",
-]
 
 
 @dataclass(frozen=True)

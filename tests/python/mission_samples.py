@@ -13,15 +13,8 @@ from rosbags.typesys import Stores, get_typestore
 
 from pytpc.recording.events import Events, Report
 from pytpc.recording.summaries import Summaries, Summary
-from pytpc.static.static_info import (
-    Comparison,
-    Counts,
-    LinkUnit,
-    ParameterRead,
-    Place,
-    StaticInfo,
-    Tool,
-)
+from pytpc.static.link_unit import Comparison, Counts, LinkUnit, ParameterRead, Place, Tool
+from pytpc.static.static_info import StaticInfo
 
 SECOND = 10**9
 STORE = get_typestore(Stores.ROS1_NOETIC)

@@ -19,7 +19,8 @@ from pytpc.diagnosis.suggestion.what_if import CLOSED_LOOP, sweep, what_if
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
 from pytpc.recording.summaries import Summaries, Summary
-from pytpc.static.static_info import ParameterRead, StaticInfo, Transform
+from pytpc.static.link_unit import ParameterRead, Transform
+from pytpc.static.static_info import StaticInfo
 
 NAN, INF = math.nan, math.inf
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from static_units import comparison, unit
 
-from pytpc.static.static_info import Comparison, LinkUnit
+from pytpc.static.link_unit import Comparison, LinkUnit
 from suite.expectations import PYTHON_PACKAGE, Entry, Expectation, judge, load, nodes
 from suite.places import comparisons, values
 from suite.python_run import missing_modules, script

@@ -11,8 +11,8 @@ from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
 from pytpc.recording.summaries import Summaries, Summary
+from pytpc.static.link_unit import Place
 from pytpc.static.parameters import parameter_name
-from pytpc.static.static_info import Place
 
 # Comparisons 0 and 1 are of coverage, 2 of faces, 3 of idle, 4 is a constant, 5 of never (which is
 # never evaluated), 6 of faces too.

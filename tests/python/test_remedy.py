@@ -16,7 +16,7 @@ from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark
 from pytpc.recording.mission import Recording
 from pytpc.recording.summaries import Summaries, Summary
-from pytpc.static.static_info import Transform
+from pytpc.static.link_unit import Transform
 
 HOLDS = {"<": float.__lt__, ">": float.__gt__, ">=": float.__ge__, "flag": lambda _, t: bool(t)}
 

@@ -12,7 +12,7 @@ from mission_samples import SummaryBuilder, comparison, events, key, link_unit, 
 
 from pytpc.base.wording import exact, show
 from pytpc.recording.summaries import Summary
-from pytpc.static.static_info import ParameterRead, Transform
+from pytpc.static.link_unit import ParameterRead, Transform
 
 NAN, INF = math.nan, math.inf
 

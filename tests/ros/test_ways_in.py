@@ -17,7 +17,8 @@ from pytpc.base.paths import cmake_file, compiler_wrapper, log_library, plugin
 from pytpc.build.build import build_workspace, workspace_env
 from pytpc.build.collect import collect_sources
 from pytpc.ros.ros1.graph import RosGraph
-from pytpc.static.static_info import LeftOut, StaticInfo
+from pytpc.static.link_unit import LeftOut
+from pytpc.static.static_info import StaticInfo
 from pytpc.workspace import patch
 from pytpc.workspace.colcon import Bases, BuildOptions, build_environment
 

@@ -12,7 +12,8 @@ import pytest
 from pytpc.base.errors import MissingToolError
 from pytpc.base.paths import compiler_wrapper, log_library, plugin, prefix
 from pytpc.ros.ros1.graph import RosGraph
-from pytpc.static.static_info import LinkUnit, collect
+from pytpc.static.link_unit import LinkUnit
+from pytpc.static.static_info import collect
 from pytpc.workspace.colcon import build_environment
 
 try:

@@ -22,7 +22,8 @@ from pytpc.base.errors import InputError, RunError, TpcError, WorkspaceError
 from pytpc.base.paths import BUILD_TOOLS, cmake_file, installed, require_tools
 from pytpc.base.wording import plain
 from pytpc.build.faults import first_error, missing_names
-from pytpc.static.static_info import LinkUnit, load_link_unit, unit_files
+from pytpc.static.link_unit import LinkUnit
+from pytpc.static.static_info import load_link_unit, unit_files
 from pytpc.workspace.cmake_syntax import find_fault
 from pytpc.workspace.cmake_targets import ask_for_targets, link_targets
 from pytpc.workspace.colcon import (

@@ -13,7 +13,8 @@ from pytpc.diagnosis.suggestion.suggestion_evidence import NoneBecauseError, Sug
 from pytpc.diagnosis.thresholds.replay import tracks_of
 from pytpc.diagnosis.thresholds.units import NoUnitError
 from pytpc.recording.mission import Recording
-from pytpc.static.static_info import Default, StaticInfo
+from pytpc.static.link_unit import Default
+from pytpc.static.static_info import StaticInfo
 
 NAMES: dict[Source, str] = {
     "reference": "the value of the clean run",

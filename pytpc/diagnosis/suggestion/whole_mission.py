@@ -25,7 +25,8 @@ from pytpc.diagnosis.suggestion.blamed_advice import advise_blamed
 from pytpc.diagnosis.suggestion.joining import with_remedies
 from pytpc.diagnosis.thresholds.units import threshold_of
 from pytpc.recording.mission import Recording
-from pytpc.static.static_info import Comparison, StaticInfo
+from pytpc.static.link_unit import Comparison
+from pytpc.static.static_info import StaticInfo
 
 # The most steps of the curves, and the most numbers that are worked out for them.
 _STEPS = 6000
