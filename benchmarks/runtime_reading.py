@@ -24,7 +24,7 @@ import numpy as np
 from figures import figure
 
 from pytpc.ingest.binary import _TpcReader
-from pytpc.ingest.binary_layout import RECORD
+from pytpc.ingest.binary_chunks import RECORD
 from pytpc.ingest.gathering import Gathering
 from pytpc.python_runtime import log_layout as layout
 

@@ -125,22 +125,6 @@ class WordTable:
         """No rows, with the given keys."""
         return cls.of(keys=keys, nodes=(), **{name: [] for name in cls.kinds})
 
-    @classmethod
-    def concat(cls, parts: Sequence[Self]) -> Self:
-        """All rows of ``parts``; rows of one time keep the order of the parts. Words are sorted."""
-        if not parts:
-            return cls.empty()
-        keys = sorted({key for part in parts for key in part.keys})
-        nodes = sorted({node for part in parts for node in part.nodes})
-        recoded = []
-        for part in parts:
-            columns = part.columns()
-            columns["key"] = recode(np.asarray(columns["key"], np.int32), part.keys, keys)
-            columns["node"] = recode(np.asarray(columns["node"], np.int32), part.nodes, nodes)
-            recoded.append(columns)
-        joined = {name: np.concatenate([part[name] for part in recoded]) for name in recoded[0]}
-        return cls.of(**joined, keys=keys, nodes=nodes)
-
     def __len__(self) -> int:
         """The number of rows."""
         return int(getattr(self, self.order).size)
@@ -148,14 +132,6 @@ class WordTable:
     def columns(self) -> Columns:
         """The columns by name, in the order of ``schema``."""
         return {name: getattr(self, name) for name in self.kinds}
-
-    def equals(self, other: Self) -> bool:
-        """Whether both hold the same rows (NaN equals NaN) under the same words."""
-        theirs = other.columns()
-        return (self.keys, self.nodes) == (other.keys, other.nodes) and all(
-            np.array_equal(mine, theirs[name], equal_nan=mine.dtype == np.float64)
-            for name, mine in self.columns().items()
-        )
 
     def take(self, rows: slice | Int64s | Bools) -> Self:
         """The rows at ``rows`` (a slice, row numbers or a mask), with the same words."""

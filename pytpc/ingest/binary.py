@@ -17,9 +17,17 @@ import numpy.typing as npt
 from pytpc.base.columns import Int32s, Int64s
 from pytpc.base.errors import InputError
 from pytpc.base.wording import many
-from pytpc.ingest.binary_chunks import GROUP, Bytes, ChunkFile, RecordBlock, ThreadChunks
+from pytpc.ingest.binary_chunks import (
+    CHUNK,
+    GROUP,
+    RECORD,
+    Bytes,
+    ChunkFile,
+    FileHeader,
+    RecordBlock,
+    ThreadChunks,
+)
 from pytpc.ingest.binary_clock import Clock
-from pytpc.ingest.binary_layout import CHUNK, RECORD, FileHeader
 from pytpc.ingest.binary_system import (
     SummaryOrigin,
     SystemRecords,

@@ -11,8 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from pytpc.base.columns import Bools, Int32s
+from pytpc.ingest.binary_chunks import KEPT, RECORD, SLOT
 from pytpc.ingest.binary_clock import Clock
-from pytpc.ingest.binary_layout import KEPT, RECORD, SLOT
 from pytpc.ingest.gathering import SUMMARY_ROW, Gathering
 from pytpc.ingest.spool import Rows
 from pytpc.python_runtime import log_layout as layout

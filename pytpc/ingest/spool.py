@@ -26,12 +26,11 @@ _SMALLEST_BLOCK = 1 << 10
 
 @dataclass(frozen=True, slots=True)
 class _Run:
-    """Sorted rows: an array, or ``count`` of them from row ``start`` of a file."""
+    """``count`` sorted rows from row ``start`` of the file."""
 
     first_ns: int
     last_ns: int
     count: int
-    rows: Rows | None
     start: int
 
 
@@ -109,7 +108,7 @@ class Spool:
         with path.open("ab") as stream:
             rows.tofile(stream)
         times = rows[self._time]
-        run = _Run(int(times[0]), int(times[-1]), rows.size, None, self._written)
+        run = _Run(int(times[0]), int(times[-1]), rows.size, self._written)
         self._runs.append(run)
         self._written += rows.size
         self._held, self._held_rows = [], 0

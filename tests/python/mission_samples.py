@@ -58,6 +58,15 @@ class SummaryBuilder:
         return Summaries.of_rows(self._rows)
 
 
+def equal_tables(one: Events | Summaries, other: Events | Summaries) -> bool:
+    """Whether both hold the same rows (NaN equals NaN) under the same words."""
+    theirs = other.columns()
+    return (one.keys, one.nodes) == (other.keys, other.nodes) and all(
+        np.array_equal(mine, theirs[name], equal_nan=mine.dtype == np.float64)
+        for name, mine in one.columns().items()
+    )
+
+
 def key(number: int) -> str:
     """A key whose order is that of the numbers."""
     return f"{number:08x}-0000-5000-8000-000000000000"

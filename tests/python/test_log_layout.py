@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pytpc.ingest.binary_layout import CHUNK, KEPT, RECORD, SLOT
+from pytpc.ingest.binary_chunks import CHUNK, KEPT, RECORD, SLOT
 from pytpc.python_runtime import file_sink, log_layout
 
 HEADER = (Path(__file__).parents[2] / "runtime_log/Layout.h").read_text()
