@@ -26,8 +26,11 @@ _LONGEST_MESSAGE = 160
 _SURROGATE = re.compile(rb"\\u[dD][89a-fA-F]")
 
 
-def parse_json(path: Path) -> object:
+def parse_json(path: Path, *, half_characters: bool = False) -> object:
     """The JSON value in ``path``.
+
+    ``half_characters`` allows escapes of half a surrogate pair, which no UTF-8 file can hold: names
+    of files that are not UTF-8 are written so.
 
     Raises:
         InputError: the file cannot be read, is not UTF-8 or not JSON (with the line of the fault).
@@ -40,7 +43,7 @@ def parse_json(path: Path) -> object:
         data: object = json.loads(
             raw.decode("utf-8"), parse_constant=_refuse_constant, parse_float=_finite
         )
-        if _SURROGATE.search(raw) is not None:
+        if not half_characters and _SURROGATE.search(raw) is not None:
             # Half of a pair can be escaped in JSON, and written nowhere.
             json.dumps(data, ensure_ascii=False).encode()
     except UnicodeDecodeError as error:

@@ -1,8 +1,8 @@
 """The binary file of reports (docs/reference/formats.md): its header, its chunks and their bytes.
 
-``pytpc.python_runtime.log_layout`` has the constants of the writer. The chunks are read, not mapped: into memory that is used again and again, and so stays in the processor's
-cache, which was measured to be quicker; and a mapped file that is shortened meanwhile, or lies on a
-broken disk, ends the reader with SIGBUS.
+``pytpc.python_runtime.log_layout`` has the constants of the writer. Chunks are read, not mapped:
+reading into the same memory again and again is faster, because it stays in the processor's cache.
+A mapped file that is shortened meanwhile, or that lies on a broken disk, ends the reader by SIGBUS.
 """
 
 from __future__ import annotations
@@ -29,7 +29,6 @@ Skip = Callable[[str], None]
 GROUP = 32
 # Kind, thread and first record of a chunk, and the time of that record.
 _HEAD = struct.Struct("<IIQ48x8xq")
-
 
 RECORD = np.dtype(
     [("what", "<u4"), ("site", "<u4"), ("steady", "<i8"), ("cmp", "<f8"), ("thresh", "<f8")]

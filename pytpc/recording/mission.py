@@ -11,6 +11,7 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
 from pytpc.base.atomic import write_atomic
+from pytpc.base.checked_json import parse_json
 from pytpc.base.errors import InputError
 from pytpc.recording.events import Events
 from pytpc.recording.marks import MARK_TYPES, Mark
@@ -146,21 +147,9 @@ def read_marks_json(folder: Path) -> tuple[Recording, int, int]:
         InputError: the file is missing or broken.
     """
     path = folder / MARKS_FILE
+    document = parse_json(path, half_characters=True)
     try:
-        text = path.read_bytes().decode("utf-8")
-        document = json.loads(text)
-    except OSError as error:
-        raise InputError(f"cannot be read: {error.strerror or error}", path) from error
-    except json.JSONDecodeError as error:
-        raise InputError(f"not JSON: {error.msg}", path, error.lineno) from error
-    except UnicodeDecodeError as error:
-        raise InputError(f"not JSON: byte {error.start} is not UTF-8", path) from error
-    except (ValueError, RecursionError) as error:
-        raise InputError(f"not JSON: {error}", path) from error
-    try:
-        # Files of older versions say nothing of summaries.
-        counts = int(document["events"]), int(document.get("summaries", 0))
-        return _recording(document), *counts
+        return _recording(document)
     except (AttributeError, KeyError, TypeError, ValueError, OverflowError) as error:
         raise InputError(f"not the marks of a recording: {_why(error)}", path) from error
 
@@ -171,7 +160,7 @@ def _check_rows(path: Path, said: int, name: str, found: int) -> None:
         raise InputError(f"is of a recording with {said} {what}, but {name} has {found}", path)
 
 
-def _recording(document: object) -> Recording:
+def _recording(document: object) -> tuple[Recording, int, int]:
     if not isinstance(document, dict) or document.get("schema") != _SCHEMA:
         raise ValueError(f"not of format {_SCHEMA}, the only one that this TPC reads")
     marks = [Mark(**mark) for mark in document["marks"]]
@@ -182,7 +171,7 @@ def _recording(document: object) -> Recording:
             raise ValueError("a mark whose note is no text")
         if mark.type is not None and mark.type not in MARK_TYPES:
             raise ValueError(f"a mark of type {mark.type!r}")
-    return Recording(
+    recording = Recording(
         name=str(document["name"]),
         events=Events.empty(),
         marks=tuple(sorted(marks, key=Mark.order)),
@@ -194,6 +183,8 @@ def _recording(document: object) -> Recording:
         notes=tuple(str(note) for note in document["notes"]),
         dropped=tuple(Dropped(**item) for item in document.get("dropped", [])),
     )
+    # Files of older versions say nothing of summaries.
+    return recording, int(document["events"]), int(document.get("summaries", 0))
 
 
 def _why(error: Exception) -> str:

@@ -3,6 +3,7 @@ from __future__ import annotations
 import json
 import struct
 import subprocess
+from dataclasses import replace
 
 import pytest
 from mission_samples import BagFile, equal_tables, key, line, ns
@@ -282,6 +283,13 @@ def test_recording_on_disk_and_back(mission, tmp_path):
         assert getattr(again, name) == getattr(recording, name)
     assert again.malformed_first == recording.malformed_first
     assert sorted(p.name for p in (tmp_path / "out").iterdir()) == ["events.parquet", "marks.json"]
+
+
+# The name of a file that is not UTF-8, as Python has it.
+def test_a_note_with_half_a_character_is_kept(mission, tmp_path):
+    recording = replace(read(mission), notes=("no report in 1 text file, as \udcff.log",))
+    save_recording(recording, tmp_path / "out")
+    assert load_recording(tmp_path / "out").notes == recording.notes
 
 
 def test_recordings_that_are_broken(mission, tmp_path):
