@@ -14,11 +14,9 @@ from pytpc.ingest.losses import LossCounter
 from pytpc.ingest.ros1 import decode_log, decode_string
 from pytpc.ingest.rosout_line import (
     Malformed,
-    StampedReport,
     parse_other,
     parse_report,
     parse_stamped,
-    parse_stamped_other,
 )
 from pytpc.recording.summaries import Summary
 from pytpc.ros.ros1.relay import ROSOUT, line_of
@@ -120,12 +118,12 @@ class Reports:
         return []
 
     def _line(self, line: str, node: str) -> Item | None:
-        other = parse_stamped_other(line, node)
+        other = parse_other(line, node, stamped=True)
         if other is not None:
             return other if isinstance(other, Summary) else None
         found = parse_stamped(line)
-        if not isinstance(found, StampedReport):
+        if isinstance(found, Malformed):
             self.malformed += 1
             return None
-        key, result, cmp, thresh, res = found.report
-        return Seen(found.time_ns, key, node, result, cmp, thresh, res)
+        time_ns, (key, result, cmp, thresh, res) = found
+        return Seen(time_ns, key, node, result, cmp, thresh, res)

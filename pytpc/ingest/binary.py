@@ -29,7 +29,6 @@ from pytpc.ingest.binary_chunks import (
 )
 from pytpc.ingest.binary_clock import Clock
 from pytpc.ingest.binary_system import (
-    SummaryOrigin,
     SystemRecords,
     open_summaries,
     read_system,
@@ -299,8 +298,9 @@ class _TpcReader:
             self._hand_in_summaries(unwritten)
 
     def _hand_in_summaries(self, kept: Rows) -> None:
-        origin = SummaryOrigin(self._clock, self._last_ns, self._node_code, self._channel.code)
-        rows = summary_rows(kept, origin, self._key_of_site, self._skip)
+        rows = summary_rows(kept, self._key_of_site, self._clock, self._last_ns, self._skip)
+        rows["node"] = self._node_code
+        rows["channel"] = self._channel.code
         self._gathering.summaries.append(rows)
 
     def _complaints(self) -> None:

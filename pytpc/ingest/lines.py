@@ -15,10 +15,10 @@ from pytpc.ingest.rosout_line import (
     BatchHead,
     Drop,
     Malformed,
+    as_text,
     parse_other,
     parse_report,
     parse_stamped,
-    parse_stamped_other,
 )
 from pytpc.recording.events import Report
 from pytpc.recording.mission import Dropped
@@ -76,7 +76,7 @@ class Lines:
 
     def add_other(self, text: str, node: str, time_ns: int = 0, number: int = 0) -> None:
         """Read a line about a summary or about dropped reports; ``time_ns`` is for complaints."""
-        found = parse_stamped_other(text, node) if self._stamped else parse_other(text, node)
+        found = parse_other(text, node, stamped=self._stamped)
         if isinstance(found, Summary):
             self.gathering.add_summary(self.channel, found)
         elif isinstance(found, Drop):
@@ -109,7 +109,7 @@ class Lines:
 
     def _alone(self, number: int) -> None:
         """Read one line strictly."""
-        text = self._lines[number].decode("utf-8", "replace")
+        text = as_text(self._lines[number])
         time_ns = self._times[number]
         found: Report | Malformed | None
         if self._stamped:
@@ -117,9 +117,9 @@ class Lines:
             if isinstance(stamped, Malformed):
                 found = stamped
             else:
-                found = stamped.report
-                self.unstamped += not stamped.time_ns
-                time_ns = stamped.time_ns or time_ns
+                stamp_ns, found = stamped
+                self.unstamped += not stamp_ns
+                time_ns = stamp_ns or time_ns
         else:
             found = parse_report(PREFIX + text)
         if isinstance(found, Report):

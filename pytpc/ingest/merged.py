@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -14,14 +14,12 @@ import pyarrow as pa
 from pytpc.base.atomic import replacing
 from pytpc.base.columns import recode, sorted_words, table_writer, to_arrow
 from pytpc.ingest.duplicates import APART_NS, TOLERANCE_NS, Once, clock_notes
-from pytpc.ingest.gathering import SUMMARY_ROW, Gathering
+from pytpc.ingest.gathering import SUMMARY_ROW, Gathering, Progress
 from pytpc.ingest.spool import Rows
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark, joined
 from pytpc.recording.mission import EVENTS_FILE, SUMMARIES_FILE, Recording, write_marks_json
 from pytpc.recording.summaries import Summaries
-
-Told = Callable[[int, int], None]
 
 
 @dataclass
@@ -118,7 +116,7 @@ class Merged:
             dropped=gathering.dropped_list,
         )
 
-    def save(self, folder: Path, told: Told | None = None) -> Recording:
+    def save(self, folder: Path, told: Progress | None = None) -> Recording:
         """Write a converted folder block by block; the tables of the result are empty.
 
         Raises:
@@ -131,12 +129,12 @@ class Merged:
         write_marks_json(rest, folder, self.events, self.summaries)
         return rest
 
-    def save_parquet(self, path: Path, told: Told | None = None) -> Recording:
+    def save_parquet(self, path: Path, told: Progress | None = None) -> Recording:
         """Write only the events; see ``save``."""
         self._parquet(path, Events.schema, self.event_blocks(), told)
         return self.rest(Events.empty(), Summaries.empty())
 
-    def save_csv(self, path: Path, told: Told | None = None) -> Recording:
+    def save_csv(self, path: Path, told: Progress | None = None) -> Recording:
         """Write the events as CSV in the thesis's form, without nodes; see ``save``."""
         total = max(1, len(self.gathering.events))
         with replacing(path) as staged, staged.open("w", encoding="ascii") as stream:
@@ -157,7 +155,7 @@ class Merged:
             )
 
     def _parquet(
-        self, path: Path, schema: pa.Schema, blocks: Iterator[Rows], told: Told | None = None
+        self, path: Path, schema: pa.Schema, blocks: Iterator[Rows], told: Progress | None = None
     ) -> None:
         total = max(1, len(self.gathering.events))
         with table_writer(path, schema) as write:

@@ -23,6 +23,7 @@ from pytpc.ingest.rosout_line import (
     PREFIX,
     SUMMARY_PREFIX,
     Malformed,
+    as_text,
     parse_batch,
 )
 from pytpc.recording.marks import MarkMessages
@@ -207,7 +208,7 @@ class Messages:
         # names one sender for all. What is missing in both ways of counting is missing.
         ways = (self._losses_of_nodes, self._losses_of_senders)
         for name, count in min(ways, key=lambda one: one.lost.total()).lost.items():
-            self._gathering.lost[_plain(name)] += count
+            self._gathering.lost[as_text(name)] += count
         if self._unstamped.count:
             self._gathering.late_notes.append(
                 f"{many(self._unstamped.count, 'record')} without a stamp got the bag's time"
@@ -235,7 +236,7 @@ class Messages:
         elif log.msg.startswith(_OTHERS) and topic == ROSOUT:
             # What the rosout node passes on is the same once more.
             lines = self._lines_of(way, topic, stamped=False, prefix=PREFIX)
-            lines.add_other(_plain(log.msg), _plain(log.node), log.stamp_ns or time_ns)
+            lines.add_other(as_text(log.msg), as_text(log.node), log.stamp_ns or time_ns)
 
     def _text(self, caller: str, time_ns: int, text: bytes) -> None:
         """A message on the topic: one line, or several of which the first is numbered."""
@@ -243,31 +244,31 @@ class Messages:
             self._stamped("topic", caller, time_ns, text)
             return
         head, _, rest = text.partition(b"\n")
-        batch = parse_batch(_plain(head))
+        batch = parse_batch(as_text(head))
         lines = [line for line in rest.split(b"\n") if line]
         if isinstance(batch, Malformed):
             self._gathering.skip(
-                REPORTS, time_ns, f"{batch.what}, column {batch.column}", _plain(head)
+                REPORTS, time_ns, f"{batch.what}, column {batch.column}", as_text(head)
             )
         else:
             self._batches.see(caller, batch)
             said = sum(1 for line in lines if not _is_other(line))
             if said != batch.count:
                 what = f"{batch.count} reports are announced, {said} are there"
-                self._gathering.skip(REPORTS, time_ns, what, _plain(head))
+                self._gathering.skip(REPORTS, time_ns, what, as_text(head))
         for number, line in enumerate(lines, start=2):
             self._stamped("batch", caller, time_ns, line, number)
 
     def _stamped(self, way: Way, caller: str, time_ns: int, line: bytes, number: int = 0) -> None:
         lines = self._lines_of(way, REPORTS, stamped=True)
         if _is_other(line):
-            lines.add_other(_plain(line), caller, time_ns, number)
+            lines.add_other(as_text(line), caller, time_ns, number)
         else:
             lines.add(line, time_ns, self._node(caller.encode()), number)
 
     def _mark(self, topic: str, time_ns: int, raw: bytes) -> None:
         if MarkMessages.message_type(topic) == "String":
-            self._gathering.mark_messages.add_text(topic, _plain(self._decoders.text(raw)))
+            self._gathering.mark_messages.add_text(topic, as_text(self._decoders.text(raw)))
         else:
             marked_ns = self._decoders.time(raw)
             self._unstamped.count += not marked_ns
@@ -276,7 +277,7 @@ class Messages:
     def _node(self, name: bytes) -> int:
         code = self._nodes.get(name)
         if code is None:
-            code = self._nodes[name] = self._gathering.nodes.code(_plain(name))
+            code = self._nodes[name] = self._gathering.nodes.code(as_text(name))
         return code
 
     def _lines_of(self, way: Way, topic: str, *, stamped: bool, prefix: str = "") -> Lines:
@@ -291,7 +292,3 @@ class Messages:
 def _is_other(line: bytes) -> bool:
     comma = line.find(b",")
     return line.startswith(_WITH_TIME, comma) or line.startswith(_OTHERS)
-
-
-def _plain(raw: bytes) -> str:
-    return raw.decode("utf-8", "replace")

@@ -2,11 +2,10 @@
 
 Format: docs/reference/formats.md#reports.
 
-``parse_report`` and ``parse_other`` read what is in the ``msg`` of a /rosout message,
-``parse_stamped``, ``parse_stamped_other`` and ``parse_batch`` a line of the ``data`` of a
-/threshold_information message. A number is what the sinks write: decimal or scientific notation of
-a finite double, ``nan``, ``inf`` or ``-inf`` (and ``-nan``, the text that the C library gives the
-NaN of 0.0/0.0).
+``parse_report`` reads the ``msg`` of a /rosout message, ``parse_stamped`` and ``parse_batch`` read
+a line of the ``data`` of a /threshold_information message, and ``parse_other`` reads either. A
+number is what the sinks write: decimal or scientific notation of a finite double, ``nan``, ``inf``
+or ``-inf`` (and ``-nan``, which is how the C library writes the NaN of 0.0/0.0).
 """
 
 from __future__ import annotations
@@ -58,13 +57,6 @@ _FIELDS = (
 )
 
 
-class StampedReport(NamedTuple):
-    """A report with its own time, in nanoseconds."""
-
-    time_ns: int
-    report: Report
-
-
 @dataclass(frozen=True, slots=True)
 class Drop:
     """Reports that the process dropped; ``key`` is empty if the site is not known."""
@@ -89,6 +81,11 @@ class BatchHead:
     pid: int
 
 
+def as_text(raw: bytes) -> str:
+    """The text of a line; bytes that are not UTF-8 are replaced."""
+    return raw.decode("utf-8", "replace")
+
+
 class Malformed(NamedTuple):
     """A line that only begins like a report: what is wrong, and at which column (from 1)."""
 
@@ -108,8 +105,8 @@ def parse_report(text: str) -> Report | Malformed | None:
     return _read(text, len(PREFIX))
 
 
-def parse_stamped(text: str) -> StampedReport | Malformed:
-    """Read ``TIME,KEY,RESULT,cmp:C,thresh:T,res:R``, TIME in seconds.
+def parse_stamped(text: str) -> tuple[int, Report] | Malformed:
+    """Read ``TIME,KEY,RESULT,cmp:C,thresh:T,res:R``, TIME in seconds and returned in nanoseconds.
 
     Nothing else belongs on that topic, so any other text is ``Malformed``.
     """
@@ -119,41 +116,21 @@ def parse_stamped(text: str) -> StampedReport | Malformed:
     if nanoseconds(stamp[1]) > LATEST_NS:
         return Malformed("a time beyond the year 2262", 1)
     report = _read(text, stamp.end())
-    if isinstance(report, Malformed):
-        return report
-    return StampedReport(nanoseconds(stamp[1]), report)
+    return report if isinstance(report, Malformed) else (nanoseconds(stamp[1]), report)
 
 
-def parse_other(text: str, node: str) -> Summary | Drop | Malformed | None:
-    """Read ``threshold_summary:...`` or ``threshold_dropped:...``.
+def parse_other(
+    text: str, node: str, *, stamped: bool = False
+) -> Summary | Drop | Malformed | None:
+    """Read ``threshold_summary:...`` or ``threshold_dropped:...``, behind a time if ``stamped``.
 
     Returns:
         What it says; ``Malformed`` where the text only begins like one; None for anything else.
     """
-    return _other(text, 0, node)
-
-
-def parse_stamped_other(text: str, node: str) -> Summary | Drop | Malformed | None:
-    """The same after a time in seconds and a comma."""
-    stamp = _STAMPED.match(text)
-    return None if stamp is None else _other(text, stamp.end(), node)
-
-
-def parse_batch(text: str) -> BatchHead | Malformed:
-    """Read ``#seq:N,count:N,dropped:N,pid:P,steady:S``."""
-    found = _BATCH.fullmatch(text)
-    if found is None:
-        return Malformed("a line that begins with # is #seq:N,count:N,dropped:N,pid:P,steady:S", 1)
-    return BatchHead(*(int(number) for number in found.groups()[:4]))
-
-
-def nanoseconds(text: str) -> int:
-    """The time of a text that matches ``TIME``."""
-    seconds, _, fraction = text.partition(".")
-    return int(seconds) * 10**9 + int(fraction.ljust(9, "0"))
-
-
-def _other(text: str, start: int, node: str) -> Summary | Drop | Malformed | None:
+    stamp = _STAMPED.match(text) if stamped else None
+    if stamped and stamp is None:
+        return None
+    start = 0 if stamp is None else stamp.end()
     if text.startswith(SUMMARY_PREFIX, start):
         place = start + len(SUMMARY_PREFIX)
         found = _SUMMARY.fullmatch(text, place)
@@ -168,6 +145,20 @@ def _other(text: str, start: int, node: str) -> Summary | Drop | Malformed | Non
         key, count, flops, why = found.groups()
         return Drop((key or "").lower(), int(count), int(flops), why)
     return None
+
+
+def parse_batch(text: str) -> BatchHead | Malformed:
+    """Read ``#seq:N,count:N,dropped:N,pid:P,steady:S``."""
+    found = _BATCH.fullmatch(text)
+    if found is None:
+        return Malformed("a line that begins with # is #seq:N,count:N,dropped:N,pid:P,steady:S", 1)
+    return BatchHead(*(int(number) for number in found.groups()[:4]))
+
+
+def nanoseconds(text: str) -> int:
+    """The time of a text that matches ``TIME``."""
+    seconds, _, fraction = text.partition(".")
+    return int(seconds) * 10**9 + int(fraction.ljust(9, "0"))
 
 
 def _summary(found: re.Match[str], node: str) -> Summary | Malformed:

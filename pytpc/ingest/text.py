@@ -19,6 +19,7 @@ from pytpc.ingest.rosout_line import (
     LATEST_NS,
     PREFIX,
     BatchHead,
+    as_text,
     nanoseconds,
     parse_batch,
 )
@@ -118,7 +119,7 @@ class _Log(_Taker):
         if found is None:
             if _REPORT_LIKE.search(line):
                 what = f"line {number}: neither a line of a log nor {_CSV_FORM}"
-                self.gathering.skip(self.channel.topic, 0, what, _plain(line))
+                self.gathering.skip(self.channel.topic, 0, what, as_text(line))
             return
         self._without_time += stamp is None
         named = _NODE.search(front)
@@ -129,7 +130,7 @@ class _Log(_Taker):
             self.lines.add(rest[len(_PREFIX) :], self._last_ns, code, number)
         else:
             self.others += 1
-            self.lines.add_other(_plain(rest), node, number=number)
+            self.lines.add_other(as_text(rest), node, number=number)
 
     def close(self) -> None:
         super().close()
@@ -151,15 +152,15 @@ class _Csv(_Taker):
         if not line.strip() or (number == 1 and not _CSV.match(line) and b"cmp:" not in line):
             return
         if line.startswith(b"#"):
-            batch = parse_batch(_plain(line))
+            batch = parse_batch(as_text(line))
             if isinstance(batch, BatchHead):
                 self.batches.see(self.node, batch)
             else:
                 what = f"line {number}: {batch.what}, column {batch.column}"
-                self.gathering.skip(self.channel.topic, 0, what, _plain(line))
+                self.gathering.skip(self.channel.topic, 0, what, as_text(line))
         elif _BEGIN.search(line):
             self.others += 1
-            self.lines.add_other(_plain(line), self.node, number=number)
+            self.lines.add_other(as_text(line), self.node, number=number)
         else:
             self.lines.add(line, 0, self._code, number)
 
@@ -194,7 +195,3 @@ def _lines(path: Path) -> Iterator[tuple[int, list[bytes], int]]:
                 number += len(lines)
     if rest and not cut:
         yield number, [rest.rstrip(b"\r")], done
-
-
-def _plain(raw: bytes) -> str:
-    return raw.decode("utf-8", "replace")
