@@ -1,9 +1,9 @@
-"""The messages of a ROS 1 bag in the order of the file, with little memory and little per message.
+"""Reads the messages of a ROS 1 bag in the order of the file, quickly and with little memory.
 
 rosbags' reader keeps an object for each message of a bag in memory and parses each record's header
-in full; a mission has millions of them (docs/explanation/decisions.md). Here the connections are
-read from the index, as there, but the messages chunk by chunk, all of a chunk at once.
-Format: http://wiki.ros.org/Bags/Format/2.0
+in full; a mission has millions of them (docs/explanation/decisions.md). This reader also takes the
+connections from the index, but reads all messages of a chunk at once. Format:
+http://wiki.ros.org/Bags/Format/2.0
 """
 
 from __future__ import annotations
@@ -258,7 +258,7 @@ def _unpacked(header: dict[bytes, bytes], data: bytes) -> bytes:
         if name == "none":
             return data
         if name == "bz2":
-            # What it becomes must not be without end.
+            # A broken chunk must not unpack without end.
             unpacked = bz2.BZ2Decompressor().decompress(data, size + 1)
         elif name == "lz4":
             unpacked = LZ4FrameDecompressor().decompress(data, size + 1)

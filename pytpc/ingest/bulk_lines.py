@@ -1,7 +1,7 @@
 """Parses thousands of lines of text into columns at once, without a loop in Python.
 
-What is read here is read exactly as ``rosout_line`` reads it. A block of lines in which one line
-is not as expected is halved until the odd lines stand alone; those are left to ``rosout_line``.
+It reads lines exactly as ``rosout_line`` does. A block with an unexpected line is halved until the
+unexpected lines are alone; ``rosout_line`` reads those.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class _Odd(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Columns:
-    """Reports of the lines ``begin`` to ``end`` of what was given.
+    """Reports of the given lines ``begin`` to ``end``.
 
     ``key`` is codes into ``keys``; ``time_ns`` is None where the lines have no time.
     """
@@ -55,8 +55,8 @@ def read_lines(lines: Sequence[bytes], *, stamped: bool) -> Iterator[Columns | i
     """Read ``[TIME,]KEY,RESULT,cmp:C,thresh:T,res:R`` in each of ``lines``.
 
     Yields:
-        Columns of lines that follow one another, and the number of each line that is not as
-        expected here (it may be one all the same: white space at its end), in order.
+        Columns of consecutive lines, and the number of each unexpected line, in order. Such a line
+        may still be a report, for example one with white space at its end.
     """
     yield from _halved(lines, 0, len(lines), stamped)
 

@@ -1,12 +1,13 @@
 """Reports that arrived by more than one way are counted once.
 
-Two rules. What a node is known to pass on is left out whole: of a node that reports on /rosout
-nothing is taken from /rosout_agg, and of a key that is in the log messages of a file nothing from
-its /threshold_information, unless the publisher there reports on /rosout itself, or numbers its
-messages (a sink of TPC's own, not a converter). Everything else that could be twice is compared
-report by report: two are the same where node, key, values and results are equal and their times
-are within the tolerance, one to one; never those of two processes' files. The node does not count
-where a way does not tell it (converters, console text).
+There are two rules. First, reports that were only passed on are left out. If a node reports on
+/rosout, nothing is taken from it on /rosout_agg. If a key is in the log messages of a file, nothing
+is taken of it from /threshold_information, unless the publisher there reports on /rosout itself or
+numbers its messages (a sink of TPC, not a converter). Second, all other possible duplicates are
+compared one by one. Two reports are the same if node, key, values and results are equal and their
+times are within the tolerance. Each report has at most one partner, never one from the file of
+another process. The node is not compared where a channel does not tell it (converters, console
+text).
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ from pytpc.ingest.spool import Rows
 TOLERANCE_NS = 10**6
 APART_NS = 60 * 10**9
 _MOST_HELD = 1 << 22
-# The way of which reports are kept comes first.
+# Reports are kept from the way that comes first.
 _ORDER: tuple[Way, ...] = ("log", "file", "batch", "events", "aggregate", "text", "topic")
 _NAMELESS: frozenset[Way] = frozenset({"topic", "text"})
 
@@ -135,7 +136,9 @@ class Once:
             yield held[~twice]
 
     def _match(self, rows: Rows, twice: Bools, used: Bools, step: _Step) -> None:
-        """Mark in ``twice`` the reports of ``step.later`` that have a partner; both in ``used``."""
+        """Mark the reports of ``step.later`` that have a partner in ``twice``, and both in
+        ``used``.
+        """
         channel = rows["channel"]
         is_later = channel == step.later
         among = np.flatnonzero((is_later | step.earlier[channel]) & ~twice & ~used)
@@ -144,7 +147,7 @@ class Once:
         order = np.lexsort((is_later[among], times, signature))
         among, signature, times = among[order], signature[order], times[order]
         while among.size > 1:
-            # Neighbours of both sides; of a chain of such pairs every second one is taken.
+            # Neighbours from both sides; in a chain of such pairs every second pair is taken.
             near = times[1:] - times[:-1] <= self._tolerance_ns
             pairs = np.flatnonzero(
                 near
@@ -167,8 +170,7 @@ class Once:
 
 
 def clock_notes(channels: list[Channel]) -> Iterator[str]:
-    """Notes on sources that lie apart in time: nothing tells whether it is the clock's
-    doing."""
+    """Notes on sources that are far apart in time, which may be due to their clocks."""
     spans: dict[str, tuple[int, int]] = {}
     for channel in channels:
         if channel.count:

@@ -1,4 +1,4 @@
-"""A folder that ``pytpc convert`` wrote, as one source among others."""
+"""Reads folders that ``pytpc convert`` wrote."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _ROWS = 1 << 18
 def read_folder_into(
     folder: Path, gathering: Gathering, on_progress: Progress | None = None
 ) -> None:
-    """Read an ingested folder, some rows at a time.
+    """Read a converted folder, some rows at a time.
 
     Raises:
         InputError: a file is missing or broken, or the files are not of one recording.

@@ -72,9 +72,9 @@ class ReportColumns:
 class Channel:
     """One way by which reports arrived.
 
-    ``source`` is the file or folder as it was named, ``way`` which kind of channel of it this is,
-    ``topic`` its name for messages. ``pairs`` has what was seen on it, as (key, node) codes.
-    ``process`` tells the process from all others where all reports are of one.
+    ``source`` is the file or folder as given, ``way`` the kind of channel, ``topic`` its name in
+    messages. ``pairs`` are the (key, node) codes seen on it. ``process`` identifies the process if
+    all reports are of one.
     """
 
     code: int
@@ -94,11 +94,11 @@ class Channel:
 
 
 class Gathering:
-    """All that was read.
+    """Everything that was read.
 
     ``spans`` are the times of recordings on their own clock; ``notes`` and ``late_notes`` are for
-    the user, before and behind those about duplicates; ``without_reports`` are text files in which
-    no line is one.
+    the user, before and after those about duplicates; ``without_reports`` are text files without a
+    report.
 
     Args:
         folder: where rows that are too many for memory are kept; None: all stays in memory.
@@ -151,7 +151,7 @@ class Gathering:
         return self._turn
 
     def turns(self, count: int) -> range:
-        """So many of them."""
+        """Numbers for this many records."""
         self._turn += count
         return range(self._turn - count + 1, self._turn + 1)
 
@@ -219,7 +219,7 @@ class Gathering:
         del self._first[_SHOWN:]
 
     def flush(self) -> None:
-        """Nothing is held back after this."""
+        """Hand on the summaries that are still held."""
         for channel, summaries in self._held.items():
             self.add_summaries(channel, Summaries.of_rows(summaries))
         self._held, self._held_count = {}, 0

@@ -28,14 +28,14 @@ from pytpc.recording.summaries import Summary
 class Lines:
     """Reads the text reports of one channel, thousands at a time.
 
-    ``stamped`` says that each line begins with its own time; that of ``add`` then counts only where
-    this is 0, or the line is broken.
+    With ``stamped`` each line begins with its own time. The time given to ``add`` then counts only
+    if the line's own is 0, or the line is malformed.
     """
 
     def __init__(
         self, batches: Batches, channel: Channel, *, stamped: bool, prefix: str = ""
     ) -> None:
-        """``prefix`` stood before what ``add`` gets, and stands there in complaints."""
+        """``prefix`` was cut off the lines that ``add`` gets; messages about them show it."""
         self.gathering = batches.gathering
         self.channel = channel
         self._batches = batches
@@ -147,7 +147,7 @@ class Lines:
 
 @dataclass
 class Batches:
-    """Keeps track of numbered messages of several lines: what is missing, what was dropped."""
+    """Counts what is missing and what was dropped in numbered messages of several lines."""
 
     gathering: Gathering
     losses: LossCounter[str] = field(default_factory=LossCounter)
@@ -166,7 +166,7 @@ class Batches:
         self.gathering.add_dropped(Dropped(drop.key, node, drop.count, drop.flops, drop.why))
 
     def close(self) -> None:
-        """Hand in dropped reports that are in the totals but in no line."""
+        """Add the dropped reports that only the totals count."""
         totals: Counter[str] = Counter()
         for (node, _), count in self.dropped.items():
             totals[node] += count

@@ -44,7 +44,7 @@ class Merged:
 
     @property
     def comparisons(self) -> int:
-        """How many keys the events had that were returned."""
+        """How many different keys the returned events have."""
         return int(np.count_nonzero(self._seen))
 
     def event_blocks(self) -> Iterator[Rows]:
@@ -181,8 +181,8 @@ class Merged:
     def _span(self, marks: tuple[Mark, ...]) -> tuple[int, int]:
         """First and last time, on the clock of the reports.
 
-        A bag that was recorded on another clock (wall time, the robot on simulated time) says
-        nothing about it.
+        A bag that was recorded on another clock (wall time, while the robot ran on simulated time)
+        does not count.
         """
         times = self._times(marks)
         spans = self.gathering.spans
@@ -220,7 +220,7 @@ def _used(events: Events) -> Events:
 
 
 def _packed(rows: Rows) -> npt.NDArray[np.bytes_]:
-    """bytes[n]: all fields of each row, NaN and all."""
+    """bytes[n]: the bytes of all fields of each row."""
     packed = np.empty(rows.size, [(name, rows.dtype[name]) for name in rows.dtype.names or ()])
     for name in rows.dtype.names or ():
         packed[name] = rows[name]

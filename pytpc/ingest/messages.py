@@ -51,7 +51,7 @@ _Connection = TypeVar("_Connection", bound=_AnyConnection)
 
 @dataclass(frozen=True, slots=True)
 class Decoders:
-    """How the three kinds of messages are read; each raises ValueError where bytes are missing."""
+    """Decodes the three kinds of messages; each raises ValueError if bytes are missing."""
 
     log: Callable[[bytes], LogMessage]
     text: Callable[[bytes], bytes]
@@ -88,8 +88,8 @@ def wanted(
 class _Unstamped:
     """Counts records without a stamp, except at the start of a node.
 
-    On simulated time a node has none until its first /clock; what it reports before has the bag's
-    time, and nothing is wrong. A node's beginning is the first second of its log in the bag.
+    On simulated time a node has no time until its first /clock. Its reports from before get the
+    bag's time, which is no fault. The start of a node is the first second of its log in the bag.
     """
 
     def __init__(self) -> None:
@@ -117,7 +117,7 @@ class Messages:
         source: the file, for messages.
         decoders: for its serialisation.
         numbered: whether log messages have the publisher's own number (ROS 1).
-        latched: who sends the last log message to each new subscriber.
+        latched: senders that send their last message to each new subscriber.
     """
 
     def __init__(
@@ -155,7 +155,8 @@ class Messages:
             self._gathering.skip(topic, time_ns, str(error), "")
 
     def take_logs(self, chunk: Chunk, which: Bools, senders: Mapping[int, bytes]) -> bool:
-        """Read many of /rosout (ROS 1) at once; False, and none read, where one is odd.
+        """Read many messages of /rosout (ROS 1) at once; False if one is malformed, and none is
+        read.
 
         ``senders`` has who sent the messages of each connection, empty where that is not known.
         """
@@ -175,7 +176,7 @@ class Messages:
         self._unstamped.see_all(names, bag_ns)
         codes = {name: self._node(name) for name in set(names)}
         nodes = np.array([codes[name] for name in names], np.int32)
-        # The first bytes of each text; what is too short for them is of no interest.
+        # The first bytes of each text. A text that is shorter is no report.
         long = logs.msg_end - logs.msg_begin >= len(_PREFIX)
         rows = np.flatnonzero(long)
         first = data[logs.msg_begin[rows, None] + np.arange(len(_PREFIX))]
@@ -204,8 +205,8 @@ class Messages:
             lines.flush()
             self._unstamped.count += lines.unstamped
         self._batches.close()
-        # Who sends numbers: rosbag play does so anew, in one row for all nodes. But rosbag filter
-        # names one sender for all. What is missing in both ways of counting is missing.
+        # The sender numbers messages: rosbag play numbers those of all nodes in one row. But rosbag
+        # filter names one sender for all. A message is lost only if both ways of counting miss it.
         ways = (self._losses_of_nodes, self._losses_of_senders)
         for name, count in min(ways, key=lambda one: one.lost.total()).lost.items():
             self._gathering.lost[as_text(name)] += count
@@ -234,12 +235,12 @@ class Messages:
             lines = self._lines_of(way, topic, stamped=False, prefix=PREFIX)
             lines.add(log.msg[len(_PREFIX) :], stamp_ns, self._node(log.node))
         elif log.msg.startswith(_OTHERS) and topic == ROSOUT:
-            # What the rosout node passes on is the same once more.
+            # The rosout node passes on the same lines.
             lines = self._lines_of(way, topic, stamped=False, prefix=PREFIX)
             lines.add_other(as_text(log.msg), as_text(log.node), log.stamp_ns or time_ns)
 
     def _text(self, caller: str, time_ns: int, text: bytes) -> None:
-        """A message on the topic: one line, or several of which the first is numbered."""
+        """Read a message on the topic: one line, or a numbered first line and several others."""
         if not text.startswith(b"#"):
             self._stamped("topic", caller, time_ns, text)
             return

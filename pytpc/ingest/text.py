@@ -1,8 +1,8 @@
 """Reports in text: logs of roscpp and of the rosout node, console output, CSV.
 
 A line of a log may have anything in front of the report: what ROSCONSOLE_FORMAT says, colours, the
-name of a node. Of it the time is taken (of ``[wall, simulated]`` the simulated one) and, where it
-is there, the node's name. A report without a time gets that of the line before it that has one.
+name of a node. The reader takes the time from it (the simulated one of ``[wall, simulated]``) and
+the node's name, if there is one. A report without a time gets the last time before it.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from pytpc.ingest.rosout_line import (
 
 _BLOCK = 1 << 20
 _LONGEST = 1 << 16
-# A spreadsheet may have exchanged the commas, or put quotes around all of it.
+# A spreadsheet may have replaced the commas, or quoted the whole line.
 _REPORT_LIKE = re.compile(rb"[01e][\s,;\"]+cmp:.*thresh:.*res:")
 _CSV_FORM = "TIME,KEY,RESULT,cmp:C,thresh:T,res:R with decimals in TIME"
 _PREFIX = PREFIX.encode()
@@ -41,9 +41,10 @@ _CSV = re.compile(rb"[0-9]{1,10}\.[0-9]{1,9},|#seq:")
 
 
 def read_text_into(path: Path, gathering: Gathering, on_progress: Progress | None = None) -> None:
-    """Read a log, console output, or CSV, told apart by the first two lines.
+    """Read a log, console output or CSV; the first two lines tell which.
 
-    In CSV every line but the first must be a report; in a log only what begins like one.
+    In CSV every line but the first must be a report. In a log only lines that begin like a report
+    are read.
 
     Raises:
         InputError: the file cannot be read.
@@ -86,7 +87,7 @@ class _Taker:
         raise NotImplementedError
 
     def take_many(self, number: int, lines: list[bytes]) -> None:
-        """Lines that follow one another; the first has the number ``number``."""
+        """Take consecutive lines; ``number`` is the number of the first."""
         for at, line in enumerate(lines, start=number):
             self.take(at, line)
 
@@ -174,8 +175,9 @@ class _Csv(_Taker):
 
 
 def _lines(path: Path) -> Iterator[tuple[int, list[bytes], int]]:
-    """Number (from 1) of the first of some lines, the lines without their ends, and how many bytes
-    were read so far; of an endless line the begin."""
+    """The file in parts: the number (from 1) of the first line, the lines without line ends, and
+    the bytes read so far. Only the beginning of an endless line is kept.
+    """
     rest, number, done, cut = b"", 1, 0, False
     with path.open("rb") as stream:
         while block := stream.read(_BLOCK):
@@ -183,7 +185,7 @@ def _lines(path: Path) -> Iterator[tuple[int, list[bytes], int]]:
             lines = (rest + block).split(b"\n")
             rest = lines.pop()
             if cut and lines:
-                # The end of what was too long.
+                # The end of a line that was too long.
                 del lines[0]
                 cut = False
             if len(rest) > _LONGEST:
