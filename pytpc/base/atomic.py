@@ -18,7 +18,7 @@ def stage_beside(target: Path, data: bytes, mode: int = 0o644) -> Path:
     Args:
         target: the file that is to be replaced later; it need not exist.
         data: the whole content.
-        mode: permission bits; the umask takes its share.
+        mode: permission bits, before the umask.
 
     Returns:
         The path of the new file. The caller renames or deletes it.
@@ -52,7 +52,7 @@ def leftovers(target: Path) -> list[Path]:
 
 
 def write_atomic(target: Path, data: bytes) -> None:
-    """Put ``data`` in the place of ``target``, making its folder where it is missing.
+    """Write ``data`` to ``target``, and create its folder if needed.
 
     Raises:
         TpcError: the file cannot be written; what stood there before is untouched.
@@ -64,7 +64,7 @@ def write_atomic(target: Path, data: bytes) -> None:
 
 @contextlib.contextmanager
 def replacing(path: Path) -> Iterator[Path]:
-    """A new file beside ``path`` that takes its place when all went well.
+    """A new file beside ``path`` that replaces it if the block succeeds.
 
     Raises:
         TpcError: it cannot be written; what stood there before is untouched.

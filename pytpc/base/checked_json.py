@@ -44,7 +44,7 @@ def parse_json(path: Path, *, half_characters: bool = False) -> object:
             raw.decode("utf-8"), parse_constant=_refuse_constant, parse_float=_finite
         )
         if not half_characters and _SURROGATE.search(raw) is not None:
-            # Half of a pair can be escaped in JSON, and written nowhere.
+            # JSON can escape half of a surrogate pair, but no UTF-8 file can hold it.
             json.dumps(data, ensure_ascii=False).encode()
     except UnicodeDecodeError as error:
         line = raw.count(b"\n", 0, error.start) + 1
@@ -64,7 +64,7 @@ def dump_json(data: object) -> bytes:
     """``data`` as indented UTF-8 JSON with a final newline; the same data gives the same bytes.
 
     Raises:
-        InputError: there is a file name in it that is not UTF-8, or a number that JSON has not.
+        InputError: it holds a file name that is not UTF-8, or a number that JSON cannot hold.
     """
     try:
         text = json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
@@ -80,7 +80,7 @@ def dump_json(data: object) -> bytes:
 
 
 def check_unit(data: object, path: Path, pointer: str = "") -> dict[str, Any]:
-    """``data`` itself, when it is a link unit as the schema says.
+    """``data`` itself, if it is a link unit by the schema.
 
     Args:
         data: a parsed JSON value.
@@ -99,7 +99,7 @@ def check_unit(data: object, path: Path, pointer: str = "") -> dict[str, Any]:
 
 
 def check_version(version: object, path: Path, pointer: str = "") -> None:
-    """See that a document is not of a later version of static information.
+    """Check that a document is not of a later version of static information.
 
     Raises:
         InputError: it is.
@@ -115,7 +115,7 @@ def check_version(version: object, path: Path, pointer: str = "") -> None:
 def check_schema(
     data: object, path: Path, name: str, pointer: str = "", *, package: str = _PACKAGE
 ) -> None:
-    """See that ``data``, at ``pointer`` in ``path``, is as the schema ``name`` says.
+    """Check ``data``, at ``pointer`` in ``path``, against the schema ``name``.
 
     The schema is the file ``name`` in the folder ``schema`` of ``package``.
 
@@ -177,7 +177,7 @@ def _pointer(fault: ValidationError) -> str:
 
 
 def _shortened(message: str) -> str:
-    """The end of a message says what is wrong and its beginning may be the whole document."""
+    """The end of a message says what is wrong; its beginning may be the whole document."""
     if len(message) <= _LONGEST_MESSAGE:
         return message
     return message[:40] + " ... " + message[-(_LONGEST_MESSAGE - 45) :]

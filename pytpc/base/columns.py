@@ -220,16 +220,16 @@ def write_table(table: pa.Table, path: Path) -> None:
 
 
 def read_table(path: Path, what: str, of: Callable[[pa.Table], Read]) -> Read:
-    """Read a Parquet file of ``what`` ("events") and make of it what ``of`` does.
+    """Read a Parquet file of ``what`` ("events") and convert it by ``of``.
 
     Raises:
         InputError: the file cannot be read, is no Parquet, or ``of`` finds fault with it.
     """
     with _as_input_errors(path, what):
-        # Its error is in the words of the system.
+        # This error has the words of the system.
         path.open("rb").close()
-        # Arrow's threads let go of what they read after the table is there. Where that is of Python
-        # (a stream, bytes), a process that ends just then is aborted (apache/arrow#34314, #33975).
+        # Arrow's threads release their source after the table is complete. If the source is a
+        # Python object, a process that ends just then is aborted (apache/arrow#34314, #33975).
         with pa.OSFile(str(path)) as file:
             table = pq.ParquetFile(file).read()
         return of(table)
@@ -237,7 +237,7 @@ def read_table(path: Path, what: str, of: Callable[[pa.Table], Read]) -> Read:
 
 @contextlib.contextmanager
 def table_writer(path: Path, schema: pa.Schema) -> Iterator[Callable[[pa.Table], None]]:
-    """Write Parquet in parts, atomically: what is given writes one part.
+    """Write Parquet in parts, atomically: each call of the given function writes one part.
 
     Raises:
         TpcError: the file cannot be written; what stood there before is untouched.

@@ -11,10 +11,10 @@ from types import FrameType
 
 @contextlib.contextmanager
 def signals_end() -> Iterator[None]:
-    """Within it SIGTERM and SIGHUP raise SystemExit, so that what was started is ended.
+    """Make SIGTERM and SIGHUP raise SystemExit within the block, so that started processes end.
 
-    Where SIGINT is ignored, as in a job in the background, it stays so for this process, but not
-    for those that it starts: they are to end by it.
+    A process in the background ignores SIGINT and goes on doing so, but the processes that it
+    starts do not: SIGINT must end them.
     """
     if threading.current_thread() is not threading.main_thread():
         yield

@@ -28,8 +28,8 @@ class Exposed:
 class Details:
     """A TPC with what its link units say of it.
 
-    ``nearest`` is the comparison with the smallest distance. Of ``defaults``, ``reads``
-    (``FILE:LINE``) and ``exposed`` there are several where the link units differ. ``condition`` is
+    ``nearest`` is the comparison with the smallest distance. ``defaults``, ``reads``
+    (``FILE:LINE``) and ``exposed`` have several entries if the link units differ. ``condition`` is
     None where only the source line is known; ``note`` says why, or what else to mind.
     """
 

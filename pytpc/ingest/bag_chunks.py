@@ -2,7 +2,7 @@
 
 rosbags' reader keeps an object for each message of a bag in memory and parses each record's header
 in full; a mission has millions of them (docs/explanation/decisions.md). This reader also takes the
-connections from the index, but reads all messages of a chunk at once. Format:
+connections from the index, but reads all messages of a chunk at once. The format is described at
 http://wiki.ros.org/Bags/Format/2.0
 """
 

@@ -136,9 +136,7 @@ class Once:
             yield held[~twice]
 
     def _match(self, rows: Rows, twice: Bools, used: Bools, step: _Step) -> None:
-        """Mark the reports of ``step.later`` that have a partner in ``twice``, and both in
-        ``used``.
-        """
+        """Note in ``twice`` the reports of ``step.later`` with a partner, in ``used`` both."""
         channel = rows["channel"]
         is_later = channel == step.later
         among = np.flatnonzero((is_later | step.earlier[channel]) & ~twice & ~used)

@@ -155,8 +155,7 @@ class Messages:
             self._gathering.skip(topic, time_ns, str(error), "")
 
     def take_logs(self, chunk: Chunk, which: Bools, senders: Mapping[int, bytes]) -> bool:
-        """Read many messages of /rosout (ROS 1) at once; False if one is malformed, and none is
-        read.
+        """Read many messages of /rosout (ROS 1); False if one is malformed, and none is read.
 
         ``senders`` has who sent the messages of each connection, empty where that is not known.
         """

@@ -22,7 +22,9 @@ SUMMARIES_FILE = "summaries.parquet"
 MARKS_FILE = "marks.json"
 RUN_FILE = "run.json"
 REPORTS_FOLDER = "tpc"
-"""In the folder of a recorded mission: what tells it, and where its nodes' files are."""
+"""In the folder of a recorded mission: the file that identifies it, and the folder of its nodes'
+files.
+"""
 _SCHEMA = 1
 
 
@@ -40,9 +42,9 @@ class MalformedRecord:
 class Dropped:
     """Reports that the instrumented process dropped, and why.
 
-    ``key`` is empty where it is not known of which comparison; ``flops`` of the ``count`` were
-    flops; ``why`` is ``site`` or ``process`` (a cap on reports per second), ``nested`` (made while
-    another report was) or ``stopped`` (the sink could not go on).
+    ``key`` is empty if the comparison is not known; ``flops`` of the ``count`` were flops; ``why``
+    is ``site`` or ``process`` (a cap on reports per second), ``nested`` (made while another report
+    was) or ``stopped`` (the sink could not go on).
     """
 
     key: str
@@ -99,7 +101,7 @@ def save_recording(recording: Recording, folder: Path) -> None:
 
 
 def write_marks_json(recording: Recording, folder: Path, events: int, summaries: int) -> None:
-    """Write ``marks.json`` beside tables of so many rows; a file of summaries of before is deleted.
+    """Write ``marks.json`` for tables of this many rows, and delete a leftover file of summaries.
 
     Raises:
         TpcError: the file cannot be written.
@@ -134,7 +136,7 @@ def load_recording(folder: Path) -> Recording:
     path = folder / MARKS_FILE
     events = Events.read(folder / EVENTS_FILE)
     _check_rows(path, event_count, EVENTS_FILE, len(events))
-    # A file of summaries that nothing tells of was left there.
+    # Without a count in marks.json, a file of summaries is a leftover.
     summaries = Summaries.read(folder / SUMMARIES_FILE) if summary_count else Summaries.empty()
     _check_rows(path, summary_count, SUMMARIES_FILE, len(summaries))
     return replace(recording, events=events, summaries=summaries)

@@ -30,7 +30,8 @@ class KnownChange:
 
 
 def read_known_change(mission: Path) -> KnownChange:
-    """What the folder of ``mission``, or the folder that it is, says was done; empty if nothing.
+    """What was done according to the folder of ``mission``, or ``mission`` itself; empty if
+    nothing.
 
     Raises:
         InputError: the file is no JSON, or one of the two fields is missing or wrong.

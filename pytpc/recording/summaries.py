@@ -18,9 +18,9 @@ class Summary:
 
     ``begin_ns`` and ``end_ns`` enclose them; ``result``, ``res``, ``cmp`` and ``thresh`` are those
     of the last. ``count``, ``flops`` and ``odd`` count all of them, the flops, and those whose cmp
-    or thresh is not finite. The rest is about the others alone, NaN where there are none: diff is
-    cmp - thresh, ``abs_mean`` the mean of its absolute value, ``far`` counts those where that is
-    above 1e-4, ``low`` and ``high`` are the extremes of all cmp and thresh.
+    or thresh is not finite. The rest describes only the finite ones, and is NaN where there are
+    none: diff is cmp - thresh, ``abs_mean`` the mean of its absolute value, ``far`` counts those
+    where that is above 1e-4, ``low`` and ``high`` are the extremes of all cmp and thresh.
     """
 
     key: str

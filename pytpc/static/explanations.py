@@ -1,7 +1,7 @@
 """Explains from the static information why a comparison was found, and others were not.
 
-``look_up`` takes what a user has at hand (a key, a parameter's name, ``FILE:LINE``) and gives all
-that the static information says about it, as data; ``pytpc explain`` prints it.
+``look_up`` takes a key, a parameter's name or ``FILE:LINE``, and returns all that the static
+information says about it. ``pytpc explain`` prints that.
 """
 
 from __future__ import annotations
@@ -39,9 +39,9 @@ class FoundComparison:
 class Explanation:
     """Everything known about a key, a parameter or a line.
 
-    ``comparisons`` are the nearest to their exposing statements first. The others are the reads,
-    the comparisons on which nothing exposed depends, and the blind spots of the same parameter or
-    line, each with its unit.
+    ``comparisons`` begin with the nearest to its exposing statement. The others are the reads, the
+    comparisons on which nothing exposed depends, and the blind spots of the same parameter or line,
+    each with its unit.
     """
 
     question: str
@@ -55,8 +55,8 @@ def look_up(static: StaticInfo, question: str) -> Explanation:
     """What ``static`` says about a key (or its beginning), a parameter or ``FILE:LINE``.
 
     Raises:
-        InputError: nothing is called so; the message has the parameters with the closest names, or
-            the lines of the file that are known.
+        InputError: nothing has this name; the message lists the parameters with the closest names,
+            or the known lines of the file.
     """
     place = _FILE_LINE.fullmatch(question)
     if place is not None:
@@ -153,12 +153,12 @@ def _nothing_at(static: StaticInfo, file: str, line: int) -> str:
 
 
 def where(place: Comparison | ParameterRead | NotExposed | BlindSpot | PathStep) -> str:
-    """``FILE:LINE``, or that it is not known."""
+    """``FILE:LINE``, or a text saying that it is unknown."""
     return f"{place.file}:{place.lineno}" if place.file else "a place that is not known"
 
 
 def why_no_comparison(explanation: Explanation) -> list[str]:
-    """For a parameter without a reported comparison: what became of its value, once each."""
+    """Why a parameter has no reported comparison: what became of its value, each reason once."""
     if explanation.comparisons:
         return []
     reasons = [

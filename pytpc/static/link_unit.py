@@ -33,7 +33,7 @@ class Transform:
     """How a derived threshold is computed from its parameter.
 
     ``affine``: threshold = scale * parameter + offset. ``expression``: ``tree`` says it (see
-    ``pytpc.static.arithmetic``; None in files of before), and ``scale`` and ``offset`` are None.
+    ``pytpc.static.arithmetic``; None in older files), and ``scale`` and ``offset`` are None.
     """
 
     kind: Literal["affine", "expression"]
@@ -49,7 +49,9 @@ class Transform:
 
 @dataclass(frozen=True, slots=True)
 class ParameterRead:
-    """A call that reads a parameter; ``name`` has ``<dynamic>`` for a part that is no constant."""
+    """A call that reads a parameter; ``<dynamic>`` in ``name`` stands for a part that is not
+    constant.
+    """
 
     name: str
     api: str
@@ -113,7 +115,7 @@ class NotExposed:
 
 @dataclass(frozen=True, slots=True)
 class BlindSpot:
-    """A blind spot of the analysis; ``parameter`` is None if it concerns none in particular."""
+    """A blind spot of the analysis; ``parameter`` is None if it does not concern a certain one."""
 
     kind: str
     parameter: str | None
@@ -129,7 +131,7 @@ class BlindSpot:
 class Comparison:
     """One threshold predicate comparison (docs/reference/formats.md#a-comparison).
 
-    The last three are known of Python alone.
+    The last three are known for Python only.
     """
 
     key: str
@@ -198,10 +200,10 @@ class Counts:
 class LinkUnit:
     """One executable or shared library as the analysis saw it.
 
-    ``status`` is ``failed``, ``failure`` says why and the lists are empty where the analysis or
-    the instrumentation broke down; such a unit runs as its author wrote it and reports nothing.
-    ``script`` is the script of a Python unit, relative to ``source_root``; None of all others.
-    ``build_folder`` is CMake's, absolute; None where the unit was not read from its place there.
+    If the analysis or the instrumentation failed, ``status`` is ``failed``, ``failure`` says why
+    and the lists are empty; such a unit runs as its author wrote it and reports nothing. ``script``
+    is the script of a Python unit, relative to ``source_root``; None for all others.
+    ``build_folder`` is CMake's, absolute; None if the unit was not read from there.
     """
 
     link_unit: str
@@ -221,7 +223,7 @@ class LinkUnit:
 
     @property
     def is_python(self) -> bool:
-        """Whether it is a script with its modules, and no target of CMake's."""
+        """Whether it is a Python script with its modules, not a CMake target."""
         return self.tool.analysis == "python"
 
     @property

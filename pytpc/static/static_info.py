@@ -140,7 +140,7 @@ class StaticInfo:
     def from_json(cls, data: object, path: Path) -> StaticInfo:
         """The reverse of ``to_json``; ``path`` is for messages.
 
-        Documents of before have no ``copies``, ``tpcs`` and ``left_out``; the TPCs follow from the
+        Older documents have no ``copies``, ``tpcs`` and ``left_out``; the TPCs follow from the
         rest.
 
         Raises:
@@ -184,9 +184,9 @@ class StaticInfo:
 
 
 def _rooted(data: object, folder: Path) -> object:
-    """The document with sources that are given relative to its ``folder`` as absolute paths.
+    """The document with absolute paths of sources, where they were relative to its ``folder``.
 
-    Static information that is passed on together with the sources says so.
+    Static information that is passed on together with its sources has relative paths.
     """
     if not isinstance(data, dict) or not isinstance(data.get("units"), list):
         return data
@@ -252,7 +252,7 @@ def python_unit_file(build_folder: Path, link_unit: str) -> Path:
 
 
 def is_python_file(path: Path) -> bool:
-    """Whether a file of ``unit_files`` is a Python unit's."""
+    """Whether a file of ``unit_files`` is that of a Python unit."""
     return path.name.endswith(_PYTHON_END)
 
 
