@@ -160,7 +160,7 @@ def require_ros() -> None:
 
 
 def ros_places(prefixes: Iterable[Path]) -> dict[str, Path]:
-    """The first prefixes that hold catkin and roscpp, by name; one that is not there is left out."""
+    """The first prefixes that hold catkin and roscpp, by name; without one that is nowhere."""
     found: dict[str, Path] = {}
     for prefix in prefixes:
         for name, place in _ROS_PLACES.items():

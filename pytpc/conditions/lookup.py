@@ -132,7 +132,7 @@ def look_up_conditions(
 
 
 def _of_python(static: StaticInfo, tpcs: Iterable[Tpc]) -> dict[str, Answer]:
-    """The conditions of comparisons in Python. Finding them takes milliseconds, so none is cached."""
+    """The conditions of comparisons in Python; finding them takes milliseconds, so none is kept."""
     sources: dict[str, PythonSource | str] = {}
     answers: dict[str, Answer] = {}
     for tpc in tpcs:

@@ -54,7 +54,7 @@ def read_declared_bag(path: Path) -> tuple[list[Declared], list[str]]:
         try:
             found += decode_description(raw, topic, definition)
         except ValueError:
-            skipped.append(f"{path}: the message on {topic} is no ConfigDescription")
+            skipped.append(f"{path}: the message on {topic} is not a ConfigDescription")
     return found, skipped
 
 
@@ -74,7 +74,7 @@ def decode_description(raw: bytes, topic: str, definition: str) -> list[Declared
         )
         parameters = [one for group in said.groups for one in group.parameters]
     except _UNREADABLE as error:
-        raise ValueError(f"no ConfigDescription: {error}") from error
+        raise ValueError(f"not a ConfigDescription: {error}") from error
     node = topic.removesuffix(_TOPIC)
     found = []
     for one in parameters:

@@ -70,10 +70,8 @@ class Once:
             )
             notes.append(f"{many(count, 'report')} on {channel.topic} {why}: counted once")
         for code, count in sorted(self._matched.items()):
-            channel = channels[code]
-            notes.append(
-                f"{many(count, 'report')} in {channel.name} that came another way too: counted once"
-            )
+            what = f"{many(count, 'report')} in {channels[code].name}"
+            notes.append(f"{what} that also came another way: counted once")
         return notes
 
     def _not_passed_on(self, blocks: Iterable[Rows]) -> Iterator[Rows]:
@@ -180,7 +178,7 @@ def clock_notes(channels: list[Channel]) -> Iterator[str]:
         if before and first - end > APART_NS:
             yield (
                 f"{source} begins {(first - end) / 1e9:,.0f} s after {before} ends: on different"
-                " clocks, or one after the other? Their times are taken as they are"
+                " clocks, or one after the other? Their times are used as they are"
             )
         if not before or last > end:
             end, before = last, source

@@ -82,7 +82,11 @@ class Lines:
         elif isinstance(found, Drop):
             self._batches.drop(node, found)
         else:
-            what = "no time in front" if found is None else f"{found.what}, column {found.column}"
+            what = (
+                "no time at the beginning"
+                if found is None
+                else f"{found.what}, column {found.column}"
+            )
             self._skip(what, time_ns, text, number)
 
     def flush(self) -> None:

@@ -194,7 +194,7 @@ class Merged:
     def _clock_notes(self, marks: tuple[Mark, ...]) -> Iterator[str]:
         times = self._times(marks)
         if times and any(_apart(times, span) for span in self.gathering.spans):
-            yield "the bag was recorded on another clock than the reports'"
+            yield "the bag was recorded on another clock than the reports"
 
 
 def _apart(times: list[int], span: tuple[int, int]) -> bool:

@@ -254,7 +254,7 @@ class Messages:
             self._batches.see(caller, batch)
             said = sum(1 for line in lines if not _is_other(line))
             if said != batch.count:
-                what = f"{batch.count} reports are announced, {said} are there"
+                what = f"the first line announces {batch.count} reports, {said} found"
                 self._gathering.skip(REPORTS, time_ns, what, as_text(head))
         for number, line in enumerate(lines, start=2):
             self._stamped("batch", caller, time_ns, line, number)

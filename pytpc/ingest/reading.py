@@ -126,7 +126,8 @@ def gather(
                 gathering.marks += _beside(source)
     empty = gathering.without_reports
     if empty:
-        gathering.late_notes.append(f"no report in {many(len(empty), 'text file')}, as {empty[0]}")
+        what = many(len(empty), "text file")
+        gathering.late_notes.append(f"{what} without a report, for example {empty[0]}")
     for path in paths:
         for left in sorted(path.glob("*.bag.active")):
             gathering.late_notes.append(f"{left}: not read; recover it with: rosbag reindex")

@@ -207,8 +207,8 @@ def _mark(row: list[str]) -> Mark:
     if len(row) > len(_HEADER):
         raise ValueError(f"{len(row)} columns, not {len(_HEADER)}")
     if not (time.isascii() and time.isdigit() and len(time) < 20) or int(time) >= 2**63:
-        raise ValueError(f"{time!r} is no time in nanoseconds")
+        raise ValueError(f"{time!r} is not a time in nanoseconds")
     if kind and kind not in MARK_TYPES:
-        raise ValueError(f"{kind!r} is no type of mark: I, II or nothing")
+        raise ValueError(f"{kind!r} is not a type of mark (I, II or nothing)")
     mark_type = next((known for known in MARK_TYPES if known == kind), None)
     return Mark(int(time), mark_type, observer, note)

@@ -22,9 +22,7 @@ SUMMARIES_FILE = "summaries.parquet"
 MARKS_FILE = "marks.json"
 RUN_FILE = "run.json"
 REPORTS_FOLDER = "tpc"
-"""In the folder of a recorded mission: the file that identifies it, and the folder of its nodes'
-files.
-"""
+"""A folder with this file is a recorded mission, and has its nodes' files in this folder."""
 _SCHEMA = 1
 
 
@@ -170,7 +168,7 @@ def _recording(document: object) -> tuple[Recording, int, int]:
         if type(mark.time_ns) is not int or not isinstance(mark.observer, str):
             raise ValueError("a mark without a time in ns or an observer")
         if not isinstance(mark.note, str):
-            raise ValueError("a mark whose note is no text")
+            raise ValueError("a mark whose note is not text")
         if mark.type is not None and mark.type not in MARK_TYPES:
             raise ValueError(f"a mark of type {mark.type!r}")
     recording = Recording(

@@ -43,5 +43,5 @@ def read_known_change(mission: Path) -> KnownChange:
     found = document if isinstance(document, dict) else {}
     effect, parameter = found.get("effect"), found.get("parameter", "")
     if not isinstance(effect, str) or parameter == "" or not isinstance(parameter, str | None):
-        raise InputError("effect has to be a text, and parameter a name or null", path)
+        raise InputError("effect must be a text, and parameter a name or null", path)
     return KnownChange(effect, parameter)

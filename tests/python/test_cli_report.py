@@ -120,7 +120,7 @@ def test_a_broken_treatment_is_named(files, tmp_path, document):
     path.write_text(json.dumps(document))
     result = run("report", folder, "--static", static, "-o", tmp_path / "r.html")
     assert result.exit_code == 1
-    assert f"{path}: effect has to be a text" in result.stderr
+    assert f"{path}: effect must be a text" in result.stderr
 
 
 def test_types_and_window_are_those_of_rank(files, tmp_path):

@@ -290,10 +290,10 @@ def test_broken_messages_and_bags(tmp_path):
     definition, _ = store.generate_msgdef(kind, ros_version=1)
     assert len(decode_description(raw, "/n/parameter_descriptions", definition)) == 4
     for length in range(0, len(raw), 7):
-        with pytest.raises(ValueError, match=r"^no ConfigDescription: "):
+        with pytest.raises(ValueError, match=r"^not a ConfigDescription: "):
             decode_description(raw[:length], "/n/parameter_descriptions", definition)
     for wrong in ("", "string data", "Group[] groups", "\0"):
-        with pytest.raises(ValueError, match=r"^no ConfigDescription: "):
+        with pytest.raises(ValueError, match=r"^not a ConfigDescription: "):
             decode_description(raw, "/n/parameter_descriptions", wrong)
     bag = tmp_path / "m.bag"
     bag.write_bytes(b"#ROSBAG V2.0\n broken")

@@ -156,7 +156,7 @@ def test_a_bag_on_another_clock(tmp_path):
         bag.log(1_700_000_009, "/uav", line(1, 1, 3, 2), stamp=40)
     recording = read(path)
     assert (recording.start_ns, recording.end_ns) == (ns(5), ns(40))
-    assert recording.notes == ("the bag was recorded on another clock than the reports'",)
+    assert recording.notes == ("the bag was recorded on another clock than the reports",)
 
 
 def test_messages_that_end_too_early_are_malformed(tmp_path):
@@ -287,7 +287,9 @@ def test_recording_on_disk_and_back(mission, tmp_path):
 
 # The name of a file that is not UTF-8, as Python has it.
 def test_a_note_with_half_a_character_is_kept(mission, tmp_path):
-    recording = replace(read(mission), notes=("no report in 1 text file, as \udcff.log",))
+    recording = replace(
+        read(mission), notes=("1 text file without a report, for example \udcff.log",)
+    )
     save_recording(recording, tmp_path / "out")
     assert load_recording(tmp_path / "out").notes == recording.notes
 

@@ -207,7 +207,7 @@ def test_text_without_reports_is_told(tmp_path):
     (tmp_path / "a.log").write_text("[ INFO] [1.5]: hello\n")
     (tmp_path / "b.log").write_text(f"[ INFO] [1.5]: {line(1, 0, 1, 2)}\n")
     recording = read(tmp_path)
-    assert recording.notes == (f"no report in 1 text file, as {tmp_path / 'a.log'}",)
+    assert recording.notes == (f"1 text file without a report, for example {tmp_path / 'a.log'}",)
 
 
 def test_marks_as_a_spreadsheet_writes_them(tmp_path):
@@ -292,7 +292,7 @@ def test_batches(tmp_path):
         Dropped(key(1), "/uav", 4, 1, "process"),
     )
     assert [record.what for record in recording.malformed_first] == [
-        "3 reports are announced, 1 are there",
+        "the first line announces 3 reports, 1 found",
         "a line that begins with # is #seq:N,count:N,dropped:N,pid:P,steady:S, column 1",
     ]
     table = recording.summaries
@@ -371,7 +371,7 @@ def test_the_same_bag_twice(tmp_path):
     recording = read([one, two])
     assert [cmp for *_, cmp in found(recording)] == list(range(10))
     assert recording.notes == (
-        f"10 reports in {two}: /rosout that came another way too: counted once",
+        f"10 reports in {two}: /rosout that also came another way: counted once",
     )
     assert len(recording.marks) == 1
     # By two names the same file.
@@ -385,7 +385,7 @@ def test_a_binary_file_beside_a_bag(tmp_path):
     file = tpc_of(tmp_path / "b.tpc", shift_ns=500_000, values=range(5, 15))
     recording = read([bag, file])
     assert [cmp for *_, cmp in found(recording)] == list(range(15))
-    assert recording.notes == (f"5 reports in {file} that came another way too: counted once",)
+    assert recording.notes == (f"5 reports in {file} that also came another way: counted once",)
     # 2 ms apart, or of another node, they are not.
     far = tpc_of(tmp_path / "c.tpc", shift_ns=2_000_000)
     assert len(read([bag, far]).events) == 20
@@ -414,7 +414,7 @@ def test_files_of_two_processes_share_nothing(tmp_path):
     recording = read([*paths, copy])
     assert len(recording.events) == 15
     assert recording.events.nodes == ("/uav", "/uav (3)")
-    assert recording.notes == (f"5 reports in {copy} that came another way too: counted once",)
+    assert recording.notes == (f"5 reports in {copy} that also came another way: counted once",)
 
 
 def test_files_that_were_joined_are_refused(tmp_path):
@@ -435,7 +435,7 @@ def test_sources_that_lie_apart_are_told(tmp_path):
     assert len(recording.events) == 12
     assert recording.notes == (
         f"{bag} begins 1,699,999,992 s after {file} ends: on different clocks, or one after the"
-        " other? Their times are taken as they are",
+        " other? Their times are used as they are",
     )
 
 

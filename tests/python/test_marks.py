@@ -130,9 +130,12 @@ def test_files_come_back(tmp_path_factory: pytest.TempPathFactory, marks: list[M
     [
         ("", ":1: the first line is not time_ns,type,observer,note"),
         ("time,type\n", ":1: the first line is not"),
-        ("time_ns,type,observer,note\n1,I,,\nx,I,,\n", ":3: 'x' is no time in nanoseconds"),
+        ("time_ns,type,observer,note\n1,I,,\nx,I,,\n", ":3: 'x' is not a time in nanoseconds"),
         ("time_ns,type,observer,note\n9223372036854775808,I,,\n", ":2: '92233720368547758"),
-        ("time_ns,type,observer,note\n1,III,,\n", ":2: 'III' is no type of mark"),
+        (
+            "time_ns,type,observer,note\n1,III,,\n",
+            ":2: 'III' is not a type of mark (I, II or nothing)",
+        ),
         ("time_ns,type,observer,note\n1,I,,,more\n", ":2: 5 columns, not 4"),
     ],
 )
@@ -214,5 +217,8 @@ def test_marks_beside_an_ingested_folder(bag: Path, tmp_path: Path):
 
 def test_a_broken_file_beside_a_bag_is_said(bag: Path):
     marks_beside(bag).write_text("time_ns,type,observer,note\n1,VI\n")
-    with pytest.raises(InputError, match=r"mission.bag.marks.csv:2: 'VI' is no type of mark"):
+    with pytest.raises(
+        InputError,
+        match=r"mission\.bag\.marks\.csv:2: 'VI' is not a type of mark \(I, II or nothing\)$",
+    ):
         read(bag)
