@@ -149,7 +149,6 @@ class ChunkFile:
     """
 
     def __init__(self, path: Path, descriptor: int) -> None:
-        """See the class; nothing is read yet."""
         self._path = path
         self._descriptor = descriptor
         self._buffer = np.empty((GROUP, layout.CHUNK_BYTES), np.uint8)

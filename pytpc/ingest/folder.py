@@ -5,10 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from pytpc.base.columns import read_parts
-from pytpc.base.errors import InputError
 from pytpc.ingest.gathering import Gathering, Progress, ReportColumns
 from pytpc.recording.events import Events
-from pytpc.recording.mission import EVENTS_FILE, SUMMARIES_FILE, read_marks_json
+from pytpc.recording.mission import EVENTS_FILE, SUMMARIES_FILE, check_rows, read_marks_json
 from pytpc.recording.summaries import Summaries
 
 _ROWS = 1 << 18
@@ -34,14 +33,14 @@ def read_folder_into(
         done += len(part)
         if on_progress is not None:
             on_progress(done, max(done, events))
-    _check(folder / EVENTS_FILE, events, done)
+    check_rows(folder, EVENTS_FILE, events, done)
     done = 0
     if summaries:
         path = folder / SUMMARIES_FILE
         for table in read_parts(path, "summaries", Summaries.schema, _ROWS):
             gathering.add_summaries(channel.code, Summaries.from_arrow(table))
             done += table.num_rows
-        _check(path, summaries, done)
+        check_rows(folder, SUMMARIES_FILE, summaries, done)
     gathering.marks += recording.marks
     gathering.notes += recording.notes
     gathering.spans.append((recording.start_ns, recording.end_ns))
@@ -51,8 +50,3 @@ def read_folder_into(
     for record in recording.malformed_first:
         gathering.skip(record.topic, record.time_ns, record.what, record.text)
     gathering.malformed += recording.malformed - len(recording.malformed_first)
-
-
-def _check(path: Path, said: int, found: int) -> None:
-    if said != found:
-        raise InputError(f"has {found} rows, but marks.json says {said}", path)

@@ -44,7 +44,6 @@ class WordCodes:
     """Words and their codes, in the order of their first use."""
 
     def __init__(self) -> None:
-        """None yet."""
         self.codes: dict[str, int] = {}
 
     def code(self, word: str) -> int:
@@ -106,7 +105,6 @@ class Gathering:
     """
 
     def __init__(self, folder: Path | None = None, run_rows: int = RUN_ROWS) -> None:
-        """Nothing was read yet."""
         self.keys = WordCodes()
         self.nodes = WordCodes()
         self.channels: list[Channel] = []
@@ -145,13 +143,8 @@ class Gathering:
         self.channels.append(Channel(len(self.channels), source, way, topic))
         return self.channels[-1]
 
-    def turn(self) -> int:
-        """A number for the order in which records came."""
-        self._turn += 1
-        return self._turn
-
     def turns(self, count: int) -> range:
-        """Numbers for this many records."""
+        """Numbers for this many records, in the order in which they came."""
         self._turn += count
         return range(self._turn - count + 1, self._turn + 1)
 
@@ -211,7 +204,7 @@ class Gathering:
     def skip(self, topic: str, time_ns: int, what: str, text: str, turn: int | None = None) -> None:
         """Count a record that cannot be read; the first 20 are kept, in the order of ``turn``."""
         self.malformed += 1
-        turn = self.turn() if turn is None else turn
+        turn = self.turns(1)[0] if turn is None else turn
         if len(self._first) == _SHOWN and turn > self._first[-1][0]:
             return
         self._first.append((turn, MalformedRecord(topic, time_ns, what, text[:_SHOWN_TEXT])))

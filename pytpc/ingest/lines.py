@@ -53,7 +53,7 @@ class Lines:
         self._lines.append(line)
         self._times.append(time_ns)
         self._nodes.append(node)
-        self._turns.append(self.gathering.turn())
+        self._turns += self.gathering.turns(1)
         self._places.append(number)
         if len(self._lines) >= LINES:
             self.flush()
@@ -82,11 +82,7 @@ class Lines:
         elif isinstance(found, Drop):
             self._batches.drop(node, found)
         else:
-            what = (
-                "no time at the beginning"
-                if found is None
-                else f"{found.what}, column {found.column}"
-            )
+            what = "time is missing" if found is None else f"{found.what}, column {found.column}"
             self._skip(what, time_ns, text, number)
 
     def flush(self) -> None:

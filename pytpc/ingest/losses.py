@@ -22,7 +22,6 @@ class LossCounter(Generic[Name]):
     """
 
     def __init__(self) -> None:
-        """Nothing was seen yet."""
         self.lost: Counter[Name] = Counter()
         self.missed_before: Counter[Name] = Counter()
         self._last: dict[Name, int] = {}

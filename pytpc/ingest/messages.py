@@ -93,7 +93,6 @@ class _Unstamped:
     """
 
     def __init__(self) -> None:
-        """Nothing was seen yet."""
         self.count = 0
         self._began_ns: dict[bytes, int] = {}
 
@@ -129,7 +128,6 @@ class Messages:
         numbered: bool = True,
         latched: Set[bytes] = frozenset(),
     ) -> None:
-        """Nothing was read yet."""
         self._gathering = gathering
         self._source = source
         self._decoders = decoders

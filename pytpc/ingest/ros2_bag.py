@@ -68,19 +68,16 @@ def _open(path: Path, exits: contextlib.ExitStack) -> _Reader:
     reader: _Reader
     if path.is_dir():
         reader = Reader(path)
+    elif _is_mcap(path):
+        reader = McapReader(path)
     else:
-        with path.open("rb") as stream:
-            first = stream.read(len(SQLITE_MAGIC))
-        if first.startswith(MCAP_MAGIC):
-            reader = McapReader(path)
-        else:
-            if _IN_A_URI & set(str(path)):
-                # The path becomes a part of a URI there.
-                folder = exits.enter_context(tempfile.TemporaryDirectory())
-                link = Path(folder) / "bag.db3"
-                link.symlink_to(path.absolute())
-                path = link
-            reader = Sqlite3Reader(path)
+        if _IN_A_URI & set(str(path)):
+            # The path becomes a part of a URI there.
+            folder = exits.enter_context(tempfile.TemporaryDirectory())
+            link = Path(folder) / "bag.db3"
+            link.symlink_to(path.absolute())
+            path = link
+        reader = Sqlite3Reader(path)
     reader.open()
     exits.callback(_close, reader)
     return reader
@@ -117,15 +114,15 @@ def _broken(path: Path, error: Exception) -> InputError:
     hint = f'; "mcap recover {path.name}" recovers the rest'
     if path.is_dir():
         hint = ""
-    elif _first(path) != MCAP_MAGIC:
+    elif not _is_mcap(path):
         hint = f'; "sqlite3 {path.name} .recover" recovers the rest'
     size = "" if path.is_dir() else f" ({path.stat().st_size:,} bytes)"
     return InputError(f"truncated or damaged{size}: {said}{hint}", path)
 
 
-def _first(path: Path) -> bytes:
+def _is_mcap(path: Path) -> bool:
     try:
         with path.open("rb") as stream:
-            return stream.read(len(MCAP_MAGIC))
+            return stream.read(len(MCAP_MAGIC)) == MCAP_MAGIC
     except OSError:
-        return b""
+        return False

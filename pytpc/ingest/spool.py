@@ -51,7 +51,6 @@ class Spool:
         path: Path | None = None,
         run_rows: int = RUN_ROWS,
     ) -> None:
-        """See the class."""
         self.kind = np.dtype(kind)
         self._time = time
         self._path = path

@@ -105,7 +105,6 @@ class MarkMessages:
     """
 
     def __init__(self) -> None:
-        """No message yet."""
         self._marks: list[Mark] = []
         self._undone: set[tuple[str, int]] = set()
         self._notes: dict[tuple[str, int], str] = {}

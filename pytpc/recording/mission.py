@@ -131,12 +131,11 @@ def load_recording(folder: Path) -> Recording:
         InputError: a file is missing or broken, or the files are not of one recording.
     """
     recording, event_count, summary_count = read_marks_json(folder)
-    path = folder / MARKS_FILE
     events = Events.read(folder / EVENTS_FILE)
-    _check_rows(path, event_count, EVENTS_FILE, len(events))
+    check_rows(folder, EVENTS_FILE, event_count, len(events))
     # Without a count in marks.json, a file of summaries is a leftover.
     summaries = Summaries.read(folder / SUMMARIES_FILE) if summary_count else Summaries.empty()
-    _check_rows(path, summary_count, SUMMARIES_FILE, len(summaries))
+    check_rows(folder, SUMMARIES_FILE, summary_count, len(summaries))
     return replace(recording, events=events, summaries=summaries)
 
 
@@ -154,10 +153,15 @@ def read_marks_json(folder: Path) -> tuple[Recording, int, int]:
         raise InputError(f"not the marks of a recording: {_why(error)}", path) from error
 
 
-def _check_rows(path: Path, said: int, name: str, found: int) -> None:
+def check_rows(folder: Path, name: str, said: int, found: int) -> None:
+    """Check that the table ``name`` has as many rows as ``marks.json`` says.
+
+    Raises:
+        InputError: it has not.
+    """
     if said != found:
-        what = name.removesuffix(".parquet")
-        raise InputError(f"is of a recording with {said} {what}, but {name} has {found}", path)
+        what = f"{said} {name.removesuffix('.parquet')}, but {name} has {found}"
+        raise InputError(f"is of a recording with {what}", folder / MARKS_FILE)
 
 
 def _recording(document: object) -> tuple[Recording, int, int]:
