@@ -92,10 +92,6 @@ plugin = partial(installed, "lib/tpc/TpcPasses.so")
 defer_plugin = partial(installed, "lib/tpc/TpcDefer.so")
 # The library that instrumented nodes report through.
 log_library = partial(installed, "lib/libtpc_log.so")
-# tpc-clang++, the compiler for builds that are not CMake.
-compiler_wrapper = partial(installed, "bin/tpc-clang++")
-# The index of colcon's mixins.
-mixin_index = partial(installed, "share/tpc/colcon/index.yaml")
 
 
 def search_path() -> str:

@@ -211,12 +211,11 @@ def _by_index(data: bytes, entries: list[tuple[int, Rows]]) -> _Found | None:
         return None
     whole = np.frombuffer(data, np.uint8)
     heads = whole[offset[:, None] + np.arange(_FORM_BYTES + 8)]
-    form = next((f for f in _FORMS if f.fullmatch(heads[0, 4:-4].tobytes())), None)
-    if form is None:
+    head = heads[0, 4:-4].tobytes()
+    first = next((found for form in _FORMS if (found := form.fullmatch(head))), None)
+    if first is None:
         return None
     # All have the form of the first: the same bytes but for connection and time.
-    first = form.fullmatch(heads[0, 4:-4].tobytes())
-    assert first is not None
     fixed = np.ones(_FORM_BYTES + 8, np.bool_)
     fixed[-4:] = False
     for name in ("conn", "time"):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -14,12 +14,14 @@ import pyarrow as pa
 from pytpc.base.atomic import replacing
 from pytpc.base.columns import recode, sorted_words, table_writer, to_arrow
 from pytpc.ingest.duplicates import APART_NS, TOLERANCE_NS, Once, clock_notes
-from pytpc.ingest.gathering import SUMMARY_ROW, Gathering, Progress
+from pytpc.ingest.gathering import EVENT_ROW, SUMMARY_ROW, Gathering, Progress
 from pytpc.ingest.spool import Rows
 from pytpc.recording.events import Events
 from pytpc.recording.marks import Mark, joined
 from pytpc.recording.mission import EVENTS_FILE, SUMMARIES_FILE, Recording, write_marks_json
 from pytpc.recording.summaries import Summaries
+
+_Table = TypeVar("_Table", Events, Summaries)
 
 
 @dataclass
@@ -84,10 +86,8 @@ class Merged:
 
     def recording(self) -> Recording:
         """All of it in memory."""
-        blocks = list(self.event_blocks())
-        events = Events.of(**_columns(blocks, Events.schema, self._words()))
-        parts = list(self.summary_blocks())
-        summaries = Summaries.of(**_columns(parts, Summaries.schema, self._words()))
+        events = self._table(Events, [np.empty(0, EVENT_ROW), *self.event_blocks()])
+        summaries = self._table(Summaries, [np.empty(0, SUMMARY_ROW), *self.summary_blocks()])
         return self.rest(_used(events), summaries)
 
     def rest(self, events: Events, summaries: Summaries) -> Recording:
@@ -165,6 +165,10 @@ class Merged:
                 if told is not None:
                     told(self.events, total)
 
+    def _table(self, kind: type[_Table], blocks: list[Rows]) -> _Table:
+        columns = {name: np.concatenate([rows[name] for rows in blocks]) for name in kind.kinds}
+        return kind.of(**columns, keys=self.keys, nodes=self.nodes)
+
     def _words(self) -> dict[str, list[str]]:
         return {"key": self.keys, "node": self.nodes}
 
@@ -199,14 +203,6 @@ class Merged:
 
 def _apart(times: list[int], span: tuple[int, int]) -> bool:
     return min(times) > span[1] + APART_NS or max(times) < span[0] - APART_NS
-
-
-def _columns(blocks: list[Rows], schema: pa.Schema, words: dict[str, list[str]]) -> dict[str, Any]:
-    columns: dict[str, Any] = {
-        name: np.concatenate([rows[name] for rows in blocks]) if blocks else []
-        for name in schema.names
-    }
-    return {**columns, "keys": words["key"], "nodes": words["node"]}
 
 
 def _used(events: Events) -> Events:
