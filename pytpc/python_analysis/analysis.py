@@ -132,7 +132,6 @@ class Writer:
     """Writes what was found in the terms of docs/reference/formats.md."""
 
     def __init__(self, analysed: Analysed) -> None:
-        """Sources are at hand for the texts of lines."""
         self.all = analysed
         self._lines = {module.path: lines_of(module.source) for module in analysed.program.modules}
 

@@ -38,7 +38,6 @@ class Budget:
         self._timer: threading.Timer | None = None
 
     def __enter__(self) -> Budget:
-        """Begin to count."""
         self._thread = threading.get_ident()
         self._is_working = True
         if self._seconds > 0:

@@ -48,7 +48,6 @@ class LibraryCall(Site):
     __slots__ = ("call",)
 
     def __init__(self, inside: tuple[ComparedInside, ...]) -> None:
-        """All comparisons of the place."""
         logs = tuple(map(_logger, inside))
 
         def later(given: Given, result: object) -> Iterator[object]:

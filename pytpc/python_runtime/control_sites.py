@@ -27,7 +27,6 @@ class Loop(Site):
     __slots__ = ("over", "turn")
 
     def __init__(self, reported: tuple[Reported, ...]) -> None:
-        """All keys of the place."""
         log = logger(reported)
 
         def turn(element: int, stop: int, is_turn: bool) -> Iterator[int]:
@@ -68,7 +67,6 @@ class Subject(Site):
     __slots__ = ("default", "held", "hold", "none", "taken")
 
     def __init__(self, reported: tuple[Reported, ...]) -> None:
-        """All keys of a subject that is a parameter."""
         kept: Held = {}
         log = logger(reported)
 

@@ -15,14 +15,12 @@ class HookError(Exception):
     """
 
     def __init__(self, message: str, path: str | None = None, line: int | None = None) -> None:
-        """Keep the parts, for a caller that has errors of its own."""
         super().__init__(message)
         self.message = message
         self.path = path
         self.line = line
 
     def __str__(self) -> str:
-        """The line that a user sees."""
         place = [str(part) for part in (self.path, self.line if self.path else None) if part]
         text = " ".join(self.message.split())
         return f"{':'.join(place)}: {text}" if place else text

@@ -52,7 +52,6 @@ class FileSink(Sink):
     """Writes all but reports under ``every``, which go to the file's own `LogFile.take`."""
 
     def __init__(self, file: LogFile) -> None:
-        """The file is open."""
         self.file = file
         self.take = file.take  # type: ignore[method-assign,assignment]
         self.edge = file.edge  # type: ignore[method-assign]

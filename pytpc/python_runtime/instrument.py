@@ -32,7 +32,6 @@ class Instrument:
     """Compiles the modules that have listed comparisons."""
 
     def __init__(self, table: ListedFiles, register: Register) -> None:
-        """Nothing is compiled yet."""
         self.table = table
         self._register = register
         self.done: list[Instrumented] = []

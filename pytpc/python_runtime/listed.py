@@ -71,7 +71,6 @@ class ListedFiles:
         }
 
     def __len__(self) -> int:
-        """How many files."""
         return len(self._by_real)
 
     def is_exact(self, path: str) -> bool:

@@ -23,7 +23,6 @@ class ReportingLoader(importlib.machinery.SourceFileLoader):
     """Loads a module from its source; all else, as ``inspect.getsource``, is the base's."""
 
     def __init__(self, fullname: str, path: str, instrument: Instrument) -> None:
-        """As the base; ``instrument`` compiles."""
         super().__init__(fullname, path)
         self._instrument = instrument
 

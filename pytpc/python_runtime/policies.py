@@ -90,7 +90,6 @@ class Edges:
     """Each flop is reported, and of all evaluations a summary for each thread and period."""
 
     def __init__(self, config: Config, sink: Sink, caps: Caps) -> None:
-        """Periods begin now."""
         self._sink = sink
         self._caps = caps
         self._period_ns = config.period_ns

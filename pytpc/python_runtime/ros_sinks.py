@@ -40,7 +40,6 @@ class RosoutSink(Sink):
     """
 
     def __init__(self) -> None:
-        """Nothing is advertised yet."""
         self._publisher: Any = None
         self._message: Any = None
         self._inside = threading.local()
@@ -127,7 +126,6 @@ class TopicSink(Sink):
     """Batches on /threshold_information, made by the helper thread."""
 
     def __init__(self) -> None:
-        """Nothing is advertised yet."""
         self._waiting: deque[_Waiting] = deque()
         self._lock = threading.RLock()
         self._publisher: Any = None

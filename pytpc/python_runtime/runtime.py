@@ -37,7 +37,6 @@ class Runtime:
     """The state of the process. There is one instance, `RUNTIME`."""
 
     def __init__(self) -> None:
-        """Nothing is started."""
         self._lock = threading.RLock()
         self._reported: dict[str, Reported] = {}
         self._config: Config | None = None

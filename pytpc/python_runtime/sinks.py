@@ -41,7 +41,6 @@ class PeriodSummary:
     )
 
     def __init__(self, one: Reported, thread: int) -> None:
-        """Nothing was evaluated yet."""
         self.one = one
         self.thread = thread
         self.begin(0, 0, 0)

@@ -329,7 +329,6 @@ class FlagSite(Site):
     __slots__ = ("truth", "value")
 
     def __init__(self, reported: tuple[Reported, ...]) -> None:
-        """All keys of the place."""
         log = logger(reported)
 
         def later(value: object, truth: bool) -> Iterator[bool]:

@@ -69,7 +69,6 @@ class Follower:
     """Follows values from reads; ``compared`` and ``lost`` are what is found."""
 
     def __init__(self, flow: Flow, constants: Constants, rules: Rules) -> None:
-        """Nothing is followed yet."""
         self.flow = flow
         self.constants = constants
         self.rules = rules

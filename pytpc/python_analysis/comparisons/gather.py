@@ -130,7 +130,6 @@ class Gatherer:
     """Joins comparisons of one place, and drops those that are none of a parameter."""
 
     def __init__(self, follower: Follower, found: Slice) -> None:
-        """Both ways are done."""
         self.follower = follower
         self.slice = found
         self._kinds: dict[tuple[Instr, Stack], frozenset[str]] = {}

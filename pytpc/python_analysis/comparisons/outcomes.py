@@ -19,7 +19,6 @@ class Outcomes:
     """
 
     def __init__(self, flow: Flow, constants: Constants, rules: Rules) -> None:
-        """Nothing is followed yet."""
         self.flow = flow
         self.constants = constants
         self.rules = rules

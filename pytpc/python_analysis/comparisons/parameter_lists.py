@@ -27,7 +27,6 @@ class ParameterLists:
     """Finds the elements of lists, and the names of those whose value is taken."""
 
     def __init__(self, constants: Constants) -> None:
-        """Nothing is looked at yet."""
         self._constants = constants
         self._flow = constants.flow
         self._control: dict[Function, dict[Block, list[Block]]] = {}

@@ -37,7 +37,6 @@ class Unknown:
     """A value that is not known; there is one."""
 
     def __repr__(self) -> str:
-        """For people who debug."""
         return "<unknown>"
 
 
@@ -48,7 +47,6 @@ class Constants:
     """Folds constants over variables, attributes, arguments and results."""
 
     def __init__(self, flow: Flow) -> None:
-        """Nothing is folded before it is asked for."""
         self.flow = flow
         self._known: dict[Instr, tuple[object, ...]] = {}
         self._meanwhile: dict[Instr, tuple[object, ...]] = {}

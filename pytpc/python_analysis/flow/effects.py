@@ -24,7 +24,6 @@ class Effects:
     waits: bool = False
 
     def __or__(self, other: Effects) -> Effects:
-        """Both."""
         return Effects(
             self.writes | other.writes, self.reads | other.reads, self.waits or other.waits
         )
@@ -38,7 +37,6 @@ class CallEffects:
     """
 
     def __init__(self, flow: PointsTo) -> None:
-        """Work them out, from the called functions to those that call them."""
         self._flow = flow
         self._bits: dict[Name, int] = {}
         self._functions = {each: self._own(each) for each in flow.program.functions}

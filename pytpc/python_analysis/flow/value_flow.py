@@ -15,7 +15,6 @@ class Flow:
     """Ways of values in a program, forward (``users``, ``copies``) and backward (``sources``)."""
 
     def __init__(self, points: PointsTo) -> None:
-        """Work out which loads see which stores."""
         self.points = points
         self.users: dict[Instr, list[Instr]] = {}
         self.stores_of: dict[Variable, list[Instr]] = {}

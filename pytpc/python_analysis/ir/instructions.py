@@ -23,7 +23,6 @@ class Variable:
     shared: bool = False
 
     def __repr__(self) -> str:
-        """For people who debug."""
         return f"{self.owner.qualname}:{self.name}"
 
 
@@ -72,7 +71,6 @@ class Instr:
     number: int
 
     def __repr__(self) -> str:
-        """For people who debug."""
         return f"%{self.number}:{self.op}@{getattr(self.node, 'lineno', 0)}"
 
     @property
@@ -117,7 +115,6 @@ class Block:
     opened: Block | None = None
 
     def __repr__(self) -> str:
-        """For people who debug."""
         return f"{self.function.qualname}#{self.number}"
 
 
@@ -152,7 +149,6 @@ class Function:
             yield from block.instrs
 
     def __repr__(self) -> str:
-        """For people who debug."""
         return self.qualname
 
 
@@ -167,7 +163,6 @@ class ClassInfo:
     is_record: bool = False
 
     def __repr__(self) -> str:
-        """For people who debug."""
         return self.qualname
 
 
@@ -185,7 +180,6 @@ class Module:
     classes: list[ClassInfo] = field(default_factory=list)
 
     def __repr__(self) -> str:
-        """For people who debug."""
         return self.name
 
 
@@ -193,7 +187,6 @@ class _Any:
     """A key that is not known."""
 
     def __repr__(self) -> str:
-        """For people who debug."""
         return "<any>"
 
 

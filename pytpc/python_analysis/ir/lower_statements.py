@@ -42,7 +42,6 @@ class StatementLowering(ExpressionLowering):
     """Lowers the statements of one function; definitions are its subclass's."""
 
     def __init__(self, scope: Scope, resolve: Resolver, numbers: list[int]) -> None:
-        """Begin with an empty block."""
         self._frames: list[_Loop | _Finally] = []
         super().__init__(scope, resolve, numbers)
         self.function.exit = Block(self.function, -1)

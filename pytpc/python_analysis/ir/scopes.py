@@ -81,7 +81,6 @@ class Scope:
         parent: Scope | None,
         class_value: Instr | None = None,
     ) -> None:
-        """A scope in which nothing is renamed."""
         self.function = function
         self.names = names
         self.parent = parent

@@ -22,7 +22,6 @@ class CallTable:
     """
 
     def __init__(self) -> None:
-        """Nothing is called yet."""
         self.callees: dict[Instr, dict[Function, None]] = {}
         self.callers: dict[Function, dict[Instr, None]] = {}
         self.outside: dict[Instr, dict[tuple[str, Obj | None], None]] = {}

@@ -32,7 +32,6 @@ class Calls(CallTable):
     """Adds to the table what calls do."""
 
     def __init__(self, flow: PointsTo) -> None:
-        """Nothing is called yet."""
         super().__init__()
         self.flow = flow
         self._done: set[tuple[Instr, Obj]] = set()

@@ -42,7 +42,6 @@ class Obj:
     slots: dict[str, None] = field(default_factory=dict)
 
     def __repr__(self) -> str:
-        """For people who debug."""
         return f"<{self.kind} {self.path or self.ref}>"
 
     @property

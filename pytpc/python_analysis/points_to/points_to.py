@@ -29,7 +29,6 @@ class PointsTo(Solver):
     """The constraints of a program, solved. ``calls``: who calls whom."""
 
     def __init__(self, program: Program, rules: Rules) -> None:
-        """Solve all constraints of ``program``."""
         super().__init__(_LEAST_STEPS + _STEPS * len(program.instructions()))
         self.program = program
         self.rules = rules

@@ -122,7 +122,6 @@ class _Places:
     """The packages that are at hand."""
 
     def __init__(self, on_fault: OnFault) -> None:
-        """None yet."""
         self.on_fault = on_fault
         self._known: dict[Path, _Package] = {}
         self._roots: dict[Path, Path | None] = {}
