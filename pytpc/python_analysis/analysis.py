@@ -58,7 +58,7 @@ class Analysed:
 def analyse(program: Program, rules: Rules) -> Analysed:
     """Run all passes on a program."""
     points = PointsTo(program, rules)
-    raising = add_raising_calls(points)
+    leaving = add_raising_calls(points)
     flow = Flow(points)
     constants = Constants(flow)
     reads = find_reads(flow, constants, rules)
@@ -67,7 +67,7 @@ def analyse(program: Program, rules: Rules) -> Analysed:
     follower.run(reads)
     follower.decide()
     fixed = find_constants(follower, constants) if rules.constants else []
-    found_slice = Slicer(flow, raising, follower.outcomes.selecting).run(exposed)
+    found_slice = Slicer(flow, leaving, follower.outcomes.selecting).run(exposed)
     gatherer = Gatherer(follower, found_slice)
     found, others = gatherer.run()
     found += gatherer.constants(fixed, [*found, *others])

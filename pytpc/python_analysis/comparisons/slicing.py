@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 from pytpc.python_analysis.comparisons.reads import Exposed
 from pytpc.python_analysis.flow.library_calls import choosing_calls
-from pytpc.python_analysis.flow.raising import Raising
+from pytpc.python_analysis.flow.raising import Leaving
 from pytpc.python_analysis.flow.value_flow import Flow
 from pytpc.python_analysis.ir.control import control_dependence
 from pytpc.python_analysis.ir.instructions import Block, Function, Instr
@@ -36,10 +36,10 @@ class Slice:
 class Slicer:
     """Makes the slice of a program."""
 
-    def __init__(self, flow: Flow, raising: Raising, selecting: Iterable[Instr] = ()) -> None:
+    def __init__(self, flow: Flow, leaving: Leaving, selecting: Iterable[Instr] = ()) -> None:
         """Nothing is in the slice yet; ``selecting`` are predicates without a branch."""
         self.flow = flow
-        self.raising = raising
+        self.leaving = leaving
         self._raised: set[Instr] = set()
         self._filters = {
             call
@@ -120,7 +120,7 @@ class Slicer:
         """What defines the values that ``instr`` uses."""
         if instr in self._raised:
             for function in self.flow.points.calls.callees.get(instr, ()):
-                for leaving in self.raising.leaving.get(function, ()):
+                for leaving in self.leaving.get(function, ()):
                     if leaving.op != "raise":
                         self._raised.add(leaving)
                     self._enter(leaving, instr, "call", further)

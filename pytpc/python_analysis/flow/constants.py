@@ -33,14 +33,8 @@ _OPERATORS: dict[str, Callable[[float, float], float]] = {
 }
 
 
-class Unknown:
-    """A value that is not known; there is one."""
-
-    def __repr__(self) -> str:
-        return "<unknown>"
-
-
-UNKNOWN = Unknown()
+UNKNOWN = object()
+"""A value that is not known."""
 
 
 class Constants:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from pytpc.python_analysis.flow.effects import CallEffects
 from pytpc.python_analysis.flow.reaching import Reaching, reaching_definitions
-from pytpc.python_analysis.ir.instructions import Block, Instr, Variable
+from pytpc.python_analysis.ir.instructions import Instr, Variable, reachable
 from pytpc.python_analysis.points_to.objects import UNNAMED, Field, Obj
 from pytpc.python_analysis.points_to.points_to import PointsTo
 
@@ -241,7 +241,8 @@ class Flow:
             return True
         if writer.block is user.block and writer.number < user.number:
             return True
-        return user.block in _following(writer.block)
+        after = [*writer.block.successors, *(way.block for way in writer.block.handlers)]
+        return user.block in reachable(after)
 
     def contents(self, instr: Instr, user: Instr) -> Iterator[Instr]:
         """What writes the objects that are reachable from a value: messages, lists, dicts.
@@ -270,16 +271,3 @@ def _is_literal(value: Instr) -> bool:
     if value.op in ("unary", "binary", "build"):
         return all(map(_is_literal, value.args))
     return value.op == "const"
-
-
-def _following(block: Block) -> set[Block]:
-    """The blocks that may run after ``block``."""
-    reached: set[Block] = set()
-    waiting = [*block.successors, *(handler.block for handler in block.handlers)]
-    while waiting:
-        after = waiting.pop()
-        if after not in reached:
-            reached.add(after)
-            waiting += after.successors
-            waiting += [handler.block for handler in after.handlers]
-    return reached

@@ -8,7 +8,7 @@ Algorithm", 2001.
 
 from __future__ import annotations
 
-from pytpc.python_analysis.ir.instructions import Block, Function
+from pytpc.python_analysis.ir.instructions import Block, Function, reachable
 
 
 def control_dependence(function: Function) -> dict[Block, list[Block]]:
@@ -45,23 +45,9 @@ def _inherit(function: Function, found: dict[Block, list[Block]]) -> None:
 
 def _only_behind(function: Function, handler: Block) -> list[Block]:
     """The blocks that are come to through ``handler`` alone."""
-    without = _reached(function.blocks[0], handler)
-    within = _reached(handler, None)
+    without = reachable([function.blocks[0]], handler)
+    within = reachable([handler], by_raise=False)
     return [block for block in function.blocks if block in within and block not in without]
-
-
-def _reached(start: Block, but: Block | None) -> set[Block]:
-    reached: set[Block] = set()
-    waiting = [start]
-    while waiting:
-        block = waiting.pop()
-        if block is but or block in reached:
-            continue
-        reached.add(block)
-        waiting += block.successors
-        if but is not None:
-            waiting += [handler.block for handler in block.handlers]
-    return reached
 
 
 def post_dominators(function: Function) -> list[int]:

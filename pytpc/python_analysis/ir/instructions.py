@@ -7,7 +7,7 @@ end of a block, one for each operand of ``and``, ``or`` and ``not`` and each lin
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 
@@ -118,6 +118,24 @@ class Block:
         return f"{self.function.qualname}#{self.number}"
 
 
+def reachable(
+    starts: Iterable[Block], without: Block | None = None, *, by_raise: bool = True
+) -> set[Block]:
+    """``starts`` and the blocks that may run after them, without going through ``without``.
+
+    Handlers are reached only with ``by_raise``.
+    """
+    reached: set[Block] = set()
+    waiting = [*starts]
+    while waiting:
+        block = waiting.pop()
+        if block is not without and block not in reached:
+            reached.add(block)
+            waiting += block.successors
+            waiting += [handler.block for handler in block.handlers if by_raise]
+    return reached
+
+
 @dataclass(eq=False, slots=True)
 class Function:
     """A function, a lambda, or the body of a module (``<module>``).
@@ -183,11 +201,5 @@ class Module:
         return self.name
 
 
-class _Any:
-    """A key that is not known."""
-
-    def __repr__(self) -> str:
-        return "<any>"
-
-
-ANY = _Any()
+ANY = object()
+"""A key that is not known."""

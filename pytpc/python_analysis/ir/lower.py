@@ -6,11 +6,17 @@ import ast
 from collections.abc import Sequence
 
 from pytpc.python_analysis.ir.builder import Resolver
-from pytpc.python_analysis.ir.instructions import Block, ClassInfo, Function, Instr, Module, Shape
+from pytpc.python_analysis.ir.instructions import (
+    ClassInfo,
+    Function,
+    Instr,
+    Module,
+    Shape,
+    reachable,
+)
 from pytpc.python_analysis.ir.lower_statements import StatementLowering
 from pytpc.python_analysis.ir.scopes import Names, Scope, names_of
 
-_ENDING = {"exit", "quit", "sys.exit", "os._exit"}
 _MARKING = ("property", "staticmethod", "classmethod", "setter", "getter", "cached_property")
 
 
@@ -157,14 +163,7 @@ class Lowering(StatementLowering):
 
 
 def _drop_unreachable(function: Function) -> None:
-    reached: set[Block] = set()
-    waiting = [function.blocks[0]]
-    while waiting:
-        block = waiting.pop()
-        if block not in reached:
-            reached.add(block)
-            waiting += block.successors
-            waiting += [handler.block for handler in block.handlers]
+    reached = reachable([function.blocks[0]])
     if function.exit is not None:
         reached.add(function.exit)
     function.blocks = [block for block in function.blocks if block in reached]

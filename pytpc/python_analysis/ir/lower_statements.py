@@ -19,7 +19,6 @@ from pytpc.python_analysis.ir.lower_match import lower_match
 from pytpc.python_analysis.ir.scopes import Scope, names_of
 
 _ENDING = {"exit", "quit", "sys.exit", "os._exit"}
-_MARKING = ("property", "staticmethod", "classmethod", "setter", "getter", "cached_property")
 
 
 @dataclass

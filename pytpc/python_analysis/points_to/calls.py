@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from pytpc.python_analysis.ir.instructions import ANY, ClassInfo, Function, Instr, Shape
@@ -240,7 +241,8 @@ class Calls(CallTable):
             self._super(instr)
             return
         elif path in ("functools.partial", "functools.partialmethod") and given:
-            flow.when(given[0][1], lambda found: flow.add(instr, [flow.heap.partial(found, instr)]))
+            get = partial(flow.heap.get, "partial", site=instr)
+            flow.when(given[0][1], lambda found: flow.add(instr, [get(parent=found)]))
             return
         elif path in ("builtins.getattr", "builtins.setattr"):
             by_name(flow, instr, path, given)
@@ -276,7 +278,8 @@ class Calls(CallTable):
             return
         flow = self.flow
         owner = arguments[-1][1]
-        flow.when(owner, lambda found: flow.add(instr, [flow.heap.super_(info, found)]))
+        get = partial(flow.heap.get, "super", ref=info)
+        flow.when(owner, lambda found: flow.add(instr, [get(parent=found)]))
 
     def _copied(self, instr: Instr, given: list[Given]) -> None:
         """A new container with the elements of another."""

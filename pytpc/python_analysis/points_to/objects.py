@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterable
 from dataclasses import dataclass, field
 
-from pytpc.python_analysis.ir.instructions import ClassInfo, Function, Instr, Module
+from pytpc.python_analysis.ir.instructions import ClassInfo, Function, Instr
 
 EVERY = "[+]"
 """The slot that stands for all elements of a container, where one is read by an unknown key."""
@@ -70,7 +70,7 @@ class Heap:
             parts = path.split(".")
             self._about.update(".".join(parts[:end]) for end in range(1, len(parts) + 1))
 
-    def _get(
+    def get(
         self,
         kind: str,
         path: str = "",
@@ -78,54 +78,31 @@ class Heap:
         parent: Obj | None = None,
         site: Instr | None = None,
     ) -> Obj:
+        """The object with these fields (see `Obj`)."""
         key = (kind, path, id(ref), parent, site)
         if key not in self._known:
             self._known[key] = Obj(kind, len(self._known), path, ref, parent, site)
         return self._known[key]
 
-    def function(self, function: Function) -> Obj:
-        """A function."""
-        return self._get("function", ref=function)
-
     def method(self, function: Function, owner: Obj) -> Obj:
         """A function bound to an object."""
-        return self._get("method", ref=function, parent=owner)
+        return self.get("method", ref=function, parent=owner)
 
     def class_(self, info: ClassInfo) -> Obj:
         """A class of the sources."""
-        return self._get("class", ref=info)
+        return self.get("class", ref=info)
 
     def instance(self, info: ClassInfo, site: Instr | None) -> Obj:
         """What calling a class gives at ``site``; None where no call is known."""
-        return self._get("instance", ref=info, site=site)
-
-    def module(self, module: Module) -> Obj:
-        """A module of the sources."""
-        return self._get("module", ref=module)
-
-    def external(self, path: str) -> Obj:
-        """Something outside the sources, by its dotted name."""
-        return self._get("external", path)
+        return self.get("instance", ref=info, site=site)
 
     def made(self, path: str, site: Instr) -> Obj:
         """What something outside the sources gives when it is called at ``site``."""
-        return self._get("made", path if path in self._about else OTHER, site=site)
+        return self.get("made", path if path in self._about else OTHER, site=site)
 
     def container(self, kind: str, site: Instr) -> Obj:
         """A list, tuple, set or dict."""
-        return self._get("container", kind, site=site)
-
-    def partial(self, function: Obj, site: Instr) -> Obj:
-        """A function with arguments that are given already."""
-        return self._get("partial", parent=function, site=site)
-
-    def super_(self, info: ClassInfo, owner: Obj) -> Obj:
-        """``super()`` in a method of ``info`` for the object ``owner``."""
-        return self._get("super", ref=info, parent=owner)
-
-    def namespace(self, owner: Obj) -> Obj:
-        """The attributes of ``owner`` as a dict."""
-        return self._get("namespace", parent=owner)
+        return self.get("container", kind, site=site)
 
     def part(self, owner: Obj, name: str, path: str) -> Obj:
         """The attribute ``name`` of something made outside the sources."""
@@ -137,7 +114,7 @@ class Heap:
         full = f"{path}.{name}"
         if full not in self._about and owner.kind not in ("container", "namespace"):
             full = f"{OTHER}.{name}"
-        found = self._get("part", full, parent=owner)
+        found = self.get("part", full, parent=owner)
         owner.parts[name] = found
         return found
 

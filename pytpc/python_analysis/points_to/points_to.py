@@ -123,11 +123,11 @@ class PointsTo(Solver):
             handle(instr)
 
     def _on_external(self, instr: Instr) -> None:
-        self.add(instr, [self.heap.external(str(instr.data))])
+        self.add(instr, [self.heap.get("external", str(instr.data))])
 
     def _on_module(self, instr: Instr) -> None:
         assert isinstance(instr.data, Module)
-        self.add(instr, [self.heap.module(instr.data)])
+        self.add(instr, [self.heap.get("module", ref=instr.data)])
 
     def _on_load(self, instr: Instr) -> None:
         self.copy(instr.data, instr)
@@ -140,7 +140,7 @@ class PointsTo(Solver):
 
     def _on_function(self, instr: Instr) -> None:
         assert isinstance(instr.data, Function)
-        self.add(instr, [self.heap.function(instr.data)])
+        self.add(instr, [self.heap.get("function", ref=instr.data)])
         for place, default in instr.data.defaults.items():
             if place < len(instr.data.param_instrs):
                 param = instr.data.param_instrs[place]
@@ -219,7 +219,7 @@ class PointsTo(Solver):
         if owner.kind == "module" and isinstance(owner.ref, Module):
             self._module_attribute(owner.ref, name, instr)
         elif owner.kind == "external":
-            self.add(instr, [self.heap.external(f"{owner.path}.{name}")])
+            self.add(instr, [self.heap.get("external", f"{owner.path}.{name}")])
         elif owner.kind in ("made", "part", "container"):
             self.copy(self.slot(owner, name), instr)
             path = self.rules.class_of(owner.path)
@@ -227,7 +227,7 @@ class PointsTo(Solver):
         elif owner.kind == "class" and owner.class_info is not None:
             self.later(lambda: self._class_attribute(owner, name, instr))
         elif owner.kind == "instance" and name == "__dict__":
-            self.add(instr, [self.heap.namespace(owner)])
+            self.add(instr, [self.heap.get("namespace", parent=owner)])
         elif owner.kind == "namespace":
             self.add(instr, [self.heap.part(owner, name, "builtins.dict")])
         elif owner.kind == "instance":
