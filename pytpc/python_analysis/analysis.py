@@ -10,8 +10,8 @@ from importlib.metadata import PackageNotFoundError, version
 from pytpc.base.errors import InputError
 from pytpc.python_analysis.budget import SECONDS, Budget, BudgetSpentError, what_failed
 from pytpc.python_analysis.comparisons.constant_finder import find_constants
-from pytpc.python_analysis.comparisons.follow import Fact, Follower
-from pytpc.python_analysis.comparisons.gather import Found, Gatherer, end_position, key_of, position
+from pytpc.python_analysis.comparisons.follow import FLAG, Follower
+from pytpc.python_analysis.comparisons.gather import Found, Gatherer, key_of, position, span_of
 from pytpc.python_analysis.comparisons.path import path_of
 from pytpc.python_analysis.comparisons.reads import Exposed, Read, find_exposing, find_reads
 from pytpc.python_analysis.comparisons.slicing import Slice, Slicer
@@ -20,10 +20,10 @@ from pytpc.python_analysis.flow.raising import add_raising_calls
 from pytpc.python_analysis.flow.value_flow import Flow
 from pytpc.python_analysis.ir.instructions import Instr
 from pytpc.python_analysis.ir.names import named_variable
-from pytpc.python_analysis.ir.program import Loader, Program
+from pytpc.python_analysis.ir.program import Program
 from pytpc.python_analysis.points_to.points_to import PointsTo
 from pytpc.python_analysis.rules_file import Rules
-from pytpc.python_analysis.sources.packages import Entry
+from pytpc.python_analysis.sources.scripts import Entry
 from pytpc.python_analysis.sources.source_files import lines_of
 from pytpc.static.link_unit import (
     BlindSpot,
@@ -95,13 +95,13 @@ def analyse_entry(
     Raises:
         InputError: the script itself cannot be read or parsed.
     """
-    program = Program(entry.name, entry.package, entry.root)
+    program = Program(entry)
     collecting = gc.isenabled()
     # Everything lives to the end, in millions of cycles: to look for garbage doubles the time.
     gc.disable()
     try:
         with Budget(seconds):
-            Loader(program, entry).load()
+            program.load()
             unit = Writer(analyse(program, rules)).unit()
     except InputError:
         raise
@@ -258,7 +258,7 @@ class Writer:
         key = key_of([*parts, str(ordinal)] if ordinal else list(parts))
         assert found.predicate is not None
         exposed = self.all.slice.nearest[found.predicate]
-        reads = [self._read_place(fact) for fact in found.facts]
+        reads = [self._place(fact.read.instr) for fact in found.facts]
         return Comparison(
             key=str(key),
             type=found.type,
@@ -284,9 +284,6 @@ class Writer:
             end_column=end_column,
             operand=found.operand_text,
         )
-
-    def _read_place(self, fact: Fact) -> Place:
-        return self._place(fact.read.instr)
 
     def _not_exposed(self) -> list[NotExposed]:
         found = []
@@ -338,7 +335,7 @@ def _order(found: Found) -> tuple[object, ...]:
 
 
 def _where(instr: Instr) -> tuple[object, ...]:
-    return instr.function.module.path, position(instr), end_position(instr)
+    return instr.function.module.path, span_of(instr, FLAG)
 
 
 def _version() -> str:

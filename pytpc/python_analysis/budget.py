@@ -8,7 +8,6 @@ import threading
 import time
 import traceback
 from pathlib import Path
-from types import TracebackType
 
 from pytpc.python_analysis.ir.instructions import Instr
 
@@ -46,12 +45,7 @@ class Budget:
             self._timer.start()
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
         """Count no more. What was raised and has not arrived yet is awaited here, and dropped.
 
         To take it back by ``PyThreadState_SetAsyncExc(thread, NULL)`` leaves CPython 3.11 asking

@@ -10,17 +10,6 @@ from typing import Any
 from pytpc.base.checked_json import PYTHON_RULES_SCHEMA, check_schema, parse_json
 
 _OWN = Path(__file__).parent / "rules" / "python.json"
-_LISTS = (
-    "reads",
-    "lists",
-    "exposing",
-    "topics",
-    "makes",
-    "configs",
-    "services",
-    "values",
-    "comparisons",
-)
 
 
 @dataclass(frozen=True)
@@ -100,24 +89,23 @@ def load_rules(profile: str = "default", own: Path | None = None) -> Rules:
     rules = Rules(profile)
     for path in (_OWN, own):
         if path is not None:
-            _add(rules, _read(path))
+            data: Any = parse_json(path)
+            check_schema(data, path, PYTHON_RULES_SCHEMA)
+            for name, table in data.items():
+                _add(rules, name, table)
     return rules
 
 
-def _read(path: Path) -> dict[str, Any]:
-    data: Any = parse_json(path)
-    check_schema(data, path, PYTHON_RULES_SCHEMA)
-    return dict(data)
-
-
-def _add(rules: Rules, data: dict[str, Any]) -> None:
-    rules.arithmetic.update(data.get("arithmetic", {}))
-    for name in ("waiting", "outcomes", "filters"):
-        getattr(rules, name).update(data.get(name, []))
-    for name in _LISTS:
-        for row in data.get(name, []):
-            if rules.profile in row.get("profiles", [rules.profile]):
-                _add_row(rules, name, row)
+def _add(rules: Rules, name: str, table: Any) -> None:  # noqa: ANN401
+    match name:
+        case "$schema" | "schema" | "comment":
+            pass
+        case "arithmetic" | "waiting" | "outcomes" | "filters":
+            getattr(rules, name).update(table)
+        case _:
+            for row in table:
+                if rules.profile in row.get("profiles", [rules.profile]):
+                    _add_row(rules, name, row)
 
 
 def _add_row(rules: Rules, name: str, row: dict[str, Any]) -> None:

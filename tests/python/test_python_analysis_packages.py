@@ -11,7 +11,8 @@ from click.testing import CliRunner
 from pytpc.base.errors import InputError
 from pytpc.cli.main import main
 from pytpc.python_analysis.sources.cmake_programs import read_programs
-from pytpc.python_analysis.sources.packages import Entry, NameFault, entries
+from pytpc.python_analysis.sources.packages import NameFault, entries
+from pytpc.python_analysis.sources.scripts import Entry
 from pytpc.python_analysis.sources.setup_files import read_setup
 from pytpc.static.static_info import StaticInfo
 

@@ -9,9 +9,8 @@ from pytpc.python_analysis.comparisons.outcomes import Outcomes
 from pytpc.python_analysis.comparisons.reads import Read
 from pytpc.python_analysis.comparisons.transform import How, by_function, by_operator
 from pytpc.python_analysis.flow.constants import DYNAMIC, Constants
-from pytpc.python_analysis.flow.contexts import Stack, moves
 from pytpc.python_analysis.flow.library_calls import INSIDE, Inside, compared_inside
-from pytpc.python_analysis.flow.value_flow import Flow
+from pytpc.python_analysis.flow.value_flow import Flow, Stack
 from pytpc.python_analysis.ir.instructions import Instr
 from pytpc.python_analysis.rules_file import Rules
 
@@ -106,7 +105,7 @@ class Follower:
         self._reach(Fact(at, fact.read, fact.name, how or fact.how, fact.stack, fact, via))
 
     def _step(self, fact: Fact) -> None:
-        for to, via, stack in moves(self.flow, fact.at, fact.stack):
+        for to, via, stack in self.flow.moves(fact.at, fact.stack):
             if to.op == "attr" and self.flow.is_by_unknown_name(to, via):
                 continue
             if via is not None and (fact.at, via) in self.flow.points.spread:

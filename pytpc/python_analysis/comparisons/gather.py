@@ -10,10 +10,9 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from pytpc.python_analysis.comparisons.follow import FLAG, Compared, Fact, Follower
-from pytpc.python_analysis.comparisons.reads import Read
 from pytpc.python_analysis.comparisons.slicing import Slice
-from pytpc.python_analysis.flow.contexts import Stack
 from pytpc.python_analysis.flow.library_calls import INSIDE, TURNED, Inside
+from pytpc.python_analysis.flow.value_flow import Stack
 from pytpc.python_analysis.ir.instructions import Instr
 
 RELATIONS = {
@@ -48,11 +47,6 @@ class Found:
     def span(self) -> Span:
         """Where it stands."""
         return span_of(self.at, self.operand)
-
-    @property
-    def reads(self) -> list[Read]:
-        """The reads that give it its value."""
-        return list(dict.fromkeys(fact.read for fact in self.facts))
 
     @property
     def relation(self) -> str:
@@ -91,11 +85,6 @@ class Found:
 def position(instr: Instr) -> tuple[int, int]:
     """Line and column from 1; 0 where there is none."""
     return _start(instr.node)
-
-
-def end_position(instr: Instr) -> tuple[int, int]:
-    """Line and column behind the last character, from 1."""
-    return _end(instr.node)
 
 
 def span_of(at: Instr, operand: int) -> Span:

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from pytpc.python_analysis.flow.constants import Constants
-from pytpc.python_analysis.flow.contexts import Stack, moves
-from pytpc.python_analysis.flow.value_flow import Flow
+from pytpc.python_analysis.flow.value_flow import Flow, Stack
 from pytpc.python_analysis.ir.instructions import Instr
 from pytpc.python_analysis.rules_file import Rules
 
@@ -31,7 +30,7 @@ class Outcomes:
         found: dict[Instr, None] = {}
         while waiting:
             value, here = waiting.pop()
-            following = [(to, after) for to, _, after in moves(self.flow, value, here)]
+            following = [(to, after) for to, _, after in self.flow.moves(value, here)]
             found.update(dict.fromkeys(self._filtering(value)))
             for user in self.flow.users.get(value, ()):
                 if self._selects(user, value):

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 
 from pytpc.python_analysis.comparisons.parameter_lists import ParameterLists
 from pytpc.python_analysis.flow.constants import DYNAMIC, Constants
-from pytpc.python_analysis.flow.contexts import Stack
-from pytpc.python_analysis.flow.value_flow import Flow
+from pytpc.python_analysis.flow.value_flow import Flow, Stack
 from pytpc.python_analysis.ir.instructions import Function, Instr
 from pytpc.python_analysis.points_to.call_table import CallTable, Given
 from pytpc.python_analysis.points_to.objects import Obj
@@ -143,9 +142,10 @@ def _configs(flow: Flow, path: str, given: list[Given], rules: Rules) -> list[Re
 def _handed(flow: Flow, callback: Instr | None, place: int) -> Iterator[Instr]:
     """The parameter of a callback that is handed the argument number ``place``."""
     for each in flow.points.of(callback) if callback is not None else ():
-        function, first = _first_free(each)
-        if function is not None and first + place < len(function.param_instrs):
-            yield function.param_instrs[first + place]
+        params = each.function.param_instrs if each.function is not None else []
+        number = place + (1 if each.kind == "method" else 0)
+        if number < len(params):
+            yield params[number]
 
 
 def _listed(
@@ -161,12 +161,6 @@ def _listed(
         for start, names in starts
         for taken in lists.taken(start, names)
     ]
-
-
-def _first_free(callback: Obj) -> tuple[Function | None, int]:
-    if callback.function is None:
-        return None, 0
-    return callback.function, 1 if callback.kind == "method" else 0
 
 
 def find_exposing(flow: Flow, constants: Constants, rules: Rules) -> list[Exposed]:

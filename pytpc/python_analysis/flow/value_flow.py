@@ -10,6 +10,10 @@ from pytpc.python_analysis.ir.instructions import Instr, Variable, reachable
 from pytpc.python_analysis.points_to.objects import UNNAMED, Field, Obj
 from pytpc.python_analysis.points_to.points_to import PointsTo
 
+Stack = tuple[Instr, ...]
+"""The calls by which a value came into a function, the innermost last; empty: nothing is known."""
+_DEEPEST = 3
+
 
 class Flow:
     """Ways of values in a program, forward (``users``, ``copies``) and backward (``sources``)."""
@@ -65,6 +69,33 @@ class Flow:
                         yield load, writer
             elif isinstance(to, Variable):
                 yield from self._from_outside(value, to)
+
+    def moves(self, value: Instr, stack: Stack) -> Iterator[tuple[Instr, Instr | None, Stack]]:
+        """Where a value that came by ``stack`` is found again.
+
+        Yields:
+            The instruction, the store or call that brings the value there (None: neither), and the
+            calls by which it is there. What goes through a field, or a variable of several
+            functions, forgets them.
+        """
+        for to, via in self.copies(value):
+            after = self._after(value, to, via, stack)
+            if after is not None:
+                yield to, via, after
+
+    def _after(self, value: Instr, to: Instr, via: Instr | None, stack: Stack) -> Stack | None:
+        """``stack`` once ``value`` is at ``to``; None where it would leave by another call."""
+        calls, users = self.points.calls, self.users.get(value, ())
+        if to.op == "param":
+            handing = [user for user in users if user in calls.callees]
+            sites = [site for site in handing if value in calls.given.get((site, to), ())]
+            return (*stack, sites[0])[-_DEEPEST:] if len(sites) == 1 else ()
+        is_result = via is None and value.function in calls.callees.get(to, {})
+        if is_result and any(user.op == "return" for user in users):
+            if not stack:
+                return ()
+            return stack[:-1] if stack[-1] is to else None
+        return stack if to.function is value.function else ()
 
     def _loads(self, store: Instr) -> Iterator[tuple[Instr, Instr]]:
         direct = self._seen_by.get(store, ())

@@ -1,17 +1,17 @@
-"""A link unit of Python: a script and the modules of the workspace that it imports."""
+"""The modules of a link unit of Python, loaded and lowered."""
 
 from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
 from pytpc.base.errors import InputError
 from pytpc.python_analysis.ir.instructions import Function, Instr, Module
 from pytpc.python_analysis.ir.lower import lower_module
-from pytpc.python_analysis.sources.packages import Entry
+from pytpc.python_analysis.sources.scripts import Entry
 from pytpc.python_analysis.sources.source_files import module_files, parse
 
 
@@ -23,15 +23,20 @@ class Unread:
     error: InputError
 
 
-@dataclass
 class Program:
-    """All modules of a link unit, the script's first; ``name`` and ``package`` as in the JSON."""
+    """A script and the modules of the workspace that it imports, the script first in ``modules``.
 
-    name: str
-    package: str
-    root: Path
-    modules: list[Module] = field(default_factory=list)
-    faults: list[Unread] = field(default_factory=list)
+    ``name`` and ``package`` are as in the JSON. ``faults``: the modules that cannot be read.
+    """
+
+    def __init__(self, entry: Entry) -> None:
+        """``entry`` says where the program begins and where modules are looked for."""
+        self.entry = entry
+        self.name, self.package, self.root = entry.name, entry.package, entry.root
+        self.modules: list[Module] = []
+        self.faults: list[Unread] = []
+        self._known: dict[Path, Module | None] = {}
+        self._numbers = [0]
 
     @property
     def functions(self) -> list[Function]:
@@ -48,23 +53,8 @@ class Program:
         """Those of all functions, in order."""
         return [instr for function in self.functions for instr in function.instructions()]
 
-    def relative(self, path: Path) -> str:
-        """A file as static information names it: outside of the package by its absolute path."""
-        return str(path.relative_to(self.root) if path.is_relative_to(self.root) else path)
-
-
-class Loader:
-    """Loads a script and, as it is lowered, what it imports."""
-
-    def __init__(self, program: Program, entry: Entry) -> None:
-        """``entry`` says where the program begins and where modules are looked for."""
-        self.program = program
-        self.entry = entry
-        self._known: dict[Path, Module | None] = {}
-        self._numbers = [0]
-
-    def load(self) -> Program:
-        """Load the script and all that follows from it.
+    def load(self) -> None:
+        """Load the script and, as it is lowered, what it imports.
 
         Raises:
             InputError: the script cannot be read or parsed.
@@ -72,15 +62,18 @@ class Loader:
         script = self.entry.script.absolute()
         source, tree = parse(script)
         self._add(script, self.entry.module, source, _begun(tree, self.entry.begin))
-        for module in self.program.modules:
+        for module in self.modules:
             lower_module(module, self.resolve, self._numbers)
-        return self.program
+
+    def _relative(self, path: Path) -> str:
+        """A file as static information names it: outside of the package by its absolute path."""
+        return str(path.relative_to(self.root) if path.is_relative_to(self.root) else path)
 
     def _add(self, path: Path, name: str, source: str, tree: ast.Module) -> Module:
         is_package = path.name == "__init__.py"
-        module = Module(name, self.program.relative(path), source, tree, is_package)
+        module = Module(name, self._relative(path), source, tree, is_package)
         self._known[path] = module
-        self.program.modules.append(module)
+        self.modules.append(module)
         return module
 
     def _module(self, path: Path, name: str) -> Module | None:
@@ -91,7 +84,7 @@ class Loader:
                 return self._add(path, name, *parse(path))
             except InputError as error:
                 self._known[path] = None
-                self.program.faults.append(Unread(self.program.relative(path), error))
+                self.faults.append(Unread(self._relative(path), error))
         return self._known[path]
 
     def resolve(self, user: Module, name: str, dots: int) -> Module | str:
@@ -100,7 +93,7 @@ class Loader:
             for path in self.entry.places(name):
                 return self._module(path, name) or name
             return name
-        folder = (self.program.root / user.path).parent
+        folder = (self.root / user.path).parent
         for _ in range(dots - 1):
             folder = folder.parent
         if not name:

@@ -12,8 +12,8 @@ from collections.abc import Callable
 
 from pytpc.python_analysis.ir.instructions import ANY, ClassInfo, Function, Instr, Module, Variable
 from pytpc.python_analysis.ir.program import Program
+from pytpc.python_analysis.points_to.call_table import kept_as_given, unchanged_parameter
 from pytpc.python_analysis.points_to.calls import Calls
-from pytpc.python_analysis.points_to.given import kept_as_given, unchanged_parameter
 from pytpc.python_analysis.points_to.objects import SOME, Heap, Obj, element
 from pytpc.python_analysis.points_to.solver import Solver
 from pytpc.python_analysis.rules_file import Rules

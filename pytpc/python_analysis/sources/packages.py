@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pytpc.base.errors import InputError
 from pytpc.python_analysis.rules_file import Rules, load_rules
 from pytpc.python_analysis.sources.cmake_programs import Programs, read_programs
-from pytpc.python_analysis.sources.scripts import Scripts, is_python, python_files
+from pytpc.python_analysis.sources.scripts import Entry, Scripts, is_python, python_files
 from pytpc.python_analysis.sources.setup_files import Installed, read_setup
 from pytpc.python_analysis.sources.source_files import module_files
 from pytpc.workspace.packages import MANIFEST, package_folders, read_manifest
@@ -20,35 +20,6 @@ OnFault = Callable[[InputError], None]
 
 class NameFault(InputError):
     """A package.xml that cannot be read: the folder's name stands for the package's."""
-
-
-@dataclass(frozen=True)
-class Entry:
-    """A program: the name of its link unit, its package and where modules are looked for.
-
-    ``folders`` are looked into first; ``packages`` has, by dotted name, the folder (or the file
-    without ``.py``) of each package of the workspace that is installed. An entry point has the name
-    of its ``module`` and the function that is called, ``begin``; a script is ``__main__``.
-    """
-
-    script: Path
-    name: str
-    package: str
-    root: Path
-    folders: tuple[Path, ...]
-    packages: Mapping[str, Path] = field(default_factory=dict, compare=False)
-    module: str = "__main__"
-    begin: str = ""
-
-    def places(self, name: str) -> Iterator[Path]:
-        """The files that an import of the dotted ``name`` may mean, the first one first."""
-        parts = name.split(".")
-        for folder in self.folders:
-            yield from module_files(folder.joinpath(*parts))
-        for count in range(len(parts), 0, -1):
-            known = self.packages.get(".".join(parts[:count]))
-            if known is not None:
-                yield from module_files(known.joinpath(*parts[count:]))
 
 
 def entries(

@@ -6,10 +6,9 @@ import ast
 import os
 import re
 import stat
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Protocol
 
 from pytpc.base.errors import InputError
 from pytpc.python_analysis.rules_file import Rules
@@ -24,15 +23,33 @@ _INITIALISING = {"init_node", "init"}
 _LIVING = {"init_node", "init", "spin", "create_node"}
 
 
-class Program(Protocol):
-    """What is asked of a program: its file, and where its imports lead."""
+@dataclass(frozen=True)
+class Entry:
+    """A program: the name of its link unit, its package and where modules are looked for.
 
-    @property
-    def script(self) -> Path:
-        """Where it begins."""
+    ``folders`` are looked into first; ``packages`` has, by dotted name, the folder (or the file
+    without ``.py``) of each package of the workspace that is installed. An entry point has the name
+    of its ``module`` and the function that is called, ``begin``; a script is ``__main__``.
+    """
+
+    script: Path
+    name: str
+    package: str
+    root: Path
+    folders: tuple[Path, ...]
+    packages: Mapping[str, Path] = field(default_factory=dict, compare=False)
+    module: str = "__main__"
+    begin: str = ""
 
     def places(self, name: str) -> Iterator[Path]:
-        """The files that an import may mean."""
+        """The files that an import of the dotted ``name`` may mean, the first one first."""
+        parts = name.split(".")
+        for folder in self.folders:
+            yield from module_files(folder.joinpath(*parts))
+        for count in range(len(parts), 0, -1):
+            known = self.packages.get(".".join(parts[:count]))
+            if known is not None:
+                yield from module_files(known.joinpath(*parts[count:]))
 
 
 def python_files(folder: Path, on_fault: Callable[[InputError], None]) -> Iterator[Path]:
@@ -111,7 +128,7 @@ class Scripts:
         self._libraries = {"rospy", "rclpy", *(path.split(".")[0] for path in rules.paths)}
         self._words = _LIVING | {path.rsplit(".", 1)[-1] for path in rules.paths}
 
-    def is_run(self, program: Program) -> bool:
+    def is_run(self, program: Entry) -> bool:
         """True for a script that says by itself that it is run.
 
         Raises:
@@ -120,7 +137,7 @@ class Scripts:
         facts = self._read(program.script)
         return facts.is_guarded or (facts.initialises and _has_shebang(program.script))
 
-    def has_to_do_with_ros(self, program: Program) -> bool:
+    def has_to_do_with_ros(self, program: Entry) -> bool:
         """True where the program, or a module of the workspace that it imports, speaks to ROS.
 
         That is, it imports one of ROS's libraries and has a word of what reads parameters, exposes,
@@ -137,7 +154,7 @@ class Scripts:
                 return True
         return False
 
-    def reached(self, program: Program) -> Iterator[Path]:
+    def reached(self, program: Entry) -> Iterator[Path]:
         """The script, and the files of the workspace that it imports."""
         seen = {program.script}
         waiting = [program.script]
@@ -166,7 +183,7 @@ class Scripts:
             return _NOTHING
 
 
-def _meant(program: Program, user: Path, dots: int, name: str) -> Iterator[Path]:
+def _meant(program: Entry, user: Path, dots: int, name: str) -> Iterator[Path]:
     """The files that an import in the file ``user`` may mean."""
     if dots == 0:
         yield from program.places(name)
