@@ -44,7 +44,7 @@ from pytpc.python_runtime.log_layout import (
     pack_integers,
     pack_report,
 )
-from pytpc.python_runtime.log_room import Extent, Room
+from pytpc.python_runtime.mapped_file import Extent, MappedFile
 
 if TYPE_CHECKING:
     from pytpc.python_runtime.sites import Reported, Take
@@ -132,7 +132,7 @@ class _Owner:
         self._free.append(self._place)
 
 
-class LogFile(Room):
+class LogFile(MappedFile):
     """One file, and what is written to it."""
 
     def __init__(self, config: Config, parent: int, each_second: Callable[[], None]) -> None:

@@ -172,11 +172,11 @@ class TopicSink(Sink):
         counts[1] += last is not None and last != oldest.report[0]
         self._dropped_in_all += 1
 
-    def wants_turns(self) -> bool:
+    def is_polled(self) -> bool:
         """Always: subscribers come and go."""
         return True
 
-    def turn(self) -> None:
+    def poll(self) -> None:
         """Advertise, and send batches that are due."""
         ros = ros_state.rospy()
         if ros is None or ros.is_shutdown():

@@ -29,7 +29,7 @@ from pytpc.python_runtime.words import warn
 if TYPE_CHECKING:
     from pytpc.python_runtime.find import ListedPlace
 
-_TURN_S = 0.02
+_POLL_S = 0.02
 _LATE_S = 0.25
 
 
@@ -117,7 +117,7 @@ class Runtime:
             if not self._choose(config):
                 return False
             self._config = config
-            if self._sink.wants_turns() and not self._has_helper and not self._was_node:
+            if self._sink.is_polled() and not self._has_helper and not self._was_node:
                 self._start_helper()
             return True
 
@@ -217,13 +217,13 @@ class Runtime:
                     if not ros.is_shutdown():
                         warn(f"the settings of {ros.get_name()} come later: {error}")
             sink, edges = self._sink, self._edges
-            is_busy = sink.wants_turns() or (edges is not None and self.file is None)
+            is_busy = sink.is_polled() or (edges is not None and self.file is None)
             if self._is_served and not is_busy:
                 break
             if edges is not None and self.file is None:
                 edges.flush(all_of_them=False)
-            sink.turn()
-            time.sleep(_TURN_S if is_busy or ros is not None else _LATE_S)
+            sink.poll()
+            time.sleep(_POLL_S if is_busy or ros is not None else _LATE_S)
         self._has_helper = False
 
     def status(self) -> str:

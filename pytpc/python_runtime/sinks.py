@@ -94,10 +94,10 @@ class Sink:
     def settle(self) -> None:
         """Send what was handed over while a lock of ours was held: no program's code runs then."""
 
-    def turn(self) -> None:
+    def poll(self) -> None:
         """The helper thread's, some fifty times a second."""
 
-    def wants_turns(self) -> bool:
+    def is_polled(self) -> bool:
         """Whether there is something to do in `turn`."""
         return False
 

@@ -1,4 +1,4 @@
-"""The room in a file of reports: space on the disk, mapped, handed out in chunks."""
+"""The mapped file of reports: space on the disk that is handed out in chunks."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class Extent:
         self.chunks = size // CHUNK_BYTES
 
 
-class Room:
+class MappedFile:
     """One file. Errors while it is written stop the recording, and never the program."""
 
     def __init__(self, config: Config, parent: int, node: str) -> None:
