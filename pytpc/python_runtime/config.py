@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from pytpc.python_runtime.words import warn
+from pytpc.python_runtime.errors import warn
 
 SINKS = ("rosout", "topic", "file", "off")
 POLICIES = ("every", "edges")

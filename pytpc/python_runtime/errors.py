@@ -1,6 +1,8 @@
-"""The error of the hook, which imports nothing of the other packages."""
+"""The error of the hook, and its warnings: one line on standard error each, as in C++."""
 
 from __future__ import annotations
+
+import os
 
 
 class HookError(Exception):
@@ -24,3 +26,17 @@ class HookError(Exception):
         place = [str(part) for part in (self.path, self.line if self.path else None) if part]
         text = " ".join(self.message.split())
         return f"{':'.join(place)}: {text}" if place else text
+
+
+def warn(text: str) -> None:
+    """Write one line. It is one write, so that lines of several processes do not mix."""
+    try:
+        os.write(2, ("tpc: " + " ".join(text.split()) + "\n").encode("utf-8", "replace"))
+    except OSError:
+        # A program without standard error.
+        return
+
+
+def many(count: int, noun: str) -> str:
+    """``1 comparison``, ``2 comparisons``."""
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"

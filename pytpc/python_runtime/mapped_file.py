@@ -11,6 +11,7 @@ import threading
 from time import monotonic_ns, time_ns
 from typing import TYPE_CHECKING
 
+from pytpc.python_runtime.errors import warn
 from pytpc.python_runtime.log_layout import (
     CHUNK,
     CHUNK_BYTES,
@@ -28,7 +29,6 @@ from pytpc.python_runtime.log_layout import (
     created,
     program,
 )
-from pytpc.python_runtime.words import warn
 
 if TYPE_CHECKING:
     from pytpc.python_runtime.config import Config

@@ -9,6 +9,7 @@ from time import monotonic_ns
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from pytpc.python_runtime import ros_state
+from pytpc.python_runtime.errors import many, warn
 from pytpc.python_runtime.sinks import (
     PeriodSummary,
     Sink,
@@ -17,7 +18,6 @@ from pytpc.python_runtime.sinks import (
     seconds,
     summary_line,
 )
-from pytpc.python_runtime.words import many, warn
 
 if TYPE_CHECKING:
     from pytpc.python_runtime.sites import Reported

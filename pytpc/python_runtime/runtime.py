@@ -18,13 +18,13 @@ from typing import TYPE_CHECKING
 from pytpc.python_runtime import ros_state, sites
 from pytpc.python_runtime.config import Config, of_environment
 from pytpc.python_runtime.control import Control
+from pytpc.python_runtime.errors import warn
 from pytpc.python_runtime.file_sink import FileSink
 from pytpc.python_runtime.log_file import LogFile
 from pytpc.python_runtime.policies import Caps, Edges, forget
 from pytpc.python_runtime.ros_sinks import RosoutSink, TopicSink
 from pytpc.python_runtime.sinks import Sink
 from pytpc.python_runtime.sites import Reported
-from pytpc.python_runtime.words import warn
 
 if TYPE_CHECKING:
     from pytpc.python_runtime.find import ListedPlace
