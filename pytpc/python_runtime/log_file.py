@@ -14,7 +14,7 @@ import threading
 from collections.abc import Callable
 from itertools import count
 from time import monotonic_ns, time_ns
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from pytpc.python_runtime import ros_state
 from pytpc.python_runtime.config import Config
@@ -40,11 +40,11 @@ from pytpc.python_runtime.log_layout import (
     SYSTEM_CHUNK,
     THREAD_CHUNK,
     WHATS,
-    bounded,
     pack_integers,
     pack_report,
 )
-from pytpc.python_runtime.mapped_file import Extent, MappedFile
+from pytpc.python_runtime.mapped_file import Extent, MappedFile, bounded
+from pytpc.python_runtime.sinks import LiveSlot
 
 if TYPE_CHECKING:
     from pytpc.python_runtime.sites import Reported, Take
@@ -195,7 +195,7 @@ class LogFile(MappedFile):
             self.look(now)
             self._each_second()
         if one.file is not self:
-            self._announce(one)
+            self.announce(one)
         found = (chunk, at) if at < chunk.end else self._claimed(place)
         if found is not None and (self.is_simulated or place.sim_ns != -1):
             return self._simulated(place, found, now)
@@ -290,7 +290,7 @@ class LogFile(MappedFile):
 
     # --- what is of the system
 
-    def _write(self, what: int, raw: bytes) -> bool:
+    def write(self, what: int, raw: bytes) -> bool:
         """Write a record of the system; ``raw`` is all of it but ``what``. False without room.
 
         Its place is taken only when it is written: what is broken off leaves no gap. Who reports in
@@ -317,10 +317,10 @@ class LogFile(MappedFile):
         return True
 
     def _integers(self, what: int, site: int, now: int, first: int, second: int) -> None:
-        self._write(what, _INTEGERS.pack(site, now, first, second))
+        self.write(what, _INTEGERS.pack(site, now, first, second))
 
-    def new_slot(self) -> tuple[Any, Any, int] | None:
-        """Room for a live summary: the bytes and words of its part of the file, and its place."""
+    def new_slot(self) -> LiveSlot | None:
+        """A place for a live summary; None where there is no more."""
         with self._lock:
             if self._live is None or self._live[1] == SLOTS_OF_CHUNK:
                 found = self.new_chunk(LIVE_CHUNK, self.thread_number(), 0)
@@ -330,20 +330,16 @@ class LogFile(MappedFile):
             (extent, begin), used = self._live
             self._live = ((extent, begin), used + 1)
             at = begin + CHUNK_HEADER_BYTES + used * SLOT_BYTES
-            return extent.bytes, extent.words, at
+            return LiveSlot(extent.bytes, extent.words, at)
 
-    def _announce(self, one: Reported) -> None:
+    def announce(self, one: Reported) -> None:
+        """Write once what the number of a key is."""
         with self._lock:
             if one.file is self:
                 return
             raw = one.key.encode("utf-8")[:LONGEST_KEY]
-            if self._write(SITE, struct.pack("<Iq", one.number, len(raw)) + raw):
+            if self.write(SITE, struct.pack("<Iq", one.number, len(raw)) + raw):
                 one.file = self
-
-    def announce(self, one: Reported) -> None:
-        """Say what the number of a key is."""
-        if one.file is not self:
-            self._announce(one)
 
     def look(self, now: int) -> None:
         """Once a second: note the clocks against each other, and the node's state in ROS."""
@@ -369,7 +365,3 @@ class LogFile(MappedFile):
     def write_dropped(self, one: int, number: int, flops: int, why: str) -> None:
         """Note that reports of a comparison (0: unknown) were dropped."""
         self._integers(DROPPED | REASONS[why] << 16, one, monotonic_ns(), number, flops)
-
-    def write_summary(self, raw: bytes, what: int) -> None:
-        """A summary without its first word."""
-        self._write(what, raw)

@@ -7,6 +7,7 @@ import contextlib
 import mmap
 import os
 import struct
+import sys
 import threading
 from time import monotonic_ns, time_ns
 from typing import TYPE_CHECKING
@@ -23,11 +24,9 @@ from pytpc.python_runtime.log_layout import (
     NODE_BYTES,
     OPEN,
     RECORD_BYTES,
+    SECOND,
     STATE_AT,
     STOPPED,
-    bounded,
-    created,
-    program,
 )
 
 if TYPE_CHECKING:
@@ -52,7 +51,10 @@ class Extent:
 
 
 class MappedFile:
-    """One file. Errors while it is written stop the recording, and never the program."""
+    """One file. Errors while it is written stop the recording, and never the program.
+
+    ``is_stopped``: the disk is full, or a limit reached.
+    """
 
     def __init__(self, config: Config, parent: int, node: str) -> None:
         """Make the file in its folder; nothing but its header is in it.
@@ -66,9 +68,9 @@ class MappedFile:
         self._extents: list[Extent] = []
         self._size = HEADER_BYTES
         self._used = 0
-        self._is_stopped = False
+        self.is_stopped = False
         self._is_closed = False
-        self.path, self._descriptor = created(config, node)
+        self.path, self._descriptor = _created(config, node)
         its = os.fstat(self._descriptor)
         self._identity = (its.st_dev, its.st_ino)
         try:
@@ -83,7 +85,7 @@ class MappedFile:
     def new_chunk(self, kind: int, thread: int, first: int) -> tuple[Extent, int] | None:
         """A chunk, and its first byte in its extent; None where there is no room."""
         with self._lock:
-            if self._is_stopped or self._is_closed:
+            if self.is_stopped or self._is_closed:
                 return None
             before = sum(extent.chunks for extent in self._extents)
             if self._used == before:
@@ -130,15 +132,10 @@ class MappedFile:
         return (its.st_dev, its.st_ino) == self._identity
 
     def _stop(self, why: str) -> None:
-        if not self._is_stopped:
-            self._is_stopped = True
+        if not self.is_stopped:
+            self.is_stopped = True
             self._put_state(STOPPED)
             warn(f"{self.path}: {why}; nothing more is recorded, the program goes on as if it were")
-
-    @property
-    def is_stopped(self) -> bool:
-        """Whether the disk is full, or a limit reached."""
-        return self._is_stopped
 
     def close(self) -> None:
         """Give back what was not used. Threads may write on in the chunks that they have."""
@@ -150,7 +147,7 @@ class MappedFile:
                 with contextlib.suppress(OSError):
                     os.ftruncate(self._descriptor, HEADER_BYTES + self._used * CHUNK_BYTES)
                 os.close(self._descriptor)
-            if not self._is_stopped:
+            if not self.is_stopped:
                 self._put_state(CLOSED)
 
     def _put_state(self, state: int) -> None:
@@ -181,7 +178,44 @@ class MappedFile:
             0,
             bounded(node, NODE_BYTES),
             bounded(os.uname().nodename, 256),
-            bounded(program(), 1024),
+            bounded(_program(), 1024),
         )
         self._header[:8] = MAGIC
         self._grow()
+
+
+def bounded(text: str, size: int) -> bytes:
+    """UTF-8 with room for a NUL behind it, not cut within a character."""
+    return text.encode("utf-8", "replace")[: size - 1].decode("utf-8", "ignore").encode("utf-8")
+
+
+def _program() -> str:
+    """The script that runs, else the interpreter."""
+    script = getattr(sys.modules.get("__main__"), "__file__", None)
+    return os.path.abspath(script) if isinstance(script, str) else sys.executable or "python"
+
+
+def _created(config: Config, node: str) -> tuple[str, int]:
+    """The path of a new file, and the descriptor of the same with ``.new`` behind it.
+
+    It gets its name when it can be read. Until then the other one keeps out whoever has the same
+    number in another container, and so the same names.
+    """
+    home = os.environ.get("ROS_HOME") or os.path.join(os.environ.get("HOME") or "/tmp", ".ros")
+    folder = config.folder or os.path.join(home, "tpc")
+    os.makedirs(folder, exist_ok=True)
+    name = (node or os.path.basename(_program())).lstrip("/")
+    name = "".join(c if c.isascii() and (c.isalnum() or c in "_-") else "_" for c in name)[:100]
+    stem = os.path.join(folder, f"{name or 'process'}-{os.getpid()}-{time_ns() // SECOND}")
+    for number in range(1, 1000):
+        path = f"{stem}-{number}.tpc" if number > 1 else f"{stem}.tpc"
+        flags = os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC
+        try:
+            descriptor = os.open(f"{path}.new", flags, 0o666)
+        except FileExistsError:
+            continue
+        if not os.path.exists(path):
+            return path, descriptor
+        os.close(descriptor)
+        os.unlink(f"{path}.new")
+    raise FileExistsError(17, "File exists", stem)

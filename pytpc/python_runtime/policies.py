@@ -7,8 +7,7 @@ from time import monotonic_ns
 from typing import TYPE_CHECKING
 
 from pytpc.python_runtime import ros_state
-from pytpc.python_runtime.file_sink import FileSink, LiveSlot
-from pytpc.python_runtime.sinks import PeriodSummary, Sink
+from pytpc.python_runtime.sinks import FileSink, PeriodSummary, Sink
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -76,16 +75,6 @@ class Caps:
                     self._sink.dropped(one, counts[at], counts[at + 1], why)
 
 
-class _OpenPeriod:
-    """The open period of one comparison in one thread."""
-
-    __slots__ = ("kept", "slot")
-
-    def __init__(self, kept: PeriodSummary, slot: LiveSlot | None) -> None:
-        self.kept = kept
-        self.slot = slot
-
-
 class Edges:
     """Each flop is reported, and of all evaluations a summary for each thread and period."""
 
@@ -95,7 +84,7 @@ class Edges:
         self._period_ns = config.period_ns
         self._start = monotonic_ns()
         self._lock = threading.RLock()
-        self._open: dict[tuple[int, Reported], _OpenPeriod] = {}
+        self._open: dict[tuple[int, Reported], PeriodSummary] = {}
         self._file = sink.file if isinstance(sink, FileSink) else None
 
     def take(self, one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> None:
@@ -106,28 +95,26 @@ class Edges:
         thread = self._file.thread_number() if self._file is not None else threading.get_ident()
         with self._lock:
             key = (thread, one)
-            held = self._open.get(key)
-            if held is None:
-                held = self._open[key] = self._new(thread & 0xFFFFFFFF, one)
-            kept = held.kept
+            kept = self._open.get(key)
+            if kept is None:
+                kept = self._open[key] = self._new(thread & 0xFFFFFFFF, one)
             if kept.evaluations and kept.period != period:
-                self._close(held)
+                self._close(kept)
             if not kept.evaluations:
                 kept.begin(period, now, ros)
             kept.flops += self._edge(one, result, cmp, thresh, res)
             kept.add(result, cmp, thresh, res)
             kept.end_ns, kept.end_ros_ns = now, ros
-            if held.slot is not None:
-                held.slot.write(kept)
+            if kept.slot is not None:
+                kept.slot.write(kept)
         self._sink.settle()
 
-    def _new(self, thread: int, one: Reported) -> _OpenPeriod:
+    def _new(self, thread: int, one: Reported) -> PeriodSummary:
         """A comparison that is new to its thread."""
-        slot = None
-        if self._file is not None:
-            self._file.announce(one)
-            slot = LiveSlot(self._file)
-        return _OpenPeriod(PeriodSummary(one, thread), slot)
+        if self._file is None:
+            return PeriodSummary(one, thread)
+        self._file.announce(one)
+        return PeriodSummary(one, thread, self._file.new_slot())
 
     def _edge(self, one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> int:
         """Report it if the predicate's result has changed."""
@@ -139,19 +126,19 @@ class Edges:
             self._sink.edge(one, result, cmp, thresh, res)
         return int(is_flop)
 
-    def _close(self, held: _OpenPeriod) -> None:
-        self._sink.summary(held.kept)
-        held.kept.evaluations = 0
-        if held.slot is not None:
-            held.slot.begin()
+    def _close(self, kept: PeriodSummary) -> None:
+        self._sink.summary(kept)
+        kept.evaluations = 0
+        if kept.slot is not None:
+            kept.slot.begin()
 
     def flush(self, *, all_of_them: bool) -> None:
         """Hand on the summaries of periods that are over, and if asked those of open ones."""
         period = (monotonic_ns() - self._start) // self._period_ns + 1 & 0xFFFFFFFF
         with self._lock:
-            for held in self._open.values():
-                if held.kept.evaluations and (all_of_them or held.kept.period != period):
-                    self._close(held)
+            for kept in self._open.values():
+                if kept.evaluations and (all_of_them or kept.period != period):
+                    self._close(kept)
         self._sink.settle()
 
 

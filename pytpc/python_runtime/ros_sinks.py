@@ -61,7 +61,7 @@ class RosoutSink(Sink):
         line = f"threshold_summary:{summary_line(summary)}"
         self._waiting.append((line, summary.evaluations))
 
-    def dropped(self, one: Reported | None, count: int, flops: int, why: str) -> None:
+    def dropped(self, one: Reported, count: int, flops: int, why: str) -> None:
         """One line."""
         self._waiting.append((f"threshold_dropped:{dropped_line(one, count, flops, why)}", 0))
 
@@ -125,6 +125,9 @@ class _Waiting(NamedTuple):
 class TopicSink(Sink):
     """Batches on /threshold_information, made by the helper thread."""
 
+    # Subscribers come and go.
+    is_polled = True
+
     def __init__(self) -> None:
         self._waiting: deque[_Waiting] = deque()
         self._lock = threading.RLock()
@@ -147,7 +150,7 @@ class TopicSink(Sink):
         line = f"threshold_summary:{summary_line(summary)}"
         self._keep(_Waiting(summary.end_ros_ns, None, None, line))
 
-    def dropped(self, one: Reported | None, count: int, flops: int, why: str) -> None:
+    def dropped(self, one: Reported, count: int, flops: int, why: str) -> None:
         """Keep it until the next batch."""
         line = f"threshold_dropped:{dropped_line(one, count, flops, why)}"
         self._dropped_in_all += count
@@ -171,10 +174,6 @@ class TopicSink(Sink):
         counts[0] += 1
         counts[1] += last is not None and last != oldest.report[0]
         self._dropped_in_all += 1
-
-    def is_polled(self) -> bool:
-        """Always: subscribers come and go."""
-        return True
 
     def poll(self) -> None:
         """Advertise, and send batches that are due."""

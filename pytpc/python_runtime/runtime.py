@@ -19,11 +19,10 @@ from pytpc.python_runtime import ros_state, sites
 from pytpc.python_runtime.config import Config, of_environment
 from pytpc.python_runtime.control import Control
 from pytpc.python_runtime.errors import warn
-from pytpc.python_runtime.file_sink import FileSink
 from pytpc.python_runtime.log_file import LogFile
 from pytpc.python_runtime.policies import Caps, Edges, forget
 from pytpc.python_runtime.ros_sinks import RosoutSink, TopicSink
-from pytpc.python_runtime.sinks import Sink
+from pytpc.python_runtime.sinks import FileSink, Sink
 from pytpc.python_runtime.sites import Reported
 
 if TYPE_CHECKING:
@@ -117,7 +116,7 @@ class Runtime:
             if not self._choose(config):
                 return False
             self._config = config
-            if self._sink.is_polled() and not self._has_helper and not self._was_node:
+            if self._sink.is_polled and not self._has_helper and not self._was_node:
                 self._start_helper()
             return True
 
@@ -217,7 +216,7 @@ class Runtime:
                     if not ros.is_shutdown():
                         warn(f"the settings of {ros.get_name()} come later: {error}")
             sink, edges = self._sink, self._edges
-            is_busy = sink.is_polled() or (edges is not None and self.file is None)
+            is_busy = sink.is_polled or (edges is not None and self.file is None)
             if self._is_served and not is_busy:
                 break
             if edges is not None and self.file is None:

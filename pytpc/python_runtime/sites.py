@@ -20,7 +20,6 @@ from __future__ import annotations
 
 import math
 import operator
-import threading
 from itertools import repeat, tee
 from typing import TYPE_CHECKING, Any
 
@@ -42,7 +41,7 @@ FALSE = repeat(False)
 class Reported:
     """One key that reports, with what the sinks keep for it."""
 
-    __slots__ = ("file", "key", "last", "lock", "meter", "number", "over", "swapped")
+    __slots__ = ("file", "key", "last", "meter", "number", "swapped")
 
     def __init__(self, key: str, number: int, swapped: bool) -> None:
         """``swapped``: the threshold is the left operand. Numbers begin with 1."""
@@ -51,9 +50,7 @@ class Reported:
         self.swapped = swapped
         self.file: object = None
         self.last = -1
-        self.lock = threading.Lock()
         self.meter = [0, 0]
-        self.over = [0, 0, 0, 0]
 
 
 def _ordinary(function: Operator) -> Operator:

@@ -264,7 +264,7 @@ def test_edges_killed_in_the_middle_of_a_summary(tmp_path):
         """
         one = site("one")
         over(one, 1, 3)
-        (held,) = RUNTIME._edges._open.values()
+        (kept,) = RUNTIME._edges._open.values()
         class Bytes:
             # Struct's `pack_into` asks for a buffer, and a slice is the summary itself.
             def __init__(self, real): self.real = real
@@ -272,11 +272,11 @@ def test_edges_killed_in_the_middle_of_a_summary(tmp_path):
                 self.real[at] = raw
                 os.kill(os.getpid(), 9)
         import struct
-        from pytpc.python_runtime import file_sink
-        real = held.slot._bytes
-        file_sink.struct = type("", (), {"pack_into": staticmethod(
+        from pytpc.python_runtime import sinks
+        real = kept.slot._bytes
+        sinks.struct = type("", (), {"pack_into": staticmethod(
             lambda form, where, at, value: struct.pack_into(form, real, at, value))})
-        held.slot._bytes = Bytes(real)
+        kept.slot._bytes = Bytes(real)
         over(one, 2, 3)
         """,
         TPC_POLICY="edges",
