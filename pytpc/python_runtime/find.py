@@ -249,15 +249,12 @@ def _text(node: ast.expr) -> str:
 
 def _as_call(index: _Index, found: FoundPlaces, listed: Listed) -> bool:
     for node in index.names.get((listed.lineno, listed.column), []):
-        if isinstance(node, ast.Call) and _ends(node, listed) and _has_names(node):
+        # The analysis lists no calls with `**`.
+        is_call = isinstance(node, ast.Call) and all(each.arg for each in node.keywords)
+        if is_call and _ends(node, listed):
             found.calls.setdefault(node, []).append(ListedPlace(listed, False))
             return True
     return False
-
-
-def _has_names(call: ast.Call) -> bool:
-    """Whether each keyword is given; the analysis lists no others."""
-    return all(keyword.arg is not None for keyword in call.keywords)
 
 
 def _as_pattern(index: _Index, found: FoundPlaces, listed: Listed) -> bool:
@@ -290,7 +287,9 @@ def _as_flag(index: _Index, found: FoundPlaces, listed: Listed) -> bool:
     if not operands:
         return False
     exact = [node for node in operands if _ends(node, listed)]
-    chosen = max(exact or operands, key=_length)
+    chosen = max(
+        exact or operands, key=lambda node: (node.end_lineno or 0, node.end_col_offset or 0)
+    )
     values = flags_of(chosen)
     for value in values:
         found.flags.setdefault(value, []).append(ListedPlace(listed, False))
@@ -309,7 +308,3 @@ def flags_of(condition: ast.expr) -> list[ast.expr]:
         return [*flags_of(condition.body), *flags_of(condition.orelse)]
     is_not = isinstance(condition, ast.UnaryOp) and isinstance(condition.op, ast.Not)
     return [] if is_not or isinstance(condition, (ast.BoolOp, ast.Compare)) else [condition]
-
-
-def _length(node: ast.expr) -> Position:
-    return node.end_lineno or 0, node.end_col_offset or 0

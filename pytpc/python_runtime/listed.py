@@ -83,14 +83,11 @@ class ListedFiles:
         A file that was installed, or lies on another machine, is told by its text: see
         `pytpc.python_runtime.find.matching`.
         """
-        named = self.by_name.get(os.path.basename(path), [])
-        if not named:
-            real = os.path.realpath(path)
-            named = self.by_name.get(os.path.basename(real), [])
-            if not named:
-                return []
-        exact = self._by_real.get(os.path.realpath(path))
-        return [exact] if exact is not None else named
+        real = os.path.realpath(path)
+        names = (os.path.basename(path), os.path.basename(real))
+        named = self.by_name.get(names[0]) or self.by_name.get(names[1], [])
+        exact = self._by_real.get(real)
+        return [exact] if named and exact is not None else named
 
 
 class _Unit(NamedTuple):
@@ -134,9 +131,8 @@ def read_table(paths: Iterable[str], script: str | None = None) -> ListedFiles:
         HookError: a file cannot be read, or is no static information; a folder has none.
     """
     units = _all_units(paths)
-    if script is not None:
-        units = _of_script(units, script)
-    return ListedFiles(file for unit in units for file in unit.files)
+    running = _of_script(units, script) if script is not None else []
+    return ListedFiles(file for unit in running or units for file in unit.files)
 
 
 def names_script(paths: Iterable[str], script: str) -> bool:
@@ -147,26 +143,18 @@ def names_script(paths: Iterable[str], script: str) -> bool:
     Raises:
         HookError: as `read_table`.
     """
-    program, real = program_of(script), os.path.realpath(script)
-    units = [unit for unit in _all_units(paths) if unit.files]
-    return any(
-        unit.is_called(program.stem)
-        or unit.is_of(real)
-        or unit.runs(program.files)
-        or unit.has(program.files)
-        for unit in units
-    )
+    return bool(_of_script([unit for unit in _all_units(paths) if unit.files], script))
 
 
 def _all_units(paths: Iterable[str]) -> list[_Unit]:
     units: list[_Unit] = []
     for path in paths:
-        units.extend(_of_folder(path) if os.path.isdir(path) else _of_document(path))
+        units += _of_folder(path) if os.path.isdir(path) else _units(_document(path), path)
     return units
 
 
 def _of_script(units: list[_Unit], script: str) -> list[_Unit]:
-    """The link units that the running script may be of; all of them where none is.
+    """The link units that the running script may be of.
 
     It is told by its file. One that was installed is told by its name, and by its package, after
     which its folder is called; that of an entry point by the module that it runs.
@@ -189,15 +177,13 @@ def _of_script(units: list[_Unit], script: str) -> list[_Unit]:
     ]
     folder = os.path.basename(os.path.dirname(os.path.abspath(script)))
     of_package = [unit for unit in named if unit.package == folder]
-    return (
-        [unit for unit in exact if unit in named] or exact or inside or of_package or named or units
-    )
+    return [unit for unit in exact if unit in named] or exact or inside or of_package or named
 
 
 def _of_folder(folder: str) -> list[_Unit]:
     built = os.path.join(folder, BUILT)
     if os.path.isfile(built):
-        return _of_document(built)
+        return _units(_document(built), built)
     found = sorted({path for place in _PLACES for path in glob.glob(os.path.join(folder, place))})
     units: list[_Unit] = []
     is_any = False
@@ -221,10 +207,6 @@ def _document(path: str) -> Any:  # noqa: ANN401
         raise HookError(f"not JSON: {error.msg}", path, error.lineno) from error
     except ValueError as error:
         raise HookError(f"not JSON: {error}", path) from error
-
-
-def _of_document(path: str) -> list[_Unit]:
-    return _units(_document(path), path)
 
 
 def _units(document: Any, path: str) -> list[_Unit]:  # noqa: ANN401

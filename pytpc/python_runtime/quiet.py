@@ -73,7 +73,10 @@ class _State:
 
 
 class Site:
-    """The functions that a place calls, as attributes; each returns an iterator."""
+    """The functions that a place calls, as attributes; each returns an iterator.
+
+    Once tracing begins, `be_quiet` hides them.
+    """
 
     __slots__ = ("__weakref__", "_names")
 
@@ -82,6 +85,7 @@ class Site:
         self._names = tuple(functions)
         for name, function in functions.items():
             setattr(self, name, hidden(function))
+        _SITES.add(self)
 
     def be_quiet(self) -> None:
         """Hide them from tracers from now on."""
@@ -90,11 +94,6 @@ class Site:
 
 
 _SITES: WeakSet[Site] = WeakSet()
-
-
-def keep(site: Site) -> None:
-    """Let ``site`` be told when tracing begins."""
-    _SITES.add(site)
 
 
 def hidden(function: Function) -> Function:

@@ -17,9 +17,8 @@ import sys
 from types import CodeType
 from typing import TYPE_CHECKING, NamedTuple
 
-from pytpc.python_runtime.call_sites import ComparedInside, LibraryCall
-from pytpc.python_runtime.control_sites import Loop, Subject
 from pytpc.python_runtime.find import FoundPlaces, ListedPlace, find, values_of
+from pytpc.python_runtime.implicit_sites import ComparedInside, LibraryCall, Loop, Subject
 from pytpc.python_runtime.listed import Listed
 from pytpc.python_runtime.sites import ComparisonSite, FlagSite, Reported
 

@@ -77,11 +77,6 @@ def parsed(words: list[str]) -> CommandLine | None:
     return CommandLine(static, verbose, rest[0], rest[1:])
 
 
-def static_of_environment() -> list[str]:
-    """The static information that ``TPC_STATIC`` names."""
-    return [path for path in os.environ.get("TPC_STATIC", "").split(os.pathsep) if path]
-
-
 def static_around(script: str) -> str | None:
     """The static.json of ``pytpc build`` in a folder above the script, else above the current one.
 
@@ -106,7 +101,8 @@ def prepared(given: CommandLine) -> Instrument:
         HookError: a file that was named cannot be read. One that was only found is left out, with a
             warning.
     """
-    static = given.static or static_of_environment()
+    named = os.environ.get("TPC_STATIC", "").split(os.pathsep)
+    static = given.static or [path for path in named if path]
     if static:
         table = read_table(static, given.script)
     else:
@@ -136,10 +132,10 @@ def _found(given: CommandLine) -> tuple[list[str], ListedFiles]:
         return [path], ListedFiles([])
 
 
-def main(words: list[str] | None = None) -> None:
+def main() -> None:
     """Run a node; if that is not possible, print one line and exit with status 1."""
     try:
-        given = parsed(sys.argv[1:] if words is None else words)
+        given = parsed(sys.argv[1:])
         if given is None:
             sys.stdout.write(USAGE)
             return
@@ -207,11 +203,7 @@ def _show(error: BaseException) -> None:
     kind, traceback = type(error), error.__traceback__
     sys.last_type, sys.last_value, sys.last_traceback = kind, error, traceback
     sys.excepthook(kind, error, traceback)
-    sys.excepthook = _silent
-
-
-def _silent(*_: object) -> None:
-    return
+    sys.excepthook = lambda *_: None
 
 
 def _hide_command(given: CommandLine) -> None:

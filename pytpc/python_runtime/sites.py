@@ -23,7 +23,7 @@ import operator
 from itertools import repeat, tee
 from typing import TYPE_CHECKING, Any
 
-from pytpc.python_runtime.quiet import Site, caller, flat, hidden, is_programs, keep, raising
+from pytpc.python_runtime.quiet import Site, caller, flat, hidden, is_programs, raising
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -75,7 +75,7 @@ _LAZY_OPERATIONS: dict[str, Operator] = {
 }
 
 # Whose comparison with one another neither raises nor runs code of the program.
-_NUMBERS = frozenset({int, float, bool})
+NUMBERS = frozenset({int, float, bool})
 # Whose truth does neither.
 _PLAIN = frozenset(
     {int, float, bool, str, bytes, type(None), list, tuple, dict, set, frozenset, complex, range}
@@ -195,7 +195,6 @@ class ComparisonSite(Site):
             outcome=outcome,
             failed=failed,
         )
-        keep(self)
 
 
 def logger(reported: tuple[Reported, ...]) -> Callable[[Any, Any, bool], None]:
@@ -262,7 +261,7 @@ def _at_once(operation: str, reported: tuple[Reported, ...]) -> Callable[[Functi
         # `in` has no numbers on its right.
         return lambda slowly: slowly
     plain = _PLAIN_OPERATIONS[operation]
-    numbers = _NUMBERS
+    numbers = NUMBERS
     log = logger(reported)
     (one,) = reported
     swapped = one.swapped
@@ -350,4 +349,3 @@ class FlagSite(Site):
             return repeat(value)
 
         self.offer(truth=truth, value=value)
-        keep(self)
