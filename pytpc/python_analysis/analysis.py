@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import uuid
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from importlib.metadata import PackageNotFoundError, version
@@ -11,7 +12,7 @@ from pytpc.base.errors import InputError
 from pytpc.python_analysis.budget import SECONDS, Budget, BudgetSpentError, what_failed
 from pytpc.python_analysis.comparisons.constant_finder import find_constants
 from pytpc.python_analysis.comparisons.follow import FLAG, Follower
-from pytpc.python_analysis.comparisons.gather import Found, Gatherer, key_of, position, span_of
+from pytpc.python_analysis.comparisons.gather import Found, Gatherer, position, span_of
 from pytpc.python_analysis.comparisons.path import path_of
 from pytpc.python_analysis.comparisons.reads import Exposed, Read, find_exposing, find_reads
 from pytpc.python_analysis.comparisons.slicing import Slice, Slicer
@@ -37,6 +38,8 @@ from pytpc.static.link_unit import (
     Tool,
 )
 
+# Of the keys of comparisons, which the passes make in the same way.
+_NAMESPACE = uuid.UUID("6b0f7a52-2c9e-4d61-9a37-8f15c3405ed8")
 _AT_MOST = 200
 
 
@@ -255,7 +258,7 @@ class Writer:
         )  # fmt: skip
         ordinal = keys.get(parts, 0)
         keys[parts] = ordinal + 1
-        key = key_of([*parts, str(ordinal)] if ordinal else list(parts))
+        key = uuid.uuid5(_NAMESPACE, "\n".join([*parts, str(ordinal)] if ordinal else parts))
         assert found.predicate is not None
         exposed = self.all.slice.nearest[found.predicate]
         reads = [self._place(fact.read.instr) for fact in found.facts]
@@ -300,9 +303,9 @@ class Writer:
 
     def _blind_spots(self) -> list[BlindSpot]:
         spots = []
-        for lost in self.all.follower.lost.values():
+        for at, fact in self.all.follower.lost.items():
             what = "the value is not followed from here on"
-            spots.append(self._spot("lost_value", lost.fact.name or None, lost.at, what))
+            spots.append(self._spot("lost_value", fact.name or None, at, what))
         for read in self.all.reads:
             if DYNAMIC in read.name:
                 what = "the parameter's name is put together at run time"

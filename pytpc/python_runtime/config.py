@@ -24,8 +24,6 @@ NAMES = (
     "file_reserve",
 )
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     Value = Any
 
 _LARGEST = 1 << 40
@@ -50,8 +48,11 @@ def parsed(name: str, text: str) -> tuple[dict[str, Value] | None, str]:
     if choices is not None:
         return ({name: text}, "") if text in choices else (None, f"is none of {', '.join(choices)}")
     if name == "period":
-        seconds = _number(text)
-        if seconds is None or not 1e-3 <= seconds <= 3600:
+        try:
+            seconds = float(text)
+        except ValueError:
+            seconds = 0.0
+        if not 1e-3 <= seconds <= 3600:
             return None, "is no number of seconds from 0.001 to 3600"
         return {"period_ns": int(seconds * 1e9)}, ""
     if name == "folder":
@@ -62,19 +63,12 @@ def parsed(name: str, text: str) -> tuple[dict[str, Value] | None, str]:
     return None, "is no setting"
 
 
-def _number(text: str) -> float | None:
-    try:
-        return float(text)
-    except ValueError:
-        return None
-
-
-def of_environment(environment: Mapping[str, str] = os.environ) -> Config:
+def of_environment() -> Config:
     """The defaults and ``TPC_SINK`` and its kind."""
     config = Config()
     for name in NAMES:
         variable = f"TPC_{name.upper()}"
-        text = environment.get(variable, "")
+        text = os.environ.get(variable, "")
         if not text:
             continue
         change, why = parsed(name, text)

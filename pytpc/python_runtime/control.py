@@ -34,21 +34,18 @@ class Control:
         Raises:
             Exception: as rospy has it, where the master does not answer.
         """
-        for complaint in self.take_over():
-            warn(complaint)
+        self.take_over()
         service, answer = _trigger()
 
         def reload(_request: object) -> object:
             complaints = self.take_over()
-            for complaint in complaints:
-                warn(complaint)
             message = "".join(f"{complaint}; " for complaint in complaints)
             return answer(not complaints, message + self._runtime.status())
 
         self._ros.Service(_SERVICE, service, reload)
 
     def take_over(self) -> list[str]:
-        """Let the parameters hold; what is wrong with them."""
+        """Apply the parameters; what is wrong with them, of which there are warnings, too."""
         complaints: list[str] = []
         now = self._runtime.config
         new = self._of_environment
@@ -66,6 +63,8 @@ class Control:
                     complaints.append(f"the parameter {folder}/{name} is left out: {complaint}")
         if not self._runtime.apply(new):
             complaints.append("what is set cannot be had; left as it was")
+        for complaint in complaints:
+            warn(complaint)
         return complaints
 
 

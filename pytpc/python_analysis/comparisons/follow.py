@@ -55,17 +55,11 @@ class Compared:
     predicates: list[Instr] = field(default_factory=list)
 
 
-@dataclass(eq=False, slots=True)
-class Lost:
-    """Where a parameter's value, or a comparison's outcome, is not followed any further."""
-
-    at: Instr
-    fact: Fact
-    is_outcome: bool = False
-
-
 class Follower:
-    """Follows values from reads; ``compared`` and ``lost`` are what is found."""
+    """Follows values from reads; ``compared`` and ``lost`` are what is found.
+
+    ``lost``: where a parameter's value is not followed any further.
+    """
 
     def __init__(self, flow: Flow, constants: Constants, rules: Rules) -> None:
         self.flow = flow
@@ -73,7 +67,7 @@ class Follower:
         self.rules = rules
         self.facts: dict[Instr, list[Fact]] = {}
         self.compared: dict[tuple[Instr, int, int, str, Stack], Compared] = {}
-        self.lost: dict[Instr, Lost] = {}
+        self.lost: dict[Instr, Fact] = {}
         self._inside: dict[Instr, dict[int, Inside]] = {}
         self.outcomes = Outcomes(flow, constants, rules)
         self._waiting: deque[Fact] = deque()
@@ -159,7 +153,7 @@ class Follower:
                 pass
 
     def _lose(self, fact: Fact, at: Instr) -> None:
-        self.lost.setdefault(at, Lost(at, fact))
+        self.lost.setdefault(at, fact)
 
     def _binary(self, fact: Fact, user: Instr) -> None:
         left, right = user.args
@@ -358,9 +352,9 @@ class Follower:
 
     def _drop_measured(self) -> None:
         """What is measured, and cut to a parameter, is measured: no threshold is lost there."""
-        for call, lost in list(self.lost.items()):
+        for call, fact in list(self.lost.items()):
             for place, inside in self._inside.get(call, {}).items():
-                is_bound = call.args[1 + place] is lost.fact.at
+                is_bound = call.args[1 + place] is fact.at
                 if is_bound and not any(other in self.facts for other in inside.others):
                     del self.lost[call]
                     break

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import ast
-import hashlib
-import uuid
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Literal
@@ -20,7 +18,6 @@ RELATIONS = {
     "Is": "==", "IsNot": "!=", "In": "==", "NotIn": "!=",
 }  # fmt: skip
 _ALL_KINDS = 3
-_NAMESPACE = bytes.fromhex("6b0f7a522c9e4d619a378f15c3405ed8")
 
 
 Span = tuple[tuple[int, int], tuple[int, int]]
@@ -107,12 +104,6 @@ def _start(node: ast.AST) -> tuple[int, int]:
 
 def _end(node: ast.AST) -> tuple[int, int]:
     return getattr(node, "end_lineno", 0), getattr(node, "end_col_offset", -1) + 1
-
-
-def key_of(parts: list[str]) -> uuid.UUID:
-    """The key of a comparison: a UUID of version 5, as the passes make it."""
-    digest = hashlib.sha1(_NAMESPACE + "\n".join(parts).encode(), usedforsecurity=False).digest()
-    return uuid.UUID(bytes=digest[:16], version=5)
 
 
 class Gatherer:

@@ -107,14 +107,10 @@ class Flow:
             for load in self.loads_of.get(variable, ()):
                 if load in self.reaching.open and load not in direct:
                     yield load, store
-            for load in self._module_loads(variable):
-                yield load, store
-
-    def _module_loads(self, variable: Variable) -> Iterator[Instr]:
-        """Accesses ``module.name``."""
-        for to in self.points.succ.get(variable, ()):
-            if isinstance(to, Instr) and to.op != "load":
-                yield to
+            for to in self.points.succ.get(variable, ()):
+                # `module.name`
+                if isinstance(to, Instr) and to.op != "load":
+                    yield to, store
 
     def _from_outside(self, value: Instr, variable: Variable) -> Iterator[tuple[Instr, Instr]]:
         """``module.name = value``."""

@@ -186,13 +186,12 @@ class ClassInfo:
 
 @dataclass(eq=False, slots=True)
 class Module:
-    """A source file; ``names`` are the dotted names under which it is imported."""
+    """A source file; ``name`` is the dotted name under which it is imported."""
 
     name: str
     path: str
     source: str
     tree: ast.Module
-    is_package: bool = False
     body: Function | None = None
     functions: list[Function] = field(default_factory=list)
     classes: list[ClassInfo] = field(default_factory=list)

@@ -1,4 +1,4 @@
-"""From the syntax tree of a module to instructions: its functions and classes."""
+"""From the syntax tree of a module to instructions: its functions, classes and ``match``."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from pytpc.python_analysis.ir.builder import Resolver
 from pytpc.python_analysis.ir.instructions import (
+    Block,
     ClassInfo,
     Function,
     Instr,
@@ -160,6 +161,91 @@ class Lowering(StatementLowering):
         self.statements(node.body)
         self.scope, self.class_info = outer_scope, outer_info
         self.store_name(node.name, self._decorated(value, node), node)
+
+    # Match: one test after another
+
+    def _do_Match(self, node: ast.Match) -> None:
+        subject = self.value(node.subject)
+        after = self.new_block()
+        for case in node.cases:
+            further = self.new_block()
+            self._pattern(case.pattern, subject, further)
+            if case.guard is not None:
+                body = self.new_block()
+                self.condition(case.guard, body, further)
+                self.block = body
+            self.statements(case.body)
+            self.jump(after)
+            self.block = further
+        self.jump(after)
+        self.block = after
+
+    def _pattern(self, pattern: ast.pattern, subject: Instr, no: Block) -> None:
+        """Test and bind; go on in the current block where it matches, else at ``no``."""
+        match pattern:
+            case ast.MatchValue(value=value):
+                known = isinstance(value, ast.Constant | ast.UnaryOp | ast.BinOp)
+                if known:
+                    self._test(pattern, subject, no)
+                else:
+                    outcome = self.emit("compare", pattern, subject, self.value(value), data="Eq")
+                    self._go_on(outcome, pattern, no)
+            case ast.MatchSingleton():
+                self._test(pattern, subject, no)
+            case ast.MatchAs(pattern=inner, name=name):
+                if inner is not None:
+                    self._pattern(inner, subject, no)
+                if name is not None:
+                    self.store_name(name, subject, pattern)
+            case ast.MatchOr(patterns=patterns):
+                self._either(patterns, subject, no)
+            case ast.MatchStar(name=name):
+                if name is not None:
+                    self.store_name(name, subject, pattern)
+            case ast.MatchSequence(patterns=patterns):
+                self._test(pattern, subject, no)
+                self._elements(patterns, subject, no)
+            case ast.MatchMapping(keys=keys, patterns=patterns, rest=rest):
+                self._test(pattern, subject, no)
+                for key, inner in zip(keys, patterns, strict=True):
+                    where = self.value(key)
+                    self._pattern(inner, self.emit("item", inner, subject, where), no)
+                if rest is not None:
+                    self.store_name(rest, subject, pattern)
+            case ast.MatchClass():
+                self._class(pattern, subject, no)
+
+    def _either(self, patterns: list[ast.pattern], subject: Instr, no: Block) -> None:
+        matched = self.new_block()
+        for pattern in patterns:
+            other = no if pattern is patterns[-1] else self.new_block()
+            self._pattern(pattern, subject, other)
+            self.jump(matched)
+            self.block = other
+        self.block = matched
+
+    def _elements(self, patterns: list[ast.pattern], subject: Instr, no: Block) -> None:
+        starred = any(isinstance(pattern, ast.MatchStar) for pattern in patterns)
+        for index, pattern in enumerate(patterns):
+            self._pattern(pattern, self.part(subject, index, starred, pattern), no)
+
+    def _class(self, pattern: ast.MatchClass, subject: Instr, no: Block) -> None:
+        self.value(pattern.cls)
+        self._test(pattern, subject, no)
+        for index, inner in enumerate(pattern.patterns):
+            self._pattern(inner, self.part(subject, index, False, inner), no)
+        for name, inner in zip(pattern.kwd_attrs, pattern.kwd_patterns, strict=True):
+            self._pattern(inner, self.emit("attr", inner, subject, data=name), no)
+
+    def _test(self, pattern: ast.pattern, subject: Instr, no: Block) -> None:
+        """What a pattern asks of the subject itself decides as a ``switch`` does."""
+        outcome = self.emit("match", pattern, subject)
+        self._go_on(outcome, pattern, no)
+
+    def _go_on(self, outcome: Instr, pattern: ast.pattern, no: Block) -> None:
+        yes = self.new_block()
+        self.branch(outcome, pattern, yes, no)
+        self.block = yes
 
 
 def _drop_unreachable(function: Function) -> None:

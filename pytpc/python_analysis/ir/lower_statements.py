@@ -15,7 +15,6 @@ from pytpc.python_analysis.ir.builder import Resolver
 from pytpc.python_analysis.ir.exceptions import ALL, names_taken, taken_by
 from pytpc.python_analysis.ir.instructions import Block, Handler, Instr, Module, Shape, Variable
 from pytpc.python_analysis.ir.lower_expressions import ExpressionLowering
-from pytpc.python_analysis.ir.lower_match import lower_match
 from pytpc.python_analysis.ir.scopes import Scope, names_of
 
 _ENDING = {"exit", "quit", "sys.exit", "os._exit"}
@@ -106,16 +105,17 @@ class StatementLowering(ExpressionLowering):
             case ast.Tuple(elts=parts) | ast.List(elts=parts):
                 starred = any(isinstance(part, ast.Starred) for part in parts)
                 for index, part in enumerate(parts):
-                    if starred:
-                        element = self.emit("next", part, self.emit("iter", part, value))
-                    else:
-                        place = self.emit("const", part, data=index)
-                        element = self.emit("item", part, value, place)
-                    self.assign(part, element)
+                    self.assign(part, self.part(value, index, starred, part))
             case ast.Starred(value=inner):
                 self.assign(inner, self.emit("build", target, value, data="list"))
             case _:
                 pass
+
+    def part(self, container: Instr, index: int, starred: bool, node: ast.AST) -> Instr:
+        """The element ``index`` of what is taken apart; with a star among the parts, any."""
+        if starred:
+            return self.emit("next", node, self.emit("iter", node, container))
+        return self.emit("item", node, container, self.emit("const", node, data=index))
 
     def _do_Delete(self, node: ast.Delete) -> None:
         for target in node.targets:
@@ -363,9 +363,6 @@ class StatementLowering(ExpressionLowering):
             self.jump(self._exit)
         self.block = before
         return block
-
-    def _do_Match(self, node: ast.Match) -> None:
-        lower_match(self, node)
 
 
 def _rebinds(node: ast.For | ast.AsyncFor) -> bool:

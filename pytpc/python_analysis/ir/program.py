@@ -70,8 +70,7 @@ class Program:
         return str(path.relative_to(self.root) if path.is_relative_to(self.root) else path)
 
     def _add(self, path: Path, name: str, source: str, tree: ast.Module) -> Module:
-        is_package = path.name == "__init__.py"
-        module = Module(name, self._relative(path), source, tree, is_package)
+        module = Module(name, self._relative(path), source, tree)
         self._known[path] = module
         self.modules.append(module)
         return module

@@ -43,7 +43,9 @@ class PointsTo(Solver):
         self.calls = Calls(self)
         self._late: list[Callable[[], None]] | None = []
         for instr in program.instructions():
-            self._constrain(instr)
+            handle = getattr(self, f"_on_{instr.op}", None)
+            if handle is not None:
+                handle(instr)
         self._solve()
         late, self._late = self._late, None
         for action in late or ():
@@ -117,11 +119,6 @@ class PointsTo(Solver):
                 first = self.heap.class_(owner.class_info)
             self.add(function.param_instrs[0], [first])
 
-    def _constrain(self, instr: Instr) -> None:
-        handle = getattr(self, f"_on_{instr.op}", None)
-        if handle is not None:
-            handle(instr)
-
     def _on_external(self, instr: Instr) -> None:
         self.add(instr, [self.heap.get("external", str(instr.data))])
 
@@ -165,9 +162,7 @@ class PointsTo(Solver):
     def store_attribute(self, owner: Obj, name: str, value: Instr, instr: Instr) -> None:
         """``instr`` stores ``value`` as the attribute ``name``."""
         if owner.kind == "module" and isinstance(owner.ref, Module) and owner.ref.body:
-            variable = owner.ref.body.variables.setdefault(name, Variable(name, owner.ref.body))
-            variable.shared = True
-            self.copy(value, variable)
+            self.copy(value, _variable_of(owner.ref.body, name))
             self.writers.setdefault((owner, name), {})[instr] = None
             return
         if owner.kind == "super" and owner.parent is not None:
@@ -216,8 +211,8 @@ class PointsTo(Solver):
 
     def load_attribute(self, owner: Obj, name: str, instr: Instr) -> None:
         """``instr`` has the value of the attribute ``name``."""
-        if owner.kind == "module" and isinstance(owner.ref, Module):
-            self._module_attribute(owner.ref, name, instr)
+        if owner.kind == "module" and isinstance(owner.ref, Module) and owner.ref.body:
+            self.copy(_variable_of(owner.ref.body, name), instr)
         elif owner.kind == "external":
             self.add(instr, [self.heap.get("external", f"{owner.path}.{name}")])
         elif owner.kind in ("made", "part", "container"):
@@ -242,12 +237,6 @@ class PointsTo(Solver):
             self._late.append(action)
         else:
             action()
-
-    def _module_attribute(self, module: Module, name: str, instr: Instr) -> None:
-        if module.body is not None:
-            variable = module.body.variables.setdefault(name, Variable(name, module.body))
-            variable.shared = True
-            self.copy(variable, instr)
 
     def _class_attribute(self, owner: Obj, name: str, instr: Instr) -> None:
         info = owner.class_info
@@ -379,6 +368,13 @@ class PointsTo(Solver):
 
     def _on_call(self, instr: Instr) -> None:
         self.when(instr.args[0], lambda found: self.later(lambda: self.calls.call(instr, found)))
+
+
+def _variable_of(body: Function, name: str) -> Variable:
+    """The variable of a module that is used as ``module.name``."""
+    variable = body.variables.setdefault(name, Variable(name, body))
+    variable.shared = True
+    return variable
 
 
 _METHODS = {
