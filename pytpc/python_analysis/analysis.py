@@ -10,9 +10,14 @@ from importlib.metadata import PackageNotFoundError, version
 
 from pytpc.base.errors import InputError
 from pytpc.python_analysis.budget import SECONDS, Budget, BudgetSpentError, what_failed
-from pytpc.python_analysis.comparisons.constant_finder import find_constants
 from pytpc.python_analysis.comparisons.follow import FLAG, Follower
-from pytpc.python_analysis.comparisons.gather import Found, Gatherer, position, span_of
+from pytpc.python_analysis.comparisons.gather import (
+    Found,
+    Gatherer,
+    find_constants,
+    position,
+    span_of,
+)
 from pytpc.python_analysis.comparisons.path import path_of
 from pytpc.python_analysis.comparisons.reads import Exposed, Read, find_exposing, find_reads
 from pytpc.python_analysis.comparisons.slicing import Slice, Slicer
@@ -69,7 +74,7 @@ def analyse(program: Program, rules: Rules) -> Analysed:
     follower = Follower(flow, constants, rules)
     follower.run(reads)
     follower.decide()
-    fixed = find_constants(follower, constants) if rules.constants else []
+    fixed = find_constants(follower) if rules.constants else []
     found_slice = Slicer(flow, leaving, follower.outcomes.selecting).run(exposed)
     gatherer = Gatherer(follower, found_slice)
     found, others = gatherer.run()

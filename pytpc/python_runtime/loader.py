@@ -96,9 +96,7 @@ def _module_names(by_name: dict[str, list[ListedFile]]) -> set[str]:
     return names
 
 
-def install(instrument: Instrument) -> ReportingFinder:
+def install(instrument: Instrument) -> None:
     """Let modules that are imported from now on report."""
     quiet.watch_if_traced()
-    finder = ReportingFinder(instrument)
-    sys.meta_path.insert(0, finder)
-    return finder
+    sys.meta_path.insert(0, ReportingFinder(instrument))

@@ -66,7 +66,7 @@ def rewrite(
     tree = compile(source, path, "exec", ast.PyCF_ONLY_AST, dont_inherit=True)  # type: ignore[call-overload]
     found = find(tree, listed)
     constants: dict[str, object] = {}
-    _Rewriter(found, register, constants).module(tree)
+    _Rewriter(found, register, constants).fields(tree)
     code = compile(tree, path, "exec", dont_inherit=True, optimize=optimize)
     return Rewritten(
         with_constants(code, constants), found.total(), found.missing, found.unsupported
@@ -122,11 +122,8 @@ class _Rewriter:
         # What asks for the truth of a condition: a statement, an expression, a pattern.
         self._asker: ast.AST = ast.Module(body=[], type_ignores=[])
 
-    def module(self, tree: ast.AST) -> None:
-        """Rewrite all of a module."""
-        self._fields(tree)
-
-    def _fields(self, node: ast.AST) -> None:
+    def fields(self, node: ast.AST) -> None:
+        """Rewrite the expressions and statements in ``node``."""
         if isinstance(node, ast.stmt):
             self._asker = node
         elif type(node).__name__ == "match_case":
@@ -142,13 +139,13 @@ class _Rewriter:
                     for item in value
                 ]
             elif isinstance(value, ast.AST):
-                self._fields(value)
+                self.fields(value)
 
     def _other(self, item: object) -> object:
         if type(item).__name__ == "Match":
             self._match(item)  # type: ignore[arg-type]
         elif isinstance(item, ast.AST):
-            self._fields(item)
+            self.fields(item)
         return item
 
     def _match(self, node: ast.Match) -> None:
@@ -163,7 +160,7 @@ class _Rewriter:
         ]
         places = self._found.subjects.get(node.subject, [])
         original = node.subject
-        self._fields(node)
+        self.fields(node)
         if not places and not any(compared):
             return
         subject = Subject(tuple(self._register(place) for place in places))
@@ -262,7 +259,7 @@ class _Rewriter:
             # As a value `not x` asks by itself, and what x raises then has the place of `not`.
             node.operand = self._expression(node.operand, asked, None if asked else node)
         else:
-            self._fields(node)
+            self.fields(node)
 
     def _constant(self, value: object, where: ast.expr) -> ast.expr:
         mark = constant_text(len(self._constants))

@@ -11,8 +11,7 @@ from pathlib import Path
 import pytest
 
 from pytpc.ingest import read
-from pytpc.python_runtime.entry import program_of
-from pytpc.python_runtime.listed import names_script, read_table
+from pytpc.python_runtime.listed import names_script, program_of, read_table
 
 ROOT = Path(__file__).parents[2]
 RUN = str(ROOT / "pytpc/python_runtime/run.py")

@@ -9,9 +9,11 @@ from typing import Literal
 
 from pytpc.python_analysis.comparisons.follow import FLAG, Compared, Fact, Follower
 from pytpc.python_analysis.comparisons.slicing import Slice
+from pytpc.python_analysis.flow.constants import Constants
 from pytpc.python_analysis.flow.library_calls import INSIDE, TURNED, Inside
 from pytpc.python_analysis.flow.value_flow import Stack
-from pytpc.python_analysis.ir.instructions import Instr
+from pytpc.python_analysis.ir.instructions import Instr, Variable
+from pytpc.python_analysis.ir.names import named_variable
 
 RELATIONS = {
     "Lt": "<", "LtE": "<=", "Gt": ">", "GtE": ">=", "Eq": "==", "NotEq": "!=",
@@ -217,13 +219,14 @@ class Gatherer:
         facts = self.follower.facts.get(instr, ())
         if any(fact.before is None or fact.before.name != fact.name for fact in facts):
             return {"param"}, []
+        calls = self.follower.flow.points.calls
         values: Iterable[Instr] = ()
         match instr.op:
             case "const" | "function" | "class" | "module" | "external":
                 return {"const"}, []
             case "binary" | "unary" | "copy":
                 return set(), [(value, stack) for value in instr.args]
-            case "call" if not self._is_own(instr) and (facts or self._computes(instr)):
+            case "call" if instr not in calls.callees and (facts or self._computes(instr)):
                 values = instr.args[1:]
                 alone = {"param"} if facts else {"const"}
                 return set() if values else alone, [(value, stack) for value in values]
@@ -232,7 +235,7 @@ class Gatherer:
                 return set() if values else {"const"}, [(value, stack) for value in values]
             case "param" if stack and self._given(instr, stack):
                 return set(), [(value, stack[:-1]) for value in self._given(instr, stack)]
-        if instr.op == "param" and instr.function in self.follower.flow.points.calls.registered:
+        if instr.op == "param" and instr.function in calls.registered:
             return {"other"}, []
         origins = list(self.follower.flow.origins(instr))
         if not origins:
@@ -250,5 +253,41 @@ class Gatherer:
         paths = flow.points.calls.outside.get(instr, {})
         return any(path in self.follower.rules.arithmetic for path, _ in paths)
 
-    def _is_own(self, instr: Instr) -> bool:
-        return instr in self.follower.flow.points.calls.callees
+
+def find_constants(follower: Follower) -> list[Found]:
+    """The comparisons with hard-coded numbers, and the predicates that they decide, in order.
+
+    Such a number is a literal, or a name of a module or class that is bound to one. Left out are
+    truth values, ``None``, texts, ``!= 0``, and comparisons that have a parameter on one side.
+    """
+    found: dict[tuple[object, ...], Found] = {}
+    for instr in follower.flow.points.program.instructions():
+        if instr.op != "compare":
+            continue
+        for operand in (0, 1):
+            name = _constant(instr, operand, follower.constants)
+            if name is not None:
+                key = (instr.function.module, span_of(instr, operand))
+                one = found.setdefault(key, Found(instr, operand, name, []))
+                one.predicates.update(dict.fromkeys(follower.outcomes.predicates(instr)))
+                break
+    return list(found.values())
+
+
+def _constant(instr: Instr, operand: int, constants: Constants) -> str | None:
+    """The name of the constant that one operand is, where the other is none."""
+    threshold, other = instr.args[operand], instr.args[1 - operand]
+    number = constants.number(threshold)
+    values = constants.values(threshold)
+    if number is None or isinstance(values[0], bool) or instr.data in ("In", "NotIn"):
+        return None
+    if constants.number(other) is not None or (number == 0 and instr.data == "NotEq"):
+        return None
+    is_negative = threshold.op == "unary" and threshold.args[0].op == "const"
+    if threshold.op == "const" or is_negative:
+        return repr(values[0])
+    if threshold.op == "load" and isinstance(threshold.data, Variable):
+        return named_variable(threshold) if threshold.data.owner.qualname == "<module>" else None
+    if threshold.op == "attr" and str(threshold.data).isupper():
+        return named_variable(threshold)
+    return None

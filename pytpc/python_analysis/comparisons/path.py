@@ -36,17 +36,16 @@ def path_of(
         within: the slice.
         source: gives the text of a line of an instruction's file.
     """
-    before = _merged([*_to_comparison(found)], source)
+    before = _merged(_to_comparison(found), source)
     after = _merged(_to_exposing(found, within), source)
-    if len(before) > _AT_MOST:
-        before = [*before[: _AT_MOST - 1], _omitted(len(before) - _AT_MOST), before[-1]]
-    if len(after) > _AT_MOST:
-        after = [*after[: _AT_MOST - 1], _omitted(len(after) - _AT_MOST), after[-1]]
-    return (*before, *after)
+    return (*_shortened(before), *_shortened(after))
 
 
-def _omitted(count: int) -> PathStep:
-    return PathStep("omitted", "", 0, 0, "", f"{count} steps are left out", None)
+def _shortened(steps: list[PathStep]) -> list[PathStep]:
+    if len(steps) <= _AT_MOST:
+        return steps
+    what = f"{len(steps) - _AT_MOST} steps are left out"
+    return [*steps[: _AT_MOST - 1], PathStep("omitted", "", 0, 0, "", what, None), steps[-1]]
 
 
 def _to_comparison(found: Found) -> list[_Event]:

@@ -40,6 +40,7 @@ class Slicer:
         """Nothing is in the slice yet; ``selecting`` are predicates without a branch."""
         self.flow = flow
         self.leaving = leaving
+        self._own = flow.points.calls.callees
         self._raised: set[Instr] = set()
         self._filters = {
             call
@@ -128,7 +129,7 @@ class Slicer:
         waiting = [instr]
         while waiting:
             here = waiting.pop()
-            if here is not instr and here.op == "call" and self._is_own(here):
+            if here is not instr and here.op == "call" and here in self._own:
                 # Its arguments matter where the function uses them.
                 self._enter(here, instr, "data", further)
             for source in self.flow.sources(here):
@@ -151,12 +152,9 @@ class Slicer:
                     seen.add(arg)
                     waiting.append(arg)
 
-    def _is_own(self, call: Instr) -> bool:
-        return call in self.flow.points.calls.callees
-
     def _operands(self, instr: Instr) -> tuple[Instr, ...]:
         """The operands whose values make the instruction's."""
-        if instr.op == "call" and self._is_own(instr):
+        if instr.op == "call" and instr in self._own:
             return instr.args[:1]
         if instr.op in ("function", "class"):
             return ()

@@ -29,23 +29,6 @@ class Reaching:
     hidden: set[Instr] = field(default_factory=set)
 
 
-def reaching_definitions(
-    functions: list[Function], effects: CallEffects, escaping: set[Instr]
-) -> Reaching:
-    """Work out ``Reaching`` of all functions.
-
-    Args:
-        functions: all of the program.
-        effects: what their calls read and write.
-        escaping: loads of objects that are handed on as a whole; what is stored in their attributes
-            is seen there.
-    """
-    result = Reaching()
-    for function in functions:
-        _OneFunction(function, effects, escaping, result).run()
-    return result
-
-
 def cell_of(instr: Instr, stable: set[Variable]) -> Cell | None:
     """The cell that a load, store, attr or setattr is about; None where it is not told apart."""
     if instr.op in ("load", "store") and isinstance(instr.data, Variable):
@@ -57,7 +40,13 @@ def cell_of(instr: Instr, stable: set[Variable]) -> Cell | None:
     return None
 
 
-class _OneFunction:
+class ReachingInFunction:
+    """Works out ``Reaching`` of one function.
+
+    ``effects``: what calls read and write. ``escaping``: loads of objects that are handed on as a
+    whole; what is stored in their attributes is seen there.
+    """
+
     def __init__(
         self,
         function: Function,
@@ -78,6 +67,7 @@ class _OneFunction:
         self.cell: dict[Instr, Cell] = {}
 
     def run(self) -> None:
+        """Add to the result."""
         for instr in self.function.instructions():
             cell = cell_of(instr, self.stable)
             if cell is None:

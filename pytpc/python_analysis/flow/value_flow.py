@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from pytpc.python_analysis.flow.effects import CallEffects
-from pytpc.python_analysis.flow.reaching import Reaching, reaching_definitions
+from pytpc.python_analysis.flow.reaching import Reaching, ReachingInFunction
 from pytpc.python_analysis.ir.instructions import Instr, Variable, reachable
 from pytpc.python_analysis.points_to.objects import UNNAMED, Field, Obj
 from pytpc.python_analysis.points_to.points_to import PointsTo
@@ -30,9 +30,10 @@ class Flow:
             if isinstance(instr.data, Variable) and instr.op in ("store", "load"):
                 table = self.stores_of if instr.op == "store" else self.loads_of
                 table.setdefault(instr.data, []).append(instr)
-        self.reaching: Reaching = reaching_definitions(
-            points.program.functions, CallEffects(points), self._escaping()
-        )
+        self.reaching = Reaching()
+        effects, escaping = CallEffects(points), self._escaping()
+        for function in points.program.functions:
+            ReachingInFunction(function, effects, escaping, self.reaching).run()
         for load, stores in self.reaching.stores.items():
             for store in stores:
                 self._seen_by.setdefault(store, []).append(load)

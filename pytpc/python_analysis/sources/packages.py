@@ -48,7 +48,7 @@ def entries(
     path = path.absolute()
     if not path.is_file() and not path.is_dir():
         raise InputError("no such file or folder", path)
-    places = _Places(on_fault or _nobody)
+    places = _Places(on_fault)
     for folder in (path, *(each.absolute() for each in beside)):
         places.add_below(folder)
     if path.is_file():
@@ -58,11 +58,7 @@ def entries(
 
 def entry_of(script: Path, on_fault: OnFault | None = None) -> Entry:
     """A script with its package: the nearest folder above with a package.xml, else its own."""
-    return _Places(on_fault or _nobody).entry(script.absolute())
-
-
-def _nobody(_: InputError) -> None:
-    """Where nobody wants to be told."""
+    return _Places(on_fault).entry(script.absolute())
 
 
 def _named_apart(found: list[Entry]) -> list[Entry]:
@@ -92,8 +88,8 @@ class _Package:
 class _Places:
     """The packages that are at hand."""
 
-    def __init__(self, on_fault: OnFault) -> None:
-        self.on_fault = on_fault
+    def __init__(self, on_fault: OnFault | None) -> None:
+        self.on_fault = on_fault or (lambda _: None)
         self._known: dict[Path, _Package] = {}
         self._roots: dict[Path, Path | None] = {}
 
