@@ -114,7 +114,7 @@ def analyse_entry(
     except InputError:
         raise
     except BudgetSpentError:
-        why = f"the analysis took more than {seconds:g} s (more: --max-seconds)"
+        why = f"the analysis took more than {seconds:g} s (--max-seconds raises the limit)"
         return _failed(program, rules, why)
     except Exception as error:
         return _failed(program, rules, what_failed(error))
@@ -309,17 +309,17 @@ class Writer:
     def _blind_spots(self) -> list[BlindSpot]:
         spots = []
         for at, fact in self.all.follower.lost.items():
-            what = "the value is not followed from here on"
+            what = "the value is not followed beyond this point"
             spots.append(self._spot("lost_value", fact.name or None, at, what))
         for read in self.all.reads:
             if DYNAMIC in read.name:
-                what = "the parameter's name is put together at run time"
+                what = "the parameter's name is computed at run time"
                 spots.append(self._spot("dynamic_name", read.name, read.instr, what))
         for call in self._unknown_calls():
-            what = "what is called here is not known"
+            what = "the function that is called here is unknown"
             spots.append(self._spot("indirect_call", None, call, what))
         for fault in self.all.program.faults:
-            what = f"this module is imported, and is left out: {fault.error.message}"
+            what = f"this imported module is left out: {fault.error.message}"
             line = fault.error.line or 1
             spots.append(
                 BlindSpot("unread_module", None, fault.path, line, 1, "<module>", what, None)

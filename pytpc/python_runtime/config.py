@@ -46,21 +46,22 @@ def parsed(name: str, text: str) -> tuple[dict[str, Value] | None, str]:
     """The fields of a `Config` that ``name`` set to ``text`` changes; or None and the reason."""
     choices = {"sink": SINKS, "policy": POLICIES}.get(name)
     if choices is not None:
-        return ({name: text}, "") if text in choices else (None, f"is none of {', '.join(choices)}")
+        why = f"it must be one of {', '.join(choices)}"
+        return ({name: text}, "") if text in choices else (None, why)
     if name == "period":
         try:
             seconds = float(text)
         except ValueError:
             seconds = 0.0
         if not 1e-3 <= seconds <= 3600:
-            return None, "is no number of seconds from 0.001 to 3600"
+            return None, "it must be a number of seconds from 0.001 to 3600"
         return {"period_ns": int(seconds * 1e9)}, ""
     if name == "folder":
         return {name: text}, ""
     if name in NAMES:
         is_count = text.isascii() and text.isdigit() and int(text) <= _LARGEST
-        return ({name: int(text)}, "") if is_count else (None, "is no whole number")
-    return None, "is no setting"
+        return ({name: int(text)}, "") if is_count else (None, "it must be a whole number")
+    return None, "there is no such setting"
 
 
 def of_environment() -> Config:
@@ -73,7 +74,7 @@ def of_environment() -> Config:
             continue
         change, why = parsed(name, text)
         if change is None:
-            warn(f"{variable}={text} {why}; it is left as it was")
+            warn(f"{variable}={text} is ignored: {why}")
         else:
             config = config._replace(**change)
     return config

@@ -55,14 +55,16 @@ class Control:
             if found is None:
                 continue
             if not isinstance(found, dict):
-                complaints.append(f"the parameter {folder} is no folder of parameters; left out")
+                complaints.append(
+                    f"the parameter {folder} is not a namespace of parameters and is ignored"
+                )
                 continue
             for name, value in sorted(found.items()):
                 new, complaint = _changed(new, now, name, value)
                 if complaint:
-                    complaints.append(f"the parameter {folder}/{name} is left out: {complaint}")
+                    complaints.append(f"the parameter {folder}/{name} is ignored: {complaint}")
         if not self._runtime.apply(new):
-            complaints.append("what is set cannot be had; left as it was")
+            complaints.append("the settings cannot be applied; the previous ones stay")
         for complaint in complaints:
             warn(complaint)
         return complaints

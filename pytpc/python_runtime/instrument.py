@@ -69,8 +69,8 @@ class Instrument:
         if missing:
             first = rewritten.missing[0]
             warn(
-                f"{path}:{first.lineno}: {many(missing, 'comparison')} not where the static"
-                " information says, and not reported; analyse it again"
+                f"{path}:{first.lineno}: {many(missing, 'comparison')} not found: the file has"
+                " changed since it was analysed; run pytpc analyse again"
             )
         for listed in rewritten.unsupported:
             is_flag = listed.relation == "flag"
@@ -88,7 +88,10 @@ class Instrument:
         if chosen is None:
             names = ", ".join(sorted({candidate.path for candidate in candidates})[:2])
             if self.table.is_exact(path):
-                warn(f"{path}: not as it was analysed, and not reported; analyse it again")
+                warn(
+                    f"{path} does not report: it has changed since it was analysed; run pytpc"
+                    " analyse again"
+                )
                 self.done.append(Instrumented(path, 0, len(candidates[0].comparisons)))
             else:
                 self.done.append(Instrumented(f"{path} (not {names})", 0, 0))

@@ -61,10 +61,10 @@ class ReportingFinder:
             if is_init or table.candidates(spec.origin):
                 spec.loader = ReportingLoader(fullname, spec.origin, self._instrument)
         elif table.is_exact(spec.origin):
-            why = "not loaded from its source"
+            why = "it is not loaded from its source"
             if issubclass(kind, importlib.machinery.SourceFileLoader):
-                why = f"loaded by {kind.__qualname__}, which may change it"
-            warn(f"{spec.origin}: {why}, and not reported")
+                why = f"it is loaded by {kind.__qualname__}, which may change it"
+            warn(f"{spec.origin} does not report: {why}")
         return spec
 
     @staticmethod

@@ -135,7 +135,7 @@ class MappedFile:
         if not self.is_stopped:
             self.is_stopped = True
             self._put_state(STOPPED)
-            warn(f"{self.path}: {why}; nothing more is recorded, the program goes on as if it were")
+            warn(f"{self.path}: {why}; recording stops, and the program continues")
 
     def close(self) -> None:
         """Give back what was not used. Threads may write on in the chunks that they have."""

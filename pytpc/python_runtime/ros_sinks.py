@@ -109,7 +109,7 @@ class RosoutSink(Sink):
         if lost:
             warn(
                 f"{many(lost, 'evaluation')} came before rospy.init_node, after the node's end, or"
-                " within another report: not on /rosout"
+                " within another report: they are not on /rosout"
             )
 
 
@@ -235,8 +235,8 @@ class TopicSink(Sink):
             self._waiting.clear()
         if unsent:
             warn(
-                f"{many(unsent, 'evaluation')} not sent on {TOPIC}: nobody listened, or the node"
-                " was shut down"
+                f"{many(unsent, 'evaluation')} were not sent on {TOPIC}: nobody listened, or the"
+                " node was shut down"
             )
 
 

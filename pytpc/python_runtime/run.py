@@ -114,7 +114,8 @@ def prepared(given: CommandLine) -> Instrument:
         warn(f"no comparisons of Python files in {', '.join(static)}")
     else:
         warn(
-            "no static information: no --static, no TPC_STATIC, and in no workspace that was built"
+            "no static information: give --static FILE, set TPC_STATIC, or run pytpc build in the"
+            " workspace"
         )
     return instrument
 
@@ -224,7 +225,8 @@ def _tell_at_end(instrument: Instrument) -> None:
             )
         unknown = unknown_outcomes()
         if unknown:
-            warn(f"{many(unknown, 'outcome')} without a plain truth, kept as values: not reported")
+            what = "not reported: testing the truth could run code of the program"
+            warn(f"{many(unknown, 'outcome')} {what}")
         if RUNTIME.file is not None:
             warn(f"reports are in {RUNTIME.file.path}")
 

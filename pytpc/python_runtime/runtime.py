@@ -156,8 +156,8 @@ class Runtime:
         if self._was_node:
             topic = "/rosout" if config.sink == "rosout" else "/threshold_information"
             warn(
-                f"a process that was forked from a node reports nothing on {topic}; TPC_SINK=file"
-                " works in it"
+                f"process {os.getpid()} was forked from a node: its reports do not reach {topic};"
+                " the sink file records them"
             )
             return Sink()
         kind = RosoutSink if config.sink == "rosout" else TopicSink
@@ -199,7 +199,7 @@ class Runtime:
         try:
             _thread.start_new_thread(self._help, ())
         except RuntimeError:
-            warn("no thread could be made: settings cannot be changed while the node runs")
+            warn("cannot start a thread: settings cannot be changed while the node runs")
 
     def _help(self) -> None:
         """Serve the node's settings, and give the sinks their turns, while there are any."""
@@ -214,7 +214,7 @@ class Runtime:
                 except Exception as error:
                     retry_at = time.monotonic() + 2.0
                     if not ros.is_shutdown():
-                        warn(f"the settings of {ros.get_name()} come later: {error}")
+                        warn(f"the settings of {ros.get_name()} cannot be read yet: {error}")
             sink, edges = self._sink, self._edges
             is_busy = sink.is_polled or (edges is not None and self.file is None)
             if self._is_served and not is_busy:

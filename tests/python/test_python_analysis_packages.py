@@ -354,7 +354,7 @@ def test_a_broken_manifest_is_one_warning(tmp_path: Path) -> None:
     (line,) = done.stderr.splitlines()
     where = f"{source}/user/package.xml:2"
     assert line.startswith(f"user/package.xml reports nothing: {where}: not XML: mismatched tag")
-    assert line.endswith("; the folder's name stands for the package's")
+    assert line.endswith("; using the folder's name as the package's")
     units = StaticInfo.load(output).units
     assert {(unit.package, unit.link_unit) for unit in units} == {
         ("user", "user"),
@@ -392,7 +392,7 @@ def test_links(tmp_path: Path) -> None:
     assert [(Path(fault.path or "").name, fault.message) for fault in faults] == [
         ("gone.py", "cannot be read: No such file or directory"),
         ("loop.py", "cannot be read: Too many levels of symbolic links"),
-        ("pipe.py", "no ordinary file"),
+        ("pipe.py", "not a regular file"),
     ]
 
 
@@ -403,4 +403,4 @@ def test_a_name_that_is_not_utf_8_is_left_out(tmp_path: Path) -> None:
     assert [entry.name for entry in entries(tmp_path, faults.append)] == ["node"]
     (fault,) = faults
     assert str(fault).isascii()
-    assert r"n\xffde.py: a file's name that is not UTF-8" in str(fault)
+    assert r"n\xffde.py: the name of this file is not UTF-8" in str(fault)

@@ -59,12 +59,12 @@ def _to_comparison(found: Found) -> list[_Event]:
     for fact in facts[1:]:
         events += _arrival(fact)
     is_value = found.operand < 0 and found.inside is None
-    decides = "decides as it is" if is_value else "compared"
+    decides = "is the condition" if is_value else "compared"
     events.append(_Event("compare", found.at, decides))
     if found.predicate is not None and found.predicate is not found.at:
         same = position(found.predicate)[0] == position(found.at)[0]
         if not same:
-            events.append(_Event("decide", found.predicate, "the outcome decides here"))
+            events.append(_Event("decide", found.predicate, "the outcome decides this branch"))
     return events
 
 
@@ -96,7 +96,7 @@ def _shown(function: Function) -> str:
 
 def _target(store: Instr) -> str:
     if isinstance(store.data, Variable):
-        return "a value that is chosen" if store.data.name.startswith("<") else store.data.name
+        return "the chosen value" if store.data.name.startswith("<") else store.data.name
     owner = named_variable(store.args[0]) or "an object"
     return f"{owner}.{store.data}" if store.op == "setattr" else f"an element of {owner}"
 

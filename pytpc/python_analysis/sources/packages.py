@@ -114,7 +114,7 @@ class _Places:
             try:
                 return read_manifest(root).name
             except InputError as error:
-                what = f"{error.message}; the folder's name stands for the package's"
+                what = f"{error.message}; using the folder's name as the package's"
                 self.on_fault(NameFault(what, error.path, error.line))
         return root.name
 

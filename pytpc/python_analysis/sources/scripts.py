@@ -76,7 +76,7 @@ def python_files(folder: Path, on_fault: Callable[[InputError], None]) -> Iterat
                     yield path
             except UnicodeEncodeError:
                 shown = ascii(os.fsencode(path))[2:-1]
-                on_fault(InputError(f"{shown}: a file's name that is not UTF-8"))
+                on_fault(InputError(f"{shown}: the name of this file is not UTF-8"))
 
 
 def _is_searched(folder: Path) -> bool:

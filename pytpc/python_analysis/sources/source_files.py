@@ -21,9 +21,9 @@ _PYTHON_2 = [
     (re.compile(r"^[^#'\"]*<>"), "<>"),
     (re.compile(r"^[^#'\"]*`[^`]+`"), "backquotes"),
     (re.compile(r"^[^#'\"]*(?<![\w.])0[0-7]+(?![\w.])"), "an octal number"),
-    (re.compile(r"^[^#'\"]*(?<!\w)\d+[lL](?!\w)"), "a long number"),
-    (re.compile(r"^[^#'\"]*(?<!\w)[uU][rR]['\"]"), "a text of Python 2"),
-    (re.compile(r"^\s*def\s+\w+\s*\([^)]*\([\w\s,]+\)\s*[,)=]"), "a tuple among parameters"),
+    (re.compile(r"^[^#'\"]*(?<!\w)\d+[lL](?!\w)"), "a long integer"),
+    (re.compile(r"^[^#'\"]*(?<!\w)[uU][rR]['\"]"), "a string literal of Python 2"),
+    (re.compile(r"^\s*def\s+\w+\s*\([^)]*\([\w\s,]+\)\s*[,)=]"), "a tuple parameter"),
 ]
 
 
@@ -35,7 +35,7 @@ def read_source(path: Path) -> str:
     """
     try:
         if not stat.S_ISREG(path.stat().st_mode):
-            raise InputError("no ordinary file", path)
+            raise InputError("not a regular file", path)
         with tokenize.open(path) as file:
             return file.read()
     except OSError as error:
