@@ -30,7 +30,6 @@ from pytpc.python_analysis.ir.program import Program
 from pytpc.python_analysis.points_to.points_to import PointsTo
 from pytpc.python_analysis.rules_file import Rules
 from pytpc.python_analysis.sources.scripts import Entry
-from pytpc.python_analysis.sources.source_files import lines_of
 from pytpc.static.link_unit import (
     BlindSpot,
     Comparison,
@@ -141,7 +140,9 @@ class Writer:
 
     def __init__(self, analysed: Analysed) -> None:
         self.all = analysed
-        self._lines = {module.path: lines_of(module.source) for module in analysed.program.modules}
+        # To Python a form feed, say, ends no line.
+        modules = analysed.program.modules
+        self._lines = {module.path: module.source.split("\n") for module in modules}
 
     def unit(self) -> LinkUnit:
         """The link unit, its lists in the order of the format."""

@@ -10,8 +10,6 @@ from pytpc.python_runtime import ros_state
 from pytpc.python_runtime.sinks import FileSink, PeriodSummary, Sink
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
     from pytpc.python_runtime.config import Config
     from pytpc.python_runtime.sites import Reported
 
@@ -140,11 +138,3 @@ class Edges:
                 if kept.evaluations and (all_of_them or kept.period != period):
                     self._close(kept)
         self._sink.settle()
-
-
-def forget(reported: Iterable[Reported]) -> None:
-    """Forget all evaluations, after a fork or when the policy changes."""
-    for one in reported:
-        one.last = -1
-        one.meter[:] = [0, 0]
-        one.file = None

@@ -20,7 +20,7 @@ from pytpc.python_runtime.config import Config, of_environment
 from pytpc.python_runtime.control import Control
 from pytpc.python_runtime.errors import warn
 from pytpc.python_runtime.log_file import LogFile
-from pytpc.python_runtime.policies import Caps, Edges, forget
+from pytpc.python_runtime.policies import Caps, Edges
 from pytpc.python_runtime.ros_sinks import RosoutSink, TopicSink
 from pytpc.python_runtime.sinks import FileSink, Sink
 from pytpc.python_runtime.sites import Reported
@@ -272,7 +272,10 @@ class Runtime:
         # There is no node in a child, and so no settings but those that held.
         self._is_served = self._is_served or self._was_node
         self._is_started = self._is_starting = False
-        forget(self.all_reported())
+        for one in self.all_reported():
+            one.last = -1
+            one.meter[:] = [0, 0]
+            one.file = None
         sites.set_take(self._first)
 
 

@@ -47,7 +47,9 @@ class CallEffects:
                 calls.setdefault(instr, []).extend(called)
         self._spread(calls)
         for instr, functions in calls.items():
-            self._of_call[instr] = self._of_all(functions)
+            found = [self._functions[each] for each in functions if each in self._functions]
+            # Most calls have one callee: its effects are not copied.
+            self._of_call[instr] = reduce(or_, found) if found else Effects()
         for instr in flow.calls.outside:
             own = Effects(*self._by_name(instr), _waits(instr, flow))
             if own != Effects():
@@ -64,11 +66,6 @@ class CallEffects:
 
     def _bit(self, name: Name) -> int:
         return self._bits.setdefault(name, 1 << len(self._bits))
-
-    def _of_all(self, functions: list[Function]) -> Effects:
-        found = [self._functions[each] for each in functions if each in self._functions]
-        # Most calls have one callee: its effects are not copied.
-        return reduce(or_, found) if found else Effects()
 
     def _spread(self, calls: dict[Instr, list[Function]]) -> None:
         """What a function does, those that call it do."""

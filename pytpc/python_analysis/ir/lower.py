@@ -13,6 +13,7 @@ from pytpc.python_analysis.ir.instructions import (
     Instr,
     Module,
     Shape,
+    Variable,
     reachable,
 )
 from pytpc.python_analysis.ir.lower_statements import StatementLowering
@@ -25,18 +26,15 @@ def lower_module(module: Module, resolve: Resolver, numbers: list[int]) -> None:
     """Fill in the functions of ``module``, its body the first of them."""
     body = Function("<module>", module, module.tree)
     module.body = body
-    module.functions.append(body)
-    scope = Scope(body, names_of(module.tree.body), None)
-    lowering = Lowering(scope, resolve, numbers)
-    lowering.run(module.tree.body)
-    waiting = lowering.pending
+    waiting = [(body, Scope(body, names_of(module.tree.body), None))]
+    stars: list[Instr] = []
     while waiting:
         function, scope = waiting.pop(0)
         module.functions.append(function)
-        inner = Lowering(scope, resolve, numbers)
-        inner.stars = lowering.stars
-        inner.run_function()
-        waiting += inner.pending
+        lowering = Lowering(scope, resolve, numbers)
+        lowering.stars = stars
+        lowering.run_function()
+        waiting += lowering.pending
 
 
 class Lowering(StatementLowering):
@@ -59,7 +57,7 @@ class Lowering(StatementLowering):
         if isinstance(node, ast.Lambda):
             self.emit("return", node.body, self.value(node.body))
             self.run([])
-        elif isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+        elif isinstance(node, ast.Module | ast.FunctionDef | ast.AsyncFunctionDef):
             self.run(node.body)
 
     # Functions and classes
@@ -112,7 +110,8 @@ class Lowering(StatementLowering):
             for bound in names.local & renamed.keys():
                 del renamed[bound]
             for known in renamed.values():
-                self._share(known)
+                if isinstance(known, Variable):
+                    known.shared = True
         function.parameters = [scope.make(argument.arg, function) for argument in given]
         defaults: list[Instr] = []
         first = len(positional) - len(arguments.defaults)
@@ -127,11 +126,6 @@ class Lowering(StatementLowering):
             function.owner = self.class_info
         self.pending.append((function, scope))
         return self.emit("function", node, *defaults, data=function)
-
-    @staticmethod
-    def _share(known: object) -> None:
-        if hasattr(known, "shared"):
-            known.shared = True
 
     class_info: ClassInfo | None = None
 

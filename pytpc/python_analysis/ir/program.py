@@ -12,7 +12,7 @@ from pytpc.base.errors import InputError
 from pytpc.python_analysis.ir.instructions import Function, Instr, Module
 from pytpc.python_analysis.ir.lower import lower_module
 from pytpc.python_analysis.sources.scripts import Entry
-from pytpc.python_analysis.sources.source_files import module_files, parse
+from pytpc.python_analysis.sources.source_files import folder_above, module_files, parse
 
 
 @dataclass(frozen=True)
@@ -92,9 +92,7 @@ class Program:
             for path in self.entry.places(name):
                 return self._module(path, name) or name
             return name
-        folder = (self.root / user.path).parent
-        for _ in range(dots - 1):
-            folder = folder.parent
+        folder = folder_above(self.root / user.path, dots)
         if not name:
             start = folder / "__init__.py"
             found = self._module(start, folder.name) if start.is_file() else None

@@ -84,17 +84,9 @@ class Heap:
             self._known[key] = Obj(kind, len(self._known), path, ref, parent, site)
         return self._known[key]
 
-    def method(self, function: Function, owner: Obj) -> Obj:
-        """A function bound to an object."""
-        return self.get("method", ref=function, parent=owner)
-
     def class_(self, info: ClassInfo) -> Obj:
         """A class of the sources."""
         return self.get("class", ref=info)
-
-    def instance(self, info: ClassInfo, site: Instr | None) -> Obj:
-        """What calling a class gives at ``site``; None where no call is known."""
-        return self.get("instance", ref=info, site=site)
 
     def made(self, path: str, site: Instr) -> Obj:
         """What something outside the sources gives when it is called at ``site``."""

@@ -91,9 +91,9 @@ class PointsTo(Solver):
     def instantiate(self, info: ClassInfo, site: Instr | None) -> Obj:
         """An object of a class; all its methods may be called on it."""
         known = self.instances.setdefault(info, {})
-        made = self.heap.instance(info, site)
+        made = self.heap.get("instance", ref=info, site=site)
         if made not in known and len(known) >= _PLACES:
-            made = self.heap.instance(info, None)
+            made = self.heap.get("instance", ref=info)
         if made in known:
             return made
         known[made] = None
@@ -252,7 +252,7 @@ class PointsTo(Solver):
     def _class_method(self, found: Obj, owner: Obj, instr: Instr) -> None:
         function = found.function if found.kind == "function" else None
         if function is not None and "classmethod" in function.decorators:
-            self.add(instr, [self.heap.method(function, owner)])
+            self.add(instr, [self.heap.get("method", ref=function, parent=owner)])
 
     def _looked_up(
         self, owner: Obj, real: Obj, after: ClassInfo | None, name: str, instr: Instr
@@ -292,11 +292,12 @@ class PointsTo(Solver):
         if function is None or "staticmethod" in function.decorators:
             self.add(instr, [found])
         elif "classmethod" in function.decorators and owner.class_info is not None:
-            self.add(instr, [self.heap.method(function, self.heap.class_(owner.class_info))])
+            own = self.heap.class_(owner.class_info)
+            self.add(instr, [self.heap.get("method", ref=function, parent=own)])
         elif {"property", "cached_property", "getter"} & set(function.decorators):
             self.calls.bound(instr, found, owner, [])
         else:
-            self.add(instr, [self.heap.method(function, owner)])
+            self.add(instr, [self.heap.get("method", ref=function, parent=owner)])
 
     def _outside(self, owner: Obj, name: str, instr: Instr, info: ClassInfo) -> None:
         for base in self.mro(info):

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from pytpc.base.errors import InputError
 from pytpc.python_analysis.rules_file import Rules
-from pytpc.python_analysis.sources.source_files import module_files, parse
+from pytpc.python_analysis.sources.source_files import folder_above, module_files, parse
 from pytpc.workspace.packages import IGNORE_MARKERS, MANIFEST, PRODUCT_MARKERS
 
 _LEFT_OUT = {"build", "devel", "install", "log", "test", "tests", "node_modules", "__pycache__"}
@@ -188,9 +188,7 @@ def _meant(program: Entry, user: Path, dots: int, name: str) -> Iterator[Path]:
     if dots == 0:
         yield from program.places(name)
         return
-    folder = user.parent
-    for _ in range(dots - 1):
-        folder = folder.parent
+    folder = folder_above(user, dots)
     yield from module_files(folder.joinpath(*name.split(".")) if name else folder)
 
 

@@ -27,12 +27,8 @@ _PYTHON_2 = [
 ]
 
 
-def read_source(path: Path) -> str:
-    r"""The text of a source file, by the encoding that it declares; lines end with ``\n``.
-
-    Raises:
-        InputError: it cannot be read or decoded, or is no file.
-    """
+def _text(path: Path) -> str:
+    """The text of a source file, by the encoding that it declares."""
     try:
         if not stat.S_ISREG(path.stat().st_mode):
             raise InputError("not a regular file", path)
@@ -44,6 +40,11 @@ def read_source(path: Path) -> str:
         raise InputError(f"cannot be decoded: {error}", path) from None
 
 
+def folder_above(path: Path, dots: int) -> Path:
+    """The folder that so many dots mean in an import of the file at ``path``."""
+    return path.parents[min(dots, len(path.parents)) - 1]
+
+
 def module_files(base: Path) -> Iterator[Path]:
     """The files of the module that would be the folder, or the file without ending, ``base``."""
     # The root of all folders has no name: dots of a relative import may lead there.
@@ -52,22 +53,13 @@ def module_files(base: Path) -> Iterator[Path]:
             yield path
 
 
-def lines_of(source: str) -> list[str]:
-    r"""The lines as Python counts them: form feeds and the like end none.
-
-    Args:
-        source: a text whose lines end with ``\n``.
-    """
-    return source.split("\n")
-
-
 def parse(path: Path) -> tuple[str, ast.Module]:
-    """The text and the syntax tree of a source file.
+    r"""The text of a source file, whose lines end with ``\n``, and its syntax tree.
 
     Raises:
-        InputError: it cannot be read, or is no Python 3, with the line.
+        InputError: it is no file, cannot be read or decoded, or is no Python 3, with the line.
     """
-    source = read_source(path)
+    source = _text(path)
     try:
         with warnings.catch_warnings():
             # What Python has to say of the user's texts (`"\d"`) is not ours to say.
@@ -87,7 +79,7 @@ def _why(source: str, error: SyntaxError) -> str:
 
 def _python_2(source: str, lineno: int | None) -> str | None:
     """What on the faulty line, or else on that before it, is Python 2."""
-    lines = lines_of(source)
+    lines = source.split("\n")
     number = lineno or 0
     for line in (lines[number - 1 : number], lines[max(number - 2, 0) : number - 1]):
         for pattern, name in _PYTHON_2:
