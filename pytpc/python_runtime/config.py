@@ -1,6 +1,6 @@
-"""What a process reports, and where to: docs/reference/runtime.md#settings.
+"""What a process reports, and where to (docs/reference/runtime.md#settings).
 
-The settings are those of the C++ runtime. An invalid value logs a warning and the previous setting
+The settings are those of the C++ runtime. An invalid value logs a warning, and the previous setting
 stays; it never stops a node.
 """
 
@@ -30,7 +30,7 @@ _LARGEST = 1 << 40
 
 
 class Config(NamedTuple):
-    """All settings. Caps are reports a second, limits MiB; 0 is none."""
+    """All settings. Caps are in reports a second, limits in MiB; 0 means no cap and no limit."""
 
     sink: str = "rosout"
     policy: str = "every"
@@ -43,7 +43,7 @@ class Config(NamedTuple):
 
 
 def parsed(name: str, text: str) -> tuple[dict[str, Value] | None, str]:
-    """The fields of a `Config` that ``name`` set to ``text`` changes; or None and the reason."""
+    """The fields of a `Config` that setting ``name`` to ``text`` changes; else None and why."""
     choices = {"sink": SINKS, "policy": POLICIES}.get(name)
     if choices is not None:
         why = f"it must be one of {', '.join(choices)}"
@@ -65,7 +65,7 @@ def parsed(name: str, text: str) -> tuple[dict[str, Value] | None, str]:
 
 
 def of_environment() -> Config:
-    """The defaults and ``TPC_SINK`` and its kind."""
+    """The defaults, changed by ``TPC_SINK`` and the other variables."""
     config = Config()
     for name in NAMES:
         variable = f"TPC_{name.upper()}"

@@ -1,4 +1,4 @@
-"""The settings of a running node: parameters of ROS, and the service that takes them over."""
+"""The settings of a running node: ROS parameters, and the service that reads them again."""
 
 from __future__ import annotations
 
@@ -20,19 +20,19 @@ _SERVICE = "~tpc/reload"
 
 
 class Control:
-    """Takes over ``/tpc/NAME`` and ``~tpc/NAME``, the node's own last."""
+    """Applies ``/tpc/NAME`` and then ``~tpc/NAME``, so that the node's own parameter wins."""
 
     def __init__(self, runtime: Runtime, ros: Any) -> None:  # noqa: ANN401
-        """``ros`` is rospy, with a node that is up."""
+        """``ros`` is rospy, whose node is up."""
         self._runtime = runtime
         self._ros = ros
         self._of_environment = runtime.config
 
     def begin(self) -> None:
-        """Take the parameters over once, and serve ``~tpc/reload``.
+        """Apply the parameters once, and serve ``~tpc/reload``.
 
         Raises:
-            Exception: as rospy has it, where the master does not answer.
+            Exception: rospy's own, where the master does not answer.
         """
         self.take_over()
         service, answer = _trigger()
@@ -45,7 +45,7 @@ class Control:
         self._ros.Service(_SERVICE, service, reload)
 
     def take_over(self) -> list[str]:
-        """Apply the parameters; what is wrong with them, of which there are warnings, too."""
+        """Apply the parameters, and warn of invalid ones; return the warnings."""
         complaints: list[str] = []
         now = self._runtime.config
         new = self._of_environment
@@ -71,7 +71,7 @@ class Control:
 
 
 def _changed(new: Config, now: Config, name: str, value: object) -> tuple[Config, str]:
-    """``new`` with one setting more; what holds now, and why, where the parameter is wrong."""
+    """``new`` with one more setting; with ``now``'s, and the reason, where the value is invalid."""
     if name not in NAMES:
         return new, "there is no such setting"
     text = _text(name, value)
@@ -84,7 +84,7 @@ def _changed(new: Config, now: Config, name: str, value: object) -> tuple[Config
 
 
 def _text(name: str, value: object) -> str | None:
-    """A value of the parameter server as a word of the environment. YAML takes `off` for false."""
+    """A value of the parameter server as text. YAML reads `off` as false."""
     if isinstance(value, bool):
         return "off" if name == "sink" and not value else None
     if isinstance(value, (str, int)):
@@ -93,13 +93,13 @@ def _text(name: str, value: object) -> str | None:
 
 
 def _trigger() -> tuple[Any, Any]:
-    """The service's class and that of its answer, as rospy takes them.
+    """The class of the service and that of its answer, as rospy expects them.
 
-    They are here because the package of std_srvs/Trigger is not installed on every machine. Its
-    request is empty; its answer is a byte of success and a text with its length before it.
+    They are defined here because std_srvs is not installed on every machine. The request of
+    std_srvs/Trigger is empty; its answer is a byte for success and a text after its length.
 
     Raises:
-        ImportError: genpy is not there, and so no rospy.
+        ImportError: genpy is not installed, and so rospy is not either.
     """
     import genpy  # noqa: PLC0415
 
@@ -118,7 +118,7 @@ def _trigger() -> tuple[Any, Any]:
             return self
 
     class Response(genpy.Message):  # type: ignore[misc]
-        """Whether it succeeded, and what there is to say."""
+        """Whether it succeeded, and a message."""
 
         _md5sum, _type, _has_header = _MD5, f"{_TYPE}Response", False
         _full_text = "bool success\nstring message\n"

@@ -1,4 +1,4 @@
-"""The error of the hook, and its warnings: one line on standard error each, as in C++."""
+"""The error of the hook, and its warnings: each is one line on standard error, as in C++."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ import os
 class HookError(Exception):
     """A command line, a script or static information that the hook cannot use.
 
-    ``str(error)`` is ``path:line: message``, on one line whatever the message holds.
+    ``str(error)`` is ``path:line: message``, always on one line.
 
     Args:
         message: what is wrong, without a final full stop.
-        path: the file or folder that it is about.
+        path: the file or folder with the error.
         line: the line in it, counted from 1.
     """
 
@@ -29,11 +29,11 @@ class HookError(Exception):
 
 
 def warn(text: str) -> None:
-    """Write one line. It is one write, so that lines of several processes do not mix."""
+    """Write one line. It is a single write, so that lines of several processes do not mix."""
     try:
         os.write(2, ("tpc: " + " ".join(text.split()) + "\n").encode("utf-8", "replace"))
     except OSError:
-        # A program without standard error.
+        # The program has closed standard error.
         return
 
 

@@ -1,6 +1,6 @@
 """What rewritten code calls where it compares without an operator: `for`, `match`, library calls.
 
-See `pytpc.python_runtime.sites`.
+`pytpc.python_runtime.sites` explains how.
 """
 
 from __future__ import annotations
@@ -36,8 +36,8 @@ _RELATIONS = {
 class Loop(Site):
     """``for i in range(limit)`` has become ``for i in LOOP.over(range(limit)).__next__()``.
 
-    Before each turn i is compared with the limit, and at the end what i would be, as a ``for`` of
-    C does it. A loop that is left by ``break`` or ``return`` has no end.
+    Like a ``for`` of C, it compares i with the limit before each turn, and once more at the end. A
+    loop that ``break`` or ``return`` leaves has no end.
     """
 
     __slots__ = ("over", "turn")
@@ -63,20 +63,20 @@ class Loop(Site):
                 turns = len(iterable)
                 elements = chain(iterable, (iterable.start + turns * iterable.step,))
                 is_turn = chain(repeat(True, turns), (False,))
-            # A longer one has no end that is ever seen, and no length that C can hold.
-            # What `turn` is may change while the loop runs: a debugger may begin within it.
+            # A longer range never ends in practice, and its length does not fit a C integer.
+            # `turn` is looked up each time: a debugger that starts within the loop changes it.
             current = map(attrgetter("turn"), repeat(self))
             return repeat(flat(map(partial.__call__, current, elements, repeat(stop), is_turn)))
 
-        # Both are `partial`, whatever is behind them, so that C can call them.
+        # Both must be callable from C, and a `partial` is.
         self.offer(over=over, turn=partial(turn))
 
 
 class Subject(Site):
     """``match subject`` has become ``match SUBJECT.hold(subject).__next__()``.
 
-    The cases ask for the subject by `held`. Which of them is taken is said by `taken`, `default` or
-    `none`, which stand in their guards.
+    The cases get the subject from `held`. Their guards call `taken`, `default` or `none`, which say
+    which case was taken.
     """
 
     __slots__ = ("default", "held", "hold", "none", "taken")
@@ -86,7 +86,7 @@ class Subject(Site):
         log = logger(reported)
 
         def hold(subject: object) -> Iterator[object]:
-            """Keep the subject of the calling frame's statement."""
+            """Keep the subject for the statement of the calling frame."""
             kept[caller()] = subject, None
             return repeat(subject)
 
@@ -95,15 +95,15 @@ class Subject(Site):
             return repeat(kept[caller()][0])
 
         def taken() -> Iterator[bool]:
-            """A case that compares is taken."""
+            """A case that compares was taken."""
             return end(caller(), True, TRUE)
 
         def default() -> Iterator[bool]:
-            """The case that takes everything is taken."""
+            """The case that matches everything was taken."""
             return end(caller(), False, TRUE)
 
         def none() -> Iterator[bool]:
-            """No case was taken, nor is this one."""
+            """No case was taken; nor is this one."""
             return end(caller(), False, FALSE)
 
         def end(frame: int, is_taken: bool, answer: Iterator[bool]) -> Iterator[bool]:
@@ -118,7 +118,7 @@ class Subject(Site):
 
 
 class ComparedInside(NamedTuple):
-    """One comparison of a call: what reports it, its relation and the name of its operand."""
+    """One comparison inside a call: its key, its relation and the name of its operand."""
 
     reported: Reported
     relation: str
@@ -126,11 +126,11 @@ class ComparedInside(NamedTuple):
 
 
 class LibraryCall(Site):
-    """A call whose function compares; ``inside`` is what it compares.
+    """A call of a function that compares; ``inside`` lists the comparisons.
 
-    ``f(a, b, k=c)`` has become ``SITE.call(f, a, b, {"k": c}).__next__()``: the function and its
-    arguments are evaluated as before, and the function is called by an iterator of C, with no frame
-    of ours between the program and what the function runs.
+    ``f(a, b, k=c)`` has become ``SITE.call(f, a, b, {"k": c}).__next__()``. The function and its
+    arguments are evaluated as before. An iterator in C calls the function, so that no frame of ours
+    is between the program and what the function runs.
     """
 
     __slots__ = ("call",)
@@ -165,19 +165,19 @@ def _try(log: Callable[[Given, object], None], given: Given, result: object) -> 
     try:
         log(given, result)
     except Exception as error:
-        # A report that cannot be made is not worth a node.
+        # A failed report must not stop the node.
         if is_programs(error):
             raise
 
 
 def _logger(one: ComparedInside) -> Callable[[Given, object], None]:
-    """What reports one comparison of a call with these arguments and this result."""
+    """The function that reports one comparison of a call from its arguments and its result."""
     kind, name, *first_alone = one.operand.split()
     compared = _RELATIONS[one.relation]
     log = logger((one.reported,))
 
     def parts(given: Given) -> tuple[object, list[object]]:
-        """The threshold, and what it is compared with."""
+        """The threshold, and the values that it is compared with."""
         arguments, keywords = given
         if not name.isdigit():
             return keywords[name], list(arguments[: 1 if first_alone else 2])
@@ -191,7 +191,7 @@ def _logger(one: ComparedInside) -> Callable[[Given, object], None]:
         return arguments[place], others
 
     def chosen(given: Given, _: object) -> None:
-        """The result is one of the arguments: the threshold, or the nearest of the others."""
+        """For a result that is one of the arguments: the threshold, and the nearest other value."""
         threshold, others = parts(given)
         values: list[Any] = [*others, threshold]
         if not all(type(each) in NUMBERS for each in values):
@@ -199,14 +199,14 @@ def _logger(one: ComparedInside) -> Callable[[Given, object], None]:
             if None in values:
                 sites.count_unknown()
                 return
-        # Where the largest is chosen all others stand below it, where the smallest is, above.
+        # The largest argument is above all others, the smallest below.
         is_first = name == "1"
         nearest = min if (one.relation == "<") == is_first else max
         cmp, thresh = nearest(values[:-1]), values[-1]
         log(cmp, thresh, compared(cmp, thresh))
 
     def outcome(given: Given, result: object) -> None:
-        """The result says how the comparison went."""
+        """For a result that is the outcome."""
         truth = truth_of(result)
         if truth is None:
             sites.count_unknown()

@@ -1,8 +1,8 @@
-"""The instrumentation of one process: which modules, what was done with them, what is missing.
+"""The instrumentation of one process: which modules report, and which comparisons are missing.
 
 A devel space of catkin has relays: scripts and packages that read a file of the source space and
-hand its text to ``compile`` or ``exec``. In a relay, and there alone, these calls are given the
-code of the instrumented file in the place of the text.
+pass its text to ``compile`` or ``exec``. In relays alone, these calls get the code of the
+instrumented file instead of the text.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ from pytpc.python_runtime.rewrite import constant_text, rewrite, with_constants
 if TYPE_CHECKING:
     from pytpc.python_runtime.rewrite import Register
 
-# What a module that traces by itself has in its text.
+# A module that traces has one of these in its text.
 _TRACING = (b"settrace", b"setprofile", b"sys.monitoring")
-# What a relay has near its beginning.
+# A relay has one of these near its beginning.
 _RELAYING = (
     b"generated from catkin/cmake/template/script.py.in",
     b"generated from catkin/cmake/template/__init__.py.in",
@@ -32,7 +32,7 @@ _RELAYING = (
 
 
 class Instrumented(NamedTuple):
-    """One module that was rewritten, or was to be."""
+    """One module that was rewritten, or should have been."""
 
     path: str
     instrumented: int
@@ -50,14 +50,15 @@ class Instrument:
     def code(self, data: bytes, path: str) -> CodeType | None:
         """The code of a module that reports, or of a relay; None where it has nothing to report.
 
-        A warning says what is not in the module: the file was changed since it was analysed.
+        A warning names comparisons that are not in the module because it has changed since it was
+        analysed.
 
         Args:
             data: the bytes of the source.
-            path: what the module calls itself.
+            path: the module's ``__file__``.
 
         Raises:
-            SyntaxError: as ``compile`` has it.
+            SyntaxError: as in ``compile``.
         """
         chosen = self._chosen(data, path)
         if chosen is None:
@@ -117,19 +118,19 @@ def _text(data: bytes) -> str:
 
 
 class _RelayReader:
-    """Stands in a relay in the place of what it calls."""
+    """Replaces what a relay calls."""
 
     def __init__(self, instrument: Instrument) -> None:
         self._instrument = instrument
 
     def compiled(self, source: str, path: str, mode: str) -> CodeType:
-        """In the place of ``compile(text, path, 'exec')``."""
+        """Replaces ``compile(text, path, 'exec')``."""
         with open(path, "rb") as stream:
             code = self._instrument.code(stream.read(), path)
         return code or compile(source, path, mode, dont_inherit=True)
 
     def read(self, stream: TextIO) -> CodeType | str:
-        """In the place of ``stream.read()``, whose text is handed to ``exec``."""
+        """Replaces ``stream.read()``, whose text is passed to ``exec``."""
         with open(stream.name, "rb") as again:
             code = self._instrument.code(again.read(), stream.name)
         return code or stream.read()

@@ -1,7 +1,6 @@
 """The comparisons that should report, read from the static information.
 
-The hook does not check the files against the schema; unusable content is an error that names the
-file.
+The hook does not check files against the schema; unusable content is an error that names the file.
 """
 
 from __future__ import annotations
@@ -15,11 +14,11 @@ from typing import Any, NamedTuple
 
 from pytpc.python_runtime.errors import HookError
 
-# What `pytpc build` leaves in a workspace; it has all in it.
+# `pytpc build` writes this file, with all units of the workspace.
 BUILT = os.path.join(".tpc", "static.json")
 # Where static information lies below a workspace, a build folder or a folder of packages.
 _PLACES = ("*.json", "tpc/*.json", "*/tpc/*.json", "build/tpc/*.json", "build/*/tpc/*.json")
-# What is written for an entry point is below a kilobyte and a half.
+# The script of an entry point has less than 1,500 bytes.
 _LONGEST = 4096
 _BY_SETUPTOOLS = re.compile(
     r"^# EASY-INSTALL-ENTRY-SCRIPT: '([^'=]+)[^']*','console_scripts','([^']+)'", re.MULTILINE
@@ -43,22 +42,22 @@ class Listed(NamedTuple):
 
     @property
     def is_inside(self) -> bool:
-        """Whether it is inside of the library function that is called there."""
+        """Whether the library function that is called there makes the comparison."""
         return self.operand is not None and self.operand not in ("left", "right")
 
 
 class ListedFile(NamedTuple):
-    """A source file and its comparisons. ``path`` is absolute, as the analysis saw it."""
+    """A source file and its comparisons. ``path`` is absolute, from the machine of the analysis."""
 
     path: str
     comparisons: tuple[Listed, ...]
 
 
 class ListedFiles:
-    """The source files with comparisons, found by the last part of their names."""
+    """The source files with comparisons, found by their base names."""
 
     def __init__(self, files: Iterable[ListedFile]) -> None:
-        """Keep ``files``; several of one path are one."""
+        """Keep ``files``, and merge those with the same path."""
         merged: dict[str, dict[tuple[str, int, int, str], Listed]] = {}
         for file in files:
             into = merged.setdefault(file.path, {})
@@ -78,14 +77,14 @@ class ListedFiles:
         return len(self._by_real)
 
     def is_exact(self, path: str) -> bool:
-        """Whether it is one of the files themselves, and no copy."""
+        """Whether ``path`` is one of these files itself, and not a copy."""
         return os.path.realpath(path) in self._by_real
 
     def candidates(self, path: str) -> list[ListedFile]:
-        """The files that the one at ``path`` may be a copy of; the very file alone where it is one.
+        """The files that the one at ``path`` may be a copy of; only itself where it is one of them.
 
-        A file that was installed, or lies on another machine, is told by its text: see
-        `pytpc.python_runtime.find.matching`.
+        `pytpc.python_runtime.find.matching` compares the text of a file that was installed or is on
+        another machine.
         """
         real = os.path.realpath(path)
         names = (os.path.basename(path), os.path.basename(real))
@@ -97,7 +96,7 @@ class ListedFiles:
 class _Unit(NamedTuple):
     """One link unit: a script with the modules that it imports.
 
-    ``script`` is its absolute path, None in files of before.
+    ``script`` is its absolute path, None in files of earlier versions.
     """
 
     name: str
@@ -107,32 +106,32 @@ class _Unit(NamedTuple):
     files: list[ListedFile]
 
     def is_called(self, stem: str) -> bool:
-        """Whether its script, or in files of before itself, has this name, without ``.py``."""
+        """Whether its script, or in earlier files the unit, has this name, without ``.py``."""
         return stem in (self.name, stem_of(self.script or self.name))
 
     def is_of(self, real: str) -> bool:
-        """Whether its script is the file with this path, in which no links are."""
+        """Whether its script is the file with this path, with symbolic links resolved."""
         return self.script is not None and os.path.realpath(self.script) == real
 
     def runs(self, module: tuple[str, ...]) -> bool:
-        """Whether its script is the module whose path may end so."""
+        """Whether the path of its script ends like this module's."""
         return self.script is not None and self.script.endswith(module)
 
     def has(self, module: tuple[str, ...]) -> bool:
-        """Whether there are comparisons in this module."""
+        """Whether this module has comparisons."""
         return any(file.path.endswith(module) for file in self.files)
 
 
 def read_table(paths: Iterable[str], script: str | None = None) -> ListedFiles:
-    """Read files of static information, merged ones, and folders that hold such files.
+    """Read static information: files of one unit, merged files, and folders with such files.
 
     Args:
-        paths: what is read.
-        script: the program that is to run. A module of several programs has a key for each of them;
-            those of ``script`` count, where there are any, because they tell who reports.
+        paths: what to read.
+        script: the program to run. A module of several programs has a key for each of them; the
+            keys of ``script`` are used, if there are any: they tell which program reports.
 
     Raises:
-        HookError: a file cannot be read, or is no static information; a folder has none.
+        HookError: a file cannot be read or is not static information; a folder has none.
     """
     units = _all_units(paths)
     running = _of_script(units, script) if script is not None else []
@@ -140,12 +139,12 @@ def read_table(paths: Iterable[str], script: str | None = None) -> ListedFiles:
 
 
 def names_script(paths: Iterable[str], script: str) -> bool:
-    """Whether the static information has comparisons of this script, or of one of its name.
+    """Whether the static information has comparisons of this script, or of one with its name.
 
-    Of the script of an entry point those count that are in the module that it runs.
+    For the script of an entry point, comparisons of the module that it runs count.
 
     Raises:
-        HookError: as `read_table`.
+        HookError: as in `read_table`.
     """
     return bool(_of_script([unit for unit in _all_units(paths) if unit.files], script))
 
@@ -158,16 +157,17 @@ def _all_units(paths: Iterable[str]) -> list[_Unit]:
 
 
 def _of_script(units: list[_Unit], script: str) -> list[_Unit]:
-    """The link units that the running script may be of.
+    """The link units that the running script may be.
 
-    It is told by its file. One that was installed is told by its name, and by its package, after
-    which its folder is called; that of an entry point by the module that it runs.
+    A script is identified by its path. An installed script is identified by its name and its
+    package, which its folder is named after; the script of an entry point by the module that it
+    runs.
     """
     program = program_of(script)
     real = os.path.realpath(script)
     if program.module is not None:
         running = [unit for unit in units if unit.runs(program.files)]
-        # A module may have several entry points, whose units are called after them.
+        # A module may have several entry points; each gives its name to a unit.
         begun = [unit for unit in running if unit.name == program.stem]
         others = [unit for unit in units if unit.has(program.files)]
         if begun or running or others:
@@ -235,7 +235,7 @@ def _units(document: Any, path: str) -> list[_Unit]:  # noqa: ANN401
 
 
 def _is_compiled(unit: dict[str, Any]) -> bool:
-    """Whether it is a program or library in C++, which may be called as a script is."""
+    """Whether it is a program or library in C++, which may have the name of a script."""
     tool = unit.get("tool")
     return tool is not None and tool.get("analysis") != "python"
 
@@ -255,10 +255,11 @@ def _listed(comparison: dict[str, Any]) -> Listed:
 
 
 class EntryPoint(NamedTuple):
-    """A script's name without ``.py``, and the module that it runs where it is an entry point's.
+    """A script's name without ``.py``, and for an entry point the module that it runs.
 
-    setuptools, or pip, writes the script of an entry point (``console_scripts``) when a package is
-    installed. It has the name of the entry point and imports a module whose function it calls.
+    setuptools or pip writes the script of an entry point (``console_scripts``) when it installs a
+    package. The script has the name of the entry point, imports a module and calls a function of
+    it.
     """
 
     stem: str
@@ -266,7 +267,7 @@ class EntryPoint(NamedTuple):
 
     @property
     def files(self) -> tuple[str, ...]:
-        """How the path of the module may end."""
+        """The endings that the module's path may have."""
         if self.module is None:
             return ()
         path = "/" + self.module.replace(".", "/")
@@ -274,7 +275,7 @@ class EntryPoint(NamedTuple):
 
 
 def program_of(script: str) -> EntryPoint:
-    """What the script is called, and what it runs; a script that cannot be read runs itself."""
+    """The name of a script and the module that it runs; None for an unreadable script."""
     return EntryPoint(stem_of(script), _module(script))
 
 
@@ -301,7 +302,7 @@ def _module(script: str) -> str | None:
 
 
 def _declared(distribution: str, name: str) -> str | None:
-    """The module of an entry point, as its installed package declares it."""
+    """The module of an entry point, from the metadata of the installed package."""
     from importlib import metadata  # noqa: PLC0415
 
     try:

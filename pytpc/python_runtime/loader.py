@@ -1,7 +1,7 @@
-"""The import hook: a finder that asks the other finders, and a loader that compiles anew.
+"""The import hook: a finder that asks the other finders, and a loader that compiles modules anew.
 
-Only modules whose file has the name of one with listed comparisons are looked at. Their bytecode is
-not cached, so that nothing of ours gets into ``__pycache__`` and nothing from there hides a report.
+It looks only at modules whose file has the name of one with listed comparisons. It does not cache
+their bytecode: ``__pycache__`` never holds rewritten code, and cached code never replaces it.
 """
 
 from __future__ import annotations
@@ -20,24 +20,24 @@ from pytpc.python_runtime.listed import ListedFile
 
 
 class ReportingLoader(importlib.machinery.SourceFileLoader):
-    """Loads a module from its source; all else, as ``inspect.getsource``, is the base's."""
+    """Loads a module from its source; the base class does all else (``inspect.getsource``)."""
 
     def __init__(self, fullname: str, path: str, instrument: Instrument) -> None:
         super().__init__(fullname, path)
         self._instrument = instrument
 
     def get_code(self, fullname: str) -> CodeType | None:
-        """The rewritten code; the ordinary one if the module has nothing to report."""
+        """The rewritten code, or the ordinary code of a module with nothing to report."""
         path = self.get_filename(fullname)
         data = self.get_data(path)
         return self._instrument.code(data, path) or super().get_code(fullname)
 
 
 class ReportingFinder:
-    """Comes before the existing finders, and asks them."""
+    """Comes before the other finders, and asks them."""
 
     def __init__(self, instrument: Instrument) -> None:
-        """Packages are known by their folder's name."""
+        """A package is recognised by the name of its folder."""
         self._instrument = instrument
         self._names = _module_names(instrument.table.by_name)
 
@@ -97,6 +97,6 @@ def _module_names(by_name: dict[str, list[ListedFile]]) -> set[str]:
 
 
 def install(instrument: Instrument) -> None:
-    """Let modules that are imported from now on report."""
+    """Let modules report that are imported from now on."""
     quiet.watch_if_traced()
     sys.meta_path.insert(0, ReportingFinder(instrument))

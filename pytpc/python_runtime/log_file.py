@@ -1,10 +1,10 @@
 """The binary file of reports (docs/reference/formats.md), written straight into mapped memory.
 
-The kernel keeps what was written whatever happens to the process. Space is allocated on the disk
-before it is mapped, so that a full disk is an error and no signal. Each thread has chunks of its
-own; a place in one is claimed by one call of C, so that a signal's handler, or a finaliser, that
-reports in the middle of a report gets another place. ``what`` of a record is written last. Ctrl-C,
-or what else a handler raises, may end a report anywhere: a place that stays empty is filled.
+The kernel keeps what was written, whatever happens to the process. Space is allocated on disk
+before it is mapped, so that a full disk is an error and not a signal. Each thread has chunks of its
+own, and claims a place by one call into C: a signal handler or finaliser that reports in the middle
+of a report gets another place. ``what``, the first word of a record, is written last. Ctrl-C, or
+another exception of a handler, may end a report anywhere; the place that it left empty is filled.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ _INTEGERS = struct.Struct("<Iqqq")
 
 
 class _Chunk:
-    """Records of one thread. ``claim()`` gives the byte of one; it may be behind ``end``."""
+    """Records of one thread. ``claim()`` gives the place of one, which may be behind ``end``."""
 
     __slots__ = ("begin", "bytes", "claim", "end", "words")
 
@@ -65,9 +65,9 @@ class _Chunk:
         self.end = begin + CHUNK_BYTES
 
     def fill(self, now: int, sim_ns: int) -> None:
-        """Write what says nothing new where a record was claimed and not written.
+        """Write a record without content where one was claimed and not written.
 
-        An empty one hides all that follow it.
+        A reader stops at an empty record.
         """
         end = min(self.claim() + RECORD_BYTES, self.end)
         for at in range(self.begin, end, RECORD_BYTES):
@@ -77,7 +77,7 @@ class _Chunk:
 
 
 class _NoChunk(_Chunk):
-    """Before the first one, and where there is no more room."""
+    """Before the first chunk, and where there is no more space."""
 
     __slots__ = ()
 
@@ -87,7 +87,7 @@ class _NoChunk(_Chunk):
 
 
 class _ThreadPlace:
-    """Where a thread writes: its chunk, and how many records were in those before."""
+    """Where a thread writes: its chunk, and the number of records in its earlier chunks."""
 
     __slots__ = ("chunk", "former", "is_changing", "number", "sim_ns", "written")
 
@@ -100,14 +100,14 @@ class _ThreadPlace:
         self.chunk: _Chunk = self.former
 
     def fill(self) -> None:
-        """A report was interrupted: its place may be in this chunk, or in the one before."""
+        """A report was interrupted: its place may be in this chunk or in the previous one."""
         now = monotonic_ns()
         for chunk in (self.former, self.chunk):
             chunk.fill(now, self.sim_ns)
 
 
 class _SystemChunk:
-    """Where records of the system are written: in ``extent`` from byte ``at`` to ``end``."""
+    """Where system records are written: in ``extent`` from byte ``at`` to ``end``."""
 
     __slots__ = ("at", "end", "extent", "first", "is_busy")
 
@@ -120,7 +120,7 @@ class _SystemChunk:
 
 
 class _Owner:
-    """A thread's hold on its place: when the thread ends, the next one takes it over."""
+    """Keeps a place for its thread; when the thread ends, another thread can take the place."""
 
     __slots__ = ("_free", "_place")
 
@@ -133,7 +133,7 @@ class _Owner:
 
 
 class LogFile(MappedFile):
-    """One file, and what is written to it."""
+    """One file, and the records that are written to it."""
 
     def __init__(self, config: Config, parent: int, each_second: Callable[[], None]) -> None:
         """Make the file in its folder.
@@ -150,7 +150,7 @@ class LogFile(MappedFile):
         self._system: _SystemChunk | None = None
         self._live: tuple[tuple[Extent, int], int] | None = None
         self._sync_at = 0
-        # When a report has to look about: at the next second, or at once in simulated time.
+        # When a report must call `look`: at the next second, or at once in simulated time.
         self._look_at = 0
         self._is_node_known = bool(node)
         self._nested = 0
@@ -161,7 +161,7 @@ class LogFile(MappedFile):
     # --- reports
 
     def _taker(self) -> Take:
-        """The function that takes a report, with all that it needs as local variables."""
+        """The function that takes a report, with all that it needs in local variables."""
         local, whats, pack, steady = self._local, WHATS, pack_report, monotonic_ns
 
         def take(one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> None:
@@ -170,7 +170,7 @@ class LogFile(MappedFile):
             except AttributeError:
                 place = self._new_place()
             try:
-                # A signal's handler may change the chunk at any time: it is looked at once.
+                # Read it once: a signal handler may change it at any time.
                 chunk = place.chunk
                 at = chunk.claim()
                 now = steady()
@@ -190,7 +190,7 @@ class LogFile(MappedFile):
     def _prepared(
         self, place: _ThreadPlace, one: Reported, chunk: _Chunk, at: int, now: int
     ) -> tuple[_Chunk, int] | None:
-        """Where to write when something is in the way; None when there is no room."""
+        """Where to write in all but the ordinary case; None where there is no space."""
         if now >= self._sync_at:
             self.look(now)
             self._each_second()
@@ -209,7 +209,7 @@ class LogFile(MappedFile):
             if at < chunk.end:
                 return chunk, at
             if place.is_changing:
-                # From within the change itself.
+                # A signal handler reports while the chunk changes.
                 self._nested += 1
                 return None
             if not self._next_chunk(place):
@@ -288,18 +288,18 @@ class LogFile(MappedFile):
         self._header[NODE_AT : NODE_AT + 1] = raw[:1]
         self._is_node_known = True
 
-    # --- what is of the system
+    # --- system records
 
     def write(self, what: int, raw: bytes) -> bool:
-        """Write a record of the system; ``raw`` is all of it but ``what``. False without room.
+        """Write a system record; ``raw`` is all of it but ``what``. False where there is no space.
 
-        Its place is taken only when it is written: what is broken off leaves no gap. Who reports in
-        the middle of this, as a signal's handler may, begins another chunk.
+        Its place is taken only when it is written, so that an interrupted record leaves no gap. A
+        report in the middle of this, from a signal handler, begins another chunk.
         """
         with self._lock:
             size = -(-(len(raw) + 4) // RECORD_BYTES) * RECORD_BYTES
             chunk = self._system
-            # What is left over at the end of a chunk counts as used.
+            # The rest of the old chunk counts as used.
             if chunk is None or chunk.is_busy or chunk.at + size > chunk.end:
                 first = 0 if chunk is None else chunk.first + RECORDS_OF_CHUNK
                 found = self.new_chunk(SYSTEM_CHUNK, 0, first)
@@ -320,7 +320,7 @@ class LogFile(MappedFile):
         self.write(what, _INTEGERS.pack(site, now, first, second))
 
     def new_slot(self) -> LiveSlot | None:
-        """A place for a live summary; None where there is no more."""
+        """A place for a live summary; None where there is no space."""
         with self._lock:
             if self._live is None or self._live[1] == SLOTS_OF_CHUNK:
                 found = self.new_chunk(LIVE_CHUNK, self.thread_number(), 0)
@@ -333,7 +333,7 @@ class LogFile(MappedFile):
             return LiveSlot(extent.bytes, extent.words, at)
 
     def announce(self, one: Reported) -> None:
-        """Write once what the number of a key is."""
+        """Record once which key a number stands for."""
         with self._lock:
             if one.file is self:
                 return
@@ -342,7 +342,7 @@ class LogFile(MappedFile):
                 one.file = self
 
     def look(self, now: int) -> None:
-        """Once a second: note the clocks against each other, and the node's state in ROS."""
+        """Once a second, record how the clocks relate, and the node's state in ROS."""
         with self._lock:
             if now < self._sync_at:
                 return
@@ -359,9 +359,9 @@ class LogFile(MappedFile):
             self._integers(SYNC, 0, before + (after - before) // 2, real, known.ros_ns)
 
     def write_policy(self, config: Config) -> None:
-        """Note that this policy applies from now on."""
+        """Record that this policy applies from now on."""
         self._integers(POLICY, config.policy == "edges", monotonic_ns(), config.period_ns, 0)
 
     def write_dropped(self, one: int, number: int, flops: int, why: str) -> None:
-        """Note that reports of a comparison (0: unknown) were dropped."""
+        """Record that reports of a comparison (0: unknown) were dropped."""
         self._integers(DROPPED | REASONS[why] << 16, one, monotonic_ns(), number, flops)

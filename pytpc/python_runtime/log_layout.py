@@ -1,7 +1,7 @@
 """The layout of the binary file of reports.
 
-docs/reference/formats.md has the layout in words, runtime_log/Layout.h in C++. The reader of these
-files, `pytpc.ingest.binary`, uses these numbers too.
+docs/reference/formats.md describes it, and runtime_log/Layout.h has it in C++.
+`pytpc.ingest.binary` reads these files with the same constants.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ CHUNK = struct.Struct("<IQQ")
 pack_report = struct.Struct("<Iqdd").pack_into
 pack_integers = struct.Struct("<Iqqq").pack_into
 
-# What holds of what is reported: 4 for the pairs of outcomes.
+# The first word of a report, by its two outcomes.
 WHATS = tuple(
     REPORT | (RESULT_BIT if result else 0) | (OUTCOME_BIT if res else 0)
     for result in (False, True)

@@ -1,4 +1,4 @@
-"""The mapped file of reports: space on the disk that is handed out in chunks."""
+"""The mapped file of reports: disk space that is handed out in chunks."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ if TYPE_CHECKING:
     from pytpc.python_runtime.config import Config
 
 _EXTENT_BYTES = 1 << 20
-# Mappings are never given back, because other threads may write to them, and each takes a
-# descriptor: they grow, so that 4 GiB are some 70 of them.
+# Mappings are never unmapped, because other threads may write to them, and each takes a
+# descriptor. They grow in size, so that 4 GiB need about 70 of them.
 _LARGEST_EXTENT = 64 << 20
 
 
@@ -44,20 +44,20 @@ class Extent:
     __slots__ = ("base", "bytes", "chunks", "words")
 
     def __init__(self, mapped: mmap.mmap, size: int) -> None:
-        """``mapped`` is of ``size`` bytes."""
+        """``mapped`` has ``size`` bytes."""
         self.bytes = mapped
         self.words = memoryview(mapped).cast("I")
         self.chunks = size // CHUNK_BYTES
 
 
 class MappedFile:
-    """One file. Errors while it is written stop the recording, and never the program.
+    """One file. An error while it is written stops the recording, never the program.
 
-    ``is_stopped``: the disk is full, or a limit reached.
+    ``is_stopped``: the disk is full, or a limit is reached.
     """
 
     def __init__(self, config: Config, parent: int, node: str) -> None:
-        """Make the file in its folder; nothing but its header is in it.
+        """Make the file in its folder, with its header alone.
 
         Raises:
             OSError: it cannot be made.
@@ -83,7 +83,7 @@ class MappedFile:
             raise
 
     def new_chunk(self, kind: int, thread: int, first: int) -> tuple[Extent, int] | None:
-        """A chunk, and its first byte in its extent; None where there is no room."""
+        """A chunk as its extent and its first byte in it; None where there is no space."""
         with self._lock:
             if self.is_stopped or self._is_closed:
                 return None
@@ -124,7 +124,7 @@ class MappedFile:
         self._size = end
 
     def _is_mine(self) -> bool:
-        """A program that closes all descriptors may have opened a file of its own in its place."""
+        """A program that closes all descriptors may have reused the number for another file."""
         try:
             its = os.fstat(self._descriptor)
         except OSError:
@@ -138,7 +138,7 @@ class MappedFile:
             warn(f"{self.path}: {why}; recording stops, and the program continues")
 
     def close(self) -> None:
-        """Give back what was not used. Threads may write on in the chunks that they have."""
+        """Give back unused space. Threads can still write to the chunks that they have."""
         with self._lock:
             if self._is_closed:
                 return
@@ -185,21 +185,21 @@ class MappedFile:
 
 
 def bounded(text: str, size: int) -> bytes:
-    """UTF-8 with room for a NUL behind it, not cut within a character."""
+    """UTF-8, cut between characters, with space for a NUL at the end."""
     return text.encode("utf-8", "replace")[: size - 1].decode("utf-8", "ignore").encode("utf-8")
 
 
 def _program() -> str:
-    """The script that runs, else the interpreter."""
+    """The script that runs, or the interpreter."""
     script = getattr(sys.modules.get("__main__"), "__file__", None)
     return os.path.abspath(script) if isinstance(script, str) else sys.executable or "python"
 
 
 def _created(config: Config, node: str) -> tuple[str, int]:
-    """The path of a new file, and the descriptor of the same with ``.new`` behind it.
+    """The path of a new file, and a descriptor of that path with ``.new`` added.
 
-    It gets its name when it can be read. Until then the other one keeps out whoever has the same
-    number in another container, and so the same names.
+    The file gets its name when it can be read. Until then ``.new`` keeps processes of other
+    containers, which may have the same number and so the same names, from using it.
     """
     home = os.environ.get("ROS_HOME") or os.path.join(os.environ.get("HOME") or "/tmp", ".ros")
     folder = config.folder or os.path.join(home, "tpc")

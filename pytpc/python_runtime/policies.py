@@ -39,7 +39,7 @@ class Caps:
         self._sink.settle()
 
     def is_over(self, one: Reported, is_flop: bool) -> bool:
-        """Whether a report exceeds a cap; then it is counted."""
+        """Whether a report exceeds a cap; if so, it is counted."""
         if not (self._site or self._process):
             return False
         second = monotonic_ns() // _SECOND
@@ -64,7 +64,7 @@ class Caps:
             return True
 
     def account(self) -> None:
-        """Report what was dropped since the last time."""
+        """Report what was dropped since the last call."""
         with self._lock:
             over, self._over = self._over, {}
         for one, counts in over.items():
@@ -74,7 +74,7 @@ class Caps:
 
 
 class Edges:
-    """Each flop is reported, and of all evaluations a summary for each thread and period."""
+    """Each flop is reported; all evaluations are summarised by thread and period."""
 
     def __init__(self, config: Config, sink: Sink, caps: Caps) -> None:
         self._sink = sink
@@ -108,14 +108,14 @@ class Edges:
         self._sink.settle()
 
     def _new(self, thread: int, one: Reported) -> PeriodSummary:
-        """A comparison that is new to its thread."""
+        """The summary of a comparison that is new to its thread."""
         if self._file is None:
             return PeriodSummary(one, thread)
         self._file.announce(one)
         return PeriodSummary(one, thread, self._file.new_slot())
 
     def _edge(self, one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> int:
-        """Report it if the predicate's result has changed."""
+        """Report it if the result of the predicate has changed."""
         last, one.last = one.last, int(result)
         if last == result:
             return 0
@@ -131,7 +131,7 @@ class Edges:
             kept.slot.begin()
 
     def flush(self, *, all_of_them: bool) -> None:
-        """Hand on the summaries of periods that are over, and if asked those of open ones."""
+        """Send the summaries of periods that are over, and on request those of open ones."""
         period = (monotonic_ns() - self._start) // self._period_ns + 1 & 0xFFFFFFFF
         with self._lock:
             for kept in self._open.values():

@@ -1,8 +1,8 @@
 """Runs a Python node with reports: ``python -m pytpc.python_runtime [OPTION]... node.py ARGS``.
 
-It runs under the node's own interpreter, Python 3.8 or newer, which need not have TPC installed:
-``python /path/to/pytpc/python_runtime/run.py`` does the same. ``pytpc run`` finds the interpreter
-of a node and starts this.
+It runs under the node's own interpreter, Python 3.8 or newer. Where TPC is not installed for it,
+``python /path/to/pytpc/python_runtime/run.py`` does the same. ``pytpc run`` finds a node's
+interpreter and starts this.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ from types import ModuleType
 from typing import NamedTuple
 
 if __name__ == "__main__" and not __package__:
-    # Started by its path: beside it are modules that are not for the program. Where the interpreter
-    # puts no script's folder there (-I, -P) the first place is another's.
+    # Started by its path: replace its folder, whose modules the program must not import. With -I
+    # and -P the interpreter does not add that folder.
     is_safe = sys.flags.isolated or getattr(sys.flags, "safe_path", False)
     room = os.path.dirname(os.path.abspath(__file__))
     sys.path[: 0 if is_safe else 1] = [os.path.dirname(os.path.dirname(room))]
@@ -80,7 +80,7 @@ def parsed(words: list[str]) -> CommandLine | None:
 def static_around(script: str) -> str | None:
     """The static.json of ``pytpc build`` in a folder above the script, else above the current one.
 
-    The script's folder is first that of the path given, then that of the file a link points to.
+    It looks above the given path first, then above the file that a symbolic link leads to.
     """
     for start in (os.path.abspath(script), os.path.realpath(script), os.path.join(os.getcwd(), "")):
         folder = os.path.dirname(start)
@@ -98,8 +98,8 @@ def prepared(given: CommandLine) -> Instrument:
     """Read the static information of a script and install the hook.
 
     Raises:
-        HookError: a file that was named cannot be read. One that was only found is left out, with a
-            warning.
+        HookError: a file that the user named cannot be read. A file that was found is left out
+            with a warning.
     """
     named = os.environ.get("TPC_STATIC", "").split(os.pathsep)
     static = given.static or [path for path in named if path]
@@ -141,7 +141,7 @@ def main() -> None:
             sys.stdout.write(USAGE)
             return
         instrument = prepared(given)
-        # What `-m` or the path of this file has put there is not the program's.
+        # Remove the entry for this file, or for `-m`.
         del sys.path[0]
         _hide_command(given)
         if given.verbose:
@@ -153,10 +153,10 @@ def main() -> None:
 
 
 def run_script(path: str, arguments: list[str], instrument: Instrument) -> None:
-    """Run the file at ``path`` as ``__main__``; returns when it is through.
+    """Run the file at ``path`` as ``__main__``; return when it has ended.
 
-    ``sys.argv``, ``sys.path[0]`` and the module are as if it had been started by itself. What it
-    raises goes on with a traceback that begins in the script.
+    ``sys.argv``, ``sys.path[0]`` and the module are as if the script had been started directly. An
+    exception leaves with a traceback that begins in the script.
 
     Raises:
         HookError: there is no such file.
@@ -195,10 +195,9 @@ def run_script(path: str, arguments: list[str], instrument: Instrument) -> None:
 
 
 def _show(error: BaseException) -> None:
-    """Let ``sys.excepthook`` see the script's own frames, and the interpreter end as always.
+    """Give ``sys.excepthook`` the script's own frames, and let the interpreter end as usual.
 
-    The interpreter then takes the exit status, or dies of SIGINT, by itself, but has nothing more
-    to say.
+    The interpreter still sets the exit status, or dies of SIGINT, and prints nothing more.
     """
     error.__traceback__ = foreign_frames(error.__traceback__)
     kind, traceback = type(error), error.__traceback__

@@ -1,9 +1,9 @@
 """The settings of this process, and the sink and policy that follow from them.
 
-Nothing happens until the first report. Where the program has imported rospy there is then one
-helper thread, which waits for its node, takes over its parameters, and sends what the sinks keep.
-For the sink ``file`` it ends after that: what is due once a second is done by the report that finds
-it due. A child after a fork goes on with the settings that held and begins a file of its own.
+Nothing happens until the first report. If the program has imported rospy, one helper thread then
+waits for its node, applies its parameters, and sends what the sinks keep. For the sink ``file``
+this thread then ends: the first report of each second does the periodic work. After a fork the
+child keeps the settings and begins a file of its own.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ class Runtime:
         )
 
     def register(self, place: ListedPlace) -> Reported:
-        """The report of a place; one for each key and side."""
+        """The report of a place; there is one for each key and side."""
         key = place.listed.key
         with self._lock:
             known = self._reported.get(key)
@@ -77,22 +77,22 @@ class Runtime:
 
     @property
     def config(self) -> Config:
-        """What holds."""
+        """The current settings."""
         with self._lock:
             if self._config is None:
                 self._config = of_environment()
             return self._config
 
     def _first(self, one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> None:
-        """The first report, before anything is chosen."""
+        """Take the first report: choose sink and policy before."""
         self.start()
         if self._is_started:
             sites.take(one, result, cmp, thresh, res)
 
     def start(self) -> None:
-        """Choose what the environment says, or what held before a fork."""
+        """Apply the settings of the environment, or those from before a fork."""
         with self._lock:
-            # A signal's handler may report, or raise, in the middle of this.
+            # A signal handler may report, or raise, in the middle of this.
             if self._is_started or self._is_starting:
                 return
             self._is_starting = True
@@ -181,20 +181,20 @@ class Runtime:
         return self._sink if is_it else FileSink(self.file)
 
     def _flush(self) -> None:
-        """Hand what was kept until now to its sink."""
+        """Send what is still kept to its sink."""
         if self._edges is not None:
             self._edges.flush(all_of_them=True)
         self._caps.account()
 
     def _look(self) -> None:
-        """Once a second, from within a report to the file: has the program imported rospy?"""
+        """Once a second, in a report to the file: start the helper if rospy is imported by now."""
         if not self._has_helper and not self._is_served and ros_state.is_imported():
             self._start_helper()
 
     # --- the helper thread
 
     def _start_helper(self) -> None:
-        """Start the helper, no thread of `threading`: programs wait for those, or count them."""
+        """Start the helper, but not by `threading`: programs count its threads or wait for them."""
         self._has_helper = True
         try:
             _thread.start_new_thread(self._help, ())
@@ -202,7 +202,7 @@ class Runtime:
             warn("cannot start a thread: settings cannot be changed while the node runs")
 
     def _help(self) -> None:
-        """Serve the node's settings, and give the sinks their turns, while there are any."""
+        """Serve the node's settings, and poll the sinks, as long as needed."""
         process = os.getpid()
         retry_at = 0.0
         while self._has_helper and os.getpid() == process:
@@ -241,7 +241,7 @@ class Runtime:
             return " ".join(word for word in words if word)
 
     def end(self) -> None:
-        """The process ends by itself."""
+        """Called when the process ends by itself."""
         with self._lock:
             self._has_helper = False
             self._flush()
@@ -256,10 +256,10 @@ class Runtime:
         self._lock.release()
 
     def _child(self) -> None:
-        """In the child: the file is the parent's, other threads are gone, and the locks are new."""
+        """In the child: the file belongs to the parent, other threads are gone, locks are new."""
         self._lock = threading.RLock()
         if self.file is not None:
-            # Never unmapped: its descriptors may be others' by now.
+            # Never unmapped: its descriptors may belong to other files by now.
             _FORMER.append(self.file)
         self._was_node = self._was_node or ros_state.rospy() is not None
         if self._is_started:
@@ -269,7 +269,7 @@ class Runtime:
         self._edges = None
         self._caps = Caps(Config(), self._sink)
         self._has_helper = False
-        # There is no node in a child, and so no settings but those that held.
+        # A child has no node, and keeps its settings.
         self._is_served = self._is_served or self._was_node
         self._is_started = self._is_starting = False
         for one in self.all_reported():

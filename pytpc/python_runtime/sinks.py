@@ -1,6 +1,6 @@
-"""What a sink takes, its lines of text (docs/reference/formats.md#reports), and the sink ``file``.
+"""What sinks take, their lines of text (docs/reference/formats.md#reports), and the sink ``file``.
 
-The shortest way of a report to a file is in `pytpc.python_runtime.log_file`.
+The fastest way of a report to a file is in `pytpc.python_runtime.log_file`.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _FAR = 1e-4
 
 
 class PeriodSummary:
-    """All evaluations of one comparison in one thread and period, as they come. Times in ns."""
+    """A summary of all evaluations of one comparison in one thread and period. Times in ns."""
 
     __slots__ = (
         "absolute",
@@ -90,7 +90,7 @@ class PeriodSummary:
 
 
 class Sink:
-    """Where reports go. This one goes nowhere; the others replace what they need."""
+    """A destination of reports. This one drops them; subclasses replace what they need."""
 
     # Whether the helper thread calls `poll`.
     is_polled = False
@@ -99,31 +99,31 @@ class Sink:
         """One evaluation."""
 
     def edge(self, one: Reported, result: bool, cmp: float, thresh: float, res: bool) -> None:
-        """A flop, or a first evaluation, under the policy ``edges``."""
+        """A flop, or the first evaluation, under the policy ``edges``."""
         self.take(one, result, cmp, thresh, res)
 
     def summary(self, summary: PeriodSummary) -> None:
         """A period that is over."""
 
     def dropped(self, one: Reported, count: int, flops: int, why: str) -> None:
-        """What was not reported since the last account."""
+        """Reports that were dropped since the last call."""
 
     def settle(self) -> None:
-        """Send what was handed over while a lock of ours was held: no program's code runs then."""
+        """Send what was kept while the hook held a lock: now it may run code of the program."""
 
     def poll(self) -> None:
         """Called by the helper thread some fifty times a second."""
 
     def status(self) -> str:
-        """What a person may want to know about it; words with ``=`` in them."""
+        """Information for people: words with ``=`` in them."""
         return ""
 
     def end(self) -> None:
-        """The last moment."""
+        """The process ends."""
 
 
 def number(value: float) -> str:
-    """The shortest text that reads back as the same double, as C++ writes it."""
+    """The shortest text that reads back as the same double, like C++ writes it."""
     text = repr(value)
     return text[:-2] if text.endswith(".0") else text
 
@@ -134,14 +134,14 @@ def report_line(one: Reported, result: bool, cmp: float, thresh: float, res: boo
 
 
 def seconds(ns: int, decimals: int) -> str:
-    """A time in seconds with so many decimals, cut and not rounded."""
+    """A time in seconds with this many decimals, truncated."""
     sign = "-" if ns < 0 else ""
     whole, rest = divmod(abs(ns), 1_000_000_000)
     return f"{sign}{whole}.{rest:09d}"[: len(sign) + len(str(whole)) + 1 + decimals]
 
 
 def summary_line(kept: PeriodSummary) -> str:
-    """The same with count, flops, and so on."""
+    """A line like `report_line`'s, with count, flops and statistics."""
     usable = kept.evaluations - kept.odd
     numbers = (kept.least, kept.largest, kept.total, kept.absolute, kept.low, kept.high)
     least, largest, total, absolute, low, high = numbers if usable else (nan,) * 6
@@ -161,7 +161,7 @@ def dropped_line(one: Reported, count: int, flops: int, why: str) -> str:
 
 
 def _packed(kept: PeriodSummary, *, is_open: bool = False) -> bytes:
-    """A summary as it is in the file, except its first word."""
+    """A summary as the file has it, without its first word."""
     return _SUMMARY.pack(
         kept.one.number,
         kept.begin_ns,
@@ -186,12 +186,12 @@ def _packed(kept: PeriodSummary, *, is_open: bool = False) -> bytes:
 
 
 def _what_of(kept: PeriodSummary) -> int:
-    """The first word."""
+    """The first word of a summary."""
     return SUMMARY | (RESULT_BIT if kept.result else 0) | (OUTCOME_BIT if kept.res else 0)
 
 
 class FileSink(Sink):
-    """Writes all but reports under ``every``, which go to the file's own `LogFile.take`."""
+    """Writes all but the reports of ``every``, which `LogFile.take` writes."""
 
     def __init__(self, file: LogFile) -> None:
         self.file = file
@@ -199,12 +199,12 @@ class FileSink(Sink):
         self.edge = file.edge  # type: ignore[method-assign]
 
     def summary(self, summary: PeriodSummary) -> None:
-        """Write it among the system's records."""
+        """Write it as a system record."""
         self.file.announce(summary.one)
         self.file.write(_what_of(summary), _packed(summary))
 
     def dropped(self, one: Reported, count: int, flops: int, why: str) -> None:
-        """Write the account."""
+        """Write a record of it."""
         self.file.announce(one)
         self.file.write_dropped(one.number, count, flops, why)
 
@@ -213,16 +213,16 @@ class FileSink(Sink):
         return f"state={'stopped' if self.file.is_stopped else 'open'} file={self.file.path}"
 
     def end(self) -> None:
-        """A last look at the clocks, and the end of the file."""
+        """Record the clocks a last time, and close the file."""
         self.file.look(monotonic_ns())
         self.file.close()
 
 
 class LiveSlot:
-    """Where the summary of an open period is kept up to date, so that a killed process loses none.
+    """Keeps the summary of an open period up to date in the file: a killed process loses none.
 
-    ``begun`` counts up before an evaluation is taken in, ``count`` with it, in one piece: a reader
-    leaves out a summary whose counts contradict one another.
+    ``begun`` counts up before an evaluation is written, and ``count`` with it, in one piece. A
+    reader ignores a summary whose two counts differ.
     """
 
     __slots__ = ("_at", "_bytes", "_words")
@@ -239,7 +239,7 @@ class LiveSlot:
         struct.pack_into("<Q", self._bytes, self._at + _BEGUN_AT, 0)
 
     def write(self, kept: PeriodSummary) -> None:
-        """The summary with one more evaluation; its end is open."""
+        """Write the summary, with one more evaluation; its end is open."""
         at = self._at
         struct.pack_into("<Q", self._bytes, at + _BEGUN_AT, kept.evaluations)
         self._words[at >> 2] = _what_of(kept)
